@@ -1,0 +1,24 @@
+# One target per layer: what a layer may use is what it links. See src/README.md.
+
+# Flags of all our own code, and of nothing else.
+add_library(clog_flags INTERFACE)
+target_compile_features(clog_flags INTERFACE cxx_std_20)
+target_include_directories(clog_flags INTERFACE "${PROJECT_SOURCE_DIR}/include")
+target_compile_options(clog_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  # The namespace has the name of a C library function (complex logarithm) that g++ treats as built in.
+  -fno-builtin-clog
+  # Loops marked `omp simd` are vectorised (no OpenMP runtime). errno and floating-point traps are never read,
+  # and would forbid vector square roots. Nothing here reorders sums beyond the marked reductions.
+  -fopenmp-simd -fno-math-errno -fno-trapping-math)
+if(CLOG_SANITIZE)
+  target_compile_options(clog_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(clog_flags INTERFACE -fsanitize=address,undefined)
+endif()
+
+# clog_layer(<name> SOURCES <files...> USES <public dependencies...> USES_PRIVATE <private dependencies...>)
+function(clog_layer name)
+  cmake_parse_arguments(LAYER "" "" "SOURCES;USES;USES_PRIVATE" ${ARGN})
+  add_library(clog_${name} STATIC ${LAYER_SOURCES})
+  target_link_libraries(clog_${name} PUBLIC clog_flags ${LAYER_USES} PRIVATE ${LAYER_USES_PRIVATE})
+endfunction()

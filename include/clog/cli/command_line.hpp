@@ -1,0 +1,56 @@
+#pragma once
+
+#include <boost/program_options.hpp>
+#include <string>
+#include <vector>
+
+#include "clog/sweep/settings.hpp"
+
+namespace clog::cli {
+
+/// Command line of one program: its own options, and, if it runs droplets, every key of the config file as an
+/// option, `--key=value` or `key=value`. Settings come from the defaults, then the --config file, then the
+/// command line.
+class CommandLine {
+ public:
+  enum class SweepKeys { none, accepted };
+
+  CommandLine(std::string program, std::string usage, SweepKeys sweep_keys);
+
+  /// To declare the program's own options on, before parse().
+  boost::program_options::options_description_easy_init add_options() { return own_.add_options(); }
+  /// Declares what a word without dashes means; at most `most` of them.
+  void add_positional(const std::string& option, int most) { positional_.add(option.c_str(), most); }
+
+  /// @throws Error for anything that is not understood
+  void parse(int argc, const char* const* argv);
+
+  bool has(const std::string& option) const { return values_.count(option) > 0; }
+  std::string get(const std::string& option) const { return values_.at(option).as<std::string>(); }
+  /// @throws Error if the option was not given
+  std::string require(const std::string& option) const;
+  /// @throws Error if the option's value is not a number above zero
+  double get_positive(const std::string& option) const;
+  const sweep::Settings& settings() const { return settings_; }
+  sweep::Settings& settings() { return settings_; }
+  /// The command as it was given, in one line.
+  const std::string& text() const { return text_; }
+  std::string help() const;
+
+ private:
+  std::string program_;
+  std::string usage_;
+  SweepKeys sweep_keys_;
+  boost::program_options::options_description own_{"Options"};
+  boost::program_options::options_description keys_{
+      "Keys of the config file, also as options. Numbers take a list: 0.2,0.3  lin(a,b,n)  log(a,b,n)  1..50"};
+  boost::program_options::positional_options_description positional_;
+  boost::program_options::variables_map values_;
+  sweep::Settings settings_;
+  std::string text_;
+
+  [[noreturn]] void refuse_unknown(const std::string& word) const;
+  void read_config(const std::string& path);
+};
+
+}  // namespace clog::cli

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "clog/core/displacement_record.hpp"
+#include "clog/core/droplet.hpp"
+#include "clog/core/obstacle_array.hpp"
+#include "clog/core/parameters.hpp"
+
+namespace clog {
+
+enum class RunStatus { running, clogged, flowing, interrupted, failed };
+
+/// What one run found out.
+struct RunResult {
+  RunStatus status = RunStatus::running;
+  double distance = 0;              ///< displacement along the flow since release [sigma]
+  double lateral = 0;               ///< displacement across the flow [sigma]
+  double time = 0;                  ///< [t0]
+  double mean_speed = 0;            ///< see DisplacementRecord::mean_speed [sqrt(sigma g)]
+  double kinetic_energy_ratio = 0;  ///< E_k/E_t at the end
+  double shape_parameter = 0;       ///< A at the end
+  std::int64_t steps = 0;           ///< integrated steps, sub-steps counted singly
+  std::string message;              ///< why it failed
+};
+
+/// One droplet released in an obstacle array, followed until it clogs or its time is up.
+///
+/// The droplet counts as clogged when E_k/E_t (E_t: kinetic energy at terminal speed) has been below
+/// clog-energy at two checks in a row. The course of a run depends on its parameters alone, not on how
+/// advance() is called.
+class ArrayRun {
+ public:
+  /// Samples the obstacles and releases the droplet.
+  /// @param run  resolved parameters
+  explicit ArrayRun(const RunParameters& run);
+  /// Uses the given obstacles, e.g. a user's own.
+  ArrayRun(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles);
+
+  /// Goes on for at most `num_checks` intervals of `steps_per_check` steps. Returns whether the run is over.
+  bool advance(int num_checks);
+
+  /// Of the run so far; status `running` while it is not over.
+  RunResult result() const;
+  double time() const { return static_cast<double>(steps_done_) * run_.time_step; }
+  /// Along and across the flow since release [sigma].
+  Eigen::Array2d displacement() const;
+  double kinetic_energy_ratio() const;
+  const Droplet& droplet() const { return *droplet_; }
+  const ObstacleArray& obstacles() const { return *obstacles_; }
+  const RunParameters& parameters() const { return run_; }
+  int steps_per_check() const;
+
+ private:
+  RunParameters run_;
+  std::shared_ptr<const ObstacleArray> obstacles_;
+  std::unique_ptr<Droplet> droplet_;
+  LocalFrame start_frame_;
+  Eigen::Array2d start_;
+  std::int64_t steps_done_ = 0;
+  std::int64_t max_steps_;
+  int quiet_checks_ = 0;
+  RunStatus status_ = RunStatus::running;
+  std::string message_;
+  DisplacementRecord record_;
+
+  void check();
+};
+
+const char* name(RunStatus status);
+
+}  // namespace clog

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "clog/core/droplet_state.hpp"
+#include "clog/core/obstacle_array.hpp"
+#include "clog/core/parameters.hpp"
+#include "clog/core/polygon.hpp"
+#include "clog/core/self_contacts.hpp"
+#include "clog/core/wall_contacts.hpp"
+
+namespace clog {
+
+/// Terms of the potential energy of a deformable polygon [g rho sigma^3], Cheng et al. Eqs. 1-5.
+struct DpEnergy {
+  double area = 0;          ///< (k_a/2)(a - a0)^2
+  double spring = 0;        ///< (k_l N_v/2) sum (l_i - l_ref)^2
+  double line_tension = 0;  ///< gamma P
+  double gravity = 0;       ///< -M g h, h measured from the frame's origin
+  double wall = 0;          ///< (k_c/2) sum overlap^2 over vertices and obstacles
+  double self_contact = 0;  ///< (k_c/2) sum overlap^2 over vertices and strands of interface
+
+  double total() const { return area + spring + line_tension + gravity + wall + self_contact; }
+};
+
+/// Potential energy of a deformable polygon among obstacles and its negative gradient.
+/// Contacts act through lists; update_contacts() must have been called for positions as near as its horizon.
+class DpForces {
+ public:
+  /// @param run  resolved parameters (see resolve())
+  DpForces(const RunParameters& run, const ObstacleArray& obstacles);
+
+  /// @param horizon  time until the next call [t0]
+  void update_contacts(const DropletState& state, double horizon);
+  /// To be called when local coordinates have moved by a shift of the frame.
+  void forget_contacts();
+
+  /// force = -grad U, all x then all y [g rho sigma^2]. Also measures shape() and, with near-wall drag,
+  /// wall_distance().
+  void evaluate(const DropletState& state, Eigen::ArrayXd& force);
+  DpEnergy energy(const DropletState& state) const;
+
+  /// Area and perimeter at the last evaluate().
+  const PolygonShape& shape() const { return shape_; }
+  /// Distance of each vertex to the nearest obstacle at the last evaluate(), not below half a vertex diameter
+  /// [sigma]; empty without near-wall drag.
+  const Eigen::ArrayXd& wall_distance() const { return wall_distance_; }
+  const WallContacts& walls() const { return walls_; }
+  const SelfContacts& self_contacts() const { return self_; }
+  double vertex_diameter() const { return vertex_diameter_; }
+
+  /// For the release, where the droplet grows without weight.
+  void set_rest_area(double area);
+  void set_weight(double weight) { weight_ = weight; }
+
+ private:
+  DpParameters dp_;
+  double vertex_diameter_;
+  double contact_stiffness_;
+  double rest_area_;
+  double rest_edge_;
+  double weight_;
+  WallContacts walls_;
+  SelfContacts self_;
+  PolygonShape shape_;
+  Eigen::ArrayXd edge_x_, edge_y_, edge_length_, pull_;
+  Eigen::ArrayXd wall_distance_;
+
+  double spring_length() const;
+  void add_centroid_weight(const DropletState& state, Eigen::ArrayXd& force) const;
+  void add_self_contact(const DropletState& state, Eigen::ArrayXd& force) const;
+};
+
+}  // namespace clog

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+
+#include "clog/core/droplet_state.hpp"
+#include "clog/core/polygon.hpp"
+
+namespace clog {
+
+/// A droplet that moves: what a run needs to know of either model.
+class Droplet {
+ public:
+  virtual ~Droplet() = default;
+
+  /// Integrates the equations of motion over `num_steps` time steps. A step may be split into sub-steps.
+  virtual void advance(int num_steps) = 0;
+
+  /// Sub-steps done so far.
+  std::int64_t num_integrated_steps() const { return num_integrated_steps_; }
+  const DropletState& state() const { return state_; }
+  /// [g rho sigma^3]
+  virtual double kinetic_energy() const = 0;
+  /// Area, perimeter; those of the undeformed disk for the soft disk.
+  virtual PolygonShape shape() const = 0;
+
+ protected:
+  DropletState state_;
+  std::int64_t num_integrated_steps_ = 0;
+};
+
+}  // namespace clog

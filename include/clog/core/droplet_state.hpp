@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace clog {
+
+/// Where a droplet's local coordinates sit in the periodic plane: global = image * box + origin + local.
+/// The origin stays inside the box and follows the droplet in whole units, so coordinates stay of order one
+/// however far the droplet travels, and a droplet one box further on feels bit-identical forces.
+struct LocalFrame {
+  double box = 0;                         ///< period [sigma]
+  Eigen::Array2d origin{0, 0};            ///< in [0, box) [sigma]
+  Eigen::Array<std::int64_t, 2, 1> image{0, 0};  ///< whole boxes
+
+  Eigen::Array2d global(const Eigen::Array2d& local) const { return image.cast<double>() * box + origin + local; }
+  /// Displacement from a place of another frame of the same box, without forming large coordinates.
+  Eigen::Array2d displacement(const Eigen::Array2d& local, const LocalFrame& from, const Eigen::Array2d& from_local) const {
+    return (image - from.image).cast<double>() * box + (origin - from.origin) + (local - from_local);
+  }
+  /// Moves the origin by a whole-numbered step [sigma].
+  void shift(const Eigen::Array2d& step) {
+    origin += step;
+    for (int axis = 0; axis < 2; ++axis) {
+      while (origin[axis] >= box) origin[axis] -= box, ++image[axis];
+      while (origin[axis] < 0) origin[axis] += box, --image[axis];
+    }
+  }
+};
+
+/// Points (the polygon's vertices, or the soft disk's centre) and their velocities. Coordinates are kept
+/// as one array, all x then all y, so that the integrator and the minimiser see plain vectors.
+struct DropletState {
+  Eigen::ArrayXd position;  ///< 2N, local [sigma]
+  Eigen::ArrayXd velocity;  ///< 2N [sqrt(sigma g)]
+  LocalFrame frame;
+
+  Eigen::Index size() const { return position.size() / 2; }
+  auto x() { return position.head(size()); }
+  auto x() const { return position.head(size()); }
+  auto y() { return position.tail(size()); }
+  auto y() const { return position.tail(size()); }
+  /// Mean of the points: the centre of mass, as the points carry equal masses [sigma].
+  Eigen::Array2d centre() const { return {x().mean(), y().mean()}; }
+  Eigen::Array2d mean_velocity() const { return {velocity.head(size()).mean(), velocity.tail(size()).mean()}; }
+
+  /// Keeps local coordinates of order one: moves the frame by whole units when the centre has left the unit
+  /// square around the origin. Returns the step taken (usually zero).
+  Eigen::Array2d recentre() {
+    const Eigen::Array2d centre_now = centre();
+    if ((centre_now.abs() <= 1).all()) return {0, 0};
+    const Eigen::Array2d step = centre_now.round();
+    x() -= step[0];
+    y() -= step[1];
+    frame.shift(step);
+    return step;
+  }
+};
+
+}  // namespace clog

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <stdexcept>
+
+namespace clog {
+
+/// A fault of the user or of the environment: what is wrong, why, and a remedy, in one line.
+/// Programs print it and leave with exit code 2. Our own mistakes are asserts, not Errors.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace clog

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "clog/core/parameters.hpp"
+
+namespace clog {
+
+/// Circular obstacle: centre and radius [sigma].
+struct Obstacle {
+  double x = 0;
+  double y = 0;
+  double radius = 0;
+};
+
+/// Periodic array of circles in a square box, binned into cells of about one droplet diameter so that the
+/// neighbourhood of a droplet is found at a cost that does not depend on the box.
+class ObstacleArray {
+ public:
+  /// @param obstacles  centres are wrapped into [0, box)^2
+  /// @throws Error if a centre is not finite or a radius not positive and finite
+  ObstacleArray(double box, std::vector<Obstacle> obstacles);
+
+  double box() const { return box_; }
+  /// All obstacles, ordered by cell.
+  const std::vector<Obstacle>& obstacles() const { return obstacles_; }
+
+  /// Appends to `out` every obstacle, periodic images included, whose surface may come within `margin` of the
+  /// rectangle [x_min, x_max] x [y_min, y_max]. Coordinates, in and out, are relative to `origin`, a point of
+  /// the box; obstacles a little further away may be included.
+  struct Window {
+    double origin_x, origin_y;
+    double x_min, x_max, y_min, y_max;
+    double margin;
+  };
+  void gather(const Window& window, std::vector<Obstacle>& out) const;
+
+  /// Smallest surface-to-surface distance of two obstacles, periodic images included [sigma]; negative if
+  /// they overlap, infinite if there is no pair nearer than the box.
+  double smallest_gap() const;
+
+ private:
+  double box_;
+  int cells_per_side_;
+  double largest_radius_ = 0;
+  std::vector<Obstacle> obstacles_;
+  std::vector<std::uint32_t> cell_start_;
+
+  std::uint32_t cell_of(double x, double y) const;
+  void bin_obstacles();
+  /// Calls visit(index, x, y) for every obstacle and image that gather() would return.
+  template <class Visit>
+  void visit_window(const Window& window, Visit visit) const;
+};
+
+/// Poisson-disk sample by random sequential addition: centres are uniform among all places at least
+/// diameter + gap away from every earlier centre (periodic). With a density, stops at
+/// round(density * box^2) obstacles; without, goes on until not one more fits ("saturated", the jamming
+/// limit: discs of diameter + gap cover 0.547 of the plane, Feder, J. Theor. Biol. 87, 237 (1980)).
+/// Voids are tracked on a flat quadtree as in Ebeida et al., Comput. Graph. Forum 31, 785 (2012).
+/// @throws Error if the density exceeds what fits
+ObstacleArray sample_obstacles(const ObstacleParameters& parameters, std::uint32_t seed);
+
+}  // namespace clog

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+namespace clog {
+
+enum class Model { dp, sp };
+/// Reference length of the perimeter springs: the rest length l0 (the paper) or the current mean edge length.
+enum class PerimeterSpring { rest, mean };
+/// Contact between different parts of one droplet's interface.
+enum class SelfContact { off, on };
+/// Where the droplet's weight acts: shared by the vertices (the paper) or at the polygon's area centroid.
+enum class Gravity { vertex, area };
+
+/// Deformable polygon, Cheng et al. Eqs. 1-6. Reduced units, see units.hpp.
+struct DpParameters {
+  double line_tension = 1.0;                   ///< Gamma [g rho sigma^2]
+  double area_stiffness = 1e4;                 ///< K_a [g rho / sigma]
+  PerimeterSpring perimeter_spring = PerimeterSpring::mean;
+  std::optional<double> perimeter_stiffness;   ///< K_l [g rho sigma]; empty: 1e-3 Gamma (rest), 1 (mean)
+  SelfContact self_contact = SelfContact::on;
+  Gravity gravity = Gravity::vertex;
+  int vertices = 256;                          ///< N_v
+};
+
+/// Periodic array of circular obstacles, Cheng et al., "Geometry".
+struct ObstacleParameters {
+  double gap = 0.2;               ///< w_ob, smallest surface-to-surface distance [sigma]
+  double diameter = 0.3;          ///< sigma_ob [sigma]
+  std::optional<double> density;  ///< obstacles per sigma^2; empty: saturated
+  double box = 500;               ///< period L in both directions [sigma]
+
+  bool operator==(const ObstacleParameters&) const = default;
+};
+
+/// Drag on a vertex: zeta = b_inf (1 + (b_0/b_inf) (sigma/d)^(4/3)), Cheng et al. Eq. 7.
+struct DragParameters {
+  double terminal_speed = 0.03;  ///< V_t [sqrt(sigma g)]; b_inf = M g / V_t
+  double near_wall = 0;          ///< b_0/b_inf; the soft disk has no near-wall drag
+};
+
+/// Everything that decides the course of one run. Two runs with equal parameters are equal bit for bit.
+struct RunParameters {
+  Model model = Model::dp;
+  DpParameters dp;
+  std::optional<double> wall_stiffness;  ///< E_w [g rho sigma^3]; empty: stiffest stable value (dp only)
+  ObstacleParameters obstacles;
+  DragParameters drag;
+  double time_step = 1e-3;     ///< [t0]
+  double max_time = 2e5;       ///< [t0]
+  double clog_energy = 1e-17;  ///< E_k/E_t below which a droplet counts as clogged
+  std::uint32_t seed = 1;
+};
+
+/// Replaces every `auto` (empty optional) by the value that will be used, then validates.
+/// @throws Error naming the field, its value, the reason and a remedy
+RunParameters resolve(RunParameters parameters);
+
+/// Contact stiffness k_c [g rho sigma^... per length, force/overlap] of a wall energy
+/// U_w = (E_w/2)(1 - 2d/size)^2: k_c = 4 E_w / size^2. `size` is the vertex diameter (DP) or sigma (SP).
+inline double contact_stiffness(double wall_stiffness, double size) { return 4 * wall_stiffness / (size * size); }
+inline double wall_stiffness(double contact_stiffness, double size) { return contact_stiffness * size * size / 4; }
+
+}  // namespace clog

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "clog/core/droplet_state.hpp"
+#include "clog/core/obstacle_array.hpp"
+#include "clog/core/parameters.hpp"
+
+namespace clog {
+
+/// A droplet at rest, without weight, near the centre of the box: the start of a run.
+///
+/// DP: a small circle is put into the void nearest to the centre and grown to full size, relaxing as it grows,
+/// so that no obstacle is ever inside (energy minimisation cannot see an obstacle that touches no vertex).
+/// SP: starts at the same void and relaxes.
+/// @param run  resolved parameters
+/// @throws Error if there is no room for a droplet near the centre, or it does not relax
+DropletState release_droplet(const RunParameters& run, const ObstacleArray& obstacles);
+
+/// Distance from a point of the box to the nearest obstacle surface, at most `limit` [sigma].
+double clearance(const ObstacleArray& obstacles, double x, double y, double limit);
+
+/// Number of obstacles whose centre lies inside the polygon.
+int num_enclosed(const DropletState& state, const ObstacleArray& obstacles);
+
+/// Largest force component, without weight, that a released droplet may be left with, relative to the weight
+/// of one vertex (DP) or of the disk (SP).
+inline constexpr double release_force_tolerance = 1e-4;
+
+}  // namespace clog

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <vector>
+
+#include "clog/core/droplet.hpp"
+#include "clog/core/obstacle_array.hpp"
+#include "clog/core/parameters.hpp"
+
+namespace clog {
+
+/// Potential energy and force on a soft disk among obstacles, Cheng et al. Eq. 8:
+/// U_w = sum (E_w/2)(1 - 2d/sigma)^2 over obstacles nearer than d = sigma/2, d from the disk's centre to the
+/// obstacle's surface (negative inside). The force stays finite; on an obstacle's very centre it is zero.
+class SpForces {
+ public:
+  SpForces(const RunParameters& run, const ObstacleArray& obstacles);
+
+  void update_contacts(const DropletState& state, double horizon);
+  void forget_contacts() { listed_ = false; }
+  /// force: (f_x, f_y) [g rho sigma^2]
+  void evaluate(const DropletState& state, Eigen::ArrayXd& force) const;
+  double energy(const DropletState& state) const;
+  void set_weight(double weight) { weight_ = weight; }
+
+ private:
+  const ObstacleArray* obstacles_;
+  double wall_stiffness_;
+  double weight_;
+  bool listed_ = false;
+  Eigen::Array2d reference_{0, 0};
+  std::vector<Obstacle> near_;
+};
+
+/// Soft disk: one point of mass M with drag -b_inf v; same integrator as DpDroplet.
+class SpDroplet final : public Droplet {
+ public:
+  SpDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial);
+
+  void advance(int num_steps) override;
+  double kinetic_energy() const override;
+  PolygonShape shape() const override;
+
+ private:
+  RunParameters run_;
+  SpForces forces_;
+  Eigen::ArrayXd force_;
+};
+
+}  // namespace clog

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "clog/core/parameters.hpp"
+
+namespace clog {
+
+/// Upper bounds on omega^2 [1/t0^2] of the stiff modes of a polygon with the given perimeter [sigma].
+/// Velocity Verlet holds a harmonic mode while omega dt < 2; the bounds are those of a chain of masses M/N_v.
+struct StiffModes {
+  double contact = 0;  ///< wall contact of one vertex, k_c N_v/M
+  double area = 0;     ///< uniform pressure, K_a P^2/M
+  double tension = 0;  ///< transverse zigzag, 4 Gamma N_v/(l M), l = P/N_v
+  double spring = 0;   ///< longitudinal zigzag, 4 K_l N_v^2/M
+
+  double sum() const { return contact + area + tension + spring; }
+};
+
+/// (omega dt)^2 of a single wall contact for the automatic E_w: keeps overlaps near 1e-2 vertex diameters
+/// and settles without chatter (contact is one-sided, so the linear bound of 4 is far too generous).
+inline constexpr double auto_contact_omega_dt2 = 0.25;
+/// Largest (omega dt)^2 of the contact alone and of all modes together that we accept; above these,
+/// stopped droplets were seen to chatter instead of coming to rest.
+inline constexpr double max_contact_omega_dt2 = 1.0;
+inline constexpr double max_total_omega_dt2 = 3.0;
+/// The area mode is anharmonic in the perimeter; it gets its own bound.
+inline constexpr double max_area_omega_dt2 = 1.0;
+
+/// Modes of a resolved parameter set (see resolve()) at the given perimeter.
+StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double perimeter);
+
+/// Largest time step [t0] that keeps every bound above.
+double largest_stable_step(const StiffModes& modes);
+
+/// Number of equal sub-steps that `time_step` must be split into at these modes (1 when it holds as it is).
+int num_substeps(const StiffModes& modes, double time_step);
+
+}  // namespace clog

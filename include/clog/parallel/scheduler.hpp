@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "clog/parallel/communicator.hpp"
+#include "clog/sweep/job.hpp"
+
+namespace clog::parallel {
+
+enum class MasterComputes { automatic, yes, no };
+
+/// What rank 0 is told while a sweep runs. Called on rank 0 only, between slices of its own work.
+struct SweepEvents {
+  std::function<void(std::int64_t task, int rank)> started = [](std::int64_t, int) {};
+  /// Every task that was started ends here once; `interrupted` after a stop.
+  std::function<void(const sweep::RunRow&)> ended = [](const sweep::RunRow&) {};
+  /// At least every 0.1 s.
+  std::function<void()> idle = [] {};
+  /// Should the sweep stop now? Running tasks are then ended as interrupted, no more are handed out.
+  std::function<bool()> stop_requested = [] { return false; };
+};
+
+/// Does rank 0 compute? With `automatic` up to 16 ranks: beyond that one rank more or less is not worth the
+/// delay that its slices put between a worker and its next task.
+bool computes(int num_ranks, MasterComputes choice);
+
+/// Works through tasks 0 .. num_tasks - 1 with all ranks; collective.
+///
+/// Rank 0 hands out one task at a time, since tasks differ a thousandfold in length, and gathers the rows.
+/// If it computes, it does so in slices between polls. Nobody spins: who has nothing to do sleeps, longer and
+/// longer, up to a few milliseconds.
+/// @param make_job  called on the rank that works on the task
+/// @return whether all tasks were handed out (rank 0; true elsewhere)
+bool run_tasks(const Communicator& ranks, std::int64_t num_tasks, const sweep::JobFactory& make_job,
+               const SweepEvents& events, bool master_computes);
+
+}  // namespace clog::parallel

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "clog/sweep/run_row.hpp"
+
+namespace clog::sweep {
+
+/// One task being worked on, in slices, so that whoever works on it can look after messages in between.
+class Job {
+ public:
+  virtual ~Job() = default;
+  /// Works for some milliseconds. Returns whether the task is over. Faults of the task itself end it with a
+  /// row of status `failed`; advance() does not throw.
+  virtual bool advance() = 0;
+  /// The task's row; `interrupted` if it is not over.
+  virtual RunRow row() const = 0;
+};
+
+using JobFactory = std::function<std::unique_ptr<Job>(std::int64_t task)>;
+
+}  // namespace clog::sweep

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "clog/core/array_run.hpp"
+#include "clog/core/parameters.hpp"
+
+namespace clog::sweep {
+
+/// Zero-padded text of fixed length, as HDF5 stores it. Longer text is cut.
+template <std::size_t N>
+struct FixedText {
+  std::array<char, N> bytes{};
+
+  FixedText& operator=(std::string_view text) {
+    bytes.fill('\0');
+    text.copy(bytes.data(), N);
+    return *this;
+  }
+  std::string_view view() const {
+    const std::string_view all(bytes.data(), N);
+    return all.substr(0, all.find('\0'));
+  }
+  bool operator==(const FixedText&) const = default;
+};
+
+/// One row of the table of runs: what was run, what came out, where. Plain bytes, so that it can be sent and
+/// stored as it is; the file's columns, units and meanings are listed in store/run_table.cpp.
+struct RunRow {
+  std::int64_t task = -1;
+  FixedText<8> model;
+  double line_tension = 0;         ///< NaN for sp
+  double wall_stiffness = 0;
+  double obstacle_gap = 0;
+  double obstacle_diameter = 0;
+  double obstacle_density = 0;     ///< for a saturated array the jamming limit, see saturated_density()
+  FixedText<16> obstacle_filling;  ///< "saturated" or "density"
+  double box = 0;
+  std::int64_t seed = 0;
+  std::int64_t vertices = 0;       ///< 1 for sp
+  double time_step = 0;
+  double max_time = 0;
+  double terminal_speed = 0;
+  double near_wall_drag = 0;
+  double area_stiffness = 0;       ///< NaN for sp
+  FixedText<8> perimeter_spring;
+  double perimeter_stiffness = 0;  ///< NaN for sp
+  FixedText<8> self_contact;
+  FixedText<8> gravity;
+  double clog_energy = 0;
+
+  FixedText<16> status;
+  double distance = 0;
+  double lateral_displacement = 0;
+  double time = 0;
+  double mean_speed = 0;
+  double kinetic_energy_ratio = 0;
+  double shape_parameter = 0;
+  std::int64_t steps = 0;
+
+  double wall_seconds = 0;
+  std::int64_t rank = 0;
+  FixedText<64> host;
+  std::int64_t attempt = 1;
+  FixedText<256> message;
+};
+
+/// Density of a saturated array [1/sigma^2]: discs of diameter + gap cover 0.547069 of the plane at the jamming
+/// limit of random sequential addition (Feder 1980; value of Wang, Int. J. Mod. Phys. C 5, 707 (1994)).
+double saturated_density(double diameter, double gap);
+
+/// The columns that say what was run.
+RunRow describe(const RunParameters& resolved);
+/// Fills the columns that say what came out.
+void record(const RunResult& result, RunRow& row);
+
+}  // namespace clog::sweep

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "clog/core/parameters.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::sweep {
+
+/// One key of the config file, which is also an option of the programs.
+struct Key {
+  std::string name;
+  ValueKind kind;
+  std::vector<std::string> words;  ///< see expand_list
+  std::string default_text;
+  std::string help;                ///< meaning and unit
+  bool dp_only;                    ///< has no meaning for model=sp
+  void (*apply)(RunParameters&, const std::string& value);
+};
+
+/// Every key, in the order in which they are shown. The one place that knows them.
+const std::vector<Key>& keys();
+/// @throws Error that names the nearest key
+const Key& find_key(std::string_view name);
+
+/// The settings of a sweep: for every key the text given, or the default.
+class Settings {
+ public:
+  Settings();
+
+  /// From the text that to_config() wrote.
+  static Settings from_config(const std::string& text);
+
+  /// @throws Error if there is no such key or its list cannot be read
+  void set(const std::string& name, const std::string& text);
+  const std::string& text(const std::string& name) const { return texts_.at(name); }
+  /// The expanded values of a key.
+  const std::vector<std::string>& values(const std::string& name) const { return values_.at(name); }
+
+  /// All keys as a config file, each with its meaning as a comment if wanted. Reads back as the same settings.
+  std::string to_config(bool with_comments) const;
+
+ private:
+  std::map<std::string, std::string> texts_;
+  std::map<std::string, std::vector<std::string>> values_;
+};
+
+}  // namespace clog::sweep

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace clog::sweep {
+
+enum class ValueKind { number, integer, word };
+
+/// Splits a list as written in a config file into single values, in order:
+/// `0.2,0.3`; `lin(a,b,n)` and `log(a,b,n)`, n values from a to b; for integers `1..50`; words as they are.
+/// Numbers come back in their shortest exact decimal form.
+/// @param words  what may stand instead of a number (e.g. auto), or all that is allowed for kind word
+/// @throws Error, without the key's name, that says what is wrong with which item
+std::vector<std::string> expand_list(std::string_view text, ValueKind kind, const std::vector<std::string>& words);
+
+/// Shortest decimal text that reads back as the same number.
+std::string shortest(double value);
+
+/// @throws Error if the whole text is not one finite number
+double to_number(std::string_view text);
+/// @throws Error if the whole text is not one integer
+long long to_integer(std::string_view text);
+
+/// The candidate nearest to a mistyped word, or empty if none is near.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
+
+}  // namespace clog::sweep

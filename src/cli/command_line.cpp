@@ -1,0 +1,117 @@
+#include "clog/cli/command_line.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include "clog/core/error.hpp"
+
+namespace clog::cli {
+namespace {
+
+namespace po = boost::program_options;
+
+bool is_key(const std::string& name) {
+  for (const sweep::Key& key : sweep::keys())
+    if (key.name == name) return true;
+  return false;
+}
+
+/// `key=value` becomes `--key=value`.
+std::string with_dashes(const std::string& word) {
+  const auto equals = word.find('=');
+  const bool is_assignment = equals != std::string::npos && equals > 0 && word[0] != '-' &&
+                             word.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == equals;
+  return is_assignment ? "--" + word : word;
+}
+
+}  // namespace
+
+CommandLine::CommandLine(std::string program, std::string usage, SweepKeys sweep_keys)
+    : program_(std::move(program)), usage_(std::move(usage)), sweep_keys_(sweep_keys) {
+  own_.add_options()("help", "print this and leave")("version", "print versions and leave");
+  if (sweep_keys == SweepKeys::none) return;
+  own_.add_options()("config", po::value<std::string>(), "file with lines `key = value`");
+  for (const sweep::Key& key : sweep::keys())
+    keys_.add_options()(key.name.c_str(), po::value<std::string>(),
+                        (key.help + " (" + key.default_text + ")").c_str());
+}
+
+void CommandLine::parse(int argc, const char* const* argv) {
+  std::vector<std::string> words;
+  text_ = program_;
+  for (int i = 1; i < argc; ++i) {
+    words.push_back(with_dashes(argv[i]));
+    text_ += std::string(" ") + argv[i];
+  }
+  po::options_description all;
+  all.add(own_).add(keys_);
+  try {
+    const int style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
+    po::store(po::command_line_parser(words).options(all).positional(positional_).style(style).run(), values_);
+  } catch (const po::unknown_option& error) {
+    refuse_unknown(error.get_option_name());
+  } catch (const po::too_many_positional_options_error&) {
+    throw Error("too many words on the command line (options start with --, settings are key=value); see " + program_ +
+                " --help");
+  } catch (const po::error& error) {
+    throw Error(std::string(error.what()) + "; see " + program_ + " --help");
+  }
+  if (sweep_keys_ == SweepKeys::none) return;
+  if (has("config")) read_config(get("config"));
+  for (const auto& [name, value] : values_)
+    if (is_key(name)) settings_.set(name, value.as<std::string>());
+}
+
+void CommandLine::refuse_unknown(const std::string& word) const {
+  std::vector<std::string> names;
+  for (const auto* group : {&own_, &keys_})
+    for (const auto& option : group->options()) names.push_back(option->long_name());
+  const std::string bare = word.substr(std::min(word.find_first_not_of('-'), word.size()));
+  const std::string near = sweep::did_you_mean(bare, names);
+  throw Error("unknown option " + word +
+              (near.empty() ? "; " + program_ + " --help lists the options" : "; did you mean --" + near + "?"));
+}
+
+void CommandLine::read_config(const std::string& path) {
+  std::ifstream file(path);
+  if (!file || std::filesystem::is_directory(path))
+    throw Error("cannot read the config file " + path + " (no such file, or not readable)");
+  try {
+    const po::parsed_options parsed = po::parse_config_file(file, keys_, true);
+    for (const po::option& option : parsed.options) {
+      if (option.value.empty() || option.value.front().empty())
+        throw Error("invalid " + option.string_key + "= (has no value)");
+      settings_.set(option.string_key, option.value.front());
+    }
+  } catch (const po::error& error) {
+    throw Error(path + ": " + error.what() + "; lines are `key = value`, comments start with #");
+  } catch (const Error& error) {
+    throw Error(path + ": " + error.what());
+  }
+}
+
+std::string CommandLine::require(const std::string& option) const {
+  if (!has(option)) throw Error("missing --" + option + "; see " + program_ + " --help");
+  return get(option);
+}
+
+double CommandLine::get_positive(const std::string& option) const {
+  try {
+    const double value = sweep::to_number(get(option));
+    if (value > 0) return value;
+  } catch (const Error&) {
+    // said below, with the option's name
+  }
+  throw Error("invalid --" + option + "=" + get(option) + " (must be a positive number)");
+}
+
+std::string CommandLine::help() const {
+  std::ostringstream out;
+  out << usage_ << "\n" << own_;
+  if (sweep_keys_ == SweepKeys::accepted) out << '\n' << keys_;
+  return out.str();
+}
+
+}  // namespace clog::cli

@@ -1,0 +1,113 @@
+#include "clog/core/array_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "clog/core/dp_droplet.hpp"
+#include "clog/core/release.hpp"
+#include "clog/core/sp_droplet.hpp"
+#include "clog/core/units.hpp"
+
+namespace clog {
+namespace {
+
+constexpr int standard_steps_per_check = 64;
+/// Beyond this the integration has broken down: free fall without drag over a whole box stays below it.
+constexpr double diverged_energy_ratio = 1e8;
+
+std::unique_ptr<Droplet> make_droplet(const RunParameters& run, const ObstacleArray& obstacles) {
+  DropletState released = release_droplet(run, obstacles);
+  if (run.model == Model::dp) return std::make_unique<DpDroplet>(run, obstacles, std::move(released));
+  return std::make_unique<SpDroplet>(run, obstacles, std::move(released));
+}
+
+/// The last array is kept: a sweep asks for the same one several times in a row.
+std::shared_ptr<const ObstacleArray> sample_or_reuse(const ObstacleParameters& parameters, std::uint32_t seed) {
+  struct Cache {
+    ObstacleParameters parameters;
+    std::uint32_t seed = 0;
+    std::shared_ptr<const ObstacleArray> array;
+  };
+  thread_local Cache cache;
+  if (!cache.array || !(cache.parameters == parameters) || cache.seed != seed)
+    cache = {parameters, seed, std::make_shared<ObstacleArray>(sample_obstacles(parameters, seed))};
+  return cache.array;
+}
+
+}  // namespace
+
+ArrayRun::ArrayRun(const RunParameters& run) : ArrayRun(run, sample_or_reuse(run.obstacles, run.seed)) {}
+
+ArrayRun::ArrayRun(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles)
+    : run_(run),
+      obstacles_(std::move(obstacles)),
+      droplet_(make_droplet(run_, *obstacles_)),
+      start_frame_(droplet_->state().frame),
+      start_(droplet_->state().centre()),
+      max_steps_(std::max<std::int64_t>(1, std::llround(run_.max_time / run_.time_step))) {}
+
+int ArrayRun::steps_per_check() const { return standard_steps_per_check; }
+
+Eigen::Array2d ArrayRun::displacement() const {
+  return droplet_->state().frame.displacement(droplet_->state().centre(), start_frame_, start_);
+}
+
+double ArrayRun::kinetic_energy_ratio() const {
+  const double terminal = 0.5 * units::droplet_mass * run_.drag.terminal_speed * run_.drag.terminal_speed;
+  return droplet_->kinetic_energy() / terminal;
+}
+
+bool ArrayRun::advance(int num_checks) {
+  for (int i = 0; i < num_checks && status_ == RunStatus::running; ++i) {
+    const auto steps = static_cast<int>(std::min<std::int64_t>(standard_steps_per_check, max_steps_ - steps_done_));
+    droplet_->advance(steps);
+    steps_done_ += steps;
+    check();
+  }
+  return status_ != RunStatus::running;
+}
+
+void ArrayRun::check() {
+  const double energy_ratio = kinetic_energy_ratio();
+  if (!(energy_ratio < diverged_energy_ratio)) {
+    std::ostringstream message;
+    message << "diverged at t=" << time() << ": E_k/E_t=" << energy_ratio << "; try a smaller time-step";
+    message_ = message.str();
+    status_ = RunStatus::failed;
+    return;
+  }
+  record_.add(time(), displacement()[0]);
+  quiet_checks_ = energy_ratio < run_.clog_energy ? quiet_checks_ + 1 : 0;
+  if (quiet_checks_ >= 2)
+    status_ = RunStatus::clogged;
+  else if (steps_done_ >= max_steps_)
+    status_ = RunStatus::flowing;
+}
+
+RunResult ArrayRun::result() const {
+  const Eigen::Array2d displaced = displacement();
+  return {.status = status_,
+          .distance = displaced[0],
+          .lateral = displaced[1],
+          .time = time(),
+          .mean_speed = record_.mean_speed(),
+          .kinetic_energy_ratio = kinetic_energy_ratio(),
+          .shape_parameter = droplet_->shape().shape_parameter(),
+          .steps = droplet_->num_integrated_steps(),
+          .message = message_};
+}
+
+const char* name(RunStatus status) {
+  switch (status) {
+    case RunStatus::running: return "running";
+    case RunStatus::clogged: return "clogged";
+    case RunStatus::flowing: return "flowing";
+    case RunStatus::interrupted: return "interrupted";
+    case RunStatus::failed: return "failed";
+  }
+  return "unknown";
+}
+
+}  // namespace clog

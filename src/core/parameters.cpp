@@ -1,0 +1,122 @@
+#include "clog/core/parameters.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <sstream>
+#include <string>
+
+#include "clog/core/error.hpp"
+#include "clog/core/stability.hpp"
+#include "clog/core/units.hpp"
+
+namespace clog {
+namespace {
+
+void require(bool holds, const char* key, double value, const std::string& reason_and_remedy) {
+  if (holds) return;
+  std::ostringstream message;
+  message << "invalid " << key << '=' << value << " (" << reason_and_remedy;
+  throw Error(message.str());
+}
+
+void require_positive(const char* key, double value) {
+  require(std::isfinite(value) && value > 0, key, value, "must be positive and finite)");
+}
+
+void require_not_negative(const char* key, double value) {
+  require(std::isfinite(value) && value >= 0, key, value, "must be zero or positive, and finite)");
+}
+
+std::string text(double value) {
+  std::ostringstream out;
+  out.precision(3);
+  out << value;
+  return out.str();
+}
+
+void validate_obstacles(const ObstacleParameters& obstacles, int vertices, Model model) {
+  require_positive("obstacle-diameter", obstacles.diameter);
+  require_positive("obstacle-gap", obstacles.gap);
+  require_positive("box", obstacles.box);
+  constexpr double smallest_box = 5 * units::droplet_diameter;
+  require(obstacles.box >= smallest_box, "box", obstacles.box,
+          "the droplet would meet its own periodic image) use at least 5");
+  require(obstacles.box <= 1e4, "box", obstacles.box,
+          "the array would need more than ten gigabytes) use at most 10000; the array is periodic");
+  if (obstacles.density) require_positive("obstacle-density", *obstacles.density);
+  if (model == Model::dp) {
+    const double vertex_diameter = units::regular_edge_length(vertices);
+    require(obstacles.gap > vertex_diameter, "obstacle-gap", obstacles.gap,
+            "not wider than one vertex, " + text(vertex_diameter) + " sigma) widen the gap or use more vertices");
+  }
+}
+
+void resolve_dp(RunParameters& run) {
+  DpParameters& dp = run.dp;
+  require_not_negative("line-tension", dp.line_tension);
+  require_positive("area-stiffness", dp.area_stiffness);
+  require(dp.vertices >= 16 && dp.vertices <= 4096, "vertices", dp.vertices, "must lie in 16..4096)");
+  if (!dp.perimeter_stiffness)
+    dp.perimeter_stiffness = dp.perimeter_spring == PerimeterSpring::rest ? 1e-3 * dp.line_tension : 1.0;
+  require_not_negative("perimeter-stiffness", *dp.perimeter_stiffness);
+
+  const double vertex_mass = units::droplet_mass / dp.vertices;
+  const double vertex_diameter = units::regular_edge_length(dp.vertices);
+  const double circumference = std::numbers::pi * units::droplet_diameter;
+  if (!run.wall_stiffness) {
+    const double stiffest = auto_contact_omega_dt2 * vertex_mass / (run.time_step * run.time_step);
+    run.wall_stiffness = wall_stiffness(stiffest, vertex_diameter);
+  }
+  require_positive("wall-stiffness", *run.wall_stiffness);
+
+  const StiffModes modes = stiff_modes(dp, *run.wall_stiffness, circumference);
+  const double largest = largest_stable_step(modes);
+  const double stiffest_omega_dt = std::sqrt(modes.sum()) * run.time_step;
+  require(num_substeps(modes, run.time_step) == 1, "time-step", run.time_step,
+          "contact, area, tension and spring modes together have omega*dt = " + text(stiffest_omega_dt) +
+              ", wall-stiffness=" + text(*run.wall_stiffness) + ") try " + text(0.99 * largest));
+  // A contact too soft to carry the droplet lets obstacles sink into it: demand that a weight of M g on
+  // the vertices of an eighth of the circumference leaves less than half the contact range.
+  const double softest = units::droplet_mass / (dp.vertices / 8.0) / (vertex_diameter / 4);
+  require(contact_stiffness(*run.wall_stiffness, vertex_diameter) >= softest, "wall-stiffness", *run.wall_stiffness,
+          "too soft to hold the droplet's weight off an obstacle) use at least " +
+              text(wall_stiffness(softest, vertex_diameter)) + " or a smaller time-step");
+}
+
+void resolve_sp(RunParameters& run) {
+  if (!run.wall_stiffness)
+    throw Error("missing wall-stiffness (E_w is the parameter of model=sp, there is no automatic value) "
+                "give for example wall-stiffness=1");
+  require_positive("wall-stiffness", *run.wall_stiffness);
+  require(run.drag.near_wall == 0, "near-wall-drag", run.drag.near_wall,
+          "the soft disk has no near-wall drag) use 0 with model=sp");
+  const double omega = std::sqrt(contact_stiffness(*run.wall_stiffness, units::droplet_diameter) /
+                                 units::droplet_mass);
+  // Up to a dozen obstacles of a saturated array overlap a soft disk at once.
+  const double largest = std::sqrt(max_total_omega_dt2 / 12) / omega;
+  require(run.time_step <= largest, "time-step", run.time_step,
+          "contact has omega*dt = " + text(omega * run.time_step) + ") try " + text(0.99 * largest));
+}
+
+}  // namespace
+
+RunParameters resolve(RunParameters run) {
+  require_positive("time-step", run.time_step);
+  require_positive("max-time", run.max_time);
+  require(run.max_time >= run.time_step, "max-time", run.max_time, "shorter than one time-step)");
+  require(run.clog_energy > 0 && run.clog_energy < 1e-3, "clog-energy", run.clog_energy,
+          "must lie in 0..1e-3, a fraction of the kinetic energy at terminal speed) try 1e-17");
+  require_positive("terminal-speed", run.drag.terminal_speed);
+  require(run.time_step <= run.drag.terminal_speed, "time-step", run.time_step,
+          "does not resolve the drag's relaxation time, terminal-speed=" + text(run.drag.terminal_speed) +
+              ") try " + text(0.1 * run.drag.terminal_speed));
+  require_not_negative("near-wall-drag", run.drag.near_wall);
+  if (run.model == Model::dp)
+    resolve_dp(run);
+  else
+    resolve_sp(run);
+  validate_obstacles(run.obstacles, run.dp.vertices, run.model);
+  return run;
+}
+
+}  // namespace clog

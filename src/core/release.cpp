@@ -1,0 +1,149 @@
+#include "clog/core/release.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+#include <vector>
+
+#include "clog/core/dp_forces.hpp"
+#include "clog/core/error.hpp"
+#include "clog/core/fire.hpp"
+#include "clog/core/polygon.hpp"
+#include "clog/core/sp_droplet.hpp"
+#include "clog/core/stability.hpp"
+#include "clog/core/units.hpp"
+
+namespace clog {
+namespace {
+
+constexpr double radius = units::droplet_diameter / 2;
+
+/// Climbs from the box centre to the nearest place that is farther from all obstacles than its surroundings.
+Eigen::Array2d nearest_void(const ObstacleArray& obstacles) {
+  const double enough = 2 * units::droplet_diameter;
+  Eigen::Array2d place{obstacles.box() / 2, obstacles.box() / 2};
+  double room = clearance(obstacles, place[0], place[1], enough);
+  for (double step = 0.1; step > 1e-4 && room < enough;) {
+    bool climbed = false;
+    for (int direction = 0; direction < 8; ++direction) {
+      const double angle = direction * std::numbers::pi / 4;
+      const Eigen::Array2d trial = place + step * Eigen::Array2d(std::cos(angle), std::sin(angle));
+      const double trial_room = clearance(obstacles, trial[0], trial[1], enough);
+      if (trial_room > room) {
+        room = trial_room;
+        place = trial;
+        climbed = true;
+        break;
+      }
+    }
+    if (!climbed) step /= 2;
+  }
+  return place;
+}
+
+LocalFrame frame_around(const Eigen::Array2d& place, double box) {
+  LocalFrame frame{.box = box};
+  frame.shift(place.floor());
+  return frame;
+}
+
+[[noreturn]] void refuse_release(const char* reason) {
+  std::ostringstream message;
+  message << "cannot release the droplet (" << reason << ") use a wider obstacle-gap, fewer obstacles or another seed";
+  throw Error(message.str());
+}
+
+DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles) {
+  const int n = run.dp.vertices;
+  const double vertex_diameter = units::regular_edge_length(n);
+  const Eigen::Array2d place = nearest_void(obstacles);
+  const double room = clearance(obstacles, place[0], place[1], 2 * radius) - vertex_diameter;
+  const double smallest_radius = 4 * vertex_diameter / (2 * std::numbers::pi);
+  if (room < smallest_radius) refuse_release("no void near the centre of the box");
+
+  double area = units::rest_area * std::min(1.0, std::pow(room / radius, 2));
+  DropletState state;
+  state.frame = frame_around(place, obstacles.box());
+  state.position = regular_polygon(n, area);
+  state.velocity = Eigen::ArrayXd::Zero(2 * n);
+  state.x() += place[0] - state.frame.origin[0];
+  state.y() += place[1] - state.frame.origin[1];
+
+  DpForces forces(run, obstacles);
+  forces.set_weight(0);
+  const double vertex_weight = units::droplet_mass * units::gravity / n;
+  // A polygon smaller than the droplet has a smaller perimeter: a stiffer tension mode, a softer area mode.
+  const auto options_at = [&](double perimeter) {
+    const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, perimeter);
+    return FireOptions{.mass = units::droplet_mass / n,
+                       .largest_step = 0.5 * largest_stable_step(modes),
+                       .force_tolerance = vertex_weight,
+                       .max_iterations = 400,
+                       .max_move = 0.1 * vertex_diameter};
+  };
+  constexpr double growth = 1.02;  // of the area, per stage
+  while (area < units::rest_area) {
+    area = std::min(units::rest_area, area * growth);
+    forces.set_rest_area(area);
+    minimize_fire(forces, state, options_at(forces.shape().perimeter > 0 ? forces.shape().perimeter
+                                                                         : polygon_shape(state.position).perimeter));
+    if (state.recentre().any()) forces.forget_contacts();
+  }
+  forces.set_rest_area(units::rest_area);
+  FireOptions last = options_at(polygon_shape(state.position).perimeter);
+  last.force_tolerance = release_force_tolerance * vertex_weight;
+  last.max_iterations = 200000;
+  if (!minimize_fire(forces, state, last).converged) refuse_release("the grown droplet does not come to rest");
+  if (num_enclosed(state, obstacles) > 0) refuse_release("the grown droplet encloses an obstacle");
+  return state;
+}
+
+DropletState release_sp(const RunParameters& run, const ObstacleArray& obstacles) {
+  const Eigen::Array2d place = nearest_void(obstacles);
+  DropletState state;
+  state.frame = frame_around(place, obstacles.box());
+  state.position = place - state.frame.origin;
+  state.velocity = Eigen::ArrayXd::Zero(2);
+  SpForces forces(run, obstacles);
+  forces.set_weight(0);
+  const double weight = units::droplet_mass * units::gravity;
+  const double omega =
+      std::sqrt(contact_stiffness(*run.wall_stiffness, units::droplet_diameter) / units::droplet_mass);
+  const FireOptions options{.mass = units::droplet_mass,
+                            .largest_step = 0.2 / omega,
+                            .force_tolerance = release_force_tolerance * weight,
+                            .max_iterations = 100000,
+                            .max_move = 0.01};
+  if (!minimize_fire(forces, state, options).converged) refuse_release("the soft disk does not come to rest");
+  return state;
+}
+
+}  // namespace
+
+double clearance(const ObstacleArray& obstacles, double x, double y, double limit) {
+  std::vector<Obstacle> near;
+  obstacles.gather({x, y, 0, 0, 0, 0, limit}, near);
+  double nearest = limit;
+  for (const Obstacle& obstacle : near)
+    nearest = std::min(nearest, std::hypot(obstacle.x, obstacle.y) - obstacle.radius);
+  return nearest;
+}
+
+int num_enclosed(const DropletState& state, const ObstacleArray& obstacles) {
+  std::vector<Obstacle> near;
+  const auto x = state.x();
+  const auto y = state.y();
+  obstacles.gather({state.frame.origin[0], state.frame.origin[1], x.minCoeff(), x.maxCoeff(), y.minCoeff(),
+                    y.maxCoeff(), 0},
+                   near);
+  return static_cast<int>(std::count_if(near.begin(), near.end(), [&](const Obstacle& obstacle) {
+    return encloses(state.position, obstacle.x, obstacle.y);
+  }));
+}
+
+DropletState release_droplet(const RunParameters& run, const ObstacleArray& obstacles) {
+  return run.model == Model::dp ? release_dp(run, obstacles) : release_sp(run, obstacles);
+}
+
+}  // namespace clog

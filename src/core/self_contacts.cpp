@@ -1,0 +1,124 @@
+#include "clog/core/self_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace clog {
+namespace {
+
+/// Vertices closer than this many diameters along the contour do not repel each other.
+constexpr double contour_exclusion = 3;
+
+}  // namespace
+
+StrandContact nearest_point(const SelfContacts::Strand& strand, const double* x, const double* y, int num_vertices) {
+  StrandContact nearest{std::numeric_limits<double>::infinity(), 0, 0, 0, 0};
+  double nearest2 = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < strand.num_edges; ++k) {
+    const int begin = (strand.first_edge + k) % num_vertices;
+    const int end = begin + 1 < num_vertices ? begin + 1 : 0;
+    const double ex = x[end] - x[begin];
+    const double ey = y[end] - y[begin];
+    const double rx = x[strand.vertex] - x[begin];
+    const double ry = y[strand.vertex] - y[begin];
+    const double fraction = std::clamp((rx * ex + ry * ey) / (ex * ex + ey * ey), 0.0, 1.0);
+    const double dx = rx - fraction * ex;
+    const double dy = ry - fraction * ey;
+    const double distance2 = dx * dx + dy * dy;
+    if (distance2 < nearest2) {
+      nearest2 = distance2;
+      nearest = {0, begin, fraction, dx, dy};
+    }
+  }
+  nearest.distance = std::sqrt(nearest2);
+  return nearest;
+}
+
+void SelfContacts::update(const DropletState& state, double horizon, double mean_edge) {
+  const Eigen::Index n = state.size();
+  if (reference_.size() == 2 * n) {
+    const Eigen::Array2d centre = state.centre();
+    const Eigen::Array2d drift = state.mean_velocity();
+    const double farthest2 = ((state.x() - centre[0] - reference_.head(n)).square() +
+                              (state.y() - centre[1] - reference_.tail(n)).square())
+                                 .maxCoeff();
+    const double fastest2 = ((state.velocity.head(n) - drift[0]).square() + (state.velocity.tail(n) - drift[1]).square())
+                                .maxCoeff();
+    if (std::sqrt(farthest2) + 2 * horizon * std::sqrt(fastest2) < skin()) return;
+  }
+  rebuild(state, mean_edge);
+}
+
+void SelfContacts::rebuild(const DropletState& state, double mean_edge) {
+  const int n = static_cast<int>(state.size());
+  const double* x = state.position.data();
+  const double* y = x + n;
+  const Eigen::Array2d centre = state.centre();
+  reference_ = state.position;
+  reference_.head(n) -= centre[0];
+  reference_.tail(n) -= centre[1];
+  strands_.clear();
+
+  // The nearest point of an edge within reach lies within half an edge of one of its ends.
+  double longest2 = 0;
+  for (int i = 0, j = n - 1; i < n; j = i++)
+    longest2 = std::max(longest2, (x[i] - x[j]) * (x[i] - x[j]) + (y[i] - y[j]) * (y[i] - y[j]));
+  const double reach = diameter_ + 2 * skin();
+  const double end_reach = reach + 0.5 * std::sqrt(longest2);
+  const int exclusion = std::max(2, static_cast<int>(std::ceil(contour_exclusion * diameter_ / mean_edge)));
+
+  const double left = state.x().minCoeff();
+  const double bottom = state.y().minCoeff();
+  // One empty cell all around spares the border checks.
+  const int columns = static_cast<int>((state.x().maxCoeff() - left) / end_reach) + 3;
+  const int rows = static_cast<int>((state.y().maxCoeff() - bottom) / end_reach) + 3;
+  const auto cell_of = [&](int vertex) {
+    return (static_cast<int>((y[vertex] - bottom) / end_reach) + 1) * columns +
+           static_cast<int>((x[vertex] - left) / end_reach) + 1;
+  };
+  head_.assign(static_cast<std::size_t>(rows) * columns, -1);
+  next_.resize(n);
+  for (int i = 0; i < n; ++i) {
+    int& head = head_[cell_of(i)];
+    next_[i] = head;
+    head = i;
+  }
+
+  const auto contour_steps = [n](int a, int b) {
+    const int steps = std::abs(a - b);
+    return std::min(steps, n - steps);
+  };
+  for (int vertex = 0; vertex < n; ++vertex) {
+    near_edges_.clear();
+    const int cell = cell_of(vertex);
+    for (int row = -1; row <= 1; ++row)
+      for (int column = -1; column <= 1; ++column)
+        for (int other = head_[cell + row * columns + column]; other >= 0; other = next_[other]) {
+          if (contour_steps(vertex, other) < exclusion) continue;
+          for (const int edge : {other, other > 0 ? other - 1 : n - 1}) {
+            const int end = edge + 1 < n ? edge + 1 : 0;
+            if (contour_steps(vertex, edge) < exclusion || contour_steps(vertex, end) < exclusion) continue;
+            if (nearest_point({vertex, edge, 1}, x, y, n).distance <= reach) near_edges_.push_back(edge);
+          }
+        }
+    std::sort(near_edges_.begin(), near_edges_.end());
+    near_edges_.erase(std::unique(near_edges_.begin(), near_edges_.end()), near_edges_.end());
+    const std::size_t first_strand = strands_.size();
+    for (const int edge : near_edges_) {
+      if (strands_.size() > first_strand && strands_.back().first_edge + strands_.back().num_edges == edge)
+        ++strands_.back().num_edges;
+      else
+        strands_.push_back({vertex, edge, 1});
+    }
+    // A strand across the contour's start was found in two pieces.
+    if (strands_.size() > first_strand + 1 && strands_[first_strand].first_edge == 0 &&
+        strands_.back().first_edge + strands_.back().num_edges == n) {
+      strands_.back().num_edges += strands_[first_strand].num_edges;
+      strands_[first_strand] = strands_.back();
+      strands_.pop_back();
+    }
+  }
+}
+
+}  // namespace clog

@@ -1,0 +1,100 @@
+#include "clog/core/sp_droplet.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "clog/core/units.hpp"
+
+namespace clog {
+namespace {
+
+constexpr int steps_per_check = 32;
+constexpr double contact_range = units::droplet_diameter / 2;
+constexpr double skin = 0.1;
+
+}  // namespace
+
+SpForces::SpForces(const RunParameters& run, const ObstacleArray& obstacles)
+    : obstacles_(&obstacles),
+      wall_stiffness_(run.wall_stiffness.value()),
+      weight_(units::droplet_mass * units::gravity) {}
+
+void SpForces::update_contacts(const DropletState& state, double horizon) {
+  const Eigen::Array2d centre = state.centre();
+  if (listed_) {
+    const double moved = (centre - reference_).matrix().norm();
+    if (moved + 2 * horizon * state.mean_velocity().matrix().norm() < skin) return;
+  }
+  near_.clear();
+  obstacles_->gather({state.frame.origin[0], state.frame.origin[1], centre[0], centre[0], centre[1], centre[1],
+                      contact_range + skin},
+                     near_);
+  reference_ = centre;
+  listed_ = true;
+}
+
+void SpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) const {
+  const double stiffness = contact_stiffness(wall_stiffness_, units::droplet_diameter);
+  const double x = state.position[0];
+  const double y = state.position[1];
+  double fx = weight_;
+  double fy = 0;
+  for (const Obstacle& obstacle : near_) {
+    const double dx = x - obstacle.x;
+    const double dy = y - obstacle.y;
+    const double r2 = dx * dx + dy * dy;
+    const double reach = contact_range + obstacle.radius;
+    if (r2 >= reach * reach || r2 == 0) continue;
+    const double push = stiffness * (reach / std::sqrt(r2) - 1);
+    fx += push * dx;
+    fy += push * dy;
+  }
+  force[0] = fx;
+  force[1] = fy;
+}
+
+double SpForces::energy(const DropletState& state) const {
+  double energy = -weight_ * state.position[0];
+  for (const Obstacle& obstacle : near_) {
+    const double distance =
+        std::hypot(state.position[0] - obstacle.x, state.position[1] - obstacle.y) - obstacle.radius;
+    const double overlap = std::max(0.0, 1 - 2 * distance / units::droplet_diameter);
+    energy += 0.5 * wall_stiffness_ * overlap * overlap;
+  }
+  return energy;
+}
+
+SpDroplet::SpDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial)
+    : run_(run), forces_(run, obstacles), force_(2) {
+  state_ = std::move(initial);
+  forces_.update_contacts(state_, steps_per_check * run_.time_step);
+  forces_.evaluate(state_, force_);
+}
+
+void SpDroplet::advance(int num_steps) {
+  const double dt = run_.time_step;
+  const double half_dt_over_m = 0.5 * dt / units::droplet_mass;
+  const double damping = 0.5 * dt * units::gravity / run_.drag.terminal_speed;
+  for (int done = 0; done < num_steps; done += steps_per_check) {
+    const int steps = std::min(steps_per_check, num_steps - done);
+    if (state_.recentre().any()) forces_.forget_contacts();
+    forces_.update_contacts(state_, steps * dt);
+    for (int i = 0; i < steps; ++i) {
+      state_.velocity = state_.velocity * (1 - damping) + force_ * half_dt_over_m;
+      state_.position += dt * state_.velocity;
+      forces_.evaluate(state_, force_);
+      state_.velocity = (state_.velocity + force_ * half_dt_over_m) / (1 + damping);
+    }
+    num_integrated_steps_ += steps;
+  }
+}
+
+double SpDroplet::kinetic_energy() const { return 0.5 * units::droplet_mass * state_.velocity.square().sum(); }
+
+PolygonShape SpDroplet::shape() const {
+  return {.area = units::rest_area, .perimeter = std::numbers::pi * units::droplet_diameter};
+}
+
+}  // namespace clog

@@ -1,0 +1,32 @@
+#include "clog/core/stability.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "clog/core/units.hpp"
+
+namespace clog {
+
+StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double perimeter) {
+  const double num_vertices = dp.vertices;
+  const double vertex_mass = units::droplet_mass / num_vertices;
+  const double vertex_diameter = units::regular_edge_length(dp.vertices);
+  return {
+      .contact = contact_stiffness(wall_stiffness, vertex_diameter) / vertex_mass,
+      .area = dp.area_stiffness * perimeter * perimeter / units::droplet_mass,
+      .tension = 4 * dp.line_tension / (perimeter / num_vertices * vertex_mass),
+      .spring = 4 * dp.perimeter_stiffness.value() * num_vertices / vertex_mass,
+  };
+}
+
+double largest_stable_step(const StiffModes& modes) {
+  return std::sqrt(std::min({max_contact_omega_dt2 / modes.contact, max_area_omega_dt2 / modes.area,
+                             max_total_omega_dt2 / modes.sum()}));
+}
+
+int num_substeps(const StiffModes& modes, double time_step) {
+  // The tolerance keeps a step that was chosen as exactly the largest stable one from being split.
+  return std::max(1, static_cast<int>(std::ceil(time_step / largest_stable_step(modes) - 1e-9)));
+}
+
+}  // namespace clog

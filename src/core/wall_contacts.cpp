@@ -1,0 +1,96 @@
+#include "clog/core/wall_contacts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace clog {
+namespace {
+
+// A droplet moves 0.05 sigma in about 1000 steps: renewals are then too rare to cost anything. A list of
+// possible nearest obstacles grows with the skin, so it gets a thinner one.
+constexpr double touching_skin = 0.05;
+constexpr double nearest_skin = 0.02;
+
+}  // namespace
+
+WallContacts::WallContacts(const ObstacleArray& array, double range, Keep keep)
+    : array_(&array), range_(range), keep_(keep), skin_(keep == Keep::touching ? touching_skin : nearest_skin) {}
+
+void WallContacts::update(const DropletState& state, double horizon) {
+  if (reference_.size() == state.position.size()) {
+    const Eigen::Index n = state.size();
+    const Eigen::ArrayXd moved = state.position - reference_;
+    const double farthest2 = (moved.head(n).square() + moved.tail(n).square()).maxCoeff();
+    const double fastest2 = (state.velocity.head(n).square() + state.velocity.tail(n).square()).maxCoeff();
+    // Twice the present speed, for what the points may gain until the next look.
+    if (std::sqrt(farthest2) + 2 * horizon * std::sqrt(fastest2) < skin_) return;
+  }
+  rebuild(state);
+}
+
+void WallContacts::gather_nearby(const DropletState& state) {
+  const auto x = state.x();
+  const auto y = state.y();
+  ObstacleArray::Window window{state.frame.origin[0], state.frame.origin[1], x.minCoeff(), x.maxCoeff(),
+                               y.minCoeff(),          y.maxCoeff(),          range_ + skin_};
+  nearby_.clear();
+  array_->gather(window, nearby_);
+  if (keep_ == Keep::touching) return;
+  // The nearest obstacle may be far away in a sparse array: look as far as a box (a periodic array holds at
+  // least one obstacle there, if it holds any).
+  for (window.margin = 0.5; window.margin < 2 * array_->box(); window.margin *= 2) {
+    nearby_.clear();
+    array_->gather(window, nearby_);
+    double worst = 0;
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const Obstacle& obstacle : nearby_)
+        nearest = std::min(nearest, std::hypot(x[i] - obstacle.x, y[i] - obstacle.y) - obstacle.radius);
+      worst = std::max(worst, nearest);
+    }
+    if (worst + 2 * skin_ <= window.margin || array_->obstacles().empty()) return;
+  }
+}
+
+void WallContacts::rebuild(const DropletState& state) {
+  gather_nearby(state);
+  reference_ = state.position;
+  num_points_ = state.size();
+  const auto x = state.x();
+  const auto y = state.y();
+
+  candidates_.resize(num_points_);
+  num_slots_ = 0;
+  std::vector<double> distance(nearby_.size());
+  for (Eigen::Index i = 0; i < num_points_; ++i) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < nearby_.size(); ++k) {
+      const double dx = x[i] - nearby_[k].x;
+      const double dy = y[i] - nearby_[k].y;
+      distance[k] = std::sqrt(dx * dx + dy * dy) - nearby_[k].radius;
+      nearest = std::min(nearest, distance[k]);
+    }
+    // An obstacle is in contact later only if it is within range + skin now; it is the nearest later only if
+    // it is within 2 skins of the nearest now.
+    const double reach = keep_ == Keep::touching ? range_ + skin_ : std::max(range_ + skin_, nearest + 2 * skin_);
+    candidates_[i].clear();
+    for (std::size_t k = 0; k < nearby_.size(); ++k)
+      if (distance[k] <= reach) candidates_[i].push_back(static_cast<int>(k));
+    num_slots_ = std::max(num_slots_, static_cast<int>(candidates_[i].size()));
+  }
+
+  // Out of reach, yet finite: distances to it stay ordinary numbers.
+  constexpr double nowhere = 1e8;
+  slots_.setZero(3 * num_slots_ * num_points_);
+  for (int s = 0; s < num_slots_; ++s)
+    for (Eigen::Index i = 0; i < num_points_; ++i) {
+      const bool used = s < static_cast<int>(candidates_[i].size());
+      const Obstacle obstacle = used ? nearby_[candidates_[i][s]] : Obstacle{nowhere, nowhere, 0};
+      slots_[(3 * s + 0) * num_points_ + i] = obstacle.x;
+      slots_[(3 * s + 1) * num_points_ + i] = obstacle.y;
+      slots_[(3 * s + 2) * num_points_ + i] = obstacle.radius;
+    }
+}
+
+}  // namespace clog

@@ -1,0 +1,68 @@
+#include "clog/parallel/communicator.hpp"
+
+#include <mpi.h>
+
+#include <cstdlib>
+
+namespace clog::parallel {
+
+Communicator::Communicator(int& argc, char**& argv) {
+  MPI_Init(&argc, &argv);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+  MPI_Comm_size(MPI_COMM_WORLD, &size_);
+}
+
+Communicator::~Communicator() { MPI_Finalize(); }
+
+std::string Communicator::library_version() {
+  char text[MPI_MAX_LIBRARY_VERSION_STRING];
+  int length = 0;
+  MPI_Get_library_version(text, &length);
+  const std::string version(text, length);
+  return version.substr(0, version.find_first_of(",\n"));
+}
+
+std::string Communicator::host_name() {
+  char text[MPI_MAX_PROCESSOR_NAME];
+  int length = 0;
+  MPI_Get_processor_name(text, &length);
+  return {text, static_cast<std::size_t>(length)};
+}
+
+std::string Communicator::broadcast(std::string text) const {
+  unsigned long long length = text.size();
+  MPI_Bcast(&length, 1, MPI_UNSIGNED_LONG_LONG, 0, MPI_COMM_WORLD);
+  text.resize(length);
+  MPI_Bcast(text.data(), static_cast<int>(length), MPI_CHAR, 0, MPI_COMM_WORLD);
+  return text;
+}
+
+void Communicator::barrier() const { MPI_Barrier(MPI_COMM_WORLD); }
+
+void Communicator::send(int destination, int tag, std::span<const std::byte> bytes) const {
+  MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, destination, tag, MPI_COMM_WORLD);
+}
+
+std::optional<Communicator::Envelope> Communicator::probe(int source, int tag) const {
+  int waiting = 0;
+  MPI_Status status;
+  MPI_Iprobe(source == any ? MPI_ANY_SOURCE : source, tag == any ? MPI_ANY_TAG : tag, MPI_COMM_WORLD, &waiting, &status);
+  if (!waiting) return std::nullopt;
+  int num_bytes = 0;
+  MPI_Get_count(&status, MPI_BYTE, &num_bytes);
+  return Envelope{status.MPI_SOURCE, status.MPI_TAG, static_cast<std::size_t>(num_bytes)};
+}
+
+std::vector<std::byte> Communicator::receive(const Envelope& envelope) const {
+  std::vector<std::byte> bytes(envelope.num_bytes);
+  MPI_Recv(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, envelope.source, envelope.tag, MPI_COMM_WORLD,
+           MPI_STATUS_IGNORE);
+  return bytes;
+}
+
+void Communicator::abort(int exit_code) const {
+  MPI_Abort(MPI_COMM_WORLD, exit_code);
+  std::_Exit(exit_code);
+}
+
+}  // namespace clog::parallel

@@ -1,0 +1,196 @@
+#include "clog/parallel/scheduler.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <memory>
+#include <thread>
+#include <type_traits>
+#include <vector>
+
+namespace clog::parallel {
+namespace {
+
+using sweep::Job;
+using sweep::JobFactory;
+using sweep::RunRow;
+using Clock = std::chrono::steady_clock;
+
+enum Tag : int {
+  ready = 1,  // worker -> master: give me a task (empty)
+  row,        // worker -> master: a RunRow, and give me a task
+  task,       // master -> worker: a task's number, or no_more_tasks
+  stop,       // master -> worker: end the present task as interrupted (empty)
+};
+constexpr std::int64_t no_more_tasks = -1;
+
+template <class T>
+std::span<const std::byte> bytes_of(const T& value) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  return std::as_bytes(std::span(&value, 1));
+}
+
+template <class T>
+T from_bytes(const std::vector<std::byte>& bytes) {
+  T value;
+  std::memcpy(&value, bytes.data(), sizeof value);
+  return value;
+}
+
+/// Sleeps a little longer each time nothing happened.
+class Backoff {
+ public:
+  void sleep() {
+    std::this_thread::sleep_for(pause_);
+    pause_ = std::min(2 * pause_, longest);
+  }
+  void reset() { pause_ = shortest; }
+
+ private:
+  static constexpr std::chrono::microseconds shortest{20};
+  static constexpr std::chrono::microseconds longest{5000};
+  std::chrono::microseconds pause_ = shortest;
+};
+
+RunRow signed_row(const Job& job, int rank) {
+  RunRow result = job.row();
+  result.rank = rank;
+  result.host = Communicator::host_name();
+  return result;
+}
+
+class Master {
+ public:
+  Master(const Communicator& ranks, std::int64_t num_tasks, const JobFactory& make_job, const SweepEvents& events,
+         bool computes)
+      : ranks_(ranks), num_tasks_(num_tasks), make_job_(make_job), events_(events), computes_(computes),
+        busy_(ranks.size(), false) {}
+
+  bool run() {
+    const int num_workers = ranks_.size() - 1;
+    Backoff backoff;
+    while (num_dismissed_ < num_workers || own_job_ || (computes_ && has_task())) {
+      const bool served = serve();
+      const bool worked = work();
+      if (Clock::now() - last_idle_ > std::chrono::milliseconds(100)) {
+        last_idle_ = Clock::now();
+        events_.idle();
+      }
+      if (!stopping_ && events_.stop_requested()) stop_workers();
+      if (served || worked)
+        backoff.reset();
+      else
+        backoff.sleep();
+    }
+    return next_task_ == num_tasks_;
+  }
+
+ private:
+  const Communicator& ranks_;
+  std::int64_t num_tasks_;
+  const JobFactory& make_job_;
+  const SweepEvents& events_;
+  bool computes_;
+  std::int64_t next_task_ = 0;
+  bool stopping_ = false;
+  int num_dismissed_ = 0;
+  std::vector<bool> busy_;
+  std::unique_ptr<Job> own_job_;
+  Clock::time_point last_idle_ = Clock::now();
+
+  bool has_task() const { return !stopping_ && next_task_ < num_tasks_; }
+
+  std::int64_t take_task(int rank) {
+    events_.started(next_task_, rank);
+    return next_task_++;
+  }
+
+  /// Answers every waiting message. Returns whether there was one.
+  bool serve() {
+    bool served = false;
+    while (const auto envelope = ranks_.probe(Communicator::any, Communicator::any)) {
+      served = true;
+      const std::vector<std::byte> bytes = ranks_.receive(*envelope);
+      const int worker = envelope->source;
+      busy_[worker] = has_task();
+      const std::int64_t next = busy_[worker] ? take_task(worker) : no_more_tasks;
+      ranks_.send(worker, task, bytes_of(next));  // first the task, then the file: workers do not wait for the disk
+      if (next == no_more_tasks) ++num_dismissed_;
+      if (envelope->tag == row) events_.ended(from_bytes<RunRow>(bytes));
+    }
+    return served;
+  }
+
+  /// One slice of this rank's own task. Returns whether there was one.
+  bool work() {
+    if (!computes_) return false;
+    if (!own_job_) {
+      if (!has_task()) return false;
+      own_job_ = make_job_(take_task(ranks_.rank()));
+    }
+    if (own_job_->advance() || stopping_) {
+      const RunRow result = signed_row(*own_job_, ranks_.rank());
+      own_job_.reset();
+      events_.ended(result);
+    }
+    return true;
+  }
+
+  void stop_workers() {
+    stopping_ = true;
+    for (int worker = 1; worker < ranks_.size(); ++worker)
+      if (busy_[worker]) ranks_.send(worker, stop, {});
+  }
+};
+
+class Worker {
+ public:
+  Worker(const Communicator& ranks, const JobFactory& make_job) : ranks_(ranks), make_job_(make_job) {}
+
+  void run() {
+    ranks_.send(master, ready, {});
+    for (std::int64_t next = wait_for_task(); next != no_more_tasks; next = wait_for_task()) {
+      const std::unique_ptr<Job> job = make_job_(next);
+      bool stopped = false;
+      while (!stopped && !job->advance()) stopped = take_stop();
+      const RunRow result = signed_row(*job, ranks_.rank());
+      ranks_.send(master, row, bytes_of(result));
+    }
+    take_stop();  // one that crossed our last row
+  }
+
+ private:
+  static constexpr int master = 0;
+  const Communicator& ranks_;
+  const JobFactory& make_job_;
+
+  std::int64_t wait_for_task() const {
+    Backoff backoff;
+    while (true) {
+      if (const auto envelope = ranks_.probe(master, task)) return from_bytes<std::int64_t>(ranks_.receive(*envelope));
+      backoff.sleep();
+    }
+  }
+
+  bool take_stop() const {
+    const auto envelope = ranks_.probe(master, stop);
+    if (envelope) ranks_.receive(*envelope);
+    return envelope.has_value();
+  }
+};
+
+}  // namespace
+
+bool computes(int num_ranks, MasterComputes choice) {
+  constexpr int most_ranks = 16;
+  return num_ranks == 1 || choice == MasterComputes::yes || (choice == MasterComputes::automatic && num_ranks <= most_ranks);
+}
+
+bool run_tasks(const Communicator& ranks, std::int64_t num_tasks, const JobFactory& make_job, const SweepEvents& events,
+               bool master_computes) {
+  if (ranks.rank() == 0) return Master(ranks, num_tasks, make_job, events, master_computes).run();
+  Worker(ranks, make_job).run();
+  return true;
+}
+
+}  // namespace clog::parallel

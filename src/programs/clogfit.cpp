@@ -1,0 +1,63 @@
+/// clogfit: from the table of runs to clogging lengths and mean speeds.
+
+#include <iostream>
+#include <string>
+
+#include "clog/cli/command_line.hpp"
+#include "clog/cli/program.hpp"
+#include "clog/core/error.hpp"
+#include "clog/store/run_table.hpp"
+#include "group_table.hpp"
+
+namespace {
+
+using namespace clog;
+
+constexpr const char* program = "clogfit";
+constexpr const char* usage = R"(clogfit prints, for every parameter set of a sweep, the clogging length with its
+confidence interval and the mean speed with its standard error.
+
+  clogfit sweep.h5
+  clogfit sweep.h5 --format csv > table.csv
+
+Runs that did not clog count as censored at the distance they reached. Where no run clogged, lambda is a lower
+bound. The mean speed is in units of the terminal speed, its error comes from the scatter between runs.
+)";
+
+int body(int argc, char** argv) {
+  namespace po = boost::program_options;
+  cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::none);
+  line.add_options()("file", po::value<std::string>(), "sweep file")(
+      "format", po::value<std::string>()->default_value("text"), "text, csv or json")(
+      "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals");
+  line.add_positional("file", 1);
+  line.parse(argc, argv);
+  if (line.has("help")) {
+    std::cout << line.help();
+    return cli::exit_success;
+  }
+  if (line.has("version")) {
+    std::cout << cli::version_text(program, {{"HDF5", store::library_version()}});
+    return cli::exit_success;
+  }
+  if (!line.has("file")) throw Error("missing sweep file; try clogfit sweep.h5");
+  const std::string format = line.get("format");
+  if (format != "text" && format != "csv" && format != "json")
+    throw Error("invalid --format=" + format + " (is not one of text, csv, json)");
+  const double confidence = line.get_positive("confidence");
+  if (confidence >= 1) throw Error("invalid --confidence=" + line.get("confidence") + " (must lie between 0 and 1)");
+
+  const store::SweepFile sweep = store::read_sweep(line.get("file"));
+  if (sweep.rows.empty()) throw Error(line.get("file") + " has no runs yet; let the sweep finish some first");
+  const std::vector<Group> groups = group_runs(sweep.rows, confidence);
+  std::cout << (format == "csv"    ? to_csv(groups)
+                : format == "json" ? to_json(groups, confidence)
+                                   : to_text(groups, confidence));
+  return cli::exit_success;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return clog::cli::run_program(program, [&] { return body(argc, argv); });
+}

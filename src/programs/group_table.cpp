@@ -1,0 +1,212 @@
+#include "group_table.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <variant>
+
+#include "clog/sweep/value_list.hpp"
+
+namespace clog {
+namespace {
+
+using sweep::RunRow;
+/// A number or a word; NaN (not applicable) is an empty word, so that values can be compared.
+using Value = std::variant<std::string, double>;
+using Field = std::pair<const char*, Value>;
+
+Value value_of(double number) { return std::isnan(number) ? Value(std::string()) : Value(number); }
+Value value_of(std::int64_t number) { return static_cast<double>(number); }
+template <std::size_t N>
+Value value_of(const sweep::FixedText<N>& text) { return std::string(text.view()); }
+
+/// What makes a group, most telling first.
+std::vector<Field> parameter_fields(const RunRow& row) {
+  return {{"model", value_of(row.model)},
+          {"obstacle_filling", value_of(row.obstacle_filling)},
+          {"obstacle_diameter", value_of(row.obstacle_diameter)},
+          {"obstacle_gap", value_of(row.obstacle_gap)},
+          {"obstacle_density", value_of(row.obstacle_density)},
+          {"line_tension", value_of(row.line_tension)},
+          {"wall_stiffness", value_of(row.wall_stiffness)},
+          {"near_wall_drag", value_of(row.near_wall_drag)},
+          {"terminal_speed", value_of(row.terminal_speed)},
+          {"vertices", value_of(row.vertices)},
+          {"time_step", value_of(row.time_step)},
+          {"max_time", value_of(row.max_time)},
+          {"box", value_of(row.box)},
+          {"area_stiffness", value_of(row.area_stiffness)},
+          {"perimeter_spring", value_of(row.perimeter_spring)},
+          {"perimeter_stiffness", value_of(row.perimeter_stiffness)},
+          {"self_contact", value_of(row.self_contact)},
+          {"gravity", value_of(row.gravity)},
+          {"clog_energy", value_of(row.clog_energy)}};
+}
+
+std::vector<Field> result_fields(const Group& group) {
+  return {{"runs", static_cast<double>(group.clogging.num_runs)},
+          {"clogs", static_cast<double>(group.clogging.num_clogs)},
+          {"flowing", static_cast<double>(group.num_flowing)},
+          {"interrupted", static_cast<double>(group.num_interrupted)},
+          {"failed", static_cast<double>(group.num_failed)},
+          {"total_distance", value_of(group.clogging.total_distance)},
+          {"clogging_length", value_of(group.clogging.length)},
+          {"clogging_length_lower", value_of(group.clogging.lower)},
+          {"clogging_length_upper", value_of(group.clogging.upper)},
+          {"mean_speed", value_of(group.speed.mean)},
+          {"mean_speed_error", value_of(group.speed.standard_error)},
+          {"mean_speed_runs", static_cast<double>(group.speed.num_runs)}};
+}
+
+std::string exact(const Value& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  return sweep::shortest(std::get<double>(value));
+}
+
+std::string rounded(const Value& value) {
+  if (const auto* word = std::get_if<std::string>(&value)) return word->empty() ? "-" : *word;
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", std::get<double>(value));
+  return text;
+}
+
+/// Columns aligned to the right.
+std::string aligned(const std::vector<std::vector<std::string>>& lines) {
+  std::vector<std::size_t> widths(lines.front().size(), 0);
+  for (const auto& line : lines)
+    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
+  std::string text;
+  for (const auto& line : lines) {
+    for (std::size_t i = 0; i < line.size(); ++i)
+      text += std::string(widths[i] - line[i].size() + (i > 0 ? 2 : 0), ' ') + line[i];
+    text += '\n';
+  }
+  return text;
+}
+
+std::vector<std::string> result_cells(const Group& group) {
+  const fit::CloggingLength& clogging = group.clogging;
+  const bool bounded = clogging.num_clogs > 0;
+  const auto number = [](double value) { return rounded(value_of(value)); };
+  return {std::to_string(clogging.num_runs),
+          std::to_string(clogging.num_clogs),
+          bounded ? number(clogging.length) : "> " + number(clogging.lower),
+          bounded ? number(clogging.lower) + " .. " + number(clogging.upper) : "-",
+          number(group.speed.mean),
+          number(group.speed.standard_error)};
+}
+
+}  // namespace
+
+std::vector<Group> group_runs(std::span<const RunRow> rows, double confidence) {
+  std::map<std::vector<Field>, std::vector<const RunRow*>> members;
+  for (const RunRow& row : rows) {
+    std::vector<Field> fields = parameter_fields(row);
+    members[std::move(fields)].push_back(&row);
+  }
+  std::vector<Group> groups;
+  for (const auto& [fields, runs] : members) {
+    Group group;
+    group.parameters = *runs.front();
+    std::vector<fit::Observation> observations;
+    std::vector<double> speeds;
+    for (const RunRow* run : runs) {
+      group.num_failed += run->status.view() == "failed";
+      if (run->status.view() == "failed") continue;
+      group.num_flowing += run->status.view() == "flowing";
+      group.num_interrupted += run->status.view() == "interrupted";
+      observations.push_back({run->distance, run->status.view() == "clogged"});
+      speeds.push_back(run->mean_speed / run->terminal_speed);
+    }
+    group.clogging = fit::fit_clogging_length(observations, confidence);
+    group.speed = fit::fit_mean_speed(speeds);
+    groups.push_back(group);
+  }
+  return groups;
+}
+
+std::string to_text(const std::vector<Group>& groups, double confidence) {
+  const std::vector<Field> first = parameter_fields(groups.front().parameters);
+  std::vector<bool> varies(first.size(), false);
+  for (const Group& group : groups) {
+    const std::vector<Field> fields = parameter_fields(group.parameters);
+    for (std::size_t i = 0; i < fields.size(); ++i) varies[i] = varies[i] || fields[i] != first[i];
+  }
+  const auto is_shown = [&](std::size_t i) {
+    const std::string_view name = first[i].first;
+    const bool soft_disk = groups.front().parameters.model.view() == "sp";
+    return varies[i] || name == "obstacle_gap" || name == (soft_disk ? "wall_stiffness" : "line_tension");
+  };
+
+  std::string text = "all runs:";
+  std::vector<std::vector<std::string>> lines(1);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    if (is_shown(i))
+      lines[0].push_back(first[i].first);
+    else if (exact(first[i].second) != "" && exact(first[i].second) != "none")
+      text += std::string(" ") + first[i].first + "=" + rounded(first[i].second);
+  }
+  char interval[16];
+  std::snprintf(interval, sizeof interval, "%g %%", 100 * confidence);
+  for (const std::string& title : {std::string("runs"), std::string("clogs"), std::string("lambda/sigma"),
+                                   std::string(interval), std::string("<v_g>/v_t"), std::string("+-")})
+    lines[0].push_back(title);
+  int num_failed = 0;
+  int num_interrupted = 0;
+  for (const Group& group : groups) {
+    std::vector<std::string>& line = lines.emplace_back();
+    const std::vector<Field> fields = parameter_fields(group.parameters);
+    for (std::size_t i = 0; i < fields.size(); ++i)
+      if (is_shown(i)) line.push_back(rounded(fields[i].second));
+    for (std::string& cell : result_cells(group)) line.push_back(std::move(cell));
+    num_failed += group.num_failed;
+    num_interrupted += group.num_interrupted;
+  }
+  text += "\n\n" + aligned(lines);
+  if (num_interrupted > 0)
+    text += "\nnote: " + std::to_string(num_interrupted) + " interrupted runs count as not clogged so far\n";
+  if (num_failed > 0)
+    text += "\nnote: " + std::to_string(num_failed) + " failed runs are left out; their column `message` says why\n";
+  return text;
+}
+
+std::string to_csv(const std::vector<Group>& groups) {
+  std::ostringstream out;
+  for (const Group& group : groups) {
+    std::vector<Field> fields = parameter_fields(group.parameters);
+    for (Field& field : result_fields(group)) fields.push_back(std::move(field));
+    if (&group == &groups.front())
+      for (std::size_t i = 0; i < fields.size(); ++i) out << (i > 0 ? "," : "") << fields[i].first;
+    out << '\n';
+    for (std::size_t i = 0; i < fields.size(); ++i) out << (i > 0 ? "," : "") << exact(fields[i].second);
+  }
+  out << '\n';
+  return out.str();
+}
+
+std::string to_json(const std::vector<Group>& groups, double confidence) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Group& group : groups) {
+    nlohmann::ordered_json entry;
+    std::vector<Field> fields = parameter_fields(group.parameters);
+    for (Field& field : result_fields(group)) fields.push_back(std::move(field));
+    for (const auto& [name, value] : fields) {
+      const auto* number = std::get_if<double>(&value);
+      if (number && std::isfinite(*number))
+        entry[name] = *number;
+      else if (number || std::get<std::string>(value).empty())
+        entry[name] = nullptr;
+      else
+        entry[name] = std::get<std::string>(value);
+    }
+    list.push_back(entry);
+  }
+  const nlohmann::ordered_json document = {{"confidence", confidence}, {"groups", list}};
+  return document.dump(2) + "\n";
+}
+
+}  // namespace clog

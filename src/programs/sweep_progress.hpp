@@ -1,0 +1,46 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <iosfwd>
+#include <map>
+#include <string>
+
+#include "clog/sweep/run_row.hpp"
+
+namespace clog {
+
+/// Tells the user how a sweep is getting on: one line that is renewed on a terminal, now and then a new line
+/// elsewhere.
+class SweepProgress {
+ public:
+  enum class Screen { terminal, plain };
+
+  SweepProgress(std::ostream& out, Screen screen, std::int64_t num_tasks, int num_computing_ranks);
+
+  void started(std::int64_t task);
+  void ended(const sweep::RunRow& row);
+  /// Prints if it is time to.
+  void tick();
+  void finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::ostream& out_;
+  Screen screen_;
+  std::int64_t num_tasks_;
+  int num_ranks_;
+  Clock::time_point begin_ = Clock::now();
+  Clock::time_point last_print_ = begin_;
+  std::map<std::int64_t, Clock::time_point> running_;
+  std::map<std::string, std::int64_t, std::less<>> ended_by_status_;
+  std::int64_t num_ended_ = 0;
+  double finished_seconds_ = 0;
+
+  std::string line() const;
+  std::string time_left() const;
+  void print(const std::string& text);
+};
+
+}  // namespace clog

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <hdf5.h>
+
+#include <functional>
+#include <string>
+#include <utility>
+
+/// Thin ownership of HDF5 identifiers; only src/store includes this.
+namespace clog::store {
+
+/// Owns one HDF5 identifier and closes it with the function of its kind.
+template <herr_t (*Close)(hid_t)>
+class Handle {
+ public:
+  explicit Handle(hid_t id = -1) : id_(id) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(id_, other.id_);
+    return *this;
+  }
+  ~Handle() {
+    if (id_ >= 0) Close(id_);
+  }
+  operator hid_t() const { return id_; }
+  bool valid() const { return id_ >= 0; }
+
+ private:
+  hid_t id_;
+};
+
+using File = Handle<H5Fclose>;
+using Dataset = Handle<H5Dclose>;
+using Space = Handle<H5Sclose>;
+using Type = Handle<H5Tclose>;
+using Attribute = Handle<H5Aclose>;
+using PropertyList = Handle<H5Pclose>;
+
+/// Must come before the first use of the library: no error stack on the screen (we print one line of our
+/// own), and no file locks (a reader that has the file open must not make a row fail to be written; the
+/// library's locks also fail on many cluster file systems).
+void prepare_library();
+
+/// Creates a file in the earliest format under another name, has it filled, brings it to the disk and renames
+/// it: the path never holds half a file. @throws Error if the path exists or cannot be written
+void create_whole(const std::string& path, const std::function<void(hid_t file)>& fill);
+/// @throws Error that says what is wrong with the path
+File open_file(const std::string& path, unsigned flags);
+/// Writes everything to the disk. @throws Error
+void close_durably(File file, const std::string& path);
+
+/// Fixed-length, zero-padded text; the length is at least 1.
+Type text_type(std::size_t length);
+void write_attribute(hid_t object, const std::string& name, const std::string& text);
+/// Empty if there is none.
+std::string read_attribute(hid_t object, const std::string& name);
+
+/// @throws Error naming the file if an HDF5 call failed
+void check(bool succeeded, const std::string& what, const std::string& path);
+
+}  // namespace clog::store

@@ -1,0 +1,180 @@
+#include "clog/store/run_table.hpp"
+
+#include <cstddef>
+#include <span>
+#include <type_traits>
+
+#include "clog/core/error.hpp"
+#include "hdf5.hpp"
+#include "run_rows.hpp"
+
+namespace clog::store {
+namespace {
+
+using sweep::FixedText;
+using sweep::RunRow;
+
+constexpr const char* table_name = "runs";
+constexpr const char* file_kind = "clogsweep sweep";
+
+template <class T>
+struct IsFixedText : std::false_type {};
+template <std::size_t N>
+struct IsFixedText<FixedText<N>> : std::true_type {};
+
+template <class T>
+Type hdf5_type() {
+  if constexpr (std::is_same_v<T, double>)
+    return Type(H5Tcopy(H5T_NATIVE_DOUBLE));
+  else if constexpr (std::is_same_v<T, std::int64_t>)
+    return Type(H5Tcopy(H5T_NATIVE_INT64));
+  else {
+    static_assert(IsFixedText<T>::value);
+    return text_type(sizeof(T));
+  }
+}
+
+/// One column: how it is called in the file, what it means, where it is in a row.
+struct Column {
+  const char* name;
+  const char* meaning;
+  std::size_t offset;
+  Type type;
+};
+
+std::vector<Column> columns() {
+  std::vector<Column> all;
+#define CLOG_COLUMN(field, meaning) \
+  all.push_back({#field, meaning, offsetof(RunRow, field), hdf5_type<decltype(RunRow::field)>()})
+  CLOG_COLUMN(task, "number of the task in its sweep");
+  CLOG_COLUMN(model, "dp: deformable polygon, sp: soft disk");
+  CLOG_COLUMN(line_tension, "Gamma [g rho sigma^2]; NaN for sp");
+  CLOG_COLUMN(wall_stiffness, "E_w [g rho sigma^3]");
+  CLOG_COLUMN(obstacle_gap, "w_ob, smallest distance between obstacle surfaces [sigma]");
+  CLOG_COLUMN(obstacle_diameter, "sigma_ob [sigma]");
+  CLOG_COLUMN(obstacle_density, "obstacles per sigma^2; for a saturated array the jamming limit 0.6966/(w_ob+sigma_ob)^2");
+  CLOG_COLUMN(obstacle_filling, "saturated, or filled to a given density");
+  CLOG_COLUMN(box, "period of the obstacle array [sigma]");
+  CLOG_COLUMN(seed, "seed of obstacle array and release");
+  CLOG_COLUMN(vertices, "N_v of the polygon; 1 for sp");
+  CLOG_COLUMN(time_step, "[t0]");
+  CLOG_COLUMN(max_time, "time at which a run that did not clog ends [t0]");
+  CLOG_COLUMN(terminal_speed, "V_t [sqrt(sigma g)]");
+  CLOG_COLUMN(near_wall_drag, "b_0/b_inf");
+  CLOG_COLUMN(area_stiffness, "K_a [g rho/sigma]; NaN for sp");
+  CLOG_COLUMN(perimeter_spring, "springs pull edges to their rest length or to the mean length");
+  CLOG_COLUMN(perimeter_stiffness, "K_l [g rho sigma]; NaN for sp");
+  CLOG_COLUMN(self_contact, "does the interface repel itself");
+  CLOG_COLUMN(gravity, "the weight acts on the vertices or on the area");
+  CLOG_COLUMN(clog_energy, "clogged when E_k/E_t stays below this");
+  CLOG_COLUMN(status, "clogged; flowing: max_time reached; interrupted; failed: see message");
+  CLOG_COLUMN(distance, "displacement of the centre of mass along the flow since release [sigma]");
+  CLOG_COLUMN(lateral_displacement, "displacement across the flow [sigma]");
+  CLOG_COLUMN(time, "time since release [t0]");
+  CLOG_COLUMN(mean_speed, "slope of r(t) after the first tenth of the run and before the arrest [sqrt(sigma g)]; NaN if it "
+                          "moved less than half a diameter in that time");
+  CLOG_COLUMN(kinetic_energy_ratio, "E_k/E_t at the end; E_t: kinetic energy at terminal speed");
+  CLOG_COLUMN(shape_parameter, "A = perimeter^2/(4 pi area) at the end; 1 for a circle");
+  CLOG_COLUMN(steps, "integrated steps");
+  CLOG_COLUMN(wall_seconds, "time spent on the run [s]");
+  CLOG_COLUMN(rank, "MPI rank that did the run");
+  CLOG_COLUMN(host, "host of that rank");
+  CLOG_COLUMN(attempt, "1 for the first try");
+  CLOG_COLUMN(message, "why the run failed");
+#undef CLOG_COLUMN
+  return all;
+}
+
+/// The compound type of a row in memory, with its gaps.
+Type memory_type(const std::vector<Column>& all) {
+  Type type(H5Tcreate(H5T_COMPOUND, sizeof(RunRow)));
+  for (const Column& column : all) H5Tinsert(type, column.name, column.offset, column.type);
+  return type;
+}
+
+Type disk_type(const std::vector<Column>& all) {
+  Type type(H5Tcopy(memory_type(all)));
+  H5Tpack(type);
+  return type;
+}
+
+}  // namespace
+
+void write_rows(hid_t file, std::span<const RunRow> rows) {
+  const std::vector<Column> all = columns();
+  const hsize_t size = rows.size();
+  const hsize_t unlimited = H5S_UNLIMITED;
+  const Space space(H5Screate_simple(1, &size, &unlimited));
+  const PropertyList layout(H5Pcreate(H5P_DATASET_CREATE));
+  const hsize_t rows_per_chunk = 64;
+  H5Pset_chunk(layout, 1, &rows_per_chunk);
+  const Dataset table(H5Dcreate2(file, table_name, disk_type(all), space, H5P_DEFAULT, layout, H5P_DEFAULT));
+  check(table.valid(), "create the table of runs in", "the new file");
+  for (const Column& column : all) write_attribute(table, column.name, column.meaning);
+  if (!rows.empty())
+    check(H5Dwrite(table, memory_type(all), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) >= 0, "write", "the new file");
+}
+
+std::string library_version() {
+  unsigned major = 0, minor = 0, release = 0;
+  H5get_libversion(&major, &minor, &release);
+  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(release);
+}
+
+RunTable RunTable::create(const std::string& path, const Provenance& provenance) {
+  create_whole(path, [&](hid_t file) {
+    write_rows(file, {});
+    write_attribute(file, "kind", file_kind);
+    write_attribute(file, "format_version", format_version);
+    for (const auto& [name, text] : provenance) write_attribute(file, name, text);
+  });
+  return RunTable(path);
+}
+
+void RunTable::append(const RunRow& row) {
+  File file = open_file(path_, H5F_ACC_RDWR);
+  {
+    const Dataset table(H5Dopen2(file, table_name, H5P_DEFAULT));
+    check(table.valid(), "read the table of", path_);
+    const Space old_space(H5Dget_space(table));
+    const hsize_t old_size = static_cast<hsize_t>(H5Sget_simple_extent_npoints(old_space));
+    const hsize_t new_size = old_size + 1;
+    const hsize_t one = 1;
+    check(H5Dset_extent(table, &new_size) >= 0, "write", path_);
+    const Space place(H5Dget_space(table));
+    H5Sselect_hyperslab(place, H5S_SELECT_SET, &old_size, nullptr, &one, nullptr);
+    const Space single(H5Screate_simple(1, &one, nullptr));
+    check(H5Dwrite(table, memory_type(columns()), single, place, H5P_DEFAULT, &row) >= 0, "write", path_);
+  }
+  close_durably(std::move(file), path_);
+}
+
+SweepFile read_sweep(const std::string& path) {
+  const File file = open_file(path, H5F_ACC_RDONLY);
+  if (read_attribute(file, "kind") != file_kind || H5Lexists(file, table_name, H5P_DEFAULT) <= 0)
+    throw Error("cannot read " + path + " (an HDF5 file, but not one of clogsweep's tables of runs); give a file written "
+                "by clogsweep --output");
+  if (const std::string version = read_attribute(file, "format_version"); version != format_version)
+    throw Error("cannot read " + path + " (format version " + version + ", this program reads " + format_version +
+                "); use the program that wrote it");
+
+  const Dataset table(H5Dopen2(file, table_name, H5P_DEFAULT));
+  check(table.valid(), "read the table of", path);
+  const Space space(H5Dget_space(table));
+  SweepFile sweep;
+  sweep.rows.resize(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+  if (!sweep.rows.empty())
+    check(H5Dread(table, memory_type(columns()), H5S_ALL, H5S_ALL, H5P_DEFAULT, sweep.rows.data()) >= 0,
+          "read the table of", path);
+  H5O_info_t root;
+  check(H5Oget_info2(file, &root, H5O_INFO_NUM_ATTRS) >= 0, "read the attributes of", path);
+  for (hsize_t i = 0; i < root.num_attrs; ++i) {
+    const Attribute attribute(H5Aopen_by_idx(file, ".", H5_INDEX_NAME, H5_ITER_INC, i, H5P_DEFAULT, H5P_DEFAULT));
+    char name[256];
+    H5Aget_name(attribute, sizeof name, name);
+    sweep.provenance.emplace_back(name, read_attribute(file, name));
+  }
+  return sweep;
+}
+
+}  // namespace clog::store

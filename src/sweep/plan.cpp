@@ -1,0 +1,44 @@
+#include "clog/sweep/plan.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "clog/core/error.hpp"
+
+namespace clog::sweep {
+namespace {
+
+constexpr std::int64_t largest_sweep = 100'000'000;
+
+}  // namespace
+
+Plan::Plan(const Settings& settings) {
+  const bool soft_disk = settings.values("model").front() == "sp";
+  for (const Key& key : keys()) {
+    const std::vector<std::string>& values = settings.values(key.name);
+    if (soft_disk && key.dp_only && values.size() > 1)
+      throw Error("invalid " + key.name + "=" + settings.text(key.name) + " (model=sp does not depend on it: the list " +
+                  "would repeat every run " + std::to_string(values.size()) + " times) give one value or none");
+    axes_.push_back({&key, values});
+    size_ *= static_cast<std::int64_t>(values.size());
+    if (size_ > largest_sweep) throw Error("the sweep has more than a hundred million runs; shorten its lists");
+  }
+  const auto seeds = std::find_if(axes_.begin(), axes_.end(), [](const Axis& axis) { return axis.key->name == "seeds"; });
+  std::rotate(axes_.begin(), seeds, seeds + 1);
+  for (std::int64_t index = 0; index < num_groups(); ++index) task(index);
+}
+
+std::int64_t Plan::num_groups() const { return size_ / static_cast<std::int64_t>(axes_.front().values.size()); }
+
+RunParameters Plan::task(std::int64_t index) const {
+  assert(index >= 0 && index < size_);
+  RunParameters run;
+  for (auto axis = axes_.rbegin(); axis != axes_.rend(); ++axis) {
+    const auto count = static_cast<std::int64_t>(axis->values.size());
+    axis->key->apply(run, axis->values[index % count]);
+    index /= count;
+  }
+  return resolve(run);
+}
+
+}  // namespace clog::sweep

@@ -1,0 +1,53 @@
+#include "clog/sweep/run_row.hpp"
+
+#include <limits>
+#include <numbers>
+
+namespace clog::sweep {
+
+double saturated_density(double diameter, double gap) {
+  constexpr double jamming_coverage = 0.547069;
+  return jamming_coverage / (std::numbers::pi / 4 * (diameter + gap) * (diameter + gap));
+}
+
+RunRow describe(const RunParameters& run) {
+  constexpr double not_applicable = std::numeric_limits<double>::quiet_NaN();
+  const bool polygon = run.model == Model::dp;
+  const ObstacleParameters& obstacles = run.obstacles;
+  RunRow row;
+  row.model = polygon ? "dp" : "sp";
+  row.line_tension = polygon ? run.dp.line_tension : not_applicable;
+  row.wall_stiffness = run.wall_stiffness.value();
+  row.obstacle_gap = obstacles.gap;
+  row.obstacle_diameter = obstacles.diameter;
+  row.obstacle_density = obstacles.density.value_or(saturated_density(obstacles.diameter, obstacles.gap));
+  row.obstacle_filling = obstacles.density ? "density" : "saturated";
+  row.box = obstacles.box;
+  row.seed = run.seed;
+  row.vertices = polygon ? run.dp.vertices : 1;
+  row.time_step = run.time_step;
+  row.max_time = run.max_time;
+  row.terminal_speed = run.drag.terminal_speed;
+  row.near_wall_drag = run.drag.near_wall;
+  row.area_stiffness = polygon ? run.dp.area_stiffness : not_applicable;
+  row.perimeter_spring = !polygon ? "none" : run.dp.perimeter_spring == PerimeterSpring::rest ? "rest" : "mean";
+  row.perimeter_stiffness = polygon ? run.dp.perimeter_stiffness.value() : not_applicable;
+  row.self_contact = !polygon ? "none" : run.dp.self_contact == SelfContact::on ? "on" : "off";
+  row.gravity = !polygon ? "none" : run.dp.gravity == Gravity::vertex ? "vertex" : "area";
+  row.clog_energy = run.clog_energy;
+  return row;
+}
+
+void record(const RunResult& result, RunRow& row) {
+  row.status = std::string_view(name(result.status));
+  row.distance = result.distance;
+  row.lateral_displacement = result.lateral;
+  row.time = result.time;
+  row.mean_speed = result.mean_speed;
+  row.kinetic_energy_ratio = result.kinetic_energy_ratio;
+  row.shape_parameter = result.shape_parameter;
+  row.steps = result.steps;
+  row.message = result.message;
+}
+
+}  // namespace clog::sweep

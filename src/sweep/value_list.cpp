@@ -1,0 +1,159 @@
+#include "clog/sweep/value_list.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+
+#include "clog/core/error.hpp"
+
+namespace clog::sweep {
+namespace {
+
+constexpr long long longest_list = 1'000'000;
+
+std::string_view trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+/// Splits at commas outside parentheses.
+std::vector<std::string_view> split(std::string_view text) {
+  std::vector<std::string_view> items;
+  int depth = 0;
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i <= text.size(); ++i) {
+    if (i == text.size() || (text[i] == ',' && depth == 0)) {
+      items.push_back(trimmed(text.substr(begin, i - begin)));
+      begin = i + 1;
+    } else if (text[i] == '(') {
+      ++depth;
+    } else if (text[i] == ')') {
+      --depth;
+    }
+  }
+  return items;
+}
+
+[[noreturn]] void refuse(std::string_view item, const std::string& why) {
+  throw Error("'" + std::string(item) + "' " + why);
+}
+
+void check_length(std::string_view item, long long length) {
+  if (length < 1) refuse(item, "has no values");
+  if (length > longest_list) refuse(item, "has more than a million values");
+}
+
+std::vector<std::string> expand_spaced(std::string_view item, ValueKind kind) {
+  const bool logarithmic = item.starts_with("log(");
+  if (!item.ends_with(")")) refuse(item, "lacks its closing parenthesis");
+  const auto arguments = split(item.substr(4, item.size() - 5));
+  if (arguments.size() != 3) refuse(item, "needs three arguments: first, last, number of values");
+  const double first = to_number(arguments[0]);
+  const double last = to_number(arguments[1]);
+  const long long count = to_integer(arguments[2]);
+  check_length(item, count);
+  if (logarithmic && !(first > 0 && last > 0)) refuse(item, "needs positive ends");
+  std::vector<std::string> values;
+  for (long long i = 0; i < count; ++i) {
+    const double fraction = count > 1 ? static_cast<double>(i) / static_cast<double>(count - 1) : 0.0;
+    double value = logarithmic ? first * std::pow(last / first, fraction) : std::lerp(first, last, fraction);
+    if (i == count - 1 && count > 1) value = last;
+    // Twelve digits are what a person would write for such a value, and spare the file 0.30000000000000004.
+    if (i > 0 && i < count - 1) {
+      char digits[32];
+      const auto end = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 12).ptr;
+      value = to_number({digits, static_cast<std::size_t>(end - digits)});
+    }
+    if (kind == ValueKind::integer && value != std::round(value)) refuse(item, "gives values that are not integers");
+    values.push_back(shortest(value));
+  }
+  return values;
+}
+
+std::vector<std::string> expand_range(std::string_view item, std::size_t dots) {
+  const long long first = to_integer(trimmed(item.substr(0, dots)));
+  const long long last = to_integer(trimmed(item.substr(dots + 2)));
+  check_length(item, last - first + 1);
+  std::vector<std::string> values;
+  for (long long value = first; value <= last; ++value) values.push_back(std::to_string(value));
+  return values;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+std::vector<std::string> expand_item(std::string_view item, ValueKind kind, const std::vector<std::string>& words) {
+  if (item.empty()) throw Error("has an empty value");
+  if (std::find(words.begin(), words.end(), item) != words.end()) return {std::string(item)};
+  if (kind == ValueKind::word) refuse(item, "is not one of " + joined(words));
+  if (item.starts_with("lin(") || item.starts_with("log(")) return expand_spaced(item, kind);
+  if (const auto dots = item.find(".."); kind == ValueKind::integer && dots != std::string_view::npos)
+    return expand_range(item, dots);
+  if (kind == ValueKind::integer) return {std::to_string(to_integer(item))};
+  return {shortest(to_number(item))};
+}
+
+}  // namespace
+
+std::vector<std::string> expand_list(std::string_view text, ValueKind kind, const std::vector<std::string>& words) {
+  std::vector<std::string> values;
+  for (const std::string_view item : split(trimmed(text)))
+    for (std::string& value : expand_item(item, kind, words)) values.push_back(std::move(value));
+  std::vector<std::string> sorted = values;
+  std::sort(sorted.begin(), sorted.end());
+  if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end())
+    refuse(*twice, "stands in the list twice: the same runs would be done again");
+  return values;
+}
+
+std::string shortest(double value) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
+}
+
+double to_number(std::string_view text) {
+  double value = 0;
+  const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    refuse(text, "is not a finite number");
+  return value;
+}
+
+long long to_integer(std::string_view text) {
+  long long value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) refuse(text, "is not an integer");
+  return value;
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates) {
+  const auto distance = [](std::string_view a, std::string_view b) {  // Levenshtein
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      std::size_t diagonal = row[0]++;
+      for (std::size_t j = 0; j < b.size(); ++j) {
+        const std::size_t substituted = diagonal + (a[i] != b[j]);
+        diagonal = row[j + 1];
+        row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substituted});
+      }
+    }
+    return row.back();
+  };
+  std::string best;
+  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
+  for (const std::string& candidate : candidates)
+    if (const std::size_t d = distance(word, candidate); d < best_distance) {
+      best_distance = d;
+      best = candidate;
+    }
+  return best;
+}
+
+}  // namespace clog::sweep
