@@ -94,7 +94,9 @@ void ObstacleArray::gather(const Window& window, std::vector<Obstacle>& out) con
 double ObstacleArray::smallest_gap() const {
   double smallest = std::numeric_limits<double>::infinity();
   // Pairs nearer than the margin are all seen; widen it until the smallest one found is certain.
-  for (double margin = 0.25 * units::droplet_diameter; margin < box_ && smallest > margin; margin *= 2) {
+  double margin = 0.125 * units::droplet_diameter;
+  do {
+    margin *= 2;
     for (std::uint32_t first = 0; first < obstacles_.size(); ++first) {
       const auto& [origin_x, origin_y, radius] = obstacles_[first];
       visit_window({origin_x, origin_y, -radius, radius, -radius, radius, margin},
@@ -103,7 +105,7 @@ double ObstacleArray::smallest_gap() const {
                        smallest = std::min(smallest, std::hypot(x, y) - r - obstacles_[second].radius);
                    });
     }
-  }
+  } while (smallest > margin && margin < box_);
   return smallest;
 }
 

@@ -2,7 +2,9 @@
 
 #include <mpi.h>
 
+#include <chrono>
 #include <cstdlib>
+#include <thread>
 
 namespace clog::parallel {
 
@@ -37,7 +39,16 @@ std::string Communicator::broadcast(std::string text) const {
   return text;
 }
 
-void Communicator::barrier() const { MPI_Barrier(MPI_COMM_WORLD); }
+void Communicator::wait_for_all() const {
+  MPI_Request request;
+  MPI_Ibarrier(MPI_COMM_WORLD, &request);
+  int all_here = 0;
+  MPI_Test(&request, &all_here, MPI_STATUS_IGNORE);
+  while (!all_here) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    MPI_Test(&request, &all_here, MPI_STATUS_IGNORE);
+  }
+}
 
 void Communicator::send(int destination, int tag, std::span<const std::byte> bytes) const {
   MPI_Send(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, destination, tag, MPI_COMM_WORLD);

@@ -188,9 +188,15 @@ bool computes(int num_ranks, MasterComputes choice) {
 
 bool run_tasks(const Communicator& ranks, std::int64_t num_tasks, const JobFactory& make_job, const SweepEvents& events,
                bool master_computes) {
-  if (ranks.rank() == 0) return Master(ranks, num_tasks, make_job, events, master_computes).run();
-  Worker(ranks, make_job).run();
-  return true;
+  bool all_handed_out = true;
+  if (ranks.rank() == 0)
+    all_handed_out = Master(ranks, num_tasks, make_job, events, master_computes).run();
+  else
+    Worker(ranks, make_job).run();
+  // Workers done early wait here: a message to the next sweep must not reach the master of this one, and
+  // MPI_Finalize would keep their cores busy.
+  ranks.wait_for_all();
+  return all_handed_out;
 }
 
 }  // namespace clog::parallel

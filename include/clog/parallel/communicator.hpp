@@ -26,7 +26,8 @@ class Communicator {
 
   /// Collective: every rank returns rank 0's text.
   std::string broadcast(std::string text) const;
-  void barrier() const;
+  /// Collective: returns when all ranks have come, sleeping meanwhile (MPI's own barrier spins).
+  void wait_for_all() const;
 
   struct Envelope {
     int source;

@@ -1,0 +1,113 @@
+#include "clog/core/array_run.hpp"
+
+#include <gtest/gtest.h>
+
+namespace clog {
+namespace {
+
+RunParameters small_run(double line_tension = 1, int vertices = 64) {
+  RunParameters run;
+  run.dp.line_tension = line_tension;
+  run.dp.vertices = vertices;
+  run.obstacles.box = 20;
+  run.max_time = 40;
+  run.seed = 3;
+  return resolve(run);
+}
+
+RunResult result_of(const RunParameters& parameters, int checks_at_a_time) {
+  ArrayRun run(parameters);
+  while (!run.advance(checks_at_a_time)) {
+  }
+  return run.result();
+}
+
+void expect_identical(const RunResult& a, const RunResult& b) {
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.distance, b.distance);
+  EXPECT_EQ(a.lateral, b.lateral);
+  EXPECT_EQ(a.time, b.time);
+  EXPECT_EQ(a.kinetic_energy_ratio, b.kinetic_energy_ratio);
+  EXPECT_EQ(a.shape_parameter, b.shape_parameter);
+  EXPECT_EQ(a.steps, b.steps);
+}
+
+TEST(ArrayRun, IsTheSameHoweverItIsSliced) {
+  const RunResult at_once = result_of(small_run(), 100000);
+  expect_identical(at_once, result_of(small_run(), 1));
+  expect_identical(at_once, result_of(small_run(), 7));
+}
+
+TEST(ArrayRun, OfAnotherSeedDiffers) {
+  RunParameters other = small_run();
+  other.seed = 4;
+  EXPECT_NE(result_of(small_run(), 100).distance, result_of(other, 100).distance);
+}
+
+TEST(ArrayRun, EndsFlowingWhenItsTimeIsUp) {
+  RunParameters parameters = small_run();
+  parameters.obstacles.gap = 1.2;
+  const RunResult result = result_of(parameters, 100);
+  EXPECT_EQ(result.status, RunStatus::flowing);
+  EXPECT_NEAR(result.time, 40, 1e-9);
+  EXPECT_GT(result.distance, 0.5);
+  EXPECT_GT(result.mean_speed, 0.5 * parameters.drag.terminal_speed);
+}
+
+TEST(ArrayRun, AStiffDropletInNarrowGapsClogsAndStaysWhereItIs) {
+  RunParameters parameters = small_run(2);
+  parameters.max_time = 5000;
+  ArrayRun run(parameters);
+  while (!run.advance(1000)) {
+  }
+  ASSERT_EQ(run.result().status, RunStatus::clogged);
+  EXPECT_LT(run.result().kinetic_energy_ratio, 1e-17);
+  EXPECT_LT(run.result().time, 5000);
+
+  // Integrating on must not set it free: the same run with a threshold it cannot reach.
+  RunParameters on = parameters;
+  on.clog_energy = 1e-300;
+  on.max_time = 2 * run.result().time + 100;
+  const RunResult later = result_of(on, 1000);
+  EXPECT_EQ(later.status, RunStatus::flowing);
+  EXPECT_NEAR(later.distance, run.result().distance, 1e-6);
+}
+
+TEST(ArrayRun, KeepsItsContactsShallowAndItsAreaOnTheWay) {
+  for (const double line_tension : {0.2, 1.0, 10.0}) {
+    ArrayRun run(small_run(line_tension, 256));
+    while (!run.advance(50)) {
+      const PolygonShape shape = run.droplet().shape();
+      EXPECT_NEAR(shape.area, 0.7854, 0.02);
+      EXPECT_LT(shape.shape_parameter(), 5);
+    }
+    EXPECT_NE(run.result().status, RunStatus::failed);
+  }
+}
+
+TEST(ArrayRun, ADivergedRunIsAResult) {
+  // Unchecked parameters: a soft disk whose contacts no such step resolves.
+  RunParameters parameters = small_run();
+  parameters.model = Model::sp;
+  parameters.wall_stiffness = 1e6;
+  parameters.time_step = 0.5;
+  parameters.drag.terminal_speed = 1;
+  parameters.max_time = 1e5;
+  const RunResult result = result_of(parameters, 100);
+  EXPECT_EQ(result.status, RunStatus::failed);
+  EXPECT_NE(result.message.find("diverged"), std::string::npos);
+}
+
+TEST(ArrayRun, FollowsASoftDiskToo) {
+  RunParameters parameters;
+  parameters.model = Model::sp;
+  parameters.wall_stiffness = 5;
+  parameters.obstacles.box = 20;
+  parameters.max_time = 2000;
+  const RunResult result = result_of(resolve(parameters), 1000);
+  EXPECT_EQ(result.status, RunStatus::clogged);
+  EXPECT_EQ(result.shape_parameter, 1);
+}
+
+}  // namespace
+}  // namespace clog

@@ -1,0 +1,193 @@
+#include "clog/core/dp_forces.hpp"
+
+#include <gtest/gtest.h>
+
+#include "support.hpp"
+
+namespace clog {
+namespace {
+
+using namespace test;
+
+/// Only the named term acts.
+RunParameters only(void (*switch_on)(RunParameters&), int vertices = 64) {
+  RunParameters run = bare_parameters(vertices);
+  run.dp.line_tension = 0;
+  run.dp.area_stiffness = 0;
+  run.dp.perimeter_stiffness = 0;
+  run.dp.self_contact = SelfContact::off;
+  switch_on(run);
+  return run;
+}
+
+/// Rounding of energies of order one over the step h = 1e-6 leaves 1e-9; curvature h^2 U''' stays below it.
+constexpr double difference_tolerance = 2e-7;
+
+double free_force_error(const RunParameters& run, double weight = 0) {
+  const ObstacleArray nothing = no_obstacles();
+  DpForces forces(run, nothing);
+  forces.set_weight(weight);
+  return force_error(forces, state_of(shaken(regular_polygon(run.dp.vertices, 0.8), 0.003)));
+}
+
+TEST(DpForces, AreaTermIsTheGradientOfItsEnergy) {
+  EXPECT_LT(free_force_error(only([](RunParameters& run) { run.dp.area_stiffness = 50; })), difference_tolerance);
+}
+
+TEST(DpForces, LineTensionIsTheGradientOfItsEnergy) {
+  EXPECT_LT(free_force_error(only([](RunParameters& run) { run.dp.line_tension = 1.3; })), difference_tolerance);
+}
+
+TEST(DpForces, SpringsToTheRestLengthAreTheGradientOfTheirEnergy) {
+  EXPECT_LT(free_force_error(only([](RunParameters& run) {
+              run.dp.perimeter_stiffness = 0.7;
+              run.dp.perimeter_spring = PerimeterSpring::rest;
+            })),
+            difference_tolerance);
+}
+
+TEST(DpForces, SpringsToTheMeanLengthAreTheGradientOfTheirEnergy) {
+  EXPECT_LT(free_force_error(only([](RunParameters& run) { run.dp.perimeter_stiffness = 0.7; })), difference_tolerance);
+}
+
+TEST(DpForces, WeightOnTheVerticesIsTheGradientOfItsEnergy) {
+  EXPECT_LT(free_force_error(only([](RunParameters&) {}), 0.6), difference_tolerance);
+}
+
+TEST(DpForces, WeightOnTheAreaIsTheGradientOfItsEnergy) {
+  EXPECT_LT(free_force_error(only([](RunParameters& run) { run.dp.gravity = Gravity::area; }), 0.6), difference_tolerance);
+}
+
+TEST(DpForces, WeightOnTheAreaSumsToTheWholeWeight) {
+  const ObstacleArray nothing = no_obstacles();
+  DpForces forces(only([](RunParameters& run) { run.dp.gravity = Gravity::area; }), nothing);
+  DropletState state = state_of(shaken(regular_polygon(64, 0.8), 0.01));
+  forces.update_contacts(state, 0);
+  Eigen::ArrayXd force(128);
+  forces.evaluate(state, force);
+  EXPECT_NEAR(force.head(64).sum(), units::droplet_mass, 1e-12);
+  EXPECT_NEAR(force.tail(64).sum(), 0, 1e-12);
+}
+
+TEST(DpForces, WallContactIsTheGradientOfItsEnergy) {
+  const ObstacleArray wall(20, {{0.65, 0.05, 0.15}, {19.4, 0.1, 0.15}});  // the second one is an image at -0.6
+  DpForces forces(only([](RunParameters&) {}), wall);
+  forces.set_weight(0);
+  const DropletState state = state_of(shaken(regular_polygon(64, 0.8), 0.003));
+  forces.update_contacts(state, 0);
+  ASSERT_GT(forces.energy(state).wall, 0);
+  EXPECT_LT(force_error(forces, state), 1e-5);  // the contact's stiffness of 1000 scales the rounding
+}
+
+TEST(DpForces, SelfContactIsTheGradientOfItsEnergy) {
+  const ObstacleArray nothing = no_obstacles();
+  DpForces forces(only([](RunParameters& run) { run.dp.self_contact = SelfContact::on; }, 256), nothing);
+  forces.set_weight(0);
+  const DropletState state = state_of(shaken(dumbbell(256, 0.006), 1e-4));
+  forces.update_contacts(state, 0);
+  ASSERT_GT(forces.energy(state).self_contact, 0);
+  EXPECT_LT(force_error(forces, state), 1e-5);
+}
+
+TEST(DpForces, AllTermsTogetherAreTheGradientOfTheTotalEnergy) {
+  const ObstacleArray wall(20, {{0, 0.34, 0.15}});
+  RunParameters run = bare_parameters(256);
+  run.dp.area_stiffness = 50;
+  DpForces forces(run, wall);
+  const DropletState state = state_of(shaken(dumbbell(256, 0.006), 1e-4));
+  EXPECT_LT(force_error(forces, state), 2e-5);
+}
+
+TEST(DpForces, InternalForcesExertNoNetForceAndNoTorque) {
+  const ObstacleArray nothing = no_obstacles();
+  DpForces forces(bare_parameters(256), nothing);
+  forces.set_weight(0);
+  const DropletState state = state_of(shaken(dumbbell(256, 0.006), 1e-4));
+  forces.update_contacts(state, 0);
+  Eigen::ArrayXd force(512);
+  forces.evaluate(state, force);
+  const double scale = force.abs().sum();
+  EXPECT_NEAR(force.head(256).sum() / scale, 0, 1e-13);
+  EXPECT_NEAR(force.tail(256).sum() / scale, 0, 1e-13);
+  EXPECT_NEAR((state.x() * force.tail(256) - state.y() * force.head(256)).sum() / scale, 0, 1e-13);
+}
+
+TEST(DpForces, AMirroredDropletFeelsMirroredForces) {
+  const int n = 256;
+  const ObstacleArray wall(20, {{0.2, 0.3, 0.15}});
+  const ObstacleArray mirrored_wall(20, {{0.2, -0.3, 0.15}});
+  const Eigen::ArrayXd position = shaken(dumbbell(n, 0.006), 1e-4);
+  Eigen::ArrayXd mirrored(2 * n);  // y -> -y, and the order turned to stay counter-clockwise
+  mirrored.head(n) = position.head(n).reverse();
+  mirrored.tail(n) = -position.tail(n).reverse();
+  const auto force_on = [](const ObstacleArray& obstacles, const Eigen::ArrayXd& p) {
+    DpForces forces(bare_parameters(n), obstacles);
+    const DropletState state = state_of(p);
+    forces.update_contacts(state, 0);
+    Eigen::ArrayXd force(2 * n);
+    forces.evaluate(state, force);
+    return force;
+  };
+  const Eigen::ArrayXd force = force_on(wall, position);
+  const Eigen::ArrayXd mirrored_force = force_on(mirrored_wall, mirrored);
+  const double scale = force.abs().maxCoeff();
+  EXPECT_LT((mirrored_force.head(n).reverse() - force.head(n)).abs().maxCoeff() / scale, 1e-12);
+  EXPECT_LT((mirrored_force.tail(n).reverse() + force.tail(n)).abs().maxCoeff() / scale, 1e-12);
+}
+
+TEST(DpForces, LaplacePressureOfACircleIsLineTensionOverRadius) {
+  // Tension and pressure balance on a regular polygon of circumradius R when p = gamma/(R cos(pi/n)).
+  RunParameters run = only([](RunParameters& r) { r.dp.line_tension = 2, r.dp.area_stiffness = 1e4; });
+  const ObstacleArray nothing = no_obstacles();
+  DpForces forces(run, nothing);
+  forces.set_weight(0);
+  const int n = run.dp.vertices;
+  const Eigen::ArrayXd position = regular_polygon(n, 0.6);
+  const double inner_radius = position[0] * std::cos(std::numbers::pi / n);
+  forces.set_rest_area(0.6 + 2 / inner_radius / run.dp.area_stiffness);
+  const DropletState state = state_of(position);
+  Eigen::ArrayXd force(2 * n);
+  forces.evaluate(state, force);
+  EXPECT_LT(force.abs().maxCoeff(), 1e-11);
+}
+
+TEST(DpForces, ContactListsMissNothingWhileTheDropletMoves) {
+  // Against every obstacle and image of the array, for a droplet that drifts through it.
+  ObstacleParameters parameters{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 12.5};
+  const ObstacleArray array = sample_obstacles(parameters, 5);
+  RunParameters run = only([](RunParameters& r) { r.drag.near_wall = 0.1; });
+  DpForces forces(run, array);
+  forces.set_weight(0);
+  DropletState state = state_of(regular_polygon(64, 0.8), 12.5);
+  state.velocity.head(64).setConstant(0.05);
+  state.velocity.tail(64).setConstant(0.03);
+  Eigen::ArrayXd force(128);
+  const double range = forces.walls().range();
+  const double stiffness = contact_stiffness(*run.wall_stiffness, 2 * range);
+  for (int step = 0; step < 4000; ++step) {
+    state.position += 0.1 * state.velocity;
+    if (state.recentre().any()) forces.forget_contacts();
+    forces.update_contacts(state, 0.1);
+    if (step % 50 != 0) continue;
+    forces.evaluate(state, force);
+    for (int i = 0; i < 64; i += 7) {
+      const Eigen::Array2d vertex = state.frame.origin + Eigen::Array2d(state.x()[i], state.y()[i]);
+      Eigen::Array2d expected{0, 0};
+      double nearest = 1e9;
+      for (const Obstacle& obstacle : array.obstacles())
+        for (int image_x = -1; image_x <= 1; ++image_x)
+          for (int image_y = -1; image_y <= 1; ++image_y) {
+            const Eigen::Array2d away = vertex - Eigen::Array2d(obstacle.x + 12.5 * image_x, obstacle.y + 12.5 * image_y);
+            const double distance = away.matrix().norm() - obstacle.radius;
+            nearest = std::min(nearest, distance);
+            if (distance < range) expected += stiffness * (range - distance) * away / away.matrix().norm();
+          }
+      EXPECT_NEAR(forces.wall_distance()[i], std::max(nearest, range), 1e-12);
+      EXPECT_NEAR(force[i], expected[0], 1e-9);
+      EXPECT_NEAR(force[64 + i], expected[1], 1e-9);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace clog

@@ -1,0 +1,100 @@
+#include "clog/core/parameters.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "clog/core/error.hpp"
+#include "clog/core/stability.hpp"
+#include "clog/core/units.hpp"
+
+namespace clog {
+namespace {
+
+struct Refusal {
+  const char* what;  // part of the message
+  std::function<void(RunParameters&)> spoil;
+};
+
+class Refused : public testing::TestWithParam<Refusal> {};
+
+TEST_P(Refused, NamesTheFieldAndARemedy) {
+  RunParameters run;
+  GetParam().spoil(run);
+  try {
+    resolve(run);
+    FAIL() << "accepted what should name " << GetParam().what;
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find(GetParam().what), std::string::npos) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Parameters, Refused,
+    testing::Values(
+        Refusal{"time-step=0", [](auto& run) { run.time_step = 0; }},
+        Refusal{"time-step=0.01 (contact, area, tension and spring modes", [](auto& run) { run.time_step = 0.01; }},
+        Refusal{"omega*dt = 294, wall-stiffness=1e+04) try 3.3", [](auto& run) { run.wall_stiffness = 1e4; }},
+        Refusal{"time-step=0.1 (does not resolve the drag", [](auto& run) { run.time_step = 0.1; }},
+        Refusal{"max-time=-1", [](auto& run) { run.max_time = -1; }},
+        Refusal{"max-time=0.0001 (shorter", [](auto& run) { run.max_time = 1e-4; }},
+        Refusal{"clog-energy=0.1", [](auto& run) { run.clog_energy = 0.1; }},
+        Refusal{"terminal-speed=0", [](auto& run) { run.drag.terminal_speed = 0; }},
+        Refusal{"near-wall-drag=-1", [](auto& run) { run.drag.near_wall = -1; }},
+        Refusal{"line-tension=-0.1", [](auto& run) { run.dp.line_tension = -0.1; }},
+        Refusal{"line-tension=nan", [](auto& run) { run.dp.line_tension = std::numeric_limits<double>::quiet_NaN(); }},
+        Refusal{"area-stiffness=0", [](auto& run) { run.dp.area_stiffness = 0; }},
+        Refusal{"vertices=8", [](auto& run) { run.dp.vertices = 8; }},
+        Refusal{"perimeter-stiffness=-1", [](auto& run) { run.dp.perimeter_stiffness = -1; }},
+        Refusal{"wall-stiffness=1e-09 (too soft", [](auto& run) { run.wall_stiffness = 1e-9; }},
+        Refusal{"obstacle-gap=0.01 (not wider than one vertex", [](auto& run) { run.obstacles.gap = 0.01; }},
+        Refusal{"obstacle-diameter=0", [](auto& run) { run.obstacles.diameter = 0; }},
+        Refusal{"obstacle-density=-1", [](auto& run) { run.obstacles.density = -1; }},
+        Refusal{"box=2 (the droplet would meet", [](auto& run) { run.obstacles.box = 2; }},
+        Refusal{"box=1e+06", [](auto& run) { run.obstacles.box = 1e6; }},
+        Refusal{"missing wall-stiffness", [](auto& run) { run.model = Model::sp; }},
+        Refusal{"near-wall-drag=0.1 (the soft disk",
+                [](auto& run) { run.model = Model::sp, run.wall_stiffness = 1, run.drag.near_wall = 0.1; }},
+        Refusal{"time-step=0.02 (contact has",
+                [](auto& run) { run.model = Model::sp, run.wall_stiffness = 1e4, run.time_step = 0.02; }}));
+
+TEST(Resolve, FillsInTheStiffestStableContact) {
+  const RunParameters run = resolve(RunParameters{});
+  const double k = contact_stiffness(*run.wall_stiffness, units::regular_edge_length(256));
+  EXPECT_NEAR(k * 1e-6 / (units::droplet_mass / 256), 0.25, 1e-12);
+}
+
+TEST(Resolve, FillsInThePerimeterSpring) {
+  RunParameters run;
+  run.dp.line_tension = 3;
+  EXPECT_EQ(*resolve(run).dp.perimeter_stiffness, 1.0);
+  run.dp.perimeter_spring = PerimeterSpring::rest;
+  EXPECT_DOUBLE_EQ(*resolve(run).dp.perimeter_stiffness, 3e-3);
+}
+
+TEST(Resolve, TakesTheStepItProposes) {
+  RunParameters run;
+  run.wall_stiffness = 1e4;
+  std::string message;
+  try {
+    resolve(run);
+  } catch (const Error& error) {
+    message = error.what();
+  }
+  run.time_step = std::stod(message.substr(message.rfind("try ") + 4));
+  EXPECT_NO_THROW(resolve(run));
+}
+
+TEST(Resolve, ChangesNothingThatWasGiven) {
+  const RunParameters once = resolve(RunParameters{});
+  const RunParameters twice = resolve(once);
+  EXPECT_EQ(*once.wall_stiffness, *twice.wall_stiffness);
+  EXPECT_EQ(*once.dp.perimeter_stiffness, *twice.dp.perimeter_stiffness);
+}
+
+}  // namespace
+}  // namespace clog

@@ -1,0 +1,87 @@
+#include "clog/core/release.hpp"
+
+#include <gtest/gtest.h>
+
+#include "clog/core/dp_droplet.hpp"
+#include "clog/core/error.hpp"
+#include "clog/core/units.hpp"
+#include "clog/core/sp_droplet.hpp"
+#include "support.hpp"
+
+namespace clog {
+namespace {
+
+RunParameters in_small_box(double line_tension, double gap) {
+  RunParameters run;
+  run.dp.line_tension = line_tension;
+  run.obstacles.gap = gap;
+  run.obstacles.box = 12;
+  return run;
+}
+
+TEST(Release, NeverEnclosesAnObstacleAndStartsAtRest) {
+  for (const double line_tension : {0.2, 1.0, 10.0})
+    for (std::uint32_t seed = 1; seed <= 25; ++seed) {
+      RunParameters run = in_small_box(line_tension, 0.2);
+      run.seed = seed;
+      run = resolve(run);
+      const ObstacleArray obstacles = sample_obstacles(run.obstacles, seed);
+      const DropletState state = release_droplet(run, obstacles);
+      EXPECT_EQ(num_enclosed(state, obstacles), 0) << "seed " << seed;
+
+      DpForces forces(run, obstacles);
+      forces.set_weight(0);
+      forces.update_contacts(state, 0);
+      Eigen::ArrayXd force(2 * run.dp.vertices);
+      forces.evaluate(state, force);
+      const double vertex_weight = units::droplet_mass / run.dp.vertices;
+      EXPECT_LE(force.abs().maxCoeff(), 1.01 * release_force_tolerance * vertex_weight) << "seed " << seed;
+      EXPECT_NEAR(forces.shape().area, units::rest_area, 0.02) << "seed " << seed;
+      EXPECT_LT(DpDroplet(run, obstacles, state).deepest_overlap(), 0.6 * forces.vertex_diameter()) << "seed " << seed;
+    }
+}
+
+TEST(Release, StartsAsARegularPolygonWhereThereIsRoom) {
+  RunParameters run = resolve(in_small_box(1, 0.2));
+  const DropletState state = release_droplet(run, test::no_obstacles(12));
+  const Eigen::Array2d centre = state.frame.global(state.centre());
+  EXPECT_NEAR(centre[0], 6, 1e-12);
+  EXPECT_NEAR(centre[1], 6, 1e-12);
+  EXPECT_NEAR(polygon_shape(state.position).shape_parameter(), 1, 1e-3);
+}
+
+TEST(Release, MovesOffAnObstacleInTheMiddle) {
+  RunParameters run = resolve(in_small_box(1, 0.2));
+  const ObstacleArray obstacle(12, {{6, 6, 0.15}});
+  const DropletState state = release_droplet(run, obstacle);
+  EXPECT_EQ(num_enclosed(state, obstacle), 0);
+}
+
+TEST(Release, RefusesWhereThereIsNoVoid) {
+  // A wall of touching circles covers the middle of the box.
+  std::vector<Obstacle> carpet;
+  for (double x = 0; x < 12; x += 0.1)
+    for (double y = 0; y < 12; y += 0.1) carpet.push_back({x, y, 0.08});
+  RunParameters run = resolve(in_small_box(1, 0.2));
+  EXPECT_THROW(release_droplet(run, ObstacleArray(12, carpet)), Error);
+}
+
+TEST(Release, LeavesASoftDiskWithoutForce) {
+  RunParameters run = in_small_box(1, 0.2);
+  run.model = Model::sp;
+  run.wall_stiffness = 10;
+  run = resolve(run);
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    const ObstacleArray obstacles = sample_obstacles(run.obstacles, seed);
+    const DropletState state = release_droplet(run, obstacles);
+    SpForces forces(run, obstacles);
+    forces.set_weight(0);
+    forces.update_contacts(state, 0);
+    Eigen::ArrayXd force(2);
+    forces.evaluate(state, force);
+    EXPECT_LE(force.abs().maxCoeff(), 1.01 * release_force_tolerance * units::droplet_mass);
+  }
+}
+
+}  // namespace
+}  // namespace clog

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "clog/core/dp_forces.hpp"
+#include "clog/core/obstacle_array.hpp"
+#include "clog/core/polygon.hpp"
+#include "clog/core/units.hpp"
+
+namespace clog::test {
+
+/// Parameters with every automatic value filled in, unchecked: tests may switch terms off.
+inline RunParameters bare_parameters(int vertices = 64) {
+  RunParameters run;
+  run.dp.vertices = vertices;
+  run.dp.perimeter_stiffness = 1.0;
+  const double l0 = units::regular_edge_length(vertices);
+  run.wall_stiffness = wall_stiffness(1000, l0);
+  run.obstacles.box = 20;
+  return run;
+}
+
+inline ObstacleArray no_obstacles(double box = 20) { return ObstacleArray(box, {}); }
+
+inline DropletState state_of(const Eigen::ArrayXd& position, double box = 20) {
+  DropletState state;
+  state.position = position;
+  state.velocity = Eigen::ArrayXd::Zero(position.size());
+  state.frame.box = box;
+  return state;
+}
+
+/// Every coordinate moved by up to `amount`.
+inline Eigen::ArrayXd shaken(Eigen::ArrayXd position, double amount, unsigned seed = 1) {
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<double> uniform(-amount, amount);
+  for (double& value : position) value += uniform(engine);
+  return position;
+}
+
+/// Two lobes joined by a neck of the given width, counter-clockwise; vertices evenly spread along the contour, so
+/// that no edge is much shorter than the others.
+inline Eigen::ArrayXd dumbbell(int num_vertices, double neck) {
+  const auto point = [neck](double t) {
+    const double c = std::cos(t);
+    return Eigen::Array2d(0.7 * c, std::sin(t) * (neck / 2 + 0.5 * c * c));
+  };
+  constexpr int fine = 20000;
+  std::vector<double> length(fine + 1, 0);
+  for (int i = 1; i <= fine; ++i)
+    length[i] = length[i - 1] + (point(2 * std::numbers::pi * i / fine) - point(2 * std::numbers::pi * (i - 1) / fine)).matrix().norm();
+  Eigen::ArrayXd position(2 * num_vertices);
+  for (int k = 0, i = 0; k < num_vertices; ++k) {
+    while (length[i] < length[fine] * k / num_vertices) ++i;
+    const Eigen::Array2d p = point(2 * std::numbers::pi * i / fine);
+    position[k] = p[0];
+    position[num_vertices + k] = p[1];
+  }
+  return position;
+}
+
+/// Largest difference between the force and the central difference of the energy.
+inline double force_error(DpForces& forces, DropletState state) {
+  constexpr double h = 1e-6;
+  forces.update_contacts(state, 0);
+  Eigen::ArrayXd force(state.position.size());
+  forces.evaluate(state, force);
+  double worst = 0;
+  for (Eigen::Index i = 0; i < state.position.size(); ++i) {
+    const double middle = state.position[i];
+    state.position[i] = middle + h;
+    const double above = forces.energy(state).total();
+    state.position[i] = middle - h;
+    const double below = forces.energy(state).total();
+    state.position[i] = middle;
+    worst = std::max(worst, std::abs(force[i] + (above - below) / (2 * h)));
+  }
+  return worst;
+}
+
+}  // namespace clog::test

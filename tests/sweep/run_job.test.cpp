@@ -1,0 +1,74 @@
+#include "clog/sweep/run_job.hpp"
+
+#include <gtest/gtest.h>
+
+namespace clog::sweep {
+namespace {
+
+Plan small_plan(const char* seeds) {
+  Settings settings;
+  settings.set("vertices", "64");
+  settings.set("box", "20");
+  settings.set("max-time", "20");
+  settings.set("seeds", seeds);
+  return Plan(settings);
+}
+
+TEST(RunJob, GivesTheRowOfItsRun) {
+  const Plan plan = small_plan("5,6");
+  RunJob job(plan, 1);
+  while (!job.advance()) {
+  }
+  ArrayRun run(plan.task(1));
+  while (!run.advance(100)) {
+  }
+  const RunRow row = job.row();
+  EXPECT_EQ(row.task, 1);
+  EXPECT_EQ(row.seed, 6);
+  EXPECT_EQ(row.distance, run.result().distance);
+  EXPECT_EQ(row.steps, run.result().steps);
+  EXPECT_EQ(row.status.view(), name(run.result().status));
+  EXPECT_GT(row.wall_seconds, 0);
+}
+
+TEST(RunJob, IsInterruptedUntilItIsOver) {
+  const Plan plan = small_plan("5");
+  RunJob job(plan, 0);
+  EXPECT_EQ(job.row().status.view(), "interrupted");
+}
+
+TEST(RunJob, TurnsAnImpossibleReleaseIntoAFailedRow) {
+  // Obstacles so large that the only voids are smaller than a droplet can be.
+  Settings settings;
+  settings.set("obstacle-diameter", "6");
+  settings.set("obstacle-gap", "0.06");
+  settings.set("vertices", "64");
+  settings.set("box", "13");
+  settings.set("obstacle-density", "0.0237");
+  settings.set("seeds", "1..20");
+  const Plan plan(settings);
+  int num_failed = 0;
+  for (std::int64_t task = 0; task < plan.size(); ++task) {
+    RunJob job(plan, task);
+    job.advance();
+    const RunRow row = job.row();
+    if (row.status.view() != "failed") continue;
+    ++num_failed;
+    EXPECT_FALSE(row.message.view().empty());
+    EXPECT_TRUE(job.advance()) << "a failed job is over";
+  }
+  EXPECT_GT(num_failed, 0);
+}
+
+TEST(FixedText, CutsAndComparesText) {
+  FixedText<8> text;
+  text = "clogged";
+  EXPECT_EQ(text.view(), "clogged");
+  text = "dp";
+  EXPECT_EQ(text.view(), "dp");
+  text = "a longer word";
+  EXPECT_EQ(text.view(), "a longer");
+}
+
+}  // namespace
+}  // namespace clog::sweep

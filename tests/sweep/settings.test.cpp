@@ -1,0 +1,66 @@
+#include "clog/sweep/settings.hpp"
+
+#include <gtest/gtest.h>
+
+#include "clog/core/error.hpp"
+
+namespace clog::sweep {
+namespace {
+
+std::string refusal(const std::string& name, const std::string& text) {
+  try {
+    Settings().set(name, text);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Settings, DefaultsAreThoseOfTheParameters) {
+  // A key's default text and the struct's default value are two places: they must agree.
+  const Settings settings;
+  RunParameters from_keys;
+  for (const Key& key : keys()) key.apply(from_keys, settings.values(key.name).front());
+  const RunParameters expected = resolve(RunParameters{});
+  const RunParameters actual = resolve(from_keys);
+  EXPECT_EQ(actual.model, expected.model);
+  EXPECT_EQ(actual.dp.line_tension, expected.dp.line_tension);
+  EXPECT_EQ(actual.dp.area_stiffness, expected.dp.area_stiffness);
+  EXPECT_EQ(actual.dp.perimeter_spring, expected.dp.perimeter_spring);
+  EXPECT_EQ(actual.dp.perimeter_stiffness, expected.dp.perimeter_stiffness);
+  EXPECT_EQ(actual.dp.self_contact, expected.dp.self_contact);
+  EXPECT_EQ(actual.dp.gravity, expected.dp.gravity);
+  EXPECT_EQ(actual.dp.vertices, expected.dp.vertices);
+  EXPECT_EQ(actual.wall_stiffness, expected.wall_stiffness);
+  EXPECT_TRUE(actual.obstacles == expected.obstacles);
+  EXPECT_EQ(actual.drag.terminal_speed, expected.drag.terminal_speed);
+  EXPECT_EQ(actual.drag.near_wall, expected.drag.near_wall);
+  EXPECT_EQ(actual.time_step, expected.time_step);
+  EXPECT_EQ(actual.max_time, expected.max_time);
+  EXPECT_EQ(actual.clog_energy, expected.clog_energy);
+}
+
+TEST(Settings, ReadBackFromTheirOwnText) {
+  Settings settings;
+  settings.set("line-tension", "log(0.1,10,3)");
+  settings.set("seeds", "4..9");
+  settings.set("model", "dp");
+  for (const bool with_comments : {false, true}) {
+    const Settings again = Settings::from_config(settings.to_config(with_comments));
+    EXPECT_EQ(again.to_config(false), settings.to_config(false));
+    EXPECT_EQ(again.values("line-tension"), (std::vector<std::string>{"0.1", "1", "10"}));
+  }
+}
+
+TEST(Settings, RefuseWhatTheyCannotRead) {
+  EXPECT_NE(refusal("line-tenson", "1").find("did you mean line-tension"), std::string::npos);
+  EXPECT_NE(refusal("temperature", "1").find("unknown key 'temperature'"), std::string::npos);
+  EXPECT_NE(refusal("line-tension", "soft").find("invalid line-tension=soft ('soft' is not a finite number)"), std::string::npos);
+  EXPECT_NE(refusal("model", "sph").find("not one of dp, sp"), std::string::npos);
+  EXPECT_NE(refusal("model", "dp,sp").find("one value"), std::string::npos);
+  EXPECT_NE(refusal("seeds", "-1").find("out of range"), std::string::npos);
+  EXPECT_NE(refusal("seeds", "5000000000").find("out of range"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace clog::sweep

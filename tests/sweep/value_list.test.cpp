@@ -1,0 +1,77 @@
+#include "clog/sweep/value_list.hpp"
+
+#include <gtest/gtest.h>
+
+#include "clog/core/error.hpp"
+
+namespace clog::sweep {
+namespace {
+
+using List = std::vector<std::string>;
+
+List numbers(std::string_view text) { return expand_list(text, ValueKind::number, {"auto"}); }
+List integers(std::string_view text) { return expand_list(text, ValueKind::integer, {}); }
+
+TEST(ExpandList, TakesSingleValuesAndLists) {
+  EXPECT_EQ(numbers("0.2"), List{"0.2"});
+  EXPECT_EQ(numbers(" 0.2, 1e-2 ,+3.0"), (List{"0.2", "0.01", "3"}));
+  EXPECT_EQ(numbers("auto,2"), (List{"auto", "2"}));
+}
+
+TEST(ExpandList, SpacesValuesEvenly) {
+  EXPECT_EQ(numbers("lin(0.1,0.5,5)"), (List{"0.1", "0.2", "0.3", "0.4", "0.5"}));
+  EXPECT_EQ(numbers("lin(3,1,3)"), (List{"3", "2", "1"}));
+  EXPECT_EQ(numbers("lin(7,9,1)"), List{"7"});
+}
+
+TEST(ExpandList, SpacesValuesByAFactor) {
+  EXPECT_EQ(numbers("log(0.01,10,4)"), (List{"0.01", "0.1", "1", "10"}));
+  EXPECT_EQ(numbers("0.5,log(1,4,3)"), (List{"0.5", "1", "2", "4"}));
+}
+
+TEST(ExpandList, CountsIntegers) {
+  EXPECT_EQ(integers("3..6"), (List{"3", "4", "5", "6"}));
+  EXPECT_EQ(integers("1,5..6,9"), (List{"1", "5", "6", "9"}));
+  EXPECT_EQ(integers("log(64,1024,5)"), (List{"64", "128", "256", "512", "1024"}));
+}
+
+class Unreadable : public testing::TestWithParam<std::pair<const char*, const char*>> {};
+
+TEST_P(Unreadable, IsRefusedWithAReason) {
+  const auto [text, reason] = GetParam();
+  try {
+    integers(text);
+    FAIL() << text;
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Lists, Unreadable,
+                         testing::Values(std::pair{"", "empty"}, std::pair{"1,,2", "empty"}, std::pair{"two", "not an integer"},
+                                         std::pair{"1.5", "not an integer"}, std::pair{"5..3", "no values"},
+                                         std::pair{"1,1", "twice"}, std::pair{"1..3,2", "twice"},
+                                         std::pair{"lin(1,2)", "three arguments"}, std::pair{"lin(1,2,3", "parenthesis"},
+                                         std::pair{"lin(1,2,3)", "not integers"}, std::pair{"log(0,2,3)", "positive"},
+                                         std::pair{"lin(1,2,0)", "no values"}, std::pair{"1..9999999", "million"}));
+
+TEST(ToNumber, RefusesWhatIsNotFinite) {
+  EXPECT_THROW(to_number("nan"), Error);
+  EXPECT_THROW(to_number("inf"), Error);
+  EXPECT_THROW(to_number("1.0x"), Error);
+  EXPECT_THROW(to_number(""), Error);
+}
+
+TEST(Shortest, ReadsBackExactly) {
+  for (const double value : {0.1, 1.0 / 3, 1e-17, 2e5, 0.02887829511489174}) EXPECT_EQ(to_number(shortest(value)), value);
+}
+
+TEST(DidYouMean, FindsNearWordsOnly) {
+  const List words{"line-tension", "seeds", "box"};
+  EXPECT_EQ(did_you_mean("line-tenson", words), "line-tension");
+  EXPECT_EQ(did_you_mean("seed", words), "seeds");
+  EXPECT_EQ(did_you_mean("temperature", words), "");
+}
+
+}  // namespace
+}  // namespace clog::sweep
