@@ -89,9 +89,9 @@ TEST(ArrayRun, ADivergedRunIsAResult) {
   // Unchecked parameters: a soft disk whose contacts no such step resolves.
   RunParameters parameters = small_run();
   parameters.model = Model::sp;
-  parameters.wall_stiffness = 1e6;
+  parameters.wall_stiffness = 1e9;
   parameters.time_step = 0.5;
-  parameters.drag.terminal_speed = 1;
+  parameters.drag.terminal_speed = 30;
   parameters.max_time = 1e5;
   const RunResult result = result_of(parameters, 100);
   EXPECT_EQ(result.status, RunStatus::failed);
