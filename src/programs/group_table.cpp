@@ -1,7 +1,6 @@
 #include "group_table.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -15,12 +14,13 @@ namespace clog {
 namespace {
 
 using sweep::RunRow;
-/// A number or a word; NaN (not applicable) is an empty word, so that values can be compared.
-using Value = std::variant<std::string, double>;
+/// A number, a count or a word; NaN (not applicable) is an empty word, so that values can be compared.
+using Value = std::variant<std::string, double, std::int64_t>;
 using Field = std::pair<const char*, Value>;
 
 Value value_of(double number) { return std::isnan(number) ? Value(std::string()) : Value(number); }
-Value value_of(std::int64_t number) { return static_cast<double>(number); }
+Value value_of(std::int64_t count) { return count; }
+Value value_of(int count) { return std::int64_t{count}; }
 template <std::size_t N>
 Value value_of(const sweep::FixedText<N>& text) { return std::string(text.view()); }
 
@@ -48,27 +48,29 @@ std::vector<Field> parameter_fields(const RunRow& row) {
 }
 
 std::vector<Field> result_fields(const Group& group) {
-  return {{"runs", static_cast<double>(group.clogging.num_runs)},
-          {"clogs", static_cast<double>(group.clogging.num_clogs)},
-          {"flowing", static_cast<double>(group.num_flowing)},
-          {"interrupted", static_cast<double>(group.num_interrupted)},
-          {"failed", static_cast<double>(group.num_failed)},
+  return {{"runs", value_of(group.clogging.num_runs)},
+          {"clogs", value_of(group.clogging.num_clogs)},
+          {"flowing", value_of(group.num_flowing)},
+          {"interrupted", value_of(group.num_interrupted)},
+          {"failed", value_of(group.num_failed)},
           {"total_distance", value_of(group.clogging.total_distance)},
           {"clogging_length", value_of(group.clogging.length)},
           {"clogging_length_lower", value_of(group.clogging.lower)},
           {"clogging_length_upper", value_of(group.clogging.upper)},
           {"mean_speed", value_of(group.speed.mean)},
           {"mean_speed_error", value_of(group.speed.standard_error)},
-          {"mean_speed_runs", static_cast<double>(group.speed.num_runs)}};
+          {"mean_speed_runs", value_of(group.speed.num_runs)}};
 }
 
 std::string exact(const Value& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  if (const auto* count = std::get_if<std::int64_t>(&value)) return std::to_string(*count);
   return sweep::shortest(std::get<double>(value));
 }
 
 std::string rounded(const Value& value) {
   if (const auto* word = std::get_if<std::string>(&value)) return word->empty() ? "-" : *word;
+  if (const auto* count = std::get_if<std::int64_t>(&value)) return std::to_string(*count);
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", std::get<double>(value));
   return text;
@@ -195,13 +197,13 @@ std::string to_json(const std::vector<Group>& groups, double confidence) {
     std::vector<Field> fields = parameter_fields(group.parameters);
     for (Field& field : result_fields(group)) fields.push_back(std::move(field));
     for (const auto& [name, value] : fields) {
-      const auto* number = std::get_if<double>(&value);
-      if (number && std::isfinite(*number))
-        entry[name] = *number;
-      else if (number || std::get<std::string>(value).empty())
-        entry[name] = nullptr;
+      if (const auto* count = std::get_if<std::int64_t>(&value))
+        entry[name] = *count;
+      else if (const auto* number = std::get_if<double>(&value))
+        entry[name] = std::isfinite(*number) ? nlohmann::ordered_json(*number) : nlohmann::ordered_json(nullptr);
       else
-        entry[name] = std::get<std::string>(value);
+        entry[name] = std::get<std::string>(value).empty() ? nlohmann::ordered_json(nullptr)
+                                                           : nlohmann::ordered_json(std::get<std::string>(value));
     }
     list.push_back(entry);
   }

@@ -1,0 +1,141 @@
+#!/usr/bin/env python3
+"""Draws the clogging length against line tension (DP) or wall stiffness (SP), one curve per obstacle array.
+
+    clogfit sweep.h5 --format json > fit.json
+    analysis/clogging_length.py fit.json --output clogging-length
+
+Every number comes from clogfit; nothing is fitted here. Bars are its confidence intervals; a triangle pointing up
+is a lower bound where no run clogged.
+"""
+
+import argparse
+import json
+import math
+import pathlib
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+# Okabe and Ito's palette, safe for colour-blind readers; a marker of its own for every curve besides.
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
+MARKERS = ["o", "s", "D", "v", "P", "X", "*"]
+# What a sweep may vary beside the abscissa: name in the file, symbol.
+CURVE_PARAMETERS = [
+    ("obstacle_gap", r"w_\mathrm{ob}/\sigma"),
+    ("obstacle_diameter", r"\sigma_\mathrm{ob}/\sigma"),
+    ("obstacle_density", r"\rho_\mathrm{ob}\sigma^2"),
+    ("near_wall_drag", r"b_0/b_\infty"),
+    ("terminal_speed", r"V_t"),
+    ("vertices", r"N_v"),
+    ("time_step", r"\Delta t/t_0"),
+    ("max_time", r"T/t_0"),
+    ("box", r"L/\sigma"),
+    ("area_stiffness", r"K_a"),
+    ("perimeter_stiffness", r"K_l"),
+    ("clog_energy", r"E_k/E_t"),
+]
+
+
+def number(value):
+    return f"{value:.4g}"
+
+
+def caption(groups):
+    """What all curves have in common, and how many runs are behind them."""
+    first = groups[0]
+    words = ["deformable polygon" if first["model"] == "dp" else "soft disk"]
+    for name, symbol in CURVE_PARAMETERS:
+        is_common = first[name] is not None and all(group[name] == first[name] for group in groups)
+        if is_common and name in ("obstacle_gap", "obstacle_diameter", "near_wall_drag", "terminal_speed", "vertices"):
+            words.append(f"${symbol} = {number(first[name])}$")
+    if all(group["obstacle_filling"] == "saturated" for group in groups):
+        words.append("saturated arrays")
+    runs = sorted({group["runs"] for group in groups})
+    words.append(f"{runs[0]} runs a point" if len(runs) == 1 else f"{runs[0]} to {runs[-1]} runs a point")
+    return ", ".join(words)
+
+
+def curves(groups):
+    """Groups that differ in the abscissa only, with a label that says how the curves differ."""
+    varied = [
+        (name, symbol) for name, symbol in CURVE_PARAMETERS if len({group[name] for group in groups}) > 1
+    ]
+    # In saturated arrays the density follows from gap and diameter: it needs no place in the label.
+    if all(group["obstacle_filling"] == "saturated" for group in groups):
+        varied = [(name, symbol) for name, symbol in varied if name != "obstacle_density"]
+    keys = sorted({tuple(group[name] for name, _ in varied) for group in groups})
+    for key in keys:
+        members = [group for group in groups if tuple(group[name] for name, _ in varied) == key]
+        label = ", ".join(f"${symbol} = {number(value)}$" for (_, symbol), value in zip(varied, key))
+        yield label, members
+
+
+def draw(groups, abscissa, confidence):
+    figure, axes = plt.subplots(figsize=(6.4, 4.8), layout="constrained")
+    num_curves = sum(1 for _ in curves(groups))
+    for index, (label, members) in enumerate(curves(groups)):
+        colour, marker = COLOURS[index % len(COLOURS)], MARKERS[index % len(MARKERS)]
+        members.sort(key=lambda group: group[abscissa])
+        # Curves share their abscissae: moved apart by a percent, their bars can be told from each other.
+        places = [group[abscissa] * 1.012 ** (index - (num_curves - 1) / 2) for group in members]
+        # Not a number where no run clogged: the line is broken there.
+        lengths = [math.nan if group["clogs"] == 0 else group["clogging_length"] for group in members]
+        bars = [
+            [math.nan if group["clogs"] == 0 else abs(group["clogging_length"] - group[end]) for group in members]
+            for end in ("clogging_length_lower", "clogging_length_upper")
+        ]
+        axes.errorbar(
+            places, lengths, yerr=bars,
+            color=colour, marker=marker, markersize=5, linewidth=1, elinewidth=1, capsize=2.5, label=label,
+        )
+        bounds = [(x, group["clogging_length_lower"]) for x, group in zip(places, members) if group["clogs"] == 0]
+        axes.plot(
+            [x for x, _ in bounds], [length for _, length in bounds],
+            color=colour, marker="^", markerfacecolor="white", markersize=8, linestyle="none",
+        )
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlabel(
+        r"line tension $\Gamma = \gamma/(g\rho\sigma^2)$" if abscissa == "line_tension"
+        else r"wall stiffness $E_w = \epsilon_w/(g\rho\sigma^3)$"
+    )
+    axes.set_ylabel(r"clogging length $\lambda/\sigma$")
+    axes.xaxis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:g}"))
+    values = sorted({group[abscissa] for group in groups})
+    if len(values) <= 10:
+        axes.set_xticks(values, minor=False)
+        axes.xaxis.set_minor_locator(matplotlib.ticker.NullLocator())
+    axes.grid(True, which="major", color="0.9", linewidth=0.6)
+    axes.set_axisbelow(True)
+    if axes.get_legend_handles_labels()[1] != [""]:
+        axes.legend(frameon=False)
+    note = f"bars: {100 * confidence:g} % confidence"
+    if any(group["clogs"] == 0 for group in groups):
+        note += ", open triangles: lower bound, no run clogged"
+    axes.set_title(f"{caption(groups)}\n{note}", fontsize=8, color="0.25")
+    return figure
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("fit", type=pathlib.Path, help="output of clogfit --format json")
+    parser.add_argument("--output", type=pathlib.Path, required=True, help="name without ending; .png and .pdf are made")
+    arguments = parser.parse_args()
+    try:
+        fit = json.loads(arguments.fit.read_text())
+        groups = [group for group in fit["groups"] if group["runs"] > 0]
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        sys.exit(f"clogging_length.py: cannot read {arguments.fit} ({error}); give the output of clogfit --format json")
+    if not groups:
+        sys.exit(f"clogging_length.py: {arguments.fit} holds no finished runs")
+    abscissa = "line_tension" if groups[0]["model"] == "dp" else "wall_stiffness"
+    figure = draw(groups, abscissa, fit["confidence"])
+    figure.savefig(arguments.output.with_suffix(".png"), dpi=160)
+    figure.savefig(arguments.output.with_suffix(".pdf"))
+
+
+if __name__ == "__main__":
+    main()

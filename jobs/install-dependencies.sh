@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# Installs what is missing of the Debian 12 packages that clogsweep needs. Does nothing when all are there.
+set -euo pipefail
+packages=(
+  g++ cmake ninja-build git                          # to build
+  libopenmpi-dev openmpi-bin                         # MPI
+  libhdf5-dev libeigen3-dev                          # the table of runs; arrays
+  libboost-dev libboost-program-options-dev          # random numbers and statistics; command line
+  nlohmann-json3-dev                                 # clogfit --format json
+  libgtest-dev libbenchmark-dev                      # tests and benchmarks
+  python3 python3-h5py python3-pandas python3-tables python3-matplotlib  # figures, and readers for the tests
+)
+missing=()
+for package in "${packages[@]}"; do
+  dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+echo "installing: ${missing[*]}"
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "needs root or sudo to install: ${missing[*]}" >&2; exit 2; }
+  as_root=(sudo)
+fi
+export DEBIAN_FRONTEND=noninteractive
+"${as_root[@]}" apt-get update -qq
+"${as_root[@]}" apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null

@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# From a fresh Debian 12 machine to a clogging-length curve: installs what is missing, builds, runs the sweep of
+# jobs/laptop.cfg on two ranks, fits and draws. Results go to a new folder under results/.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+./jobs/install-dependencies.sh
+cmake --preset release -DCLOG_TESTS=OFF -B build/laptop >/dev/null
+cmake --build build/laptop
+. jobs/mpi-settings.sh
+
+results=results/laptop-$(date +%Y%m%d-%H%M%S)
+mkdir -p "$results"
+bin=build/laptop/bin
+mpirun -np 2 "$bin/clogsweep" --config jobs/laptop.cfg --output "$results/sweep.h5"
+"$bin/clogfit" "$results/sweep.h5" --format json >"$results/fit.json"
+# Debian's own Python has the packages; another one may come first in the path.
+/usr/bin/python3 analysis/clogging_length.py "$results/fit.json" --output "$results/clogging-length"
+echo
+"$bin/clogfit" "$results/sweep.h5" | tee "$results/fit.txt"
+echo
+echo "runs:    $results/sweep.h5"
+echo "picture: $results/clogging-length.png (and .pdf)"

@@ -1,0 +1,119 @@
+import csv
+import io
+import json
+import math
+import unittest
+
+import h5py
+import numpy as np
+import pandas
+
+from support import SMALL, ProgramTest
+
+
+class Fit(ProgramTest):
+    def sweep(self, *settings):
+        self.succeed("clogsweep", *SMALL, *settings, "--output", "sweep.h5")
+        return pandas.read_hdf(self.folder / "sweep.h5", "runs")
+
+    def change(self, **columns):
+        """Puts other results into the rows of the sweep file."""
+        with h5py.File(self.folder / "sweep.h5", "r+") as file:
+            rows = file["runs"][:]
+            for name, values in columns.items():
+                rows[name] = values
+            file["runs"][:] = rows
+
+    def fit(self, *arguments):
+        return json.loads(self.succeed("clogfit", "sweep.h5", "--format", "json", *arguments).stdout)
+
+    def test_it_gives_the_reference_answer(self):
+        # Sum of 359 over 21 runs with 9 ends: the classic leukaemia trial.
+        self.sweep("seeds=1..21", "max-time=1")
+        times = [6, 6, 6, 6, 7, 9, 10, 10, 11, 13, 16, 17, 19, 20, 22, 23, 25, 32, 32, 34, 35]
+        clogged = [1, 1, 1, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0]
+        self.change(distance=times, status=[b"clogged" if c else b"flowing" for c in clogged])
+        group, = self.fit()["groups"]
+        self.assertEqual((group["runs"], group["clogs"], group["flowing"]), (21, 9, 12))
+        self.assertAlmostEqual(group["clogging_length"], 39.8888889, places=7)
+        self.assertAlmostEqual(group["clogging_length_lower"], 22.7745791, places=7)
+        self.assertAlmostEqual(group["clogging_length_upper"], 87.2338890, places=7)
+
+    def test_groups_agree_with_pandas(self):
+        rows = self.sweep("max-time=60", "line-tension=0.4,2", "obstacle-gap=0.2,0.8", "seeds=1..6")
+        groups = self.fit()["groups"]
+        self.assertEqual(len(groups), 4)
+        for group in groups:
+            mine = rows[(rows.line_tension == group["line_tension"]) & (rows.obstacle_gap == group["obstacle_gap"])]
+            clogs = int((mine.status == "clogged").sum())
+            total = mine.distance.clip(lower=0).sum()
+            self.assertEqual(group["clogs"], clogs)
+            self.assertAlmostEqual(group["total_distance"], total, places=12)
+            if clogs:
+                self.assertAlmostEqual(group["clogging_length"], total / clogs, places=12)
+            else:
+                self.assertIsNone(group["clogging_length"])
+                self.assertIsNone(group["clogging_length_upper"])
+                self.assertAlmostEqual(group["clogging_length_lower"], total / math.log(20), places=12)
+            speeds = (mine.mean_speed / mine.terminal_speed).dropna()
+            if len(speeds) > 1:
+                self.assertAlmostEqual(group["mean_speed"], speeds.mean(), places=12)
+                self.assertAlmostEqual(group["mean_speed_error"], speeds.sem(), places=12)
+
+    def test_interrupted_runs_are_censored_and_failed_ones_left_out(self):
+        self.sweep("seeds=1..4", "max-time=1")
+        self.change(distance=[1, 2, 3, 100], status=[b"clogged", b"flowing", b"interrupted", b"failed"])
+        group, = self.fit()["groups"]
+        self.assertEqual(group["clogging_length"], 6)
+        self.assertEqual((group["runs"], group["interrupted"], group["failed"]), (3, 1, 1))
+        text = self.succeed("clogfit", "sweep.h5").stdout
+        self.assertIn("1 interrupted", text)
+        self.assertIn("1 failed", text)
+
+    def test_nothing_clogged_is_a_lower_bound(self):
+        self.sweep("seeds=1..3", "max-time=1")
+        self.change(distance=[10, 20, 30], status=[b"flowing"] * 3, mean_speed=np.nan)
+        self.assertIn("> 20.03", self.succeed("clogfit", "sweep.h5").stdout)  # 60/log(20)
+        self.assertIn("> 26.06", self.succeed("clogfit", "sweep.h5", "--confidence", 0.9).stdout)  # 60/log(10)
+
+    def test_the_table_in_every_format(self):
+        self.sweep("max-time=60", "line-tension=0.4,2", "seeds=1..3")
+        text = self.succeed("clogfit", "sweep.h5").stdout
+        for word in ("obstacle_gap", "line_tension", "lambda/sigma", "95 %", "<v_g>/v_t", "vertices=64"):
+            self.assertIn(word, text)
+        lines = list(csv.DictReader(io.StringIO(self.succeed("clogfit", "sweep.h5", "--format", "csv").stdout)))
+        groups = self.fit()["groups"]
+        self.assertEqual(len(lines), 2)
+        for line, group in zip(lines, groups):
+            self.assertEqual(list(line), list(group))
+            self.assertEqual(float(line["total_distance"]), group["total_distance"])
+
+    def test_mistakes_get_one_line_and_exit_code_2(self):
+        self.write("text.h5", "not a table")
+        with h5py.File(self.folder / "foreign.h5", "w") as file:
+            file["runs"] = [1, 2, 3]
+        self.sweep("seeds=1", "max-time=1")
+        with h5py.File(self.folder / "sweep.h5", "r") as file, h5py.File(self.folder / "future.h5", "w") as copy:
+            file.copy("runs", copy)
+            copy.attrs.update(file.attrs)
+            copy.attrs["format_version"] = np.bytes_("99")
+        whole = (self.folder / "sweep.h5").read_bytes()
+        (self.folder / "torn.h5").write_bytes(whole[: len(whole) // 2])
+        for arguments, words in [
+            ([], ["missing sweep file"]),
+            (["missing.h5"], ["missing.h5", "no such file"]),
+            (["text.h5"], ["text.h5", "not an HDF5 file"]),
+            (["foreign.h5"], ["foreign.h5", "not one of clogsweep's"]),
+            (["future.h5"], ["future.h5", "format version 99"]),
+            (["torn.h5"], ["torn.h5"]),
+            (["sweep.h5", "--format", "xml"], ["--format=xml", "text, csv, json"]),
+            (["sweep.h5", "--confidence", "1"], ["--confidence=1"]),
+            (["sweep.h5", "--confidence", "high"], ["--confidence=high"]),
+            (["sweep.h5", "line-tension=1"], ["unknown option", "line-tension"]),
+        ]:
+            with self.subTest(arguments=arguments):
+                self.refuse("clogfit", *arguments, words=words)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,119 @@
+import re
+import signal
+import subprocess
+import time
+import unittest
+
+import h5py
+import numpy as np
+import pandas
+
+from support import BIN, QUICK, ProgramTest
+
+
+class Run(ProgramTest):
+    def test_it_reproduces_a_row_of_a_sweep_bit_for_bit(self):
+        keys = [*QUICK, "near-wall-drag=0.1", "obstacle-gap=0.4"]
+        self.succeed("clogsweep", *keys, "line-tension=0.4,2", "seeds=1..3", "--output", "sweep.h5")
+        rows = pandas.read_hdf(self.folder / "sweep.h5", "runs")
+        row = rows[(rows.line_tension == 2) & (rows.seed == 3)].iloc[0]
+        self.succeed("clogrun", "array", *keys, "line-tension=2", "--seed", 3, "--output", "run.h5")
+        again = pandas.read_hdf(self.folder / "run.h5", "runs").iloc[0]
+        for column in rows.columns.drop(["task", "wall_seconds", "rank", "host"]):
+            if isinstance(row[column], float) and np.isnan(row[column]):
+                self.assertTrue(np.isnan(again[column]), column)
+            else:
+                self.assertEqual(row[column], again[column], column)
+
+    def test_it_writes_the_trajectory(self):
+        done = self.succeed("clogrun", "array", *QUICK, "obstacle-gap=1.2", "--sample-interval", 2, "--output", "run.h5")
+        self.assertRegex(done.stdout.splitlines()[-1], r"^\d+ steps, [\d.]+ s, [\d.]+ ns per vertex-step$")
+        samples = pandas.read_hdf(self.folder / "run.h5", "trajectory")
+        self.assertEqual(samples.time[0], 0)
+        self.assertEqual(samples.distance[0], 0)
+        self.assertAlmostEqual(samples.time.iloc[-1], 60, places=9)
+        self.assertAlmostEqual(np.diff(samples.time)[3], 2, delta=0.064)
+        self.assertTrue(np.allclose(samples.area, np.pi / 4, atol=0.01))
+        self.assertTrue((samples.shape_parameter >= 0.999).all())
+        self.assertTrue(np.allclose(samples.shape_parameter, samples.perimeter**2 / (4 * np.pi * samples.area)))
+        # The speed is the derivative of the distance.
+        slope = np.gradient(samples.distance, samples.time)[2:-2]
+        self.assertLess(np.median(np.abs(slope - samples.speed[2:-2])), 0.003)
+
+    def test_it_writes_polygons_and_the_obstacles_along_the_way(self):
+        self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 10, "--output", "run.h5")
+        with h5py.File(self.folder / "run.h5", "r") as file:
+            polygons, times, obstacles = file["polygons"][:], file["polygon_times"][:], file["obstacles"][:]
+            samples = file["trajectory"][:]
+        self.assertEqual(polygons.shape, (len(times), 2, 64))
+        travelled = polygons[-1, 0].mean() - polygons[0, 0].mean()
+        self.assertAlmostEqual(travelled, samples["distance"][-1], places=10)
+        self.assertGreater(len(obstacles), 5)
+        # No vertex is deeper in an obstacle than a vertex diameter.
+        for x, y in polygons.transpose(0, 2, 1).reshape(-1, 2):
+            gaps = np.hypot(obstacles[:, 0] - x, obstacles[:, 1] - y) - obstacles[:, 2] / 2
+            self.assertGreater(gaps.min(), 0)
+
+    def test_obstacles_written_can_be_read_back(self):
+        self.succeed("clogrun", "array", *QUICK, "obstacle-gap=0.4", "seeds=2", "--write-obstacles", "array.csv", "--output", "a.h5")
+        header = (self.folder / "array.csv").read_text().splitlines()[0]
+        self.assertEqual(header, "x,y,diameter")
+        self.succeed("clogrun", "array", *QUICK, "seeds=2", "--obstacles", "array.csv", "--output", "b.h5")
+        first = pandas.read_hdf(self.folder / "a.h5", "runs").iloc[0]
+        second = pandas.read_hdf(self.folder / "b.h5", "runs").iloc[0]
+        self.assertEqual(first.distance, second.distance)
+        self.assertEqual(second.obstacle_filling, "file")
+
+    def test_a_droplet_comes_to_rest_on_the_users_own_obstacles(self):
+        # Two circles below the droplet's start, closer than it is wide.
+        self.write("gate.csv", "# a gate\n\n12,9.65,0.3\n12,10.35\n")
+        done = self.succeed("clogrun", "array", "--obstacles", "gate.csv", "box=20", "vertices=128", "line-tension=3",
+                            "max-time=3000", "--output", "run.h5")
+        self.assertIn("clogged", done.stdout)
+        row = pandas.read_hdf(self.folder / "run.h5", "runs").iloc[0]
+        self.assertAlmostEqual(row.obstacle_gap, 0.4, places=12)
+        self.assertGreater(row.distance, 1.4)
+        self.assertLess(row.distance, 2)
+
+    def test_ctrl_c_writes_what_there_is(self):
+        process = subprocess.Popen(
+            [str(BIN / "clogrun"), "array", "vertices=64", "box=20", "obstacle-gap=1.2", "--output", "run.h5"],
+            cwd=self.folder, stdout=subprocess.PIPE, text=True,
+        )
+        self.addCleanup(process.kill)
+        time.sleep(1)
+        process.send_signal(signal.SIGINT)
+        output, _ = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 75)
+        self.assertTrue(re.match("interrupted after r = ", output), output)
+        self.assertGreater(len(pandas.read_hdf(self.folder / "run.h5", "trajectory")), 10)
+
+    def test_mistakes_get_one_line_and_exit_code_2(self):
+        self.write("words.csv", "x,y\n1,2\n3,four\n")
+        self.write("outside.csv", "1,25\n")
+        self.write("overlap.csv", "1,1,0.5\n1.2,1,0.5\n")
+        self.write("across.csv", "0.1,1,0.5\n19.9,1,0.5\n")
+        self.write("empty.csv", "x,y\n")
+        out = ["box=20", "--output", "r.h5"]
+        for arguments, words in [
+            ([*out], ["missing system", "clogrun array"]),
+            (["channell", *out], ["channell"]),
+            (["array"], ["missing --output"]),
+            (["array", "line-tension=1,2", *out], ["2 runs", "clogrun does one"]),
+            (["array", "--sample-interval=0", *out], ["--sample-interval=0"]),
+            (["array", "--polygon-interval=often", *out], ["--polygon-interval=often"]),
+            (["array", "--obstacles", "missing.csv", *out], ["missing.csv"]),
+            (["array", "--obstacles", "words.csv", *out], ["words.csv line 3", "four"]),
+            (["array", "--obstacles", "outside.csv", *out], ["outside.csv line 1", "outside the box"]),
+            (["array", "--obstacles", "overlap.csv", *out], ["overlap.csv", "overlap"]),
+            (["array", "--obstacles", "across.csv", *out], ["across.csv", "overlap"]),
+            (["array", "--obstacles", "empty.csv", *out], ["no obstacles"]),
+            (["array", "--obstacles", "outside.csv", "obstacle-gap=0.3", *out], ["contradict"]),
+            (["array", "obstacle-density=9", *out], ["obstacle-density=9"]),
+        ]:
+            with self.subTest(arguments=arguments):
+                self.refuse("clogrun", *arguments, words=words)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,196 @@
+import signal
+import subprocess
+import time
+import unittest
+
+import h5py
+import numpy as np
+import pandas
+
+from support import BIN, MPIRUN, QUICK, SMALL, ProgramTest
+
+# Columns that tell where and how fast a row was made, not what came out.
+CIRCUMSTANCES = ["wall_seconds", "rank", "host"]
+
+
+def table(path):
+    return pandas.read_hdf(path, "runs").sort_values("task").reset_index(drop=True)
+
+
+class Sweep(ProgramTest):
+    def test_rows_do_not_depend_on_the_number_of_ranks(self):
+        sweep = [*QUICK, "line-tension=0.3,2", "obstacle-gap=0.2,0.6", "seeds=1..4"]
+        tables = {}
+        for ranks in (None, 1, 2, 4):
+            self.succeed("clogsweep", *sweep, "--output", f"{ranks}.h5", ranks=ranks)
+            tables[ranks] = table(self.folder / f"{ranks}.h5").drop(columns=CIRCUMSTANCES)
+        self.assertEqual(len(tables[None]), 16)
+        self.assertEqual(set(tables[None].status), {"clogged", "flowing"})
+        for ranks in (1, 2, 4):
+            pandas.testing.assert_frame_equal(tables[ranks], tables[None], check_exact=True)
+
+    def test_every_rank_works_and_a_serving_master_does_not(self):
+        sweep = [*SMALL, "max-time=300", "obstacle-gap=0.6", "seeds=1..12"]
+        self.succeed("clogsweep", *sweep, "--output", "shared.h5", ranks=2)
+        self.assertEqual(set(table(self.folder / "shared.h5")["rank"]), {0, 1})
+        self.succeed("clogsweep", *sweep, "--output", "served.h5", "--master-computes", "no", ranks=2)
+        self.assertEqual(set(table(self.folder / "served.h5")["rank"]), {1})
+
+    def test_pandas_and_h5py_read_the_table_as_it_is(self):
+        self.succeed("clogsweep", *QUICK, "line-tension=0.5", "seeds=3,5", "near-wall-drag=0.1", "--output", "s.h5")
+        rows = table(self.folder / "s.h5")
+        self.assertEqual(list(rows.seed), [3, 5])
+        self.assertEqual(rows.model[0], "dp")
+        self.assertEqual(rows.line_tension[0], 0.5)
+        self.assertEqual(rows.near_wall_drag[0], 0.1)
+        self.assertEqual(rows.obstacle_filling[0], "saturated")
+        for column in (
+            "task model line_tension wall_stiffness obstacle_gap obstacle_diameter obstacle_density seed vertices "
+            "time_step near_wall_drag terminal_speed status distance time mean_speed kinetic_energy_ratio "
+            "shape_parameter steps wall_seconds rank host attempt"
+        ).split():
+            self.assertIn(column, rows.columns)
+        with h5py.File(self.folder / "s.h5", "r") as file:
+            self.assertEqual(file["runs"].shape, (2,))
+            self.assertEqual(set(rows.columns), set(file["runs"].attrs), "every column has its meaning")
+            self.assertIn(b"[sigma]", file["runs"].attrs["distance"])
+            self.assertIn(b"line-tension = 0.5", file.attrs["config"])
+            for name in "version git_hash command_line start_time mpi_version hdf5_version compiler".split():
+                self.assertTrue(file.attrs[name], name)
+            self.assertEqual(file.id.get_create_plist().get_version()[0], 0, "the earliest file format")
+
+    def test_the_stored_config_repeats_the_sweep(self):
+        self.succeed("clogsweep", *QUICK, "line-tension=log(0.3,3,2)", "seeds=1..2", "--output", "first.h5")
+        with h5py.File(self.folder / "first.h5", "r") as file:
+            self.write("again.cfg", file.attrs["config"].decode())
+        self.succeed("clogsweep", "--config", "again.cfg", "--output", "second.h5")
+        pandas.testing.assert_frame_equal(
+            table(self.folder / "first.h5").drop(columns=CIRCUMSTANCES),
+            table(self.folder / "second.h5").drop(columns=CIRCUMSTANCES),
+            check_exact=True,
+        )
+
+    def test_soft_disks_are_swept_over_their_stiffness(self):
+        self.succeed("clogsweep", "model=sp", "wall-stiffness=0.3,3", "box=20", "max-time=2000", "seeds=1..5",
+                     "--output", "sp.h5", ranks=2)
+        rows = table(self.folder / "sp.h5")
+        self.assertTrue(rows.line_tension.isna().all())
+        soft, stiff = rows[rows.wall_stiffness == 0.3], rows[rows.wall_stiffness == 3]
+        self.assertTrue((soft.status == "flowing").all())
+        self.assertTrue((stiff.status == "clogged").all())
+
+    def test_the_command_line_overrides_the_config_file(self):
+        self.write("sweep.cfg", "line-tension = 1,2  # a list\nseeds=1..3\n\n")
+        done = self.succeed("clogsweep", "--config", "sweep.cfg", "--print-config", "seeds=7", "--box", "40")
+        for line in ("line-tension = 1,2", "seeds = 7", "box = 40", "vertices = 256"):
+            self.assertIn(line + "\n", done.stdout)
+
+    def test_a_dry_run_lists_the_tasks_and_runs_none(self):
+        done = self.succeed("clogsweep", "line-tension=lin(0.5,1.5,3)", "seeds=1..4", "--dry-run", "--output", "s.h5")
+        lines = done.stdout.splitlines()
+        self.assertEqual(len(lines), 1 + 12 + 1)
+        self.assertIn("12 tasks: 3 parameter sets, 4 seeds each", lines[-1])
+        self.assertEqual(self.snapshot(), {})
+
+    def test_help_and_version(self):
+        self.assertIn("--line-tension", self.succeed("clogsweep", "--help").stdout)
+        version = self.succeed("clogsweep", "--version").stdout
+        for word in ("clogsweep", "git", "compiler", "MPI: Open MPI", "HDF5: 1."):
+            self.assertIn(word, version)
+
+    def test_it_tells_how_it_is_getting_on(self):
+        done = self.succeed("clogsweep", *QUICK, "seeds=1..3", "--output", "s.h5")
+        self.assertIn("3/3 done, 0 running", done.stderr)
+
+    def test_a_task_that_cannot_run_is_a_row(self):
+        # Obstacles so large that the middle of the box may be all obstacle.
+        self.succeed("clogsweep", "vertices=64", "box=13", "max-time=5", "obstacle-diameter=6", "obstacle-gap=0.06",
+                     "obstacle-density=0.0237", "seeds=1..20", "--output", "s.h5", ranks=2)
+        rows = table(self.folder / "s.h5")
+        self.assertEqual(len(rows), 20)
+        failed = rows[rows.status == "failed"]
+        self.assertGreater(len(failed), 0)
+        self.assertTrue((failed.message.str.len() > 10).all())
+
+
+class Stopped(ProgramTest):
+    LONG = ["vertices=64", "box=20", "obstacle-gap=1.2", "max-time=1e5", "seeds=1..50", "--output", "s.h5"]
+
+    def stop(self, command, signal_number, wait):
+        process = subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        deadline = time.time() + 60
+        while not (self.folder / "s.h5").exists() and time.time() < deadline:
+            time.sleep(0.05)
+        time.sleep(wait)
+        process.send_signal(signal_number)
+        _, error = process.communicate(timeout=60)
+        return process.returncode, error
+
+    def check_rows(self):
+        rows = table(self.folder / "s.h5")
+        interrupted = rows[rows.status == "interrupted"]
+        self.assertGreater(len(interrupted), 0)
+        self.assertTrue((interrupted.distance > 0).all())
+        self.assertTrue(np.isfinite(interrupted.time).all())
+
+    def test_ctrl_c_keeps_the_distances_so_far(self):
+        code, error = self.stop([str(BIN / "clogsweep"), *self.LONG], signal.SIGINT, 1)
+        self.assertEqual(code, 75, error)
+        self.assertIn("stopped by a signal", error)
+        self.check_rows()
+
+    def test_ctrl_c_under_mpirun_keeps_the_distances_so_far(self):
+        self.stop([str(MPIRUN), "2", str(BIN / "clogsweep"), *self.LONG], signal.SIGINT, 2)
+        self.check_rows()
+
+
+class Refusals(ProgramTest):
+    def test_mistakes_get_one_line_and_exit_code_2(self):
+        self.write("bad.cfg", "line-tenson = 1\n")
+        self.write("torn.cfg", "line-tension 1\n")
+        self.write("empty.cfg", "line-tension =\n")
+        self.write("taken.h5", "something of the user's")
+        out = ["--output", "s.h5"]
+        for arguments, words in [
+            ([], ["missing --output"]),
+            (["--line-tenson=1", *out], ["--line-tenson", "did you mean --line-tension"]),
+            (["--frobnicate", *out], ["unknown option", "--frobnicate"]),
+            (["line-tenson=1", *out], ["did you mean --line-tension"]),
+            (["stray", *out], ["too many words"]),
+            (["line-tension=soft", *out], ["line-tension=soft", "not a finite number"]),
+            (["line-tension=-1", *out], ["line-tension=-1"]),
+            (["seeds=3..1", *out], ["seeds=3..1", "no values"]),
+            (["seeds=1,1", *out], ["twice"]),
+            (["model=sph", *out], ["model=sph", "dp, sp"]),
+            (["model=sp", *out], ["missing wall-stiffness"]),
+            (["model=sp", "wall-stiffness=1", "line-tension=1,2", *out], ["repeat every run"]),
+            (["time-step=0.01", *out], ["time-step=0.01", "omega*dt", "try"]),
+            (["wall-stiffness=1e4", *out], ["omega*dt", "try"]),
+            (["obstacle-gap=0.01", *out], ["obstacle-gap=0.01", "vertex"]),
+            (["box=2", *out], ["box=2"]),
+            (["--config", "missing.cfg", *out], ["missing.cfg"]),
+            (["--config", "bad.cfg", *out], ["bad.cfg", "did you mean line-tension"]),
+            (["--config", "torn.cfg", *out], ["torn.cfg", "key = value"]),
+            (["--config", "empty.cfg", *out], ["empty.cfg", "line-tension"]),
+            (["--master-computes=perhaps", *out], ["auto, yes, no"]),
+            (["--output", "taken.h5"], ["taken.h5", "will not overwrite"]),
+            (["--output", "no/such/folder/s.h5"], ["no/such/folder"]),
+        ]:
+            with self.subTest(arguments=arguments):
+                self.refuse("clogsweep", *arguments, words=words)
+
+    def test_a_mistake_ends_all_ranks(self):
+        done = self.run_program("clogsweep", "line-tension=-1", "--output", "s.h5", ranks=2, timeout=60)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(done.stderr.count("invalid line-tension=-1"), 1)
+
+    def test_an_impossible_density_fails_every_row_with_the_reason(self):
+        self.succeed("clogsweep", *QUICK, "obstacle-density=9", "seeds=1..2", "--output", "s.h5")
+        rows = table(self.folder / "s.h5")
+        self.assertTrue((rows.status == "failed").all())
+        self.assertIn("obstacle-density=9", rows.message[0])
+
+
+if __name__ == "__main__":
+    unittest.main()
