@@ -154,7 +154,11 @@ int run_array(cli::CommandLine& line) {
   RunResult result = run.result();
   result.status = status;
   trajectory.row = sweep::describe(setup.parameters);
-  if (setup.own_obstacles) trajectory.row.obstacle_filling = "file";
+  if (setup.own_obstacles) {
+    const double box = setup.parameters.obstacles.box;
+    trajectory.row.obstacle_filling = "file";
+    trajectory.row.obstacle_density = static_cast<double>(setup.own_obstacles->obstacles().size()) / (box * box);
+  }
   trajectory.row.task = 0;
   trajectory.row.wall_seconds = seconds;
   sweep::record(result, trajectory.row);

@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 import pandas
 
-from support import BIN, MPIRUN, QUICK, SMALL, ProgramTest
+from support import BIN, MPIRUN, QUICK, ROOT, SMALL, ProgramTest
 
 # Columns that tell where and how fast a row was made, not what came out.
 CIRCUMSTANCES = ["wall_seconds", "rank", "host"]
@@ -58,6 +58,13 @@ class Sweep(ProgramTest):
             for name in "version git_hash command_line start_time mpi_version hdf5_version compiler".split():
                 self.assertTrue(file.attrs[name], name)
             self.assertEqual(file.id.get_create_plist().get_version()[0], 0, "the earliest file format")
+
+    def test_the_format_page_lists_every_column_and_attribute(self):
+        self.succeed("clogsweep", *QUICK, "seeds=1", "--output", "s.h5")
+        page = (ROOT / "src" / "store" / "README.md").read_text()
+        with h5py.File(self.folder / "s.h5", "r") as file:
+            for name in [*file["runs"].dtype.names, *file.attrs]:
+                self.assertIn(f"`{name}`", page)
 
     def test_the_stored_config_repeats_the_sweep(self):
         self.succeed("clogsweep", *QUICK, "line-tension=log(0.3,3,2)", "seeds=1..2", "--output", "first.h5")

@@ -1,0 +1,67 @@
+/// What a step costs. `time per vertex-step` is the figure to compare; always compare within one run.
+
+#include <benchmark/benchmark.h>
+
+#include "clog/core/array_run.hpp"
+
+namespace {
+
+using namespace clog;
+
+RunParameters flowing_droplet(int vertices, double near_wall_drag) {
+  RunParameters run;
+  run.dp.vertices = vertices;
+  run.drag.near_wall = near_wall_drag;
+  run.obstacles.gap = 1;
+  run.obstacles.box = 60;
+  run.time_step = vertices > 256 ? 2.5e-4 : 1e-3;
+  run.max_time = 1e9;
+  run.clog_energy = 1e-300;
+  return resolve(run);
+}
+
+void advance(benchmark::State& state, const RunParameters& parameters) {
+  ArrayRun run(parameters);
+  run.advance(100);
+  const std::int64_t before = run.result().steps;
+  for (auto _ : state) run.advance(100);
+  const auto steps = static_cast<double>(run.result().steps - before);
+  const double points = parameters.model == Model::dp ? parameters.dp.vertices : 1;
+  state.counters["steps/s"] = benchmark::Counter(steps, benchmark::Counter::kIsRate);
+  state.counters["time per vertex-step"] =
+      benchmark::Counter(steps * points, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+void polygon(benchmark::State& state) { advance(state, flowing_droplet(static_cast<int>(state.range(0)), 0)); }
+BENCHMARK(polygon)->ArgName("vertices")->Arg(64)->Arg(256)->Arg(1024)->Unit(benchmark::kMillisecond);
+
+void polygon_with_near_wall_drag(benchmark::State& state) { advance(state, flowing_droplet(256, 0.2)); }
+BENCHMARK(polygon_with_near_wall_drag)->Unit(benchmark::kMillisecond);
+
+void wrapped_polygon(benchmark::State& state) {
+  RunParameters run = flowing_droplet(256, 0);
+  run.dp.line_tension = 0.2;
+  run.obstacles.gap = 0.2;
+  advance(state, resolve(run));
+}
+BENCHMARK(wrapped_polygon)->Unit(benchmark::kMillisecond);
+
+void soft_disk(benchmark::State& state) {
+  RunParameters run = flowing_droplet(256, 0);
+  run.model = Model::sp;
+  run.wall_stiffness = 1;
+  run.obstacles.gap = 0.2;
+  advance(state, resolve(run));
+}
+BENCHMARK(soft_disk)->Unit(benchmark::kMillisecond);
+
+void sample_saturated_array(benchmark::State& state) {
+  const ObstacleParameters parameters{.gap = 0.2, .diameter = 0.3, .density = {}, .box = static_cast<double>(state.range(0))};
+  std::uint32_t seed = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(sample_obstacles(parameters, ++seed));
+}
+BENCHMARK(sample_saturated_array)->ArgName("box")->Arg(100)->Arg(500)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();
