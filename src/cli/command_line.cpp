@@ -49,12 +49,13 @@ void CommandLine::parse(int argc, const char* const* argv) {
   all.add(own_).add(keys_);
   try {
     const int style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
-    po::store(po::command_line_parser(words).options(all).positional(positional_).style(style).run(), values_);
+    po::store(po::command_line_parser(words).options(all).positional(positional_).style(style).run(),
+              values_);
   } catch (const po::unknown_option& error) {
     refuse_unknown(error.get_option_name());
   } catch (const po::too_many_positional_options_error&) {
-    throw Error("too many words on the command line (options start with --, settings are key=value); see " + program_ +
-                " --help");
+    throw Error("too many words on the command line (options start with --, settings are key=value); see " +
+                program_ + " --help");
   } catch (const po::error& error) {
     throw Error(std::string(error.what()) + "; see " + program_ + " --help");
   }
@@ -70,8 +71,9 @@ void CommandLine::refuse_unknown(const std::string& word) const {
     for (const auto& option : group->options()) names.push_back(option->long_name());
   const std::string bare = word.substr(std::min(word.find_first_not_of('-'), word.size()));
   const std::string near = sweep::did_you_mean(bare, names);
-  throw Error("unknown option " + word +
-              (near.empty() ? "; " + program_ + " --help lists the options" : "; did you mean --" + near + "?"));
+  throw Error(
+      "unknown option " + word +
+      (near.empty() ? "; " + program_ + " --help lists the options" : "; did you mean --" + near + "?"));
 }
 
 void CommandLine::read_config(const std::string& path) {

@@ -35,14 +35,16 @@ Obstacle parse_obstacle(const std::vector<std::string>& cells, double default_di
 
 std::vector<Obstacle> read_obstacles(const std::string& path, double default_diameter, double box) {
   std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path)) throw Error("cannot read " + path + " (no such file, or not readable)");
+  if (!file || std::filesystem::is_directory(path))
+    throw Error("cannot read " + path + " (no such file, or not readable)");
   std::vector<Obstacle> obstacles;
   int line_number = 0;
   for (std::string line; std::getline(file, line);) {
     ++line_number;
     const std::vector<std::string> cells = split_line(line);
     const bool is_blank = line.find_first_not_of(" \t\r") == std::string::npos;
-    const bool is_header = line_number == 1 && !cells.empty() && cells[0].find_first_of("0123456789") == std::string::npos;
+    const bool is_header =
+        line_number == 1 && !cells.empty() && cells[0].find_first_of("0123456789") == std::string::npos;
     if (is_blank || is_header || line.starts_with('#')) continue;
     try {
       obstacles.push_back(parse_obstacle(cells, default_diameter, box));

@@ -16,6 +16,15 @@ volatile std::sig_atomic_t stop_flag = 0;  // the one thing a signal handler may
 
 void raise_stop_flag(int) { stop_flag = 1; }
 
+/// ISO 8601.
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  char text[32];
+  return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts)};
+}
+
 }  // namespace
 
 int run_program(const std::string& program, const std::function<int()>& body) {
@@ -33,21 +42,28 @@ int run_program(const std::string& program, const std::function<int()>& body) {
   }
 }
 
-std::string version_text(const std::string& program,
-                         const std::vector<std::pair<std::string, std::string>>& libraries) {
+bool answer_help_or_version(const CommandLine& line, const NamedTexts& libraries) {
+  if (line.has("help")) {
+    std::cout << line.help();
+    return true;
+  }
+  if (!line.has("version")) return false;
   const BuildInfo build = build_info();
-  std::string text = program + " " + build.version + " (git " + build.git_hash + ")\ncompiler: " + build.compiler + ", " +
-                     build.build_type + "\n";
-  for (const auto& [name, version] : libraries) text += name + ": " + version + "\n";
-  return text;
+  std::cout << line.program() << ' ' << build.version << " (git " << build.git_hash
+            << ")\ncompiler: " << build.compiler << ", " << build.build_type << '\n';
+  for (const auto& [name, version] : libraries) std::cout << name << ": " << version << '\n';
+  return true;
 }
 
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  gmtime_r(&now, &parts);
-  char text[32];
-  return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts)};
+NamedTexts origin(const CommandLine& line) {
+  const BuildInfo build = build_info();
+  return {{"program", line.program()},
+          {"version", build.version},
+          {"git_hash", build.git_hash},
+          {"compiler", build.compiler},
+          {"config", line.settings().to_config(false)},
+          {"command_line", line.text()},
+          {"start_time", utc_now()}};
 }
 
 void catch_stop_signals() {

@@ -24,7 +24,8 @@ std::unique_ptr<Droplet> make_droplet(const RunParameters& run, const ObstacleAr
 }
 
 /// The last array is kept: a sweep asks for the same one several times in a row.
-std::shared_ptr<const ObstacleArray> sample_or_reuse(const ObstacleParameters& parameters, std::uint32_t seed) {
+std::shared_ptr<const ObstacleArray> sample_or_reuse(const ObstacleParameters& parameters,
+                                                     std::uint32_t seed) {
   struct Cache {
     ObstacleParameters parameters;
     std::uint32_t seed = 0;
@@ -61,7 +62,8 @@ double ArrayRun::kinetic_energy_ratio() const {
 
 bool ArrayRun::advance(int num_checks) {
   for (int i = 0; i < num_checks && status_ == RunStatus::running; ++i) {
-    const auto steps = static_cast<int>(std::min<std::int64_t>(standard_steps_per_check, max_steps_ - steps_done_));
+    const auto steps =
+        static_cast<int>(std::min<std::int64_t>(standard_steps_per_check, max_steps_ - steps_done_));
     droplet_->advance(steps);
     steps_done_ += steps;
     check();
@@ -101,11 +103,16 @@ RunResult ArrayRun::result() const {
 
 const char* name(RunStatus status) {
   switch (status) {
-    case RunStatus::running: return "running";
-    case RunStatus::clogged: return "clogged";
-    case RunStatus::flowing: return "flowing";
-    case RunStatus::interrupted: return "interrupted";
-    case RunStatus::failed: return "failed";
+    case RunStatus::running:
+      return "running";
+    case RunStatus::clogged:
+      return "clogged";
+    case RunStatus::flowing:
+      return "flowing";
+    case RunStatus::interrupted:
+      return "interrupted";
+    case RunStatus::failed:
+      return "failed";
   }
   return "unknown";
 }

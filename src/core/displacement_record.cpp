@@ -29,9 +29,12 @@ void DisplacementRecord::add(double time, double displacement) {
 double DisplacementRecord::mean_speed() const {
   constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
   std::size_t end = samples_.size();
-  while (end > 0 && std::abs(samples_[end - 1].displacement - samples_.back().displacement) <= arrest_distance) --end;
+  while (end > 0 &&
+         std::abs(samples_[end - 1].displacement - samples_.back().displacement) <= arrest_distance)
+    --end;
   if (end == 0) return undefined;
-  const double begin_time = samples_.front().time + transient_fraction * (samples_[end - 1].time - samples_.front().time);
+  const double begin_time =
+      samples_.front().time + transient_fraction * (samples_[end - 1].time - samples_.front().time);
   std::size_t begin = 0;
   while (begin < end && samples_[begin].time < begin_time) ++begin;
   const Eigen::Index n = static_cast<Eigen::Index>(end - begin);

@@ -34,8 +34,8 @@ void DpDroplet::measure_damping() {
   const double far_rate = units::gravity / run_.drag.terminal_speed;
   const auto rate = damping_.head(run_.dp.vertices);
   damping_.head(run_.dp.vertices) =
-      far_rate * (1 + run_.drag.near_wall *
-                          (units::droplet_diameter / forces_.wall_distance()).pow(near_wall_exponent));
+      far_rate *
+      (1 + run_.drag.near_wall * (units::droplet_diameter / forces_.wall_distance()).pow(near_wall_exponent));
   damping_.tail(run_.dp.vertices) = rate;
 }
 
@@ -80,7 +80,8 @@ double DpDroplet::deepest_overlap() const {
   for (int s = 0; s < walls.num_slots(); ++s)
     for (Eigen::Index i = 0; i < state_.size(); ++i) {
       const double distance =
-          std::hypot(state_.x()[i] - walls.slot_x(s)[i], state_.y()[i] - walls.slot_y(s)[i]) - walls.slot_radius(s)[i];
+          std::hypot(state_.x()[i] - walls.slot_x(s)[i], state_.y()[i] - walls.slot_y(s)[i]) -
+          walls.slot_radius(s)[i];
       deepest = std::max(deepest, walls.range() - distance);
     }
   return deepest;

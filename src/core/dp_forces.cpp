@@ -51,20 +51,18 @@ void DpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   const kernel::EdgeArrays edges{edge_x_.data(), edge_y_.data(), edge_length_.data()};
   const kernel::Sums sums = kernel::measure_edges(n, x, y, edges);
   shape_ = {sums.area, sums.perimeter};
-  const kernel::Interface interface{
-      .line_tension = dp_.line_tension,
-      .spring = *dp_.perimeter_stiffness * n,
-      // The springs to the mean length are unloaded on average, so their force needs no derivative of the mean.
-      .spring_length = spring_length(),
-      .pressure = -dp_.area_stiffness * (shape_.area - rest_area_),
-      .vertex_weight = dp_.gravity == Gravity::vertex ? weight_ / n : 0,
+  const kernel::Interface interface {
+    .line_tension = dp_.line_tension, .spring = *dp_.perimeter_stiffness * n,
+    // The springs to the mean length are unloaded on average, so their force needs no derivative of the mean.
+        .spring_length = spring_length(), .pressure = -dp_.area_stiffness * (shape_.area - rest_area_),
+    .vertex_weight = dp_.gravity == Gravity::vertex ? weight_ / n : 0,
   };
   kernel::interface_forces(n, interface, edges, pull_.data(), fx, fy);
   if (dp_.gravity == Gravity::area) add_centroid_weight(state, force);
 
   for (int s = 0; s < walls_.num_slots(); ++s)
-    kernel::add_wall_forces(n, x, y, {walls_.slot_x(s), walls_.slot_y(s), walls_.slot_radius(s)}, walls_.range(),
-                            contact_stiffness_, fx, fy);
+    kernel::add_wall_forces(n, x, y, {walls_.slot_x(s), walls_.slot_y(s), walls_.slot_radius(s)},
+                            walls_.range(), contact_stiffness_, fx, fy);
   if (wall_distance_.size() > 0) {
     wall_distance_.setConstant(std::numeric_limits<double>::infinity());
     for (int s = 0; s < walls_.num_slots(); ++s)
@@ -79,7 +77,8 @@ void DpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
 /// c_i = x_i y_{i+1} - x_{i+1} y_i, so grad X = (grad S - X grad a)/a.
 void DpForces::add_centroid_weight(const DropletState& state, Eigen::ArrayXd& force) const {
   const Eigen::Index n = dp_.vertices;
-  const Eigen::Array2d centre = state.centre();  // X is invariant under shifts; small coordinates keep it exact
+  const Eigen::Array2d centre =
+      state.centre();  // X is invariant under shifts; small coordinates keep it exact
   const auto x = [&](Eigen::Index i) { return state.position[i] - centre[0]; };
   const auto y = [&](Eigen::Index i) { return state.position[n + i] - centre[1]; };
   const auto cross = [&](Eigen::Index i, Eigen::Index j) { return x(i) * y(j) - x(j) * y(i); };
@@ -93,7 +92,8 @@ void DpForces::add_centroid_weight(const DropletState& state, Eigen::ArrayXd& fo
   for (Eigen::Index i = 0; i < n; ++i) {
     const Eigen::Index next = i + 1 < n ? i + 1 : 0;
     const Eigen::Index before = i > 0 ? i - 1 : n - 1;
-    const double moment_x = (cross(i, next) + (x(i) + x(next)) * y(next) + cross(before, i) - (x(before) + x(i)) * y(before)) / 6;
+    const double moment_x =
+        (cross(i, next) + (x(i) + x(next)) * y(next) + cross(before, i) - (x(before) + x(i)) * y(before)) / 6;
     const double moment_y = ((x(before) + x(i)) * x(before) - (x(i) + x(next)) * x(next)) / 6;
     const double area_x = 0.5 * (y(next) - y(before));
     const double area_y = 0.5 * (x(before) - x(next));
@@ -133,8 +133,7 @@ DpEnergy DpForces::energy(const DropletState& state) const {
   DpEnergy energy;
   energy.area = 0.5 * dp_.area_stiffness * (shape.area - rest_area_) * (shape.area - rest_area_);
   energy.line_tension = dp_.line_tension * shape.perimeter;
-  const double height =
-      dp_.gravity == Gravity::vertex ? state.x().mean() : area_centroid(state.position)[0];
+  const double height = dp_.gravity == Gravity::vertex ? state.x().mean() : area_centroid(state.position)[0];
   energy.gravity = -weight_ * height;
 
   const double reference = dp_.perimeter_spring == PerimeterSpring::rest ? rest_edge_ : shape.perimeter / n;

@@ -59,13 +59,14 @@ void interface_forces(int n, const Interface& interface, EdgeArrays edges, doubl
 }
 
 CLOG_MULTIVERSION
-void add_wall_forces(int n, const double* __restrict x, const double* __restrict y, WallSlot slot, double range,
-                     double stiffness, double* __restrict fx, double* __restrict fy) {
+void add_wall_forces(int n, const double* __restrict x, const double* __restrict y, WallSlot slot,
+                     double range, double stiffness, double* __restrict fx, double* __restrict fy) {
 #pragma omp simd
   for (int i = 0; i < n; ++i) {
     const double dx = x[i] - slot.x[i];
     const double dy = y[i] - slot.y[i];
-    const double r = std::sqrt(dx * dx + dy * dy) + 1e-300;  // a vertex on the very centre gets no direction, but no NaN
+    const double r =
+        std::sqrt(dx * dx + dy * dy) + 1e-300;  // a vertex on the very centre gets no direction, but no NaN
     const double overlap = std::max(0.0, range + slot.radius[i] - r);
     const double push = stiffness * overlap / r;
     fx[i] += push * dx;

@@ -1,12 +1,12 @@
 #pragma once
 
-/// The loops over vertices that a DP step consists of. Plain arrays of length n (one entry per vertex or edge),
-/// no branch, no allocation; each is compiled for several instruction sets and chosen when the program starts.
-/// Edge i joins vertices i and i + 1, the last one closes the contour.
+/// The loops over vertices that a DP step consists of. Plain arrays of length n (one entry per vertex or
+/// edge), no branch, no allocation; each is compiled for several instruction sets and chosen when the program
+/// starts. Edge i joins vertices i and i + 1, the last one closes the contour.
 namespace clog::kernel {
 
 struct EdgeArrays {
-  double* x;       ///< edge vectors [sigma]
+  double* x;  ///< edge vectors [sigma]
   double* y;
   double* length;  ///< [sigma]
 };
@@ -18,14 +18,15 @@ struct Sums {
 Sums measure_edges(int n, const double* x, const double* y, EdgeArrays edges);
 
 struct Interface {
-  double line_tension;    ///< gamma
-  double spring;          ///< k_l N_v
-  double spring_length;   ///< l0 or the mean edge length
-  double pressure;        ///< -k_a (a - a0)
-  double vertex_weight;   ///< M g / N_v along +x
+  double line_tension;   ///< gamma
+  double spring;         ///< k_l N_v
+  double spring_length;  ///< l0 or the mean edge length
+  double pressure;       ///< -k_a (a - a0)
+  double vertex_weight;  ///< M g / N_v along +x
 };
 /// Overwrites fx, fy with tension, spring, pressure and weight. `pull` is scratch of length n.
-void interface_forces(int n, const Interface& interface, EdgeArrays edges, double* pull, double* fx, double* fy);
+void interface_forces(int n, const Interface& interface, EdgeArrays edges, double* pull, double* fx,
+                      double* fy);
 
 struct WallSlot {
   const double* x;
@@ -33,18 +34,19 @@ struct WallSlot {
   const double* radius;
 };
 /// Adds k_c (range - d) away from the wall where d < range, d the distance to the slot's circle.
-void add_wall_forces(int n, const double* x, const double* y, WallSlot slot, double range, double stiffness, double* fx,
-                     double* fy);
+void add_wall_forces(int n, const double* x, const double* y, WallSlot slot, double range, double stiffness,
+                     double* fx, double* fy);
 /// distance[i] = min(distance[i], distance to the slot's circle).
 void shrink_to_wall_distance(int n, const double* x, const double* y, WallSlot slot, double* distance);
 
 /// v (1 - damping) + f half_dt_over_m, then x + dt v, over n numbers; damping = zeta dt/(2m).
-void kick_and_drift(int n, double damping, double half_dt_over_m, double dt, const double* f, double* v, double* x);
+void kick_and_drift(int n, double damping, double half_dt_over_m, double dt, const double* f, double* v,
+                    double* x);
 /// (v + f half_dt_over_m)/(1 + damping).
 void kick(int n, double damping, double half_dt_over_m, const double* f, double* v);
 /// The same two with a damping of its own for every number.
-void kick_and_drift(int n, const double* damping, double half_dt_over_m, double dt, const double* f, double* v,
-                    double* x);
+void kick_and_drift(int n, const double* damping, double half_dt_over_m, double dt, const double* f,
+                    double* v, double* x);
 void kick(int n, const double* damping, double half_dt_over_m, const double* f, double* v);
 
 }  // namespace clog::kernel

@@ -59,7 +59,9 @@ template <class Visit>
 void ObstacleArray::visit_window(const Window& window, Visit visit) const {
   const double reach = window.margin + largest_radius_;
   const double cells_per_length = cells_per_side_ / box_;
-  const auto cell_index = [=](double position) { return static_cast<int>(std::floor(position * cells_per_length)); };
+  const auto cell_index = [=](double position) {
+    return static_cast<int>(std::floor(position * cells_per_length));
+  };
   const int column_first = cell_index(window.origin_x + window.x_min - reach);
   const int column_last = cell_index(window.origin_x + window.x_max + reach);
   const int row_first = cell_index(window.origin_y + window.y_min - reach);
@@ -75,7 +77,8 @@ void ObstacleArray::visit_window(const Window& window, Visit visit) const {
       const std::size_t cell = static_cast<std::size_t>(row - image_y * cells_per_side_) * cells_per_side_ +
                                (column - image_x * cells_per_side_);
       for (std::uint32_t k = cell_start_[cell]; k < cell_start_[cell + 1]; ++k) {
-        // Subtract the origin first: within the box this is exact, so forces do not depend on where the droplet is.
+        // Subtract the origin first: within the box this is exact, so forces do not depend on where the
+        // droplet is.
         const double x = (obstacles_[k].x - window.origin_x) + image_x * box_;
         const double y = (obstacles_[k].y - window.origin_y) + image_y * box_;
         const double margin = window.margin + obstacles_[k].radius;
@@ -88,7 +91,9 @@ void ObstacleArray::visit_window(const Window& window, Visit visit) const {
 }
 
 void ObstacleArray::gather(const Window& window, std::vector<Obstacle>& out) const {
-  visit_window(window, [&](std::uint32_t k, double x, double y) { out.push_back({x, y, obstacles_[k].radius}); });
+  visit_window(window, [&](std::uint32_t k, double x, double y) {
+    out.push_back({x, y, obstacles_[k].radius});
+  });
 }
 
 double ObstacleArray::smallest_gap() const {

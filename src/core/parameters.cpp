@@ -46,8 +46,9 @@ void validate_obstacles(const ObstacleParameters& obstacles, int vertices, Model
   if (obstacles.density) require_positive("obstacle-density", *obstacles.density);
   if (model == Model::dp) {
     const double vertex_diameter = units::regular_edge_length(vertices);
-    require(obstacles.gap > vertex_diameter, "obstacle-gap", obstacles.gap,
-            "not wider than one vertex, " + text(vertex_diameter) + " sigma) widen the gap or use more vertices");
+    require(
+        obstacles.gap > vertex_diameter, "obstacle-gap", obstacles.gap,
+        "not wider than one vertex, " + text(vertex_diameter) + " sigma) widen the gap or use more vertices");
   }
 }
 
@@ -78,20 +79,22 @@ void resolve_dp(RunParameters& run) {
   // A contact too soft to carry the droplet lets obstacles sink into it: demand that a weight of M g on
   // the vertices of an eighth of the circumference leaves less than half the contact range.
   const double softest = units::droplet_mass / (dp.vertices / 8.0) / (vertex_diameter / 4);
-  require(contact_stiffness(*run.wall_stiffness, vertex_diameter) >= softest, "wall-stiffness", *run.wall_stiffness,
+  require(contact_stiffness(*run.wall_stiffness, vertex_diameter) >= softest, "wall-stiffness",
+          *run.wall_stiffness,
           "too soft to hold the droplet's weight off an obstacle) use at least " +
               text(wall_stiffness(softest, vertex_diameter)) + " or a smaller time-step");
 }
 
 void resolve_sp(RunParameters& run) {
   if (!run.wall_stiffness)
-    throw Error("missing wall-stiffness (E_w is the parameter of model=sp, there is no automatic value) "
-                "give for example wall-stiffness=1");
+    throw Error(
+        "missing wall-stiffness (E_w is the parameter of model=sp, there is no automatic value) "
+        "give for example wall-stiffness=1");
   require_positive("wall-stiffness", *run.wall_stiffness);
   require(run.drag.near_wall == 0, "near-wall-drag", run.drag.near_wall,
           "the soft disk has no near-wall drag) use 0 with model=sp");
-  const double omega = std::sqrt(contact_stiffness(*run.wall_stiffness, units::droplet_diameter) /
-                                 units::droplet_mass);
+  const double omega =
+      std::sqrt(contact_stiffness(*run.wall_stiffness, units::droplet_diameter) / units::droplet_mass);
   // Up to a dozen obstacles of a saturated array overlap a soft disk at once.
   const double largest = std::sqrt(max_total_omega_dt2 / 12) / omega;
   require(run.time_step <= largest, "time-step", run.time_step,

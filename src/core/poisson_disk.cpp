@@ -50,18 +50,20 @@ class SequentialAddition {
     circles.reserve(num_points_);
     for (std::size_t cell = 0; cell < point_in_cell_.size(); ++cell) {
       const Point& point = point_in_cell_[cell];
-      if (point.taken())
-        circles.push_back({static_cast<double>(cell % cells_per_side_) * cell_size_ + point.x,
-                           static_cast<double>(cell / cells_per_side_) * cell_size_ + point.y, radius});
+      const auto row = static_cast<double>(cell / cells_per_side_);
+      const auto column = static_cast<double>(cell % cells_per_side_);
+      if (point.taken()) circles.push_back({column * cell_size_ + point.x, row * cell_size_ + point.y, radius});
     }
     return circles;
   }
 
  private:
   static constexpr std::int32_t none = -1;
-  /// Places are kept in single precision, relative to a cell; this much more distance makes up for the rounding.
+  /// Places are kept in single precision, relative to a cell; this much more distance makes up for the
+  /// rounding.
   static constexpr double rounding = 1e-5;
-  /// The one point that a cell can hold (its diagonal is not longer than the distance), from the cell's corner.
+  /// The one point that a cell can hold (its diagonal is not longer than the distance), from the cell's
+  /// corner.
   struct Point {
     float x = -1;
     float y = -1;
@@ -94,7 +96,8 @@ class SequentialAddition {
   boost::random::uniform_01<float> uniform_;
 
   static std::mt19937_64 make_engine(std::uint32_t seed) {
-    std::seed_seq sequence{seed, std::uint32_t{0x0b57ac1e}};  // the constant keeps this stream apart from others
+    std::seed_seq sequence{seed,
+                           std::uint32_t{0x0b57ac1e}};  // the constant keeps this stream apart from others
     return std::mt19937_64(sequence);
   }
 
@@ -167,7 +170,8 @@ class SequentialAddition {
         const float y = square.y + size * uniform_(engine_);
         const auto time = static_cast<std::uint32_t>(engine_());
         if (near_a_point(x, y)) continue;
-        if (first_dart_in_cell_[cell] == none) first_dart_in_cell_[cell] = static_cast<std::int32_t>(darts_.size());
+        if (first_dart_in_cell_[cell] == none)
+          first_dart_in_cell_[cell] = static_cast<std::int32_t>(darts_.size());
         darts_.push_back({x, y, cell, time, Verdict::open});
       }
     }
@@ -178,7 +182,8 @@ class SequentialAddition {
       std::sort(accepted.begin(), accepted.end(), [this](auto a, auto b) { return precedes(a, b); });
       accepted.resize(most);
     }
-    for (const std::int32_t dart : accepted) point_in_cell_[darts_[dart].cell] = {darts_[dart].x, darts_[dart].y};
+    for (const std::int32_t dart : accepted)
+      point_in_cell_[darts_[dart].cell] = {darts_[dart].x, darts_[dart].y};
     num_points_ += accepted.size();
     for (const Dart& dart : darts_) first_dart_in_cell_[dart.cell] = none;
   }
@@ -191,9 +196,11 @@ class SequentialAddition {
   bool is_accepted(std::int32_t index) {
     Dart& dart = darts_[index];
     if (dart.verdict == Verdict::open) {
-      const bool rejected = any_neighbour(dart.cell, [&](std::int32_t near, double corner_x, double corner_y) {
+      const bool rejected = any_neighbour(dart.cell, [&](std::int32_t near, double corner_x,
+                                                         double corner_y) {
         for (std::int32_t other = first_dart_in_cell_[near];
-             other != none && other < static_cast<std::int32_t>(darts_.size()) && darts_[other].cell == near; ++other) {
+             other != none && other < static_cast<std::int32_t>(darts_.size()) && darts_[other].cell == near;
+             ++other) {
           const float dx = static_cast<float>(corner_x) + darts_[other].x - dart.x;
           const float dy = static_cast<float>(corner_y) + darts_[other].y - dart.y;
           if (dx * dx + dy * dy < distance2_ && darts_[other].verdict != Verdict::rejected &&
@@ -237,9 +244,9 @@ ObstacleArray sample_obstacles(const ObstacleParameters& parameters, std::uint32
   if (parameters.density && obstacles.size() < target) {
     std::ostringstream message;
     message << "invalid obstacle-density=" << *parameters.density << " (no more than "
-            << static_cast<double>(obstacles.size()) / (parameters.box * parameters.box) << " obstacles per sigma^2 of diameter "
-            << parameters.diameter << " fit with gap " << parameters.gap
-            << ") use a lower density, a smaller gap, or obstacle-density=saturated";
+            << static_cast<double>(obstacles.size()) / (parameters.box * parameters.box)
+            << " obstacles per sigma^2 of diameter " << parameters.diameter << " fit with gap "
+            << parameters.gap << ") use a lower density, a smaller gap, or obstacle-density=saturated";
     throw Error(message.str());
   }
   return ObstacleArray(parameters.box, std::move(obstacles));

@@ -38,7 +38,8 @@ bool encloses(const Eigen::ArrayXd& position, double x, double y) {
   const auto py = position.tail(n);
   bool inside = false;
   for (Eigen::Index i = 0, j = n - 1; i < n; j = i++) {
-    if ((py[i] > y) != (py[j] > y) && x < (px[j] - px[i]) * (y - py[i]) / (py[j] - py[i]) + px[i]) inside = !inside;
+    if ((py[i] > y) != (py[j] > y) && x < (px[j] - px[i]) * (y - py[i]) / (py[j] - py[i]) + px[i])
+      inside = !inside;
   }
   return inside;
 }

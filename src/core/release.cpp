@@ -50,7 +50,8 @@ LocalFrame frame_around(const Eigen::Array2d& place, double box) {
 
 [[noreturn]] void refuse_release(const char* reason) {
   std::ostringstream message;
-  message << "cannot release the droplet (" << reason << ") use a wider obstacle-gap, fewer obstacles or another seed";
+  message << "cannot release the droplet (" << reason
+          << ") use a wider obstacle-gap, fewer obstacles or another seed";
   throw Error(message.str());
 }
 
@@ -86,15 +87,17 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
   while (area < units::rest_area) {
     area = std::min(units::rest_area, area * growth);
     forces.set_rest_area(area);
-    minimize_fire(forces, state, options_at(forces.shape().perimeter > 0 ? forces.shape().perimeter
-                                                                         : polygon_shape(state.position).perimeter));
+    minimize_fire(forces, state,
+                  options_at(forces.shape().perimeter > 0 ? forces.shape().perimeter
+                                                          : polygon_shape(state.position).perimeter));
     if (state.recentre().any()) forces.forget_contacts();
   }
   forces.set_rest_area(units::rest_area);
   FireOptions last = options_at(polygon_shape(state.position).perimeter);
   last.force_tolerance = release_force_tolerance * vertex_weight;
   last.max_iterations = 200000;
-  if (!minimize_fire(forces, state, last).converged) refuse_release("the grown droplet does not come to rest");
+  if (!minimize_fire(forces, state, last).converged)
+    refuse_release("the grown droplet does not come to rest");
   if (num_enclosed(state, obstacles) > 0) refuse_release("the grown droplet encloses an obstacle");
   return state;
 }

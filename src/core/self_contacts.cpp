@@ -12,7 +12,8 @@ constexpr double contour_exclusion = 3;
 
 }  // namespace
 
-StrandContact nearest_point(const SelfContacts::Strand& strand, const double* x, const double* y, int num_vertices) {
+StrandContact nearest_point(const SelfContacts::Strand& strand, const double* x, const double* y,
+                            int num_vertices) {
   StrandContact nearest{std::numeric_limits<double>::infinity(), 0, 0, 0, 0};
   double nearest2 = std::numeric_limits<double>::infinity();
   for (int k = 0; k < strand.num_edges; ++k) {
@@ -43,8 +44,9 @@ void SelfContacts::update(const DropletState& state, double horizon, double mean
     const double farthest2 = ((state.x() - centre[0] - reference_.head(n)).square() +
                               (state.y() - centre[1] - reference_.tail(n)).square())
                                  .maxCoeff();
-    const double fastest2 = ((state.velocity.head(n) - drift[0]).square() + (state.velocity.tail(n) - drift[1]).square())
-                                .maxCoeff();
+    const double fastest2 =
+        ((state.velocity.head(n) - drift[0]).square() + (state.velocity.tail(n) - drift[1]).square())
+            .maxCoeff();
     if (std::sqrt(farthest2) + 2 * horizon * std::sqrt(fastest2) < skin()) return;
   }
   rebuild(state, mean_edge);

@@ -28,8 +28,8 @@ void SpForces::update_contacts(const DropletState& state, double horizon) {
     if (moved + 2 * horizon * state.mean_velocity().matrix().norm() < skin) return;
   }
   near_.clear();
-  obstacles_->gather({state.frame.origin[0], state.frame.origin[1], centre[0], centre[0], centre[1], centre[1],
-                      contact_range + skin},
+  obstacles_->gather({state.frame.origin[0], state.frame.origin[1], centre[0], centre[0], centre[1],
+                      centre[1], contact_range + skin},
                      near_);
   reference_ = centre;
   listed_ = true;
@@ -91,7 +91,9 @@ void SpDroplet::advance(int num_steps) {
   }
 }
 
-double SpDroplet::kinetic_energy() const { return 0.5 * units::droplet_mass * state_.velocity.square().sum(); }
+double SpDroplet::kinetic_energy() const {
+  return 0.5 * units::droplet_mass * state_.velocity.square().sum();
+}
 
 PolygonShape SpDroplet::shape() const {
   return {.area = units::rest_area, .perimeter = std::numbers::pi * units::droplet_diameter};

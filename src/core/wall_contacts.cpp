@@ -15,7 +15,10 @@ constexpr double nearest_skin = 0.02;
 }  // namespace
 
 WallContacts::WallContacts(const ObstacleArray& array, double range, Keep keep)
-    : array_(&array), range_(range), keep_(keep), skin_(keep == Keep::touching ? touching_skin : nearest_skin) {}
+    : array_(&array),
+      range_(range),
+      keep_(keep),
+      skin_(keep == Keep::touching ? touching_skin : nearest_skin) {}
 
 void WallContacts::update(const DropletState& state, double horizon) {
   if (reference_.size() == state.position.size()) {
@@ -32,7 +35,7 @@ void WallContacts::update(const DropletState& state, double horizon) {
 void WallContacts::gather_nearby(const DropletState& state) {
   const auto x = state.x();
   const auto y = state.y();
-  ObstacleArray::Window window{state.frame.origin[0], state.frame.origin[1], x.minCoeff(), x.maxCoeff(),
+  ObstacleArray::Window window{state.frame.origin[0], state.frame.origin[1], x.minCoeff(),  x.maxCoeff(),
                                y.minCoeff(),          y.maxCoeff(),          range_ + skin_};
   nearby_.clear();
   array_->gather(window, nearby_);
@@ -73,7 +76,8 @@ void WallContacts::rebuild(const DropletState& state) {
     }
     // An obstacle is in contact later only if it is within range + skin now; it is the nearest later only if
     // it is within 2 skins of the nearest now.
-    const double reach = keep_ == Keep::touching ? range_ + skin_ : std::max(range_ + skin_, nearest + 2 * skin_);
+    const double reach =
+        keep_ == Keep::touching ? range_ + skin_ : std::max(range_ + skin_, nearest + 2 * skin_);
     candidates_[i].clear();
     for (std::size_t k = 0; k < nearby_.size(); ++k)
       if (distance[k] <= reach) candidates_[i].push_back(static_cast<int>(k));

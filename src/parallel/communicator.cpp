@@ -57,7 +57,8 @@ void Communicator::send(int destination, int tag, std::span<const std::byte> byt
 std::optional<Communicator::Envelope> Communicator::probe(int source, int tag) const {
   int waiting = 0;
   MPI_Status status;
-  MPI_Iprobe(source == any ? MPI_ANY_SOURCE : source, tag == any ? MPI_ANY_TAG : tag, MPI_COMM_WORLD, &waiting, &status);
+  MPI_Iprobe(source == any ? MPI_ANY_SOURCE : source, tag == any ? MPI_ANY_TAG : tag, MPI_COMM_WORLD,
+             &waiting, &status);
   if (!waiting) return std::nullopt;
   int num_bytes = 0;
   MPI_Get_count(&status, MPI_BYTE, &num_bytes);
@@ -66,8 +67,8 @@ std::optional<Communicator::Envelope> Communicator::probe(int source, int tag) c
 
 std::vector<std::byte> Communicator::receive(const Envelope& envelope) const {
   std::vector<std::byte> bytes(envelope.num_bytes);
-  MPI_Recv(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, envelope.source, envelope.tag, MPI_COMM_WORLD,
-           MPI_STATUS_IGNORE);
+  MPI_Recv(bytes.data(), static_cast<int>(bytes.size()), MPI_BYTE, envelope.source, envelope.tag,
+           MPI_COMM_WORLD, MPI_STATUS_IGNORE);
   return bytes;
 }
 

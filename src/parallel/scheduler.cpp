@@ -61,9 +61,13 @@ RunRow signed_row(const Job& job, int rank) {
 
 class Master {
  public:
-  Master(const Communicator& ranks, std::int64_t num_tasks, const JobFactory& make_job, const SweepEvents& events,
-         bool computes)
-      : ranks_(ranks), num_tasks_(num_tasks), make_job_(make_job), events_(events), computes_(computes),
+  Master(const Communicator& ranks, std::int64_t num_tasks, const JobFactory& make_job,
+         const SweepEvents& events, bool computes)
+      : ranks_(ranks),
+        num_tasks_(num_tasks),
+        make_job_(make_job),
+        events_(events),
+        computes_(computes),
         busy_(ranks.size(), false) {}
 
   bool run() {
@@ -114,7 +118,8 @@ class Master {
       const int worker = envelope->source;
       busy_[worker] = has_task();
       const std::int64_t next = busy_[worker] ? take_task(worker) : no_more_tasks;
-      ranks_.send(worker, task, bytes_of(next));  // first the task, then the file: workers do not wait for the disk
+      ranks_.send(worker, task,
+                  bytes_of(next));  // first the task, then the file: workers do not wait for the disk
       if (next == no_more_tasks) ++num_dismissed_;
       if (envelope->tag == row) events_.ended(from_bytes<RunRow>(bytes));
     }
@@ -167,7 +172,8 @@ class Worker {
   std::int64_t wait_for_task() const {
     Backoff backoff;
     while (true) {
-      if (const auto envelope = ranks_.probe(master, task)) return from_bytes<std::int64_t>(ranks_.receive(*envelope));
+      if (const auto envelope = ranks_.probe(master, task))
+        return from_bytes<std::int64_t>(ranks_.receive(*envelope));
       backoff.sleep();
     }
   }
@@ -183,11 +189,12 @@ class Worker {
 
 bool computes(int num_ranks, MasterComputes choice) {
   constexpr int most_ranks = 16;
-  return num_ranks == 1 || choice == MasterComputes::yes || (choice == MasterComputes::automatic && num_ranks <= most_ranks);
+  return num_ranks == 1 || choice == MasterComputes::yes ||
+         (choice == MasterComputes::automatic && num_ranks <= most_ranks);
 }
 
-bool run_tasks(const Communicator& ranks, std::int64_t num_tasks, const JobFactory& make_job, const SweepEvents& events,
-               bool master_computes) {
+bool run_tasks(const Communicator& ranks, std::int64_t num_tasks, const JobFactory& make_job,
+               const SweepEvents& events, bool master_computes) {
   bool all_handed_out = true;
   if (ranks.rank() == 0)
     all_handed_out = Master(ranks, num_tasks, make_job, events, master_computes).run();

@@ -14,7 +14,8 @@ namespace {
 using namespace clog;
 
 constexpr const char* program = "clogfit";
-constexpr const char* usage = R"(clogfit prints, for every parameter set of a sweep, the clogging length with its
+constexpr const char* usage =
+    R"(clogfit prints, for every parameter set of a sweep, the clogging length with its
 confidence interval and the mean speed with its standard error.
 
   clogfit sweep.h5
@@ -32,20 +33,14 @@ int body(int argc, char** argv) {
       "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals");
   line.add_positional("file", 1);
   line.parse(argc, argv);
-  if (line.has("help")) {
-    std::cout << line.help();
-    return cli::exit_success;
-  }
-  if (line.has("version")) {
-    std::cout << cli::version_text(program, {{"HDF5", store::library_version()}});
-    return cli::exit_success;
-  }
+  if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return cli::exit_success;
   if (!line.has("file")) throw Error("missing sweep file; try clogfit sweep.h5");
   const std::string format = line.get("format");
   if (format != "text" && format != "csv" && format != "json")
     throw Error("invalid --format=" + format + " (is not one of text, csv, json)");
   const double confidence = line.get_positive("confidence");
-  if (confidence >= 1) throw Error("invalid --confidence=" + line.get("confidence") + " (must lie between 0 and 1)");
+  if (confidence >= 1)
+    throw Error("invalid --confidence=" + line.get("confidence") + " (must lie between 0 and 1)");
 
   const store::SweepFile sweep = store::read_sweep(line.get("file"));
   if (sweep.rows.empty()) throw Error(line.get("file") + " has no runs yet; let the sweep finish some first");

@@ -4,16 +4,17 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "clog/cli/build_info.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/obstacle_file.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/core/array_run.hpp"
 #include "clog/core/error.hpp"
+#include "clog/core/units.hpp"
 #include "clog/store/trajectory_file.hpp"
 #include "clog/sweep/plan.hpp"
 
@@ -34,10 +35,12 @@ cli::CommandLine parse(int argc, char** argv) {
   namespace po = boost::program_options;
   cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::accepted);
   const auto text = [] { return po::value<std::string>(); };
-  line.add_options()("system", text(), "array: a periodic obstacle array")("output", text(), "HDF5 file to make")(
-      "seed", text(), "short for seeds=N")("sample-interval", text()->default_value("1"), "time between samples [t0]")(
+  line.add_options()("system", text(), "array: a periodic obstacle array")(
+      "output", text(), "HDF5 file to make")("seed", text(), "short for seeds=N")(
+      "sample-interval", text()->default_value("1"), "time between samples [t0]")(
       "polygon-interval", text(), "also write the polygon this often [t0]")(
-      "obstacles", text(), "CSV file x,y[,diameter] to use as the array; the droplet starts near (box/2, box/2)")(
+      "obstacles", text(),
+      "CSV file x,y[,diameter] to use as the array; the droplet starts near (box/2, box/2)")(
       "write-obstacles", text(), "write the array as a CSV file");
   line.add_positional("system", 1);
   line.settings().set("seeds", "1");
@@ -55,16 +58,19 @@ Setup read_setup(cli::CommandLine& line) {
   if (!line.has("obstacles")) {
     const sweep::Plan plan(line.settings());
     if (plan.size() != 1)
-      throw Error("these settings mean " + std::to_string(plan.size()) + " runs, clogrun does one; give single values, or "
+      throw Error("these settings mean " + std::to_string(plan.size()) +
+                  " runs, clogrun does one; give single values, or "
                   "use clogsweep");
     return {plan.task(0), nullptr};
   }
   for (const char* key : {"obstacle-gap", "obstacle-density"})
-    if (line.has(key)) throw Error("--obstacles and " + std::string(key) + " contradict each other; give one of them");
+    if (line.has(key))
+      throw Error("--obstacles and " + std::string(key) + " contradict each other; give one of them");
   // One parameter set is needed to read the file (box, default diameter); its gap is then the file's own.
   const auto single_plan = [&] {
     const sweep::Plan plan(line.settings());
-    if (plan.size() != 1) throw Error("these settings mean several runs, clogrun does one; give single values");
+    if (plan.size() != 1)
+      throw Error("these settings mean several runs, clogrun does one; give single values");
     return plan.task(0);
   };
   const RunParameters draft = single_plan();
@@ -72,7 +78,8 @@ Setup read_setup(cli::CommandLine& line) {
   auto array = std::make_shared<ObstacleArray>(
       draft.obstacles.box, cli::read_obstacles(path, draft.obstacles.diameter, draft.obstacles.box));
   const double gap = array->smallest_gap();
-  if (gap <= 0) throw Error(path + " has obstacles that touch or overlap, by " + sweep::shortest(-gap) + " sigma");
+  if (gap <= 0)
+    throw Error(path + " has obstacles that touch or overlap, by " + sweep::shortest(-gap) + " sigma");
   line.settings().set("obstacle-gap", sweep::shortest(std::min(gap, draft.obstacles.box)));
   return {single_plan(), array};
 }
@@ -100,8 +107,10 @@ store::PolygonFrame polygon(const ArrayRun& run) {
 }
 
 /// Obstacles, periodic images included, within a diameter of the polygons.
-std::vector<Obstacle> obstacles_along(const std::vector<store::PolygonFrame>& frames, const ObstacleArray& array) {
-  ObstacleArray::Window window{0, 0, INFINITY, -INFINITY, INFINITY, -INFINITY, 1.0};
+std::vector<Obstacle> obstacles_along(const std::vector<store::PolygonFrame>& frames,
+                                      const ObstacleArray& array) {
+  constexpr double inf = std::numeric_limits<double>::infinity();
+  ObstacleArray::Window window{0, 0, inf, -inf, inf, -inf, units::droplet_diameter};
   for (const store::PolygonFrame& frame : frames) {
     const std::size_t n = frame.position.size() / 2;
     for (std::size_t i = 0; i < n; ++i) {
@@ -123,7 +132,8 @@ RunStatus follow(ArrayRun& run, int sample_checks, int polygon_checks, store::Tr
   bool over = false;
   while (true) {
     if (checks % sample_checks == 0 || over) trajectory.samples.push_back(sample(run));
-    if (polygon_checks > 0 && (checks % polygon_checks == 0 || over)) trajectory.polygons.push_back(polygon(run));
+    if (polygon_checks > 0 && (checks % polygon_checks == 0 || over))
+      trajectory.polygons.push_back(polygon(run));
     if (over) return run.result().status;
     if (cli::stop_signalled()) return RunStatus::interrupted;
     over = run.advance(1);
@@ -136,8 +146,10 @@ int run_array(cli::CommandLine& line) {
   const Setup setup = read_setup(line);
   store::refuse_existing(output);
 
-  ArrayRun run = setup.own_obstacles ? ArrayRun(setup.parameters, setup.own_obstacles) : ArrayRun(setup.parameters);
-  if (line.has("write-obstacles")) cli::write_obstacles(line.get("write-obstacles"), run.obstacles().obstacles());
+  ArrayRun run =
+      setup.own_obstacles ? ArrayRun(setup.parameters, setup.own_obstacles) : ArrayRun(setup.parameters);
+  if (line.has("write-obstacles"))
+    cli::write_obstacles(line.get("write-obstacles"), run.obstacles().obstacles());
   const double check_time = run.steps_per_check() * setup.parameters.time_step;
   const auto in_checks = [&](const char* option) {
     return std::max(1, static_cast<int>(std::lround(line.get_positive(option) / check_time)));
@@ -157,21 +169,20 @@ int run_array(cli::CommandLine& line) {
   if (setup.own_obstacles) {
     const double box = setup.parameters.obstacles.box;
     trajectory.row.obstacle_filling = "file";
-    trajectory.row.obstacle_density = static_cast<double>(setup.own_obstacles->obstacles().size()) / (box * box);
+    trajectory.row.obstacle_density =
+        static_cast<double>(setup.own_obstacles->obstacles().size()) / (box * box);
   }
   trajectory.row.task = 0;
   trajectory.row.wall_seconds = seconds;
   sweep::record(result, trajectory.row);
-  if (!trajectory.polygons.empty()) trajectory.obstacles = obstacles_along(trajectory.polygons, run.obstacles());
-  const cli::BuildInfo build = cli::build_info();
-  trajectory.provenance = {{"program", program},           {"version", build.version},
-                           {"git_hash", build.git_hash},   {"compiler", build.compiler},
-                           {"hdf5_version", store::library_version()}, {"config", line.settings().to_config(false)},
-                           {"command_line", line.text()},  {"start_time", cli::utc_now()}};
+  if (!trajectory.polygons.empty())
+    trajectory.obstacles = obstacles_along(trajectory.polygons, run.obstacles());
+  trajectory.provenance = cli::origin(line);
+  trajectory.provenance.emplace_back("hdf5_version", store::library_version());
   store::write_trajectory(output, trajectory);
 
-  std::printf("%s after r = %.4f sigma, t = %.4g t0, E_k/E_t = %.2g, A = %.4f\n", name(status), result.distance, result.time,
-              result.kinetic_energy_ratio, result.shape_parameter);
+  std::printf("%s after r = %.4f sigma, t = %.4g t0, E_k/E_t = %.2g, A = %.4f\n", name(status),
+              result.distance, result.time, result.kinetic_energy_ratio, result.shape_parameter);
   if (!result.message.empty()) std::printf("%s\n", result.message.c_str());
   const auto vertex_steps = static_cast<double>(result.steps) * static_cast<double>(trajectory.row.vertices);
   std::printf("%lld steps, %.3f s, %.2f ns per vertex-step\n", static_cast<long long>(result.steps), seconds,
@@ -183,16 +194,11 @@ int run_array(cli::CommandLine& line) {
 
 int body(int argc, char** argv) {
   cli::CommandLine line = parse(argc, argv);
-  if (line.has("help")) {
-    std::cout << line.help();
-    return cli::exit_success;
-  }
-  if (line.has("version")) {
-    std::cout << cli::version_text(program, {{"HDF5", store::library_version()}});
-    return cli::exit_success;
-  }
+  if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return cli::exit_success;
   const std::string system = line.has("system") ? line.get("system") : "";
-  if (system != "array") throw Error((system.empty() ? "missing system" : "unknown system '" + system + "'") + "; try clogrun array");
+  if (system != "array")
+    throw Error((system.empty() ? "missing system" : "unknown system '" + system + "'") +
+                "; try clogrun array");
   return run_array(line);
 }
 

@@ -8,7 +8,6 @@
 #include <sstream>
 #include <string>
 
-#include "clog/cli/build_info.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/core/error.hpp"
@@ -34,7 +33,8 @@ given values, on all MPI ranks, and gathers the results in one HDF5 table.
 void parse(cli::CommandLine& line, int argc, char** argv) {
   namespace po = boost::program_options;
   line.add_options()("output", po::value<std::string>(), "HDF5 file to make")(
-      "dry-run", "print the tasks and their number, run nothing")("print-config", "print the settings, run nothing")(
+      "dry-run", "print the tasks and their number, run nothing")("print-config",
+                                                                  "print the settings, run nothing")(
       "master-computes", po::value<std::string>()->default_value("auto"),
       "does rank 0 run tasks too: auto (with up to 16 ranks), yes, no");
   line.parse(argc, argv);
@@ -50,50 +50,50 @@ parallel::MasterComputes master_computes(const std::string& word) {
 std::string number(double value) { return sweep::shortest(value); }
 
 void print_tasks(const sweep::Plan& plan) {
-  std::cout << "# task model line_tension wall_stiffness obstacle_gap obstacle_diameter obstacle_density near_wall_drag "
+  std::cout << "# task model line_tension wall_stiffness obstacle_gap obstacle_diameter obstacle_density "
+               "near_wall_drag "
                "terminal_speed vertices time_step max_time seed\n";
   for (std::int64_t i = 0; i < plan.size(); ++i) {
     const sweep::RunRow row = sweep::describe(plan.task(i));
-    std::cout << i << ' ' << row.model.view() << ' ' << number(row.line_tension) << ' ' << number(row.wall_stiffness) << ' '
-              << number(row.obstacle_gap) << ' ' << number(row.obstacle_diameter) << ' '
-              << (row.obstacle_filling.view() == "saturated" ? "saturated" : number(row.obstacle_density)) << ' '
-              << number(row.near_wall_drag) << ' ' << number(row.terminal_speed) << ' ' << row.vertices << ' '
-              << number(row.time_step) << ' ' << number(row.max_time) << ' ' << row.seed << '\n';
+    std::cout << i << ' ' << row.model.view() << ' ' << number(row.line_tension) << ' '
+              << number(row.wall_stiffness) << ' ' << number(row.obstacle_gap) << ' '
+              << number(row.obstacle_diameter) << ' '
+              << (row.obstacle_filling.view() == "saturated" ? "saturated" : number(row.obstacle_density))
+              << ' ' << number(row.near_wall_drag) << ' ' << number(row.terminal_speed) << ' ' << row.vertices
+              << ' ' << number(row.time_step) << ' ' << number(row.max_time) << ' ' << row.seed << '\n';
   }
   const std::int64_t seeds = plan.size() / plan.num_groups();
-  std::cout << "# " << plan.size() << " tasks: " << plan.num_groups() << (plan.num_groups() == 1 ? " parameter set" : " parameter sets")
-            << ", " << seeds << (seeds == 1 ? " seed" : " seeds") << " each\n";
+  std::cout << "# " << plan.size() << " tasks: " << plan.num_groups()
+            << (plan.num_groups() == 1 ? " parameter set" : " parameter sets") << ", " << seeds
+            << (seeds == 1 ? " seed" : " seeds") << " each\n";
 }
 
 store::Provenance provenance(const cli::CommandLine& line, int num_ranks) {
-  const cli::BuildInfo build = cli::build_info();
-  return {{"program", program},
-          {"version", build.version},
-          {"git_hash", build.git_hash},
-          {"compiler", build.compiler},
-          {"mpi_version", parallel::Communicator::library_version()},
-          {"hdf5_version", store::library_version()},
-          {"config", line.settings().to_config(false)},
-          {"command_line", line.text()},
-          {"start_time", cli::utc_now()},
-          {"num_ranks", std::to_string(num_ranks)}};
+  store::Provenance all = cli::origin(line);
+  all.emplace_back("mpi_version", parallel::Communicator::library_version());
+  all.emplace_back("hdf5_version", store::library_version());
+  all.emplace_back("num_ranks", std::to_string(num_ranks));
+  return all;
 }
 
-/// What rank 0 does before the sweep: everything a user can get wrong is found here, before any rank computes.
-/// Returns the exit code if there is nothing to run.
+void print_config(const sweep::Settings& settings, const sweep::Plan& plan) {
+  const sweep::RunRow first = sweep::describe(plan.task(0));
+  std::cout << settings.to_config(true);
+  std::cout << "\n# Values behind `auto` in the first task:\n# wall-stiffness = "
+            << number(first.wall_stiffness) << '\n';
+  if (first.model.view() == "dp")
+    std::cout << "# perimeter-stiffness = " << number(first.perimeter_stiffness) << '\n';
+}
+
+/// What rank 0 does before the sweep: everything a user can get wrong is found here, before any rank
+/// computes. Returns the exit code if there is nothing to run.
 std::optional<int> prepare(const cli::CommandLine& line) {
-  if (line.has("help")) {
-    std::cout << line.help();
+  if (cli::answer_help_or_version(
+          line, {{"MPI", parallel::Communicator::library_version()}, {"HDF5", store::library_version()}}))
     return cli::exit_success;
-  }
-  if (line.has("version")) {
-    std::cout << cli::version_text(program, {{"MPI", parallel::Communicator::library_version()},
-                                             {"HDF5", store::library_version()}});
-    return cli::exit_success;
-  }
   master_computes(line.get("master-computes"));
   const sweep::Plan plan(line.settings());
-  if (line.has("print-config")) std::cout << line.settings().to_config(true);
+  if (line.has("print-config")) print_config(line.settings(), plan);
   if (line.has("dry-run")) print_tasks(plan);
   if (line.has("print-config") || line.has("dry-run")) return cli::exit_success;
   line.require("output");
@@ -101,13 +101,16 @@ std::optional<int> prepare(const cli::CommandLine& line) {
 }
 
 /// Rank 0's part of the sweep.
-int lead(const parallel::Communicator& ranks, const cli::CommandLine& line, const sweep::Plan& plan, store::RunTable& table) {
+int lead(const parallel::Communicator& ranks, const cli::CommandLine& line, const sweep::Plan& plan,
+         store::RunTable& table) {
   const bool computes = parallel::computes(ranks.size(), master_computes(line.get("master-computes")));
   const int computing_ranks = ranks.size() - (computes ? 0 : 1);
-  std::cerr << plan.size() << " runs on " << computing_ranks << (computing_ranks == 1 ? " computing rank" : " computing ranks")
-            << ", results go to " << line.get("output") << std::endl;
-  SweepProgress progress(std::cerr, isatty(STDERR_FILENO) ? SweepProgress::Screen::terminal : SweepProgress::Screen::plain,
-                         plan.size(), computing_ranks);
+  std::cerr << plan.size() << " runs on " << computing_ranks
+            << (computing_ranks == 1 ? " computing rank" : " computing ranks") << ", results go to "
+            << line.get("output") << std::endl;
+  SweepProgress progress(
+      std::cerr, isatty(STDERR_FILENO) ? SweepProgress::Screen::terminal : SweepProgress::Screen::plain,
+      plan.size(), computing_ranks);
   bool interrupted = false;
   parallel::SweepEvents events;
   events.started = [&](std::int64_t task, int) { progress.started(task); };
@@ -121,7 +124,8 @@ int lead(const parallel::Communicator& ranks, const cli::CommandLine& line, cons
   const bool all_started = parallel::run_tasks(ranks, plan.size(), sweep::run_jobs(plan), events, computes);
   progress.finish();
   if (all_started && !interrupted) return cli::exit_success;
-  std::cerr << program << ": stopped by a signal; finished rows and the distances so far are in " << line.get("output") << std::endl;
+  std::cerr << program << ": stopped by a signal; finished rows and the distances so far are in "
+            << line.get("output") << std::endl;
   return cli::exit_incomplete;
 }
 
@@ -160,9 +164,10 @@ int main(int argc, char** argv) {
     return sweep_on_all_ranks(ranks, argc, argv);
   } catch (const std::exception& error) {
     // Once the sweep runs, ranks wait for each other: a fault of one must end all.
-    std::cerr << program << ": rank " << ranks.rank() << " on " << parallel::Communicator::host_name() << ": " << error.what()
-              << std::endl;
-    if (ranks.size() > 1) ranks.abort(dynamic_cast<const Error*>(&error) ? cli::exit_user_fault : cli::exit_internal_fault);
+    std::cerr << program << ": rank " << ranks.rank() << " on " << parallel::Communicator::host_name() << ": "
+              << error.what() << std::endl;
+    if (ranks.size() > 1)
+      ranks.abort(dynamic_cast<const Error*>(&error) ? cli::exit_user_fault : cli::exit_internal_fault);
     return dynamic_cast<const Error*>(&error) ? cli::exit_user_fault : cli::exit_internal_fault;
   }
 }

@@ -22,7 +22,9 @@ Value value_of(double number) { return std::isnan(number) ? Value(std::string())
 Value value_of(std::int64_t count) { return count; }
 Value value_of(int count) { return std::int64_t{count}; }
 template <std::size_t N>
-Value value_of(const sweep::FixedText<N>& text) { return std::string(text.view()); }
+Value value_of(const sweep::FixedText<N>& text) {
+  return std::string(text.view());
+}
 
 /// What makes a group, most telling first.
 std::vector<Field> parameter_fields(const RunRow& row) {
@@ -149,7 +151,7 @@ std::string to_text(const std::vector<Group>& groups, double confidence) {
   for (std::size_t i = 0; i < first.size(); ++i) {
     if (is_shown(i))
       lines[0].push_back(first[i].first);
-    else if (exact(first[i].second) != "" && exact(first[i].second) != "none")
+    else if (!exact(first[i].second).empty() && exact(first[i].second) != "none")
       text += std::string(" ") + first[i].first + "=" + rounded(first[i].second);
   }
   char interval[16];
@@ -172,7 +174,8 @@ std::string to_text(const std::vector<Group>& groups, double confidence) {
   if (num_interrupted > 0)
     text += "\nnote: " + std::to_string(num_interrupted) + " interrupted runs count as not clogged so far\n";
   if (num_failed > 0)
-    text += "\nnote: " + std::to_string(num_failed) + " failed runs are left out; their column `message` says why\n";
+    text += "\nnote: " + std::to_string(num_failed) +
+            " failed runs are left out; their column `message` says why\n";
   return text;
 }
 
@@ -200,10 +203,12 @@ std::string to_json(const std::vector<Group>& groups, double confidence) {
       if (const auto* count = std::get_if<std::int64_t>(&value))
         entry[name] = *count;
       else if (const auto* number = std::get_if<double>(&value))
-        entry[name] = std::isfinite(*number) ? nlohmann::ordered_json(*number) : nlohmann::ordered_json(nullptr);
+        entry[name] =
+            std::isfinite(*number) ? nlohmann::ordered_json(*number) : nlohmann::ordered_json(nullptr);
       else
-        entry[name] = std::get<std::string>(value).empty() ? nlohmann::ordered_json(nullptr)
-                                                           : nlohmann::ordered_json(std::get<std::string>(value));
+        entry[name] = std::get<std::string>(value).empty()
+                          ? nlohmann::ordered_json(nullptr)
+                          : nlohmann::ordered_json(std::get<std::string>(value));
     }
     list.push_back(entry);
   }

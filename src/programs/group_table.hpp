@@ -14,10 +14,10 @@ namespace clog {
 struct Group {
   sweep::RunRow parameters;  ///< of its first run
   fit::CloggingLength clogging;
-  fit::MeanSpeed speed;      ///< in units of the terminal speed
+  fit::MeanSpeed speed;  ///< in units of the terminal speed
   int num_flowing = 0;
   int num_interrupted = 0;
-  int num_failed = 0;        ///< left out of both fits
+  int num_failed = 0;  ///< left out of both fits
 };
 
 /// Groups rows by everything but the seed, in the order of their parameters.

@@ -30,7 +30,8 @@ std::string readable(double seconds) {
 
 }  // namespace
 
-SweepProgress::SweepProgress(std::ostream& out, Screen screen, std::int64_t num_tasks, int num_computing_ranks)
+SweepProgress::SweepProgress(std::ostream& out, Screen screen, std::int64_t num_tasks,
+                             int num_computing_ranks)
     : out_(out), screen_(screen), num_tasks_(num_tasks), num_ranks_(num_computing_ranks) {}
 
 void SweepProgress::started(std::int64_t task) { running_[task] = Clock::now(); }
@@ -66,8 +67,8 @@ std::string SweepProgress::line() const {
     return std::to_string(found == ended_by_status_.end() ? 0 : found->second);
   };
   std::string text = std::to_string(num_ended_) + "/" + std::to_string(num_tasks_) + " done, " +
-                     std::to_string(running_.size()) + " running, " + count("clogged") + " clogged, " + count("flowing") +
-                     " flowing";
+                     std::to_string(running_.size()) + " running, " + count("clogged") + " clogged, " +
+                     count("flowing") + " flowing";
   if (count("failed") != "0") text += ", " + count("failed") + " failed";
   if (count("interrupted") != "0") text += ", " + count("interrupted") + " interrupted";
   const double elapsed = seconds_since(begin_);
@@ -79,16 +80,18 @@ std::string SweepProgress::line() const {
   return text + ", " + readable(elapsed) + " so far" + time_left();
 }
 
-/// Short runs end first, so the mean over finished runs alone is too small: running ones count as censored, as
-/// for the clogging length. What remains is then a share of the waiting runs for every rank, and a tail in which
-/// the ranks run dry one by one (the largest of W exponential times is 1 + 1/2 + ... + 1/W means).
+/// Short runs end first, so the mean over finished runs alone is too small: running ones count as censored,
+/// as for the clogging length. What remains is then a share of the waiting runs for every rank, and a tail in
+/// which the ranks run dry one by one (the largest of W exponential times is 1 + 1/2 + ... + 1/W means).
 std::string SweepProgress::time_left() const {
   if (num_ended_ == num_tasks_) return "";
   if (num_ended_ == 0) return ", time left not known yet";
-  std::vector<fit::Observation> durations(num_ended_, {finished_seconds_ / static_cast<double>(num_ended_), true});
+  std::vector<fit::Observation> durations(num_ended_,
+                                          {finished_seconds_ / static_cast<double>(num_ended_), true});
   for (const auto& [task, begin] : running_) durations.push_back({seconds_since(begin), false});
   const fit::CloggingLength mean = fit::fit_clogging_length(durations, 0.8);
-  const auto waiting = static_cast<double>(num_tasks_ - num_ended_ - static_cast<std::int64_t>(running_.size()));
+  const auto waiting =
+      static_cast<double>(num_tasks_ - num_ended_ - static_cast<std::int64_t>(running_.size()));
   double tail = 0;
   for (std::size_t i = 1; i <= running_.size(); ++i) tail += 1.0 / static_cast<double>(i);
   const double means_left = waiting / num_ranks_ + tail;

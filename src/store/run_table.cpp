@@ -52,7 +52,8 @@ std::vector<Column> columns() {
   CLOG_COLUMN(wall_stiffness, "E_w [g rho sigma^3]");
   CLOG_COLUMN(obstacle_gap, "w_ob, smallest distance between obstacle surfaces [sigma]");
   CLOG_COLUMN(obstacle_diameter, "sigma_ob [sigma]");
-  CLOG_COLUMN(obstacle_density, "obstacles per sigma^2; for a saturated array the jamming limit 0.6966/(w_ob+sigma_ob)^2");
+  CLOG_COLUMN(obstacle_density,
+              "obstacles per sigma^2; for a saturated array the jamming limit 0.6966/(w_ob+sigma_ob)^2");
   CLOG_COLUMN(obstacle_filling, "saturated, or filled to a given density");
   CLOG_COLUMN(box, "period of the obstacle array [sigma]");
   CLOG_COLUMN(seed, "seed of obstacle array and release");
@@ -71,8 +72,10 @@ std::vector<Column> columns() {
   CLOG_COLUMN(distance, "displacement of the centre of mass along the flow since release [sigma]");
   CLOG_COLUMN(lateral_displacement, "displacement across the flow [sigma]");
   CLOG_COLUMN(time, "time since release [t0]");
-  CLOG_COLUMN(mean_speed, "slope of r(t) after the first tenth of the run and before the arrest [sqrt(sigma g)]; NaN if it "
-                          "moved less than half a diameter in that time");
+  CLOG_COLUMN(
+      mean_speed,
+      "slope of r(t) after the first tenth of the run and before the arrest [sqrt(sigma g)]; NaN if it "
+      "moved less than half a diameter in that time");
   CLOG_COLUMN(kinetic_energy_ratio, "E_k/E_t at the end; E_t: kinetic energy at terminal speed");
   CLOG_COLUMN(shape_parameter, "A = perimeter^2/(4 pi area) at the end; 1 for a circle");
   CLOG_COLUMN(steps, "integrated steps");
@@ -112,7 +115,8 @@ void write_rows(hid_t file, std::span<const RunRow> rows) {
   check(table.valid(), "create the table of runs in", "the new file");
   for (const Column& column : all) write_attribute(table, column.name, column.meaning);
   if (!rows.empty())
-    check(H5Dwrite(table, memory_type(all), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) >= 0, "write", "the new file");
+    check(H5Dwrite(table, memory_type(all), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) >= 0, "write",
+          "the new file");
 }
 
 std::string library_version() {
@@ -152,11 +156,12 @@ void RunTable::append(const RunRow& row) {
 SweepFile read_sweep(const std::string& path) {
   const File file = open_file(path, H5F_ACC_RDONLY);
   if (read_attribute(file, "kind") != file_kind || H5Lexists(file, table_name, H5P_DEFAULT) <= 0)
-    throw Error("cannot read " + path + " (an HDF5 file, but not one of clogsweep's tables of runs); give a file written "
+    throw Error("cannot read " + path +
+                " (an HDF5 file, but not one of clogsweep's tables of runs); give a file written "
                 "by clogsweep --output");
   if (const std::string version = read_attribute(file, "format_version"); version != format_version)
-    throw Error("cannot read " + path + " (format version " + version + ", this program reads " + format_version +
-                "); use the program that wrote it");
+    throw Error("cannot read " + path + " (format version " + version + ", this program reads " +
+                format_version + "); use the program that wrote it");
 
   const Dataset table(H5Dopen2(file, table_name, H5P_DEFAULT));
   check(table.valid(), "read the table of", path);
@@ -169,7 +174,8 @@ SweepFile read_sweep(const std::string& path) {
   H5O_info_t root;
   check(H5Oget_info2(file, &root, H5O_INFO_NUM_ATTRS) >= 0, "read the attributes of", path);
   for (hsize_t i = 0; i < root.num_attrs; ++i) {
-    const Attribute attribute(H5Aopen_by_idx(file, ".", H5_INDEX_NAME, H5_ITER_INC, i, H5P_DEFAULT, H5P_DEFAULT));
+    const Attribute attribute(
+        H5Aopen_by_idx(file, ".", H5_INDEX_NAME, H5_ITER_INC, i, H5P_DEFAULT, H5P_DEFAULT));
     char name[256];
     H5Aget_name(attribute, sizeof name, name);
     sweep.provenance.emplace_back(name, read_attribute(file, name));

@@ -9,7 +9,8 @@ namespace clog::store {
 namespace {
 
 /// Creates and fills a dataset; attributes can be added to what is returned.
-Dataset write_dataset(hid_t file, const char* name, hid_t type, std::initializer_list<hsize_t> shape, const void* data) {
+Dataset write_dataset(hid_t file, const char* name, hid_t type, std::initializer_list<hsize_t> shape,
+                      const void* data) {
   const Space space(H5Screate_simple(static_cast<int>(shape.size()), std::data(shape), nullptr));
   Dataset dataset(H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
   check(dataset.valid() && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0, "write",
@@ -27,7 +28,8 @@ void write_samples(hid_t file, const std::vector<TrajectorySample>& samples) {
       {"time", "[t0]", offsetof(TrajectorySample, time)},
       {"distance", "displacement of the centre of mass along the flow since release [sigma]",
        offsetof(TrajectorySample, distance)},
-      {"lateral_displacement", "displacement across the flow [sigma]", offsetof(TrajectorySample, lateral_displacement)},
+      {"lateral_displacement", "displacement across the flow [sigma]",
+       offsetof(TrajectorySample, lateral_displacement)},
       {"speed", "of the centre of mass along the flow [sqrt(sigma g)]", offsetof(TrajectorySample, speed)},
       {"kinetic_energy_ratio", "E_k/E_t", offsetof(TrajectorySample, kinetic_energy_ratio)},
       {"area", "[sigma^2]", offsetof(TrajectorySample, area)},
@@ -57,16 +59,19 @@ void write_polygons(hid_t file, const std::vector<PolygonFrame>& frames) {
     times.push_back(frame.time);
     positions.insert(positions.end(), frame.position.begin(), frame.position.end());
   }
-  write_attribute(write_dataset(file, "polygon_times", H5T_NATIVE_DOUBLE, {num_frames}, times.data()), "meaning", "[t0]");
-  write_attribute(write_dataset(file, "polygons", H5T_NATIVE_DOUBLE, {num_frames, 2, num_vertices}, positions.data()),
-                  "meaning", "vertices: frame, x or y, vertex; coordinates go on across box borders [sigma]");
+  write_attribute(write_dataset(file, "polygon_times", H5T_NATIVE_DOUBLE, {num_frames}, times.data()),
+                  "meaning", "[t0]");
+  write_attribute(
+      write_dataset(file, "polygons", H5T_NATIVE_DOUBLE, {num_frames, 2, num_vertices}, positions.data()),
+      "meaning", "vertices: frame, x or y, vertex; coordinates go on across box borders [sigma]");
 }
 
 void write_obstacles(hid_t file, const std::vector<Obstacle>& obstacles) {
   std::vector<double> values;
-  for (const Obstacle& obstacle : obstacles) values.insert(values.end(), {obstacle.x, obstacle.y, 2 * obstacle.radius});
-  write_attribute(write_dataset(file, "obstacles", H5T_NATIVE_DOUBLE, {obstacles.size(), 3}, values.data()), "meaning",
-                  "along the droplet's way: x, y, diameter, in the polygons' coordinates [sigma]");
+  for (const Obstacle& obstacle : obstacles)
+    values.insert(values.end(), {obstacle.x, obstacle.y, 2 * obstacle.radius});
+  write_attribute(write_dataset(file, "obstacles", H5T_NATIVE_DOUBLE, {obstacles.size(), 3}, values.data()),
+                  "meaning", "along the droplet's way: x, y, diameter, in the polygons' coordinates [sigma]");
 }
 
 }  // namespace

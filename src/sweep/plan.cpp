@@ -17,18 +17,23 @@ Plan::Plan(const Settings& settings) {
   for (const Key& key : keys()) {
     const std::vector<std::string>& values = settings.values(key.name);
     if (soft_disk && key.dp_only && values.size() > 1)
-      throw Error("invalid " + key.name + "=" + settings.text(key.name) + " (model=sp does not depend on it: the list " +
-                  "would repeat every run " + std::to_string(values.size()) + " times) give one value or none");
+      throw Error("invalid " + key.name + "=" + settings.text(key.name) +
+                  " (model=sp does not depend on it: the list " + "would repeat every run " +
+                  std::to_string(values.size()) + " times) give one value or none");
     axes_.push_back({&key, values});
     size_ *= static_cast<std::int64_t>(values.size());
-    if (size_ > largest_sweep) throw Error("the sweep has more than a hundred million runs; shorten its lists");
+    if (size_ > largest_sweep)
+      throw Error("the sweep has more than a hundred million runs; shorten its lists");
   }
-  const auto seeds = std::find_if(axes_.begin(), axes_.end(), [](const Axis& axis) { return axis.key->name == "seeds"; });
+  const auto seeds =
+      std::find_if(axes_.begin(), axes_.end(), [](const Axis& axis) { return axis.key->name == "seeds"; });
   std::rotate(axes_.begin(), seeds, seeds + 1);
   for (std::int64_t index = 0; index < num_groups(); ++index) task(index);
 }
 
-std::int64_t Plan::num_groups() const { return size_ / static_cast<std::int64_t>(axes_.front().values.size()); }
+std::int64_t Plan::num_groups() const {
+  return size_ / static_cast<std::int64_t>(axes_.front().values.size());
+}
 
 RunParameters Plan::task(std::int64_t index) const {
   assert(index >= 0 && index < size_);

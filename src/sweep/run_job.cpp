@@ -12,7 +12,8 @@ constexpr int checks_per_look_at_the_clock = 8;
 
 }  // namespace
 
-RunJob::RunJob(const Plan& plan, std::int64_t task) : run_parameters_(plan.task(task)), row_(describe(run_parameters_)) {
+RunJob::RunJob(const Plan& plan, std::int64_t task)
+    : run_parameters_(plan.task(task)), row_(describe(run_parameters_)) {
   row_.task = task;
 }
 

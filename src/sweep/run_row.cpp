@@ -30,7 +30,9 @@ RunRow describe(const RunParameters& run) {
   row.terminal_speed = run.drag.terminal_speed;
   row.near_wall_drag = run.drag.near_wall;
   row.area_stiffness = polygon ? run.dp.area_stiffness : not_applicable;
-  row.perimeter_spring = !polygon ? "none" : run.dp.perimeter_spring == PerimeterSpring::rest ? "rest" : "mean";
+  row.perimeter_spring = !polygon                                           ? "none"
+                         : run.dp.perimeter_spring == PerimeterSpring::rest ? "rest"
+                                                                            : "mean";
   row.perimeter_stiffness = polygon ? run.dp.perimeter_stiffness.value() : not_applicable;
   row.self_contact = !polygon ? "none" : run.dp.self_contact == SelfContact::on ? "on" : "off";
   row.gravity = !polygon ? "none" : run.dp.gravity == Gravity::vertex ? "vertex" : "area";

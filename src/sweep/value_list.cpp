@@ -63,10 +63,12 @@ std::vector<std::string> expand_spaced(std::string_view item, ValueKind kind) {
     // Twelve digits are what a person would write for such a value, and spare the file 0.30000000000000004.
     if (i > 0 && i < count - 1) {
       char digits[32];
-      const auto end = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 12).ptr;
+      const auto end =
+          std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 12).ptr;
       value = to_number({digits, static_cast<std::size_t>(end - digits)});
     }
-    if (kind == ValueKind::integer && value != std::round(value)) refuse(item, "gives values that are not integers");
+    if (kind == ValueKind::integer && value != std::round(value))
+      refuse(item, "gives values that are not integers");
     values.push_back(shortest(value));
   }
   return values;
@@ -87,7 +89,8 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-std::vector<std::string> expand_item(std::string_view item, ValueKind kind, const std::vector<std::string>& words) {
+std::vector<std::string> expand_item(std::string_view item, ValueKind kind,
+                                     const std::vector<std::string>& words) {
   if (item.empty()) throw Error("has an empty value");
   if (std::find(words.begin(), words.end(), item) != words.end()) return {std::string(item)};
   if (kind == ValueKind::word) refuse(item, "is not one of " + joined(words));
@@ -100,7 +103,8 @@ std::vector<std::string> expand_item(std::string_view item, ValueKind kind, cons
 
 }  // namespace
 
-std::vector<std::string> expand_list(std::string_view text, ValueKind kind, const std::vector<std::string>& words) {
+std::vector<std::string> expand_list(std::string_view text, ValueKind kind,
+                                     const std::vector<std::string>& words) {
   std::vector<std::string> values;
   for (const std::string_view item : split(trimmed(text)))
     for (std::string& value : expand_item(item, kind, words)) values.push_back(std::move(value));

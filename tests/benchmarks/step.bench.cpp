@@ -32,7 +32,9 @@ void advance(benchmark::State& state, const RunParameters& parameters) {
       benchmark::Counter(steps * points, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-void polygon(benchmark::State& state) { advance(state, flowing_droplet(static_cast<int>(state.range(0)), 0)); }
+void polygon(benchmark::State& state) {
+  advance(state, flowing_droplet(static_cast<int>(state.range(0)), 0));
+}
 BENCHMARK(polygon)->ArgName("vertices")->Arg(64)->Arg(256)->Arg(1024)->Unit(benchmark::kMillisecond);
 
 void polygon_with_near_wall_drag(benchmark::State& state) { advance(state, flowing_droplet(256, 0.2)); }
@@ -56,7 +58,8 @@ void soft_disk(benchmark::State& state) {
 BENCHMARK(soft_disk)->Unit(benchmark::kMillisecond);
 
 void sample_saturated_array(benchmark::State& state) {
-  const ObstacleParameters parameters{.gap = 0.2, .diameter = 0.3, .density = {}, .box = static_cast<double>(state.range(0))};
+  const ObstacleParameters parameters{
+      .gap = 0.2, .diameter = 0.3, .density = {}, .box = static_cast<double>(state.range(0))};
   std::uint32_t seed = 0;
   for (auto _ : state) benchmark::DoNotOptimize(sample_obstacles(parameters, ++seed));
 }

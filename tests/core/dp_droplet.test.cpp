@@ -91,8 +91,9 @@ TEST(DpDroplet, ConservesEnergyWithoutDragToSecondOrder) {
 }
 
 TEST(DpDroplet, SwingsAtTheFrequencyOfACapillaryMode) {
-  // A small wave r = R + e cos 2 phi on a circle of line density mu = M/P that keeps its area costs the energy
-  // (gamma/2R) int (r'^2 - r^2) dphi = 3 pi gamma e^2/(2R) and moves the mass pi mu R: omega^2 = 3 gamma/(mu R^2).
+  // A small wave r = R + e cos 2 phi on a circle of line density mu = M/P that keeps its area costs the
+  // energy (gamma/2R) int (r'^2 - r^2) dphi = 3 pi gamma e^2/(2R) and moves the mass pi mu R: omega^2 = 3
+  // gamma/(mu R^2).
   RunParameters run = bare_parameters(128);
   run.drag.terminal_speed = no_drag;
   run.dp.perimeter_stiffness = 0;
@@ -114,7 +115,8 @@ TEST(DpDroplet, SwingsAtTheFrequencyOfACapillaryMode) {
     double sum = 0;
     for (int i = 0; i < 128; ++i) {
       const double phi = 2 * std::numbers::pi * i / 128;
-      sum += std::hypot(droplet.state().x()[i] - c[0], droplet.state().y()[i] - c[1]) * std::cos(2 * phi) / 64;
+      sum +=
+          std::hypot(droplet.state().x()[i] - c[0], droplet.state().y()[i] - c[1]) * std::cos(2 * phi) / 64;
     }
     return sum;
   };

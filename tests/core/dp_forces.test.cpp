@@ -31,11 +31,13 @@ double free_force_error(const RunParameters& run, double weight = 0) {
 }
 
 TEST(DpForces, AreaTermIsTheGradientOfItsEnergy) {
-  EXPECT_LT(free_force_error(only([](RunParameters& run) { run.dp.area_stiffness = 50; })), difference_tolerance);
+  EXPECT_LT(free_force_error(only([](RunParameters& run) { run.dp.area_stiffness = 50; })),
+            difference_tolerance);
 }
 
 TEST(DpForces, LineTensionIsTheGradientOfItsEnergy) {
-  EXPECT_LT(free_force_error(only([](RunParameters& run) { run.dp.line_tension = 1.3; })), difference_tolerance);
+  EXPECT_LT(free_force_error(only([](RunParameters& run) { run.dp.line_tension = 1.3; })),
+            difference_tolerance);
 }
 
 TEST(DpForces, SpringsToTheRestLengthAreTheGradientOfTheirEnergy) {
@@ -47,7 +49,8 @@ TEST(DpForces, SpringsToTheRestLengthAreTheGradientOfTheirEnergy) {
 }
 
 TEST(DpForces, SpringsToTheMeanLengthAreTheGradientOfTheirEnergy) {
-  EXPECT_LT(free_force_error(only([](RunParameters& run) { run.dp.perimeter_stiffness = 0.7; })), difference_tolerance);
+  EXPECT_LT(free_force_error(only([](RunParameters& run) { run.dp.perimeter_stiffness = 0.7; })),
+            difference_tolerance);
 }
 
 TEST(DpForces, WeightOnTheVerticesIsTheGradientOfItsEnergy) {
@@ -55,7 +58,8 @@ TEST(DpForces, WeightOnTheVerticesIsTheGradientOfItsEnergy) {
 }
 
 TEST(DpForces, WeightOnTheAreaIsTheGradientOfItsEnergy) {
-  EXPECT_LT(free_force_error(only([](RunParameters& run) { run.dp.gravity = Gravity::area; }), 0.6), difference_tolerance);
+  EXPECT_LT(free_force_error(only([](RunParameters& run) { run.dp.gravity = Gravity::area; }), 0.6),
+            difference_tolerance);
 }
 
 TEST(DpForces, WeightOnTheAreaSumsToTheWholeWeight) {
@@ -70,7 +74,8 @@ TEST(DpForces, WeightOnTheAreaSumsToTheWholeWeight) {
 }
 
 TEST(DpForces, WallContactIsTheGradientOfItsEnergy) {
-  const ObstacleArray wall(20, {{0.65, 0.05, 0.15}, {19.4, 0.1, 0.15}});  // the second one is an image at -0.6
+  const ObstacleArray wall(20,
+                           {{0.65, 0.05, 0.15}, {19.4, 0.1, 0.15}});  // the second one is an image at -0.6
   DpForces forces(only([](RunParameters&) {}), wall);
   forces.set_weight(0);
   const DropletState state = state_of(shaken(regular_polygon(64, 0.8), 0.003));
@@ -177,7 +182,8 @@ TEST(DpForces, ContactListsMissNothingWhileTheDropletMoves) {
       for (const Obstacle& obstacle : array.obstacles())
         for (int image_x = -1; image_x <= 1; ++image_x)
           for (int image_y = -1; image_y <= 1; ++image_y) {
-            const Eigen::Array2d away = vertex - Eigen::Array2d(obstacle.x + 12.5 * image_x, obstacle.y + 12.5 * image_y);
+            const Eigen::Array2d away =
+                vertex - Eigen::Array2d(obstacle.x + 12.5 * image_x, obstacle.y + 12.5 * image_y);
             const double distance = away.matrix().norm() - obstacle.radius;
             nearest = std::min(nearest, distance);
             if (distance < range) expected += stiffness * (range - distance) * away / away.matrix().norm();

@@ -27,7 +27,8 @@ double brute_force_gap(const ObstacleArray& array) {
 TEST(SampleObstacles, KeepsTheGapPeriodicImagesIncluded) {
   for (const double box : {10.0, 17.3, 40.0})
     for (const double gap : {0.2, 0.5, 1.1}) {
-      const ObstacleArray array = sample_obstacles({.gap = gap, .diameter = 0.3, .density = {}, .box = box}, 11);
+      const ObstacleArray array =
+          sample_obstacles({.gap = gap, .diameter = 0.3, .density = {}, .box = box}, 11);
       EXPECT_GE(brute_force_gap(array), gap) << "box " << box;
       EXPECT_NEAR(brute_force_gap(array), gap, 0.05) << "a saturated array comes close to its gap";
       EXPECT_DOUBLE_EQ(array.smallest_gap(), brute_force_gap(array));
@@ -38,7 +39,8 @@ TEST(SampleObstacles, SaturatesAtTheJammingLimitOfRandomSequentialAddition) {
   // Coverage 0.547069 of discs of diameter gap + sigma_ob; finite boxes scatter by less than 0.001 here.
   double coverage = 0;
   for (const std::uint32_t seed : {1u, 2u, 3u, 4u}) {
-    const ObstacleArray array = sample_obstacles({.gap = 0.2, .diameter = 0.3, .density = {}, .box = 100}, seed);
+    const ObstacleArray array =
+        sample_obstacles({.gap = 0.2, .diameter = 0.3, .density = {}, .box = 100}, seed);
     coverage += static_cast<double>(array.obstacles().size()) / 1e4 * std::numbers::pi / 4 * 0.25 / 4;
   }
   EXPECT_NEAR(coverage, 0.547069, 0.001);
@@ -51,7 +53,8 @@ TEST(SampleObstacles, LeavesNoRoomForOneMoreWhenSaturated) {
   for (int i = 0; i < 20000; ++i) {
     std::vector<Obstacle> near;
     array.gather({uniform(engine), uniform(engine), 0, 0, 0, 0, 0.6}, near);
-    EXPECT_TRUE(std::any_of(near.begin(), near.end(), [](const Obstacle& o) { return std::hypot(o.x, o.y) < 0.7001; }));
+    EXPECT_TRUE(std::any_of(near.begin(), near.end(),
+                            [](const Obstacle& o) { return std::hypot(o.x, o.y) < 0.7001; }));
   }
 }
 
@@ -65,7 +68,8 @@ TEST(SampleObstacles, PlacesADilutedArrayUniformly) {
   // below the 99.9 % quantile of 60 degrees, 99.6. (Repulsion only makes counts more even.)
   double chi2 = 0;
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
-    const ObstacleArray array = sample_obstacles({.gap = 0.2, .diameter = 0.3, .density = 0.1, .box = 40}, seed);
+    const ObstacleArray array =
+        sample_obstacles({.gap = 0.2, .diameter = 0.3, .density = 0.1, .box = 40}, seed);
     double counts[4] = {};
     for (const Obstacle& o : array.obstacles()) ++counts[(o.x < 20) + 2 * (o.y < 20)];
     for (const double count : counts) chi2 += (count - 40) * (count - 40) / 40;

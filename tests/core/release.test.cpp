@@ -4,8 +4,8 @@
 
 #include "clog/core/dp_droplet.hpp"
 #include "clog/core/error.hpp"
-#include "clog/core/units.hpp"
 #include "clog/core/sp_droplet.hpp"
+#include "clog/core/units.hpp"
 #include "support.hpp"
 
 namespace clog {
@@ -37,7 +37,8 @@ TEST(Release, NeverEnclosesAnObstacleAndStartsAtRest) {
       const double vertex_weight = units::droplet_mass / run.dp.vertices;
       EXPECT_LE(force.abs().maxCoeff(), 1.01 * release_force_tolerance * vertex_weight) << "seed " << seed;
       EXPECT_NEAR(forces.shape().area, units::rest_area, 0.02) << "seed " << seed;
-      EXPECT_LT(DpDroplet(run, obstacles, state).deepest_overlap(), 0.6 * forces.vertex_diameter()) << "seed " << seed;
+      EXPECT_LT(DpDroplet(run, obstacles, state).deepest_overlap(), 0.6 * forces.vertex_diameter())
+          << "seed " << seed;
     }
 }
 

@@ -56,10 +56,12 @@ TEST(SelfContacts, ListsEveryVertexAndEdgeThatTouchWhileTheShapeMoves) {
       for (int edge = 0; edge < n; ++edge) {
         const auto steps = [n](int a, int b) { return std::min(std::abs(a - b), n - std::abs(a - b)); };
         if (steps(vertex, edge) < exclusion || steps(vertex, (edge + 1) % n) < exclusion) continue;
-        if (nearest_point({vertex, edge, 1}, state.position.data(), state.position.data() + n, n).distance >= diameter)
+        if (nearest_point({vertex, edge, 1}, state.position.data(), state.position.data() + n, n).distance >=
+            diameter)
           continue;
         ++num_touching;
-        EXPECT_TRUE(listed.count({vertex, edge})) << "vertex " << vertex << ", edge " << edge << ", step " << step;
+        EXPECT_TRUE(listed.count({vertex, edge}))
+            << "vertex " << vertex << ", edge " << edge << ", step " << step;
       }
   }
   EXPECT_GT(num_touching, 100);

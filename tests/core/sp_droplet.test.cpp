@@ -29,7 +29,8 @@ TEST(SpDroplet, RestsOnAnObstacleAtTheAnalyticSag) {
     const ObstacleArray obstacle(20, {{2, 0, 0.15}});
     SpDroplet droplet(soft_disk(stiffness), obstacle, disk_at(1.35, 0));
     droplet.advance(600000);  // 45 times the slowest relaxation time, M g/(k V_t)
-    EXPECT_NEAR(droplet.state().position[0] + droplet.state().frame.origin[0] - 1.35, std::numbers::pi / (16 * stiffness), 1e-9);
+    EXPECT_NEAR(droplet.state().position[0] + droplet.state().frame.origin[0] - 1.35,
+                std::numbers::pi / (16 * stiffness), 1e-9);
     EXPECT_LT(droplet.kinetic_energy(), 1e-20);
   }
 }
@@ -44,7 +45,8 @@ TEST(SpDroplet, FollowsTheDampedOscillatorToSecondOrder) {
   const double omega = std::sqrt(k / mass - rate * rate);
   const double sag = mass / k;
   const double end = 0.512;
-  const double exact = sag * (1 - std::exp(-rate * end) * (std::cos(omega * end) + rate / omega * std::sin(omega * end)));
+  const double exact =
+      sag * (1 - std::exp(-rate * end) * (std::cos(omega * end) + rate / omega * std::sin(omega * end)));
   const auto error_at = [&](double dt) {
     const ObstacleArray obstacle(20, {{2, 0, 0.15}});
     RunParameters run = soft_disk(stiffness, dt);

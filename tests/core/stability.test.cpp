@@ -9,7 +9,8 @@ namespace {
 
 using namespace test;
 
-/// Largest omega^2 of small motions about a shape: power iteration on the finite-difference Hessian over the mass.
+/// Largest omega^2 of small motions about a shape: power iteration on the finite-difference Hessian over the
+/// mass.
 double stiffest_omega2(const RunParameters& run, const Eigen::ArrayXd& position) {
   const int n = run.dp.vertices;
   const ObstacleArray nothing = no_obstacles();

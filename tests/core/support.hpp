@@ -42,8 +42,8 @@ inline Eigen::ArrayXd shaken(Eigen::ArrayXd position, double amount, unsigned se
   return position;
 }
 
-/// Two lobes joined by a neck of the given width, counter-clockwise; vertices evenly spread along the contour, so
-/// that no edge is much shorter than the others.
+/// Two lobes joined by a neck of the given width, counter-clockwise; vertices evenly spread along the
+/// contour, so that no edge is much shorter than the others.
 inline Eigen::ArrayXd dumbbell(int num_vertices, double neck) {
   const auto point = [neck](double t) {
     const double c = std::cos(t);
@@ -52,7 +52,10 @@ inline Eigen::ArrayXd dumbbell(int num_vertices, double neck) {
   constexpr int fine = 20000;
   std::vector<double> length(fine + 1, 0);
   for (int i = 1; i <= fine; ++i)
-    length[i] = length[i - 1] + (point(2 * std::numbers::pi * i / fine) - point(2 * std::numbers::pi * (i - 1) / fine)).matrix().norm();
+    length[i] = length[i - 1] +
+                (point(2 * std::numbers::pi * i / fine) - point(2 * std::numbers::pi * (i - 1) / fine))
+                    .matrix()
+                    .norm();
   Eigen::ArrayXd position(2 * num_vertices);
   for (int k = 0, i = 0; k < num_vertices; ++k) {
     while (length[i] < length[fine] * k / num_vertices) ++i;

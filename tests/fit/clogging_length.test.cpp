@@ -12,8 +12,10 @@ namespace {
 
 TEST(CloggingLength, OfTheLeukaemiaTrialIsTheReferenceAnswer) {
   // Remission times of the 6-MP arm, Freireich et al., Blood 21, 699 (1963); negative: censored.
-  // Reference values: exponential fit of R's survival package, chi-squared interval with 2d degrees of freedom.
-  const double times[] = {6, 6, 6, -6, 7, -9, 10, -10, -11, 13, 16, -17, -19, -20, 22, 23, -25, -32, -32, -34, -35};
+  // Reference values: exponential fit of R's survival package, chi-squared interval with 2d degrees of
+  // freedom.
+  const double times[] = {6,   6,   6,   -6, 7,  -9,  10,  -10, -11, 13, 16,
+                          -17, -19, -20, 22, 23, -25, -32, -32, -34, -35};
   std::vector<Observation> runs;
   for (const double time : times) runs.push_back({std::abs(time), time > 0});
   const CloggingLength fit = fit_clogging_length(runs);

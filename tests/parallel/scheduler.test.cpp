@@ -1,4 +1,5 @@
-/// The scheduler on however many ranks mpirun gives it, with synthetic tasks. Exits with 1 on the first fault.
+/// The scheduler on however many ranks mpirun gives it, with synthetic tasks. Exits with 1 on the first
+/// fault.
 
 #include "clog/parallel/scheduler.hpp"
 
@@ -41,7 +42,8 @@ class SyntheticJob final : public sweep::Job {
 
 const sweep::JobFactory make_job = [](std::int64_t task) { return std::make_unique<SyntheticJob>(task); };
 
-void every_task_comes_back_once(const parallel::Communicator& ranks, bool master_computes, std::int64_t num_tasks) {
+void every_task_comes_back_once(const parallel::Communicator& ranks, bool master_computes,
+                                std::int64_t num_tasks) {
   std::map<std::int64_t, int> times_ended;
   std::map<std::int64_t, int> rows_of_rank;
   parallel::SweepEvents events;

@@ -91,6 +91,9 @@ class Sweep(ProgramTest):
         done = self.succeed("clogsweep", "--config", "sweep.cfg", "--print-config", "seeds=7", "--box", "40")
         for line in ("line-tension = 1,2", "seeds = 7", "box = 40", "vertices = 256"):
             self.assertIn(line + "\n", done.stdout)
+        self.assertRegex(done.stdout, r"\n# wall-stiffness = 0\.0288\d+\n# perimeter-stiffness = 1\n$")
+        self.write("printed.cfg", done.stdout)
+        self.assertEqual(self.succeed("clogsweep", "--config", "printed.cfg", "--print-config").stdout, done.stdout)
 
     def test_a_dry_run_lists_the_tasks_and_runs_none(self):
         done = self.succeed("clogsweep", "line-tension=lin(0.5,1.5,3)", "seeds=1..4", "--dry-run", "--output", "s.h5")

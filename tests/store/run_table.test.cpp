@@ -21,7 +21,8 @@ class RunTableTest : public testing::Test {
  protected:
   void SetUp() override {
     const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / (std::string("clog_store_") + info->name() + "_" + std::to_string(getpid()));
+    folder_ = fs::temp_directory_path() /
+              (std::string("clog_store_") + info->name() + "_" + std::to_string(getpid()));
     fs::create_directory(folder_);
   }
   void TearDown() override { fs::remove_all(folder_); }
@@ -73,7 +74,8 @@ TEST_F(RunTableTest, KeepsTheProvenance) {
   RunTable::create(path(), {{"version", "1.2.3"}, {"config", "a = 1\nb = 2\n"}});
   const SweepFile file = read_sweep(path());
   EXPECT_TRUE(file.rows.empty());
-  EXPECT_NE(std::find(file.provenance.begin(), file.provenance.end(), std::pair<std::string, std::string>("config", "a = 1\nb = 2\n")),
+  EXPECT_NE(std::find(file.provenance.begin(), file.provenance.end(),
+                      std::pair<std::string, std::string>("config", "a = 1\nb = 2\n")),
             file.provenance.end());
 }
 

@@ -42,7 +42,8 @@ TEST(Plan, RefusesListsThatASoftDiskWouldIgnore) {
     Plan(settings_of({{"model", "sp"}, {"wall-stiffness", "1"}, {"line-tension", "1,2"}}));
     FAIL();
   } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("would repeat every run 2 times"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("would repeat every run 2 times"), std::string::npos)
+        << error.what();
   }
 }
 

@@ -55,7 +55,8 @@ TEST(Settings, ReadBackFromTheirOwnText) {
 TEST(Settings, RefuseWhatTheyCannotRead) {
   EXPECT_NE(refusal("line-tenson", "1").find("did you mean line-tension"), std::string::npos);
   EXPECT_NE(refusal("temperature", "1").find("unknown key 'temperature'"), std::string::npos);
-  EXPECT_NE(refusal("line-tension", "soft").find("invalid line-tension=soft ('soft' is not a finite number)"), std::string::npos);
+  EXPECT_NE(refusal("line-tension", "soft").find("invalid line-tension=soft ('soft' is not a finite number)"),
+            std::string::npos);
   EXPECT_NE(refusal("model", "sph").find("not one of dp, sp"), std::string::npos);
   EXPECT_NE(refusal("model", "dp,sp").find("one value"), std::string::npos);
   EXPECT_NE(refusal("seeds", "-1").find("out of range"), std::string::npos);

@@ -47,13 +47,14 @@ TEST_P(Unreadable, IsRefusedWithAReason) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Lists, Unreadable,
-                         testing::Values(std::pair{"", "empty"}, std::pair{"1,,2", "empty"}, std::pair{"two", "not an integer"},
-                                         std::pair{"1.5", "not an integer"}, std::pair{"5..3", "no values"},
-                                         std::pair{"1,1", "twice"}, std::pair{"1..3,2", "twice"},
-                                         std::pair{"lin(1,2)", "three arguments"}, std::pair{"lin(1,2,3", "parenthesis"},
-                                         std::pair{"lin(1,2,3)", "not integers"}, std::pair{"log(0,2,3)", "positive"},
-                                         std::pair{"lin(1,2,0)", "no values"}, std::pair{"1..9999999", "million"}));
+INSTANTIATE_TEST_SUITE_P(
+    Lists, Unreadable,
+    testing::Values(std::pair{"", "empty"}, std::pair{"1,,2", "empty"}, std::pair{"two", "not an integer"},
+                    std::pair{"1.5", "not an integer"}, std::pair{"5..3", "no values"},
+                    std::pair{"1,1", "twice"}, std::pair{"1..3,2", "twice"},
+                    std::pair{"lin(1,2)", "three arguments"}, std::pair{"lin(1,2,3", "parenthesis"},
+                    std::pair{"lin(1,2,3)", "not integers"}, std::pair{"log(0,2,3)", "positive"},
+                    std::pair{"lin(1,2,0)", "no values"}, std::pair{"1..9999999", "million"}));
 
 TEST(ToNumber, RefusesWhatIsNotFinite) {
   EXPECT_THROW(to_number("nan"), Error);
@@ -63,7 +64,8 @@ TEST(ToNumber, RefusesWhatIsNotFinite) {
 }
 
 TEST(Shortest, ReadsBackExactly) {
-  for (const double value : {0.1, 1.0 / 3, 1e-17, 2e5, 0.02887829511489174}) EXPECT_EQ(to_number(shortest(value)), value);
+  for (const double value : {0.1, 1.0 / 3, 1e-17, 2e5, 0.02887829511489174})
+    EXPECT_EQ(to_number(shortest(value)), value);
 }
 
 TEST(DidYouMean, FindsNearWordsOnly) {

@@ -31,6 +31,7 @@ class CommandLine {
   std::string require(const std::string& option) const;
   /// @throws Error if the option's value is not a number above zero
   double get_positive(const std::string& option) const;
+  const std::string& program() const { return program_; }
   const sweep::Settings& settings() const { return settings_; }
   sweep::Settings& settings() { return settings_; }
   /// The command as it was given, in one line.
@@ -43,7 +44,8 @@ class CommandLine {
   SweepKeys sweep_keys_;
   boost::program_options::options_description own_{"Options"};
   boost::program_options::options_description keys_{
-      "Keys of the config file, also as options. Numbers take a list: 0.2,0.3  lin(a,b,n)  log(a,b,n)  1..50"};
+      "Keys of the config file, also as options. Numbers take a list: 0.2,0.3  lin(a,b,n)  log(a,b,n)  "
+      "1..50"};
   boost::program_options::positional_options_description positional_;
   boost::program_options::variables_map values_;
   sweep::Settings settings_;

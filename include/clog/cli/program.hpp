@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "clog/cli/command_line.hpp"
+
 namespace clog::cli {
 
 inline constexpr int exit_success = 0;
@@ -16,11 +18,14 @@ inline constexpr int exit_incomplete = 75;
 /// Runs a program's body; an Error becomes one line on the error stream and exit code 2.
 int run_program(const std::string& program, const std::function<int()>& body);
 
-/// Text of --version: version, git hash, compiler, and the given libraries.
-std::string version_text(const std::string& program, const std::vector<std::pair<std::string, std::string>>& libraries);
+using NamedTexts = std::vector<std::pair<std::string, std::string>>;
 
-/// Present time, UTC, ISO 8601.
-std::string utc_now();
+/// Prints the answer to --help or --version, if one of them was given, and returns whether it did.
+/// @param libraries  names and versions, printed after the program's own
+bool answer_help_or_version(const CommandLine& line, const NamedTexts& libraries);
+
+/// Where a file comes from: program, version, git hash, compiler, config, command line, time.
+NamedTexts origin(const CommandLine& line);
 
 /// From now on SIGINT and SIGTERM only raise a flag.
 void catch_stop_signals();

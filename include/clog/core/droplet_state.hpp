@@ -9,13 +9,16 @@ namespace clog {
 /// The origin stays inside the box and follows the droplet in whole units, so coordinates stay of order one
 /// however far the droplet travels, and a droplet one box further on feels bit-identical forces.
 struct LocalFrame {
-  double box = 0;                         ///< period [sigma]
-  Eigen::Array2d origin{0, 0};            ///< in [0, box) [sigma]
+  double box = 0;                                ///< period [sigma]
+  Eigen::Array2d origin{0, 0};                   ///< in [0, box) [sigma]
   Eigen::Array<std::int64_t, 2, 1> image{0, 0};  ///< whole boxes
 
-  Eigen::Array2d global(const Eigen::Array2d& local) const { return image.cast<double>() * box + origin + local; }
+  Eigen::Array2d global(const Eigen::Array2d& local) const {
+    return image.cast<double>() * box + origin + local;
+  }
   /// Displacement from a place of another frame of the same box, without forming large coordinates.
-  Eigen::Array2d displacement(const Eigen::Array2d& local, const LocalFrame& from, const Eigen::Array2d& from_local) const {
+  Eigen::Array2d displacement(const Eigen::Array2d& local, const LocalFrame& from,
+                              const Eigen::Array2d& from_local) const {
     return (image - from.image).cast<double>() * box + (origin - from.origin) + (local - from_local);
   }
   /// Moves the origin by a whole-numbered step [sigma].
@@ -42,7 +45,9 @@ struct DropletState {
   auto y() const { return position.tail(size()); }
   /// Mean of the points: the centre of mass, as the points carry equal masses [sigma].
   Eigen::Array2d centre() const { return {x().mean(), y().mean()}; }
-  Eigen::Array2d mean_velocity() const { return {velocity.head(size()).mean(), velocity.tail(size()).mean()}; }
+  Eigen::Array2d mean_velocity() const {
+    return {velocity.head(size()).mean(), velocity.tail(size()).mean()};
+  }
 
   /// Keeps local coordinates of order one: moves the frame by whole units when the centre has left the unit
   /// square around the origin. Returns the step taken (usually zero).

@@ -12,7 +12,7 @@ struct FireOptions {
   double largest_step = 1e-3;  ///< [t0]; must be stable for velocity Verlet
   double force_tolerance = 0;  ///< stop when no force component exceeds this [g rho sigma^2]
   int max_iterations = 0;
-  double max_move = 0;         ///< no coordinate moves by more than this in one iteration [sigma]
+  double max_move = 0;  ///< no coordinate moves by more than this in one iteration [sigma]
 };
 
 struct FireResult {
@@ -21,8 +21,8 @@ struct FireResult {
   double largest_force = 0;
 };
 
-/// Energy minimisation by the fast inertial relaxation engine, Bitzek et al., Phys. Rev. Lett. 97, 170201 (2006),
-/// with its standard constants. Velocities are left at zero.
+/// Energy minimisation by the fast inertial relaxation engine, Bitzek et al., Phys. Rev. Lett. 97, 170201
+/// (2006), with its standard constants. Velocities are left at zero.
 /// @param forces  has update_contacts(state, horizon) and evaluate(state, force)
 template <class Forces>
 FireResult minimize_fire(Forces& forces, DropletState& state, const FireOptions& options) {

@@ -15,13 +15,13 @@ enum class Gravity { vertex, area };
 
 /// Deformable polygon, Cheng et al. Eqs. 1-6. Reduced units, see units.hpp.
 struct DpParameters {
-  double line_tension = 1.0;                   ///< Gamma [g rho sigma^2]
-  double area_stiffness = 1e4;                 ///< K_a [g rho / sigma]
+  double line_tension = 1.0;    ///< Gamma [g rho sigma^2]
+  double area_stiffness = 1e4;  ///< K_a [g rho / sigma]
   PerimeterSpring perimeter_spring = PerimeterSpring::mean;
-  std::optional<double> perimeter_stiffness;   ///< K_l [g rho sigma]; empty: 1e-3 Gamma (rest), 1 (mean)
+  std::optional<double> perimeter_stiffness;  ///< K_l [g rho sigma]; empty: 1e-3 Gamma (rest), 1 (mean)
   SelfContact self_contact = SelfContact::on;
   Gravity gravity = Gravity::vertex;
-  int vertices = 256;                          ///< N_v
+  int vertices = 256;  ///< N_v
 };
 
 /// Periodic array of circular obstacles, Cheng et al., "Geometry".
@@ -59,7 +59,11 @@ RunParameters resolve(RunParameters parameters);
 
 /// Contact stiffness k_c [g rho sigma^... per length, force/overlap] of a wall energy
 /// U_w = (E_w/2)(1 - 2d/size)^2: k_c = 4 E_w / size^2. `size` is the vertex diameter (DP) or sigma (SP).
-inline double contact_stiffness(double wall_stiffness, double size) { return 4 * wall_stiffness / (size * size); }
-inline double wall_stiffness(double contact_stiffness, double size) { return contact_stiffness * size * size / 4; }
+inline double contact_stiffness(double wall_stiffness, double size) {
+  return 4 * wall_stiffness / (size * size);
+}
+inline double wall_stiffness(double contact_stiffness, double size) {
+  return contact_stiffness * size * size / 4;
+}
 
 }  // namespace clog

@@ -15,7 +15,8 @@ struct PolygonShape {
 
 PolygonShape polygon_shape(const Eigen::ArrayXd& position);
 
-/// Regular polygon of the given area around the origin, first vertex on +x, counter-clockwise: 2N coordinates.
+/// Regular polygon of the given area around the origin, first vertex on +x, counter-clockwise: 2N
+/// coordinates.
 Eigen::ArrayXd regular_polygon(int num_vertices, double area);
 
 /// Does the polygon enclose the point? Even-odd rule.

@@ -8,9 +8,9 @@ namespace clog {
 
 /// A droplet at rest, without weight, near the centre of the box: the start of a run.
 ///
-/// DP: a small circle is put into the void nearest to the centre and grown to full size, relaxing as it grows,
-/// so that no obstacle is ever inside (energy minimisation cannot see an obstacle that touches no vertex).
-/// SP: starts at the same void and relaxes.
+/// DP: a small circle is put into the void nearest to the centre and grown to full size, relaxing as it
+/// grows, so that no obstacle is ever inside (energy minimisation cannot see an obstacle that touches no
+/// vertex). SP: starts at the same void and relaxes.
 /// @param run  resolved parameters
 /// @throws Error if there is no room for a droplet near the centre, or it does not relax
 DropletState release_droplet(const RunParameters& run, const ObstacleArray& obstacles);

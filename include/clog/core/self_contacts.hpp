@@ -44,11 +44,12 @@ class SelfContacts {
 
 /// Nearest point of a strand to its vertex.
 struct StrandContact {
-  double distance;      ///< [sigma]
-  int edge;             ///< edge that holds the nearest point
-  double fraction;      ///< its place on that edge, 0 at vertex `edge`, 1 at the next
-  double dx, dy;        ///< from the nearest point to the vertex [sigma]
+  double distance;  ///< [sigma]
+  int edge;         ///< edge that holds the nearest point
+  double fraction;  ///< its place on that edge, 0 at vertex `edge`, 1 at the next
+  double dx, dy;    ///< from the nearest point to the vertex [sigma]
 };
-StrandContact nearest_point(const SelfContacts::Strand& strand, const double* x, const double* y, int num_vertices);
+StrandContact nearest_point(const SelfContacts::Strand& strand, const double* x, const double* y,
+                            int num_vertices);
 
 }  // namespace clog

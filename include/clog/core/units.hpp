@@ -4,8 +4,8 @@
 #include <numbers>
 
 /// Reduced units: droplet diameter sigma = 1, gravity g = 1, areal density rho = 1.
-/// Time is then in t0 = sqrt(sigma/g), speed in sqrt(sigma g), force in g rho sigma^2, energy in g rho sigma^3.
-/// Gravity points along +x, the flow direction.
+/// Time is then in t0 = sqrt(sigma/g), speed in sqrt(sigma g), force in g rho sigma^2, energy in g rho
+/// sigma^3. Gravity points along +x, the flow direction.
 namespace clog::units {
 
 inline constexpr double droplet_diameter = 1.0;

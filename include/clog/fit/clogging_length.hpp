@@ -23,10 +23,10 @@ struct CloggingLength {
 };
 
 /// Maximum likelihood for censored exponential data: lambda = (sum of all distances)/(number of clogs).
-/// The two-sided interval is 2 S/chi2_{1-q} .. 2 S/chi2_q with q = (1 - confidence)/2 and 2d degrees of freedom, S the
-/// sum and d the clogs (Epstein and Sobel 1953; Lawless, Statistical Models and Methods for Lifetime Data, ch. 4).
-/// Without clogs, `lower` is the one-sided bound S/log(1/(1 - confidence)).
-/// Distances below zero (a droplet pushed back on release) count as zero.
+/// The two-sided interval is 2 S/chi2_{1-q} .. 2 S/chi2_q with q = (1 - confidence)/2 and 2d degrees of
+/// freedom, S the sum and d the clogs (Epstein and Sobel 1953; Lawless, Statistical Models and Methods for
+/// Lifetime Data, ch. 4). Without clogs, `lower` is the one-sided bound S/log(1/(1 - confidence)). Distances
+/// below zero (a droplet pushed back on release) count as zero.
 /// @throws std::invalid_argument unless 0 < confidence < 1
 CloggingLength fit_clogging_length(std::span<const Observation> runs, double confidence = 0.95);
 

@@ -29,9 +29,9 @@ struct PolygonFrame {
 
 struct Trajectory {
   std::vector<TrajectorySample> samples;
-  std::vector<PolygonFrame> polygons;   ///< may be empty; all of the same size
-  std::vector<Obstacle> obstacles;      ///< along the way, in the polygons' coordinates; may be empty
-  sweep::RunRow row;                    ///< what a sweep would have stored for this run
+  std::vector<PolygonFrame> polygons;  ///< may be empty; all of the same size
+  std::vector<Obstacle> obstacles;     ///< along the way, in the polygons' coordinates; may be empty
+  sweep::RunRow row;                   ///< what a sweep would have stored for this run
   Provenance provenance;
 };
 

@@ -31,7 +31,7 @@ struct FixedText {
 struct RunRow {
   std::int64_t task = -1;
   FixedText<8> model;
-  double line_tension = 0;         ///< NaN for sp
+  double line_tension = 0;  ///< NaN for sp
   double wall_stiffness = 0;
   double obstacle_gap = 0;
   double obstacle_diameter = 0;
@@ -39,12 +39,12 @@ struct RunRow {
   FixedText<16> obstacle_filling;  ///< "saturated" or "density"
   double box = 0;
   std::int64_t seed = 0;
-  std::int64_t vertices = 0;       ///< 1 for sp
+  std::int64_t vertices = 0;  ///< 1 for sp
   double time_step = 0;
   double max_time = 0;
   double terminal_speed = 0;
   double near_wall_drag = 0;
-  double area_stiffness = 0;       ///< NaN for sp
+  double area_stiffness = 0;  ///< NaN for sp
   FixedText<8> perimeter_spring;
   double perimeter_stiffness = 0;  ///< NaN for sp
   FixedText<8> self_contact;
@@ -67,8 +67,9 @@ struct RunRow {
   FixedText<256> message;
 };
 
-/// Density of a saturated array [1/sigma^2]: discs of diameter + gap cover 0.547069 of the plane at the jamming
-/// limit of random sequential addition (Feder 1980; value of Wang, Int. J. Mod. Phys. C 5, 707 (1994)).
+/// Density of a saturated array [1/sigma^2]: discs of diameter + gap cover 0.547069 of the plane at the
+/// jamming limit of random sequential addition (Feder 1980; value of Wang, Int. J. Mod. Phys. C 5, 707
+/// (1994)).
 double saturated_density(double diameter, double gap);
 
 /// The columns that say what was run.

@@ -16,8 +16,8 @@ struct Key {
   ValueKind kind;
   std::vector<std::string> words;  ///< see expand_list
   std::string default_text;
-  std::string help;                ///< meaning and unit
-  bool dp_only;                    ///< has no meaning for model=sp
+  std::string help;  ///< meaning and unit
+  bool dp_only;      ///< has no meaning for model=sp
   void (*apply)(RunParameters&, const std::string& value);
 };
 
@@ -40,7 +40,8 @@ class Settings {
   /// The expanded values of a key.
   const std::vector<std::string>& values(const std::string& name) const { return values_.at(name); }
 
-  /// All keys as a config file, each with its meaning as a comment if wanted. Reads back as the same settings.
+  /// All keys as a config file, each with its meaning as a comment if wanted. Reads back as the same
+  /// settings.
   std::string to_config(bool with_comments) const;
 
  private:

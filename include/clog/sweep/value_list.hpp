@@ -13,7 +13,8 @@ enum class ValueKind { number, integer, word };
 /// Numbers come back in their shortest exact decimal form.
 /// @param words  what may stand instead of a number (e.g. auto), or all that is allowed for kind word
 /// @throws Error, without the key's name, that says what is wrong with which item
-std::vector<std::string> expand_list(std::string_view text, ValueKind kind, const std::vector<std::string>& words);
+std::vector<std::string> expand_list(std::string_view text, ValueKind kind,
+                                     const std::vector<std::string>& words);
 
 /// Shortest decimal text that reads back as the same number.
 std::string shortest(double value);
