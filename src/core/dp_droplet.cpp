@@ -74,17 +74,4 @@ void DpDroplet::advance(int num_steps) {
 
 double DpDroplet::kinetic_energy() const { return 0.5 * vertex_mass_ * state_.velocity.square().sum(); }
 
-double DpDroplet::deepest_overlap() const {
-  double deepest = 0;
-  const WallContacts& walls = forces_.walls();
-  for (int s = 0; s < walls.num_slots(); ++s)
-    for (Eigen::Index i = 0; i < state_.size(); ++i) {
-      const double distance =
-          std::hypot(state_.x()[i] - walls.slot_x(s)[i], state_.y()[i] - walls.slot_y(s)[i]) -
-          walls.slot_radius(s)[i];
-      deepest = std::max(deepest, walls.range() - distance);
-    }
-  return deepest;
-}
-
 }  // namespace clog

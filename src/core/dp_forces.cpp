@@ -1,5 +1,6 @@
 #include "clog/core/dp_forces.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -13,13 +14,15 @@ DpForces::DpForces(const RunParameters& run, const ObstacleArray& obstacles)
       vertex_diameter_(units::regular_edge_length(run.dp.vertices)),
       contact_stiffness_(contact_stiffness(run.wall_stiffness.value(), vertex_diameter_)),
       weight_(units::droplet_mass * units::gravity),
-      walls_(obstacles, vertex_diameter_ / 2,
-             run.drag.near_wall > 0 ? WallContacts::Keep::nearest : WallContacts::Keep::touching),
+      walls_(obstacles, vertex_diameter_ / 2, WallContacts::Keep::touched_by_edge),
+      nearest_walls_(obstacles, vertex_diameter_ / 2, WallContacts::Keep::nearest_to_vertex),
       self_(vertex_diameter_),
       edge_x_(dp_.vertices),
       edge_y_(dp_.vertices),
       edge_length_(dp_.vertices),
       pull_(dp_.vertices),
+      end_x_(dp_.vertices),
+      end_y_(dp_.vertices),
       wall_distance_(run.drag.near_wall > 0 ? dp_.vertices : 0) {
   set_rest_area(units::rest_area);
 }
@@ -31,11 +34,15 @@ void DpForces::set_rest_area(double area) {
 
 void DpForces::update_contacts(const DropletState& state, double horizon) {
   walls_.update(state, horizon);
+  if (wall_distance_.size() > 0) nearest_walls_.update(state, horizon);
   if (dp_.self_contact == SelfContact::on)
     self_.update(state, horizon, polygon_shape(state.position).perimeter / dp_.vertices);
 }
 
-void DpForces::forget_contacts() { walls_.invalidate(); }
+void DpForces::forget_contacts() {
+  walls_.invalidate();
+  nearest_walls_.invalidate();
+}
 
 double DpForces::spring_length() const {
   return dp_.perimeter_spring == PerimeterSpring::rest ? rest_edge_ : shape_.perimeter / dp_.vertices;
@@ -61,13 +68,14 @@ void DpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   if (dp_.gravity == Gravity::area) add_centroid_weight(state, force);
 
   for (int s = 0; s < walls_.num_slots(); ++s)
-    kernel::add_wall_forces(n, x, y, {walls_.slot_x(s), walls_.slot_y(s), walls_.slot_radius(s)},
-                            walls_.range(), contact_stiffness_, fx, fy);
+    kernel::add_wall_forces(n, x, y, edges, {walls_.slot_x(s), walls_.slot_y(s), walls_.slot_radius(s)},
+                            walls_.range(), contact_stiffness_, end_x_.data(), end_y_.data(), fx, fy);
   if (wall_distance_.size() > 0) {
     wall_distance_.setConstant(std::numeric_limits<double>::infinity());
-    for (int s = 0; s < walls_.num_slots(); ++s)
-      kernel::shrink_to_wall_distance(n, x, y, {walls_.slot_x(s), walls_.slot_y(s), walls_.slot_radius(s)},
-                                      wall_distance_.data());
+    for (int s = 0; s < nearest_walls_.num_slots(); ++s)
+      kernel::shrink_to_wall_distance(
+          n, x, y, {nearest_walls_.slot_x(s), nearest_walls_.slot_y(s), nearest_walls_.slot_radius(s)},
+          wall_distance_.data());
     wall_distance_ = wall_distance_.max(vertex_diameter_ / 2);
   }
   if (dp_.self_contact == SelfContact::on) add_self_contact(state, force);
@@ -125,6 +133,26 @@ void DpForces::add_self_contact(const DropletState& state, Eigen::ArrayXd& force
   }
 }
 
+template <class Visit>
+void DpForces::visit_overlaps(const DropletState& state, Visit visit) const {
+  const int n = dp_.vertices;
+  for (int s = 0; s < walls_.num_slots(); ++s)
+    for (int i = 0; i < n; ++i) {
+      const int next = i + 1 < n ? i + 1 : 0;
+      const double distance = distance_to_segment({walls_.slot_x(s)[i], walls_.slot_y(s)[i]},
+                                                  {state.position[i], state.position[n + i]},
+                                                  {state.position[next], state.position[n + next]}) -
+                              walls_.slot_radius(s)[i];
+      visit(walls_.range() - distance);
+    }
+}
+
+double DpForces::deepest_overlap(const DropletState& state) const {
+  double deepest = 0;
+  visit_overlaps(state, [&](double overlap) { deepest = std::max(deepest, overlap); });
+  return deepest;
+}
+
 DpEnergy DpForces::energy(const DropletState& state) const {
   const int n = dp_.vertices;
   const double* x = state.position.data();
@@ -141,13 +169,9 @@ DpEnergy DpForces::energy(const DropletState& state) const {
     const double stretch = std::hypot(x[i] - x[j], y[i] - y[j]) - reference;
     energy.spring += 0.5 * *dp_.perimeter_stiffness * n * stretch * stretch;
   }
-  for (int s = 0; s < walls_.num_slots(); ++s)
-    for (int i = 0; i < n; ++i) {
-      const double distance =
-          std::hypot(x[i] - walls_.slot_x(s)[i], y[i] - walls_.slot_y(s)[i]) - walls_.slot_radius(s)[i];
-      const double overlap = std::max(0.0, walls_.range() - distance);
-      energy.wall += 0.5 * contact_stiffness_ * overlap * overlap;
-    }
+  visit_overlaps(state, [&](double overlap) {
+    if (overlap > 0) energy.wall += 0.5 * contact_stiffness_ * overlap * overlap;
+  });
   if (dp_.self_contact == SelfContact::on)
     for (const SelfContacts::Strand& strand : self_.strands()) {
       const double overlap = std::max(0.0, self_.diameter() - nearest_point(strand, x, y, n).distance);

@@ -59,18 +59,37 @@ void interface_forces(int n, const Interface& interface, EdgeArrays edges, doubl
 }
 
 CLOG_MULTIVERSION
-void add_wall_forces(int n, const double* __restrict x, const double* __restrict y, WallSlot slot,
-                     double range, double stiffness, double* __restrict fx, double* __restrict fy) {
+void add_wall_forces(int n, const double* __restrict x, const double* __restrict y, EdgeArrays edges,
+                     WallSlot slot, double range, double stiffness, double* __restrict end_x,
+                     double* __restrict end_y, double* __restrict fx, double* __restrict fy) {
+  const double* __restrict ex = edges.x;
+  const double* __restrict ey = edges.y;
+  const double* __restrict length = edges.length;
 #pragma omp simd
   for (int i = 0; i < n; ++i) {
-    const double dx = x[i] - slot.x[i];
-    const double dy = y[i] - slot.y[i];
+    const double to_x = slot.x[i] - x[i];
+    const double to_y = slot.y[i] - y[i];
+    const double along = (to_x * ex[i] + to_y * ey[i]) / (length[i] * length[i]);
+    const double not_before =
+        along > 0 ? along : 0.0;  // std::clamp would keep the loop from being vectorised
+    const double fraction = not_before < 1 ? not_before : 1.0;
+    const double dx = fraction * ex[i] - to_x;
+    const double dy = fraction * ey[i] - to_y;
     const double r =
-        std::sqrt(dx * dx + dy * dy) + 1e-300;  // a vertex on the very centre gets no direction, but no NaN
+        std::sqrt(dx * dx + dy * dy) + 1e-300;  // a point on the very centre gets no direction, but no NaN
     const double overlap = std::max(0.0, range + slot.radius[i] - r);
     const double push = stiffness * overlap / r;
-    fx[i] += push * dx;
-    fy[i] += push * dy;
+    end_x[i] = fraction * push * dx;
+    end_y[i] = fraction * push * dy;
+    fx[i] += (1 - fraction) * push * dx;
+    fy[i] += (1 - fraction) * push * dy;
+  }
+  fx[0] += end_x[n - 1];
+  fy[0] += end_y[n - 1];
+#pragma omp simd
+  for (int i = 1; i < n; ++i) {
+    fx[i] += end_x[i - 1];
+    fy[i] += end_y[i - 1];
   }
 }
 

@@ -33,10 +33,12 @@ struct WallSlot {
   const double* y;
   const double* radius;
 };
-/// Adds k_c (range - d) away from the wall where d < range, d the distance to the slot's circle.
-void add_wall_forces(int n, const double* x, const double* y, WallSlot slot, double range, double stiffness,
-                     double* fx, double* fy);
-/// distance[i] = min(distance[i], distance to the slot's circle).
+/// Adds k_c (range - d) away from the wall where d < range, d the distance of an edge's nearest point to the
+/// slot's circle; the edge's two vertices share the push as the point divides it. `end_x`, `end_y` are
+/// scratch of length n.
+void add_wall_forces(int n, const double* x, const double* y, EdgeArrays edges, WallSlot slot, double range,
+                     double stiffness, double* end_x, double* end_y, double* fx, double* fy);
+/// distance[i] = min(distance[i], distance of vertex i to the slot's circle).
 void shrink_to_wall_distance(int n, const double* x, const double* y, WallSlot slot, double* distance);
 
 /// v (1 - damping) + f half_dt_over_m, then x + dt v, over n numbers; damping = zeta dt/(2m).

@@ -65,7 +65,7 @@ void resolve_dp(RunParameters& run) {
   const double vertex_diameter = units::regular_edge_length(dp.vertices);
   const double circumference = std::numbers::pi * units::droplet_diameter;
   if (!run.wall_stiffness) {
-    const double stiffest = auto_contact_omega_dt2 * vertex_mass / (run.time_step * run.time_step);
+    const double stiffest = auto_contact_omega_dt2 / 2 * vertex_mass / (run.time_step * run.time_step);
     run.wall_stiffness = wall_stiffness(stiffest, vertex_diameter);
   }
   require_positive("wall-stiffness", *run.wall_stiffness);

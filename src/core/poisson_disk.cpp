@@ -52,7 +52,8 @@ class SequentialAddition {
       const Point& point = point_in_cell_[cell];
       const auto row = static_cast<double>(cell / cells_per_side_);
       const auto column = static_cast<double>(cell % cells_per_side_);
-      if (point.taken()) circles.push_back({column * cell_size_ + point.x, row * cell_size_ + point.y, radius});
+      if (point.taken())
+        circles.push_back({column * cell_size_ + point.x, row * cell_size_ + point.y, radius});
     }
     return circles;
   }

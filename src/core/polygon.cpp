@@ -1,5 +1,6 @@
 #include "clog/core/polygon.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -42,6 +43,14 @@ bool encloses(const Eigen::ArrayXd& position, double x, double y) {
       inside = !inside;
   }
   return inside;
+}
+
+double distance_to_segment(const Eigen::Array2d& point, const Eigen::Array2d& begin,
+                           const Eigen::Array2d& end) {
+  const Eigen::Array2d edge = end - begin;
+  const double length2 = edge.square().sum();
+  const double along = length2 > 0 ? std::clamp((edge * (point - begin)).sum() / length2, 0.0, 1.0) : 0.0;
+  return (point - begin - along * edge).matrix().norm();
 }
 
 Eigen::Array2d area_centroid(const Eigen::ArrayXd& position) {

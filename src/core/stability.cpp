@@ -12,7 +12,7 @@ StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double per
   const double vertex_mass = units::droplet_mass / num_vertices;
   const double vertex_diameter = units::regular_edge_length(dp.vertices);
   return {
-      .contact = contact_stiffness(wall_stiffness, vertex_diameter) / vertex_mass,
+      .contact = 2 * contact_stiffness(wall_stiffness, vertex_diameter) / vertex_mass,
       .area = dp.area_stiffness * perimeter * perimeter / units::droplet_mass,
       .tension = 4 * dp.line_tension / (perimeter / num_vertices * vertex_mass),
       .spring = 4 * dp.perimeter_stiffness.value() * num_vertices / vertex_mass,

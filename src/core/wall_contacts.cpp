@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "clog/core/polygon.hpp"
+
 namespace clog {
 namespace {
 
@@ -18,7 +20,7 @@ WallContacts::WallContacts(const ObstacleArray& array, double range, Keep keep)
     : array_(&array),
       range_(range),
       keep_(keep),
-      skin_(keep == Keep::touching ? touching_skin : nearest_skin) {}
+      skin_(keep == Keep::touched_by_edge ? touching_skin : nearest_skin) {}
 
 void WallContacts::update(const DropletState& state, double horizon) {
   if (reference_.size() == state.position.size()) {
@@ -39,7 +41,7 @@ void WallContacts::gather_nearby(const DropletState& state) {
                                y.minCoeff(),          y.maxCoeff(),          range_ + skin_};
   nearby_.clear();
   array_->gather(window, nearby_);
-  if (keep_ == Keep::touching) return;
+  if (keep_ == Keep::touched_by_edge) return;
   // The nearest obstacle may be far away in a sparse array: look as far as a box (a periodic array holds at
   // least one obstacle there, if it holds any).
   for (window.margin = 0.5; window.margin < 2 * array_->box(); window.margin *= 2) {
@@ -67,17 +69,16 @@ void WallContacts::rebuild(const DropletState& state) {
   num_slots_ = 0;
   std::vector<double> distance(nearby_.size());
   for (Eigen::Index i = 0; i < num_points_; ++i) {
+    const Eigen::Index next = keep_ == Keep::nearest_to_vertex ? i : (i + 1) % num_points_;
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < nearby_.size(); ++k) {
-      const double dx = x[i] - nearby_[k].x;
-      const double dy = y[i] - nearby_[k].y;
-      distance[k] = std::sqrt(dx * dx + dy * dy) - nearby_[k].radius;
+      distance[k] = distance_to_segment({nearby_[k].x, nearby_[k].y}, {x[i], y[i]}, {x[next], y[next]}) -
+                    nearby_[k].radius;
       nearest = std::min(nearest, distance[k]);
     }
     // An obstacle is in contact later only if it is within range + skin now; it is the nearest later only if
     // it is within 2 skins of the nearest now.
-    const double reach =
-        keep_ == Keep::touching ? range_ + skin_ : std::max(range_ + skin_, nearest + 2 * skin_);
+    const double reach = keep_ == Keep::touched_by_edge ? range_ + skin_ : nearest + 2 * skin_;
     candidates_[i].clear();
     for (std::size_t k = 0; k < nearby_.size(); ++k)
       if (distance[k] <= reach) candidates_[i].push_back(static_cast<int>(k));

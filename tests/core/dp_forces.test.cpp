@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "support.hpp"
 
 namespace clog {
@@ -167,7 +169,7 @@ TEST(DpForces, ContactListsMissNothingWhileTheDropletMoves) {
   state.velocity.head(64).setConstant(0.05);
   state.velocity.tail(64).setConstant(0.03);
   Eigen::ArrayXd force(128);
-  const double range = forces.walls().range();
+  const double range = forces.contact_range();
   const double stiffness = contact_stiffness(*run.wall_stiffness, 2 * range);
   for (int step = 0; step < 4000; ++step) {
     state.position += 0.1 * state.velocity;
@@ -175,24 +177,58 @@ TEST(DpForces, ContactListsMissNothingWhileTheDropletMoves) {
     forces.update_contacts(state, 0.1);
     if (step % 50 != 0) continue;
     forces.evaluate(state, force);
-    for (int i = 0; i < 64; i += 7) {
-      const Eigen::Array2d vertex = state.frame.origin + Eigen::Array2d(state.x()[i], state.y()[i]);
-      Eigen::Array2d expected{0, 0};
-      double nearest = 1e9;
-      for (const Obstacle& obstacle : array.obstacles())
-        for (int image_x = -1; image_x <= 1; ++image_x)
-          for (int image_y = -1; image_y <= 1; ++image_y) {
-            const Eigen::Array2d away =
-                vertex - Eigen::Array2d(obstacle.x + 12.5 * image_x, obstacle.y + 12.5 * image_y);
-            const double distance = away.matrix().norm() - obstacle.radius;
-            nearest = std::min(nearest, distance);
-            if (distance < range) expected += stiffness * (range - distance) * away / away.matrix().norm();
-          }
-      EXPECT_NEAR(forces.wall_distance()[i], std::max(nearest, range), 1e-12);
-      EXPECT_NEAR(force[i], expected[0], 1e-9);
-      EXPECT_NEAR(force[64 + i], expected[1], 1e-9);
+    Eigen::Array<double, 64, 2> expected = Eigen::Array<double, 64, 2>::Zero();
+    Eigen::Array<double, 64, 1> nearest = Eigen::Array<double, 64, 1>::Constant(1e9);
+    for (const Obstacle& obstacle : array.obstacles())
+      for (int image = 0; image < 9; ++image) {
+        const Eigen::Array2d centre(obstacle.x + 12.5 * (image % 3 - 1), obstacle.y + 12.5 * (image / 3 - 1));
+        for (int i = 0; i < 64; ++i) {
+          const int next = (i + 1) % 64;
+          const Eigen::Array2d begin = state.frame.origin + Eigen::Array2d(state.x()[i], state.y()[i]);
+          const Eigen::Array2d end = state.frame.origin + Eigen::Array2d(state.x()[next], state.y()[next]);
+          nearest[i] = std::min(nearest[i], (begin - centre).matrix().norm() - obstacle.radius);
+          const double distance = distance_to_segment(centre, begin, end) - obstacle.radius;
+          if (distance >= range) continue;
+          const Eigen::Array2d edge = end - begin;
+          const double fraction = std::clamp((edge * (centre - begin)).sum() / edge.square().sum(), 0.0, 1.0);
+          const Eigen::Array2d away = begin + fraction * edge - centre;
+          const Eigen::Array2d push = stiffness * (range - distance) * away / away.matrix().norm();
+          expected.row(i) += (1 - fraction) * push.transpose();
+          expected.row(next) += fraction * push.transpose();
+        }
+      }
+    for (int i = 0; i < 64; ++i) {
+      EXPECT_NEAR(forces.wall_distance()[i], std::max(nearest[i], range), 1e-12);
+      EXPECT_NEAR(force[i], expected(i, 0), 1e-9);
+      EXPECT_NEAR(force[64 + i], expected(i, 1), 1e-9);
     }
   }
+}
+
+TEST(DpForces, AnObstacleBetweenTwoVerticesIsPushedOffByTheirEdge) {
+  // A box whose lower edge spans an obstacle that touches no vertex.
+  Eigen::ArrayXd position(32);
+  for (int i = 0; i < 16; ++i) {
+    const int side = i / 4;
+    const double along = i % 4 / 4.0 * 2 - 1;
+    position[i] = side == 0 ? along : side == 1 ? 1 : side == 2 ? -along : -1;
+    position[16 + i] = side == 0 ? -1 : side == 1 ? along : side == 2 ? 1 : -along;
+  }
+  const RunParameters run = only([](RunParameters&) {}, 16);
+  const double range = units::regular_edge_length(16) / 2;
+  // Its surface lies 0.1 within the contact range below the middle of edge 1, from (-0.5, -1) to (0, -1).
+  const ObstacleArray obstacle(20, {{19.75, 20 - 1 - 0.05 - range + 0.1, 0.05}});
+  DpForces forces(run, obstacle);
+  forces.set_weight(0);
+  const DropletState state = state_of(position);
+  forces.update_contacts(state, 0);
+  Eigen::ArrayXd force(32);
+  forces.evaluate(state, force);
+  const double push = contact_stiffness(*run.wall_stiffness, 2 * range) * 0.1;
+  EXPECT_NEAR(forces.deepest_overlap(state), 0.1, 1e-12);
+  EXPECT_GE(force[16 + 1], 0.5 * push - 1e-9);
+  EXPECT_GE(force[16 + 2], 0.5 * push - 1e-9);
+  EXPECT_NEAR(force.head(16).sum(), 0, 1e-9);
 }
 
 }  // namespace

@@ -30,6 +30,13 @@ TEST(Polygon, ARectangleIsMeasuredExactly) {
   EXPECT_DOUBLE_EQ(area_centroid(position)[1], 3);
 }
 
+TEST(DistanceToSegment, IsThatOfTheNearestPoint) {
+  EXPECT_DOUBLE_EQ(distance_to_segment({1, 2}, {0, 0}, {3, 0}), 2);
+  EXPECT_DOUBLE_EQ(distance_to_segment({-3, 4}, {0, 0}, {3, 0}), 5);
+  EXPECT_DOUBLE_EQ(distance_to_segment({6, 4}, {0, 0}, {3, 0}), 5);
+  EXPECT_DOUBLE_EQ(distance_to_segment({3, 4}, {0, 0}, {0, 0}), 5);
+}
+
 TEST(Polygon, EnclosesWhatIsInside) {
   Eigen::ArrayXd position(12);  // a U, open at the top
   position << 0, 3, 3, 2, 1, 0, 0, 0, 3, 1, 1, 3;

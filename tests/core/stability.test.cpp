@@ -53,10 +53,10 @@ TEST(StiffModes, BoundTheStiffestModeOfTheDroplet) {
     }
 }
 
-TEST(StiffModes, ContactModeIsTheOneOfASingleVertex) {
+TEST(StiffModes, ContactModeIsThatOfAVertexWithBothItsEdges) {
   const RunParameters run = bare_parameters(128);
   const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, 3.14);
-  EXPECT_NEAR(modes.contact, 1000 * 128 / units::droplet_mass, 1e-6);
+  EXPECT_NEAR(modes.contact, 2 * 1000 * 128 / units::droplet_mass, 1e-6);
 }
 
 TEST(NumSubsteps, IsOneUpToTheLargestStableStep) {

@@ -22,8 +22,8 @@ class DpDroplet final : public Droplet {
   PolygonShape shape() const override { return polygon_shape(state_.position); }
   DpEnergy potential_energy() const { return forces_.energy(state_); }
   const DpForces& forces() const { return forces_; }
-  /// Deepest overlap of a vertex with an obstacle's contact range [sigma].
-  double deepest_overlap() const;
+  /// See DpForces::deepest_overlap().
+  double deepest_overlap() const { return forces_.deepest_overlap(state_); }
 
  private:
   RunParameters run_;

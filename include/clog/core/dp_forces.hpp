@@ -17,7 +17,7 @@ struct DpEnergy {
   double spring = 0;        ///< (k_l N_v/2) sum (l_i - l_ref)^2
   double line_tension = 0;  ///< gamma P
   double gravity = 0;       ///< -M g h, h measured from the frame's origin
-  double wall = 0;          ///< (k_c/2) sum overlap^2 over vertices and obstacles
+  double wall = 0;          ///< (k_c/2) sum overlap^2 over edges and obstacles
   double self_contact = 0;  ///< (k_c/2) sum overlap^2 over vertices and strands of interface
 
   double total() const { return area + spring + line_tension + gravity + wall + self_contact; }
@@ -45,7 +45,10 @@ class DpForces {
   /// Distance of each vertex to the nearest obstacle at the last evaluate(), not below half a vertex diameter
   /// [sigma]; empty without near-wall drag.
   const Eigen::ArrayXd& wall_distance() const { return wall_distance_; }
-  const WallContacts& walls() const { return walls_; }
+  /// Deepest overlap of an edge with an obstacle's contact range [sigma].
+  double deepest_overlap(const DropletState& state) const;
+  /// Distance from an obstacle's surface at which contact begins, half a vertex diameter [sigma].
+  double contact_range() const { return walls_.range(); }
   const SelfContacts& self_contacts() const { return self_; }
   double vertex_diameter() const { return vertex_diameter_; }
 
@@ -61,12 +64,16 @@ class DpForces {
   double rest_edge_;
   double weight_;
   WallContacts walls_;
+  WallContacts nearest_walls_;  // kept only with near-wall drag
   SelfContacts self_;
   PolygonShape shape_;
-  Eigen::ArrayXd edge_x_, edge_y_, edge_length_, pull_;
+  Eigen::ArrayXd edge_x_, edge_y_, edge_length_, pull_, end_x_, end_y_;
   Eigen::ArrayXd wall_distance_;
 
   double spring_length() const;
+  /// Calls visit(overlap) for every edge and slot [sigma]; negative where they do not touch.
+  template <class Visit>
+  void visit_overlaps(const DropletState& state, Visit visit) const;
   void add_centroid_weight(const DropletState& state, Eigen::ArrayXd& force) const;
   void add_self_contact(const DropletState& state, Eigen::ArrayXd& force) const;
 };

@@ -22,6 +22,10 @@ Eigen::ArrayXd regular_polygon(int num_vertices, double area);
 /// Does the polygon enclose the point? Even-odd rule.
 bool encloses(const Eigen::ArrayXd& position, double x, double y);
 
+/// Distance from a point to the nearest point of the segment from `begin` to `end` [sigma].
+double distance_to_segment(const Eigen::Array2d& point, const Eigen::Array2d& begin,
+                           const Eigen::Array2d& end);
+
 /// Area centroid [sigma].
 Eigen::Array2d area_centroid(const Eigen::ArrayXd& position);
 

@@ -7,7 +7,7 @@ namespace clog {
 /// Upper bounds on omega^2 [1/t0^2] of the stiff modes of a polygon with the given perimeter [sigma].
 /// Velocity Verlet holds a harmonic mode while omega dt < 2; the bounds are those of a chain of masses M/N_v.
 struct StiffModes {
-  double contact = 0;  ///< wall contact of one vertex, k_c N_v/M
+  double contact = 0;  ///< wall contact of one vertex through both its edges, 2 k_c N_v/M
   double area = 0;     ///< uniform pressure, K_a P^2/M
   double tension = 0;  ///< transverse zigzag, 4 Gamma N_v/(l M), l = P/N_v
   double spring = 0;   ///< longitudinal zigzag, 4 K_l N_v^2/M
@@ -15,9 +15,9 @@ struct StiffModes {
   double sum() const { return contact + area + tension + spring; }
 };
 
-/// (omega dt)^2 of a single wall contact for the automatic E_w: keeps overlaps near 1e-2 vertex diameters
+/// (omega dt)^2 of the contact mode for the automatic E_w: keeps overlaps near 1e-2 vertex diameters
 /// and settles without chatter (contact is one-sided, so the linear bound of 4 is far too generous).
-inline constexpr double auto_contact_omega_dt2 = 0.25;
+inline constexpr double auto_contact_omega_dt2 = 0.5;
 /// Largest (omega dt)^2 of the contact alone and of all modes together that we accept; above these,
 /// stopped droplets were seen to chatter instead of coming to rest.
 inline constexpr double max_contact_omega_dt2 = 1.0;

@@ -8,32 +8,29 @@
 
 namespace clog {
 
-/// For every point of a droplet, the obstacles it may touch before the list has to be renewed.
+/// The obstacles that matter to each edge, or each vertex, of a polygon until the list has to be renewed.
 ///
-/// A point lists every obstacle whose surface was within `range` + skin of it, or, with `nearest`, every
-/// obstacle that could become the nearest. Lists hold while no point has moved by more than the skin.
-/// They are kept as `slots`: slot s of point i is one circle; unused slots hold a circle out of reach, so
-/// that the force loop has no branch.
+/// `touched_by_edge`: edge i (from vertex i to the next) lists every obstacle whose surface was within
+/// `range` + skin of it. `nearest_to_vertex`: vertex i lists every obstacle that could become its nearest.
+/// Lists hold while no vertex has moved by more than the skin. They are kept as `slots`: slot s of edge or
+/// vertex i is one circle; unused slots hold a circle out of reach, so that the force loop has no branch.
 class WallContacts {
  public:
-  enum class Keep { touching, nearest };
+  enum class Keep { touched_by_edge, nearest_to_vertex };
 
   /// @param range  largest surface distance at which a wall force acts [sigma]
   WallContacts(const ObstacleArray& array, double range, Keep keep);
 
-  /// Renews the lists when a point may have left its skin before `horizon` more time has passed [t0].
+  /// Renews the lists when a vertex may have left its skin before `horizon` more time has passed [t0].
   void update(const DropletState& state, double horizon);
   /// Forgets the lists: positions changed by more than a move (a new frame origin, a rescaled polygon).
   void invalidate() { reference_.resize(0); }
 
   int num_slots() const { return num_slots_; }
-  Eigen::Index num_points() const { return num_points_; }
-  /// Centres and radii of slot `s`, one per point, relative to the state's frame [sigma].
+  /// Centres and radii of slot `s`, one per edge or vertex, relative to the state's frame [sigma].
   const double* slot_x(int s) const { return slots_.data() + (3 * s + 0) * num_points_; }
   const double* slot_y(int s) const { return slots_.data() + (3 * s + 1) * num_points_; }
   const double* slot_radius(int s) const { return slots_.data() + (3 * s + 2) * num_points_; }
-  /// Obstacles around the droplet at the last renewal, relative to the frame.
-  const std::vector<Obstacle>& nearby() const { return nearby_; }
   double range() const { return range_; }
 
  private:
