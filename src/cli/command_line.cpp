@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -18,12 +19,11 @@ bool is_key(const std::string& name) {
   return false;
 }
 
-/// `key=value` becomes `--key=value`.
-std::string with_dashes(const std::string& word) {
+/// Is this a word like `key=value`?
+bool is_assignment(const std::string& word) {
   const auto equals = word.find('=');
-  const bool is_assignment = equals != std::string::npos && equals > 0 && word[0] != '-' &&
-                             word.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == equals;
-  return is_assignment ? "--" + word : word;
+  return equals != std::string::npos && equals > 0 && word[0] != '-' &&
+         word.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == equals;
 }
 
 }  // namespace
@@ -42,7 +42,10 @@ void CommandLine::parse(int argc, const char* const* argv) {
   std::vector<std::string> words;
   text_ = program_;
   for (int i = 1; i < argc; ++i) {
-    words.push_back(with_dashes(argv[i]));
+    // `key=value` means `--key=value`, except where it is the value of the option before it: --output a=1.h5.
+    const bool is_setting =
+        sweep_keys_ == SweepKeys::accepted && is_assignment(argv[i]) && !(i > 1 && awaits_value(argv[i - 1]));
+    words.push_back((is_setting ? "--" : "") + std::string(argv[i]));
     text_ += std::string(" ") + argv[i];
   }
   po::options_description all;
@@ -65,6 +68,15 @@ void CommandLine::parse(int argc, const char* const* argv) {
     if (is_key(name)) settings_.set(name, value.as<std::string>());
 }
 
+bool CommandLine::awaits_value(const std::string& word) const {
+  if (!word.starts_with("--") || word.find('=') != std::string::npos) return false;
+  for (const auto* group : {&own_, &keys_}) {
+    const auto* option = group->find_nothrow(word.substr(2), false);
+    if (option) return option->semantic()->min_tokens() > 0;
+  }
+  return false;
+}
+
 void CommandLine::refuse_unknown(const std::string& word) const {
   std::vector<std::string> names;
   for (const auto* group : {&own_, &keys_})
@@ -82,7 +94,10 @@ void CommandLine::read_config(const std::string& path) {
     throw Error("cannot read the config file " + path + " (no such file, or not readable)");
   try {
     const po::parsed_options parsed = po::parse_config_file(file, keys_, true);
+    std::set<std::string> seen;
     for (const po::option& option : parsed.options) {
+      if (!seen.insert(option.string_key).second)
+        throw Error("the key " + option.string_key + " stands there twice");
       if (option.value.empty() || option.value.front().empty())
         throw Error("invalid " + option.string_key + "= (has no value)");
       settings_.set(option.string_key, option.value.front());

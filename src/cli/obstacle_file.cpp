@@ -43,8 +43,7 @@ std::vector<Obstacle> read_obstacles(const std::string& path, double default_dia
     ++line_number;
     const std::vector<std::string> cells = split_line(line);
     const bool is_blank = line.find_first_not_of(" \t\r") == std::string::npos;
-    const bool is_header =
-        line_number == 1 && !cells.empty() && cells[0].find_first_of("0123456789") == std::string::npos;
+    const bool is_header = line_number == 1 && !cells.empty() && cells[0] == "x";
     if (is_blank || is_header || line.starts_with('#')) continue;
     try {
       obstacles.push_back(parse_obstacle(cells, default_diameter, box));

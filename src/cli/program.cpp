@@ -1,6 +1,7 @@
 #include "clog/cli/program.hpp"
 
 #include <csignal>
+#include <cstdio>
 #include <ctime>
 #include <exception>
 #include <iostream>
@@ -29,7 +30,10 @@ std::string utc_now() {
 
 int run_program(const std::string& program, const std::function<int()>& body) {
   try {
-    return body();
+    const int exit_code = body();
+    std::cout.flush();
+    if (!std::cout || std::fflush(stdout) != 0) throw Error("cannot write the output; the disk may be full");
+    return exit_code;
   } catch (const Error& error) {
     std::cerr << program << ": " << error.what() << std::endl;
     return exit_user_fault;

@@ -13,9 +13,13 @@
 namespace clog {
 namespace {
 
-constexpr int standard_steps_per_check = 64;
 /// Beyond this the integration has broken down: free fall without drag over a whole box stays below it.
 constexpr double diverged_energy_ratio = 1e8;
+/// Compressibility and line tension keep a droplet far within these.
+constexpr double diverged_area_error = 0.5;  // relative
+constexpr double diverged_perimeter = 1000;  // [sigma]
+/// A droplet just released is slow; it cannot be told from a clogged one before it had the time to fall.
+constexpr double relaxation_times_before_a_clog = 10;
 
 std::unique_ptr<Droplet> make_droplet(const RunParameters& run, const ObstacleArray& obstacles) {
   DropletState released = release_droplet(run, obstacles);
@@ -47,9 +51,8 @@ ArrayRun::ArrayRun(const RunParameters& run, std::shared_ptr<const ObstacleArray
       droplet_(make_droplet(run_, *obstacles_)),
       start_frame_(droplet_->state().frame),
       start_(droplet_->state().centre()),
-      max_steps_(std::max<std::int64_t>(1, std::llround(run_.max_time / run_.time_step))) {}
-
-int ArrayRun::steps_per_check() const { return standard_steps_per_check; }
+      max_steps_(std::max<std::int64_t>(1, std::llround(run_.max_time / run_.time_step))),
+      first_quiet_time_(relaxation_times_before_a_clog * run_.drag.terminal_speed / units::gravity) {}
 
 Eigen::Array2d ArrayRun::displacement() const {
   return droplet_->state().frame.displacement(droplet_->state().centre(), start_frame_, start_);
@@ -62,8 +65,7 @@ double ArrayRun::kinetic_energy_ratio() const {
 
 bool ArrayRun::advance(int num_checks) {
   for (int i = 0; i < num_checks && status_ == RunStatus::running; ++i) {
-    const auto steps =
-        static_cast<int>(std::min<std::int64_t>(standard_steps_per_check, max_steps_ - steps_done_));
+    const auto steps = static_cast<int>(std::min<std::int64_t>(steps_per_check, max_steps_ - steps_done_));
     droplet_->advance(steps);
     steps_done_ += steps;
     check();
@@ -73,15 +75,20 @@ bool ArrayRun::advance(int num_checks) {
 
 void ArrayRun::check() {
   const double energy_ratio = kinetic_energy_ratio();
-  if (!(energy_ratio < diverged_energy_ratio)) {
+  const PolygonShape shape = droplet_->shape();
+  const bool is_whole = energy_ratio < diverged_energy_ratio && shape.perimeter < diverged_perimeter &&
+                        std::abs(shape.area / units::rest_area - 1) < diverged_area_error;
+  if (!is_whole) {  // also if any of them is not a number
     std::ostringstream message;
-    message << "diverged at t=" << time() << ": E_k/E_t=" << energy_ratio << "; try a smaller time-step";
+    message << "diverged at t=" << time() << ": E_k/E_t=" << energy_ratio << ", area=" << shape.area
+            << ", perimeter=" << shape.perimeter << "; try a smaller time-step or terminal-speed";
     message_ = message.str();
     status_ = RunStatus::failed;
     return;
   }
   record_.add(time(), displacement()[0]);
-  quiet_checks_ = energy_ratio < run_.clog_energy ? quiet_checks_ + 1 : 0;
+  const bool is_quiet = energy_ratio < run_.clog_energy && time() > first_quiet_time_;
+  quiet_checks_ = is_quiet ? quiet_checks_ + 1 : 0;
   if (quiet_checks_ >= 2)
     status_ = RunStatus::clogged;
   else if (steps_done_ >= max_steps_)

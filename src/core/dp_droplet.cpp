@@ -24,7 +24,7 @@ DpDroplet::DpDroplet(const RunParameters& run, const ObstacleArray& obstacles, D
       force_(2 * run.dp.vertices),
       damping_(run.drag.near_wall > 0 ? 2 * run.dp.vertices : 0) {
   state_ = std::move(initial);
-  forces_.update_contacts(state_, steps_per_check * run_.time_step);
+  forces_.update_contacts(state_, state_.possible_travel(steps_per_check * run_.time_step));
   forces_.evaluate(state_, force_);
   measure_damping();
 }
@@ -64,7 +64,7 @@ void DpDroplet::advance(int num_steps) {
   for (int done = 0; done < num_steps; done += steps_per_check) {
     const int steps = std::min(steps_per_check, num_steps - done);
     if (state_.recentre().any()) forces_.forget_contacts();
-    forces_.update_contacts(state_, steps * run_.time_step);
+    forces_.update_contacts(state_, state_.possible_travel(steps * run_.time_step));
     const StiffModes modes = stiff_modes(run_.dp, *run_.wall_stiffness, forces_.shape().perimeter);
     const int substeps = num_substeps(modes, run_.time_step);
     for (int i = 0; i < steps * substeps; ++i) step(run_.time_step / substeps);

@@ -32,11 +32,11 @@ void DpForces::set_rest_area(double area) {
   rest_edge_ = units::regular_edge_length(dp_.vertices, area);
 }
 
-void DpForces::update_contacts(const DropletState& state, double horizon) {
-  walls_.update(state, horizon);
-  if (wall_distance_.size() > 0) nearest_walls_.update(state, horizon);
+void DpForces::update_contacts(const DropletState& state, const Travel& travel) {
+  walls_.update(state, travel);
+  if (wall_distance_.size() > 0) nearest_walls_.update(state, travel);
   if (dp_.self_contact == SelfContact::on)
-    self_.update(state, horizon, polygon_shape(state.position).perimeter / dp_.vertices);
+    self_.update(state, travel, polygon_shape(state.position).perimeter / dp_.vertices);
 }
 
 void DpForces::forget_contacts() {

@@ -1,5 +1,6 @@
 #include "clog/core/parameters.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <sstream>
@@ -41,9 +42,15 @@ void validate_obstacles(const ObstacleParameters& obstacles, int vertices, Model
   constexpr double smallest_box = 5 * units::droplet_diameter;
   require(obstacles.box >= smallest_box, "box", obstacles.box,
           "the droplet would meet its own periodic image) use at least 5");
-  require(obstacles.box <= 1e4, "box", obstacles.box,
-          "the array would need more than ten gigabytes) use at most 10000; the array is periodic");
+
   if (obstacles.density) require_positive("obstacle-density", *obstacles.density);
+  const double spacing = obstacles.diameter + obstacles.gap;
+  require(spacing <= obstacles.box / 2, "box", obstacles.box,
+          "holds no two obstacles of diameter " + text(obstacles.diameter) + " with gap " +
+              text(obstacles.gap) + ") use at least " + text(2 * spacing));
+  require(obstacles.box <= 1e4 * spacing, "box", obstacles.box,
+          "the array would need more than ten gigabytes) use at most " + text(1e4 * spacing) +
+              "; the array is periodic");
   if (model == Model::dp) {
     const double vertex_diameter = units::regular_edge_length(vertices);
     require(
@@ -64,14 +71,19 @@ void resolve_dp(RunParameters& run) {
   const double vertex_mass = units::droplet_mass / dp.vertices;
   const double vertex_diameter = units::regular_edge_length(dp.vertices);
   const double circumference = std::numbers::pi * units::droplet_diameter;
-  if (!run.wall_stiffness) {
+  const bool automatic = !run.wall_stiffness;
+  if (automatic) {
     const double stiffest = auto_contact_omega_dt2 / 2 * vertex_mass / (run.time_step * run.time_step);
     run.wall_stiffness = wall_stiffness(stiffest, vertex_diameter);
   }
   require_positive("wall-stiffness", *run.wall_stiffness);
 
   const StiffModes modes = stiff_modes(dp, *run.wall_stiffness, circumference);
-  const double largest = largest_stable_step(modes);
+  // An automatic contact follows the step; only the other modes limit it then.
+  const double largest = automatic ? std::sqrt(std::min(max_area_omega_dt2 / modes.area,
+                                                        (max_total_omega_dt2 - auto_contact_omega_dt2) /
+                                                            (modes.sum() - modes.contact)))
+                                   : largest_stable_step(modes);
   const double stiffest_omega_dt = std::sqrt(modes.sum()) * run.time_step;
   require(num_substeps(modes, run.time_step) == 1, "time-step", run.time_step,
           "contact, area, tension and spring modes together have omega*dt = " + text(stiffest_omega_dt) +
@@ -106,14 +118,21 @@ void resolve_sp(RunParameters& run) {
 RunParameters resolve(RunParameters run) {
   require_positive("time-step", run.time_step);
   require_positive("max-time", run.max_time);
+  require(run.time_step >= 1e-9, "time-step", run.time_step, "smaller than any mode needs) try 1e-3");
   require(run.max_time >= run.time_step, "max-time", run.max_time, "shorter than one time-step)");
+  require(run.max_time / run.time_step <= 1e15, "max-time", run.max_time,
+          "more than 1e15 steps) use at most " + text(1e15 * run.time_step));
   require(run.clog_energy > 0 && run.clog_energy < 1e-3, "clog-energy", run.clog_energy,
           "must lie in 0..1e-3, a fraction of the kinetic energy at terminal speed) try 1e-17");
   require_positive("terminal-speed", run.drag.terminal_speed);
+  require(run.drag.terminal_speed <= 100, "terminal-speed", run.drag.terminal_speed,
+          "the drag would not matter before many boxes have passed) use at most 100");
   require(run.time_step <= run.drag.terminal_speed, "time-step", run.time_step,
           "does not resolve the drag's relaxation time, terminal-speed=" + text(run.drag.terminal_speed) +
               ") try " + text(0.1 * run.drag.terminal_speed));
   require_not_negative("near-wall-drag", run.drag.near_wall);
+  require(run.drag.near_wall <= 1000, "near-wall-drag", run.drag.near_wall,
+          "the droplet would hang in the drag of its surroundings) use at most 1000");
   if (run.model == Model::dp)
     resolve_dp(run);
   else

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <sstream>
+#include <string>
 #include <vector>
 
 #include "clog/core/dp_forces.hpp"
@@ -48,11 +48,8 @@ LocalFrame frame_around(const Eigen::Array2d& place, double box) {
   return frame;
 }
 
-[[noreturn]] void refuse_release(const char* reason) {
-  std::ostringstream message;
-  message << "cannot release the droplet (" << reason
-          << ") use a wider obstacle-gap, fewer obstacles or another seed";
-  throw Error(message.str());
+[[noreturn]] void refuse_release(const std::string& reason, const std::string& remedy) {
+  throw Error("cannot release the droplet (" + reason + ") try " + remedy + ", or another seed");
 }
 
 DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles) {
@@ -61,7 +58,8 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
   const Eigen::Array2d place = nearest_void(obstacles);
   const double room = clearance(obstacles, place[0], place[1], 2 * radius) - vertex_diameter;
   const double smallest_radius = 4 * vertex_diameter / (2 * std::numbers::pi);
-  if (room < smallest_radius) refuse_release("no void near the centre of the box");
+  if (room < smallest_radius)
+    refuse_release("no void near the centre of the box", "more vertices or a wider obstacle-gap");
 
   double area = units::rest_area * std::min(1.0, std::pow(room / radius, 2));
   DropletState state;
@@ -73,6 +71,9 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
 
   DpForces forces(run, obstacles);
   forces.set_weight(0);
+  // While it grows, vertices are kept evenly spread: springs to a rest length may be too weak for that, and
+  // vertices that run together make the interface too stiff for any step.
+  forces.set_perimeter_spring(PerimeterSpring::mean);
   const double vertex_weight = units::droplet_mass * units::gravity / n;
   // A polygon smaller than the droplet has a smaller perimeter: a stiffer tension mode, a softer area mode.
   const auto options_at = [&](double perimeter) {
@@ -81,7 +82,7 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
                        .largest_step = 0.5 * largest_stable_step(modes),
                        .force_tolerance = vertex_weight,
                        .max_iterations = 400,
-                       .max_move = 0.1 * vertex_diameter};
+                       .max_move = 0.05 * vertex_diameter};
   };
   constexpr double growth = 1.02;  // of the area, per stage
   while (area < units::rest_area) {
@@ -92,13 +93,17 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
                                                           : polygon_shape(state.position).perimeter));
     if (state.recentre().any()) forces.forget_contacts();
   }
-  forces.set_rest_area(units::rest_area);
   FireOptions last = options_at(polygon_shape(state.position).perimeter);
   last.force_tolerance = release_force_tolerance * vertex_weight;
   last.max_iterations = 200000;
-  if (!minimize_fire(forces, state, last).converged)
-    refuse_release("the grown droplet does not come to rest");
-  if (num_enclosed(state, obstacles) > 0) refuse_release("the grown droplet encloses an obstacle");
+  for (const PerimeterSpring spring : {PerimeterSpring::mean, run.dp.perimeter_spring}) {
+    forces.set_perimeter_spring(spring);
+    if (!minimize_fire(forces, state, last).converged)
+      refuse_release("the grown droplet does not come to rest",
+                     "a larger line-tension or perimeter-stiffness");
+  }
+  if (num_enclosed(state, obstacles) > 0)
+    refuse_release("the grown droplet encloses an obstacle", "more vertices");
   return state;
 }
 
@@ -118,7 +123,8 @@ DropletState release_sp(const RunParameters& run, const ObstacleArray& obstacles
                             .force_tolerance = release_force_tolerance * weight,
                             .max_iterations = 100000,
                             .max_move = 0.01};
-  if (!minimize_fire(forces, state, options).converged) refuse_release("the soft disk does not come to rest");
+  if (!minimize_fire(forces, state, options).converged)
+    refuse_release("the soft disk does not come to rest", "a smaller wall-stiffness");
   return state;
 }
 

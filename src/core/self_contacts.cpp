@@ -36,23 +36,22 @@ StrandContact nearest_point(const SelfContacts::Strand& strand, const double* x,
   return nearest;
 }
 
-void SelfContacts::update(const DropletState& state, double horizon, double mean_edge) {
+void SelfContacts::update(const DropletState& state, const Travel& travel, double mean_edge) {
   const Eigen::Index n = state.size();
   if (reference_.size() == 2 * n) {
     const Eigen::Array2d centre = state.centre();
-    const Eigen::Array2d drift = state.mean_velocity();
     const double farthest2 = ((state.x() - centre[0] - reference_.head(n)).square() +
                               (state.y() - centre[1] - reference_.tail(n)).square())
                                  .maxCoeff();
-    const double fastest2 =
-        ((state.velocity.head(n) - drift[0]).square() + (state.velocity.tail(n) - drift[1]).square())
-            .maxCoeff();
-    if (std::sqrt(farthest2) + 2 * horizon * std::sqrt(fastest2) < skin()) return;
+    if (std::sqrt(farthest2) + travel.relative < skin_) return;
   }
-  rebuild(state, mean_edge);
+  // Thin enough that neighbours along a straight contour stay out of reach, unless the droplet moves very
+  // fast.
+  rebuild(state, mean_edge, std::clamp(2 * travel.relative, 0.9 * diameter_, widest_skin));
 }
 
-void SelfContacts::rebuild(const DropletState& state, double mean_edge) {
+void SelfContacts::rebuild(const DropletState& state, double mean_edge, double skin) {
+  skin_ = skin;
   const int n = static_cast<int>(state.size());
   const double* x = state.position.data();
   const double* y = x + n;
@@ -61,12 +60,13 @@ void SelfContacts::rebuild(const DropletState& state, double mean_edge) {
   reference_.head(n) -= centre[0];
   reference_.tail(n) -= centre[1];
   strands_.clear();
+  if (!reference_.allFinite()) return;  // a droplet that has diverged; the run will see it at its next check
 
   // The nearest point of an edge within reach lies within half an edge of one of its ends.
   double longest2 = 0;
   for (int i = 0, j = n - 1; i < n; j = i++)
     longest2 = std::max(longest2, (x[i] - x[j]) * (x[i] - x[j]) + (y[i] - y[j]) * (y[i] - y[j]));
-  const double reach = diameter_ + 2 * skin();
+  const double reach = diameter_ + 2 * skin_;
   const double end_reach = reach + 0.5 * std::sqrt(longest2);
   const int exclusion = std::max(2, static_cast<int>(std::ceil(contour_exclusion * diameter_ / mean_edge)));
 

@@ -10,9 +10,9 @@
 namespace clog {
 namespace {
 
-constexpr int steps_per_check = 32;
+constexpr int most_steps_per_check = 32;
 constexpr double contact_range = units::droplet_diameter / 2;
-constexpr double skin = 0.1;
+constexpr double usual_skin = 0.1;  // [sigma]
 
 }  // namespace
 
@@ -21,18 +21,17 @@ SpForces::SpForces(const RunParameters& run, const ObstacleArray& obstacles)
       wall_stiffness_(run.wall_stiffness.value()),
       weight_(units::droplet_mass * units::gravity) {}
 
-void SpForces::update_contacts(const DropletState& state, double horizon) {
+void SpForces::update_contacts(const DropletState& state, const Travel& travel) {
   const Eigen::Array2d centre = state.centre();
-  if (listed_) {
-    const double moved = (centre - reference_).matrix().norm();
-    if (moved + 2 * horizon * state.mean_velocity().matrix().norm() < skin) return;
-  }
+  if (listed_ && (centre - reference_).matrix().norm() + travel.absolute < skin_) return;
+  skin_ = std::clamp(2 * travel.absolute, usual_skin, widest_skin);
   near_.clear();
-  obstacles_->gather({state.frame.origin[0], state.frame.origin[1], centre[0], centre[0], centre[1],
-                      centre[1], contact_range + skin},
-                     near_);
   reference_ = centre;
   listed_ = true;
+  if (!centre.allFinite()) return;  // a disk that has diverged; the run will see it at its next check
+  obstacles_->gather({state.frame.origin[0], state.frame.origin[1], centre[0], centre[0], centre[1],
+                      centre[1], contact_range + skin_},
+                     near_);
 }
 
 void SpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) const {
@@ -69,7 +68,7 @@ double SpForces::energy(const DropletState& state) const {
 SpDroplet::SpDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial)
     : run_(run), forces_(run, obstacles), force_(2) {
   state_ = std::move(initial);
-  forces_.update_contacts(state_, steps_per_check * run_.time_step);
+  forces_.update_contacts(state_, state_.possible_travel(run_.time_step));
   forces_.evaluate(state_, force_);
 }
 
@@ -77,10 +76,12 @@ void SpDroplet::advance(int num_steps) {
   const double dt = run_.time_step;
   const double half_dt_over_m = 0.5 * dt / units::droplet_mass;
   const double damping = 0.5 * dt * units::gravity / run_.drag.terminal_speed;
-  for (int done = 0; done < num_steps; done += steps_per_check) {
-    const int steps = std::min(steps_per_check, num_steps - done);
+  for (int done = 0, steps = 0; done < num_steps; done += steps) {
+    // Large steps and high speeds are looked after more often, so that the list of obstacles stays short.
+    steps = std::min(most_steps_per_check, num_steps - done);
+    while (steps > 1 && state_.possible_travel(steps * dt).absolute > usual_skin) steps /= 2;
     if (state_.recentre().any()) forces_.forget_contacts();
-    forces_.update_contacts(state_, steps * dt);
+    forces_.update_contacts(state_, state_.possible_travel(steps * dt));
     for (int i = 0; i < steps; ++i) {
       state_.velocity = state_.velocity * (1 - damping) + force_ * half_dt_over_m;
       state_.position += dt * state_.velocity;

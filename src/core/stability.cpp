@@ -26,7 +26,8 @@ double largest_stable_step(const StiffModes& modes) {
 
 int num_substeps(const StiffModes& modes, double time_step) {
   // The tolerance keeps a step that was chosen as exactly the largest stable one from being split.
-  return std::max(1, static_cast<int>(std::ceil(time_step / largest_stable_step(modes) - 1e-9)));
+  const double parts = std::ceil(time_step / largest_stable_step(modes) - 1e-9);
+  return parts < most_substeps ? std::max(1, static_cast<int>(parts)) : most_substeps;
 }
 
 }  // namespace clog

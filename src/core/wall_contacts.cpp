@@ -17,21 +17,18 @@ constexpr double nearest_skin = 0.02;
 }  // namespace
 
 WallContacts::WallContacts(const ObstacleArray& array, double range, Keep keep)
-    : array_(&array),
-      range_(range),
-      keep_(keep),
-      skin_(keep == Keep::touched_by_edge ? touching_skin : nearest_skin) {}
+    : array_(&array), range_(range), keep_(keep) {}
 
-void WallContacts::update(const DropletState& state, double horizon) {
+void WallContacts::update(const DropletState& state, const Travel& travel) {
   if (reference_.size() == state.position.size()) {
     const Eigen::Index n = state.size();
     const Eigen::ArrayXd moved = state.position - reference_;
     const double farthest2 = (moved.head(n).square() + moved.tail(n).square()).maxCoeff();
-    const double fastest2 = (state.velocity.head(n).square() + state.velocity.tail(n).square()).maxCoeff();
-    // Twice the present speed, for what the points may gain until the next look.
-    if (std::sqrt(farthest2) + 2 * horizon * std::sqrt(fastest2) < skin_) return;
+    if (std::sqrt(farthest2) + travel.absolute < skin_) return;
   }
-  rebuild(state);
+  // A fast droplet needs more than the usual skin even to reach the next update.
+  const double usual_skin = keep_ == Keep::touched_by_edge ? touching_skin : nearest_skin;
+  rebuild(state, std::clamp(2 * travel.absolute, usual_skin, widest_skin));
 }
 
 void WallContacts::gather_nearby(const DropletState& state) {
@@ -58,15 +55,17 @@ void WallContacts::gather_nearby(const DropletState& state) {
   }
 }
 
-void WallContacts::rebuild(const DropletState& state) {
-  gather_nearby(state);
+void WallContacts::rebuild(const DropletState& state, double skin) {
+  skin_ = skin;
   reference_ = state.position;
   num_points_ = state.size();
+  num_slots_ = 0;
+  if (!reference_.allFinite()) return;  // a droplet that has diverged; the run will see it at its next check
+  gather_nearby(state);
   const auto x = state.x();
   const auto y = state.y();
 
   candidates_.resize(num_points_);
-  num_slots_ = 0;
   std::vector<double> distance(nearby_.size());
   for (Eigen::Index i = 0; i < num_points_; ++i) {
     const Eigen::Index next = keep_ == Keep::nearest_to_vertex ? i : (i + 1) % num_points_;

@@ -1,5 +1,6 @@
 /// clogrun: one droplet, watched closely.
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -127,7 +128,8 @@ std::vector<Obstacle> obstacles_along(const std::vector<store::PolygonFrame>& fr
 
 /// Follows the run to its end, or to a signal, taking samples; both intervals in checks of the run (0: no
 /// polygons).
-RunStatus follow(ArrayRun& run, int sample_checks, int polygon_checks, store::Trajectory& trajectory) {
+RunStatus follow(ArrayRun& run, std::int64_t sample_checks, std::int64_t polygon_checks,
+                 store::Trajectory& trajectory) {
   std::int64_t checks = 0;
   bool over = false;
   while (true) {
@@ -141,21 +143,31 @@ RunStatus follow(ArrayRun& run, int sample_checks, int polygon_checks, store::Tr
   }
 }
 
+/// The number of checks of the run in an interval given by an option, at least one.
+std::int64_t in_checks(const cli::CommandLine& line, const char* option, double check_time) {
+  constexpr double never = 1e15;
+  return std::llround(std::clamp(line.get_positive(option) / check_time, 1.0, never));
+}
+
 int run_array(cli::CommandLine& line) {
+  // Everything that can be wrong is found before anything is computed or written.
   const std::string output = line.require("output");
   const Setup setup = read_setup(line);
-  store::refuse_existing(output);
+  const double check_time = ArrayRun::steps_per_check * setup.parameters.time_step;
+  const std::int64_t sample_checks = in_checks(line, "sample-interval", check_time);
+  const std::int64_t polygon_checks =
+      line.has("polygon-interval") ? in_checks(line, "polygon-interval", check_time) : 0;
+  store::refuse_unwritable(output);
+  if (line.has("write-obstacles")) {
+    store::refuse_unwritable(line.get("write-obstacles"));
+    if (line.get("write-obstacles") == output)
+      throw Error("--output and --write-obstacles name the same file, " + output + "; give two names");
+  }
 
   ArrayRun run =
       setup.own_obstacles ? ArrayRun(setup.parameters, setup.own_obstacles) : ArrayRun(setup.parameters);
   if (line.has("write-obstacles"))
     cli::write_obstacles(line.get("write-obstacles"), run.obstacles().obstacles());
-  const double check_time = run.steps_per_check() * setup.parameters.time_step;
-  const auto in_checks = [&](const char* option) {
-    return std::max(1, static_cast<int>(std::lround(line.get_positive(option) / check_time)));
-  };
-  const int polygon_checks = line.has("polygon-interval") ? in_checks("polygon-interval") : 0;
-  const int sample_checks = in_checks("sample-interval");
 
   cli::catch_stop_signals();
   store::Trajectory trajectory;

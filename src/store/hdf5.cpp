@@ -16,6 +16,8 @@
 namespace clog::store {
 
 void prepare_library() {
+  // The library's own clean-up at exit crashes after a write that failed; what we open, we close.
+  H5dont_atexit();
   setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
@@ -26,24 +28,50 @@ void check(bool succeeded, const std::string& what, const std::string& path) {
   throw Error("cannot " + what + " " + path + reason + "; check the disk and the permissions");
 }
 
+namespace {
+
+std::string draft_of(const std::string& path) { return path + ".new-" + std::to_string(getpid()); }
+
+/// Renames, but never onto a file that somebody else made meanwhile.
+void publish(const std::string& draft, const std::string& path) {
+  if (renameat2(AT_FDCWD, draft.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE) == 0) return;
+  if (errno == EINVAL || errno == ENOSYS) {  // a file system that cannot promise it
+    refuse_existing(path);
+    if (std::rename(draft.c_str(), path.c_str()) == 0) return;
+  }
+  check(errno == EEXIST, "create", path);
+  refuse_existing(path);
+}
+
+}  // namespace
+
 void refuse_existing(const std::string& path) {
   if (std::filesystem::exists(path))
     throw Error("will not overwrite " + path + " (it exists); give another --output, or remove it first");
 }
 
+void refuse_unwritable(const std::string& path) {
+  refuse_existing(path);
+  const std::string draft = draft_of(path);
+  const int descriptor = open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  check(descriptor >= 0, "create", path);
+  close(descriptor);
+  std::remove(draft.c_str());
+}
+
 void create_whole(const std::string& path, const std::function<void(hid_t file)>& fill) {
   refuse_existing(path);
   prepare_library();
-  const std::string draft = path + ".new";
+  const std::string draft = draft_of(path);
   const PropertyList access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
   errno = 0;
-  File file(H5Fcreate(draft.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access));
+  File file(H5Fcreate(draft.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access));
   check(file.valid(), "create", path);
   try {
     fill(file);
     close_durably(std::move(file), draft);
-    check(std::rename(draft.c_str(), path.c_str()) == 0, "create", path);
+    publish(draft, path);
   } catch (...) {
     file = File();
     std::remove(draft.c_str());

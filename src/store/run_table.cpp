@@ -117,6 +117,7 @@ void write_rows(hid_t file, std::span<const RunRow> rows) {
   if (!rows.empty())
     check(H5Dwrite(table, memory_type(all), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) >= 0, "write",
           "the new file");
+  check(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "write", "the new file");
 }
 
 std::string library_version() {
@@ -149,6 +150,9 @@ void RunTable::append(const RunRow& row) {
     H5Sselect_hyperslab(place, H5S_SELECT_SET, &old_size, nullptr, &one, nullptr);
     const Space single(H5Screate_simple(1, &one, nullptr));
     check(H5Dwrite(table, memory_type(columns()), single, place, H5P_DEFAULT, &row) >= 0, "write", path_);
+    // While the table is still open: closing it would write what is left and tell nobody that the disk is
+    // full.
+    check(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "write", path_);
   }
   close_durably(std::move(file), path_);
 }
@@ -171,6 +175,8 @@ SweepFile read_sweep(const std::string& path) {
   if (!sweep.rows.empty())
     check(H5Dread(table, memory_type(columns()), H5S_ALL, H5S_ALL, H5P_DEFAULT, sweep.rows.data()) >= 0,
           "read the table of", path);
+  // A disk that filled up in the middle of an append leaves a blank row at the end.
+  std::erase_if(sweep.rows, [](const RunRow& row) { return row.status.view().empty(); });
   H5O_info_t root;
   check(H5Oget_info2(file, &root, H5O_INFO_NUM_ATTRS) >= 0, "read the attributes of", path);
   for (hsize_t i = 0; i < root.num_attrs; ++i) {

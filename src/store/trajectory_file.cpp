@@ -13,8 +13,9 @@ Dataset write_dataset(hid_t file, const char* name, hid_t type, std::initializer
                       const void* data) {
   const Space space(H5Screate_simple(static_cast<int>(shape.size()), std::data(shape), nullptr));
   Dataset dataset(H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-  check(dataset.valid() && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0, "write",
-        std::string("dataset ") + name);
+  check(dataset.valid() && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data) >= 0 &&
+            H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0,
+        "write", std::string("dataset ") + name);
   return dataset;
 }
 
@@ -45,8 +46,9 @@ void write_samples(hid_t file, const std::vector<TrajectorySample>& samples) {
   H5Pset_chunk(layout, 1, &rows_per_chunk);  // pandas reads chunked tables only
   if (size < rows_per_chunk) H5Pset_chunk(layout, 1, &size);
   const Dataset table(H5Dcreate2(file, "trajectory", type, space, H5P_DEFAULT, layout, H5P_DEFAULT));
-  check(table.valid() && H5Dwrite(table, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, samples.data()) >= 0, "write",
-        "dataset trajectory");
+  check(table.valid() && H5Dwrite(table, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, samples.data()) >= 0 &&
+            H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0,
+        "write", "dataset trajectory");
   for (const Column& column : columns) write_attribute(table, column.name, column.meaning);
 }
 

@@ -9,6 +9,9 @@
 namespace clog::sweep {
 namespace {
 
+/// Of a value in the config: all keys together must fit an attribute of the file, 64 KiB.
+constexpr std::size_t longest_text = 3000;
+
 std::optional<double> number_or_auto(const std::string& value) {
   if (value == "auto" || value == "saturated") return std::nullopt;
   return to_number(value);
@@ -205,6 +208,8 @@ void Settings::set(const std::string& name, const std::string& text) {
   const Key& key = find_key(name);
   std::vector<std::string> values;
   try {
+    if (text.size() > longest_text)
+      throw Error("the list is too long to be stored; ranges like 1..15000 are short");
     values = expand_list(text, key.kind, key.words);
     for (const std::string& value : values) {
       RunParameters scratch;
@@ -212,7 +217,8 @@ void Settings::set(const std::string& name, const std::string& text) {
     }
     if (key.kind == ValueKind::word && values.size() > 1) throw Error("takes one value, not a list");
   } catch (const Error& error) {
-    throw Error("invalid " + name + "=" + text + " (" + error.what() + ")");
+    const std::string shown = text.size() > 60 ? text.substr(0, 60) + "..." : text;
+    throw Error("invalid " + name + "=" + shown + " (" + error.what() + ")");
   }
   texts_[name] = text;
   values_[name] = std::move(values);

@@ -69,7 +69,8 @@ std::vector<std::string> expand_spaced(std::string_view item, ValueKind kind) {
     }
     if (kind == ValueKind::integer && value != std::round(value))
       refuse(item, "gives values that are not integers");
-    values.push_back(shortest(value));
+    const bool as_integer = kind == ValueKind::integer && std::abs(value) < 1e15;
+    values.push_back(as_integer ? std::to_string(static_cast<long long>(value)) : shortest(value));
   }
   return values;
 }
@@ -77,7 +78,10 @@ std::vector<std::string> expand_spaced(std::string_view item, ValueKind kind) {
 std::vector<std::string> expand_range(std::string_view item, std::size_t dots) {
   const long long first = to_integer(trimmed(item.substr(0, dots)));
   const long long last = to_integer(trimmed(item.substr(dots + 2)));
-  check_length(item, last - first + 1);
+  if (last < first) refuse(item, "has no values");
+  // Unsigned: the difference of any two integers fits.
+  const auto steps = static_cast<unsigned long long>(last) - static_cast<unsigned long long>(first);
+  check_length(item, static_cast<long long>(std::min<unsigned long long>(steps, longest_list)) + 1);
   std::vector<std::string> values;
   for (long long value = first; value <= last; ++value) values.push_back(std::to_string(value));
   return values;

@@ -98,6 +98,39 @@ TEST(ArrayRun, ADivergedRunIsAResult) {
   EXPECT_NE(result.message.find("diverged"), std::string::npos);
 }
 
+TEST(ArrayRun, ABurstPolygonIsAResultToo) {
+  // Unchecked parameters: a step that would have to be split more often than is sensible.
+  RunParameters parameters = small_run();
+  parameters.drag.terminal_speed = 100;
+  parameters.time_step = 5;
+  parameters.max_time = 1e6;
+  const RunResult result = result_of(parameters, 10);
+  EXPECT_EQ(result.status, RunStatus::failed);
+  EXPECT_NE(result.message.find("diverged"), std::string::npos);
+}
+
+TEST(ArrayRun, ADropletThatHasNotFallenYetIsNotClogged) {
+  RunParameters parameters = small_run();
+  parameters.obstacles.gap = 1.2;
+  parameters.drag.terminal_speed = 10;
+  parameters.clog_energy = 5e-4;  // it is slower than this at its first checks
+  ArrayRun run(parameters);
+  run.advance(5);
+  EXPECT_EQ(run.result().status, RunStatus::running);
+}
+
+TEST(ArrayRun, RunsWithSpringsToTheRestLength) {
+  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+    RunParameters parameters;
+    parameters.dp.perimeter_spring = PerimeterSpring::rest;
+    parameters.dp.vertices = 128;
+    parameters.obstacles.box = 20;
+    parameters.max_time = 3;
+    parameters.seed = seed;
+    EXPECT_EQ(result_of(resolve(parameters), 10).status, RunStatus::flowing) << "seed " << seed;
+  }
+}
+
 TEST(ArrayRun, FollowsASoftDiskToo) {
   RunParameters parameters;
   parameters.model = Model::sp;

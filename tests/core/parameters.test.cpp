@@ -60,6 +60,12 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"obstacle-density=-1", [](auto& run) { run.obstacles.density = -1; }},
         Refusal{"box=2 (the droplet would meet", [](auto& run) { run.obstacles.box = 2; }},
         Refusal{"box=1e+06", [](auto& run) { run.obstacles.box = 1e6; }},
+        Refusal{"box=5 (holds no two obstacles",
+                [](auto& run) { run.obstacles.box = 5, run.obstacles.diameter = 10; }},
+        Refusal{"max-time=1e+30 (more than 1e15 steps", [](auto& run) { run.max_time = 1e30; }},
+        Refusal{"time-step=1e-300 (smaller", [](auto& run) { run.time_step = 1e-300; }},
+        Refusal{"terminal-speed=1e+08", [](auto& run) { run.drag.terminal_speed = 1e8; }},
+        Refusal{"near-wall-drag=1e+10", [](auto& run) { run.drag.near_wall = 1e10; }},
         Refusal{"missing wall-stiffness", [](auto& run) { run.model = Model::sp; }},
         Refusal{"near-wall-drag=0.1 (the soft disk",
                 [](auto& run) { run.model = Model::sp, run.wall_stiffness = 1, run.drag.near_wall = 0.1; }},
@@ -81,16 +87,19 @@ TEST(Resolve, FillsInThePerimeterSpring) {
 }
 
 TEST(Resolve, TakesTheStepItProposes) {
-  RunParameters run;
-  run.wall_stiffness = 1e4;
-  std::string message;
-  try {
-    resolve(run);
-  } catch (const Error& error) {
-    message = error.what();
+  for (const std::optional<double> stiffness : {std::optional<double>(), std::optional<double>(1e4)}) {
+    RunParameters run;
+    run.wall_stiffness = stiffness;
+    run.dp.vertices = 1024;
+    std::string message;
+    try {
+      resolve(run);
+    } catch (const Error& error) {
+      message = error.what();
+    }
+    run.time_step = std::stod(message.substr(message.rfind("try ") + 4));
+    EXPECT_NO_THROW(resolve(run));
   }
-  run.time_step = std::stod(message.substr(message.rfind("try ") + 4));
-  EXPECT_NO_THROW(resolve(run));
 }
 
 TEST(Resolve, ChangesNothingThatWasGiven) {

@@ -32,7 +32,7 @@ TEST(NearestPoint, OfAStrandAcrossTheStartOfTheContour) {
 TEST(SelfContacts, AConvexDropletHasNone) {
   const DropletState state = test::state_of(regular_polygon(256, units::rest_area));
   SelfContacts contacts(units::regular_edge_length(256));
-  contacts.update(state, 0, units::regular_edge_length(256));
+  contacts.update(state, {}, units::regular_edge_length(256));
   EXPECT_TRUE(contacts.strands().empty());
 }
 
@@ -48,7 +48,7 @@ TEST(SelfContacts, ListsEveryVertexAndEdgeThatTouchWhileTheShapeMoves) {
   int num_touching = 0;
   for (int step = 0; step < 300; ++step) {
     state.position += 0.1 * state.velocity;
-    contacts.update(state, 0.1, mean_edge);
+    contacts.update(state, state.possible_travel(0.1), mean_edge);
     std::set<std::pair<int, int>> listed;
     for (const auto& strand : contacts.strands())
       for (int k = 0; k < strand.num_edges; ++k) listed.insert({strand.vertex, (strand.first_edge + k) % n});

@@ -61,11 +61,24 @@ TEST(SpDroplet, FollowsTheDampedOscillatorToSecondOrder) {
   EXPECT_NEAR(std::log2(coarse / fine), 2, 0.1);
 }
 
+TEST(SpDroplet, MeetsAnObstacleAtAnyAllowedStepAndSpeed) {
+  // Head-on from afar at speed 1: the same resting place for every step.
+  for (const double dt : {0.01, 0.05, 0.2}) {
+    const ObstacleArray obstacle(20, {{8, 0, 0.15}});
+    RunParameters run = soft_disk(1, dt);
+    run.drag.terminal_speed = 1;
+    SpDroplet droplet(run, obstacle, disk_at(0, 0));
+    droplet.advance(static_cast<int>(100 / dt));
+    EXPECT_NEAR(droplet.state().frame.global(droplet.state().centre())[0], 7.35 + std::numbers::pi / 16, 1e-6)
+        << dt;
+  }
+}
+
 TEST(SpDroplet, ForceIsTheGradientOfTheEnergy) {
   const ObstacleArray obstacles(20, {{0.3, 0.1, 0.15}, {-0.2, 0.4, 0.3}, {19.9, 19.6, 0.1}});
   SpForces forces(soft_disk(2), obstacles);
   DropletState state = disk_at(0.05, -0.03);
-  forces.update_contacts(state, 0);
+  forces.update_contacts(state, {});
   Eigen::ArrayXd force(2);
   forces.evaluate(state, force);
   for (int axis = 0; axis < 2; ++axis) {
@@ -83,7 +96,7 @@ TEST(SpDroplet, ForceStaysFiniteInsideAnObstacle) {
   forces.set_weight(0);
   Eigen::ArrayXd force(2);
   DropletState centre = disk_at(0, 0);
-  forces.update_contacts(centre, 0);
+  forces.update_contacts(centre, {});
   forces.evaluate(centre, force);
   EXPECT_EQ(force[0], 0);
   DropletState inside = disk_at(0.05, 0);  // d = -0.1: 2 E_w (1 + 0.2)

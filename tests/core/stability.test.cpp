@@ -16,7 +16,7 @@ double stiffest_omega2(const RunParameters& run, const Eigen::ArrayXd& position)
   const ObstacleArray nothing = no_obstacles();
   DpForces forces(run, nothing);
   DropletState state = state_of(position);
-  forces.update_contacts(state, 0);
+  forces.update_contacts(state, {});
   Eigen::ArrayXd direction = shaken(Eigen::ArrayXd::Zero(2 * n), 1.0, 5);
   Eigen::ArrayXd above(2 * n), below(2 * n);
   constexpr double h = 1e-7;

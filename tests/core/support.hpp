@@ -69,7 +69,7 @@ inline Eigen::ArrayXd dumbbell(int num_vertices, double neck) {
 /// Largest difference between the force and the central difference of the energy.
 inline double force_error(DpForces& forces, DropletState state) {
   constexpr double h = 1e-6;
-  forces.update_contacts(state, 0);
+  forces.update_contacts(state, {});
   Eigen::ArrayXd force(state.position.size());
   forces.evaluate(state, force);
   double worst = 0;

@@ -2,13 +2,14 @@ import csv
 import io
 import json
 import math
+import subprocess
 import unittest
 
 import h5py
 import numpy as np
 import pandas
 
-from support import SMALL, ProgramTest
+from support import BIN, SMALL, ProgramTest
 
 
 class Fit(ProgramTest):
@@ -88,6 +89,13 @@ class Fit(ProgramTest):
             self.assertEqual(list(line), list(group))
             self.assertEqual(float(line["total_distance"]), group["total_distance"])
 
+    def test_a_full_output_is_a_fault(self):
+        self.sweep("seeds=1", "max-time=1")
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([str(BIN / "clogfit"), "sweep.h5"], cwd=self.folder, stdout=full, stderr=subprocess.PIPE, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("cannot write the output", done.stderr)
+
     def test_mistakes_get_one_line_and_exit_code_2(self):
         self.write("text.h5", "not a table")
         with h5py.File(self.folder / "foreign.h5", "w") as file:
@@ -109,7 +117,7 @@ class Fit(ProgramTest):
             (["sweep.h5", "--format", "xml"], ["--format=xml", "text, csv, json"]),
             (["sweep.h5", "--confidence", "1"], ["--confidence=1"]),
             (["sweep.h5", "--confidence", "high"], ["--confidence=high"]),
-            (["sweep.h5", "line-tension=1"], ["unknown option", "line-tension"]),
+            (["sweep.h5", "line-tension=1"], ["too many words"]),
         ]:
             with self.subTest(arguments=arguments):
                 self.refuse("clogfit", *arguments, words=words)

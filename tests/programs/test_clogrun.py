@@ -54,6 +54,10 @@ class Run(ProgramTest):
             gaps = np.hypot(obstacles[:, 0] - x, obstacles[:, 1] - y) - obstacles[:, 2] / 2
             self.assertGreater(gaps.min(), 0)
 
+    def test_file_names_may_hold_an_equals_sign_and_intervals_be_huge(self):
+        self.succeed("clogrun", "array", *QUICK, "--sample-interval", "1e12", "--output", "box=20.h5")
+        self.assertEqual(len(pandas.read_hdf(self.folder / "box=20.h5", "trajectory")), 2)
+
     def test_obstacles_written_can_be_read_back(self):
         self.succeed("clogrun", "array", *QUICK, "obstacle-gap=0.4", "seeds=2", "--write-obstacles", "array.csv", "--output", "a.h5")
         header = (self.folder / "array.csv").read_text().splitlines()[0]
@@ -100,6 +104,10 @@ class Run(ProgramTest):
             (["channell", *out], ["channell"]),
             (["array"], ["missing --output"]),
             (["array", "line-tension=1,2", *out], ["2 runs", "clogrun does one"]),
+            (["array", "--output", "no/such/folder/r.h5"], ["no/such/folder"]),
+            (["array", "--write-obstacles", "words.csv", *out], ["words.csv", "will not overwrite"]),
+            (["array", "--write-obstacles", "r.h5", *out], ["same file"]),
+            (["array", "--write-obstacles", "new.csv", "--sample-interval=0", *out], ["--sample-interval=0"]),
             (["array", "--sample-interval=0", *out], ["--sample-interval=0"]),
             (["array", "--polygon-interval=often", *out], ["--polygon-interval=often"]),
             (["array", "--obstacles", "missing.csv", *out], ["missing.csv"]),

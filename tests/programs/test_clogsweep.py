@@ -153,6 +153,8 @@ class Stopped(ProgramTest):
     def test_ctrl_c_under_mpirun_keeps_the_distances_so_far(self):
         self.stop([str(MPIRUN), "2", str(BIN / "clogsweep"), *self.LONG], signal.SIGINT, 2)
         self.check_rows()
+        rows = table(self.folder / "s.h5")
+        self.assertEqual(set(rows[rows.status == "interrupted"]["rank"]), {0, 1})
 
 
 class Refusals(ProgramTest):
@@ -160,6 +162,7 @@ class Refusals(ProgramTest):
         self.write("bad.cfg", "line-tenson = 1\n")
         self.write("torn.cfg", "line-tension 1\n")
         self.write("empty.cfg", "line-tension =\n")
+        self.write("twice.cfg", "box = 20\nbox = 30\n")
         self.write("taken.h5", "something of the user's")
         out = ["--output", "s.h5"]
         for arguments, words in [
@@ -183,6 +186,8 @@ class Refusals(ProgramTest):
             (["--config", "bad.cfg", *out], ["bad.cfg", "did you mean line-tension"]),
             (["--config", "torn.cfg", *out], ["torn.cfg", "key = value"]),
             (["--config", "empty.cfg", *out], ["empty.cfg", "line-tension"]),
+            (["--config", "twice.cfg", *out], ["twice.cfg", "box", "twice"]),
+            (["seeds=" + ",".join(map(str, range(1, 2000))), *out], ["seeds=1,2,3", "too long"]),
             (["--master-computes=perhaps", *out], ["auto, yes, no"]),
             (["--output", "taken.h5"], ["taken.h5", "will not overwrite"]),
             (["--output", "no/such/folder/s.h5"], ["no/such/folder"]),

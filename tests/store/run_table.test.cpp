@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -90,6 +94,29 @@ TEST_F(RunTableTest, LeavesNothingBehindWhereItCannotWrite) {
   EXPECT_EQ(num_files(), 0u);
   RunTable::create(path(), {});
   EXPECT_EQ(num_files(), 1u) << "no draft is left";
+}
+
+/// Leaves by _Exit(2) when a row is refused. A limit on the size of a file stands for a full disk.
+[[noreturn]] void append_until_refused(const std::string& path) {
+  std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit tight{200'000, 200'000};
+  setrlimit(RLIMIT_FSIZE, &tight);
+  try {
+    RunTable table = RunTable::create(path, {});
+    for (int task = 0; task < 1000; ++task) table.append(some_row(task));
+  } catch (const Error& error) {
+    std::fputs(error.what(), stderr);
+    std::_Exit(2);
+  }
+  std::_Exit(0);
+}
+
+TEST_F(RunTableTest, KeepsEveryRowBeforeTheDiskIsFull) {
+  EXPECT_EXIT(append_until_refused(path()), testing::ExitedWithCode(2), "cannot write .*sweep.h5");
+  const SweepFile file = read_sweep(path());
+  EXPECT_GT(file.rows.size(), 50u);
+  for (std::size_t task = 0; task < file.rows.size(); ++task)
+    EXPECT_EQ(file.rows[task].task, static_cast<std::int64_t>(task));
 }
 
 TEST_F(RunTableTest, SaysWhatIsWrongWithAFile) {

@@ -33,6 +33,7 @@ TEST(ExpandList, CountsIntegers) {
   EXPECT_EQ(integers("3..6"), (List{"3", "4", "5", "6"}));
   EXPECT_EQ(integers("1,5..6,9"), (List{"1", "5", "6", "9"}));
   EXPECT_EQ(integers("log(64,1024,5)"), (List{"64", "128", "256", "512", "1024"}));
+  EXPECT_EQ(integers("lin(100000,300000,3)"), (List{"100000", "200000", "300000"}));
 }
 
 class Unreadable : public testing::TestWithParam<std::pair<const char*, const char*>> {};
@@ -54,7 +55,8 @@ INSTANTIATE_TEST_SUITE_P(
                     std::pair{"1,1", "twice"}, std::pair{"1..3,2", "twice"},
                     std::pair{"lin(1,2)", "three arguments"}, std::pair{"lin(1,2,3", "parenthesis"},
                     std::pair{"lin(1,2,3)", "not integers"}, std::pair{"log(0,2,3)", "positive"},
-                    std::pair{"lin(1,2,0)", "no values"}, std::pair{"1..9999999", "million"}));
+                    std::pair{"lin(1,2,0)", "no values"}, std::pair{"1..9999999", "million"},
+                    std::pair{"-9223372036854775807..9223372036854775807", "million"}));
 
 TEST(ToNumber, RefusesWhatIsNotFinite) {
   EXPECT_THROW(to_number("nan"), Error);

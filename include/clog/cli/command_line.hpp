@@ -51,6 +51,8 @@ class CommandLine {
   sweep::Settings settings_;
   std::string text_;
 
+  /// Is this an option whose value is the next word?
+  bool awaits_value(const std::string& word) const;
   [[noreturn]] void refuse_unknown(const std::string& word) const;
   void read_config(const std::string& path);
 };

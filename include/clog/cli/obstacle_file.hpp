@@ -7,7 +7,7 @@
 
 namespace clog::cli {
 
-/// Reads circles from a CSV file: x,y[,diameter] per line [sigma]; a first line of names and lines starting
+/// Reads circles from a CSV file: x,y[,diameter] per line [sigma]; a first line x,y,... and lines starting
 /// with # are skipped.
 /// @param default_diameter  for lines without one
 /// @param box               centres must lie in [0, box)

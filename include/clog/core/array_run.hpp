@@ -29,10 +29,13 @@ struct RunResult {
 /// One droplet released in an obstacle array, followed until it clogs or its time is up.
 ///
 /// The droplet counts as clogged when E_k/E_t (E_t: kinetic energy at terminal speed) has been below
-/// clog-energy at two checks in a row. The course of a run depends on its parameters alone, not on how
-/// advance() is called.
+/// clog-energy at two checks in a row, not before it had ten relaxation times V_t/g to fall. The course of a
+/// run depends on its parameters alone, not on how advance() is called.
 class ArrayRun {
  public:
+  /// Clogging and the end of the run are looked for, and r(t) is recorded, once in so many steps.
+  static constexpr int steps_per_check = 64;
+
   /// Samples the obstacles and releases the droplet.
   /// @param run  resolved parameters
   explicit ArrayRun(const RunParameters& run);
@@ -51,7 +54,6 @@ class ArrayRun {
   const Droplet& droplet() const { return *droplet_; }
   const ObstacleArray& obstacles() const { return *obstacles_; }
   const RunParameters& parameters() const { return run_; }
-  int steps_per_check() const;
 
  private:
   RunParameters run_;
@@ -61,6 +63,7 @@ class ArrayRun {
   Eigen::Array2d start_;
   std::int64_t steps_done_ = 0;
   std::int64_t max_steps_;
+  double first_quiet_time_;
   int quiet_checks_ = 0;
   RunStatus status_ = RunStatus::running;
   std::string message_;

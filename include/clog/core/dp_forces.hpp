@@ -24,14 +24,15 @@ struct DpEnergy {
 };
 
 /// Potential energy of a deformable polygon among obstacles and its negative gradient.
-/// Contacts act through lists; update_contacts() must have been called for positions as near as its horizon.
+/// Contacts act through lists: update_contacts() must have been called, and nothing have travelled farther
+/// than it was told.
 class DpForces {
  public:
   /// @param run  resolved parameters (see resolve())
   DpForces(const RunParameters& run, const ObstacleArray& obstacles);
 
-  /// @param horizon  time until the next call [t0]
-  void update_contacts(const DropletState& state, double horizon);
+  /// @param travel  bound on the way until the next call
+  void update_contacts(const DropletState& state, const Travel& travel);
   /// To be called when local coordinates have moved by a shift of the frame.
   void forget_contacts();
 
@@ -54,6 +55,7 @@ class DpForces {
 
   /// For the release, where the droplet grows without weight.
   void set_rest_area(double area);
+  void set_perimeter_spring(PerimeterSpring spring) { dp_.perimeter_spring = spring; }
   void set_weight(double weight) { weight_ = weight; }
 
  private:

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
+
+#include "clog/core/units.hpp"
 
 namespace clog {
 
@@ -31,6 +34,14 @@ struct LocalFrame {
   }
 };
 
+/// How far points may move until somebody looks again [sigma].
+struct Travel {
+  double absolute = 0;
+  double relative = 0;  ///< to the mean of the points
+};
+/// Contact lists look no farther ahead than this [sigma]: what moves as fast has diverged.
+inline constexpr double widest_skin = 4;
+
 /// Points (the polygon's vertices, or the soft disk's centre) and their velocities. Coordinates are kept
 /// as one array, all x then all y, so that the integrator and the minimiser see plain vectors.
 struct DropletState {
@@ -47,6 +58,16 @@ struct DropletState {
   Eigen::Array2d centre() const { return {x().mean(), y().mean()}; }
   Eigen::Array2d mean_velocity() const {
     return {velocity.head(size()).mean(), velocity.tail(size()).mean()};
+  }
+
+  /// Bound on the way in a time [t0]: twice that at the fastest point's present speed plus free fall.
+  Travel possible_travel(double time) const {
+    const auto way = [time](double speed) { return 2 * time * (speed + units::gravity * time); };
+    const Eigen::Array2d drift = mean_velocity();
+    const auto vx = velocity.head(size());
+    const auto vy = velocity.tail(size());
+    return {.absolute = way(std::sqrt((vx.square() + vy.square()).maxCoeff())),
+            .relative = way(std::sqrt(((vx - drift[0]).square() + (vy - drift[1]).square()).maxCoeff()))};
   }
 
   /// Keeps local coordinates of order one: moves the frame by whole units when the centre has left the unit

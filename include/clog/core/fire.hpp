@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "clog/core/droplet_state.hpp"
 
@@ -23,13 +24,16 @@ struct FireResult {
 
 /// Energy minimisation by the fast inertial relaxation engine, Bitzek et al., Phys. Rev. Lett. 97, 170201
 /// (2006), with its standard constants. Velocities are left at zero.
-/// @param forces  has update_contacts(state, horizon) and evaluate(state, force)
+/// @param forces  has update_contacts(state, travel) and evaluate(state, force)
 template <class Forces>
 FireResult minimize_fire(Forces& forces, DropletState& state, const FireOptions& options) {
   constexpr int min_downhill = 5;
   constexpr double grow = 1.1, shrink = 0.5, start_mixing = 0.1, less_mixing = 0.99;
-  constexpr int iterations_per_check = 10;
+  constexpr int iterations_per_check = 2;
 
+  // max_move bounds each coordinate.
+  const double farthest = iterations_per_check * options.max_move * std::numbers::sqrt2;
+  const Travel travel{.absolute = farthest, .relative = 2 * farthest};
   Eigen::ArrayXd force(state.position.size());
   state.velocity.setZero();
   double dt = 0.25 * options.largest_step;
@@ -37,12 +41,11 @@ FireResult minimize_fire(Forces& forces, DropletState& state, const FireOptions&
   int downhill = 0;
   FireResult result;
   for (; result.iterations < options.max_iterations; ++result.iterations) {
-    if (result.iterations % iterations_per_check == 0)
-      forces.update_contacts(state, iterations_per_check * options.largest_step);
+    if (result.iterations % iterations_per_check == 0) forces.update_contacts(state, travel);
     forces.evaluate(state, force);
     result.largest_force = force.abs().maxCoeff();
     result.converged = result.largest_force <= options.force_tolerance;
-    if (result.converged) break;
+    if (result.converged || !std::isfinite(result.largest_force)) break;
 
     const double power = (force * state.velocity).sum();
     if (power > 0) {

@@ -24,9 +24,9 @@ class SelfContacts {
   /// @param diameter  distance below which the interface repels itself [sigma]
   explicit SelfContacts(double diameter) : diameter_(diameter) {}
 
-  /// Renews the strands when the shape may have changed too much before `horizon` more time has passed [t0].
+  /// Renews the strands when the shape may change too much on the way to the next update.
   /// @param mean_edge  mean edge length [sigma]
-  void update(const DropletState& state, double horizon, double mean_edge);
+  void update(const DropletState& state, const Travel& travel, double mean_edge);
   void invalidate() { reference_.resize(0); }
   const std::vector<Strand>& strands() const { return strands_; }
   double diameter() const { return diameter_; }
@@ -38,8 +38,8 @@ class SelfContacts {
   std::vector<int> head_, next_;  // vertices by cell
   std::vector<int> near_edges_;
 
-  double skin() const { return 0.9 * diameter_; }
-  void rebuild(const DropletState& state, double mean_edge);
+  double skin_ = 0;  // of the present strands
+  void rebuild(const DropletState& state, double mean_edge, double skin);
 };
 
 /// Nearest point of a strand to its vertex.

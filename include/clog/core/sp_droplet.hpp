@@ -15,7 +15,7 @@ class SpForces {
  public:
   SpForces(const RunParameters& run, const ObstacleArray& obstacles);
 
-  void update_contacts(const DropletState& state, double horizon);
+  void update_contacts(const DropletState& state, const Travel& travel);
   void forget_contacts() { listed_ = false; }
   /// force: (f_x, f_y) [g rho sigma^2]
   void evaluate(const DropletState& state, Eigen::ArrayXd& force) const;
@@ -27,6 +27,7 @@ class SpForces {
   double wall_stiffness_;
   double weight_;
   bool listed_ = false;
+  double skin_ = 0;  // of the present list
   Eigen::Array2d reference_{0, 0};
   std::vector<Obstacle> near_;
 };

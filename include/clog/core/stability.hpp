@@ -31,7 +31,11 @@ StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double per
 /// Largest time step [t0] that keeps every bound above.
 double largest_stable_step(const StiffModes& modes);
 
-/// Number of equal sub-steps that `time_step` must be split into at these modes (1 when it holds as it is).
+/// A droplet that needs more has burst; the run is given up at its next check.
+inline constexpr int most_substeps = 1000;
+
+/// Number of equal sub-steps that `time_step` must be split into at these modes (1 when it holds as it is),
+/// at most most_substeps.
 int num_substeps(const StiffModes& modes, double time_step);
 
 }  // namespace clog

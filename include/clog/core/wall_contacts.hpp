@@ -21,8 +21,8 @@ class WallContacts {
   /// @param range  largest surface distance at which a wall force acts [sigma]
   WallContacts(const ObstacleArray& array, double range, Keep keep);
 
-  /// Renews the lists when a vertex may have left its skin before `horizon` more time has passed [t0].
-  void update(const DropletState& state, double horizon);
+  /// Renews the lists when a vertex may leave its skin on the way to the next update.
+  void update(const DropletState& state, const Travel& travel);
   /// Forgets the lists: positions changed by more than a move (a new frame origin, a rescaled polygon).
   void invalidate() { reference_.resize(0); }
 
@@ -37,7 +37,7 @@ class WallContacts {
   const ObstacleArray* array_;
   double range_;
   Keep keep_;
-  double skin_;
+  double skin_ = 0;  // of the present lists
   int num_slots_ = 0;
   Eigen::Index num_points_ = 0;
   Eigen::ArrayXd reference_;
@@ -45,7 +45,7 @@ class WallContacts {
   std::vector<Obstacle> nearby_;
   std::vector<std::vector<int>> candidates_;
 
-  void rebuild(const DropletState& state);
+  void rebuild(const DropletState& state, double skin);
   void gather_nearby(const DropletState& state);
 };
 

@@ -15,7 +15,8 @@ struct SweepEvents {
   std::function<void(std::int64_t task, int rank)> started = [](std::int64_t, int) {};
   /// Every task that was started ends here once; `interrupted` after a stop.
   std::function<void(const sweep::RunRow&)> ended = [](const sweep::RunRow&) {};
-  /// At least every 0.1 s.
+  /// About every 0.1 s; less often while this rank samples an array or releases a droplet (a second, in large
+  /// boxes).
   std::function<void()> idle = [] {};
   /// Should the sweep stop now? Running tasks are then ended as interrupted, no more are handed out.
   std::function<bool()> stop_requested = [] { return false; };

@@ -19,6 +19,8 @@ std::string library_version();
 
 /// @throws Error if the path exists: results are never overwritten
 void refuse_existing(const std::string& path);
+/// To be asked before hours of work. @throws Error if the path exists or no file can be made there
+void refuse_unwritable(const std::string& path);
 
 /// The table of runs of a sweep file. The file is only open while something is written: readers can come at
 /// any moment, and a kill between two rows loses nothing.
