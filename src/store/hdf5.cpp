@@ -91,6 +91,20 @@ File open_file(const std::string& path, unsigned flags) {
   return file;
 }
 
+void reserve(const std::string& path, std::size_t num_bytes) {
+  errno = 0;
+  const int descriptor = open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  check(descriptor >= 0, "write", path);
+  const off_t size = lseek(descriptor, 0, SEEK_END);
+  // Not every file system can reserve; there, HDF5's own flush is what notices a full disk.
+  const bool reserved =
+      fallocate(descriptor, 0, size, static_cast<off_t>(num_bytes)) == 0 || errno == EOPNOTSUPP;
+  const int reason = errno;
+  close(descriptor);
+  errno = reason;
+  check(reserved, "write", path);
+}
+
 void close_durably(File file, const std::string& path) {
   errno = 0;
   check(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "write", path);

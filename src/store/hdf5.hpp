@@ -46,6 +46,10 @@ void prepare_library();
 void create_whole(const std::string& path, const std::function<void(hid_t file)>& fill);
 /// @throws Error that says what is wrong with the path
 File open_file(const std::string& path, unsigned flags);
+/// Makes sure that the file can grow by some bytes before HDF5 touches it: a write that fails half-way would
+/// leave a file that cannot be opened. HDF5 gives back what it did not need when it closes the file. @throws
+/// Error
+void reserve(const std::string& path, std::size_t num_bytes);
 /// Writes everything to the disk. @throws Error
 void close_durably(File file, const std::string& path);
 

@@ -16,6 +16,7 @@ using sweep::RunRow;
 
 constexpr const char* table_name = "runs";
 constexpr const char* file_kind = "clogsweep sweep";
+constexpr hsize_t rows_per_chunk = 64;
 
 template <class T>
 struct IsFixedText : std::false_type {};
@@ -109,7 +110,6 @@ void write_rows(hid_t file, std::span<const RunRow> rows) {
   const hsize_t unlimited = H5S_UNLIMITED;
   const Space space(H5Screate_simple(1, &size, &unlimited));
   const PropertyList layout(H5Pcreate(H5P_DATASET_CREATE));
-  const hsize_t rows_per_chunk = 64;
   H5Pset_chunk(layout, 1, &rows_per_chunk);
   const Dataset table(H5Dcreate2(file, table_name, disk_type(all), space, H5P_DEFAULT, layout, H5P_DEFAULT));
   check(table.valid(), "create the table of runs in", "the new file");
@@ -137,6 +137,10 @@ RunTable RunTable::create(const std::string& path, const Provenance& provenance)
 }
 
 void RunTable::append(const RunRow& row) {
+  // More than a chunk of rows with its index.
+  constexpr std::size_t room = 128 * 1024;
+  static_assert(room > 2 * rows_per_chunk * sizeof(RunRow));
+  reserve(path_, room);
   File file = open_file(path_, H5F_ACC_RDWR);
   {
     const Dataset table(H5Dopen2(file, table_name, H5P_DEFAULT));
