@@ -71,8 +71,8 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
 
   DpForces forces(run, obstacles);
   forces.set_weight(0);
-  // While it grows, vertices are kept evenly spread: springs to a rest length may be too weak for that, and
-  // vertices that run together make the interface too stiff for any step.
+  // Vertices are kept evenly spread whatever the run's springs are: those to a rest length may be too weak for that,
+  // and vertices that run together make the interface too stiff for any step.
   forces.set_perimeter_spring(PerimeterSpring::mean);
   const double vertex_weight = units::droplet_mass * units::gravity / n;
   // A polygon smaller than the droplet has a smaller perimeter: a stiffer tension mode, a softer area mode.
@@ -96,12 +96,8 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
   FireOptions last = options_at(polygon_shape(state.position).perimeter);
   last.force_tolerance = release_force_tolerance * vertex_weight;
   last.max_iterations = 200000;
-  for (const PerimeterSpring spring : {PerimeterSpring::mean, run.dp.perimeter_spring}) {
-    forces.set_perimeter_spring(spring);
-    if (!minimize_fire(forces, state, last).converged)
-      refuse_release("the grown droplet does not come to rest",
-                     "a larger line-tension or perimeter-stiffness");
-  }
+  if (!minimize_fire(forces, state, last).converged)
+    refuse_release("the grown droplet does not come to rest", "a larger line-tension or perimeter-stiffness");
   if (num_enclosed(state, obstacles) > 0)
     refuse_release("the grown droplet encloses an obstacle", "more vertices");
   return state;
