@@ -69,15 +69,17 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
   state.x() += place[0] - state.frame.origin[0];
   state.y() += place[1] - state.frame.origin[1];
 
-  DpForces forces(run, obstacles);
+  // Vertices are kept evenly spread whatever the run's springs are: those may be too weak for that, and
+  // vertices that run together make the interface too stiff for any step.
+  RunParameters growing = run;
+  growing.dp.perimeter_spring = PerimeterSpring::mean;
+  growing.dp.perimeter_stiffness = std::max(1.0, *run.dp.perimeter_stiffness);
+  DpForces forces(growing, obstacles);
   forces.set_weight(0);
-  // Vertices are kept evenly spread whatever the run's springs are: those to a rest length may be too weak for that,
-  // and vertices that run together make the interface too stiff for any step.
-  forces.set_perimeter_spring(PerimeterSpring::mean);
   const double vertex_weight = units::droplet_mass * units::gravity / n;
   // A polygon smaller than the droplet has a smaller perimeter: a stiffer tension mode, a softer area mode.
   const auto options_at = [&](double perimeter) {
-    const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, perimeter);
+    const StiffModes modes = stiff_modes(growing.dp, *run.wall_stiffness, perimeter);
     return FireOptions{.mass = units::droplet_mass / n,
                        .largest_step = 0.5 * largest_stable_step(modes),
                        .force_tolerance = vertex_weight,

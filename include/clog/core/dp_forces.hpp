@@ -55,7 +55,6 @@ class DpForces {
 
   /// For the release, where the droplet grows without weight.
   void set_rest_area(double area);
-  void set_perimeter_spring(PerimeterSpring spring) { dp_.perimeter_spring = spring; }
   void set_weight(double weight) { weight_ = weight; }
 
  private:
