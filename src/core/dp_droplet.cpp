@@ -22,21 +22,21 @@ DpDroplet::DpDroplet(const RunParameters& run, const ObstacleArray& obstacles, D
       forces_(run, obstacles),
       vertex_mass_(units::droplet_mass / run.dp.vertices),
       force_(2 * run.dp.vertices),
-      damping_(run.drag.near_wall > 0 ? 2 * run.dp.vertices : 0) {
+      drag_rate_(run.drag.near_wall > 0 ? 2 * run.dp.vertices : 0) {
   state_ = std::move(initial);
   forces_.update_contacts(state_, state_.possible_travel(steps_per_check * run_.time_step));
   forces_.evaluate(state_, force_);
-  measure_damping();
+  measure_drag();
 }
 
-void DpDroplet::measure_damping() {
-  if (damping_.size() == 0) return;
+void DpDroplet::measure_drag() {
+  if (drag_rate_.size() == 0) return;
+  const Eigen::Index n = run_.dp.vertices;
   const double far_rate = units::gravity / run_.drag.terminal_speed;
-  const auto rate = damping_.head(run_.dp.vertices);
-  damping_.head(run_.dp.vertices) =
+  drag_rate_.head(n) =
       far_rate *
       (1 + run_.drag.near_wall * (units::droplet_diameter / forces_.wall_distance()).pow(near_wall_exponent));
-  damping_.tail(run_.dp.vertices) = rate;
+  drag_rate_.tail(n) = drag_rate_.head(n);
 }
 
 void DpDroplet::step(double time_step) {
@@ -44,19 +44,16 @@ void DpDroplet::step(double time_step) {
   const double half_dt_over_m = 0.5 * time_step / vertex_mass_;
   double* x = state_.position.data();
   double* v = state_.velocity.data();
-  if (damping_.size() == 0) {
+  if (drag_rate_.size() == 0) {
     const double damping = 0.5 * time_step * units::gravity / run_.drag.terminal_speed;
     kernel::kick_and_drift(n, damping, half_dt_over_m, time_step, force_.data(), v, x);
     forces_.evaluate(state_, force_);
     kernel::kick(n, damping, half_dt_over_m, force_.data(), v);
   } else {
-    damping_ *= 0.5 * time_step;
-    kernel::kick_and_drift(n, damping_.data(), half_dt_over_m, time_step, force_.data(), v, x);
+    kernel::kick_and_drift(n, drag_rate_.data(), half_dt_over_m, time_step, force_.data(), v, x);
     forces_.evaluate(state_, force_);
-    measure_damping();
-    damping_ *= 0.5 * time_step;
-    kernel::kick(n, damping_.data(), half_dt_over_m, force_.data(), v);
-    damping_ /= 0.5 * time_step;
+    measure_drag();
+    kernel::kick(n, drag_rate_.data(), half_dt_over_m, time_step, force_.data(), v);
   }
 }
 

@@ -122,20 +122,20 @@ void kick(int n, double damping, double half_dt_over_m, const double* __restrict
 }
 
 CLOG_MULTIVERSION
-void kick_and_drift(int n, const double* __restrict damping, double half_dt_over_m, double dt,
+void kick_and_drift(int n, const double* __restrict rate, double half_dt_over_m, double dt,
                     const double* __restrict f, double* __restrict v, double* __restrict x) {
 #pragma omp simd
   for (int i = 0; i < n; ++i) {
-    v[i] = v[i] * (1 - damping[i]) + f[i] * half_dt_over_m;
+    v[i] = v[i] * (1 - 0.5 * dt * rate[i]) + f[i] * half_dt_over_m;
     x[i] += dt * v[i];
   }
 }
 
 CLOG_MULTIVERSION
-void kick(int n, const double* __restrict damping, double half_dt_over_m, const double* __restrict f,
+void kick(int n, const double* __restrict rate, double half_dt_over_m, double dt, const double* __restrict f,
           double* __restrict v) {
 #pragma omp simd
-  for (int i = 0; i < n; ++i) v[i] = (v[i] + f[i] * half_dt_over_m) / (1 + damping[i]);
+  for (int i = 0; i < n; ++i) v[i] = (v[i] + f[i] * half_dt_over_m) / (1 + 0.5 * dt * rate[i]);
 }
 
 }  // namespace clog::kernel

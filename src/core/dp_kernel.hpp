@@ -46,9 +46,9 @@ void kick_and_drift(int n, double damping, double half_dt_over_m, double dt, con
                     double* x);
 /// (v + f half_dt_over_m)/(1 + damping).
 void kick(int n, double damping, double half_dt_over_m, const double* f, double* v);
-/// The same two with a damping of its own for every number.
-void kick_and_drift(int n, const double* damping, double half_dt_over_m, double dt, const double* f,
-                    double* v, double* x);
-void kick(int n, const double* damping, double half_dt_over_m, const double* f, double* v);
+/// The same two with a drag of its own for every number: rate = zeta/m.
+void kick_and_drift(int n, const double* rate, double half_dt_over_m, double dt, const double* f, double* v,
+                    double* x);
+void kick(int n, const double* rate, double half_dt_over_m, double dt, const double* f, double* v);
 
 }  // namespace clog::kernel

@@ -32,6 +32,11 @@ void expect_identical(const RunResult& a, const RunResult& b) {
   EXPECT_EQ(a.steps, b.steps);
 }
 
+void expect_diverged(const RunResult& result) {
+  EXPECT_EQ(result.status, RunStatus::failed);
+  EXPECT_NE(result.message.find("diverged"), std::string::npos) << result.message;
+}
+
 TEST(ArrayRun, IsTheSameHoweverItIsSliced) {
   const RunResult at_once = result_of(small_run(), 100000);
   expect_identical(at_once, result_of(small_run(), 1));
@@ -93,9 +98,7 @@ TEST(ArrayRun, ADivergedRunIsAResult) {
   parameters.time_step = 0.5;
   parameters.drag.terminal_speed = 30;
   parameters.max_time = 1e5;
-  const RunResult result = result_of(parameters, 100);
-  EXPECT_EQ(result.status, RunStatus::failed);
-  EXPECT_NE(result.message.find("diverged"), std::string::npos);
+  expect_diverged(result_of(parameters, 100));
 }
 
 TEST(ArrayRun, ABurstPolygonIsAResultToo) {
@@ -104,9 +107,7 @@ TEST(ArrayRun, ABurstPolygonIsAResultToo) {
   parameters.drag.terminal_speed = 100;
   parameters.time_step = 5;
   parameters.max_time = 1e6;
-  const RunResult result = result_of(parameters, 10);
-  EXPECT_EQ(result.status, RunStatus::failed);
-  EXPECT_NE(result.message.find("diverged"), std::string::npos);
+  expect_diverged(result_of(parameters, 10));
 }
 
 TEST(ArrayRun, ADropletThatHasNotFallenYetIsNotClogged) {

@@ -30,10 +30,10 @@ class DpDroplet final : public Droplet {
   DpForces forces_;
   double vertex_mass_;
   Eigen::ArrayXd force_;
-  Eigen::ArrayXd damping_;  // zeta/m of the vertices, twice, with near-wall drag
+  Eigen::ArrayXd drag_rate_;  // with near-wall drag: zeta/m of the vertices [1/t0], for x and again for y
 
   void step(double time_step);
-  void measure_damping();
+  void measure_drag();
 };
 
 }  // namespace clog

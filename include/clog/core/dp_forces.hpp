@@ -50,7 +50,7 @@ class DpForces {
   double deepest_overlap(const DropletState& state) const;
   /// Distance from an obstacle's surface at which contact begins, half a vertex diameter [sigma].
   double contact_range() const { return walls_.range(); }
-  const SelfContacts& self_contacts() const { return self_; }
+
   double vertex_diameter() const { return vertex_diameter_; }
 
   /// For the release, where the droplet grows without weight.

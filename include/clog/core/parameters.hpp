@@ -57,8 +57,8 @@ struct RunParameters {
 /// @throws Error naming the field, its value, the reason and a remedy
 RunParameters resolve(RunParameters parameters);
 
-/// Contact stiffness k_c [g rho sigma^... per length, force/overlap] of a wall energy
-/// U_w = (E_w/2)(1 - 2d/size)^2: k_c = 4 E_w / size^2. `size` is the vertex diameter (DP) or sigma (SP).
+/// Contact stiffness k_c, force over overlap [g rho sigma], of the wall energy U_w = (E_w/2)(1 - 2d/size)^2:
+/// k_c = 4 E_w / size^2. `size` is the vertex diameter (DP) or sigma (SP). And the way back.
 inline double contact_stiffness(double wall_stiffness, double size) {
   return 4 * wall_stiffness / (size * size);
 }
