@@ -124,6 +124,15 @@ double CommandLine::get_positive(const std::string& option) const {
   throw Error("invalid --" + option + "=" + get(option) + " (must be a positive number)");
 }
 
+double CommandLine::get_number(const std::string& option, double fallback) const {
+  if (!has(option)) return fallback;
+  try {
+    return sweep::to_number(get(option));
+  } catch (const Error&) {
+    throw Error("invalid --" + option + "=" + get(option) + " (must be a finite number)");
+  }
+}
+
 std::string CommandLine::help() const {
   std::ostringstream out;
   out << usage_ << "\n" << own_;

@@ -8,14 +8,32 @@
 #include "dp_kernel.hpp"
 
 namespace clog {
+namespace {
+
+kernel::WedgePlace place_in(const LocalFrame& frame, const Wedge& wedge) {
+  const Eigen::Array2d centre = wedge.centre() - frame.origin - frame.image.cast<double>() * frame.box;
+  return {.x = centre[0],
+          .y = centre[1],
+          .radius = wedge.radius,
+          .axis_x = wedge.axis[0],
+          .axis_y = wedge.axis[1],
+          .cos = std::cos(wedge.half_angle),
+          .sin = std::sin(wedge.half_angle)};
+}
+
+}  // namespace
 
 DpForces::DpForces(const RunParameters& run, const ObstacleArray& obstacles)
     : dp_(run.dp),
+      obstacles_(&obstacles),
       vertex_diameter_(units::regular_edge_length(run.dp.vertices)),
       contact_stiffness_(contact_stiffness(run.wall_stiffness.value(), vertex_diameter_)),
       weight_(units::droplet_mass * units::gravity),
-      walls_(obstacles, vertex_diameter_ / 2, WallContacts::Keep::touched_by_edge),
+      walls_(obstacles, vertex_diameter_ / 2,
+             dp_.wall_contact == WallContact::edge ? WallContacts::Keep::touched_by_edge
+                                                   : WallContacts::Keep::touched_by_vertex),
       nearest_walls_(obstacles, vertex_diameter_ / 2, WallContacts::Keep::nearest_to_vertex),
+      adhesive_walls_(obstacles, 1.5 * vertex_diameter_, WallContacts::Keep::touched_by_vertex),
       self_(vertex_diameter_),
       edge_x_(dp_.vertices),
       edge_y_(dp_.vertices),
@@ -35,6 +53,7 @@ void DpForces::set_rest_area(double area) {
 void DpForces::update_contacts(const DropletState& state, const Travel& travel) {
   walls_.update(state, travel);
   if (wall_distance_.size() > 0) nearest_walls_.update(state, travel);
+  if (wets()) adhesive_walls_.update(state, travel);
   if (dp_.self_contact == SelfContact::on)
     self_.update(state, travel, polygon_shape(state.position).perimeter / dp_.vertices);
 }
@@ -42,6 +61,7 @@ void DpForces::update_contacts(const DropletState& state, const Travel& travel) 
 void DpForces::forget_contacts() {
   walls_.invalidate();
   nearest_walls_.invalidate();
+  adhesive_walls_.invalidate();
 }
 
 double DpForces::spring_length() const {
@@ -58,55 +78,110 @@ void DpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   const kernel::EdgeArrays edges{edge_x_.data(), edge_y_.data(), edge_length_.data()};
   const kernel::Sums sums = kernel::measure_edges(n, x, y, edges);
   shape_ = {sums.area, sums.perimeter};
+  // A body force W on the area is a pressure W.(r - centroid)/area on the interface: its virtual work is that
+  // of W on the centroid.
+  const bool on_area = dp_.gravity == Gravity::area;
+  const Eigen::Array2d weight{weight_, 0};
+  const Eigen::Array2d body = on_area ? Eigen::Array2d(weight + mean_drag_) : Eigen::Array2d(0, 0);
+  const Eigen::Array2d own = on_area ? Eigen::Array2d(-mean_drag_) : weight;
+  const Eigen::Array2d gradient = body / sums.area;
+  const Eigen::Array2d centroid = Eigen::Array2d(sums.moment_x, sums.moment_y) / sums.area;
+  const bool has_tension = dp_.perimeter_spring != PerimeterSpring::along;
   const kernel::Interface interface {
-    .line_tension = dp_.line_tension, .spring = *dp_.perimeter_stiffness * n,
-    // The springs to the mean length are unloaded on average, so their force needs no derivative of the mean.
-        .spring_length = spring_length(), .pressure = -dp_.area_stiffness * (shape_.area - rest_area_),
-    .vertex_weight = dp_.gravity == Gravity::vertex ? weight_ / n : 0,
+    .line_tension = dp_.line_tension, .spring = has_tension ? *dp_.perimeter_stiffness * n : 0,
+    // The springs to the mean length are unloaded on average: their force needs no derivative of the mean.
+        .spring_length = spring_length(), .spreading = has_tension ? 0 : *dp_.perimeter_stiffness * n,
+    .pressure = -dp_.area_stiffness * (shape_.area - rest_area_) - (gradient * centroid).sum(),
+    .pressure_x = gradient[0], .pressure_y = gradient[1], .vertex_x = own[0] / n, .vertex_y = own[1] / n,
   };
-  kernel::interface_forces(n, interface, edges, pull_.data(), fx, fy);
-  if (dp_.gravity == Gravity::area) add_centroid_weight(state, force);
+  kernel::interface_forces(n, x, y, interface, edges, pull_.data(), fx, fy);
 
-  for (int s = 0; s < walls_.num_slots(); ++s)
-    kernel::add_wall_forces(n, x, y, edges, {walls_.slot_x(s), walls_.slot_y(s), walls_.slot_radius(s)},
-                            walls_.range(), contact_stiffness_, end_x_.data(), end_y_.data(), fx, fy);
-  if (wall_distance_.size() > 0) {
-    wall_distance_.setConstant(std::numeric_limits<double>::infinity());
-    for (int s = 0; s < nearest_walls_.num_slots(); ++s)
-      kernel::shrink_to_wall_distance(
-          n, x, y, {nearest_walls_.slot_x(s), nearest_walls_.slot_y(s), nearest_walls_.slot_radius(s)},
-          wall_distance_.data());
-    wall_distance_ = wall_distance_.max(vertex_diameter_ / 2);
-  }
+  add_walls(state, force);
+  if (wall_distance_.size() > 0) measure_wall_distance(state);
+  if (wets()) add_wetting(state, force);
   if (dp_.self_contact == SelfContact::on) add_self_contact(state, force);
 }
 
-/// U = -M g X, X the x coordinate of the area centroid: X = S/a with S = (1/6) sum (x_i + x_{i+1}) c_i,
-/// c_i = x_i y_{i+1} - x_{i+1} y_i, so grad X = (grad S - X grad a)/a.
-void DpForces::add_centroid_weight(const DropletState& state, Eigen::ArrayXd& force) const {
-  const Eigen::Index n = dp_.vertices;
-  const Eigen::Array2d centre =
-      state.centre();  // X is invariant under shifts; small coordinates keep it exact
-  const auto x = [&](Eigen::Index i) { return state.position[i] - centre[0]; };
-  const auto y = [&](Eigen::Index i) { return state.position[n + i] - centre[1]; };
-  const auto cross = [&](Eigen::Index i, Eigen::Index j) { return x(i) * y(j) - x(j) * y(i); };
-  double moment = 0;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Eigen::Index next = i + 1 < n ? i + 1 : 0;
-    moment += (x(i) + x(next)) * cross(i, next) / 6;
+void DpForces::add_walls(const DropletState& state, Eigen::ArrayXd& force) {
+  const int n = dp_.vertices;
+  const double* x = state.position.data();
+  const double* y = x + n;
+  double* fx = force.data();
+  double* fy = fx + n;
+  for (int s = 0; s < walls_.num_slots(); ++s) {
+    const kernel::WallSlot slot{walls_.slot_x(s), walls_.slot_y(s), walls_.slot_radius(s)};
+    if (dp_.wall_contact == WallContact::edge)
+      kernel::add_wall_forces(n, x, y, {edge_x_.data(), edge_y_.data(), edge_length_.data()}, slot,
+                              walls_.range(), contact_stiffness_, end_x_.data(), end_y_.data(), fx, fy);
+    else
+      kernel::add_vertex_wall_forces(n, x, y, slot, walls_.range(), contact_stiffness_, fx, fy);
   }
-  const double centroid = moment / shape_.area;
-  const double scale = weight_ / shape_.area;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const Eigen::Index next = i + 1 < n ? i + 1 : 0;
-    const Eigen::Index before = i > 0 ? i - 1 : n - 1;
-    const double moment_x =
-        (cross(i, next) + (x(i) + x(next)) * y(next) + cross(before, i) - (x(before) + x(i)) * y(before)) / 6;
-    const double moment_y = ((x(before) + x(i)) * x(before) - (x(i) + x(next)) * x(next)) / 6;
-    const double area_x = 0.5 * (y(next) - y(before));
-    const double area_y = 0.5 * (x(before) - x(next));
-    force[i] += scale * (moment_x - centroid * area_x);
-    force[n + i] += scale * (moment_y - centroid * area_y);
+  for (const Wedge& wedge : obstacles_->wedges())
+    kernel::add_wedge_forces(n, x, y, place_in(state.frame, wedge), walls_.range(), contact_stiffness_, fx,
+                             fy);
+}
+
+void DpForces::measure_wall_distance(const DropletState& state) {
+  const int n = dp_.vertices;
+  const double* x = state.position.data();
+  const double* y = x + n;
+  double* distance = wall_distance_.data();
+  wall_distance_.setConstant(std::numeric_limits<double>::infinity());
+  for (int s = 0; s < nearest_walls_.num_slots(); ++s)
+    kernel::shrink_to_wall_distance(
+        n, x, y, {nearest_walls_.slot_x(s), nearest_walls_.slot_y(s), nearest_walls_.slot_radius(s)},
+        distance);
+  for (const Wedge& wedge : obstacles_->wedges())
+    kernel::shrink_to_wedge_distance(n, x, y, place_in(state.frame, wedge), distance);
+  wall_distance_ = wall_distance_.max(vertex_diameter_ / 2);
+}
+
+/// The tension changes from Gamma, one and a half vertex diameters away from a wall, to that of the wetted
+/// wall where contact begins: a smooth step, so that the energy and the force are continuous.
+DpForces::Wetted DpForces::wetted(const DropletState& state, int vertex) const {
+  const int n = dp_.vertices;
+  const Eigen::Array2d place{state.position[vertex], state.position[n + vertex]};
+  double nearest = std::numeric_limits<double>::infinity();
+  Wetted wetted;
+  for (int s = 0; s < adhesive_walls_.num_slots(); ++s) {
+    const Eigen::Array2d away =
+        place - Eigen::Array2d(adhesive_walls_.slot_x(s)[vertex], adhesive_walls_.slot_y(s)[vertex]);
+    const double r = away.matrix().norm();
+    if (r - adhesive_walls_.slot_radius(s)[vertex] >= nearest) continue;
+    nearest = r - adhesive_walls_.slot_radius(s)[vertex];
+    wetted.normal = away / r;
+  }
+  for (const Wedge& wedge : obstacles_->wedges()) {
+    const kernel::WedgePlace in_frame = place_in(state.frame, wedge);
+    const auto [distance, normal] = distance_to(wedge, place - Eigen::Array2d(in_frame.x, in_frame.y));
+    if (distance >= nearest) continue;
+    nearest = distance;
+    wetted.normal = normal;
+  }
+  const double t = std::clamp((adhesive_walls_.range() - nearest) / vertex_diameter_, 0.0, 1.0);
+  wetted.share = t * t * (3 - 2 * t);
+  wetted.slope = -6 * t * (1 - t) / vertex_diameter_;
+  return wetted;
+}
+
+/// U_gamma = sum gamma_e l_e, gamma_e = Gamma + (Gamma_wall - Gamma) times the mean share of its two
+/// vertices: the three-tension energy, Cheng et al. Eq. 2, with the tensions of a wetted wall's two sides
+/// taken together.
+void DpForces::add_wetting(const DropletState& state, Eigen::ArrayXd& force) const {
+  const int n = dp_.vertices;
+  Wetted before = wetted(state, n - 1);
+  for (int i = 0; i < n; ++i) {
+    const int previous = i > 0 ? i - 1 : n - 1;
+    const Wetted here = wetted(state, i);
+    const double pull = extra_tension() * (before.share + here.share) / 2 / edge_length_[previous];
+    force[previous] += pull * edge_x_[previous];
+    force[n + previous] += pull * edge_y_[previous];
+    force[i] -= pull * edge_x_[previous];
+    force[n + i] -= pull * edge_y_[previous];
+    const double push = -extra_tension() * here.slope * (edge_length_[previous] + edge_length_[i]) / 2;
+    force[i] += push * here.normal[0];
+    force[n + i] += push * here.normal[1];
+    before = here;
   }
 }
 
@@ -136,15 +211,19 @@ void DpForces::add_self_contact(const DropletState& state, Eigen::ArrayXd& force
 template <class Visit>
 void DpForces::visit_overlaps(const DropletState& state, Visit visit) const {
   const int n = dp_.vertices;
+  const auto vertex = [&](int i) { return Eigen::Array2d(state.position[i], state.position[n + i]); };
   for (int s = 0; s < walls_.num_slots(); ++s)
     for (int i = 0; i < n; ++i) {
-      const int next = i + 1 < n ? i + 1 : 0;
-      const double distance = distance_to_segment({walls_.slot_x(s)[i], walls_.slot_y(s)[i]},
-                                                  {state.position[i], state.position[n + i]},
-                                                  {state.position[next], state.position[n + next]}) -
-                              walls_.slot_radius(s)[i];
+      const int end = dp_.wall_contact == WallContact::vertex ? i : i + 1 < n ? i + 1 : 0;
+      const Eigen::Array2d centre{walls_.slot_x(s)[i], walls_.slot_y(s)[i]};
+      const double distance = distance_to_segment(centre, vertex(i), vertex(end)) - walls_.slot_radius(s)[i];
       visit(walls_.range() - distance);
     }
+  for (const Wedge& wedge : obstacles_->wedges()) {
+    const kernel::WedgePlace place = place_in(state.frame, wedge);
+    for (int i = 0; i < n; ++i)
+      visit(walls_.range() - distance_to(wedge, vertex(i) - Eigen::Array2d(place.x, place.y)).distance);
+  }
 }
 
 double DpForces::deepest_overlap(const DropletState& state) const {
@@ -153,12 +232,12 @@ double DpForces::deepest_overlap(const DropletState& state) const {
   return deepest;
 }
 
-DpEnergy DpForces::energy(const DropletState& state) const {
+PotentialEnergy DpForces::energy(const DropletState& state) const {
   const int n = dp_.vertices;
   const double* x = state.position.data();
   const double* y = x + n;
   const PolygonShape shape = polygon_shape(state.position);
-  DpEnergy energy;
+  PotentialEnergy energy;
   energy.area = 0.5 * dp_.area_stiffness * (shape.area - rest_area_) * (shape.area - rest_area_);
   energy.line_tension = dp_.line_tension * shape.perimeter;
   const double height = dp_.gravity == Gravity::vertex ? state.x().mean() : area_centroid(state.position)[0];
@@ -167,7 +246,11 @@ DpEnergy DpForces::energy(const DropletState& state) const {
   const double reference = dp_.perimeter_spring == PerimeterSpring::rest ? rest_edge_ : shape.perimeter / n;
   for (int i = 0, j = n - 1; i < n; j = i++) {
     const double stretch = std::hypot(x[i] - x[j], y[i] - y[j]) - reference;
-    energy.spring += 0.5 * *dp_.perimeter_stiffness * n * stretch * stretch;
+    if (dp_.perimeter_spring != PerimeterSpring::along)
+      energy.spring += 0.5 * *dp_.perimeter_stiffness * n * stretch * stretch;
+    if (wets())
+      energy.line_tension += extra_tension() * (wetted(state, i).share + wetted(state, j).share) / 2 *
+                             std::hypot(x[i] - x[j], y[i] - y[j]);
   }
   visit_overlaps(state, [&](double overlap) {
     if (overlap > 0) energy.wall += 0.5 * contact_stiffness_ * overlap * overlap;

@@ -18,10 +18,11 @@ double wrapped(double value, double period) {
 
 }  // namespace
 
-ObstacleArray::ObstacleArray(double box, std::vector<Obstacle> obstacles)
+ObstacleArray::ObstacleArray(double box, std::vector<Obstacle> obstacles, std::vector<Wedge> wedges)
     : box_(box),
       cells_per_side_(std::max(1, static_cast<int>(box / units::droplet_diameter))),
-      obstacles_(std::move(obstacles)) {
+      obstacles_(std::move(obstacles)),
+      wedges_(std::move(wedges)) {
   for (Obstacle& obstacle : obstacles_) {
     if (!(obstacle.radius > 0) || !std::isfinite(obstacle.radius) || !std::isfinite(obstacle.x) ||
         !std::isfinite(obstacle.y)) {

@@ -64,9 +64,14 @@ void resolve_dp(RunParameters& run) {
   require_not_negative("line-tension", dp.line_tension);
   require_positive("area-stiffness", dp.area_stiffness);
   require(dp.vertices >= 16 && dp.vertices <= 4096, "vertices", dp.vertices, "must lie in 16..4096)");
+  require_not_negative("perimeter-stiffness-ratio", dp.perimeter_stiffness_ratio);
   if (!dp.perimeter_stiffness)
-    dp.perimeter_stiffness = dp.perimeter_spring == PerimeterSpring::rest ? 1e-3 * dp.line_tension : 1.0;
+    dp.perimeter_stiffness =
+        dp.perimeter_spring == PerimeterSpring::rest ? dp.perimeter_stiffness_ratio * dp.line_tension : 1.0;
   require_not_negative("perimeter-stiffness", *dp.perimeter_stiffness);
+  require(
+      dp.wall_tension >= -0.9 && dp.wall_tension <= 1, "wall-tension", dp.wall_tension,
+      "minus the cosine of the contact angle, so -1 would spread the droplet over every wall) use -0.9..1");
 
   const double vertex_mass = units::droplet_mass / dp.vertices;
   const double vertex_diameter = units::regular_edge_length(dp.vertices);
@@ -105,6 +110,8 @@ void resolve_sp(RunParameters& run) {
   require_positive("wall-stiffness", *run.wall_stiffness);
   require(run.drag.near_wall == 0, "near-wall-drag", run.drag.near_wall,
           "the soft disk has no near-wall drag) use 0 with model=sp");
+  require(run.drag.relative == 1, "relative-drag", run.drag.relative,
+          "the soft disk has no parts that could move relative to each other) use 1 with model=sp");
   const double omega =
       std::sqrt(contact_stiffness(*run.wall_stiffness, units::droplet_diameter) / units::droplet_mass);
   // Up to a dozen obstacles of a saturated array overlap a soft disk at once.
@@ -133,6 +140,10 @@ RunParameters resolve(RunParameters run) {
   require_not_negative("near-wall-drag", run.drag.near_wall);
   require(run.drag.near_wall <= 1000, "near-wall-drag", run.drag.near_wall,
           "the droplet would hang in the drag of its surroundings) use at most 1000");
+  require(run.drag.near_wall_exponent >= 0 && run.drag.near_wall_exponent <= 4, "near-wall-exponent",
+          run.drag.near_wall_exponent, "must lie in 0..4) the published exponent is 4/3");
+  require(run.drag.relative >= 0 && run.drag.relative <= 1000, "relative-drag", run.drag.relative,
+          "must lie in 0..1000) 1 is the published model");
   if (run.model == Model::dp)
     resolve_dp(run);
   else

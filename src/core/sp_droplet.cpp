@@ -34,6 +34,15 @@ void SpForces::update_contacts(const DropletState& state, const Travel& travel) 
                      near_);
 }
 
+template <class Visit>
+void SpForces::visit_wedges(const DropletState& state, Visit visit) const {
+  for (const Wedge& wedge : obstacles_->wedges()) {
+    const auto [distance, normal] =
+        distance_to(wedge, state.frame.global(state.position.head<2>()) - wedge.centre());
+    visit(distance, normal);
+  }
+}
+
 void SpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) const {
   const double stiffness = contact_stiffness(wall_stiffness_, units::droplet_diameter);
   const double x = state.position[0];
@@ -50,18 +59,28 @@ void SpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) const 
     fx += push * dx;
     fy += push * dy;
   }
+  visit_wedges(state, [&](double distance, const Eigen::Array2d& normal) {
+    const double push = stiffness * std::max(0.0, contact_range - distance);
+    fx += push * normal[0];
+    fy += push * normal[1];
+  });
   force[0] = fx;
   force[1] = fy;
 }
 
-double SpForces::energy(const DropletState& state) const {
-  double energy = -weight_ * state.position[0];
+PotentialEnergy SpForces::energy(const DropletState& state) const {
+  PotentialEnergy energy;
+  energy.gravity = -weight_ * state.position[0];
+  const auto add_wall = [&](double distance) {
+    const double overlap = std::max(0.0, 1 - distance / contact_range);
+    energy.wall += 0.5 * wall_stiffness_ * overlap * overlap;
+  };
   for (const Obstacle& obstacle : near_) {
     const double distance =
         std::hypot(state.position[0] - obstacle.x, state.position[1] - obstacle.y) - obstacle.radius;
-    const double overlap = std::max(0.0, 1 - 2 * distance / units::droplet_diameter);
-    energy += 0.5 * wall_stiffness_ * overlap * overlap;
+    add_wall(distance);
   }
+  visit_wedges(state, [&](double distance, const Eigen::Array2d&) { add_wall(distance); });
   return energy;
 }
 
@@ -82,11 +101,17 @@ void SpDroplet::advance(int num_steps) {
     while (steps > 1 && state_.possible_travel(steps * dt).absolute > usual_skin) steps /= 2;
     if (state_.recentre().any()) forces_.forget_contacts();
     forces_.update_contacts(state_, state_.possible_travel(steps * dt));
+    const auto half_loss = [&] {  // of the drag in half a step
+      return 0.5 * dt * units::droplet_mass * units::gravity / run_.drag.terminal_speed *
+             state_.velocity.square().sum();
+    };
     for (int i = 0; i < steps; ++i) {
+      if (measures_dissipation_) dissipated_energy_ += half_loss();
       state_.velocity = state_.velocity * (1 - damping) + force_ * half_dt_over_m;
       state_.position += dt * state_.velocity;
       forces_.evaluate(state_, force_);
       state_.velocity = (state_.velocity + force_ * half_dt_over_m) / (1 + damping);
+      if (measures_dissipation_) dissipated_energy_ += half_loss();
     }
     num_integrated_steps_ += steps;
   }

@@ -11,11 +11,15 @@ StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double per
   const double num_vertices = dp.vertices;
   const double vertex_mass = units::droplet_mass / num_vertices;
   const double vertex_diameter = units::regular_edge_length(dp.vertices);
+  const int edges_per_vertex = dp.wall_contact == WallContact::edge ? 2 : 1;
+  const double edge = perimeter / num_vertices;
   return {
-      .contact = 2 * contact_stiffness(wall_stiffness, vertex_diameter) / vertex_mass,
+      .contact = edges_per_vertex * contact_stiffness(wall_stiffness, vertex_diameter) / vertex_mass,
       .area = dp.area_stiffness * perimeter * perimeter / units::droplet_mass,
-      .tension = 4 * dp.line_tension / (perimeter / num_vertices * vertex_mass),
+      .tension = 4 * dp.line_tension / (edge * vertex_mass),
       .spring = 4 * dp.perimeter_stiffness.value() * num_vertices / vertex_mass,
+      .wetting = 6 * dp.line_tension * std::abs(dp.wall_tension - 1) * edge /
+                 (vertex_diameter * vertex_diameter * vertex_mass),
   };
 }
 

@@ -27,7 +27,7 @@ void WallContacts::update(const DropletState& state, const Travel& travel) {
     if (std::sqrt(farthest2) + travel.absolute < skin_) return;
   }
   // A fast droplet needs more than the usual skin even to reach the next update.
-  const double usual_skin = keep_ == Keep::touched_by_edge ? touching_skin : nearest_skin;
+  const double usual_skin = keep_ == Keep::nearest_to_vertex ? nearest_skin : touching_skin;
   rebuild(state, std::clamp(2 * travel.absolute, usual_skin, widest_skin));
 }
 
@@ -38,7 +38,15 @@ void WallContacts::gather_nearby(const DropletState& state) {
                                y.minCoeff(),          y.maxCoeff(),          range_ + skin_};
   nearby_.clear();
   array_->gather(window, nearby_);
-  if (keep_ == Keep::touched_by_edge) return;
+  // A wedge's flanks touch vertices first, but its tip can come between two of them.
+  if (keep_ == Keep::touched_by_edge)
+    for (const Wedge& wedge : array_->wedges())
+      if (!wedge.is_flat()) {
+        const Eigen::Array2d centre =
+            wedge.centre() - state.frame.origin - state.frame.image.cast<double>() * state.frame.box;
+        nearby_.push_back({centre[0], centre[1], wedge.radius});
+      }
+  if (keep_ != Keep::nearest_to_vertex) return;
   // The nearest obstacle may be far away in a sparse array: look as far as a box (a periodic array holds at
   // least one obstacle there, if it holds any).
   for (window.margin = 0.5; window.margin < 2 * array_->box(); window.margin *= 2) {
@@ -68,7 +76,7 @@ void WallContacts::rebuild(const DropletState& state, double skin) {
   candidates_.resize(num_points_);
   std::vector<double> distance(nearby_.size());
   for (Eigen::Index i = 0; i < num_points_; ++i) {
-    const Eigen::Index next = keep_ == Keep::nearest_to_vertex ? i : (i + 1) % num_points_;
+    const Eigen::Index next = keep_ == Keep::touched_by_edge ? (i + 1) % num_points_ : i;
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < nearby_.size(); ++k) {
       distance[k] = distance_to_segment({nearby_[k].x, nearby_[k].y}, {x[i], y[i]}, {x[next], y[next]}) -
@@ -77,7 +85,7 @@ void WallContacts::rebuild(const DropletState& state, double skin) {
     }
     // An obstacle is in contact later only if it is within range + skin now; it is the nearest later only if
     // it is within 2 skins of the nearest now.
-    const double reach = keep_ == Keep::touched_by_edge ? range_ + skin_ : nearest + 2 * skin_;
+    const double reach = keep_ == Keep::nearest_to_vertex ? nearest + 2 * skin_ : range_ + skin_;
     candidates_[i].clear();
     for (std::size_t k = 0; k < nearby_.size(); ++k)
       if (distance[k] <= reach) candidates_[i].push_back(static_cast<int>(k));

@@ -1,5 +1,6 @@
 #include "clog/store/trajectory_file.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 #include "hdf5.hpp"
@@ -19,37 +20,26 @@ Dataset write_dataset(hid_t file, const char* name, hid_t type, std::initializer
   return dataset;
 }
 
-void write_samples(hid_t file, const std::vector<TrajectorySample>& samples) {
-  struct Column {
-    const char* name;
-    const char* meaning;
-    std::size_t offset;
-  };
-  const Column columns[] = {
-      {"time", "[t0]", offsetof(TrajectorySample, time)},
-      {"distance", "displacement of the centre of mass along the flow since release [sigma]",
-       offsetof(TrajectorySample, distance)},
-      {"lateral_displacement", "displacement across the flow [sigma]",
-       offsetof(TrajectorySample, lateral_displacement)},
-      {"speed", "of the centre of mass along the flow [sqrt(sigma g)]", offsetof(TrajectorySample, speed)},
-      {"kinetic_energy_ratio", "E_k/E_t", offsetof(TrajectorySample, kinetic_energy_ratio)},
-      {"area", "[sigma^2]", offsetof(TrajectorySample, area)},
-      {"perimeter", "[sigma]", offsetof(TrajectorySample, perimeter)},
-      {"shape_parameter", "A = perimeter^2/(4 pi area)", offsetof(TrajectorySample, shape_parameter)},
-  };
-  const Type type(H5Tcreate(H5T_COMPOUND, sizeof(TrajectorySample)));
-  for (const Column& column : columns) H5Tinsert(type, column.name, column.offset, H5T_NATIVE_DOUBLE);
-  const hsize_t size = samples.size();
-  const hsize_t rows_per_chunk = 1024;
+void write_columns(hid_t file, const std::vector<TrajectoryColumn>& columns) {
+  const std::size_t num_samples = columns.front().values.size();
+  std::vector<double> rows;
+  rows.reserve(num_samples * columns.size());
+  for (std::size_t sample = 0; sample < num_samples; ++sample)
+    for (const TrajectoryColumn& column : columns) rows.push_back(column.values[sample]);
+
+  const Type type(H5Tcreate(H5T_COMPOUND, columns.size() * sizeof(double)));
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    H5Tinsert(type, columns[i].name.c_str(), i * sizeof(double), H5T_NATIVE_DOUBLE);
+  const hsize_t size = num_samples;
+  const hsize_t rows_per_chunk = std::min<hsize_t>(1024, size);
   const Space space(H5Screate_simple(1, &size, nullptr));
   const PropertyList layout(H5Pcreate(H5P_DATASET_CREATE));
   H5Pset_chunk(layout, 1, &rows_per_chunk);  // pandas reads chunked tables only
-  if (size < rows_per_chunk) H5Pset_chunk(layout, 1, &size);
   const Dataset table(H5Dcreate2(file, "trajectory", type, space, H5P_DEFAULT, layout, H5P_DEFAULT));
-  check(table.valid() && H5Dwrite(table, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, samples.data()) >= 0 &&
+  check(table.valid() && H5Dwrite(table, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) >= 0 &&
             H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0,
         "write", "dataset trajectory");
-  for (const Column& column : columns) write_attribute(table, column.name, column.meaning);
+  for (const TrajectoryColumn& column : columns) write_attribute(table, column.name.c_str(), column.meaning);
 }
 
 void write_polygons(hid_t file, const std::vector<PolygonFrame>& frames) {
@@ -76,13 +66,25 @@ void write_obstacles(hid_t file, const std::vector<Obstacle>& obstacles) {
                   "meaning", "along the droplet's way: x, y, diameter, in the polygons' coordinates [sigma]");
 }
 
+void write_wedges(hid_t file, const std::vector<Wedge>& wedges) {
+  std::vector<double> values;
+  for (const Wedge& wedge : wedges)
+    values.insert(values.end(),
+                  {wedge.tip[0], wedge.tip[1], wedge.axis[0], wedge.axis[1], wedge.half_angle, wedge.radius});
+  write_attribute(write_dataset(file, "wedges", H5T_NATIVE_DOUBLE, {wedges.size(), 6}, values.data()),
+                  "meaning",
+                  "walls: x, y of the tip [sigma], x, y of the unit vector into the wall, half angle [rad], "
+                  "radius of the tip [sigma]");
+}
+
 }  // namespace
 
 void write_trajectory(const std::string& path, const Trajectory& trajectory) {
   create_whole(path, [&](hid_t file) {
-    write_samples(file, trajectory.samples);
+    write_columns(file, trajectory.columns);
     if (!trajectory.polygons.empty()) write_polygons(file, trajectory.polygons);
     if (!trajectory.obstacles.empty()) write_obstacles(file, trajectory.obstacles);
+    if (!trajectory.wedges.empty()) write_wedges(file, trajectory.wedges);
     write_rows(file, {&trajectory.row, 1});
     write_attribute(file, "kind", "clogsweep trajectory");
     write_attribute(file, "format_version", format_version);

@@ -20,7 +20,7 @@ RunJob::RunJob(const Plan& plan, std::int64_t task)
 bool RunJob::advance() {
   const Clock::time_point begin = Clock::now();
   try {
-    if (!run_) run_ = std::make_unique<ArrayRun>(run_parameters_);
+    if (!run_) run_ = std::make_unique<DropletRun>(run_in_array(run_parameters_));
     while (!over_ && Clock::now() - begin < slice) over_ = run_->advance(checks_per_look_at_the_clock);
   } catch (const std::exception& error) {
     over_ = true;

@@ -130,12 +130,14 @@ std::vector<Key> make_keys() {
        [](RunParameters& run, const std::string& value) { run.dp.area_stiffness = to_number(value); }},
       {"perimeter-spring",
        word,
-       {"rest", "mean"},
+       {"rest", "mean", "along"},
        "mean",
        "springs of the edges pull to l0 (rest, the paper) or to the mean edge length",
        true,
        [](RunParameters& run, const std::string& value) {
-         run.dp.perimeter_spring = value == "rest" ? PerimeterSpring::rest : PerimeterSpring::mean;
+         run.dp.perimeter_spring = value == "rest"   ? PerimeterSpring::rest
+                                   : value == "mean" ? PerimeterSpring::mean
+                                                     : PerimeterSpring::along;
        }},
       {"perimeter-stiffness",
        number,

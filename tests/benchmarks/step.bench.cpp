@@ -2,7 +2,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "clog/core/array_run.hpp"
+#include "clog/core/systems.hpp"
 
 namespace {
 
@@ -21,7 +21,7 @@ RunParameters flowing_droplet(int vertices, double near_wall_drag) {
 }
 
 void advance(benchmark::State& state, const RunParameters& parameters) {
-  ArrayRun run(parameters);
+  DropletRun run = run_in_array(parameters);
   run.advance(100);
   const std::int64_t before = run.result().steps;
   for (auto _ : state) run.advance(100);

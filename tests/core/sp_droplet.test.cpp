@@ -86,7 +86,7 @@ TEST(SpDroplet, ForceIsTheGradientOfTheEnergy) {
     DropletState below = state;
     above.position[axis] += 1e-6;
     below.position[axis] -= 1e-6;
-    EXPECT_NEAR(force[axis], -(forces.energy(above) - forces.energy(below)) / 2e-6, 1e-8);
+    EXPECT_NEAR(force[axis], -(forces.energy(above).total() - forces.energy(below).total()) / 2e-6, 1e-8);
   }
 }
 

@@ -19,7 +19,7 @@ TEST(RunJob, GivesTheRowOfItsRun) {
   RunJob job(plan, 1);
   while (!job.advance()) {
   }
-  ArrayRun run(plan.task(1));
+  DropletRun run = run_in_array(plan.task(1));
   while (!run.advance(100)) {
   }
   const RunRow row = job.row();

@@ -31,6 +31,8 @@ class CommandLine {
   std::string require(const std::string& option) const;
   /// @throws Error if the option's value is not a number above zero
   double get_positive(const std::string& option) const;
+  /// The option's value, or the default if it was not given. @throws Error if it is not a finite number
+  double get_number(const std::string& option, double fallback) const;
   const std::string& program() const { return program_; }
   const sweep::Settings& settings() const { return settings_; }
   sweep::Settings& settings() { return settings_; }

@@ -8,8 +8,9 @@ namespace clog {
 
 /// Deformable polygon, integrated by velocity Verlet with drag (Cheng et al., "Simulation Methods"):
 ///   v += dt/2 (F - zeta v)/m,  x += dt v,  v = (v + dt/2 F/m)/(1 + dt zeta/(2m)),
-/// the drag of the second half kick being implicit, so that strong near-wall drag cannot destabilise it.
-/// The time step is split when the droplet's present perimeter makes a mode too stiff for it.
+/// the drag of the second half kick being implicit, so that strong near-wall drag cannot destabilise it. A
+/// drag of relative motion is treated in the same way, with the velocity of the centre of mass of the same
+/// instant. The time step is split when the droplet's present perimeter makes a mode too stiff for it.
 class DpDroplet final : public Droplet {
  public:
   /// @param run        resolved parameters
@@ -20,7 +21,7 @@ class DpDroplet final : public Droplet {
   void advance(int num_steps) override;
   double kinetic_energy() const override;
   PolygonShape shape() const override { return polygon_shape(state_.position); }
-  DpEnergy potential_energy() const { return forces_.energy(state_); }
+  PotentialEnergy potential_energy() const override { return forces_.energy(state_); }
   const DpForces& forces() const { return forces_; }
   /// See DpForces::deepest_overlap().
   double deepest_overlap() const { return forces_.deepest_overlap(state_); }
@@ -30,10 +31,16 @@ class DpDroplet final : public Droplet {
   DpForces forces_;
   double vertex_mass_;
   Eigen::ArrayXd force_;
-  Eigen::ArrayXd drag_rate_;  // with near-wall drag: zeta/m of the vertices [1/t0], for x and again for y
+  double far_rate_;       // b_inf/M [1/t0]
+  double relative_rate_;  // (c - 1) b_inf/M [1/t0]
+  bool on_area_;          // do weight and mean drag act on the area?
+  Eigen::ArrayXd
+      drag_rate_;  // of every vertex, the relative part included [1/t0]; empty when all are far_rate_
 
   void step(double time_step);
   void measure_drag();
+  Eigen::Array2d mean_drag(const Eigen::Array2d& velocity) const;
+  double drag_power() const;
 };
 
 }  // namespace clog

@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "clog/core/droplet_state.hpp"
+#include "clog/core/energy.hpp"
 #include "clog/core/polygon.hpp"
 
 namespace clog {
@@ -20,11 +21,21 @@ class Droplet {
   const DropletState& state() const { return state_; }
   /// [g rho sigma^3]
   virtual double kinetic_energy() const = 0;
+  /// Its gravity term is measured from the frame's origin.
+  virtual PotentialEnergy potential_energy() const = 0;
   /// Area, perimeter; those of the undeformed disk for the soft disk.
   virtual PolygonShape shape() const = 0;
 
+  /// From now on adds up what the drag takes out, which costs a pass over the velocities per step.
+  void measure_dissipation() { measures_dissipation_ = true; }
+  /// Energy lost to drag since measure_dissipation() [g rho sigma^3], by the trapezoidal rule: second order
+  /// in the time step, as the integrator.
+  double dissipated_energy() const { return dissipated_energy_; }
+
  protected:
   DropletState state_;
+  bool measures_dissipation_ = false;
+  double dissipated_energy_ = 0;
   std::int64_t num_integrated_steps_ = 0;
 };
 

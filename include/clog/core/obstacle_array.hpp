@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "clog/core/parameters.hpp"
+#include "clog/core/wedge.hpp"
 
 namespace clog {
 
@@ -15,16 +16,18 @@ struct Obstacle {
 };
 
 /// Periodic array of circles in a square box, binned into cells of about one droplet diameter so that the
-/// neighbourhood of a droplet is found at a cost that does not depend on the box.
+/// neighbourhood of a droplet is found at a cost that does not depend on the box. There may be wedges as
+/// well, without periodic images.
 class ObstacleArray {
  public:
   /// @param obstacles  centres are wrapped into [0, box)^2
   /// @throws Error if a centre is not finite or a radius not positive and finite
-  ObstacleArray(double box, std::vector<Obstacle> obstacles);
+  ObstacleArray(double box, std::vector<Obstacle> obstacles, std::vector<Wedge> wedges = {});
 
   double box() const { return box_; }
   /// All obstacles, ordered by cell.
   const std::vector<Obstacle>& obstacles() const { return obstacles_; }
+  const std::vector<Wedge>& wedges() const { return wedges_; }
 
   /// Appends to `out` every obstacle, periodic images included, whose surface may come within `margin` of the
   /// rectangle [x_min, x_max] x [y_min, y_max]. Coordinates, in and out, are relative to `origin`, a point of
@@ -45,6 +48,7 @@ class ObstacleArray {
   int cells_per_side_;
   double largest_radius_ = 0;
   std::vector<Obstacle> obstacles_;
+  std::vector<Wedge> wedges_;
   std::vector<std::uint32_t> cell_start_;
 
   std::uint32_t cell_of(double x, double y) const;

@@ -6,19 +6,28 @@
 namespace clog {
 
 enum class Model { dp, sp };
-/// Reference length of the perimeter springs: the rest length l0 (the paper) or the current mean edge length.
-enum class PerimeterSpring { rest, mean };
+/// Springs of the edges: to the rest length l0 (the paper), to the current mean edge length, or `along` the
+/// interface only: these spread the vertices evenly, but carry no tension.
+enum class PerimeterSpring { rest, mean, along };
 /// Contact between different parts of one droplet's interface.
 enum class SelfContact { off, on };
-/// Where the droplet's weight acts: shared by the vertices (the paper) or at the polygon's area centroid.
+/// Where the droplet's weight and the drag on its mean motion act: shared by the vertices (the paper), or on
+/// the area, as a pressure. Then they have no part along the interface, which would pile up its vertices.
 enum class Gravity { vertex, area };
+/// What of the interface a wall pushes: its vertices (the paper), or the nearest point of every edge.
+enum class WallContact { vertex, edge };
 
 /// Deformable polygon, Cheng et al. Eqs. 1-6. Reduced units, see units.hpp.
 struct DpParameters {
   double line_tension = 1.0;    ///< Gamma [g rho sigma^2]
   double area_stiffness = 1e4;  ///< K_a [g rho / sigma]
   PerimeterSpring perimeter_spring = PerimeterSpring::mean;
-  std::optional<double> perimeter_stiffness;  ///< K_l [g rho sigma]; empty: 1e-3 Gamma (rest), 1 (mean)
+  std::optional<double> perimeter_stiffness;  ///< K_l [g rho sigma]; empty: ratio * Gamma (rest), 1 (others)
+  double perimeter_stiffness_ratio = 1e-3;    ///< K_l/Gamma of springs to the rest length
+  WallContact wall_contact = WallContact::edge;
+  /// Tension of the interface where it touches a wall, over Gamma: (gamma_so - gamma_sw)/gamma_ow, which is
+  /// -cos of the contact angle (Young). 1: a film of water everywhere, as in the paper's figures.
+  double wall_tension = 1;
   SelfContact self_contact = SelfContact::on;
   Gravity gravity = Gravity::vertex;
   int vertices = 256;  ///< N_v
@@ -34,10 +43,13 @@ struct ObstacleParameters {
   bool operator==(const ObstacleParameters&) const = default;
 };
 
-/// Drag on a vertex: zeta = b_inf (1 + (b_0/b_inf) (sigma/d)^(4/3)), Cheng et al. Eq. 7.
+/// Drag on a vertex: -(zeta v + (c - 1) b_inf (v - v_cm))/N_v, zeta = b_inf (1 + (b_0/b_inf)
+/// (sigma/d)^alpha), Cheng et al. Eq. 7 for c = 1. The second part damps changes of shape only.
 struct DragParameters {
-  double terminal_speed = 0.03;  ///< V_t [sqrt(sigma g)]; b_inf = M g / V_t
-  double near_wall = 0;          ///< b_0/b_inf; the soft disk has no near-wall drag
+  double terminal_speed = 0.03;         ///< V_t [sqrt(sigma g)]; b_inf = M g / V_t
+  double near_wall = 0;                 ///< b_0/b_inf; the soft disk has no near-wall drag
+  double near_wall_exponent = 4.0 / 3;  ///< alpha; 4/3 is calibrated in Appendix A of Cheng et al.
+  double relative = 1;  ///< c, drag of motion relative to the centre of mass over b_inf; dp only
 };
 
 /// Everything that decides the course of one run. Two runs with equal parameters are equal bit for bit.

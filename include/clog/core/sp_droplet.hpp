@@ -10,7 +10,8 @@ namespace clog {
 
 /// Potential energy and force on a soft disk among obstacles, Cheng et al. Eq. 8:
 /// U_w = sum (E_w/2)(1 - 2d/sigma)^2 over obstacles nearer than d = sigma/2, d from the disk's centre to the
-/// obstacle's surface (negative inside). The force stays finite; on an obstacle's very centre it is zero.
+/// obstacle's surface (negative inside), and over wedges. The force stays finite; on an obstacle's very
+/// centre it is zero.
 class SpForces {
  public:
   SpForces(const RunParameters& run, const ObstacleArray& obstacles);
@@ -19,7 +20,7 @@ class SpForces {
   void forget_contacts() { listed_ = false; }
   /// force: (f_x, f_y) [g rho sigma^2]
   void evaluate(const DropletState& state, Eigen::ArrayXd& force) const;
-  double energy(const DropletState& state) const;
+  PotentialEnergy energy(const DropletState& state) const;
   void set_weight(double weight) { weight_ = weight; }
 
  private:
@@ -30,6 +31,10 @@ class SpForces {
   double skin_ = 0;  // of the present list
   Eigen::Array2d reference_{0, 0};
   std::vector<Obstacle> near_;
+
+  /// Calls visit(distance, normal) for every wedge.
+  template <class Visit>
+  void visit_wedges(const DropletState& state, Visit visit) const;
 };
 
 /// Soft disk: one point of mass M with drag -b_inf v; same integrator as DpDroplet.
@@ -39,6 +44,7 @@ class SpDroplet final : public Droplet {
 
   void advance(int num_steps) override;
   double kinetic_energy() const override;
+  PotentialEnergy potential_energy() const override { return forces_.energy(state_); }
   PolygonShape shape() const override;
 
  private:

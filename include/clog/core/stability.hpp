@@ -7,12 +7,14 @@ namespace clog {
 /// Upper bounds on omega^2 [1/t0^2] of the stiff modes of a polygon with the given perimeter [sigma].
 /// Velocity Verlet holds a harmonic mode while omega dt < 2; the bounds are those of a chain of masses M/N_v.
 struct StiffModes {
-  double contact = 0;  ///< wall contact of one vertex through both its edges, 2 k_c N_v/M
+  double contact = 0;  ///< wall contact of one vertex, through both its edges if those count: 2 k_c N_v/M
   double area = 0;     ///< uniform pressure, K_a P^2/M
   double tension = 0;  ///< transverse zigzag, 4 Gamma N_v/(l M), l = P/N_v
   double spring = 0;   ///< longitudinal zigzag, 4 K_l N_v^2/M
+  double wetting =
+      0;  ///< a wall's pull or push where the tension changes, 6 |Gamma_wall - Gamma| l N_v/(delta^2 M)
 
-  double sum() const { return contact + area + tension + spring; }
+  double sum() const { return contact + area + tension + spring + wetting; }
 };
 
 /// (omega dt)^2 of the contact mode for the automatic E_w: keeps overlaps near 1e-2 vertex diameters

@@ -11,12 +11,13 @@ namespace clog {
 /// The obstacles that matter to each edge, or each vertex, of a polygon until the list has to be renewed.
 ///
 /// `touched_by_edge`: edge i (from vertex i to the next) lists every obstacle whose surface was within
-/// `range` + skin of it. `nearest_to_vertex`: vertex i lists every obstacle that could become its nearest.
-/// Lists hold while no vertex has moved by more than the skin. They are kept as `slots`: slot s of edge or
-/// vertex i is one circle; unused slots hold a circle out of reach, so that the force loop has no branch.
+/// `range` + skin of it; `touched_by_vertex`: the same for vertex i. `nearest_to_vertex`: vertex i lists
+/// every obstacle that could become its nearest. Lists hold while no vertex has moved by more than the skin.
+/// They are kept as `slots`: slot s of edge or vertex i is one circle; unused slots hold a circle out of
+/// reach, so that the force loop has no branch.
 class WallContacts {
  public:
-  enum class Keep { touched_by_edge, nearest_to_vertex };
+  enum class Keep { touched_by_edge, touched_by_vertex, nearest_to_vertex };
 
   /// @param range  largest surface distance at which a wall force acts [sigma]
   WallContacts(const ObstacleArray& array, double range, Keep keep);

@@ -9,16 +9,11 @@
 
 namespace clog::store {
 
-/// One moment of a run. Columns of /trajectory.
-struct TrajectorySample {
-  double time;                  ///< [t0]
-  double distance;              ///< along the flow since release [sigma]
-  double lateral_displacement;  ///< across the flow [sigma]
-  double speed;                 ///< of the centre of mass along the flow [sqrt(sigma g)]
-  double kinetic_energy_ratio;  ///< E_k/E_t
-  double area;                  ///< [sigma^2]
-  double perimeter;             ///< [sigma]
-  double shape_parameter;       ///< A
+/// One column of /trajectory: a number per moment.
+struct TrajectoryColumn {
+  std::string name;
+  std::string meaning;  ///< with its unit
+  std::vector<double> values;
 };
 
 /// The polygon at one moment, all x then all y, in coordinates that go on across box borders [sigma].
@@ -28,10 +23,11 @@ struct PolygonFrame {
 };
 
 struct Trajectory {
-  std::vector<TrajectorySample> samples;
-  std::vector<PolygonFrame> polygons;  ///< may be empty; all of the same size
-  std::vector<Obstacle> obstacles;     ///< along the way, in the polygons' coordinates; may be empty
-  sweep::RunRow row;                   ///< what a sweep would have stored for this run
+  std::vector<TrajectoryColumn> columns;  ///< all of the same size
+  std::vector<PolygonFrame> polygons;     ///< may be empty; all of the same size
+  std::vector<Obstacle> obstacles;        ///< along the way, in the polygons' coordinates; may be empty
+  std::vector<Wedge> wedges;              ///< the same for wedges
+  sweep::RunRow row;                      ///< what a sweep would have stored for this run
   Provenance provenance;
 };
 

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "clog/core/array_run.hpp"
+#include "clog/core/systems.hpp"
 #include "clog/sweep/job.hpp"
 #include "clog/sweep/plan.hpp"
 
@@ -18,7 +18,7 @@ class RunJob final : public Job {
 
  private:
   RunParameters run_parameters_;
-  std::unique_ptr<ArrayRun> run_;  // made at the first advance(): the release may fail
+  std::unique_ptr<DropletRun> run_;  // made at the first advance(): the release may fail
   RunRow row_;
   double wall_seconds_ = 0;
   bool over_ = false;

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "clog/core/array_run.hpp"
 #include "clog/core/parameters.hpp"
+#include "clog/core/systems.hpp"
 
 namespace clog::sweep {
 

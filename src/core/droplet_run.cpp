@@ -1,4 +1,4 @@
-#include "clog/core/array_run.hpp"
+#include "clog/core/droplet_run.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "clog/core/dp_droplet.hpp"
-#include "clog/core/release.hpp"
 #include "clog/core/sp_droplet.hpp"
 #include "clog/core/units.hpp"
 
@@ -21,49 +20,38 @@ constexpr double diverged_perimeter = 1000;  // [sigma]
 /// A droplet just released is slow; it cannot be told from a clogged one before it had the time to fall.
 constexpr double relaxation_times_before_a_clog = 10;
 
-std::unique_ptr<Droplet> make_droplet(const RunParameters& run, const ObstacleArray& obstacles) {
-  DropletState released = release_droplet(run, obstacles);
-  if (run.model == Model::dp) return std::make_unique<DpDroplet>(run, obstacles, std::move(released));
-  return std::make_unique<SpDroplet>(run, obstacles, std::move(released));
-}
-
-/// The last array is kept: a sweep asks for the same one several times in a row.
-std::shared_ptr<const ObstacleArray> sample_or_reuse(const ObstacleParameters& parameters,
-                                                     std::uint32_t seed) {
-  struct Cache {
-    ObstacleParameters parameters;
-    std::uint32_t seed = 0;
-    std::shared_ptr<const ObstacleArray> array;
-  };
-  thread_local Cache cache;
-  if (!cache.array || !(cache.parameters == parameters) || cache.seed != seed)
-    cache = {parameters, seed, std::make_shared<ObstacleArray>(sample_obstacles(parameters, seed))};
-  return cache.array;
+std::unique_ptr<Droplet> make_droplet(const RunParameters& run, const ObstacleArray& obstacles,
+                                      DropletState initial) {
+  if (run.model == Model::dp) return std::make_unique<DpDroplet>(run, obstacles, std::move(initial));
+  return std::make_unique<SpDroplet>(run, obstacles, std::move(initial));
 }
 
 }  // namespace
 
-ArrayRun::ArrayRun(const RunParameters& run) : ArrayRun(run, sample_or_reuse(run.obstacles, run.seed)) {}
-
-ArrayRun::ArrayRun(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles)
+DropletRun::DropletRun(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
+                       DropletState initial, double end)
     : run_(run),
       obstacles_(std::move(obstacles)),
-      droplet_(make_droplet(run_, *obstacles_)),
+      droplet_(make_droplet(run_, *obstacles_, std::move(initial))),
       start_frame_(droplet_->state().frame),
       start_(droplet_->state().centre()),
+      end_(end),
       max_steps_(std::max<std::int64_t>(1, std::llround(run_.max_time / run_.time_step))),
       first_quiet_time_(relaxation_times_before_a_clog * run_.drag.terminal_speed / units::gravity) {}
 
-Eigen::Array2d ArrayRun::displacement() const {
-  return droplet_->state().frame.displacement(droplet_->state().centre(), start_frame_, start_);
+PotentialEnergy DropletRun::potential_energy() const {
+  PotentialEnergy energy = droplet_->potential_energy();
+  // From the start to the frame's origin.
+  energy.gravity -= units::droplet_mass * units::gravity * displacement_of({0, 0})[0];
+  return energy;
 }
 
-double ArrayRun::kinetic_energy_ratio() const {
+double DropletRun::kinetic_energy_ratio() const {
   const double terminal = 0.5 * units::droplet_mass * run_.drag.terminal_speed * run_.drag.terminal_speed;
   return droplet_->kinetic_energy() / terminal;
 }
 
-bool ArrayRun::advance(int num_checks) {
+bool DropletRun::advance(int num_checks) {
   for (int i = 0; i < num_checks && status_ == RunStatus::running; ++i) {
     const auto steps = static_cast<int>(std::min<std::int64_t>(steps_per_check, max_steps_ - steps_done_));
     droplet_->advance(steps);
@@ -73,7 +61,7 @@ bool ArrayRun::advance(int num_checks) {
   return status_ != RunStatus::running;
 }
 
-void ArrayRun::check() {
+void DropletRun::check() {
   const double energy_ratio = kinetic_energy_ratio();
   const PolygonShape shape = droplet_->shape();
   const bool is_whole = energy_ratio < diverged_energy_ratio && shape.perimeter < diverged_perimeter &&
@@ -91,11 +79,13 @@ void ArrayRun::check() {
   quiet_checks_ = is_quiet ? quiet_checks_ + 1 : 0;
   if (quiet_checks_ >= 2)
     status_ = RunStatus::clogged;
+  else if (displacement()[0] >= end_)
+    status_ = RunStatus::passed;
   else if (steps_done_ >= max_steps_)
     status_ = RunStatus::flowing;
 }
 
-RunResult ArrayRun::result() const {
+RunResult DropletRun::result() const {
   const Eigen::Array2d displaced = displacement();
   return {.status = status_,
           .distance = displaced[0],
@@ -116,6 +106,8 @@ const char* name(RunStatus status) {
       return "clogged";
     case RunStatus::flowing:
       return "flowing";
+    case RunStatus::passed:
+      return "passed";
     case RunStatus::interrupted:
       return "interrupted";
     case RunStatus::failed:

@@ -1,4 +1,4 @@
-#include "clog/core/array_run.hpp"
+#include "clog/core/systems.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ RunParameters small_run(double line_tension = 1, int vertices = 64) {
 }
 
 RunResult result_of(const RunParameters& parameters, int checks_at_a_time) {
-  ArrayRun run(parameters);
+  DropletRun run = run_in_array(parameters);
   while (!run.advance(checks_at_a_time)) {
   }
   return run.result();
@@ -37,19 +37,19 @@ void expect_diverged(const RunResult& result) {
   EXPECT_NE(result.message.find("diverged"), std::string::npos) << result.message;
 }
 
-TEST(ArrayRun, IsTheSameHoweverItIsSliced) {
+TEST(DropletRun, IsTheSameHoweverItIsSliced) {
   const RunResult at_once = result_of(small_run(), 100000);
   expect_identical(at_once, result_of(small_run(), 1));
   expect_identical(at_once, result_of(small_run(), 7));
 }
 
-TEST(ArrayRun, OfAnotherSeedDiffers) {
+TEST(DropletRun, OfAnotherSeedDiffers) {
   RunParameters other = small_run();
   other.seed = 4;
   EXPECT_NE(result_of(small_run(), 100).distance, result_of(other, 100).distance);
 }
 
-TEST(ArrayRun, EndsFlowingWhenItsTimeIsUp) {
+TEST(DropletRun, EndsFlowingWhenItsTimeIsUp) {
   RunParameters parameters = small_run();
   parameters.obstacles.gap = 1.2;
   const RunResult result = result_of(parameters, 100);
@@ -59,10 +59,10 @@ TEST(ArrayRun, EndsFlowingWhenItsTimeIsUp) {
   EXPECT_GT(result.mean_speed, 0.5 * parameters.drag.terminal_speed);
 }
 
-TEST(ArrayRun, AStiffDropletInNarrowGapsClogsAndStaysWhereItIs) {
+TEST(DropletRun, AStiffDropletInNarrowGapsClogsAndStaysWhereItIs) {
   RunParameters parameters = small_run(2);
   parameters.max_time = 5000;
-  ArrayRun run(parameters);
+  DropletRun run = run_in_array(parameters);
   while (!run.advance(1000)) {
   }
   ASSERT_EQ(run.result().status, RunStatus::clogged);
@@ -78,9 +78,9 @@ TEST(ArrayRun, AStiffDropletInNarrowGapsClogsAndStaysWhereItIs) {
   EXPECT_NEAR(later.distance, run.result().distance, 1e-6);
 }
 
-TEST(ArrayRun, KeepsItsContactsShallowAndItsAreaOnTheWay) {
+TEST(DropletRun, KeepsItsContactsShallowAndItsAreaOnTheWay) {
   for (const double line_tension : {0.2, 1.0, 10.0}) {
-    ArrayRun run(small_run(line_tension, 256));
+    DropletRun run = run_in_array(small_run(line_tension, 256));
     while (!run.advance(50)) {
       const PolygonShape shape = run.droplet().shape();
       EXPECT_NEAR(shape.area, 0.7854, 0.02);
@@ -90,7 +90,7 @@ TEST(ArrayRun, KeepsItsContactsShallowAndItsAreaOnTheWay) {
   }
 }
 
-TEST(ArrayRun, ADivergedRunIsAResult) {
+TEST(DropletRun, ADivergedRunIsAResult) {
   // Unchecked parameters: a soft disk whose contacts no such step resolves.
   RunParameters parameters = small_run();
   parameters.model = Model::sp;
@@ -101,7 +101,7 @@ TEST(ArrayRun, ADivergedRunIsAResult) {
   expect_diverged(result_of(parameters, 100));
 }
 
-TEST(ArrayRun, ABurstPolygonIsAResultToo) {
+TEST(DropletRun, ABurstPolygonIsAResultToo) {
   // Unchecked parameters: a step that would have to be split more often than is sensible.
   RunParameters parameters = small_run();
   parameters.drag.terminal_speed = 100;
@@ -110,17 +110,17 @@ TEST(ArrayRun, ABurstPolygonIsAResultToo) {
   expect_diverged(result_of(parameters, 10));
 }
 
-TEST(ArrayRun, ADropletThatHasNotFallenYetIsNotClogged) {
+TEST(DropletRun, ADropletThatHasNotFallenYetIsNotClogged) {
   RunParameters parameters = small_run();
   parameters.obstacles.gap = 1.2;
   parameters.drag.terminal_speed = 10;
   parameters.clog_energy = 5e-4;  // it is slower than this at its first checks
-  ArrayRun run(parameters);
+  DropletRun run = run_in_array(parameters);
   run.advance(5);
   EXPECT_EQ(run.result().status, RunStatus::running);
 }
 
-TEST(ArrayRun, RunsWithSpringsToTheRestLength) {
+TEST(DropletRun, RunsWithSpringsToTheRestLength) {
   for (std::uint32_t seed = 1; seed <= 6; ++seed) {
     RunParameters parameters;
     parameters.dp.perimeter_spring = PerimeterSpring::rest;
@@ -132,7 +132,7 @@ TEST(ArrayRun, RunsWithSpringsToTheRestLength) {
   }
 }
 
-TEST(ArrayRun, FollowsASoftDiskToo) {
+TEST(DropletRun, FollowsASoftDiskToo) {
   RunParameters parameters;
   parameters.model = Model::sp;
   parameters.wall_stiffness = 5;

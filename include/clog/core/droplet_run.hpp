@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -11,7 +12,7 @@
 
 namespace clog {
 
-enum class RunStatus { running, clogged, flowing, interrupted, failed };
+enum class RunStatus { running, clogged, flowing, passed, interrupted, failed };
 
 /// What one run found out.
 struct RunResult {
@@ -26,21 +27,23 @@ struct RunResult {
   std::string message;              ///< why it failed
 };
 
-/// One droplet released in an obstacle array, followed until it clogs or its time is up.
+/// One droplet followed from its release until it clogs, passes the end of its way, or its time is up. Where
+/// it runs (an array, a channel, onto a wall) is made in systems.hpp.
 ///
 /// The droplet counts as clogged when E_k/E_t (E_t: kinetic energy at terminal speed) has been below
 /// clog-energy at two checks in a row, not before it had ten relaxation times V_t/g to fall. The course of a
 /// run depends on its parameters alone, not on how advance() is called.
-class ArrayRun {
+class DropletRun {
  public:
   /// Clogging and the end of the run are looked for, and r(t) is recorded, once in so many steps.
   static constexpr int steps_per_check = 64;
+  static constexpr double no_end = std::numeric_limits<double>::infinity();
 
-  /// Samples the obstacles and releases the droplet.
-  /// @param run  resolved parameters
-  explicit ArrayRun(const RunParameters& run);
-  /// Uses the given obstacles, e.g. a user's own.
-  ArrayRun(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles);
+  /// @param run       resolved parameters
+  /// @param initial   the droplet at its release
+  /// @param end       displacement along the flow at which the run is over, status `passed` [sigma]
+  DropletRun(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles, DropletState initial,
+             double end = no_end);
 
   /// Goes on for at most `num_checks` intervals of `steps_per_check` steps. Returns whether the run is over.
   bool advance(int num_checks);
@@ -49,8 +52,16 @@ class ArrayRun {
   RunResult result() const;
   double time() const { return static_cast<double>(steps_done_) * run_.time_step; }
   /// Along and across the flow since release [sigma].
-  Eigen::Array2d displacement() const;
+  Eigen::Array2d displacement() const { return displacement_of(droplet_->state().centre()); }
+  /// Of a point in the droplet's frame from the place of release [sigma].
+  Eigen::Array2d displacement_of(const Eigen::Array2d& local) const {
+    return droplet_->state().frame.displacement(local, start_frame_, start_);
+  }
   double kinetic_energy_ratio() const;
+  /// The gravity term is measured from the place of release.
+  PotentialEnergy potential_energy() const;
+  /// From now on the energy lost to drag is added up, see Droplet::dissipated_energy().
+  void measure_dissipation() { droplet_->measure_dissipation(); }
   const Droplet& droplet() const { return *droplet_; }
   const ObstacleArray& obstacles() const { return *obstacles_; }
   const RunParameters& parameters() const { return run_; }
@@ -61,6 +72,7 @@ class ArrayRun {
   std::unique_ptr<Droplet> droplet_;
   LocalFrame start_frame_;
   Eigen::Array2d start_;
+  double end_;
   std::int64_t steps_done_ = 0;
   std::int64_t max_steps_;
   double first_quiet_time_;

@@ -1,0 +1,68 @@
+#include <memory>
+#include <string>
+
+#include "clog/cli/obstacle_file.hpp"
+#include "clog/cli/program.hpp"
+#include "clog/core/error.hpp"
+#include "clog/core/systems.hpp"
+#include "watched_run.hpp"
+
+namespace clog {
+namespace {
+
+struct Setup {
+  RunParameters parameters;
+  std::shared_ptr<const ObstacleArray> own_obstacles;  // empty: sampled from the seed
+};
+
+Setup read_setup(cli::CommandLine& line) {
+  if (!line.has("obstacles")) return {single_run(line.settings()), nullptr};
+  for (const char* key : {"obstacle-gap", "obstacle-density"})
+    if (line.has(key))
+      throw Error("--obstacles and " + std::string(key) + " contradict each other; give one of them");
+  // One parameter set is needed to read the file (box, default diameter); its gap is then the file's own.
+  const RunParameters draft = single_run(line.settings());
+  const std::string path = line.get("obstacles");
+  auto array = std::make_shared<ObstacleArray>(
+      draft.obstacles.box, cli::read_obstacles(path, draft.obstacles.diameter, draft.obstacles.box));
+  const double gap = array->smallest_gap();
+  if (gap <= 0)
+    throw Error(path + " has obstacles that touch or overlap, by " + sweep::shortest(-gap) + " sigma");
+  line.settings().set("obstacle-gap", sweep::shortest(std::min(gap, draft.obstacles.box)));
+  return {single_run(line.settings()), array};
+}
+
+}  // namespace
+
+int clogrun_array(cli::CommandLine& line) {
+  refuse_options(line, "array", {"orifice", "wedge-angle", "tip-radius", "start", "end"});
+  // Everything that can be wrong is found before anything is computed or written.
+  const std::string output = line.require("output");
+  const Setup setup = read_setup(line);
+  const auto intervals = WatchedRun::intervals(line, setup.parameters.time_step);
+  store::refuse_unwritable(output);
+  if (line.has("write-obstacles")) {
+    store::refuse_unwritable(line.get("write-obstacles"));
+    if (line.get("write-obstacles") == output)
+      throw Error("--output and --write-obstacles name the same file, " + output + "; give two names");
+  }
+
+  WatchedRun watched(setup.own_obstacles ? run_in_array(setup.parameters, setup.own_obstacles)
+                                         : run_in_array(setup.parameters),
+                     intervals);
+  if (line.has("write-obstacles"))
+    cli::write_obstacles(line.get("write-obstacles"), watched.run().obstacles().obstacles());
+  cli::catch_stop_signals();
+  watched.follow();
+
+  sweep::RunRow row = sweep::describe(setup.parameters);
+  if (setup.own_obstacles) {
+    const double box = setup.parameters.obstacles.box;
+    row.obstacle_filling = "file";
+    row.obstacle_density = static_cast<double>(setup.own_obstacles->obstacles().size()) / (box * box);
+  }
+  store::write_trajectory(output, watched.trajectory(row, line));
+  return watched.report();
+}
+
+}  // namespace clog

@@ -1,0 +1,44 @@
+#include <string>
+
+#include "clog/cli/program.hpp"
+#include "clog/core/systems.hpp"
+#include "watched_run.hpp"
+
+namespace clog {
+
+int clogrun_channel(cli::CommandLine& line) {
+  refuse_options(line, "channel", array_options);
+  const std::string output = line.require("output");
+  const RunParameters parameters = single_run(line.settings());
+  const ChannelParameters channel{
+      .orifice = line.get_number("orifice", ChannelParameters{}.orifice),
+      .wedge_angle = line.get_number("wedge-angle", ChannelParameters{}.wedge_angle),
+      .tip_radius = line.get_number("tip-radius", ChannelParameters{}.tip_radius),
+      .start = line.get_number("start", ChannelParameters{}.start),
+      .end = line.get_number("end", ChannelParameters{}.end)};
+  const auto intervals = WatchedRun::intervals(line, parameters.time_step);
+  DropletRun run = run_in_channel(parameters, channel);
+  store::refuse_unwritable(output);
+
+  WatchedRun watched(std::move(run), intervals);
+  watched.add_column(
+      "h", "distance of the centre of mass from the orifice, positive downstream [sigma]",
+      [start = channel.start](const DropletRun& now) { return start + now.displacement()[0]; });
+  watched.add_column("speed_ratio", "v_g/v_t", [](const DropletRun& now) {
+    return now.droplet().state().mean_velocity()[0] / now.parameters().drag.terminal_speed;
+  });
+  cli::catch_stop_signals();
+  watched.follow();
+  store::Trajectory trajectory =
+      watched.trajectory(without_array(sweep::describe(parameters), "channel"), line);
+  for (const auto& [name, value] : {std::pair{"orifice", channel.orifice},
+                                    {"wedge_angle", channel.wedge_angle},
+                                    {"tip_radius", channel.tip_radius},
+                                    {"start_h", channel.start},
+                                    {"end_h", channel.end}})
+    trajectory.provenance.emplace_back(name, sweep::shortest(value));
+  store::write_trajectory(output, trajectory);
+  return watched.report();
+}
+
+}  // namespace clog

@@ -1,0 +1,65 @@
+#include <cstdio>
+#include <string>
+
+#include "clog/cli/program.hpp"
+#include "clog/core/error.hpp"
+#include "clog/core/systems.hpp"
+#include "clog/sweep/plan.hpp"
+#include "watched_run.hpp"
+
+namespace clog {
+namespace {
+
+/// Lowering of the droplet's parts since it touched the wall [sigma].
+struct Sag {
+  double centre;  ///< area centroid: delta_s
+  double top;
+};
+
+Eigen::Array2d centroid(const DropletState& state) {
+  return state.size() == 1 ? state.centre() : area_centroid(state.position);
+}
+
+Sag sag_of(const DropletRun& run, const Eigen::ArrayXd& before) {
+  const DropletState& state = run.droplet().state();
+  const Eigen::Index n = state.size();
+  // Before gravity the droplet was a circle around its centre, so the centroid was where displacement is
+  // zero.
+  const double top = run.displacement_of({state.x().minCoeff(), 0})[0] - before.head(n).minCoeff();
+  return {.centre = run.displacement_of(centroid(state))[0], .top = top};
+}
+
+}  // namespace
+
+int clogrun_sag(cli::CommandLine& line) {
+  refuse_options(line, "sag", array_options);
+  refuse_options(line, "sag", {"orifice", "wedge-angle", "tip-radius", "start", "end"});
+  const sweep::Plan plan(line.settings());
+  if (line.has("output")) single_run(line.settings());
+  const auto intervals = WatchedRun::intervals(line, plan.task(0).time_step);
+  if (line.has("output")) store::refuse_unwritable(line.get("output"));
+
+  cli::catch_stop_signals();
+  std::printf("model,line_tension,wall_stiffness,sag,top_sag,shape_parameter,time,status\n");
+  for (std::int64_t task = 0; task < plan.size(); ++task) {
+    const RunParameters parameters = plan.task(task);
+    WatchedRun watched(run_onto_wall(parameters), intervals);
+    watched.follow();
+    const sweep::RunRow row = without_array(sweep::describe(parameters), "wall");
+    const RunResult result = watched.result();
+    const Sag sag = sag_of(watched.run(), free_droplet(parameters));
+    std::printf("%s,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%s\n", row.model.view().data(), row.line_tension,
+                row.wall_stiffness, sag.centre, sag.top, result.shape_parameter, result.time,
+                result.status == RunStatus::clogged ? "at_rest" : name(result.status));
+    std::fflush(stdout);
+    if (line.has("output")) store::write_trajectory(line.get("output"), watched.trajectory(row, line));
+    if (result.status == RunStatus::interrupted) return cli::exit_incomplete;
+    if (result.status == RunStatus::failed) throw Error(result.message);
+    if (result.status != RunStatus::clogged)
+      throw Error("the droplet has not come to rest within max-time=" + sweep::shortest(parameters.max_time) +
+                  "; give it longer");
+  }
+  return cli::exit_success;
+}
+
+}  // namespace clog

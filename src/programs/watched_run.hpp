@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "clog/cli/command_line.hpp"
+#include "clog/core/droplet_run.hpp"
+#include "clog/store/trajectory_file.hpp"
+
+namespace clog {
+
+/// Follows one droplet to its end, or to a signal, and keeps samples of it on the way.
+class WatchedRun {
+ public:
+  /// How often, in checks of the run (0: no polygons).
+  struct Intervals {
+    std::int64_t samples = 1;
+    std::int64_t polygons = 0;
+  };
+  /// From --sample-interval and --polygon-interval. @throws Error
+  static Intervals intervals(const cli::CommandLine& line, double time_step);
+
+  WatchedRun(DropletRun run, Intervals intervals);
+
+  /// A column of the table beside those that every run has.
+  template <class Value>
+  void add_column(std::string name, std::string meaning, Value value) {
+    columns_.push_back({{std::move(name), std::move(meaning), {}}, value});
+  }
+  void follow();
+
+  const DropletRun& run() const { return run_; }
+  /// Of the run; `interrupted` if a signal ended it.
+  RunResult result() const;
+  /// Samples, polygons, the obstacles near them, and the row's columns of what came out.
+  /// @param row  the columns of what was run, see sweep::describe()
+  store::Trajectory trajectory(sweep::RunRow row, const cli::CommandLine& line) const;
+  /// Two lines on how it ended. Returns the exit code.
+  int report() const;
+
+ private:
+  struct Column {
+    store::TrajectoryColumn data;
+    std::function<double(const DropletRun&)> measure;
+  };
+  DropletRun run_;
+  Intervals intervals_;
+  std::vector<Column> columns_;
+  std::vector<store::PolygonFrame> polygons_;
+  bool interrupted_ = false;
+  double seconds_ = 0;
+
+  void add_common_columns();
+  void take_sample();
+  void take_polygon();
+};
+
+/// The systems of clogrun. Each reads its options, runs, writes, and returns the exit code.
+int clogrun_array(cli::CommandLine& line);
+int clogrun_channel(cli::CommandLine& line);
+int clogrun_sag(cli::CommandLine& line);
+
+/// The one parameter set that the settings mean. @throws Error if they mean several
+RunParameters single_run(const sweep::Settings& settings);
+
+/// Keys and options that describe an obstacle array.
+inline constexpr std::initializer_list<const char*> array_options = {
+    "obstacle-gap", "obstacle-diameter", "obstacle-density", "seeds", "seed",
+    "box",          "obstacles",         "write-obstacles"};
+/// The row of a run elsewhere: its array columns are NaN, `obstacle_filling` names the place.
+sweep::RunRow without_array(sweep::RunRow row, const char* place);
+
+/// @throws Error if one of these options was given, which have no meaning for the system
+void refuse_options(const cli::CommandLine& line, const char* system,
+                    std::initializer_list<const char*> options);
+
+}  // namespace clog
