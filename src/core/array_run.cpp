@@ -21,8 +21,20 @@ constexpr double diverged_perimeter = 1000;  // [sigma]
 /// A droplet just released is slow; it cannot be told from a clogged one before it had the time to fall.
 constexpr double relaxation_times_before_a_clog = 10;
 
+/// In a lattice all voids are alike, so where in one a droplet starts is up to the seed (lattice_obstacles):
+/// if it touches nothing at the box's centre it starts right there, as if there were no obstacles.
+bool starts_free(const RunParameters& run, const ObstacleArray& obstacles) {
+  if (run.obstacles.layout != ObstacleLayout::lattice) return false;
+  const double contact_range = run.model == Model::dp ? units::regular_edge_length(run.dp.vertices) : 0.0;
+  const double centre = obstacles.box() / 2;
+  return clearance(obstacles, centre, centre, 2 * units::droplet_diameter) >
+         units::droplet_diameter / 2 + contact_range;
+}
+
 std::unique_ptr<Droplet> make_droplet(const RunParameters& run, const ObstacleArray& obstacles) {
-  DropletState released = release_droplet(run, obstacles);
+  DropletState released = starts_free(run, obstacles)
+                              ? release_droplet(run, ObstacleArray(obstacles.box(), {}))
+                              : release_droplet(run, obstacles);
   if (run.model == Model::dp) return std::make_unique<DpDroplet>(run, obstacles, std::move(released));
   return std::make_unique<SpDroplet>(run, obstacles, std::move(released));
 }

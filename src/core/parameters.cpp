@@ -7,6 +7,7 @@
 #include <string>
 
 #include "clog/core/error.hpp"
+#include "clog/core/lattice.hpp"
 #include "clog/core/stability.hpp"
 #include "clog/core/units.hpp"
 
@@ -35,19 +36,29 @@ std::string text(double value) {
   return out.str();
 }
 
+constexpr double smallest_box = 5 * units::droplet_diameter;
+
 void validate_obstacles(const ObstacleParameters& obstacles, int vertices, Model model) {
   require_positive("obstacle-diameter", obstacles.diameter);
   require_positive("obstacle-gap", obstacles.gap);
   require_positive("box", obstacles.box);
-  constexpr double smallest_box = 5 * units::droplet_diameter;
   require(obstacles.box >= smallest_box, "box", obstacles.box,
           "the droplet would meet its own periodic image) use at least 5");
 
   if (obstacles.density) require_positive("obstacle-density", *obstacles.density);
-  const double spacing = obstacles.diameter + obstacles.gap;
-  require(spacing <= obstacles.box / 2, "box", obstacles.box,
-          "holds no two obstacles of diameter " + text(obstacles.diameter) + " with gap " +
-              text(obstacles.gap) + ") use at least " + text(2 * spacing));
+  const double spread = obstacles.diameter_spread;
+  require(spread >= 0 && spread < 1, "obstacle-diameter-spread", spread,
+          "diameters are uniform in obstacle-diameter*(1 -+ spread)) use 0 or more, and less than 1");
+  const double spacing = obstacles.smallest_diameter() + obstacles.gap;
+  const double widest_spacing = obstacles.largest_diameter() + obstacles.gap;
+  require(widest_spacing <= 5 * spacing, "obstacle-diameter-spread", spread,
+          "the largest two obstacles keep " + text(widest_spacing / spacing) +
+              " times the distance of the smallest two: sampling would take hours) use " +
+              text(0.999 * 2 / 3 * (1 + obstacles.gap / obstacles.diameter)) +
+              " or less, or a wider obstacle-gap");
+  require(widest_spacing <= obstacles.box / 2, "box", obstacles.box,
+          "holds no two obstacles of diameter " + text(obstacles.largest_diameter()) + " with gap " +
+              text(obstacles.gap) + ") use at least " + text(2 * widest_spacing));
   require(obstacles.box <= 1e4 * spacing, "box", obstacles.box,
           "the array would need more than ten gigabytes) use at most " + text(1e4 * spacing) +
               "; the array is periodic");
@@ -57,6 +68,40 @@ void validate_obstacles(const ObstacleParameters& obstacles, int vertices, Model
         obstacles.gap > vertex_diameter, "obstacle-gap", obstacles.gap,
         "not wider than one vertex, " + text(vertex_diameter) + " sigma) widen the gap or use more vertices");
   }
+}
+
+/// Replaces box and angle of a lattice by those of the nearest one that is periodic.
+void resolve_layout(ObstacleParameters& obstacles) {
+  const double angle = obstacles.lattice_angle;
+  if (obstacles.layout == ObstacleLayout::random) {
+    require(angle == 0, "lattice-angle", angle, "a random array has no rows) add obstacle-layout=lattice");
+    return;
+  }
+  if (obstacles.density)
+    require(false, "obstacle-density", *obstacles.density,
+            "a lattice has one obstacle per (obstacle-gap + obstacle-diameter)^2) leave it out, or use "
+            "obstacle-layout=random");
+  require(obstacles.diameter_spread == 0, "obstacle-diameter-spread", obstacles.diameter_spread,
+          "the obstacles of a lattice are alike) leave it out, or use obstacle-layout=random");
+  require(std::abs(angle) <= 45, "lattice-angle", angle,
+          "must lie in -45..45; a square lattice turned by 90 degrees is the same) try " +
+              text(std::remainder(angle, 90)));
+  const double spacing = obstacles.diameter + obstacles.gap;
+  const double narrowest = std::max(smallest_box, 2 * spacing);
+  const auto is_near = [=](const std::optional<CommensurateLattice>& lattice) {
+    return lattice && std::abs(lattice->angle - angle) <= largest_angle_error;
+  };
+  auto lattice = nearest_lattice(spacing, angle, narrowest, obstacles.box);
+  if (!is_near(lattice)) {
+    double box = obstacles.box;
+    while (!is_near(lattice)) lattice = nearest_lattice(spacing, angle, narrowest, box += spacing);
+    require(false, "lattice-angle", angle,
+            "no lattice of spacing " + text(spacing) + " within " + text(largest_angle_error) +
+                " degrees of it has a period of box=" + text(obstacles.box) + " or less) use box=" +
+                std::to_string(static_cast<long>(std::ceil(lattice->box))) + " or more");
+  }
+  obstacles.box = lattice->box;
+  obstacles.lattice_angle = lattice->angle;
 }
 
 void resolve_dp(RunParameters& run) {
@@ -138,6 +183,7 @@ RunParameters resolve(RunParameters run) {
   else
     resolve_sp(run);
   validate_obstacles(run.obstacles, run.dp.vertices, run.model);
+  resolve_layout(run.obstacles);
   return run;
 }
 

@@ -53,9 +53,13 @@ std::vector<Column> columns() {
   CLOG_COLUMN(wall_stiffness, "E_w [g rho sigma^3]");
   CLOG_COLUMN(obstacle_gap, "w_ob, smallest distance between obstacle surfaces [sigma]");
   CLOG_COLUMN(obstacle_diameter, "sigma_ob [sigma]");
-  CLOG_COLUMN(obstacle_density,
-              "obstacles per sigma^2; for a saturated array the jamming limit 0.6966/(w_ob+sigma_ob)^2");
-  CLOG_COLUMN(obstacle_filling, "saturated, or filled to a given density");
+  CLOG_COLUMN(obstacle_diameter_spread, "diameters arrive uniform in sigma_ob (1 -+ spread)");
+  CLOG_COLUMN(
+      obstacle_density,
+      "obstacles per sigma^2; for a saturated array the jamming limit 0.6966/(w_ob+sigma_ob)^2, NaN for "
+      "a saturated mixture");
+  CLOG_COLUMN(obstacle_filling, "saturated, or filled to a given density; lattice; file");
+  CLOG_COLUMN(lattice_angle, "of the lattice's rows from +x to +y [degrees]; NaN unless a lattice");
   CLOG_COLUMN(box, "period of the obstacle array [sigma]");
   CLOG_COLUMN(seed, "seed of obstacle array and release");
   CLOG_COLUMN(vertices, "N_v of the polygon; 1 for sp");

@@ -10,6 +10,18 @@ double saturated_density(double diameter, double gap) {
   return jamming_coverage / (std::numbers::pi / 4 * (diameter + gap) * (diameter + gap));
 }
 
+namespace {
+
+/// Obstacles per sigma^2; NaN for a saturated mixture, whose jamming limit is not known beforehand.
+double density_of(const ObstacleParameters& obstacles) {
+  if (obstacles.layout == ObstacleLayout::lattice)
+    return 1 / ((obstacles.diameter + obstacles.gap) * (obstacles.diameter + obstacles.gap));
+  if (!obstacles.density && obstacles.diameter_spread > 0) return std::numeric_limits<double>::quiet_NaN();
+  return obstacles.density.value_or(saturated_density(obstacles.diameter, obstacles.gap));
+}
+
+}  // namespace
+
 RunRow describe(const RunParameters& run) {
   constexpr double not_applicable = std::numeric_limits<double>::quiet_NaN();
   const bool polygon = run.model == Model::dp;
@@ -20,8 +32,12 @@ RunRow describe(const RunParameters& run) {
   row.wall_stiffness = run.wall_stiffness.value();
   row.obstacle_gap = obstacles.gap;
   row.obstacle_diameter = obstacles.diameter;
-  row.obstacle_density = obstacles.density.value_or(saturated_density(obstacles.diameter, obstacles.gap));
-  row.obstacle_filling = obstacles.density ? "density" : "saturated";
+  row.obstacle_diameter_spread = obstacles.diameter_spread;
+  row.obstacle_density = density_of(obstacles);
+  row.obstacle_filling = obstacles.layout == ObstacleLayout::lattice ? "lattice"
+                         : obstacles.density                         ? "density"
+                                                                     : "saturated";
+  row.lattice_angle = obstacles.layout == ObstacleLayout::lattice ? obstacles.lattice_angle : not_applicable;
   row.box = obstacles.box;
   row.seed = run.seed;
   row.vertices = polygon ? run.dp.vertices : 1;

@@ -12,6 +12,8 @@ enum class PerimeterSpring { rest, mean };
 enum class SelfContact { off, on };
 /// Where the droplet's weight acts: shared by the vertices (the paper) or at the polygon's area centroid.
 enum class Gravity { vertex, area };
+/// How obstacles are placed: random sequential addition, or a tilted square lattice.
+enum class ObstacleLayout { random, lattice };
 
 /// Deformable polygon, Cheng et al. Eqs. 1-6. Reduced units, see units.hpp.
 struct DpParameters {
@@ -27,10 +29,15 @@ struct DpParameters {
 /// Periodic array of circular obstacles, Cheng et al., "Geometry".
 struct ObstacleParameters {
   double gap = 0.2;               ///< w_ob, smallest surface-to-surface distance [sigma]
-  double diameter = 0.3;          ///< sigma_ob [sigma]
-  std::optional<double> density;  ///< obstacles per sigma^2; empty: saturated
+  double diameter = 0.3;          ///< sigma_ob, of a mixture the mean of the arriving ones [sigma]
+  double diameter_spread = 0;     ///< diameters are uniform in diameter (1 -+ spread)
+  std::optional<double> density;  ///< obstacles per sigma^2; empty: saturated, or given by the lattice
   double box = 500;               ///< period L in both directions [sigma]
+  ObstacleLayout layout = ObstacleLayout::random;
+  double lattice_angle = 0;  ///< of the lattice's rows from +x to +y [degrees]
 
+  double smallest_diameter() const { return diameter * (1 - diameter_spread); }
+  double largest_diameter() const { return diameter * (1 + diameter_spread); }
   bool operator==(const ObstacleParameters&) const = default;
 };
 
@@ -53,7 +60,8 @@ struct RunParameters {
   std::uint32_t seed = 1;
 };
 
-/// Replaces every `auto` (empty optional) by the value that will be used, then validates.
+/// Replaces every `auto` (empty optional), and box and angle of a lattice, by the value that will be used,
+/// then validates.
 /// @throws Error naming the field, its value, the reason and a remedy
 RunParameters resolve(RunParameters parameters);
 

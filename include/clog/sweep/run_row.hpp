@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 
 #include "clog/core/array_run.hpp"
@@ -35,8 +36,10 @@ struct RunRow {
   double wall_stiffness = 0;
   double obstacle_gap = 0;
   double obstacle_diameter = 0;
+  double obstacle_diameter_spread = 0;
   double obstacle_density = 0;     ///< for a saturated array the jamming limit, see saturated_density()
-  FixedText<16> obstacle_filling;  ///< "saturated" or "density"
+  FixedText<16> obstacle_filling;  ///< "saturated", "density" or "lattice"
+  double lattice_angle = std::numeric_limits<double>::quiet_NaN();  ///< NaN unless a lattice
   double box = 0;
   std::int64_t seed = 0;
   std::int64_t vertices = 0;  ///< 1 for sp
