@@ -26,7 +26,9 @@ MARKERS = ["o", "s", "D", "v", "P", "X", "*"]
 CURVE_PARAMETERS = [
     ("obstacle_gap", r"w_\mathrm{ob}/\sigma"),
     ("obstacle_diameter", r"\sigma_\mathrm{ob}/\sigma"),
+    ("obstacle_diameter_spread", r"\Delta\sigma_\mathrm{ob}/\sigma_\mathrm{ob}"),
     ("obstacle_density", r"\rho_\mathrm{ob}\sigma^2"),
+    ("lattice_angle", r"\theta/^\circ"),
     ("near_wall_drag", r"b_0/b_\infty"),
     ("terminal_speed", r"V_t"),
     ("vertices", r"N_v"),
@@ -40,7 +42,8 @@ CURVE_PARAMETERS = [
 
 
 def number(value):
-    return f"{value:.4g}"
+    # The density of a saturated mixture is not known beforehand: clogfit has no number for it.
+    return r"\mathrm{saturated}" if value is None else f"{value:.4g}"
 
 
 def caption(groups):
@@ -49,10 +52,12 @@ def caption(groups):
     words = ["deformable polygon" if first["model"] == "dp" else "soft disk"]
     for name, symbol in CURVE_PARAMETERS:
         is_common = first[name] is not None and all(group[name] == first[name] for group in groups)
-        if is_common and name in ("obstacle_gap", "obstacle_diameter", "near_wall_drag", "terminal_speed", "vertices"):
+        if is_common and name in ("obstacle_gap", "obstacle_diameter", "lattice_angle", "near_wall_drag", "terminal_speed", "vertices"):
             words.append(f"${symbol} = {number(first[name])}$")
     if all(group["obstacle_filling"] == "saturated" for group in groups):
         words.append("saturated arrays")
+    if first["lattice_angle"] is not None:
+        words.append("square lattice")
     runs = sorted({group["runs"] for group in groups})
     words.append(f"{runs[0]} runs a point" if len(runs) == 1 else f"{runs[0]} to {runs[-1]} runs a point")
     return ", ".join(words)
@@ -66,7 +71,10 @@ def curves(groups):
     # In saturated arrays the density follows from gap and diameter: it needs no place in the label.
     if all(group["obstacle_filling"] == "saturated" for group in groups):
         varied = [(name, symbol) for name, symbol in varied if name != "obstacle_density"]
-    keys = sorted({tuple(group[name] for name, _ in varied) for group in groups})
+    keys = sorted(
+        {tuple(group[name] for name, _ in varied) for group in groups},
+        key=lambda key: [math.inf if value is None else value for value in key],
+    )
     for key in keys:
         members = [group for group in groups if tuple(group[name] for name, _ in varied) == key]
         label = ", ".join(f"${symbol} = {number(value)}$" for (_, symbol), value in zip(varied, key))

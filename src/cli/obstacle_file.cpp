@@ -1,5 +1,6 @@
 #include "clog/cli/obstacle_file.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -26,18 +27,24 @@ Obstacle parse_obstacle(const std::vector<std::string>& cells, double default_di
   const double diameter = cells.size() == 3 ? sweep::to_number(cells[2]) : default_diameter;
   const Obstacle obstacle{sweep::to_number(cells[0]), sweep::to_number(cells[1]), diameter / 2};
   if (!(diameter > 0)) throw Error("diameter must be positive");
+  if (diameter >= box)
+    throw Error("the obstacle meets its own periodic image; diameters are smaller than box=" +
+                sweep::shortest(box));
   if (obstacle.x < 0 || obstacle.x >= box || obstacle.y < 0 || obstacle.y >= box)
     throw Error("lies outside the box; coordinates run from 0 to box=" + sweep::shortest(box));
   return obstacle;
 }
 
-}  // namespace
+struct Lines {
+  std::vector<Obstacle> obstacles;
+  std::vector<int> numbers;  // of the lines that they are from
+};
 
-std::vector<Obstacle> read_obstacles(const std::string& path, double default_diameter, double box) {
+Lines read_lines(const std::string& path, const ObstacleFileRules& rules) {
   std::ifstream file(path);
   if (!file || std::filesystem::is_directory(path))
     throw Error("cannot read " + path + " (no such file, or not readable)");
-  std::vector<Obstacle> obstacles;
+  Lines lines;
   int line_number = 0;
   for (std::string line; std::getline(file, line);) {
     ++line_number;
@@ -46,13 +53,54 @@ std::vector<Obstacle> read_obstacles(const std::string& path, double default_dia
     const bool is_header = line_number == 1 && !cells.empty() && cells[0] == "x";
     if (is_blank || is_header || line.starts_with('#')) continue;
     try {
-      obstacles.push_back(parse_obstacle(cells, default_diameter, box));
+      lines.obstacles.push_back(parse_obstacle(cells, rules.default_diameter, rules.box));
+      lines.numbers.push_back(line_number);
     } catch (const Error& error) {
       throw Error(path + " line " + std::to_string(line_number) + ": " + error.what());
     }
   }
-  if (obstacles.empty()) throw Error(path + " holds no obstacles; lines are x,y[,diameter]");
-  return obstacles;
+  if (lines.obstacles.empty()) throw Error(path + " holds no obstacles; lines are x,y[,diameter]");
+  return lines;
+}
+
+std::string rounded(double value) {
+  std::ostringstream out;
+  out.precision(3);
+  out << value;
+  return out.str();
+}
+
+/// "3 and 17", the lines of a pair in the order of the file.
+std::string line_numbers(const Lines& lines, const ObstacleArray::Pair& pair) {
+  std::string numbers;
+  for (std::size_t i = 0; i < lines.obstacles.size(); ++i) {
+    const Obstacle& obstacle = lines.obstacles[i];
+    // Of circles given twice, both lines are found with the first of them.
+    if (obstacle == pair.first || obstacle == pair.second)
+      numbers += (numbers.empty() ? "" : " and ") + std::to_string(lines.numbers[i]);
+  }
+  return numbers;
+}
+
+void refuse_narrow_gaps(const std::string& path, const Lines& lines, const ObstacleArray& array,
+                        double narrowest_gap) {
+  const ObstacleArray::Pair pair = array.closest_pair();
+  if (pair.gap > std::max(0.0, narrowest_gap)) return;
+  const std::string where = path + " lines " + line_numbers(lines, pair) + ": ";
+  if (pair.gap <= 0)
+    throw Error(where + "the obstacles touch or overlap, by " + rounded(-pair.gap) +
+                " sigma (across the border of the box too); move them apart or make them smaller");
+  throw Error(where + "the gap of " + rounded(pair.gap) + " sigma is not wider than one vertex, " +
+              rounded(narrowest_gap) + " sigma; widen the gap or use more vertices");
+}
+
+}  // namespace
+
+ObstacleArray read_obstacles(const std::string& path, const ObstacleFileRules& rules) {
+  const Lines lines = read_lines(path, rules);
+  ObstacleArray array(rules.box, lines.obstacles);
+  refuse_narrow_gaps(path, lines, array, rules.narrowest_gap);
+  return array;
 }
 
 void write_obstacles(const std::string& path, const std::vector<Obstacle>& obstacles) {

@@ -97,8 +97,8 @@ void ObstacleArray::gather(const Window& window, std::vector<Obstacle>& out) con
   });
 }
 
-double ObstacleArray::smallest_gap() const {
-  double smallest = std::numeric_limits<double>::infinity();
+ObstacleArray::Pair ObstacleArray::closest_pair() const {
+  Pair closest{{}, {}, std::numeric_limits<double>::infinity()};
   // Pairs nearer than the margin are all seen; widen it until the smallest one found is certain.
   double margin = 0.125 * units::droplet_diameter;
   do {
@@ -107,12 +107,13 @@ double ObstacleArray::smallest_gap() const {
       const auto& [origin_x, origin_y, radius] = obstacles_[first];
       visit_window({origin_x, origin_y, -radius, radius, -radius, radius, margin},
                    [&, r = radius](std::uint32_t second, double x, double y) {
-                     if (second != first)
-                       smallest = std::min(smallest, std::hypot(x, y) - r - obstacles_[second].radius);
+                     const double gap = std::hypot(x, y) - r - obstacles_[second].radius;
+                     if (second != first && gap < closest.gap)
+                       closest = {obstacles_[first], obstacles_[second], gap};
                    });
     }
-  } while (smallest > margin && margin < box_);
-  return smallest;
+  } while (closest.gap > margin && margin < box_);
+  return closest;
 }
 
 }  // namespace clog

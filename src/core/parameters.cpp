@@ -7,6 +7,7 @@
 #include <string>
 
 #include "clog/core/error.hpp"
+#include "clog/core/lattice.hpp"
 #include "clog/core/stability.hpp"
 #include "clog/core/units.hpp"
 
@@ -35,19 +36,29 @@ std::string text(double value) {
   return out.str();
 }
 
+constexpr double smallest_box = 5 * units::droplet_diameter;
+
 void validate_obstacles(const ObstacleParameters& obstacles, int vertices, Model model) {
   require_positive("obstacle-diameter", obstacles.diameter);
   require_positive("obstacle-gap", obstacles.gap);
   require_positive("box", obstacles.box);
-  constexpr double smallest_box = 5 * units::droplet_diameter;
   require(obstacles.box >= smallest_box, "box", obstacles.box,
           "the droplet would meet its own periodic image) use at least 5");
 
   if (obstacles.density) require_positive("obstacle-density", *obstacles.density);
-  const double spacing = obstacles.diameter + obstacles.gap;
-  require(spacing <= obstacles.box / 2, "box", obstacles.box,
-          "holds no two obstacles of diameter " + text(obstacles.diameter) + " with gap " +
-              text(obstacles.gap) + ") use at least " + text(2 * spacing));
+  const double spread = obstacles.diameter_spread;
+  require(spread >= 0 && spread < 1, "obstacle-diameter-spread", spread,
+          "diameters are uniform in obstacle-diameter*(1 -+ spread)) use 0 or more, and less than 1");
+  const double spacing = obstacles.smallest_diameter() + obstacles.gap;
+  const double widest_spacing = obstacles.largest_diameter() + obstacles.gap;
+  require(widest_spacing <= 5 * spacing, "obstacle-diameter-spread", spread,
+          "the largest two obstacles keep " + text(widest_spacing / spacing) +
+              " times the distance of the smallest two: sampling would take hours) use " +
+              text(0.999 * 2 / 3 * (1 + obstacles.gap / obstacles.diameter)) +
+              " or less, or a wider obstacle-gap");
+  require(widest_spacing <= obstacles.box / 2, "box", obstacles.box,
+          "holds no two obstacles of diameter " + text(obstacles.largest_diameter()) + " with gap " +
+              text(obstacles.gap) + ") use at least " + text(2 * widest_spacing));
   require(obstacles.box <= 1e4 * spacing, "box", obstacles.box,
           "the array would need more than ten gigabytes) use at most " + text(1e4 * spacing) +
               "; the array is periodic");
@@ -59,19 +70,57 @@ void validate_obstacles(const ObstacleParameters& obstacles, int vertices, Model
   }
 }
 
+/// Replaces box and angle of a lattice by those of the nearest one that is periodic.
+void resolve_layout(ObstacleParameters& obstacles) {
+  const double angle = obstacles.lattice_angle;
+  if (obstacles.layout == ObstacleLayout::random) {
+    require(angle == 0, "lattice-angle", angle, "a random array has no rows) add obstacle-layout=lattice");
+    return;
+  }
+  if (obstacles.density)
+    require(false, "obstacle-density", *obstacles.density,
+            "a lattice has one obstacle per (obstacle-gap + obstacle-diameter)^2) leave it out, or use "
+            "obstacle-layout=random");
+  require(obstacles.diameter_spread == 0, "obstacle-diameter-spread", obstacles.diameter_spread,
+          "the obstacles of a lattice are alike) leave it out, or use obstacle-layout=random");
+  require(std::abs(angle) <= 45, "lattice-angle", angle,
+          "must lie in -45..45; a square lattice turned by 90 degrees is the same) try " +
+              text(std::remainder(angle, 90)));
+  const double spacing = obstacles.diameter + obstacles.gap;
+  const double narrowest = std::max(smallest_box, 2 * spacing);
+  const auto is_near = [=](const std::optional<CommensurateLattice>& lattice) {
+    return lattice && std::abs(lattice->angle - angle) <= largest_angle_error;
+  };
+  auto lattice = nearest_lattice(spacing, angle, narrowest, obstacles.box);
+  if (!is_near(lattice)) {
+    double box = obstacles.box;
+    while (!is_near(lattice)) lattice = nearest_lattice(spacing, angle, narrowest, box += spacing);
+    require(false, "lattice-angle", angle,
+            "no lattice of spacing " + text(spacing) + " within " + text(largest_angle_error) +
+                " degrees of it has a period of box=" + text(obstacles.box) + " or less) use box=" +
+                std::to_string(static_cast<long>(std::ceil(lattice->box))) + " or more");
+  }
+  obstacles.box = lattice->box;
+  obstacles.lattice_angle = lattice->angle;
+}
+
 void resolve_dp(RunParameters& run) {
   DpParameters& dp = run.dp;
   require_not_negative("line-tension", dp.line_tension);
   require_positive("area-stiffness", dp.area_stiffness);
   require(dp.vertices >= 16 && dp.vertices <= 4096, "vertices", dp.vertices, "must lie in 16..4096)");
   require_not_negative("perimeter-stiffness-ratio", dp.perimeter_stiffness_ratio);
-  if (!dp.perimeter_stiffness)
-    dp.perimeter_stiffness =
-        dp.perimeter_spring == PerimeterSpring::rest ? dp.perimeter_stiffness_ratio * dp.line_tension : 1.0;
+  if (!dp.perimeter_stiffness) dp.perimeter_stiffness = automatic_perimeter_stiffness(dp);
   require_not_negative("perimeter-stiffness", *dp.perimeter_stiffness);
   require(
       dp.wall_tension >= -0.9 && dp.wall_tension <= 1, "wall-tension", dp.wall_tension,
       "minus the cosine of the contact angle, so -1 would spread the droplet over every wall) use -0.9..1");
+
+  if (dp.perimeter_spring == PerimeterSpring::along && dp.gravity == Gravity::vertex)
+    throw Error(
+        "perimeter-spring=along contradicts gravity=vertex (springs without tension cannot carry the weight "
+        "of "
+        "vertices) use gravity=area, or perimeter-spring=mean");
 
   const double vertex_mass = units::droplet_mass / dp.vertices;
   const double vertex_diameter = units::regular_edge_length(dp.vertices);
@@ -149,6 +198,7 @@ RunParameters resolve(RunParameters run) {
   else
     resolve_sp(run);
   validate_obstacles(run.obstacles, run.dp.vertices, run.model);
+  resolve_layout(run.obstacles);
   return run;
 }
 

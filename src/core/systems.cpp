@@ -30,6 +30,16 @@ std::shared_ptr<const ObstacleArray> sample_or_reuse(const ObstacleParameters& p
   return cache.array;
 }
 
+/// In a lattice all voids are alike, so where in one a droplet starts is up to the seed (lattice_obstacles):
+/// if it touches nothing at the box's centre it starts right there, as if there were no obstacles.
+bool starts_free(const RunParameters& run, const ObstacleArray& obstacles) {
+  if (run.obstacles.layout != ObstacleLayout::lattice) return false;
+  const double contact_range = run.model == Model::dp ? units::regular_edge_length(run.dp.vertices) : 0.0;
+  const double centre = obstacles.box() / 2;
+  return clearance(obstacles, centre, centre, 2 * units::droplet_diameter) >
+         units::droplet_diameter / 2 + contact_range;
+}
+
 double vertex_diameter(const RunParameters& run) {
   return run.model == Model::dp ? units::regular_edge_length(run.dp.vertices) : 0;
 }
@@ -113,7 +123,9 @@ DropletRun run_in_array(const RunParameters& run) {
 }
 
 DropletRun run_in_array(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles) {
-  DropletState released = release_droplet(run, *obstacles);
+  DropletState released = starts_free(run, *obstacles)
+                              ? release_droplet(run, ObstacleArray(obstacles->box(), {}))
+                              : release_droplet(run, *obstacles);
   return {run, std::move(obstacles), std::move(released)};
 }
 

@@ -5,6 +5,7 @@
 #include "clog/cli/program.hpp"
 #include "clog/core/error.hpp"
 #include "clog/core/systems.hpp"
+#include "clog/core/units.hpp"
 #include "watched_run.hpp"
 
 namespace clog {
@@ -17,17 +18,21 @@ struct Setup {
 
 Setup read_setup(cli::CommandLine& line) {
   if (!line.has("obstacles")) return {single_run(line.settings()), nullptr};
-  for (const char* key : {"obstacle-gap", "obstacle-density"})
+  for (const char* key :
+       {"obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "obstacle-layout", "lattice-angle"})
     if (line.has(key))
       throw Error("--obstacles and " + std::string(key) + " contradict each other; give one of them");
   // One parameter set is needed to read the file (box, default diameter); its gap is then the file's own.
   const RunParameters draft = single_run(line.settings());
-  const std::string path = line.get("obstacles");
+  if (draft.obstacles.layout == ObstacleLayout::lattice || draft.obstacles.diameter_spread > 0)
+    throw Error("--obstacles and the config's lattice or mixture contradict each other; give one of them");
+  const bool polygon = draft.model == Model::dp;
   auto array = std::make_shared<ObstacleArray>(
-      draft.obstacles.box, cli::read_obstacles(path, draft.obstacles.diameter, draft.obstacles.box));
+      cli::read_obstacles(line.get("obstacles"),
+                          {.box = draft.obstacles.box,
+                           .default_diameter = draft.obstacles.diameter,
+                           .narrowest_gap = polygon ? units::regular_edge_length(draft.dp.vertices) : 0.0}));
   const double gap = array->smallest_gap();
-  if (gap <= 0)
-    throw Error(path + " has obstacles that touch or overlap, by " + sweep::shortest(-gap) + " sigma");
   line.settings().set("obstacle-gap", sweep::shortest(std::min(gap, draft.obstacles.box)));
   return {single_run(line.settings()), array};
 }

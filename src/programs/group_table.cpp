@@ -31,19 +31,26 @@ std::vector<Field> parameter_fields(const RunRow& row) {
   return {{"model", value_of(row.model)},
           {"obstacle_filling", value_of(row.obstacle_filling)},
           {"obstacle_diameter", value_of(row.obstacle_diameter)},
+          {"obstacle_diameter_spread", value_of(row.obstacle_diameter_spread)},
           {"obstacle_gap", value_of(row.obstacle_gap)},
           {"obstacle_density", value_of(row.obstacle_density)},
+          {"lattice_angle", value_of(row.lattice_angle)},
           {"line_tension", value_of(row.line_tension)},
           {"wall_stiffness", value_of(row.wall_stiffness)},
           {"near_wall_drag", value_of(row.near_wall_drag)},
+          {"near_wall_exponent", value_of(row.near_wall_exponent)},
+          {"relative_drag", value_of(row.relative_drag)},
           {"terminal_speed", value_of(row.terminal_speed)},
           {"vertices", value_of(row.vertices)},
           {"time_step", value_of(row.time_step)},
           {"max_time", value_of(row.max_time)},
           {"box", value_of(row.box)},
           {"area_stiffness", value_of(row.area_stiffness)},
+          {"preset", value_of(row.preset)},
           {"perimeter_spring", value_of(row.perimeter_spring)},
           {"perimeter_stiffness", value_of(row.perimeter_stiffness)},
+          {"wall_contact", value_of(row.wall_contact)},
+          {"wall_tension", value_of(row.wall_tension)},
           {"self_contact", value_of(row.self_contact)},
           {"gravity", value_of(row.gravity)},
           {"clog_energy", value_of(row.clog_energy)}};
@@ -61,7 +68,9 @@ std::vector<Field> result_fields(const Group& group) {
           {"clogging_length_upper", value_of(group.clogging.upper)},
           {"mean_speed", value_of(group.speed.mean)},
           {"mean_speed_error", value_of(group.speed.standard_error)},
-          {"mean_speed_runs", value_of(group.speed.num_runs)}};
+          {"mean_speed_runs", value_of(group.speed.num_runs)},
+          {"lateral_slope", value_of(group.migration.slope)},
+          {"lateral_slope_error", value_of(group.migration.standard_error)}};
 }
 
 std::string exact(const Value& value) {
@@ -92,16 +101,22 @@ std::string aligned(const std::vector<std::vector<std::string>>& lines) {
   return text;
 }
 
-std::vector<std::string> result_cells(const Group& group) {
+bool is_lattice(const Group& group) { return group.parameters.obstacle_filling.view() == "lattice"; }
+
+/// @param with_migration  in random arrays a droplet goes straight on the average: not worth two columns
+std::vector<std::string> result_cells(const Group& group, bool with_migration) {
   const fit::CloggingLength& clogging = group.clogging;
   const bool bounded = clogging.num_clogs > 0;
   const auto number = [](double value) { return rounded(value_of(value)); };
-  return {std::to_string(clogging.num_runs),
-          std::to_string(clogging.num_clogs),
-          bounded ? number(clogging.length) : "> " + number(clogging.lower),
-          bounded ? number(clogging.lower) + " .. " + number(clogging.upper) : "-",
-          number(group.speed.mean),
-          number(group.speed.standard_error)};
+  std::vector<std::string> cells = {std::to_string(clogging.num_runs),
+                                    std::to_string(clogging.num_clogs),
+                                    bounded ? number(clogging.length) : "> " + number(clogging.lower),
+                                    bounded ? number(clogging.lower) + " .. " + number(clogging.upper) : "-",
+                                    number(group.speed.mean),
+                                    number(group.speed.standard_error)};
+  if (with_migration)
+    cells.insert(cells.end(), {number(group.migration.slope), number(group.migration.standard_error)});
+  return cells;
 }
 
 }  // namespace
@@ -118,6 +133,7 @@ std::vector<Group> group_runs(std::span<const RunRow> rows, double confidence) {
     group.parameters = *runs.front();
     std::vector<fit::Observation> observations;
     std::vector<double> speeds;
+    std::vector<fit::Displacement> displacements;
     for (const RunRow* run : runs) {
       group.num_failed += run->status.view() == "failed";
       if (run->status.view() == "failed") continue;
@@ -125,9 +141,11 @@ std::vector<Group> group_runs(std::span<const RunRow> rows, double confidence) {
       group.num_interrupted += run->status.view() == "interrupted";
       observations.push_back({run->distance, run->status.view() == "clogged"});
       speeds.push_back(run->mean_speed / run->terminal_speed);
+      displacements.push_back({run->distance, run->lateral_displacement});
     }
     group.clogging = fit::fit_clogging_length(observations, confidence);
     group.speed = fit::fit_mean_speed(speeds);
+    group.migration = fit::fit_migration(displacements);
     groups.push_back(group);
   }
   return groups;
@@ -159,6 +177,8 @@ std::string to_text(const std::vector<Group>& groups, double confidence) {
   for (const std::string& title : {std::string("runs"), std::string("clogs"), std::string("lambda/sigma"),
                                    std::string(interval), std::string("<v_g>/v_t"), std::string("+-")})
     lines[0].push_back(title);
+  const bool with_migration = std::any_of(groups.begin(), groups.end(), is_lattice);
+  if (with_migration) lines[0].insert(lines[0].end(), {"lateral/r", "+-"});
   int num_failed = 0;
   int num_interrupted = 0;
   for (const Group& group : groups) {
@@ -166,7 +186,7 @@ std::string to_text(const std::vector<Group>& groups, double confidence) {
     const std::vector<Field> fields = parameter_fields(group.parameters);
     for (std::size_t i = 0; i < fields.size(); ++i)
       if (is_shown(i)) line.push_back(rounded(fields[i].second));
-    for (std::string& cell : result_cells(group)) line.push_back(std::move(cell));
+    for (std::string& cell : result_cells(group, with_migration)) line.push_back(std::move(cell));
     num_failed += group.num_failed;
     num_interrupted += group.num_interrupted;
   }

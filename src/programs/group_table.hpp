@@ -6,6 +6,7 @@
 
 #include "clog/fit/clogging_length.hpp"
 #include "clog/fit/mean_speed.hpp"
+#include "clog/fit/migration.hpp"
 #include "clog/sweep/run_row.hpp"
 
 namespace clog {
@@ -15,9 +16,10 @@ struct Group {
   sweep::RunRow parameters;  ///< of its first run
   fit::CloggingLength clogging;
   fit::MeanSpeed speed;  ///< in units of the terminal speed
+  fit::Migration migration;
   int num_flowing = 0;
   int num_interrupted = 0;
-  int num_failed = 0;  ///< left out of both fits
+  int num_failed = 0;  ///< left out of all fits
 };
 
 /// Groups rows by everything but the seed, in the order of their parameters.

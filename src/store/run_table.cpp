@@ -53,9 +53,13 @@ std::vector<Column> columns() {
   CLOG_COLUMN(wall_stiffness, "E_w [g rho sigma^3]");
   CLOG_COLUMN(obstacle_gap, "w_ob, smallest distance between obstacle surfaces [sigma]");
   CLOG_COLUMN(obstacle_diameter, "sigma_ob [sigma]");
-  CLOG_COLUMN(obstacle_density,
-              "obstacles per sigma^2; for a saturated array the jamming limit 0.6966/(w_ob+sigma_ob)^2");
-  CLOG_COLUMN(obstacle_filling, "saturated, or filled to a given density");
+  CLOG_COLUMN(obstacle_diameter_spread, "diameters arrive uniform in sigma_ob (1 -+ spread)");
+  CLOG_COLUMN(
+      obstacle_density,
+      "obstacles per sigma^2; for a saturated array the jamming limit 0.6966/(w_ob+sigma_ob)^2, NaN for "
+      "a saturated mixture");
+  CLOG_COLUMN(obstacle_filling, "saturated, or filled to a given density; lattice; file");
+  CLOG_COLUMN(lattice_angle, "of the lattice's rows from +x to +y [degrees]; NaN unless a lattice");
   CLOG_COLUMN(box, "period of the obstacle array [sigma]");
   CLOG_COLUMN(seed, "seed of obstacle array and release");
   CLOG_COLUMN(vertices, "N_v of the polygon; 1 for sp");
@@ -63,9 +67,15 @@ std::vector<Column> columns() {
   CLOG_COLUMN(max_time, "time at which a run that did not clog ends [t0]");
   CLOG_COLUMN(terminal_speed, "V_t [sqrt(sigma g)]");
   CLOG_COLUMN(near_wall_drag, "b_0/b_inf");
+  CLOG_COLUMN(near_wall_exponent, "alpha of the near-wall drag; NaN for sp");
+  CLOG_COLUMN(relative_drag, "c, drag of motion relative to the centre of mass over b_inf");
   CLOG_COLUMN(area_stiffness, "K_a [g rho/sigma]; NaN for sp");
-  CLOG_COLUMN(perimeter_spring, "springs pull edges to their rest length or to the mean length");
+  CLOG_COLUMN(preset, "name of the set of interface keys that was used, or custom");
+  CLOG_COLUMN(perimeter_spring,
+              "springs pull edges to their rest length, to the mean length, or along the interface only");
   CLOG_COLUMN(perimeter_stiffness, "K_l [g rho sigma]; NaN for sp");
+  CLOG_COLUMN(wall_contact, "a wall pushes edges or vertices");
+  CLOG_COLUMN(wall_tension, "tension at walls over Gamma, -cos of the contact angle; NaN for sp");
   CLOG_COLUMN(self_contact, "does the interface repel itself");
   CLOG_COLUMN(gravity, "the weight acts on the vertices or on the area");
   CLOG_COLUMN(clog_energy, "clogged when E_k/E_t stays below this");

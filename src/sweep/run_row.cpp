@@ -3,12 +3,41 @@
 #include <limits>
 #include <numbers>
 
+#include "clog/sweep/settings.hpp"
+
 namespace clog::sweep {
+namespace {
+
+const char* name(PerimeterSpring spring) {
+  switch (spring) {
+    case PerimeterSpring::rest:
+      return "rest";
+    case PerimeterSpring::mean:
+      return "mean";
+    case PerimeterSpring::along:
+      return "along";
+  }
+  return "unknown";
+}
+
+}  // namespace
 
 double saturated_density(double diameter, double gap) {
   constexpr double jamming_coverage = 0.547069;
   return jamming_coverage / (std::numbers::pi / 4 * (diameter + gap) * (diameter + gap));
 }
+
+namespace {
+
+/// Obstacles per sigma^2; NaN for a saturated mixture, whose jamming limit is not known beforehand.
+double density_of(const ObstacleParameters& obstacles) {
+  if (obstacles.layout == ObstacleLayout::lattice)
+    return 1 / ((obstacles.diameter + obstacles.gap) * (obstacles.diameter + obstacles.gap));
+  if (!obstacles.density && obstacles.diameter_spread > 0) return std::numeric_limits<double>::quiet_NaN();
+  return obstacles.density.value_or(saturated_density(obstacles.diameter, obstacles.gap));
+}
+
+}  // namespace
 
 RunRow describe(const RunParameters& run) {
   constexpr double not_applicable = std::numeric_limits<double>::quiet_NaN();
@@ -20,8 +49,12 @@ RunRow describe(const RunParameters& run) {
   row.wall_stiffness = run.wall_stiffness.value();
   row.obstacle_gap = obstacles.gap;
   row.obstacle_diameter = obstacles.diameter;
-  row.obstacle_density = obstacles.density.value_or(saturated_density(obstacles.diameter, obstacles.gap));
-  row.obstacle_filling = obstacles.density ? "density" : "saturated";
+  row.obstacle_diameter_spread = obstacles.diameter_spread;
+  row.obstacle_density = density_of(obstacles);
+  row.obstacle_filling = obstacles.layout == ObstacleLayout::lattice ? "lattice"
+                         : obstacles.density                         ? "density"
+                                                                     : "saturated";
+  row.lattice_angle = obstacles.layout == ObstacleLayout::lattice ? obstacles.lattice_angle : not_applicable;
   row.box = obstacles.box;
   row.seed = run.seed;
   row.vertices = polygon ? run.dp.vertices : 1;
@@ -30,9 +63,12 @@ RunRow describe(const RunParameters& run) {
   row.terminal_speed = run.drag.terminal_speed;
   row.near_wall_drag = run.drag.near_wall;
   row.area_stiffness = polygon ? run.dp.area_stiffness : not_applicable;
-  row.perimeter_spring = !polygon                                           ? "none"
-                         : run.dp.perimeter_spring == PerimeterSpring::rest ? "rest"
-                                                                            : "mean";
+  row.near_wall_exponent = polygon ? run.drag.near_wall_exponent : not_applicable;
+  row.relative_drag = run.drag.relative;
+  row.preset = polygon ? preset_name(run) : "none";
+  row.perimeter_spring = polygon ? name(run.dp.perimeter_spring) : "none";
+  row.wall_contact = !polygon ? "none" : run.dp.wall_contact == WallContact::edge ? "edge" : "vertex";
+  row.wall_tension = polygon ? run.dp.wall_tension : not_applicable;
   row.perimeter_stiffness = polygon ? run.dp.perimeter_stiffness.value() : not_applicable;
   row.self_contact = !polygon ? "none" : run.dp.self_contact == SelfContact::on ? "on" : "off";
   row.gravity = !polygon ? "none" : run.dp.gravity == Gravity::vertex ? "vertex" : "area";
@@ -41,7 +77,7 @@ RunRow describe(const RunParameters& run) {
 }
 
 void record(const RunResult& result, RunRow& row) {
-  row.status = std::string_view(name(result.status));
+  row.status = std::string_view(clog::name(result.status));
   row.distance = result.distance;
   row.lateral_displacement = result.lateral;
   row.time = result.time;

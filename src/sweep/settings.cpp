@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "clog/core/error.hpp"
 
@@ -37,6 +38,15 @@ std::vector<Key> make_keys() {
        [](RunParameters& run, const std::string& value) {
          run.model = value == "dp" ? Model::dp : Model::sp;
        }},
+      {"preset",
+       word,
+       {"robust", "elastic", "literal"},
+       "robust",
+       "sets the keys of the interface together, those given by hand excepted: robust, elastic (rest springs "
+       "of a "
+       "tenth of the tension), literal (the published equations)",
+       true,
+       [](RunParameters&, const std::string&) {}},  // Settings::set does it
       {"line-tension",
        number,
        {},
@@ -65,6 +75,15 @@ std::vector<Key> make_keys() {
        "sigma_ob [sigma]",
        false,
        [](RunParameters& run, const std::string& value) { run.obstacles.diameter = to_number(value); }},
+      {"obstacle-diameter-spread",
+       number,
+       {},
+       "0",
+       "diameters of random obstacles are uniform in obstacle-diameter*(1 -+ spread)",
+       false,
+       [](RunParameters& run, const std::string& value) {
+         run.obstacles.diameter_spread = to_number(value);
+       }},
       {"obstacle-density",
        number,
        {"saturated"},
@@ -72,6 +91,22 @@ std::vector<Key> make_keys() {
        "obstacles per sigma^2; saturated: until not one more fits",
        false,
        [](RunParameters& run, const std::string& value) { run.obstacles.density = number_or_auto(value); }},
+      {"obstacle-layout",
+       word,
+       {"random", "lattice"},
+       "random",
+       "random: sequential addition, lattice: square, obstacle-gap + obstacle-diameter from centre to centre",
+       false,
+       [](RunParameters& run, const std::string& value) {
+         run.obstacles.layout = value == "lattice" ? ObstacleLayout::lattice : ObstacleLayout::random;
+       }},
+      {"lattice-angle",
+       number,
+       {},
+       "0",
+       "of the lattice's rows from +x (the flow) to +y [degrees]; the nearest with a period of at most box",
+       false,
+       [](RunParameters& run, const std::string& value) { run.obstacles.lattice_angle = to_number(value); }},
       {"seeds",
        integer,
        {},
@@ -107,6 +142,20 @@ std::vector<Key> make_keys() {
        "b_0/b_inf",
        true,
        [](RunParameters& run, const std::string& value) { run.drag.near_wall = to_number(value); }},
+      {"near-wall-exponent",
+       number,
+       {},
+       "1.3333333333333333",
+       "alpha, of the near-wall drag's power of sigma/d",
+       true,
+       [](RunParameters& run, const std::string& value) { run.drag.near_wall_exponent = to_number(value); }},
+      {"relative-drag",
+       number,
+       {},
+       "1",
+       "c, drag of motion relative to the centre of mass over b_inf",
+       true,
+       [](RunParameters& run, const std::string& value) { run.drag.relative = to_number(value); }},
       {"vertices",
        integer,
        {},
@@ -130,9 +179,10 @@ std::vector<Key> make_keys() {
        [](RunParameters& run, const std::string& value) { run.dp.area_stiffness = to_number(value); }},
       {"perimeter-spring",
        word,
-       {"rest", "mean", "along"},
-       "mean",
-       "springs of the edges pull to l0 (rest, the paper) or to the mean edge length",
+       {"along", "mean", "rest"},
+       "along",
+       "springs of the edges pull to l0 (rest, as published), to the mean edge length, or only along the "
+       "interface",
        true,
        [](RunParameters& run, const std::string& value) {
          run.dp.perimeter_spring = value == "rest"   ? PerimeterSpring::rest
@@ -143,11 +193,36 @@ std::vector<Key> make_keys() {
        number,
        {"auto"},
        "auto",
-       "K_l [g rho sigma]; auto: 1e-3 Gamma for rest, 1 for mean",
+       "K_l [g rho sigma]; auto: ratio times Gamma for rest, else 1",
        true,
        [](RunParameters& run, const std::string& value) {
          run.dp.perimeter_stiffness = number_or_auto(value);
        }},
+      {"perimeter-stiffness-ratio",
+       number,
+       {},
+       "0.001",
+       "K_l/Gamma of springs to the rest length, where perimeter-stiffness=auto",
+       true,
+       [](RunParameters& run, const std::string& value) {
+         run.dp.perimeter_stiffness_ratio = to_number(value);
+       }},
+      {"wall-contact",
+       word,
+       {"edge", "vertex"},
+       "edge",
+       "a wall pushes the nearest point of every edge, or the vertices alone (as published)",
+       true,
+       [](RunParameters& run, const std::string& value) {
+         run.dp.wall_contact = value == "edge" ? WallContact::edge : WallContact::vertex;
+       }},
+      {"wall-tension",
+       number,
+       {},
+       "1",
+       "tension where the interface touches a wall, over Gamma: -cos of the contact angle",
+       true,
+       [](RunParameters& run, const std::string& value) { run.dp.wall_tension = to_number(value); }},
       {"self-contact",
        word,
        {"on", "off"},
@@ -159,9 +234,9 @@ std::vector<Key> make_keys() {
        }},
       {"gravity",
        word,
-       {"vertex", "area"},
-       "vertex",
-       "the weight acts on the vertices (the paper) or the area",
+       {"area", "vertex"},
+       "area",
+       "weight and mean drag act on the area, as a pressure, or on the vertices (as published)",
        true,
        [](RunParameters& run, const std::string& value) {
          run.dp.gravity = value == "vertex" ? Gravity::vertex : Gravity::area;
@@ -174,6 +249,38 @@ std::vector<Key> make_keys() {
        false,
        [](RunParameters& run, const std::string& value) { run.clog_energy = to_number(value); }},
   };
+}
+
+/// What a preset means for the keys of the interface.
+struct Preset {
+  const char* name;
+  std::vector<std::pair<const char*, const char*>> texts;
+};
+const std::vector<Preset>& presets() {
+  static const std::vector<Preset> all = {
+      {"robust",
+       {{"perimeter-spring", "along"},
+        {"perimeter-stiffness", "auto"},
+        {"perimeter-stiffness-ratio", "0.001"},
+        {"wall-contact", "edge"},
+        {"self-contact", "on"},
+        {"gravity", "area"}}},
+      {"elastic",
+       {{"perimeter-spring", "rest"},
+        {"perimeter-stiffness", "auto"},
+        {"perimeter-stiffness-ratio", "0.1"},
+        {"wall-contact", "edge"},
+        {"self-contact", "on"},
+        {"gravity", "vertex"}}},
+      {"literal",
+       {{"perimeter-spring", "rest"},
+        {"perimeter-stiffness", "auto"},
+        {"perimeter-stiffness-ratio", "0.001"},
+        {"wall-contact", "vertex"},
+        {"self-contact", "off"},
+        {"gravity", "vertex"}}},
+  };
+  return all;
 }
 
 }  // namespace
@@ -193,8 +300,23 @@ const Key& find_key(std::string_view name) {
               (near.empty() ? "; --help lists the keys" : "; did you mean " + near + "?"));
 }
 
+std::string preset_name(const RunParameters& run) {
+  for (const Preset& preset : presets()) {
+    RunParameters other = run;
+    other.dp.perimeter_stiffness.reset();
+    for (const auto& [name, text] : preset.texts) find_key(name).apply(other, text);
+    if (!other.dp.perimeter_stiffness) other.dp.perimeter_stiffness = automatic_perimeter_stiffness(other.dp);
+    if (other.dp.perimeter_spring == run.dp.perimeter_spring &&
+        other.dp.perimeter_stiffness == run.dp.perimeter_stiffness &&
+        other.dp.wall_contact == run.dp.wall_contact && other.dp.self_contact == run.dp.self_contact &&
+        other.dp.gravity == run.dp.gravity)
+      return preset.name;
+  }
+  return "custom";
+}
+
 Settings::Settings() {
-  for (const Key& key : keys()) set(key.name, key.default_text);
+  for (const Key& key : keys()) assign(key.name, key.default_text);
 }
 
 Settings Settings::from_config(const std::string& text) {
@@ -207,6 +329,16 @@ Settings Settings::from_config(const std::string& text) {
 }
 
 void Settings::set(const std::string& name, const std::string& text) {
+  assign(name, text);
+  given_.insert(name);
+  if (name != "preset") return;
+  for (const Preset& preset : presets())
+    if (preset.name == text)
+      for (const auto& [key, value] : preset.texts)
+        if (!given_.contains(key)) assign(key, value);
+}
+
+void Settings::assign(const std::string& name, const std::string& text) {
   const Key& key = find_key(name);
   std::vector<std::string> values;
   try {

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <random>
 
@@ -100,6 +102,127 @@ TEST(SampleObstacles, DependsOnTheSeedAlone) {
   EXPECT_NE(first.obstacles()[0].x, other.obstacles()[0].x);
 }
 
+/// FNV hash of all bits, the order of the obstacles included.
+std::uint64_t digest(const ObstacleArray& array) {
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (const Obstacle& obstacle : array.obstacles())
+    for (const double value : {obstacle.x, obstacle.y, obstacle.radius})
+      hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001b3u;
+  return hash;
+}
+
+TEST(SampleObstacles, GivesDiscsOfOneSizeThatNeverChange) {
+  // Made by the sampler before it knew mixtures. Renew only with a change that alters the course of runs.
+  EXPECT_EQ(digest(sample_obstacles({.gap = 0.4, .density = {}, .box = 30}, 4)), 0xb0bf2aa9922e880fu);
+  EXPECT_EQ(digest(sample_obstacles({.gap = 0.2, .density = 0.35, .box = 50}, 1)), 0xe8065549484e7b7bu);
+  EXPECT_EQ(digest(sample_obstacles({.gap = 1.1, .density = {}, .box = 17.3}, 11)), 0xfe21cf4682604890u);
+}
+
+ObstacleParameters mixture(double spread, double box, std::optional<double> density = {}) {
+  return {.gap = 0.2, .diameter = 0.3, .diameter_spread = spread, .density = density, .box = box};
+}
+
+TEST(SampleObstacles, KeepsTheGapBetweenSurfacesOfAMixture) {
+  for (const double spread : {0.01, 0.3, 0.9})
+    for (const double box : {5.0, 17.3}) {
+      const ObstacleArray array = sample_obstacles(mixture(spread, box), 5);
+      EXPECT_GE(brute_force_gap(array), 0.2) << spread;
+      EXPECT_NEAR(brute_force_gap(array), 0.2, 0.02) << spread;
+      for (const Obstacle& obstacle : array.obstacles())
+        EXPECT_NEAR(2 * obstacle.radius, 0.3, 0.3 * spread + 1e-7) << spread;
+    }
+}
+
+TEST(SampleObstacles, LeavesNoRoomForEvenTheSmallestOfAMixture) {
+  const double spread = 0.6;
+  const double reach = 0.3 / 2 * (1 - spread) + 0.2;
+  const ObstacleArray array = sample_obstacles(mixture(spread, 10), 3);
+  constexpr int side = 800;
+  std::vector<Obstacle> near;
+  int num_free = 0;
+  for (int row = 0; row < side; ++row)
+    for (int column = 0; column < side; ++column) {
+      near.clear();
+      array.gather({10.0 * column / side, 10.0 * row / side, 0, 0, 0, 0, reach}, near);
+      num_free += std::none_of(near.begin(), near.end(), [&](const Obstacle& o) {
+        return std::hypot(o.x, o.y) - o.radius < reach * 1.0001;
+      });
+    }
+  EXPECT_EQ(num_free, 0);
+}
+
+TEST(SampleObstacles, DrawsTheDiametersOfADilutedMixtureUniformly) {
+  // Ten bins of 4000 diameters: chi-squared with 9 degrees of freedom, below its 99.9 % quantile.
+  double counts[10] = {};
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    const ObstacleArray array = sample_obstacles(mixture(0.5, 50, 0.16), seed);
+    for (const Obstacle& obstacle : array.obstacles())
+      ++counts[std::clamp(static_cast<int>((2 * obstacle.radius - 0.15) / 0.03), 0, 9)];
+  }
+  double chi2 = 0;
+  for (const double count : counts) chi2 += (count - 400) * (count - 400) / 400;
+  EXPECT_LT(chi2, 27.9);
+}
+
+/// The definition of random sequential addition, disc by disc, with std's own random numbers: the mean
+/// diameter of the first `count` discs that stay.
+double mean_diameter_one_by_one(const ObstacleParameters& parameters, std::size_t count, std::uint32_t seed) {
+  std::mt19937_64 engine(seed);
+  std::uniform_real_distribution<double> place(0, parameters.box);
+  std::uniform_real_distribution<double> diameter(parameters.smallest_diameter(),
+                                                  parameters.largest_diameter());
+  std::vector<Obstacle> stayed;
+  double sum = 0;
+  while (stayed.size() < count) {
+    const Obstacle arrives{place(engine), place(engine), diameter(engine) / 2};
+    const bool has_room = std::none_of(stayed.begin(), stayed.end(), [&](const Obstacle& other) {
+      const double dx = std::remainder(arrives.x - other.x, parameters.box);
+      const double dy = std::remainder(arrives.y - other.y, parameters.box);
+      return std::hypot(dx, dy) < arrives.radius + other.radius + parameters.gap;
+    });
+    if (!has_room) continue;
+    stayed.push_back(arrives);
+    sum += 2 * arrives.radius;
+  }
+  return sum / static_cast<double>(count);
+}
+
+TEST(SampleObstacles, MixesLikeDiscsThatArriveOneByOne) {
+  // Near saturation (4.1 per sigma^2 for this mixture), where most of the large ones find no room.
+  const ObstacleParameters parameters = mixture(0.5, 6, 3.2);
+  constexpr int num_arrays = 100;
+  double difference = 0;
+  double scatter = 0;
+  for (std::uint32_t seed = 1; seed <= num_arrays; ++seed) {
+    double mean = 0;
+    const ObstacleArray array = sample_obstacles(parameters, seed);
+    for (const Obstacle& obstacle : array.obstacles())
+      mean += 2 * obstacle.radius / static_cast<double>(array.obstacles().size());
+    const double expected = mean_diameter_one_by_one(parameters, array.obstacles().size(), seed);
+    EXPECT_LT(expected, 0.28) << "the large ones find no room";
+    difference += (mean - expected) / num_arrays;
+    scatter += (mean - expected) * (mean - expected) / num_arrays;
+  }
+  EXPECT_LT(std::abs(difference), 3.5 * std::sqrt(scatter / num_arrays));
+  EXPECT_LT(std::sqrt(scatter / num_arrays), 1e-3) << "sharp enough to see a wrong mixture";
+}
+
+TEST(SampleObstacles, GivesTheSameMixtureForTheSameSeed) {
+  EXPECT_EQ(digest(sample_obstacles(mixture(0.5, 20), 7)), digest(sample_obstacles(mixture(0.5, 20), 7)));
+  EXPECT_NE(digest(sample_obstacles(mixture(0.5, 20), 7)), digest(sample_obstacles(mixture(0.5, 20), 8)));
+}
+
+TEST(SampleObstacles, SaysWhatFitsOfAMixture) {
+  try {
+    sample_obstacles(mixture(0.5, 20, 6), 1);
+    FAIL();
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("no more than 4.0"), std::string::npos) << message;
+    EXPECT_NE(message.find("of diameter 0.15 to 0.45 fit"), std::string::npos) << message;
+  }
+}
+
 TEST(ObstacleArray, GathersWhatBruteForceFinds) {
   const double box = 12.5;
   const ObstacleArray array = sample_obstacles({.gap = 0.4, .diameter = 0.3, .density = {}, .box = box}, 2);
@@ -123,6 +246,13 @@ TEST(ObstacleArray, SeesOverlapsOfMixedSizes) {
   EXPECT_NEAR(ObstacleArray(20, {{1, 1, 0.5}, {19.5, 1, 0.8}}).smallest_gap(), 0.2, 1e-12);
   EXPECT_NEAR(ObstacleArray(20, {{1, 1, 0.5}, {1.2, 1, 0.4}}).smallest_gap(), -0.7, 1e-12);
   EXPECT_TRUE(std::isinf(ObstacleArray(20, {{1, 1, 0.5}}).smallest_gap()));
+}
+
+TEST(ObstacleArray, NamesItsClosestPair) {
+  const auto pair = ObstacleArray(20, {{5, 5, 1}, {19.5, 1, 0.8}, {1, 1, 0.5}, {9, 5, 1}}).closest_pair();
+  EXPECT_NEAR(pair.gap, 0.2, 1e-12);
+  EXPECT_EQ(std::min(pair.first.x, pair.second.x), 1);
+  EXPECT_EQ(std::max(pair.first.x, pair.second.x), 19.5);
 }
 
 TEST(ObstacleArray, RefusesImpossibleCircles) {

@@ -2,12 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <ostream>
 #include <string>
 
 #include "clog/core/error.hpp"
+#include "clog/core/lattice.hpp"
 #include "clog/core/stability.hpp"
 #include "clog/core/units.hpp"
 
@@ -58,6 +61,21 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"obstacle-gap=0.01 (not wider than one vertex", [](auto& run) { run.obstacles.gap = 0.01; }},
         Refusal{"obstacle-diameter=0", [](auto& run) { run.obstacles.diameter = 0; }},
         Refusal{"obstacle-density=-1", [](auto& run) { run.obstacles.density = -1; }},
+        Refusal{"obstacle-diameter-spread=1 (diameters are uniform",
+                [](auto& run) { run.obstacles.diameter_spread = 1; }},
+        Refusal{"obstacle-diameter-spread=-0.1", [](auto& run) { run.obstacles.diameter_spread = -0.1; }},
+        Refusal{"lattice-angle=5 (a random array has no rows) add obstacle-layout=lattice",
+                [](auto& run) { run.obstacles.lattice_angle = 5; }},
+        Refusal{"lattice-angle=60 (must lie in -45..45",
+                [](auto& run) {
+                  run.obstacles.layout = ObstacleLayout::lattice, run.obstacles.lattice_angle = 60;
+                }},
+        Refusal{"obstacle-density=1 (a lattice has one",
+                [](auto& run) { run.obstacles.layout = ObstacleLayout::lattice, run.obstacles.density = 1; }},
+        Refusal{"obstacle-diameter-spread=0.2 (the obstacles of a lattice",
+                [](auto& run) {
+                  run.obstacles.layout = ObstacleLayout::lattice, run.obstacles.diameter_spread = 0.2;
+                }},
         Refusal{"box=2 (the droplet would meet", [](auto& run) { run.obstacles.box = 2; }},
         Refusal{"box=1e+06", [](auto& run) { run.obstacles.box = 1e6; }},
         Refusal{"box=5 (holds no two obstacles",
@@ -100,6 +118,60 @@ TEST(Resolve, TakesTheStepItProposes) {
     run.time_step = std::stod(message.substr(message.rfind("try ") + 4));
     EXPECT_NO_THROW(resolve(run));
   }
+}
+
+/// What resolve() says to these parameters, empty if it takes them.
+std::string refusal(const RunParameters& run) {
+  try {
+    resolve(run);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+RunParameters lattice_run(double angle, double box) {
+  RunParameters run;
+  run.obstacles.layout = ObstacleLayout::lattice;
+  run.obstacles.lattice_angle = angle;
+  run.obstacles.box = box;
+  return run;
+}
+
+TEST(Resolve, GivesALatticeABoxThatIsItsPeriod) {
+  for (const double angle : {-45.0, -7.3, 0.0, 1.0, 12.0, 26.56505, 45.0}) {
+    const ObstacleParameters used = resolve(lattice_run(angle, 200)).obstacles;
+    EXPECT_LE(used.box, 200) << angle;
+    EXPECT_NEAR(used.lattice_angle, angle, largest_angle_error) << angle;
+    EXPECT_EQ(used.gap, 0.2);
+    EXPECT_EQ(used.diameter, 0.3);
+    for (const double steps : {used.box / 0.5 * std::cos(used.lattice_angle * std::numbers::pi / 180),
+                               used.box / 0.5 * std::sin(used.lattice_angle * std::numbers::pi / 180)})
+      EXPECT_NEAR(steps, std::round(steps), 1e-9) << angle;
+    const RunParameters again = resolve(resolve(lattice_run(angle, 200)));
+    EXPECT_EQ(again.obstacles, used) << "a row's own box and angle give the row's lattice";
+  }
+  EXPECT_EQ(resolve(lattice_run(0, 200)).obstacles.box, 200);
+}
+
+TEST(Resolve, TakesTheBoxThatItProposesForALattice) {
+  for (const double angle : {0.5, 3.0, -17.0, 44.0}) {
+    const std::string message = refusal(lattice_run(angle, 5.2));
+    ASSERT_NE(message.find("lattice-angle="), std::string::npos) << angle;
+    const double box = std::stod(message.substr(message.find("use box=") + 8));
+    EXPECT_EQ(refusal(lattice_run(angle, box)), "");
+    EXPECT_NE(refusal(lattice_run(angle, box - 1.5)), "") << "no larger than needed";
+  }
+}
+
+TEST(Resolve, TakesTheSpreadThatItProposes) {
+  RunParameters run;
+  run.obstacles.gap = 0.02;
+  run.obstacles.diameter_spread = 0.9;
+  const std::string message = refusal(run);
+  ASSERT_NE(message.find("obstacle-diameter-spread=0.9 (the largest two"), std::string::npos) << message;
+  run.obstacles.diameter_spread = std::stod(message.substr(message.find("use ") + 4));
+  EXPECT_EQ(refusal(run), "");
 }
 
 TEST(Resolve, ChangesNothingThatWasGiven) {

@@ -89,6 +89,25 @@ class Fit(ProgramTest):
             self.assertEqual(list(line), list(group))
             self.assertEqual(float(line["total_distance"]), group["total_distance"])
 
+    def test_lattices_have_a_migration_angle(self):
+        keys = ["model=sp", "wall-stiffness=10", "obstacle-layout=lattice", "obstacle-gap=1.2", "lattice-angle=-10,15"]
+        self.succeed("clogsweep", *keys, "box=60", "max-time=2000", "seeds=1..4", "--output", "sweep.h5")
+        rows = pandas.read_hdf(self.folder / "sweep.h5", "runs")
+        groups = self.fit()["groups"]
+        self.assertEqual(len(groups), 2)
+        for group in groups:
+            mine = rows[rows.lattice_angle == group["lattice_angle"]]
+            slope = mine.lateral_displacement.sum() / mine.distance.sum()
+            self.assertAlmostEqual(group["lateral_slope"], slope, places=12)
+            # A disk too large for the lattice follows its rows.
+            self.assertAlmostEqual(slope, math.tan(math.radians(group["lattice_angle"])), delta=0.03)
+            self.assertLess(group["lateral_slope_error"], 0.03)
+        self.assertIn("lateral/r", self.succeed("clogfit", "sweep.h5").stdout)
+
+    def test_random_arrays_have_no_column_for_migration(self):
+        self.sweep("seeds=1..3", "max-time=1")
+        self.assertNotIn("lateral/r", self.succeed("clogfit", "sweep.h5").stdout)
+
     def test_a_full_output_is_a_fault(self):
         self.sweep("seeds=1", "max-time=1")
         with open("/dev/full", "w") as full:

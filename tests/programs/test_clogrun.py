@@ -58,6 +58,29 @@ class Run(ProgramTest):
         self.succeed("clogrun", "array", *QUICK, "--sample-interval", "1e12", "--output", "box=20.h5")
         self.assertEqual(len(pandas.read_hdf(self.folder / "box=20.h5", "trajectory")), 2)
 
+    def test_a_lattice_reports_the_box_and_angle_used_and_its_row_gives_it_again(self):
+        keys = ["model=sp", "wall-stiffness=10", "obstacle-layout=lattice", "obstacle-gap=1.2", "max-time=300"]
+        self.succeed("clogrun", "array", *keys, "lattice-angle=10", "box=40", "--output", "a.h5")
+        row = pandas.read_hdf(self.folder / "a.h5", "runs").iloc[0]
+        self.assertEqual(row.obstacle_filling, "lattice")
+        self.assertAlmostEqual(row.obstacle_density, 1 / 1.5**2)
+        self.assertLess(row.box, 40)
+        self.assertAlmostEqual(row.lattice_angle, 10, delta=0.1)
+        self.assertNotEqual(row.lattice_angle, 10)
+        self.succeed("clogrun", "array", *keys, f"lattice-angle={row.lattice_angle!r}", f"box={row.box!r}", "--output", "b.h5")
+        again = pandas.read_hdf(self.folder / "b.h5", "runs").iloc[0]
+        for column in ("box", "lattice_angle", "distance", "lateral_displacement"):
+            self.assertEqual(row[column], again[column], column)
+
+    def test_a_mixture_of_obstacles_is_written(self):
+        self.succeed("clogrun", "array", *QUICK, "obstacle-diameter-spread=0.5", "--write-obstacles", "array.csv", "--output", "a.h5")
+        diameters = pandas.read_csv(self.folder / "array.csv").diameter
+        self.assertGreater(diameters.max() - diameters.min(), 0.28)
+        row = pandas.read_hdf(self.folder / "a.h5", "runs").iloc[0]
+        self.assertEqual(row.obstacle_diameter_spread, 0.5)
+        self.assertTrue(np.isnan(row.obstacle_density))
+        self.assertTrue(np.isnan(row.lattice_angle))
+
     def test_obstacles_written_can_be_read_back(self):
         self.succeed("clogrun", "array", *QUICK, "obstacle-gap=0.4", "seeds=2", "--write-obstacles", "array.csv", "--output", "a.h5")
         header = (self.folder / "array.csv").read_text().splitlines()[0]
@@ -97,7 +120,14 @@ class Run(ProgramTest):
         self.write("outside.csv", "1,25\n")
         self.write("overlap.csv", "1,1,0.5\n1.2,1,0.5\n")
         self.write("across.csv", "0.1,1,0.5\n19.9,1,0.5\n")
-        self.write("empty.csv", "x,y\n")
+        self.write("twice.csv", "x,y\n3,3\n\n1,1\n# again\n1,1\n")
+        self.write("narrow.csv", "# 0.005 apart\n1,1,0.5\n5,5,0.5\n1.505,1,0.5\n")
+        self.write("wide.csv", "5,5,20\n")
+        self.write("nan.csv", "x,y\n1,2\n3,nan\n")
+        self.write("infinite.csv", "1,2,inf\n")
+        self.write("header.csv", "x,y\n")
+        self.write("empty.csv", "")
+        self.write("lattice.cfg", "obstacle-layout = lattice\n")
         out = ["box=20", "--output", "r.h5"]
         for arguments, words in [
             ([*out], ["missing system", "clogrun array"]),
@@ -113,10 +143,21 @@ class Run(ProgramTest):
             (["array", "--obstacles", "missing.csv", *out], ["missing.csv"]),
             (["array", "--obstacles", "words.csv", *out], ["words.csv line 3", "four"]),
             (["array", "--obstacles", "outside.csv", *out], ["outside.csv line 1", "outside the box"]),
-            (["array", "--obstacles", "overlap.csv", *out], ["overlap.csv", "overlap"]),
-            (["array", "--obstacles", "across.csv", *out], ["across.csv", "overlap"]),
+            (["array", "--obstacles", "overlap.csv", *out], ["overlap.csv lines 1 and 2", "overlap, by 0.3 sigma"]),
+            (["array", "--obstacles", "across.csv", *out], ["across.csv lines 1 and 2", "overlap"]),
+            (["array", "--obstacles", "twice.csv", *out], ["twice.csv lines 4 and 6", "overlap, by 0.3 sigma"]),
+            (["array", "--obstacles", "narrow.csv", *out], ["narrow.csv lines 2 and 4", "not wider than one vertex"]),
+            (["array", "--obstacles", "wide.csv", *out], ["wide.csv line 1", "its own periodic image"]),
+            (["array", "--obstacles", "nan.csv", *out], ["nan.csv line 3", "nan"]),
+            (["array", "--obstacles", "infinite.csv", *out], ["infinite.csv line 1", "inf"]),
+            (["array", "--obstacles", "header.csv", *out], ["no obstacles"]),
             (["array", "--obstacles", "empty.csv", *out], ["no obstacles"]),
             (["array", "--obstacles", "outside.csv", "obstacle-gap=0.3", *out], ["contradict"]),
+            (["array", "--obstacles", "outside.csv", "obstacle-layout=lattice", *out], ["contradict"]),
+            (["array", "--obstacles", "outside.csv", "--config", "lattice.cfg", *out], ["config's lattice"]),
+            (["array", "obstacle-layout=lattice", "obstacle-density=1", *out], ["obstacle-density=1", "lattice"]),
+            (["array", "lattice-angle=5", *out], ["lattice-angle=5", "obstacle-layout=lattice"]),
+            (["array", "obstacle-layout=lattice", "lattice-angle=3", "box=6", "--output", "r.h5"], ["lattice-angle=3", "use box="]),
             (["array", "obstacle-density=9", *out], ["obstacle-density=9"]),
         ]:
             with self.subTest(arguments=arguments):

@@ -35,6 +35,18 @@ class Figures(ProgramTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assert_picture("curve")
 
+    def test_mixtures_and_lattices_are_drawn_too(self):
+        soft_disks = ["model=sp", "wall-stiffness=0.3,3", "box=20", "max-time=300", "seeds=1..2"]
+        for name, keys in [
+            ("mixture", ["obstacle-diameter-spread=0.3", "obstacle-density=0.5,saturated"]),
+            ("lattice", ["obstacle-layout=lattice", "lattice-angle=0,10"]),
+        ]:
+            self.succeed("clogsweep", *soft_disks, *keys, "--output", f"{name}.h5")
+            self.write("fit.json", self.succeed("clogfit", f"{name}.h5", "--format", "json").stdout)
+            done = self.analyse("clogging_length.py", "fit.json", "--output", name)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assert_picture(name)
+
     def test_a_droplet_is_drawn_from_a_run(self):
         self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 5, "--output", "run.h5")
         done = self.analyse("droplet.py", "run.h5", "--output", "droplet")

@@ -7,12 +7,17 @@
 
 namespace clog::cli {
 
+/// How the lines of an obstacle file are to be understood.
+struct ObstacleFileRules {
+  double box;               ///< centres must lie in [0, box) [sigma]
+  double default_diameter;  ///< for lines without one [sigma]
+  double narrowest_gap;     ///< gaps between surfaces must be wider [sigma]
+};
+
 /// Reads circles from a CSV file: x,y[,diameter] per line [sigma]; a first line x,y,... and lines starting
 /// with # are skipped.
-/// @param default_diameter  for lines without one
-/// @param box               centres must lie in [0, box)
-/// @throws Error naming the line
-std::vector<Obstacle> read_obstacles(const std::string& path, double default_diameter, double box);
+/// @throws Error naming the line, or the two lines whose circles touch, overlap or leave too narrow a gap
+ObstacleArray read_obstacles(const std::string& path, const ObstacleFileRules& rules);
 
 /// Writes them in the same form, with digits that read back exactly. @throws Error
 void write_obstacles(const std::string& path, const std::vector<Obstacle>& obstacles);

@@ -13,6 +13,8 @@ struct Obstacle {
   double x = 0;
   double y = 0;
   double radius = 0;
+
+  bool operator==(const Obstacle&) const = default;
 };
 
 /// Periodic array of circles in a square box, binned into cells of about one droplet diameter so that the
@@ -39,9 +41,15 @@ class ObstacleArray {
   };
   void gather(const Window& window, std::vector<Obstacle>& out) const;
 
-  /// Smallest surface-to-surface distance of two obstacles, periodic images included [sigma]; negative if
-  /// they overlap, infinite if there is no pair nearer than the box.
-  double smallest_gap() const;
+  /// Two obstacles and the surface-to-surface distance between them, periodic images included [sigma];
+  /// negative if they overlap.
+  struct Pair {
+    Obstacle first, second;
+    double gap;
+  };
+  /// The pair with the smallest gap, which is infinite if there is no pair nearer than the box.
+  Pair closest_pair() const;
+  double smallest_gap() const { return closest_pair().gap; }
 
  private:
   double box_;
@@ -58,11 +66,13 @@ class ObstacleArray {
   void visit_window(const Window& window, Visit visit) const;
 };
 
-/// Poisson-disk sample by random sequential addition: centres are uniform among all places at least
-/// diameter + gap away from every earlier centre (periodic). With a density, stops at
-/// round(density * box^2) obstacles; without, goes on until not one more fits ("saturated", the jamming
-/// limit: discs of diameter + gap cover 0.547 of the plane, Feder, J. Theor. Biol. 87, 237 (1980)).
-/// Voids are tracked on a flat quadtree as in Ebeida et al., Comput. Graph. Forum 31, 785 (2012).
+/// The array that the parameters describe: a lattice (lattice.hpp) or a Poisson-disk sample by random
+/// sequential addition. There, discs arrive one by one, with a diameter uniform in diameter (1 -+ spread) at
+/// a uniform place (periodic), and stay if all earlier surfaces are at least `gap` away: in a dense mixture
+/// small ones are more frequent than among the arriving ones. With a density, stops at round(density * box^2)
+/// obstacles; without, goes on until not even one of the smallest fits ("saturated", the jamming limit: discs
+/// of diameter + gap cover 0.547 of the plane, Feder, J. Theor. Biol. 87, 237 (1980)). Voids are tracked on a
+/// flat quadtree as in Ebeida et al., Comput. Graph. Forum 31, 785 (2012).
 /// @throws Error if the density exceeds what fits
 ObstacleArray sample_obstacles(const ObstacleParameters& parameters, std::uint32_t seed);
 

@@ -16,12 +16,14 @@ enum class SelfContact { off, on };
 enum class Gravity { vertex, area };
 /// What of the interface a wall pushes: its vertices (the paper), or the nearest point of every edge.
 enum class WallContact { vertex, edge };
+/// How obstacles are placed: random sequential addition, or a tilted square lattice.
+enum class ObstacleLayout { random, lattice };
 
 /// Deformable polygon, Cheng et al. Eqs. 1-6. Reduced units, see units.hpp.
 struct DpParameters {
   double line_tension = 1.0;    ///< Gamma [g rho sigma^2]
   double area_stiffness = 1e4;  ///< K_a [g rho / sigma]
-  PerimeterSpring perimeter_spring = PerimeterSpring::mean;
+  PerimeterSpring perimeter_spring = PerimeterSpring::along;
   std::optional<double> perimeter_stiffness;  ///< K_l [g rho sigma]; empty: ratio * Gamma (rest), 1 (others)
   double perimeter_stiffness_ratio = 1e-3;    ///< K_l/Gamma of springs to the rest length
   WallContact wall_contact = WallContact::edge;
@@ -29,17 +31,22 @@ struct DpParameters {
   /// -cos of the contact angle (Young). 1: a film of water everywhere, as in the paper's figures.
   double wall_tension = 1;
   SelfContact self_contact = SelfContact::on;
-  Gravity gravity = Gravity::vertex;
+  Gravity gravity = Gravity::area;
   int vertices = 256;  ///< N_v
 };
 
 /// Periodic array of circular obstacles, Cheng et al., "Geometry".
 struct ObstacleParameters {
   double gap = 0.2;               ///< w_ob, smallest surface-to-surface distance [sigma]
-  double diameter = 0.3;          ///< sigma_ob [sigma]
-  std::optional<double> density;  ///< obstacles per sigma^2; empty: saturated
+  double diameter = 0.3;          ///< sigma_ob, of a mixture the mean of the arriving ones [sigma]
+  double diameter_spread = 0;     ///< diameters are uniform in diameter (1 -+ spread)
+  std::optional<double> density;  ///< obstacles per sigma^2; empty: saturated, or given by the lattice
   double box = 500;               ///< period L in both directions [sigma]
+  ObstacleLayout layout = ObstacleLayout::random;
+  double lattice_angle = 0;  ///< of the lattice's rows from +x to +y [degrees]
 
+  double smallest_diameter() const { return diameter * (1 - diameter_spread); }
+  double largest_diameter() const { return diameter * (1 + diameter_spread); }
   bool operator==(const ObstacleParameters&) const = default;
 };
 
@@ -65,9 +72,16 @@ struct RunParameters {
   std::uint32_t seed = 1;
 };
 
-/// Replaces every `auto` (empty optional) by the value that will be used, then validates.
+/// Replaces every `auto` (empty optional), and box and angle of a lattice, by the value that will be used,
+/// then validates.
 /// @throws Error naming the field, its value, the reason and a remedy
 RunParameters resolve(RunParameters parameters);
+
+/// K_l where none is given [g rho sigma]: a fraction of Gamma for springs to the rest length, 1 for the
+/// others.
+inline double automatic_perimeter_stiffness(const DpParameters& dp) {
+  return dp.perimeter_spring == PerimeterSpring::rest ? dp.perimeter_stiffness_ratio * dp.line_tension : 1.0;
+}
 
 /// Contact stiffness k_c, force over overlap [g rho sigma], of the wall energy U_w = (E_w/2)(1 - 2d/size)^2:
 /// k_c = 4 E_w / size^2. `size` is the vertex diameter (DP) or sigma (SP). And the way back.

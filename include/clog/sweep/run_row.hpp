@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 
 #include "clog/core/parameters.hpp"
@@ -35,8 +36,10 @@ struct RunRow {
   double wall_stiffness = 0;
   double obstacle_gap = 0;
   double obstacle_diameter = 0;
+  double obstacle_diameter_spread = 0;
   double obstacle_density = 0;     ///< for a saturated array the jamming limit, see saturated_density()
-  FixedText<16> obstacle_filling;  ///< "saturated" or "density"
+  FixedText<16> obstacle_filling;  ///< "saturated", "density" or "lattice"
+  double lattice_angle = std::numeric_limits<double>::quiet_NaN();  ///< NaN unless a lattice
   double box = 0;
   std::int64_t seed = 0;
   std::int64_t vertices = 0;  ///< 1 for sp
@@ -44,9 +47,14 @@ struct RunRow {
   double max_time = 0;
   double terminal_speed = 0;
   double near_wall_drag = 0;
+  double near_wall_exponent = 0;
+  double relative_drag = 1;
   double area_stiffness = 0;  ///< NaN for sp
+  FixedText<16> preset;       ///< the one that the interface's columns agree with, or "custom"
   FixedText<8> perimeter_spring;
   double perimeter_stiffness = 0;  ///< NaN for sp
+  FixedText<8> wall_contact;
+  double wall_tension = 1;  ///< NaN for sp
   FixedText<8> self_contact;
   FixedText<8> gravity;
   double clog_energy = 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -26,7 +27,10 @@ const std::vector<Key>& keys();
 /// @throws Error that names the nearest key
 const Key& find_key(std::string_view name);
 
-/// The settings of a sweep: for every key the text given, or the default.
+/// The preset whose interface this resolved parameter set has, or `custom`.
+std::string preset_name(const RunParameters& run);
+
+/// The settings of a sweep: for every key the text given, or that of the preset, or the default.
 class Settings {
  public:
   Settings();
@@ -34,6 +38,7 @@ class Settings {
   /// From the text that to_config() wrote.
   static Settings from_config(const std::string& text);
 
+  /// A preset sets the keys that have not been given themselves, before or after it.
   /// @throws Error if there is no such key or its list cannot be read
   void set(const std::string& name, const std::string& text);
   const std::string& text(const std::string& name) const { return texts_.at(name); }
@@ -45,8 +50,11 @@ class Settings {
   std::string to_config(bool with_comments) const;
 
  private:
+  std::set<std::string> given_;
   std::map<std::string, std::string> texts_;
   std::map<std::string, std::vector<std::string>> values_;
+
+  void assign(const std::string& name, const std::string& text);
 };
 
 }  // namespace clog::sweep

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+
+namespace clog::fit {
+
+/// Displacement of one run along and across the flow [sigma].
+struct Displacement {
+  double along;
+  double across;
+};
+
+/// Lateral displacement per distance travelled, the tangent of the migration angle.
+struct Migration {
+  double slope = 0;           ///< NaN for no distance
+  double standard_error = 0;  ///< from the scatter between runs; NaN for fewer than two
+};
+
+/// Ratio of the sums over runs, (sum of across)/(sum of along): long runs weigh more, and short ones, whose
+/// own ratios scatter wildly, do no harm. Its error is the linearised one of a ratio estimate (Cochran,
+/// Sampling Techniques, ch. 6).
+Migration fit_migration(std::span<const Displacement> runs);
+
+}  // namespace clog::fit
