@@ -124,9 +124,9 @@ TEST(Lattice, StartsAFreeDropletAtTheCentreOfTheBox) {
 // the square lattice have tilts t and spacing a, or t - 45 degrees and spacing sqrt(2) a.
 TEST(Lattice, LeadsADiskAlongItsRows) {
   for (const double angle : {-20.0, -8.0, 8.0, 20.0})
-    EXPECT_NEAR(slope(result_of(DropletRun(soft_disk(angle)))), std::tan(angle * degree), 0.02) << angle;
+    EXPECT_NEAR(slope(result_of(run_in_array(soft_disk(angle)))), std::tan(angle * degree), 0.02) << angle;
   for (const double angle : {35.0, 40.0})
-    EXPECT_NEAR(slope(result_of(DropletRun(soft_disk(angle)))), std::tan((angle - 45) * degree), 0.02)
+    EXPECT_NEAR(slope(result_of(run_in_array(soft_disk(angle)))), std::tan((angle - 45) * degree), 0.02)
         << angle;
 }
 
@@ -135,7 +135,7 @@ TEST(Lattice, LeadsADiskStraightWhenItIsSymmetric) {
     double lateral = 0;
     double distance = 0;
     for (std::uint32_t seed = 1; seed <= 6; ++seed) {
-      const RunResult result = result_of(DropletRun(soft_disk(angle, seed)));
+      const RunResult result = result_of(run_in_array(soft_disk(angle, seed)));
       EXPECT_LE(std::abs(result.lateral), 1.5) << "it stays in its lane, seed " << seed;
       lateral += result.lateral;
       distance += result.distance;
@@ -147,7 +147,7 @@ TEST(Lattice, LeadsADiskStraightWhenItIsSymmetric) {
 TEST(Lattice, LeadsADiskThatFeelsNothingStraight) {
   RunParameters run = soft_disk(11);
   run.wall_stiffness = 1e-12;
-  const RunResult result = result_of(DropletRun(run));
+  const RunResult result = result_of(run_in_array(run));
   EXPECT_GT(result.distance, 100);
   EXPECT_NEAR(result.lateral, 0, 1e-8);
 }
@@ -157,8 +157,8 @@ TEST(Lattice, LeadsToTheOtherSideInAMirror) {
   const ObstacleArray array = lattice_obstacles(run.obstacles, run.seed);
   std::vector<Obstacle> mirrored = array.obstacles();
   for (Obstacle& obstacle : mirrored) obstacle.y = array.box() - obstacle.y;
-  const RunResult result = result_of(DropletRun(run));
-  const RunResult mirror = result_of(DropletRun(run, std::make_shared<ObstacleArray>(array.box(), mirrored)));
+  const RunResult result = result_of(run_in_array(run));
+  const RunResult mirror = result_of(run_in_array(run, std::make_shared<ObstacleArray>(array.box(), mirrored)));
   EXPECT_GT(result.lateral, 10);
   EXPECT_NEAR(mirror.lateral, -result.lateral, 1e-6);
   EXPECT_NEAR(mirror.distance, result.distance, 1e-6);
