@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <ctime>
 #include <fstream>
+#include <iterator>
+#include <limits>
 #include <mutex>
 #include <numeric>
 #include <optional>
@@ -42,7 +44,7 @@ constexpr const char* usage =
   soundness line-tension=0.02,1 obstacle-gap=0.2 obstacle-density=saturated seeds=1 max-time=300
   soundness --releases 1000                            # only releases droplets
 
-The exit code is 0 when all were sound, 1 when one was not.
+The exit code is 0 when all were sound, 1 when one was not, 75 when it was stopped before it knew.
 )";
 
 /// Between two looks at a droplet, in checks of its run: 2 t0 at the default time step.
@@ -76,6 +78,7 @@ struct CaseReport {
   /// In one word.
   std::string ending() const {
     if (!refusal.empty()) return "refused";
+    if (result.status == RunStatus::running) return result.time > 0 ? "given up" : "released";
     if (result.status != RunStatus::flowing) return name(result.status);
     return tail ? name(tail->ending()) : "too short to tell";
   }
@@ -88,12 +91,13 @@ void look(const ArrayRun& run, double substeps, CaseReport& report) {
   report.worst.keep_worst(findings);
 }
 
-void follow(ArrayRun& run, CaseReport& report) {
+/// @param longest  the run is given up after so much computing [s]
+void follow(ArrayRun& run, double longest, CaseReport& report) {
   const RunParameters& parameters = report.run;
   const double check_time = ArrayRun::steps_per_check * parameters.time_step;
   soundness::TailRecorder recorder(parameters.drag.terminal_speed);
   look(run, 1, report);
-  for (bool over = false; !over;) {
+  for (bool over = false; !over && report.seconds < longest && !cli::stop_signalled();) {
     const bool in_tail = run.time() > (1 - tail_part) * parameters.max_time;
     const double begin_time = run.time();
     const std::int64_t begin_steps = run.droplet().num_integrated_steps();
@@ -110,12 +114,12 @@ void follow(ArrayRun& run, CaseReport& report) {
   report.tail = recorder.tail();
 }
 
-CaseReport run_case(const RunParameters& parameters) {
+CaseReport run_case(const RunParameters& parameters, double longest) {
   CaseReport report;
   report.run = parameters;
   try {
     ArrayRun run(parameters);
-    follow(run, report);
+    follow(run, longest, report);
     report.result = run.result();
   } catch (const Error& error) {
     report.refusal = error.what();
@@ -234,7 +238,7 @@ std::vector<std::string> table_row(const std::vector<const CaseReport*>& cell) {
                                text("%.2f", worst.perimeter),
                                text("%.1f", worst.shape),
                                text("%.1f", worst.substeps)};
-  for (const char* ending : {"clogged", "moving", "decaying", "steady", "chattering"})
+  for (const char* ending : {"clogged", "moving", "decaying", "steady", "chattering", "given up"})
     row.push_back(std::to_string(count(cell, ending)));
   row.push_back(text("%.1f", seconds / static_cast<double>(cell.size())));
   row.push_back(vertex_steps > 0 ? text("%.1f", 1e9 * seconds / vertex_steps) : "-");
@@ -252,10 +256,10 @@ std::vector<std::vector<const CaseReport*>> cells_of(const std::vector<CaseRepor
 }
 
 void print_table(const std::vector<CaseReport>& reports, std::size_t num_groups) {
-  Table table({"Gamma",      "gap",       "density",       "sound",        "refused",       "failed",
-               "crossings",  "enclosed",  "overlap/delta", "area error %", "edges max/min", "P/(pi sigma)",
-               "A",          "sub-steps", "clogged",       "moving",       "decaying",      "steady",
-               "chattering", "s/run",     "ns/vertex-step"});
+  Table table({"Gamma",      "gap",       "density",       "sound",         "refused",       "failed",
+               "crossings",  "enclosed",  "overlap/delta", "area error %",  "edges max/min", "P/(pi sigma)",
+               "A",          "sub-steps", "clogged",       "moving",        "decaying",      "steady",
+               "chattering", "given up",  "s/run",         "ns/vertex-step"});
   for (const auto& cell : cells_of(reports, num_groups)) table.add(table_row(cell));
   table.print();
 }
@@ -285,7 +289,9 @@ void print_release_table(const std::vector<CaseReport>& reports, std::size_t num
 }
 
 /// One line for each run, for whoever wants to know more than the table says.
-void write_runs(const std::string& path, const std::vector<CaseReport>& reports) {
+void write_runs(const std::string& path, const std::vector<CaseReport>& all) {
+  std::vector<CaseReport> reports;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(reports), [](const auto& r) { return r.done; });
   std::ofstream out(path);
   out << "line_tension,gap,density,seed,ending,sound,unsound_since,crossings,enclosed,overlap,area_error,"
          "edge_ratio,perimeter,shape,substeps,distance,time,energy_ratio,tail_speed,tail_level,tail_fall,"
@@ -354,7 +360,8 @@ cli::CommandLine parse(int argc, char** argv) {
   line.add_options()("releases", po::value<std::string>(),
                      "only release so many droplets, each with a new seed")(
       "threads", po::value<std::string>(), "threads to use (all cores)")(
-      "runs", po::value<std::string>(), "CSV file to write, one line for each run");
+      "runs", po::value<std::string>(), "CSV file to write, one line for each run")(
+      "longest", po::value<std::string>(), "give a run up after so many seconds of computing");
   sweep::Settings& settings = line.settings();
   settings.set("line-tension", "0.01,0.02,0.05,0.1,0.3,1,3,10");
   settings.set("obstacle-gap", "0.2,0.35,0.5,1");
@@ -378,29 +385,41 @@ cli::CommandLine parse(int argc, char** argv) {
   return line;
 }
 
+/// Says how many were sound. Returns the exit code.
+int conclude(const std::vector<CaseReport>& reports) {
+  const auto done = std::count_if(reports.begin(), reports.end(), [](const auto& r) { return r.done; });
+  const auto sound =
+      std::count_if(reports.begin(), reports.end(), [](const auto& r) { return r.done && r.is_sound(); });
+  std::printf("\n%td of %td were sound", sound, done);
+  const bool is_complete = static_cast<std::size_t>(done) == reports.size();
+  if (!is_complete) std::printf(", %zu were not looked at", reports.size() - done);
+  std::printf(".\n");
+  if (sound < done) return 1;
+  return is_complete ? cli::exit_success : cli::exit_incomplete;
+}
+
 int body(int argc, char** argv) {
   const cli::CommandLine line = parse(argc, argv);
   if (cli::answer_help_or_version(line, {})) return cli::exit_success;
-  const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+  const double cores = std::max(1U, std::thread::hardware_concurrency());
   const auto num_threads =
-      line.has("threads") ? static_cast<unsigned>(std::ceil(line.get_positive("threads"))) : cores;
-  const bool only_releases = line.has("releases");
+      static_cast<unsigned>(std::ceil(line.has("threads") ? line.get_positive("threads") : cores));
+  const double longest =
+      line.has("longest") ? line.get_positive("longest") : std::numeric_limits<double>::infinity();
   const sweep::Plan plan(line.settings());
-  std::vector<CaseReport> reports = only_releases
-                                        ? planned_releases(plan, std::llround(line.get_positive("releases")))
-                                        : planned_runs(plan);
   cli::catch_stop_signals();  // then only what is finished is told of
-  do_all(reports, num_threads, only_releases ? release_case : run_case);
-  if (only_releases)
+  std::vector<CaseReport> reports;
+  if (line.has("releases")) {
+    reports = planned_releases(plan, std::llround(line.get_positive("releases")));
+    do_all(reports, num_threads, release_case);
     print_release_table(reports, plan.num_groups());
-  else
+  } else {
+    reports = planned_runs(plan);
+    do_all(reports, num_threads, [=](const RunParameters& run) { return run_case(run, longest); });
     print_table(reports, plan.num_groups());
+  }
   if (line.has("runs")) write_runs(line.get("runs"), reports);
-
-  const auto num_sound = std::count_if(reports.begin(), reports.end(),
-                                       [](const CaseReport& r) { return r.done && r.is_sound(); });
-  std::printf("\n%td of %zu were sound.\n", num_sound, reports.size());
-  return static_cast<std::size_t>(num_sound) == reports.size() ? 0 : 1;
+  return conclude(reports);
 }
 
 }  // namespace
