@@ -3,8 +3,26 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <vector>
 
 namespace clog {
+namespace {
+
+/// Twice the signed area of a triangle, positive for counter-clockwise.
+double twice_area(const Eigen::Array2d& a, const Eigen::Array2d& b, const Eigen::Array2d& c) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+/// Do a and b lie strictly on different sides of the line through c and d?
+bool separates(const Eigen::Array2d& c, const Eigen::Array2d& d, const Eigen::Array2d& a,
+               const Eigen::Array2d& b) {
+  const double side_a = twice_area(c, d, a);
+  const double side_b = twice_area(c, d, b);
+  return (side_a > 0 && side_b < 0) || (side_a < 0 && side_b > 0);
+}
+
+}  // namespace
 
 double PolygonShape::shape_parameter() const { return perimeter * perimeter / (4 * std::numbers::pi * area); }
 
@@ -43,6 +61,34 @@ bool encloses(const Eigen::ArrayXd& position, double x, double y) {
       inside = !inside;
   }
   return inside;
+}
+
+int num_self_crossings(const Eigen::ArrayXd& position) {
+  const int n = static_cast<int>(position.size() / 2);
+  const auto x = position.head(n);
+  const auto y = position.tail(n);
+  // Edges in the order of their lower ends along the contour's longer side: few of them overlap along it.
+  const bool is_wide = x.maxCoeff() - x.minCoeff() > y.maxCoeff() - y.minCoeff();
+  const double* along = is_wide ? position.data() : position.data() + n;
+  const double* across = is_wide ? position.data() + n : position.data();
+  const auto end = [n](int edge) { return edge + 1 < n ? edge + 1 : 0; };
+  const auto low = [&](const double* u, int edge) { return std::min(u[edge], u[end(edge)]); };
+  const auto high = [&](const double* u, int edge) { return std::max(u[edge], u[end(edge)]); };
+  std::vector<int> edges(n);
+  std::iota(edges.begin(), edges.end(), 0);
+  std::sort(edges.begin(), edges.end(), [&](int e, int f) { return low(along, e) < low(along, f); });
+
+  const auto cross = [&](int e, int f) {
+    if (end(e) == f || end(f) == e) return false;
+    if (low(across, e) > high(across, f) || low(across, f) > high(across, e)) return false;
+    const Eigen::Array2d a{x[e], y[e]}, b{x[end(e)], y[end(e)]}, c{x[f], y[f]}, d{x[end(f)], y[end(f)]};
+    return separates(c, d, a, b) && separates(a, b, c, d);
+  };
+  int crossings = 0;
+  for (auto e = edges.begin(); e != edges.end(); ++e)
+    for (auto f = e + 1; f != edges.end() && low(along, *f) <= high(along, *e); ++f)
+      crossings += cross(*e, *f);
+  return crossings;
 }
 
 double distance_to_segment(const Eigen::Array2d& point, const Eigen::Array2d& begin,

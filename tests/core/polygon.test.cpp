@@ -2,13 +2,36 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "clog/core/units.hpp"
+#include "support.hpp"
 
 namespace clog {
 namespace {
+
+/// Every pair of edges, p + s u = q + t v solved for s and t: another formula than the one it tests.
+int crossings_of_every_pair(const Eigen::ArrayXd& position) {
+  const int n = static_cast<int>(position.size() / 2);
+  const auto point = [&](int i) { return Eigen::Array2d(position[i % n], position[n + i % n]); };
+  const auto cross = [](const Eigen::Array2d& a, const Eigen::Array2d& b) {
+    return a[0] * b[1] - a[1] * b[0];
+  };
+  int crossings = 0;
+  for (int i = 0; i < n; ++i)
+    for (int j = i + 2; j < n; ++j) {
+      if (i == 0 && j == n - 1) continue;
+      const Eigen::Array2d u = point(i + 1) - point(i);
+      const Eigen::Array2d v = point(j + 1) - point(j);
+      const Eigen::Array2d between = point(j) - point(i);
+      const double s = cross(between, v) / cross(u, v);
+      const double t = cross(between, u) / cross(u, v);
+      crossings += s > 0 && s < 1 && t > 0 && t < 1;
+    }
+  return crossings;
+}
 
 TEST(Polygon, ARegularOneHasTheAreaAndEdgesAskedFor) {
   for (const int n : {16, 64, 256, 1024}) {
@@ -44,6 +67,55 @@ TEST(Polygon, EnclosesWhatIsInside) {
   EXPECT_FALSE(encloses(position, 1.5, 2.0));
   EXPECT_TRUE(encloses(position, 2.8, 2.0));
   EXPECT_FALSE(encloses(position, -1, 0.5));
+}
+
+TEST(SelfCrossings, AreNoneInAConvexOrAWaistedContour) {
+  for (const int n : {16, 256, 4096}) {
+    EXPECT_EQ(num_self_crossings(regular_polygon(n, units::rest_area)), 0);
+    EXPECT_EQ(num_self_crossings(test::dumbbell(n, 0.01)), 0);
+  }
+}
+
+TEST(SelfCrossings, AreOneInAFigureOfEight) {
+  for (const int n : {16, 17, 256, 4095}) {
+    Eigen::ArrayXd position(2 * n);
+    for (int i = 0; i < n; ++i) {
+      const double angle = 2 * std::numbers::pi * (i + 0.25) / n;
+      position[i] = std::cos(angle);
+      position[n + i] = std::sin(2 * angle);
+    }
+    EXPECT_EQ(num_self_crossings(position), 1) << n << " vertices";
+    // Its other side first: the sweep runs along y.
+    Eigen::ArrayXd turned(2 * n);
+    turned << position.tail(n), 2 * position.head(n);
+    EXPECT_EQ(num_self_crossings(turned), 1) << n << " vertices, turned";
+  }
+}
+
+TEST(SelfCrossings, CountWhereAFilmIsPulledThroughItself) {
+  // A flat box whose lower side bulges through its upper side: in and out again.
+  Eigen::ArrayXd position(12);
+  position << 0, 1, 2, 3, 3, 0, 0, 0, 2, 0, 1, 1;
+  EXPECT_EQ(num_self_crossings(position), 2);
+  EXPECT_GT(polygon_shape(position).area, 0);
+}
+
+TEST(SelfCrossings, DoNotCountWhatOnlyTouches) {
+  Eigen::ArrayXd position(10);  // a square whose lower side has a vertex on the upper side
+  position << 0, 1, 2, 2, 0, 0, 1, 0, 1, 1;
+  EXPECT_EQ(num_self_crossings(position), 0);
+}
+
+TEST(SelfCrossings, AreThoseOfEveryPairOfEdges) {
+  int most = 0;
+  for (unsigned seed = 1; seed <= 60; ++seed)
+    for (const double amount : {0.01, 0.05, 0.2, 1.0}) {
+      const Eigen::ArrayXd position = test::shaken(regular_polygon(128, units::rest_area), amount, seed);
+      const int expected = crossings_of_every_pair(position);
+      EXPECT_EQ(num_self_crossings(position), expected) << "seed " << seed << ", shaken by " << amount;
+      most = std::max(most, expected);
+    }
+  EXPECT_GT(most, 100);
 }
 
 }  // namespace

@@ -22,6 +22,16 @@ Eigen::ArrayXd regular_polygon(int num_vertices, double area);
 /// Does the polygon enclose the point? Even-odd rule.
 bool encloses(const Eigen::ArrayXd& position, double x, double y);
 
+/// Number of pairs of edges without a common vertex that cross each other.
+///
+/// Edges cross when each has its ends strictly on both sides of the other; edges that only touch do not.
+/// Edges with a common vertex meet there and nowhere else unless they lie exactly on top of each other, which
+/// rounding never leaves; a contour that folds back farther than that crosses in edges that count. Without a
+/// crossing and with a positive area the contour winds once around every point inside it: no pocket of it
+/// encloses negative area. (The converse does not hold, a contour may cross itself and wind twice around a
+/// part of its area.)
+int num_self_crossings(const Eigen::ArrayXd& position);
+
 /// Distance from a point to the nearest point of the segment from `begin` to `end` [sigma].
 double distance_to_segment(const Eigen::Array2d& point, const Eigen::Array2d& begin,
                            const Eigen::Array2d& end);

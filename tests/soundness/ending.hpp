@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "clog/core/droplet_state.hpp"
+
+namespace clog::soundness {
+
+/// How a droplet ends that did not clog in the time given.
+enum class Ending {
+  moving,      ///< travels: mean speed of its centre above `slowest_travel` V_t
+  decaying,    ///< stopped, its kinetic energy is falling
+  steady,      ///< stopped, its interface creeps on
+  chattering,  ///< stopped, vertices shake about their places and get nowhere
+};
+const char* name(Ending ending);
+
+/// What the end of a run looks like, measured over a window of time. The ending is the first that holds of:
+/// moving      mean_speed > slowest_travel
+/// decaying    fall > least_fall, and the last quarter of the window is not above the third
+/// chattering  coherence < least_coherence: the vertices' way is much shorter than their speed would take
+/// them steady      all others
+struct Tail {
+  double mean_speed = 0;  ///< way of the centre along a straight line over the time [V_t]
+  double level = 0;       ///< median of log10(E_k/E_t) in the last quarter
+  double fall = 0;       ///< by how much the median of log10(E_k/E_t) fell from the first quarter to the last
+  double last_fall = 0;  ///< the same from the third quarter to the last
+  double band = 0;       ///< log10(E_k/E_t) in the last quarter, 95 % quantile minus 5 % quantile
+  double coherence = 0;  ///< way of the vertices between looks / way that E_k would take them
+
+  Ending ending() const;
+};
+
+inline constexpr double slowest_travel = 0.01;
+inline constexpr double least_fall = 0.1;
+inline constexpr double least_coherence = 0.3;
+
+/// Collects what Tail is measured from.
+class TailRecorder {
+ public:
+  explicit TailRecorder(double terminal_speed) : terminal_speed_(terminal_speed) {}
+
+  /// To be called at even intervals, each of the length `interval` [t0].
+  void add_energy(double energy_ratio, double interval);
+  /// To be called once before add_energy(), then more seldom than it, by many relaxation times V_t/g.
+  void add_place(const DropletState& state);
+  /// Empty if there were too few samples.
+  std::optional<Tail> tail() const;
+
+ private:
+  double terminal_speed_;
+  std::vector<double> log_energy_;
+  double time_ = 0;
+  double expected_way_ = 0;      // since the last place [sigma]
+  double sum_expected_way_ = 0;  // until the last place [sigma]
+  double sum_way_ = 0;           // root mean square over the vertices, between places [sigma]
+  std::optional<DropletState> first_, last_;
+};
+
+}  // namespace clog::soundness

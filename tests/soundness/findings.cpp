@@ -1,0 +1,80 @@
+#include "findings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "clog/core/polygon.hpp"
+#include "clog/core/release.hpp"
+#include "clog/core/units.hpp"
+
+namespace clog::soundness {
+namespace {
+
+/// Smallest distance of an edge from an obstacle's surface, at most `limit`; negative if it cuts the obstacle
+/// [sigma].
+double nearest_wall(const DropletState& state, const ObstacleArray& obstacles, double limit) {
+  std::vector<Obstacle> near;
+  obstacles.gather({state.frame.origin[0], state.frame.origin[1], state.x().minCoeff(), state.x().maxCoeff(),
+                    state.y().minCoeff(), state.y().maxCoeff(), limit},
+                   near);
+  const Eigen::Index n = state.size();
+  double nearest = limit;
+  for (Eigen::Index i = 0, j = n - 1; i < n; j = i++) {
+    const Eigen::Array2d begin{state.x()[j], state.y()[j]};
+    const Eigen::Array2d end{state.x()[i], state.y()[i]};
+    for (const Obstacle& obstacle : near)
+      nearest =
+          std::min(nearest, distance_to_segment({obstacle.x, obstacle.y}, begin, end) - obstacle.radius);
+  }
+  return nearest;
+}
+
+double edge_ratio(const DropletState& state) {
+  const Eigen::Index n = state.size();
+  double shortest = std::numeric_limits<double>::infinity();
+  double longest = 0;
+  for (Eigen::Index i = 0, j = n - 1; i < n; j = i++) {
+    const double length = std::hypot(state.x()[i] - state.x()[j], state.y()[i] - state.y()[j]);
+    shortest = std::min(shortest, length);
+    longest = std::max(longest, length);
+  }
+  return longest / shortest;
+}
+
+}  // namespace
+
+void Findings::keep_worst(const Findings& other) {
+  crossings = std::max(crossings, other.crossings);
+  enclosed = std::max(enclosed, other.enclosed);
+  overlap = std::max(overlap, other.overlap);
+  area_error = std::max(area_error, other.area_error);
+  edge_ratio = std::max(edge_ratio, other.edge_ratio);
+  perimeter = std::max(perimeter, other.perimeter);
+  shape = std::max(shape, other.shape);
+  substeps = std::max(substeps, other.substeps);
+}
+
+bool is_sound(const Findings& findings) {
+  return findings.crossings == 0 && findings.enclosed == 0 && findings.overlap <= cutting_overlap &&
+         findings.area_error <= largest_area_error;
+}
+
+Findings look_at(const DropletState& state, const ObstacleArray& obstacles) {
+  const double vertex_diameter = units::regular_edge_length(static_cast<int>(state.size()));
+  const double contact_range = vertex_diameter / 2;
+  const PolygonShape shape = polygon_shape(state.position);
+  Findings findings;
+  findings.crossings = num_self_crossings(state.position);
+  findings.enclosed = num_enclosed(state, obstacles);
+  findings.overlap = (contact_range - nearest_wall(state, obstacles, contact_range)) / vertex_diameter;
+  findings.area_error = std::abs(shape.area / units::rest_area - 1);
+  findings.edge_ratio = edge_ratio(state);
+  findings.perimeter = shape.perimeter / (std::numbers::pi * units::droplet_diameter);
+  findings.shape = shape.shape_parameter();
+  return findings;
+}
+
+}  // namespace clog::soundness

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "clog/core/droplet_state.hpp"
+#include "clog/core/obstacle_array.hpp"
+
+namespace clog::soundness {
+
+/// What a deformable droplet looks like at one moment, or the worst of several moments.
+struct Findings {
+  int crossings = 0;      ///< see num_self_crossings()
+  int enclosed = 0;       ///< obstacles whose centre lies inside the droplet
+  double overlap = 0;     ///< deepest reach of an obstacle into an edge's contact range [vertex diameters]
+  double area_error = 0;  ///< |area/rest area - 1|
+  double edge_ratio = 1;  ///< longest over shortest edge
+  double perimeter = 0;   ///< in units of the circle's
+  double shape = 1;       ///< shape parameter
+  double substeps = 1;    ///< parts per time step, mean over an interval between two checks
+
+  void keep_worst(const Findings& other);
+};
+
+/// Contact begins half a vertex diameter off an obstacle's surface, so that at this overlap [vertex
+/// diameters] an edge begins to cut the obstacle.
+inline constexpr double cutting_overlap = 0.5;
+/// The area may not be wrong by more than this.
+inline constexpr double largest_area_error = 0.05;
+
+bool is_sound(const Findings& findings);
+
+/// Looks at every edge and every obstacle near the droplet, without the contact lists of the forces: an
+/// obstacle that those have missed is seen. Leaves `substeps` alone.
+Findings look_at(const DropletState& state, const ObstacleArray& obstacles);
+
+}  // namespace clog::soundness
