@@ -20,7 +20,7 @@
 
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
-#include "clog/core/array_run.hpp"
+#include "clog/core/systems.hpp"
 #include "clog/core/dp_forces.hpp"
 #include "clog/core/error.hpp"
 #include "clog/core/release.hpp"
@@ -84,7 +84,7 @@ struct CaseReport {
   }
 };
 
-void look(const ArrayRun& run, double substeps, CaseReport& report) {
+void look(const DropletRun& run, double substeps, CaseReport& report) {
   Findings findings = soundness::look_at(run.droplet().state(), run.obstacles());
   findings.substeps = substeps;
   if (report.unsound_since < 0 && !soundness::is_sound(findings)) report.unsound_since = run.time();
@@ -92,9 +92,9 @@ void look(const ArrayRun& run, double substeps, CaseReport& report) {
 }
 
 /// @param longest  the run is given up after so much computing [s]
-void follow(ArrayRun& run, double longest, CaseReport& report) {
+void follow(DropletRun& run, double longest, CaseReport& report) {
   const RunParameters& parameters = report.run;
-  const double check_time = ArrayRun::steps_per_check * parameters.time_step;
+  const double check_time = DropletRun::steps_per_check * parameters.time_step;
   soundness::TailRecorder recorder(parameters.drag.terminal_speed);
   look(run, 1, report);
   for (bool over = false; !over && report.seconds < longest && !cli::stop_signalled();) {
@@ -118,7 +118,7 @@ CaseReport run_case(const RunParameters& parameters, double longest) {
   CaseReport report;
   report.run = parameters;
   try {
-    ArrayRun run(parameters);
+    DropletRun run = run_in_array(parameters);
     follow(run, longest, report);
     report.result = run.result();
   } catch (const Error& error) {
