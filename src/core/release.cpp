@@ -52,6 +52,14 @@ LocalFrame frame_around(const Eigen::Array2d& place, double box) {
   throw Error("cannot release the droplet (" + reason + ") try " + remedy + ", or another seed");
 }
 
+/// A polygon smaller than the droplet has a smaller perimeter: a stiffer tension mode, a softer area mode.
+FireOptions fire_options(const RunParameters& run, double perimeter) {
+  const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, perimeter);
+  return {.mass = units::droplet_mass / run.dp.vertices,
+          .largest_step = 0.5 * largest_stable_step(modes),
+          .max_move = 0.05 * units::regular_edge_length(run.dp.vertices)};
+}
+
 DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles) {
   const int n = run.dp.vertices;
   const double vertex_diameter = units::regular_edge_length(n);
@@ -69,36 +77,31 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
   state.x() += place[0] - state.frame.origin[0];
   state.y() += place[1] - state.frame.origin[1];
 
-  // Vertices are kept evenly spread whatever the run's springs are: those may be too weak for that, and
-  // vertices that run together make the interface too stiff for any step.
+  // While it grows, vertices are kept evenly spread whatever the run's springs are: those may be too weak for
+  // that, and vertices that run together make the interface too stiff for any step.
   RunParameters growing = run;
-  growing.dp.perimeter_spring = PerimeterSpring::mean;
-  growing.dp.perimeter_stiffness = std::max(1.0, *run.dp.perimeter_stiffness);
+  growing.dp.perimeter_spring = PerimeterSpring::along;
+  growing.dp.perimeter_stiffness = 1.0;
   DpForces forces(growing, obstacles);
   forces.set_weight(0);
   const double vertex_weight = units::droplet_mass * units::gravity / n;
-  // A polygon smaller than the droplet has a smaller perimeter: a stiffer tension mode, a softer area mode.
-  const auto options_at = [&](double perimeter) {
-    const StiffModes modes = stiff_modes(growing.dp, *run.wall_stiffness, perimeter);
-    return FireOptions{.mass = units::droplet_mass / n,
-                       .largest_step = 0.5 * largest_stable_step(modes),
-                       .force_tolerance = vertex_weight,
-                       .max_iterations = 400,
-                       .max_move = 0.05 * vertex_diameter};
-  };
   constexpr double growth = 1.02;  // of the area, per stage
   while (area < units::rest_area) {
     area = std::min(units::rest_area, area * growth);
     forces.set_rest_area(area);
-    minimize_fire(forces, state,
-                  options_at(forces.shape().perimeter > 0 ? forces.shape().perimeter
-                                                          : polygon_shape(state.position).perimeter));
+    FireOptions stage = fire_options(growing, polygon_shape(state.position).perimeter);
+    stage.force_tolerance = vertex_weight;
+    stage.max_iterations = 400;
+    minimize_fire(forces, state, stage);
     if (state.recentre().any()) forces.forget_contacts();
   }
-  FireOptions last = options_at(polygon_shape(state.position).perimeter);
+
+  DpForces own_forces(run, obstacles);
+  own_forces.set_weight(0);
+  FireOptions last = fire_options(run, polygon_shape(state.position).perimeter);
   last.force_tolerance = release_force_tolerance * vertex_weight;
   last.max_iterations = 200000;
-  if (!minimize_fire(forces, state, last).converged)
+  if (!minimize_fire(own_forces, state, last).converged)
     refuse_release("the grown droplet does not come to rest", "a larger line-tension or perimeter-stiffness");
   if (num_enclosed(state, obstacles) > 0)
     refuse_release("the grown droplet encloses an obstacle", "more vertices");
