@@ -21,60 +21,65 @@ DpDroplet::DpDroplet(const RunParameters& run, const ObstacleArray& obstacles, D
       vertex_mass_(units::droplet_mass / run.dp.vertices),
       force_(2 * run.dp.vertices),
       far_rate_(units::gravity / run.drag.terminal_speed),
-      relative_rate_((run.drag.relative - 1) * far_rate_),
-      on_area_(run.dp.gravity == Gravity::area),
-      drag_rate_(run.drag.near_wall > 0 || run.drag.relative != 1 ? run.dp.vertices : 0) {
+      is_coupled_(run.dp.gravity == Gravity::area || run.drag.near_wall > 0 || run.drag.relative != 1),
+      drag_rate_(Eigen::ArrayXd::Constant(run.dp.vertices, run.drag.relative * far_rate_)) {
   state_ = std::move(initial);
   forces_.update_contacts(state_, state_.possible_travel(steps_per_check * run_.time_step));
-  if (on_area_) forces_.set_mean_drag(mean_drag(state_.mean_velocity()));
   forces_.evaluate(state_, force_);
   measure_drag();
 }
 
 void DpDroplet::measure_drag() {
-  if (drag_rate_.size() == 0) return;
-  drag_rate_.setConstant(far_rate_ + relative_rate_);
   if (run_.drag.near_wall > 0)
-    drag_rate_ += far_rate_ * run_.drag.near_wall *
-                  (units::droplet_diameter / forces_.wall_distance()).pow(run_.drag.near_wall_exponent);
+    drag_rate_ = far_rate_ *
+                 (run_.drag.relative +
+                  run_.drag.near_wall *
+                      (units::droplet_diameter / forces_.wall_distance()).pow(run_.drag.near_wall_exponent));
 }
 
-Eigen::Array2d DpDroplet::mean_drag(const Eigen::Array2d& velocity) const {
-  return -units::droplet_mass * far_rate_ * velocity;
+/// With the weight on the area, the drag on the droplet's mean motion acts there too, b_inf V_a on the area;
+/// on the vertices c b_inf (v_i - V)/N_v remains. Both only ever take energy out.
+kernel::CoupledDrag DpDroplet::coupled_drag() {
+  const double c = run_.drag.relative;
+  const bool on_area = run_.dp.gravity == Gravity::area;
+  return {.rate = drag_rate_.data(),
+          .relative_rate = (on_area ? c : c - 1) * far_rate_,
+          .area_rate = on_area ? far_rate_ : 0,
+          .gradient = kernel::centroid_gradient(run_.dp.vertices, forces_.centroid_gradient().data())};
 }
 
-double DpDroplet::drag_power() const {
-  const Eigen::Index n = run_.dp.vertices;
+double DpDroplet::drag_power() {
+  const int n = run_.dp.vertices;
+  const double* v = state_.velocity.data();
   const Eigen::ArrayXd speed2 = state_.velocity.head(n).square() + state_.velocity.tail(n).square();
-  if (drag_rate_.size() == 0) return vertex_mass_ * far_rate_ * speed2.sum();
-  // sum_i of rate_i v_i^2 - e V.v_i, e the relative rate and V the mean velocity.
-  return vertex_mass_ * ((drag_rate_ * speed2).sum() -
-                         static_cast<double>(n) * relative_rate_ * state_.mean_velocity().square().sum());
+  if (!is_coupled_) return vertex_mass_ * far_rate_ * speed2.sum();
+  const kernel::CoupledDrag drag = coupled_drag();
+  const kernel::Drift drift = kernel::measure_drift(n, v, v + n, drag.gradient);
+  const double mean2 = drift.mean_x * drift.mean_x + drift.mean_y * drift.mean_y;
+  const double area2 = drift.area_x * drift.area_x + drift.area_y * drift.area_y;
+  return vertex_mass_ *
+         ((drag_rate_ * speed2).sum() + n * (drag.area_rate * area2 - drag.relative_rate * mean2));
 }
 
 void DpDroplet::step(double time_step) {
   const int n = run_.dp.vertices;
   const double half_dt_over_m = 0.5 * time_step / vertex_mass_;
-  const Eigen::Array2d drift = on_area_ ? state_.mean_velocity() : Eigen::Array2d(0, 0);
   double* x = state_.position.data();
   double* v = state_.velocity.data();
   const double* f = force_.data();
-  const kernel::OwnDrag drag{drag_rate_.data(), relative_rate_};
-  if (drag_rate_.size() == 0)
-    kernel::kick_and_drift(2 * n, 0.5 * time_step * far_rate_, half_dt_over_m, time_step, f, v, x);
-  else
-    for (const int first : {0, n})
-      kernel::kick_and_drift(n, drag, half_dt_over_m, time_step, f + first, v + first, x + first);
-
-  // The mean velocity at the end of the step, to second order, from those at its begin and in its middle.
-  if (on_area_) forces_.set_mean_drag(mean_drag(2 * state_.mean_velocity() - drift));
-  forces_.evaluate(state_, force_);
-  measure_drag();
-
-  if (drag_rate_.size() == 0)
-    kernel::kick(2 * n, 0.5 * time_step * far_rate_, half_dt_over_m, f, v);
-  else
-    for (const int first : {0, n}) kernel::kick(n, drag, half_dt_over_m, time_step, f + first, v + first);
+  if (is_coupled_) {
+    const kernel::CoupledDrag drag = coupled_drag();
+    const kernel::Drift drift = kernel::measure_drift(n, v, v + n, drag.gradient);
+    kernel::kick_and_drift(n, drag, drift, half_dt_over_m, time_step, f, f + n, v, v + n, x, x + n);
+    forces_.evaluate(state_, force_);
+    measure_drag();
+    kernel::kick(n, drag, half_dt_over_m, time_step, f, f + n, v, v + n);
+  } else {
+    const double damping = 0.5 * time_step * far_rate_;
+    kernel::kick_and_drift(2 * n, damping, half_dt_over_m, time_step, f, v, x);
+    forces_.evaluate(state_, force_);
+    kernel::kick(2 * n, damping, half_dt_over_m, f, v);
+  }
 }
 
 void DpDroplet::advance(int num_steps) {

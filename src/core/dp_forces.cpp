@@ -39,6 +39,7 @@ DpForces::DpForces(const RunParameters& run, const ObstacleArray& obstacles)
       edge_y_(dp_.vertices),
       edge_length_(dp_.vertices),
       pull_(dp_.vertices),
+      centroid_gradient_(Eigen::ArrayXd::Zero(4 * dp_.vertices)),
       end_x_(dp_.vertices),
       end_y_(dp_.vertices),
       wall_distance_(run.drag.near_wall > 0 ? dp_.vertices : 0) {
@@ -78,23 +79,21 @@ void DpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   const kernel::EdgeArrays edges{edge_x_.data(), edge_y_.data(), edge_length_.data()};
   const kernel::Sums sums = kernel::measure_edges(n, x, y, edges);
   shape_ = {sums.area, sums.perimeter};
-  // A body force W on the area is a pressure W.(r - centroid)/area on the interface: its virtual work is that
-  // of W on the centroid.
-  const bool on_area = dp_.gravity == Gravity::area;
-  const Eigen::Array2d weight{weight_, 0};
-  const Eigen::Array2d body = on_area ? Eigen::Array2d(weight + mean_drag_) : Eigen::Array2d(0, 0);
-  const Eigen::Array2d own = on_area ? Eigen::Array2d(-mean_drag_) : weight;
-  const Eigen::Array2d gradient = body / sums.area;
-  const Eigen::Array2d centroid = Eigen::Array2d(sums.moment_x, sums.moment_y) / sums.area;
   const bool has_tension = dp_.perimeter_spring != PerimeterSpring::along;
-  const kernel::Interface interface {
-    .line_tension = dp_.line_tension, .spring = has_tension ? *dp_.perimeter_stiffness * n : 0,
-    // The springs to the mean length are unloaded on average: their force needs no derivative of the mean.
-        .spring_length = spring_length(), .spreading = has_tension ? 0 : *dp_.perimeter_stiffness * n,
-    .pressure = -dp_.area_stiffness * (shape_.area - rest_area_) - (gradient * centroid).sum(),
-    .pressure_x = gradient[0], .pressure_y = gradient[1], .vertex_x = own[0] / n, .vertex_y = own[1] / n,
-  };
-  kernel::interface_forces(n, x, y, interface, edges, pull_.data(), fx, fy);
+  kernel::Interface interface;
+  interface.line_tension = dp_.line_tension;
+  // The springs to the mean length are unloaded on average: their force needs no derivative of the mean.
+  interface.spring = has_tension ? *dp_.perimeter_stiffness * n : 0;
+  interface.spring_length = spring_length();
+  interface.spreading = has_tension ? 0 : *dp_.perimeter_stiffness * n;
+  interface.pressure = -dp_.area_stiffness * (shape_.area - rest_area_);
+  interface.vertex_weight = dp_.gravity == Gravity::vertex ? weight_ / n : 0;
+  kernel::interface_forces(n, interface, edges, pull_.data(), fx, fy);
+  if (dp_.gravity == Gravity::area) {
+    const kernel::CentroidGradient gradient = kernel::centroid_gradient(n, centroid_gradient_.data());
+    kernel::measure_centroid_gradient(n, x, y, edges, sums, gradient);
+    kernel::add_body_force(n, weight_, gradient, fx, fy);
+  }
 
   add_walls(state, force);
   if (wall_distance_.size() > 0) measure_wall_distance(state);
@@ -191,18 +190,17 @@ void DpForces::add_self_contact(const DropletState& state, Eigen::ArrayXd& force
   const double* y = x + n;
   double* fx = force.data();
   double* fy = fx + n;
-  for (const SelfContacts::Strand& strand : self_.strands()) {
-    const StrandContact contact = nearest_point(strand, x, y, n);
+  for (const SelfContacts::Pair& pair : self_.pairs()) {
+    const EdgeContact contact = nearest_point(pair, x, y, n);
     if (contact.distance >= self_.diameter() || contact.distance == 0) continue;
     const double push = contact_stiffness_ * (self_.diameter() - contact.distance) / contact.distance;
     const double px = push * contact.dx;
     const double py = push * contact.dy;
-    const int begin = contact.edge;
-    const int end = begin + 1 < n ? begin + 1 : 0;
-    fx[strand.vertex] += px;
-    fy[strand.vertex] += py;
-    fx[begin] -= (1 - contact.fraction) * px;
-    fy[begin] -= (1 - contact.fraction) * py;
+    const int end = pair.edge + 1 < n ? pair.edge + 1 : 0;
+    fx[pair.vertex] += px;
+    fy[pair.vertex] += py;
+    fx[pair.edge] -= (1 - contact.fraction) * px;
+    fy[pair.edge] -= (1 - contact.fraction) * py;
     fx[end] -= contact.fraction * px;
     fy[end] -= contact.fraction * py;
   }
@@ -256,8 +254,8 @@ PotentialEnergy DpForces::energy(const DropletState& state) const {
     if (overlap > 0) energy.wall += 0.5 * contact_stiffness_ * overlap * overlap;
   });
   if (dp_.self_contact == SelfContact::on)
-    for (const SelfContacts::Strand& strand : self_.strands()) {
-      const double overlap = std::max(0.0, self_.diameter() - nearest_point(strand, x, y, n).distance);
+    for (const SelfContacts::Pair& pair : self_.pairs()) {
+      const double overlap = std::max(0.0, self_.diameter() - nearest_point(pair, x, y, n).distance);
       energy.self_contact += 0.5 * contact_stiffness_ * overlap * overlap;
     }
   return energy;

@@ -1,5 +1,6 @@
 #include "dp_kernel.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -41,36 +42,77 @@ Sums measure_edges(int n, const double* __restrict x, const double* __restrict y
   return {twice_area / 2, perimeter, moment_x / 6, moment_y / 6};
 }
 
+// d(a X) = surface integral of (x - X) times the outward displacement: each edge's (x - X) changes linearly
+// along it, and a vertex takes the part that its shape function weighs, (2 q_i + q_j)/6 of the edge's outward
+// normal.
 CLOG_MULTIVERSION
-void interface_forces(int n, const double* __restrict x, const double* __restrict y,
-                      const Interface& interface, EdgeArrays edges, double* __restrict pull,
+void measure_centroid_gradient(int n, const double* __restrict x, const double* __restrict y,
+                               EdgeArrays edges, const Sums& sums, CentroidGradient gradient) {
+  const double* __restrict ex = edges.x;
+  const double* __restrict ey = edges.y;
+  double* __restrict xx = gradient.xx;
+  double* __restrict xy = gradient.xy;
+  double* __restrict yx = gradient.yx;
+  double* __restrict yy = gradient.yy;
+  const double centre_x = sums.moment_x / sums.area;
+  const double centre_y = sums.moment_y / sums.area;
+  const double scale = 1 / (6 * sums.area);
+  const auto vertex = [&](int i, int before, int after) {
+    const double x_before = scale * (2 * x[i] + x[before] - 3 * centre_x);
+    const double x_after = scale * (2 * x[i] + x[after] - 3 * centre_x);
+    const double y_before = scale * (2 * y[i] + y[before] - 3 * centre_y);
+    const double y_after = scale * (2 * y[i] + y[after] - 3 * centre_y);
+    xx[i] = x_after * ey[i] + x_before * ey[before];
+    xy[i] = -x_after * ex[i] - x_before * ex[before];
+    yx[i] = y_after * ey[i] + y_before * ey[before];
+    yy[i] = -y_after * ex[i] - y_before * ex[before];
+  };
+  vertex(0, n - 1, 1);
+#pragma omp simd
+  for (int i = 1; i < n - 1; ++i) vertex(i, i - 1, i + 1);
+  vertex(n - 1, n - 2, 0);
+}
+
+CLOG_MULTIVERSION
+void add_body_force(int n, double force, CentroidGradient gradient, double* __restrict fx,
+                    double* __restrict fy) {
+  const double* __restrict xx = gradient.xx;
+  const double* __restrict xy = gradient.xy;
+#pragma omp simd
+  for (int i = 0; i < n; ++i) {
+    fx[i] += force * xx[i];
+    fy[i] += force * xy[i];
+  }
+}
+
+CLOG_MULTIVERSION
+void interface_forces(int n, const Interface& interface, EdgeArrays edges, double* __restrict pull,
                       double* __restrict fx, double* __restrict fy) {
   const double* __restrict ex = edges.x;
   const double* __restrict ey = edges.y;
   const double* __restrict length = edges.length;
   const double tension = interface.line_tension - interface.spring * interface.spring_length;
   const double spring = interface.spring;
-  const double p = interface.pressure / 6;
-  const double px = interface.pressure_x / 6;
-  const double py = interface.pressure_y / 6;
+  const double spreading = interface.spreading;
+  const double half_pressure = 0.5 * interface.pressure;
+  const double weight = interface.vertex_weight;
   // Force along an edge over its length: (gamma + k_l N_v (l - l_ref))/l.
   for (int i = 0; i < n; ++i) pull[i] = tension / length[i] + spring;
-  // An edge's pressure changes linearly along it; each vertex takes the part that its shape function weighs:
-  // (2 p_i + p_j)/6 of the edge's outward normal, j the other end.
-  const auto vertex = [&](int i, int before, int after) {
-    const double here = p + px * x[i] + py * y[i];
-    const double push_before = 2 * here + p + px * x[before] + py * y[before];
-    const double push_after = 2 * here + p + px * x[after] + py * y[after];
-    const double spread = interface.spreading * (length[i] - length[before]) / (length[i] + length[before]);
-    fx[i] = spread * (ex[i] + ex[before]) + pull[i] * ex[i] - pull[before] * ex[before] + push_after * ey[i] +
-            push_before * ey[before] + interface.vertex_x;
-    fy[i] = spread * (ey[i] + ey[before]) + pull[i] * ey[i] - pull[before] * ey[before] - push_after * ex[i] -
-            push_before * ex[before] + interface.vertex_y;
+  // The area's gradient at vertex i is half the chord between its neighbours, turned outwards. Spreading
+  // pulls along that chord, so it does no work on the area.
+  const auto vertex = [&](int i, int before) {
+    const double cosine =
+        std::max(0.0, ex[i] * ex[before] + ey[i] * ey[before]) / (length[i] * length[before]);
+    const double spread =
+        spreading * cosine * cosine * (length[i] - length[before]) / (length[i] + length[before]);
+    const double chord_x = ex[i] + ex[before];
+    const double chord_y = ey[i] + ey[before];
+    fx[i] = pull[i] * ex[i] - pull[before] * ex[before] + half_pressure * chord_y + spread * chord_x + weight;
+    fy[i] = pull[i] * ey[i] - pull[before] * ey[before] - half_pressure * chord_x + spread * chord_y;
   };
-  vertex(0, n - 1, 1);
+  vertex(0, n - 1);
 #pragma omp simd
-  for (int i = 1; i < n - 1; ++i) vertex(i, i - 1, i + 1);
-  vertex(n - 1, n - 2, 0);
+  for (int i = 1; i < n; ++i) vertex(i, i - 1);
 }
 
 CLOG_MULTIVERSION
@@ -193,39 +235,94 @@ void kick(int n, double damping, double half_dt_over_m, const double* __restrict
 }
 
 CLOG_MULTIVERSION
-void kick_and_drift(int n, OwnDrag drag, double half_dt_over_m, double dt, const double* __restrict f,
-                    double* __restrict v, double* __restrict x) {
+Drift measure_drift(int n, const double* __restrict vx, const double* __restrict vy,
+                    CentroidGradient gradient) {
+  const double* __restrict xx = gradient.xx;
+  const double* __restrict xy = gradient.xy;
+  const double* __restrict yx = gradient.yx;
+  const double* __restrict yy = gradient.yy;
+  double mean_x = 0, mean_y = 0, area_x = 0, area_y = 0;
+#pragma omp simd reduction(+ : mean_x, mean_y, area_x, area_y)
+  for (int i = 0; i < n; ++i) {
+    mean_x += vx[i];
+    mean_y += vy[i];
+    area_x += xx[i] * vx[i] + xy[i] * vy[i];
+    area_y += yx[i] * vx[i] + yy[i] * vy[i];
+  }
+  return {mean_x / n, mean_y / n, area_x, area_y};
+}
+
+CLOG_MULTIVERSION
+void kick_and_drift(int n, const CoupledDrag& drag, const Drift& drift, double half_dt_over_m, double dt,
+                    const double* __restrict fx, const double* __restrict fy, double* __restrict vx,
+                    double* __restrict vy, double* __restrict x, double* __restrict y) {
   const double* __restrict rate = drag.rate;
-  double mean = 0;
-#pragma omp simd reduction(+ : mean)
-  for (int i = 0; i < n; ++i) mean += v[i] / n;
-  const double from_mean = 0.5 * dt * drag.relative_rate * mean;
+  const double* __restrict xx = drag.gradient.xx;
+  const double* __restrict xy = drag.gradient.xy;
+  const double* __restrict yx = drag.gradient.yx;
+  const double* __restrict yy = drag.gradient.yy;
+  const double mean = 0.5 * dt * drag.relative_rate;
+  const double area = 0.5 * dt * drag.area_rate * n;
+  const double mean_x = mean * drift.mean_x, mean_y = mean * drift.mean_y;
+  const double area_x = area * drift.area_x, area_y = area * drift.area_y;
 #pragma omp simd
   for (int i = 0; i < n; ++i) {
-    v[i] = v[i] * (1 - 0.5 * dt * rate[i]) + from_mean + f[i] * half_dt_over_m;
-    x[i] += dt * v[i];
+    const double keep = 1 - 0.5 * dt * rate[i];
+    vx[i] = vx[i] * keep + mean_x - area_x * xx[i] - area_y * yx[i] + fx[i] * half_dt_over_m;
+    vy[i] = vy[i] * keep + mean_y - area_x * xy[i] - area_y * yy[i] + fy[i] * half_dt_over_m;
+    x[i] += dt * vx[i];
+    y[i] += dt * vy[i];
   }
 }
 
-// With r_i and e the rates times dt/2: v_i (1 + r_i) - e V = w_i and V = mean v. So v_i = (w_i + e V)/(1 +
-// r_i), whose mean gives V.
+// With s_i = 1/(1 + dt/2 rate_i) and w_i the velocity kicked by the force alone,
+//   v_i = s_i (w_i + e V - b G_i^T V_a),  V = mean v_i,  V_a = sum G_i v_i:
+// four linear equations for V and V_a. They are implicit because the area's part is stiff for a drawn-out
+// droplet, b sum |G_i|^2 growing with the square of its length and perimeter.
 CLOG_MULTIVERSION
-void kick(int n, OwnDrag drag, double half_dt_over_m, double dt, const double* __restrict f,
-          double* __restrict v) {
+void kick(int n, const CoupledDrag& drag, double half_dt_over_m, double dt, const double* __restrict fx,
+          const double* __restrict fy, double* __restrict vx, double* __restrict vy) {
   const double* __restrict rate = drag.rate;
-  const double relative = 0.5 * dt * drag.relative_rate;
-  double mean = 0;
-  double share = 0;
-#pragma omp simd reduction(+ : mean, share)
+  const double* __restrict xx = drag.gradient.xx;
+  const double* __restrict xy = drag.gradient.xy;
+  const double* __restrict yx = drag.gradient.yx;
+  const double* __restrict yy = drag.gradient.yy;
+  double s = 0, w_x = 0, w_y = 0, g_xx = 0, g_xy = 0, g_yx = 0, g_yy = 0;
+  double gw_x = 0, gw_y = 0, gg_xx = 0, gg_xy = 0, gg_yy = 0;
+#pragma omp simd reduction(+ : s, w_x, w_y, g_xx, g_xy, g_yx, g_yy, gw_x, gw_y, gg_xx, gg_xy, gg_yy)
   for (int i = 0; i < n; ++i) {
     const double shrink = 1 / (1 + 0.5 * dt * rate[i]);
-    v[i] = (v[i] + f[i] * half_dt_over_m) * shrink;
-    mean += v[i] / n;
-    share += shrink / n;
+    vx[i] = (vx[i] + fx[i] * half_dt_over_m) * shrink;
+    vy[i] = (vy[i] + fy[i] * half_dt_over_m) * shrink;
+    s += shrink;
+    w_x += vx[i];
+    w_y += vy[i];
+    g_xx += shrink * xx[i];
+    g_xy += shrink * xy[i];
+    g_yx += shrink * yx[i];
+    g_yy += shrink * yy[i];
+    gw_x += xx[i] * vx[i] + xy[i] * vy[i];
+    gw_y += yx[i] * vx[i] + yy[i] * vy[i];
+    gg_xx += shrink * (xx[i] * xx[i] + xy[i] * xy[i]);
+    gg_xy += shrink * (xx[i] * yx[i] + xy[i] * yy[i]);
+    gg_yy += shrink * (yx[i] * yx[i] + yy[i] * yy[i]);
   }
-  const double from_mean = relative * mean / (1 - relative * share);
+  const double e = 0.5 * dt * drag.relative_rate;
+  const double b = 0.5 * dt * drag.area_rate * n;
+  Eigen::Matrix4d matrix;
+  matrix << 1 - e * s / n, 0, b * g_xx / n, b * g_yx / n,  //
+      0, 1 - e * s / n, b * g_xy / n, b * g_yy / n,        //
+      -e * g_xx, -e * g_xy, 1 + b * gg_xx, b * gg_xy,      //
+      -e * g_yx, -e * g_yy, b * gg_xy, 1 + b * gg_yy;
+  const Eigen::Vector4d drift = matrix.inverse() * Eigen::Vector4d(w_x / n, w_y / n, gw_x, gw_y);
+  const double mean_x = e * drift[0], mean_y = e * drift[1];
+  const double area_x = b * drift[2], area_y = b * drift[3];
 #pragma omp simd
-  for (int i = 0; i < n; ++i) v[i] += from_mean / (1 + 0.5 * dt * rate[i]);
+  for (int i = 0; i < n; ++i) {
+    const double shrink = 1 / (1 + 0.5 * dt * rate[i]);
+    vx[i] += shrink * (mean_x - area_x * xx[i] - area_y * yx[i]);
+    vy[i] += shrink * (mean_y - area_x * xy[i] - area_y * yy[i]);
+  }
 }
 
 }  // namespace clog::kernel

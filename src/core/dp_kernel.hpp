@@ -19,20 +19,34 @@ struct Sums {
 /// Fills the edges; returns sums over them.
 Sums measure_edges(int n, const double* x, const double* y, EdgeArrays edges);
 
+/// Derivative of the area's centroid by the vertices, d(X, Y)/d(x_i, y_i): the force on the vertices of a
+/// body force (W_x, W_y) on the area is (W_x xx + W_y yx, W_x xy + W_y yy), and the centroid's velocity is
+/// (sum xx v_x + xy v_y, sum yx v_x + yy v_y).
+struct CentroidGradient {
+  double* xx;
+  double* xy;
+  double* yx;
+  double* yy;
+};
+inline CentroidGradient centroid_gradient(int n, double* four_arrays) {
+  return {four_arrays, four_arrays + n, four_arrays + 2 * n, four_arrays + 3 * n};
+}
+void measure_centroid_gradient(int n, const double* x, const double* y, EdgeArrays edges, const Sums& sums,
+                               CentroidGradient gradient);
+/// Adds a body force along +x.
+void add_body_force(int n, double force, CentroidGradient gradient, double* fx, double* fy);
+
 struct Interface {
   double line_tension;   ///< gamma
   double spring;         ///< k_l N_v
   double spring_length;  ///< l0 or the mean edge length
   double spreading;      ///< k_l N_v of springs that act along the interface only
-  double pressure;       ///< inside, at the coordinates' origin
-  double pressure_x;     ///< its gradient
-  double pressure_y;
-  double vertex_x;  ///< force on every vertex
-  double vertex_y;
+  double pressure;       ///< -k_a (a - a0)
+  double vertex_weight;  ///< M g / N_v along +x
 };
-/// Overwrites fx, fy with tension, spring, pressure and the vertices' own force. `pull` is scratch of length n.
-void interface_forces(int n, const double* x, const double* y, const Interface& interface, EdgeArrays edges,
-                      double* pull, double* fx, double* fy);
+/// Overwrites fx, fy with tension, springs, pressure and weight. `pull` is scratch of length n.
+void interface_forces(int n, const Interface& interface, EdgeArrays edges, double* pull, double* fx,
+                      double* fy);
 
 struct WallSlot {
   const double* x;
@@ -69,14 +83,24 @@ void kick_and_drift(int n, double damping, double half_dt_over_m, double dt, con
                     double* x);
 /// (v + f half_dt_over_m)/(1 + damping).
 void kick(int n, double damping, double half_dt_over_m, const double* f, double* v);
-/// The same two with a drag of its own for every number, rate = zeta/m, and a drag of the motion relative to
-/// a common velocity, whose part of `rate` is `relative_rate`.
-struct OwnDrag {
-  const double* rate;    ///< [1/t0], the relative part included
+/// Drag of a vertex i: m (-rate_i v_i + relative_rate V - area_rate N_v G_i^T V_a), V the vertices' mean
+/// velocity, V_a that of the area's centroid, G the centroid gradient. The last two terms couple all
+/// vertices.
+struct CoupledDrag {
+  const double* rate;    ///< [1/t0]
   double relative_rate;  ///< [1/t0]
+  double area_rate;      ///< [1/t0]
+  CentroidGradient gradient;
 };
-void kick_and_drift(int n, OwnDrag drag, double half_dt_over_m, double dt, const double* f, double* v,
-                    double* x);
-void kick(int n, OwnDrag drag, double half_dt_over_m, double dt, const double* f, double* v);
+struct Drift {
+  double mean_x, mean_y;
+  double area_x, area_y;
+};
+Drift measure_drift(int n, const double* vx, const double* vy, CentroidGradient gradient);
+/// The same two half kicks with this drag; `drift` is that of v.
+void kick_and_drift(int n, const CoupledDrag& drag, const Drift& drift, double half_dt_over_m, double dt,
+                    const double* fx, const double* fy, double* vx, double* vy, double* x, double* y);
+void kick(int n, const CoupledDrag& drag, double half_dt_over_m, double dt, const double* fx,
+          const double* fy, double* vx, double* vy);
 
 }  // namespace clog::kernel

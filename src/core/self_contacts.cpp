@@ -12,28 +12,18 @@ constexpr double contour_exclusion = 3;
 
 }  // namespace
 
-StrandContact nearest_point(const SelfContacts::Strand& strand, const double* x, const double* y,
-                            int num_vertices) {
-  StrandContact nearest{std::numeric_limits<double>::infinity(), 0, 0, 0, 0};
-  double nearest2 = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < strand.num_edges; ++k) {
-    const int begin = (strand.first_edge + k) % num_vertices;
-    const int end = begin + 1 < num_vertices ? begin + 1 : 0;
-    const double ex = x[end] - x[begin];
-    const double ey = y[end] - y[begin];
-    const double rx = x[strand.vertex] - x[begin];
-    const double ry = y[strand.vertex] - y[begin];
-    const double fraction = std::clamp((rx * ex + ry * ey) / (ex * ex + ey * ey), 0.0, 1.0);
-    const double dx = rx - fraction * ex;
-    const double dy = ry - fraction * ey;
-    const double distance2 = dx * dx + dy * dy;
-    if (distance2 < nearest2) {
-      nearest2 = distance2;
-      nearest = {0, begin, fraction, dx, dy};
-    }
-  }
-  nearest.distance = std::sqrt(nearest2);
-  return nearest;
+EdgeContact nearest_point(const SelfContacts::Pair& pair, const double* x, const double* y,
+                          int num_vertices) {
+  const int begin = pair.edge;
+  const int end = begin + 1 < num_vertices ? begin + 1 : 0;
+  const double ex = x[end] - x[begin];
+  const double ey = y[end] - y[begin];
+  const double rx = x[pair.vertex] - x[begin];
+  const double ry = y[pair.vertex] - y[begin];
+  const double fraction = std::clamp((rx * ex + ry * ey) / (ex * ex + ey * ey), 0.0, 1.0);
+  const double dx = rx - fraction * ex;
+  const double dy = ry - fraction * ey;
+  return {std::sqrt(dx * dx + dy * dy), fraction, dx, dy};
 }
 
 void SelfContacts::update(const DropletState& state, const Travel& travel, double mean_edge) {
@@ -59,7 +49,7 @@ void SelfContacts::rebuild(const DropletState& state, double mean_edge, double s
   reference_ = state.position;
   reference_.head(n) -= centre[0];
   reference_.tail(n) -= centre[1];
-  strands_.clear();
+  pairs_.clear();
   if (!reference_.allFinite()) return;  // a droplet that has diverged; the run will see it at its next check
 
   // The nearest point of an edge within reach lies within half an edge of one of its ends.
@@ -68,7 +58,7 @@ void SelfContacts::rebuild(const DropletState& state, double mean_edge, double s
     longest2 = std::max(longest2, (x[i] - x[j]) * (x[i] - x[j]) + (y[i] - y[j]) * (y[i] - y[j]));
   const double reach = diameter_ + 2 * skin_;
   const double end_reach = reach + 0.5 * std::sqrt(longest2);
-  const int exclusion = std::max(2, static_cast<int>(std::ceil(contour_exclusion * diameter_ / mean_edge)));
+  const int exclusion = std::max(1, static_cast<int>(std::ceil(contour_exclusion * diameter_ / mean_edge)));
 
   const double left = state.x().minCoeff();
   const double bottom = state.y().minCoeff();
@@ -92,7 +82,7 @@ void SelfContacts::rebuild(const DropletState& state, double mean_edge, double s
     return std::min(steps, n - steps);
   };
   for (int vertex = 0; vertex < n; ++vertex) {
-    near_edges_.clear();
+    const std::size_t first = pairs_.size();
     const int cell = cell_of(vertex);
     for (int row = -1; row <= 1; ++row)
       for (int column = -1; column <= 1; ++column)
@@ -101,25 +91,15 @@ void SelfContacts::rebuild(const DropletState& state, double mean_edge, double s
           for (const int edge : {other, other > 0 ? other - 1 : n - 1}) {
             const int end = edge + 1 < n ? edge + 1 : 0;
             if (contour_steps(vertex, edge) < exclusion || contour_steps(vertex, end) < exclusion) continue;
-            if (nearest_point({vertex, edge, 1}, x, y, n).distance <= reach) near_edges_.push_back(edge);
+            if (nearest_point({vertex, edge}, x, y, n).distance <= reach) pairs_.push_back({vertex, edge});
           }
         }
-    std::sort(near_edges_.begin(), near_edges_.end());
-    near_edges_.erase(std::unique(near_edges_.begin(), near_edges_.end()), near_edges_.end());
-    const std::size_t first_strand = strands_.size();
-    for (const int edge : near_edges_) {
-      if (strands_.size() > first_strand && strands_.back().first_edge + strands_.back().num_edges == edge)
-        ++strands_.back().num_edges;
-      else
-        strands_.push_back({vertex, edge, 1});
-    }
-    // A strand across the contour's start was found in two pieces.
-    if (strands_.size() > first_strand + 1 && strands_[first_strand].first_edge == 0 &&
-        strands_.back().first_edge + strands_.back().num_edges == n) {
-      strands_.back().num_edges += strands_[first_strand].num_edges;
-      strands_[first_strand] = strands_.back();
-      strands_.pop_back();
-    }
+    // An edge is found from either end.
+    const auto begin = pairs_.begin() + static_cast<std::ptrdiff_t>(first);
+    std::sort(begin, pairs_.end(), [](const Pair& a, const Pair& b) { return a.edge < b.edge; });
+    pairs_.erase(
+        std::unique(begin, pairs_.end(), [](const Pair& a, const Pair& b) { return a.edge == b.edge; }),
+        pairs_.end());
   }
 }
 

@@ -5,6 +5,9 @@
 #include "clog/core/stability.hpp"
 
 namespace clog {
+namespace kernel {
+struct CoupledDrag;
+}
 
 /// Deformable polygon, integrated by velocity Verlet with drag (Cheng et al., "Simulation Methods"):
 ///   v += dt/2 (F - zeta v)/m,  x += dt v,  v = (v + dt/2 F/m)/(1 + dt zeta/(2m)),
@@ -31,16 +34,14 @@ class DpDroplet final : public Droplet {
   DpForces forces_;
   double vertex_mass_;
   Eigen::ArrayXd force_;
-  double far_rate_;       // b_inf/M [1/t0]
-  double relative_rate_;  // (c - 1) b_inf/M [1/t0]
-  bool on_area_;          // do weight and mean drag act on the area?
-  Eigen::ArrayXd
-      drag_rate_;  // of every vertex, the relative part included [1/t0]; empty when all are far_rate_
+  double far_rate_;           // b_inf/M [1/t0]
+  bool is_coupled_;           // does the drag differ from vertex to vertex, or tie them together?
+  Eigen::ArrayXd drag_rate_;  // of every vertex on its own [1/t0]
 
   void step(double time_step);
   void measure_drag();
-  Eigen::Array2d mean_drag(const Eigen::Array2d& velocity) const;
-  double drag_power() const;
+  kernel::CoupledDrag coupled_drag();
+  double drag_power();
 };
 
 }  // namespace clog

@@ -46,9 +46,9 @@ class DpForces {
   /// For the release, where the droplet grows without weight.
   void set_rest_area(double area);
   void set_weight(double weight) { weight_ = weight; }
-  /// With the weight on the area, the part -b_inf V of the drag acts there too. The integrator puts it on the
-  /// vertices; the force moves it: +b_inf V/N_v on every vertex, -b_inf V on the area, in sum nothing.
-  void set_mean_drag(const Eigen::Array2d& mean_drag) { mean_drag_ = mean_drag; }
+  /// d(X, Y)/d(x_i, y_i), X, Y the area's centroid, at the last evaluate(): dX/dx, dX/dy, dY/dx, dY/dy, each
+  /// of length N_v. Zero with the weight on the vertices.
+  Eigen::ArrayXd& centroid_gradient() { return centroid_gradient_; }
 
  private:
   DpParameters dp_;
@@ -58,13 +58,12 @@ class DpForces {
   double rest_area_;
   double rest_edge_;
   double weight_;
-  Eigen::Array2d mean_drag_{0, 0};  // -b_inf V [g rho sigma^2]
   WallContacts walls_;
   WallContacts nearest_walls_;   // kept only with near-wall drag
   WallContacts adhesive_walls_;  // kept only where walls are wetted
   SelfContacts self_;
   PolygonShape shape_;
-  Eigen::ArrayXd edge_x_, edge_y_, edge_length_, pull_, end_x_, end_y_;
+  Eigen::ArrayXd edge_x_, edge_y_, edge_length_, pull_, centroid_gradient_, end_x_, end_y_;
   Eigen::ArrayXd wall_distance_;
 
   double spring_length() const;

@@ -10,7 +10,7 @@ struct PotentialEnergy {
   double line_tension = 0;  ///< sum of tension times length; gamma P unless walls are wetted
   double gravity = 0;       ///< -M g h; the droplet measures h from its frame's origin, a run from the start
   double wall = 0;          ///< (k_c/2) sum overlap^2 over edges (or vertices) and obstacles
-  double self_contact = 0;  ///< (k_c/2) sum overlap^2 over vertices and strands of interface
+  double self_contact = 0;  ///< (k_c/2) sum overlap^2 over vertices and edges of the interface
 
   double total() const { return area + spring + line_tension + gravity + wall + self_contact; }
 };
