@@ -77,8 +77,9 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
   state.x() += place[0] - state.frame.origin[0];
   state.y() += place[1] - state.frame.origin[1];
 
-  // While it grows, vertices are kept evenly spread whatever the run's springs are: those may be too weak for
-  // that, and vertices that run together make the interface too stiff for any step.
+  // Vertices are kept evenly spread whatever the run's springs are: those may be too weak for that, and
+  // vertices that run together make the interface too stiff for any step. Springs with a tension of their own
+  // begin to act with the run.
   RunParameters growing = run;
   growing.dp.perimeter_spring = PerimeterSpring::along;
   growing.dp.perimeter_stiffness = 1.0;
@@ -96,13 +97,13 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
     if (state.recentre().any()) forces.forget_contacts();
   }
 
-  DpForces own_forces(run, obstacles);
-  own_forces.set_weight(0);
-  FireOptions last = fire_options(run, polygon_shape(state.position).perimeter);
+  FireOptions last = fire_options(growing, polygon_shape(state.position).perimeter);
   last.force_tolerance = release_force_tolerance * vertex_weight;
-  last.max_iterations = 200000;
-  if (!minimize_fire(own_forces, state, last).converged)
-    refuse_release("the grown droplet does not come to rest", "a larger line-tension or perimeter-stiffness");
+  last.max_iterations = 20000;
+  FireOptions rest = last;
+  rest.max_iterations = 500000;
+  if (!minimize_fire(forces, state, last).converged && !descend(forces, state, rest).converged)
+    refuse_release("the grown droplet does not come to rest", "a larger line-tension");
   if (num_enclosed(state, obstacles) > 0)
     refuse_release("the grown droplet encloses an obstacle", "more vertices");
   return state;

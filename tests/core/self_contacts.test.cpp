@@ -12,28 +12,25 @@ namespace {
 TEST(NearestPoint, OfAnEdgeItsEndAndItsMiddle) {
   const double x[] = {0, 2, 0.5, 3};
   const double y[] = {0, 0, 0.3, 0.4};
-  const StrandContact middle = nearest_point({2, 0, 1}, x, y, 4);
+  const EdgeContact middle = nearest_point({2, 0}, x, y, 4);
   EXPECT_DOUBLE_EQ(middle.distance, 0.3);
   EXPECT_DOUBLE_EQ(middle.fraction, 0.25);
-  const StrandContact end = nearest_point({3, 0, 1}, x, y, 4);
+  const EdgeContact end = nearest_point({3, 0}, x, y, 4);
   EXPECT_DOUBLE_EQ(end.distance, std::hypot(1, 0.4));
   EXPECT_DOUBLE_EQ(end.fraction, 1);
 }
 
-TEST(NearestPoint, OfAStrandAcrossTheStartOfTheContour) {
-  // Edges 2 (2-3), 3 (3-0) and 0 (0-1): the last vertex is followed by the first.
+TEST(NearestPoint, OfTheEdgeThatClosesTheContour) {
   const double x[] = {0, -1, 2, 1, 0.1};
   const double y[] = {0, 0, 0, 0, 0.2};
-  const StrandContact contact = nearest_point({4, 2, 2}, x, y, 4);
-  EXPECT_EQ(contact.edge, 3);
-  EXPECT_DOUBLE_EQ(contact.distance, 0.2);
+  EXPECT_DOUBLE_EQ(nearest_point({4, 3}, x, y, 4).distance, 0.2);
 }
 
 TEST(SelfContacts, AConvexDropletHasNone) {
   const DropletState state = test::state_of(regular_polygon(256, units::rest_area));
   SelfContacts contacts(units::regular_edge_length(256));
   contacts.update(state, {}, units::regular_edge_length(256));
-  EXPECT_TRUE(contacts.strands().empty());
+  EXPECT_TRUE(contacts.pairs().empty());
 }
 
 TEST(SelfContacts, ListsEveryVertexAndEdgeThatTouchWhileTheShapeMoves) {
@@ -43,20 +40,19 @@ TEST(SelfContacts, ListsEveryVertexAndEdgeThatTouchWhileTheShapeMoves) {
   DropletState state = test::state_of(test::dumbbell(n, 0.03));
   const double mean_edge = polygon_shape(state.position).perimeter / n;
   ASSERT_GT(mean_edge, diameter);
-  const int exclusion = std::max(2, static_cast<int>(std::ceil(3 * diameter / mean_edge)));
+  const int exclusion = std::max(1, static_cast<int>(std::ceil(3 * diameter / mean_edge)));
   state.velocity.tail(n) = -0.05 * state.y();  // the neck closes
   int num_touching = 0;
   for (int step = 0; step < 300; ++step) {
     state.position += 0.1 * state.velocity;
     contacts.update(state, state.possible_travel(0.1), mean_edge);
     std::set<std::pair<int, int>> listed;
-    for (const auto& strand : contacts.strands())
-      for (int k = 0; k < strand.num_edges; ++k) listed.insert({strand.vertex, (strand.first_edge + k) % n});
+    for (const auto& [vertex, edge] : contacts.pairs()) listed.insert({vertex, edge});
     for (int vertex = 0; vertex < n; ++vertex)
       for (int edge = 0; edge < n; ++edge) {
         const auto steps = [n](int a, int b) { return std::min(std::abs(a - b), n - std::abs(a - b)); };
         if (steps(vertex, edge) < exclusion || steps(vertex, (edge + 1) % n) < exclusion) continue;
-        if (nearest_point({vertex, edge, 1}, state.position.data(), state.position.data() + n, n).distance >=
+        if (nearest_point({vertex, edge}, state.position.data(), state.position.data() + n, n).distance >=
             diameter)
           continue;
         ++num_touching;

@@ -18,6 +18,9 @@ inline RunParameters bare_parameters(int vertices = 64) {
   RunParameters run;
   run.dp.vertices = vertices;
   run.dp.perimeter_stiffness = 1.0;
+  // Terms with an energy: tests compare forces with its gradient.
+  run.dp.perimeter_spring = PerimeterSpring::mean;
+  run.dp.gravity = Gravity::vertex;
   const double l0 = units::regular_edge_length(vertices);
   run.wall_stiffness = wall_stiffness(1000, l0);
   run.obstacles.box = 20;

@@ -70,4 +70,23 @@ FireResult minimize_fire(Forces& forces, DropletState& state, const FireOptions&
   return result;
 }
 
+/// Overdamped motion along the force, in steps that the stiffest mode holds. Slower than FIRE, but it also
+/// comes to rest where forces have no energy and FIRE, which judges by the work done, goes round in circles.
+template <class Forces>
+FireResult descend(Forces& forces, DropletState& state, const FireOptions& options) {
+  const double mobility = options.largest_step * options.largest_step / options.mass;
+  const double farthest = options.max_move * std::numbers::sqrt2;
+  Eigen::ArrayXd force(state.position.size());
+  FireResult result;
+  for (; result.iterations < options.max_iterations; ++result.iterations) {
+    forces.update_contacts(state, {.absolute = farthest, .relative = 2 * farthest});
+    forces.evaluate(state, force);
+    result.largest_force = force.abs().maxCoeff();
+    result.converged = result.largest_force <= options.force_tolerance;
+    if (result.converged || !std::isfinite(result.largest_force)) break;
+    state.position += (mobility * force).max(-options.max_move).min(options.max_move);
+  }
+  return result;
+}
+
 }  // namespace clog
