@@ -84,6 +84,8 @@ void DpDroplet::step(double time_step) {
 
 void DpDroplet::advance(int num_steps) {
   for (int done = 0; done < num_steps; done += steps_per_check) {
+    // Its contact lists would take all memory. The run sees it at its next check.
+    if (!(forces_.shape().perimeter < burst_perimeter)) return;
     const int steps = std::min(steps_per_check, num_steps - done);
     if (state_.recentre().any()) forces_.forget_contacts();
     forces_.update_contacts(state_, state_.possible_travel(steps * run_.time_step));

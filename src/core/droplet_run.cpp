@@ -16,7 +16,6 @@ namespace {
 constexpr double diverged_energy_ratio = 1e8;
 /// Compressibility and line tension keep a droplet far within these.
 constexpr double diverged_area_error = 0.5;  // relative
-constexpr double diverged_perimeter = 1000;  // [sigma]
 /// A droplet just released is slow; it cannot be told from a clogged one before it had the time to fall.
 constexpr double relaxation_times_before_a_clog = 10;
 
@@ -64,7 +63,7 @@ bool DropletRun::advance(int num_checks) {
 void DropletRun::check() {
   const double energy_ratio = kinetic_energy_ratio();
   const PolygonShape shape = droplet_->shape();
-  const bool is_whole = energy_ratio < diverged_energy_ratio && shape.perimeter < diverged_perimeter &&
+  const bool is_whole = energy_ratio < diverged_energy_ratio && shape.perimeter < burst_perimeter &&
                         std::abs(shape.area / units::rest_area - 1) < diverged_area_error;
   if (!is_whole) {  // also if any of them is not a number
     std::ostringstream message;

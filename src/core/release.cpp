@@ -99,10 +99,11 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
 
   FireOptions last = fire_options(growing, polygon_shape(state.position).perimeter);
   last.force_tolerance = release_force_tolerance * vertex_weight;
-  last.max_iterations = 20000;
-  FireOptions rest = last;
-  rest.max_iterations = 500000;
-  if (!minimize_fire(forces, state, last).converged && !descend(forces, state, rest).converged)
+  last.max_iterations = 50000;
+  FireOptions longer = last;
+  longer.max_iterations = 500000;
+  const double damping_rate = units::gravity / run.drag.terminal_speed;
+  if (!minimize_fire(forces, state, last).converged && !settle(forces, state, longer, damping_rate).converged)
     refuse_release("the grown droplet does not come to rest", "a larger line-tension");
   if (num_enclosed(state, obstacles) > 0)
     refuse_release("the grown droplet encloses an obstacle", "more vertices");

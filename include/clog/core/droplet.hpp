@@ -8,6 +8,9 @@
 
 namespace clog {
 
+/// A polygon with a longer perimeter has burst [sigma]: it is not integrated any further.
+inline constexpr double burst_perimeter = 1000;
+
 /// A droplet that moves: what a run needs to know of either model.
 class Droplet {
  public:

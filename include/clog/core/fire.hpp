@@ -70,22 +70,25 @@ FireResult minimize_fire(Forces& forces, DropletState& state, const FireOptions&
   return result;
 }
 
-/// Overdamped motion along the force, in steps that the stiffest mode holds. Slower than FIRE, but it also
-/// comes to rest where forces have no energy and FIRE, which judges by the work done, goes round in circles.
+/// Damped motion until it comes to rest, as a droplet would. Slower than FIRE for soft modes, but it also
+/// settles forces that have no energy, where FIRE, which judges by the work done, goes round in circles.
 template <class Forces>
-FireResult descend(Forces& forces, DropletState& state, const FireOptions& options) {
-  const double mobility = options.largest_step * options.largest_step / options.mass;
-  const double farthest = options.max_move * std::numbers::sqrt2;
+FireResult settle(Forces& forces, DropletState& state, const FireOptions& options, double damping_rate) {
+  const double dt = options.largest_step;
+  const double shrink = 1 / (1 + dt * damping_rate);
   Eigen::ArrayXd force(state.position.size());
+  state.velocity.setZero();
   FireResult result;
   for (; result.iterations < options.max_iterations; ++result.iterations) {
-    forces.update_contacts(state, {.absolute = farthest, .relative = 2 * farthest});
+    forces.update_contacts(state, state.possible_travel(dt));
     forces.evaluate(state, force);
     result.largest_force = force.abs().maxCoeff();
     result.converged = result.largest_force <= options.force_tolerance;
     if (result.converged || !std::isfinite(result.largest_force)) break;
-    state.position += (mobility * force).max(-options.max_move).min(options.max_move);
+    state.velocity = (state.velocity + dt / options.mass * force) * shrink;
+    state.position += dt * state.velocity;
   }
+  state.velocity.setZero();
   return result;
 }
 

@@ -23,6 +23,6 @@ int num_enclosed(const DropletState& state, const ObstacleArray& obstacles);
 
 /// Largest force component, without weight and springs, that a released droplet may be left with, relative to the weight
 /// of one vertex (DP) or of the disk (SP).
-inline constexpr double release_force_tolerance = 1e-4;
+inline constexpr double release_force_tolerance = 1e-2;
 
 }  // namespace clog
