@@ -110,7 +110,7 @@ void resolve_dp(RunParameters& run) {
   require_positive("area-stiffness", dp.area_stiffness);
   require(dp.vertices >= 16 && dp.vertices <= 4096, "vertices", dp.vertices, "must lie in 16..4096)");
   require_not_negative("perimeter-stiffness-ratio", dp.perimeter_stiffness_ratio);
-  if (!dp.perimeter_stiffness) dp.perimeter_stiffness = automatic_perimeter_stiffness(dp);
+  if (!dp.perimeter_stiffness) dp.perimeter_stiffness = automatic_perimeter_stiffness(run);
   require_not_negative("perimeter-stiffness", *dp.perimeter_stiffness);
   require(
       dp.wall_tension >= -0.9 && dp.wall_tension <= 1, "wall-tension", dp.wall_tension,
@@ -170,6 +170,18 @@ void resolve_sp(RunParameters& run) {
 }
 
 }  // namespace
+
+double automatic_perimeter_stiffness(const RunParameters& run) {
+  switch (run.dp.perimeter_spring) {
+    case PerimeterSpring::rest:
+      return run.dp.perimeter_stiffness_ratio * run.dp.line_tension;
+    case PerimeterSpring::mean:
+      return 1;
+    case PerimeterSpring::along:
+      return 0.01 / run.drag.terminal_speed;
+  }
+  return 0;
+}
 
 RunParameters resolve(RunParameters run) {
   require_positive("time-step", run.time_step);

@@ -82,7 +82,7 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
   // begin to act with the run.
   RunParameters growing = run;
   growing.dp.perimeter_spring = PerimeterSpring::along;
-  growing.dp.perimeter_stiffness = 1.0;
+  growing.dp.perimeter_stiffness = 0.3;
   DpForces forces(growing, obstacles);
   forces.set_weight(0);
   const double vertex_weight = units::droplet_mass * units::gravity / n;
@@ -102,7 +102,7 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
   last.max_iterations = 50000;
   FireOptions longer = last;
   longer.max_iterations = 500000;
-  const double damping_rate = units::gravity / run.drag.terminal_speed;
+  constexpr double damping_rate = 30;  // [1/t0]
   if (!minimize_fire(forces, state, last).converged && !settle(forces, state, longer, damping_rate).converged)
     refuse_release("the grown droplet does not come to rest", "a larger line-tension");
   if (num_enclosed(state, obstacles) > 0)

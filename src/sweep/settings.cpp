@@ -193,7 +193,7 @@ std::vector<Key> make_keys() {
        number,
        {"auto"},
        "auto",
-       "K_l [g rho sigma]; auto: ratio times Gamma for rest, else 1",
+       "K_l [g rho sigma]; auto: ratio times Gamma for rest, 1 for mean, 0.01/V_t for along",
        true,
        [](RunParameters& run, const std::string& value) {
          run.dp.perimeter_stiffness = number_or_auto(value);
@@ -305,7 +305,7 @@ std::string preset_name(const RunParameters& run) {
     RunParameters other = run;
     other.dp.perimeter_stiffness.reset();
     for (const auto& [name, text] : preset.texts) find_key(name).apply(other, text);
-    if (!other.dp.perimeter_stiffness) other.dp.perimeter_stiffness = automatic_perimeter_stiffness(other.dp);
+    if (!other.dp.perimeter_stiffness) other.dp.perimeter_stiffness = automatic_perimeter_stiffness(other);
     if (other.dp.perimeter_spring == run.dp.perimeter_spring &&
         other.dp.perimeter_stiffness == run.dp.perimeter_stiffness &&
         other.dp.wall_contact == run.dp.wall_contact && other.dp.self_contact == run.dp.self_contact &&

@@ -85,7 +85,8 @@ FireResult settle(Forces& forces, DropletState& state, const FireOptions& option
     result.largest_force = force.abs().maxCoeff();
     result.converged = result.largest_force <= options.force_tolerance;
     if (result.converged || !std::isfinite(result.largest_force)) break;
-    state.velocity = (state.velocity + dt / options.mass * force) * shrink;
+    const double fastest = options.max_move / dt;
+    state.velocity = ((state.velocity + dt / options.mass * force) * shrink).max(-fastest).min(fastest);
     state.position += dt * state.velocity;
   }
   state.velocity.setZero();

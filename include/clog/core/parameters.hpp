@@ -24,7 +24,7 @@ struct DpParameters {
   double line_tension = 1.0;    ///< Gamma [g rho sigma^2]
   double area_stiffness = 1e4;  ///< K_a [g rho / sigma]
   PerimeterSpring perimeter_spring = PerimeterSpring::along;
-  std::optional<double> perimeter_stiffness;  ///< K_l [g rho sigma]; empty: ratio * Gamma (rest), 1 (others)
+  std::optional<double> perimeter_stiffness;  ///< K_l [g rho sigma]; empty: automatic
   double perimeter_stiffness_ratio = 1e-3;    ///< K_l/Gamma of springs to the rest length
   WallContact wall_contact = WallContact::edge;
   /// Tension of the interface where it touches a wall, over Gamma: (gamma_so - gamma_sw)/gamma_ow, which is
@@ -77,11 +77,10 @@ struct RunParameters {
 /// @throws Error naming the field, its value, the reason and a remedy
 RunParameters resolve(RunParameters parameters);
 
-/// K_l where none is given [g rho sigma]: a fraction of Gamma for springs to the rest length, 1 for the
-/// others.
-inline double automatic_perimeter_stiffness(const DpParameters& dp) {
-  return dp.perimeter_spring == PerimeterSpring::rest ? dp.perimeter_stiffness_ratio * dp.line_tension : 1.0;
-}
+/// K_l where none is given [g rho sigma]: a fraction of Gamma for springs to the rest length; 1 for those to
+/// the mean length; 0.01/V_t for those along the interface, which even out vertices at a rate of (2 pi)^2 K_l
+/// V_t/M = 0.5/t0. Stiffer ones have been seen to flutter where the drag is weak, as they have no energy.
+double automatic_perimeter_stiffness(const RunParameters& run);
 
 /// Contact stiffness k_c, force over overlap [g rho sigma], of the wall energy U_w = (E_w/2)(1 - 2d/size)^2:
 /// k_c = 4 E_w / size^2. `size` is the vertex diameter (DP) or sigma (SP). And the way back.
