@@ -48,6 +48,8 @@ kernel::CoupledDrag DpDroplet::coupled_drag() {
           .gradient = kernel::centroid_gradient(run_.dp.vertices, forces_.centroid_gradient().data())};
 }
 
+double DpDroplet::power_loss() { return drag_power() - forces_.spreading_power(state_); }
+
 double DpDroplet::drag_power() {
   const int n = run_.dp.vertices;
   const double* v = state_.velocity.data();
@@ -93,9 +95,9 @@ void DpDroplet::advance(int num_steps) {
     const int substeps = num_substeps(modes, run_.time_step);
     const double time_step = run_.time_step / substeps;
     for (int i = 0; i < steps * substeps; ++i) {
-      if (measures_dissipation_) dissipated_energy_ += 0.5 * time_step * drag_power();
+      const double loss_before = measures_dissipation_ ? power_loss() : 0;
       step(time_step);
-      if (measures_dissipation_) dissipated_energy_ += 0.5 * time_step * drag_power();
+      if (measures_dissipation_) dissipated_energy_ += 0.5 * time_step * (loss_before + power_loss());
     }
     num_integrated_steps_ += static_cast<std::int64_t>(steps) * substeps;
   }

@@ -224,6 +224,20 @@ void DpForces::visit_overlaps(const DropletState& state, Visit visit) const {
   }
 }
 
+double DpForces::spreading_power(const DropletState& state) const {
+  if (dp_.perimeter_spring != PerimeterSpring::along) return 0;
+  const int n = dp_.vertices;
+  Eigen::ArrayXd force(2 * n);
+  Eigen::ArrayXd pull(n);
+  Eigen::ArrayXd edge_x(n), edge_y(n), length(n);
+  const kernel::EdgeArrays edges{edge_x.data(), edge_y.data(), length.data()};
+  kernel::measure_edges(n, state.position.data(), state.position.data() + n, edges);
+  kernel::Interface interface {};
+  interface.spreading = *dp_.perimeter_stiffness * n;
+  kernel::interface_forces(n, interface, edges, pull.data(), force.data(), force.data() + n);
+  return (force * state.velocity).sum();
+}
+
 double DpForces::deepest_overlap(const DropletState& state) const {
   double deepest = 0;
   visit_overlaps(state, [&](double overlap) { deepest = std::max(deepest, overlap); });

@@ -66,6 +66,101 @@ TEST(DpDroplet, IsOfSecondOrderInTheTimeStepWithoutDrag) {
   EXPECT_NEAR(std::log2(middle / fine), 2, 0.1);
 }
 
+RunParameters robust(int vertices) {
+  RunParameters run = bare_parameters(vertices);
+  run.dp.perimeter_spring = PerimeterSpring::along;
+  run.dp.perimeter_stiffness = 0.3;
+  run.dp.gravity = Gravity::area;
+  return run;
+}
+
+TEST(DpDroplet, IsOfSecondOrderInTheTimeStepWithAreaDrag) {
+  const ObstacleArray nothing = no_obstacles();
+  const auto position_at = [&](double dt) {
+    RunParameters run = robust(64);
+    run.drag.terminal_speed = 0.3;
+    run.dp.area_stiffness = 100;
+    run.time_step = dt;
+    DpDroplet droplet(run, nothing, state_of(ellipse(64, 1.2)));
+    droplet.advance(static_cast<int>(std::lround(0.4 / dt)));
+    return Eigen::ArrayXd(droplet.state().position);
+  };
+  const Eigen::ArrayXd exact = position_at(0.4 / 12800);
+  const double coarse = (position_at(0.4 / 400) - exact).abs().maxCoeff();
+  const double fine = (position_at(0.4 / 800) - exact).abs().maxCoeff();
+  EXPECT_LT(fine, 1e-4);
+  EXPECT_NEAR(std::log2(coarse / fine), 2, 0.15);
+}
+
+TEST(DpDroplet, WithAreaDragFallsRoundAtTheTerminalSpeed) {
+  // Weight and drag act on the same area, so nothing pulls along the interface: the droplet stays a circle.
+  RunParameters run = robust(64);
+  const ObstacleArray nothing = no_obstacles();
+  DpDroplet droplet(run, nothing, state_of(regular_polygon(64, units::rest_area)));
+  droplet.advance(20000);  // the vertices' spread evens out at 0.5/t0
+  const auto centroid = [&] {
+    return droplet.state().frame.global(area_centroid(droplet.state().position))[0];
+  };
+  const double before = centroid();
+  droplet.advance(3000);
+  EXPECT_NEAR((centroid() - before) / 3, run.drag.terminal_speed, 1e-7);
+  EXPECT_NEAR(droplet.shape().shape_parameter(), polygon_shape(regular_polygon(64, 0.7)).shape_parameter(),
+              1e-9);
+}
+
+TEST(DpDroplet, RelativeDragDampsChangesOfShapeOnly) {
+  // A swinging ellipse loses energy faster; its fall is the same.
+  const ObstacleArray nothing = no_obstacles();
+  const auto after = [&](double relative) {
+    RunParameters run = bare_parameters();
+    run.drag.relative = relative;
+    run.drag.terminal_speed = 1;
+    DpDroplet droplet(run, nothing, state_of(ellipse(64, 1.1)));
+    droplet.advance(500);
+    return std::pair(droplet.state().mean_velocity()[0], droplet.state().velocity.tail(64).matrix().norm());
+  };
+  const auto [fall, swing] = after(1);
+  const auto [damped_fall, damped_swing] = after(10);
+  EXPECT_NEAR(fall, 1 - std::exp(-0.5), 1e-6);
+  EXPECT_NEAR(damped_fall, fall, 1e-9);
+  EXPECT_LT(damped_swing, 0.7 * swing);
+}
+
+TEST(DpDroplet, BalancesItsEnergyToSecondOrder) {
+  // E_k + U + what the drag took stays what it was, through a collision with an obstacle, for every kind of
+  // drag.
+  const ObstacleArray wall(20, {{0.9, 0.05, 0.15}});
+  for (const Gravity gravity : {Gravity::vertex, Gravity::area})
+    for (const double near_wall : {0.0, 0.05}) {
+      const auto imbalance = [&](double dt) {
+        RunParameters run = robust(64);
+        run.dp.gravity = gravity;
+        run.drag.near_wall = near_wall;
+        run.drag.relative = 2;
+        run.drag.terminal_speed = 0.5;
+        run.dp.area_stiffness = 100;
+        run.time_step = dt;
+        DpDroplet droplet(run, wall, state_of(regular_polygon(64, units::rest_area)));
+        droplet.measure_dissipation();
+        const auto energy = [&] {
+          return droplet.kinetic_energy() + droplet.potential_energy().total() + droplet.dissipated_energy();
+        };
+        const double begin = energy();
+        double worst = 0;
+        for (int i = 0; i < 10; ++i) {
+          droplet.advance(static_cast<int>(std::lround(0.08 / dt)));
+          worst = std::max(worst, std::abs(energy() - begin));
+        }
+        EXPECT_GT(droplet.dissipated_energy(), 0.01);
+        return worst;
+      };
+      const double coarse = imbalance(8e-4);
+      const double fine = imbalance(2e-4);
+      EXPECT_LT(fine, 2e-5);
+      EXPECT_GT(std::log2(coarse / fine) / 2, 1.6) << coarse << ' ' << fine;
+    }
+}
+
 TEST(DpDroplet, ConservesEnergyWithoutDragToSecondOrder) {
   const ObstacleArray wall(20, {{0.9, 0.05, 0.15}});
   const auto drift = [&](double dt) {

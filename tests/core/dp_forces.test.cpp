@@ -212,6 +212,89 @@ TEST_P(ContactLists, MissNothingWhileTheDropletMoves) {
   }
 }
 
+TEST(DpForces, VertexContactIsTheGradientOfItsEnergy) {
+  const ObstacleArray wall(20, {{0.62, 0.05, 0.15}, {-0.3, 0.5, 0.1}});
+  DpForces forces(only([](RunParameters& run) { run.dp.wall_contact = WallContact::vertex; }), wall);
+  const DropletState state = state_of(shaken(regular_polygon(64, 0.8), 0.003));
+  forces.update_contacts(state, {});
+  ASSERT_GT(forces.energy(state).wall, 0);
+  EXPECT_LT(force_error(forces, state), 1e-5);
+}
+
+/// A wedge whose tip, and one whose flank, presses into the droplet.
+ObstacleArray two_wedges(double radius) {
+  return ObstacleArray(20, {},
+                       {{.tip = {0.02, 0.47}, .axis = {0, 1}, .half_angle = 0.6, .radius = radius},
+                        {.tip = {0.4, -0.6}, .axis = {0.6, -0.8}, .half_angle = 1.3, .radius = radius}});
+}
+
+TEST(DpForces, WedgesPushWithTheGradientOfTheirEnergy) {
+  for (const double radius : {0.0, 0.05})
+    for (const WallContact contact : {WallContact::edge, WallContact::vertex}) {
+      const ObstacleArray wall = two_wedges(radius);
+      RunParameters run = only([](RunParameters&) {});
+      run.dp.wall_contact = contact;
+      DpForces forces(run, wall);
+      const DropletState state = state_of(shaken(regular_polygon(64, 0.8), 0.003));
+      forces.update_contacts(state, {});
+      ASSERT_GT(forces.energy(state).wall, 1e-3);
+      EXPECT_LT(force_error(forces, state), 1e-4) << "radius " << radius;
+    }
+}
+
+TEST(DpForces, WettedWallsPullWithTheGradientOfTheirEnergy) {
+  const ObstacleArray wall(20, {{0.69, 0.05, 0.15}}, {{.tip = {0, 0.52}, .axis = {0, 1}}});
+  RunParameters run = only([](RunParameters& r) { r.dp.line_tension = 1.3; });
+  run.dp.wall_tension = 0.2;
+  DpForces forces(run, wall);
+  const DropletState state = state_of(shaken(regular_polygon(64, 0.8), 0.003));
+  EXPECT_LT(force_error(forces, state), 1e-5);
+  const double dry = 1.3 * polygon_shape(state.position).perimeter;
+  EXPECT_LT(forces.energy(state).line_tension, dry - 0.01);
+}
+
+TEST(DpForces, SpringsAlongTheInterfaceChangeNeitherAreaNorAnEvenContour) {
+  RunParameters run = only([](RunParameters& r) {
+    r.dp.perimeter_stiffness = 0.7;
+    r.dp.perimeter_spring = PerimeterSpring::along;
+  });
+  const ObstacleArray nothing = no_obstacles();
+  DpForces forces(run, nothing);
+  forces.set_weight(0);
+  Eigen::ArrayXd force(128);
+  forces.evaluate(state_of(regular_polygon(64, 0.8)), force);
+  EXPECT_LT(force.abs().maxCoeff(), 1e-13);
+
+  const DropletState uneven = state_of(shaken(regular_polygon(64, 0.8), 0.01));
+  forces.evaluate(uneven, force);
+  EXPECT_GT(force.abs().maxCoeff(), 0.01);
+  // Every vertex alone moves along the chord of its neighbours.
+  for (int i = 0; i < 64; ++i) {
+    const int before = (i + 63) % 64, after = (i + 1) % 64;
+    const double chord_x = uneven.x()[after] - uneven.x()[before];
+    const double chord_y = uneven.y()[after] - uneven.y()[before];
+    EXPECT_NEAR(force[i] * chord_y - force[64 + i] * chord_x, 0, 1e-13);
+  }
+}
+
+TEST(DpForces, AreTheSameSixThousandDiametersDownstream) {
+  // The published coordinates would lose 13 of 16 digits of an edge there.
+  const ObstacleArray array = sample_obstacles({.gap = 0.2, .diameter = 0.3, .density = {}, .box = 25}, 3);
+  DpForces near(bare_parameters(256), array);
+  DpForces far(bare_parameters(256), array);
+  DropletState state = state_of(shaken(dumbbell(256, 0.006), 1e-4), 25);
+  state.frame.origin = {3, 7};
+  DropletState downstream = state;
+  downstream.frame.image = {240, -3};
+  Eigen::ArrayXd force(512), force_downstream(512);
+  near.update_contacts(state, {});
+  near.evaluate(state, force);
+  far.update_contacts(downstream, {});
+  far.evaluate(downstream, force_downstream);
+  EXPECT_NEAR(downstream.frame.global({0, 0})[0], 6003, 1e-9);
+  EXPECT_LE((force - force_downstream).abs().maxCoeff(), 1e-12 * force.abs().maxCoeff());
+}
+
 TEST(DpForces, AnObstacleBetweenTwoVerticesIsPushedOffByTheirEdge) {
   // A box whose lower edge spans an obstacle that touches no vertex.
   Eigen::ArrayXd position(32);

@@ -158,7 +158,8 @@ TEST(Lattice, LeadsToTheOtherSideInAMirror) {
   std::vector<Obstacle> mirrored = array.obstacles();
   for (Obstacle& obstacle : mirrored) obstacle.y = array.box() - obstacle.y;
   const RunResult result = result_of(run_in_array(run));
-  const RunResult mirror = result_of(run_in_array(run, std::make_shared<ObstacleArray>(array.box(), mirrored)));
+  const RunResult mirror =
+      result_of(run_in_array(run, std::make_shared<ObstacleArray>(array.box(), mirrored)));
   EXPECT_GT(result.lateral, 10);
   EXPECT_NEAR(mirror.lateral, -result.lateral, 1e-6);
   EXPECT_NEAR(mirror.distance, result.distance, 1e-6);

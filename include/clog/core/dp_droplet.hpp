@@ -41,6 +41,7 @@ class DpDroplet final : public Droplet {
   void step(double time_step);
   void measure_drag();
   kernel::CoupledDrag coupled_drag();
+  double power_loss();
   double drag_power();
 };
 

@@ -29,6 +29,8 @@ class DpForces {
   /// wall_distance().
   void evaluate(const DropletState& state, Eigen::ArrayXd& force);
   PotentialEnergy energy(const DropletState& state) const;
+  /// Work per time of the springs along the interface, which have no energy.
+  double spreading_power(const DropletState& state) const;
 
   /// Area and perimeter at the last evaluate().
   const PolygonShape& shape() const { return shape_; }

@@ -31,8 +31,8 @@ class Droplet {
 
   /// From now on adds up what the drag takes out, which costs a pass over the velocities per step.
   void measure_dissipation() { measures_dissipation_ = true; }
-  /// Energy lost to drag since measure_dissipation() [g rho sigma^3], by the trapezoidal rule: second order
-  /// in the time step, as the integrator.
+  /// Energy lost to drag since measure_dissipation() [g rho sigma^3], less the work of springs that have no
+  /// energy; by the trapezoidal rule: second order in the time step, as the integrator.
   double dissipated_energy() const { return dissipated_energy_; }
 
  protected:

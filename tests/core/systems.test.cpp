@@ -1,0 +1,227 @@
+#include "clog/core/systems.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <boost/math/tools/roots.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "clog/core/error.hpp"
+#include "clog/core/polygon.hpp"
+#include "clog/core/units.hpp"
+
+namespace clog {
+namespace {
+
+using std::numbers::pi;
+
+RunParameters parameters(double line_tension, int vertices = 256) {
+  RunParameters run;
+  run.dp.line_tension = line_tension;
+  run.dp.vertices = vertices;
+  run.max_time = 3000;
+  run.clog_energy = 1e-12;
+  return run;
+}
+
+DropletRun at_rest_on_a_wall(const RunParameters& run) {
+  DropletRun droplet = run_onto_wall(resolve(run));
+  while (!droplet.advance(100)) {
+  }
+  EXPECT_EQ(droplet.result().status, RunStatus::clogged);
+  return droplet;
+}
+
+/// A two-dimensional drop on a wall that it does not wet: Gamma dphi/ds = Gamma kappa_0 + z, z the depth
+/// below the apex, phi the slope's angle, from 0 at the apex to pi at the wall (Young-Laplace), by
+/// Runge-Kutta.
+struct SessileDrop {
+  double height = 0, area = 0, half_width = 0, depth_of_centroid = 0;
+};
+SessileDrop sessile_drop(double line_tension, double apex_curvature) {
+  using State = std::array<double, 5>;  // phi, x, z, area, moment of depth
+  const auto slope = [&](const State& y) {
+    const double dz = std::sin(y[0]);
+    return State{apex_curvature + y[2] / line_tension, std::cos(y[0]), dz, 2 * y[1] * dz,
+                 2 * y[1] * y[2] * dz};
+  };
+  const double step = 1e-4;
+  State y{};
+  SessileDrop drop;
+  while (y[0] < pi) {
+    const auto moved = [&](const State& k, double h) {
+      State z = y;
+      for (int i = 0; i < 5; ++i) z[i] += h * k[i];
+      return z;
+    };
+    const State k1 = slope(y), k2 = slope(moved(k1, step / 2)), k3 = slope(moved(k2, step / 2)),
+                k4 = slope(moved(k3, step));
+    for (int i = 0; i < 5; ++i) y[i] += step / 6 * (k1[i] + 2 * k2[i] + 2 * k3[i] + k4[i]);
+    drop.half_width = std::max(drop.half_width, y[1]);
+  }
+  drop.height = y[2];
+  drop.area = y[3];
+  drop.depth_of_centroid = y[4] / y[3];
+  return drop;
+}
+SessileDrop sessile_drop_of_rest_area(double line_tension) {
+  const auto excess = [&](double log_curvature) {
+    return sessile_drop(line_tension, std::exp(log_curvature)).area - units::rest_area;
+  };
+  const auto [low, high] = boost::math::tools::bisect(
+      excess, std::log(1e-4), std::log(2.5), [](double a, double b) { return std::abs(a - b) < 1e-9; });
+  return sessile_drop(line_tension, std::exp((low + high) / 2));
+}
+
+class OnAWall : public testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(Tensions, OnAWall, testing::Values(0.05, 0.2, 1.0));
+
+TEST_P(OnAWall, ADropletHasTheShapeOfYoungAndLaplace) {
+  const DropletRun run = at_rest_on_a_wall(parameters(GetParam()));
+  const Eigen::ArrayXd& position = run.droplet().state().position;
+  const auto x = position.head(256);
+  const auto y = position.tail(256);
+  const SessileDrop exact = sessile_drop_of_rest_area(GetParam());
+  EXPECT_NEAR(x.maxCoeff() - x.minCoeff(), exact.height, 0.003);
+  EXPECT_NEAR((y.maxCoeff() - y.minCoeff()) / 2, exact.half_width, 0.003);
+  const double centroid = area_centroid(position)[0];
+  EXPECT_NEAR(centroid - x.minCoeff(), exact.depth_of_centroid, 0.003);
+  // The sag: the centroid was half a diameter above the wall.
+  const double sag = run.displacement_of(area_centroid(position))[0];
+  EXPECT_NEAR(sag, 0.5 - (exact.height - exact.depth_of_centroid), 0.003);
+}
+
+TEST(OnAWall, TheProfileIsThatOfYoungAndLaplaceFromTopToBottom) {
+  // The interface's curvature grows with depth as z/Gamma: slope angle and depth belong together,
+  // Gamma (1 - cos phi) = Gamma kappa_0 z + z^2/2.
+  const double line_tension = 0.1;
+  const DropletRun run = at_rest_on_a_wall(parameters(line_tension, 512));
+  const Eigen::ArrayXd& position = run.droplet().state().position;
+  const SessileDrop exact = sessile_drop_of_rest_area(line_tension);
+  const double kappa_0 = (2 - exact.height * exact.height / (2 * line_tension)) / exact.height;
+  const double apex = position.head(512).minCoeff();
+  double worst = 0;
+  for (int i = 0; i < 512; ++i) {
+    const int next = (i + 1) % 512;
+    const double z = (position[i] + position[next]) / 2 - apex;
+    if (z > 0.98 * exact.height) continue;  // lies on the wall
+    const double ex = position[next] - position[i];
+    const double ey = position[512 + next] - position[512 + i];
+    const double cosine = std::abs(ey) / std::hypot(ex, ey);
+    const double expected = std::abs(1 - kappa_0 * z - z * z / (2 * line_tension));
+    worst = std::max(worst, std::abs(cosine - expected));
+  }
+  EXPECT_LT(worst, 0.02);
+}
+
+TEST(OnAWall, ASoftDiskSagsAsItsSpringSays) {
+  // M g = (4 E_w/sigma^2) sag: sag = pi/(16 E_w).
+  for (const double stiffness : {0.5, 1.0, 10.0}) {
+    RunParameters run = parameters(1);
+    run.model = Model::sp;
+    run.wall_stiffness = stiffness;
+    EXPECT_NEAR(at_rest_on_a_wall(run).result().distance, pi / (16 * stiffness), 1e-6);
+  }
+}
+
+TEST(OnAWall, SagHasItsStiffAndItsSoftLimit) {
+  // A puddle is 2 sqrt(Gamma) thick; a stiff droplet does not sag.
+  const DropletRun soft = at_rest_on_a_wall(parameters(0.005));
+  const auto x = soft.droplet().state().x();
+  EXPECT_NEAR((x.maxCoeff() - x.minCoeff()) / (2 * std::sqrt(0.005)), 1, 0.05);
+  const DropletRun stiff = at_rest_on_a_wall(parameters(10));
+  EXPECT_LT(stiff.displacement_of(area_centroid(stiff.droplet().state().position))[0], 0.015);
+}
+
+TEST(OnAWall, AWettedWallIsMetAtYoungsAngle) {
+  // Nearly without weight the droplet is a segment of a circle with contact angle theta, cos theta =
+  // -wall-tension: height R (1 - cos theta), area R^2 (theta - sin theta cos theta).
+  for (const double wall_tension : {0.7, 0.5, 0.3}) {
+    RunParameters run = parameters(5, 128);
+    run.dp.wall_tension = wall_tension;
+    run.drag.terminal_speed = 0.1;
+    run.max_time = 40;
+    DropletRun droplet = run_onto_wall(resolve(run));
+    while (!droplet.advance(100)) {
+    }
+    EXPECT_LT(droplet.kinetic_energy_ratio(), 1e-4);
+    const auto x = droplet.droplet().state().x();
+    const double theta = std::acos(-wall_tension);
+    const double radius = std::sqrt(units::rest_area / (theta - std::sin(theta) * std::cos(theta)));
+    EXPECT_NEAR((x.maxCoeff() - x.minCoeff()) / (radius * (1 - std::cos(theta))), 1, 0.05) << wall_tension;
+  }
+}
+
+/// Two caps of equal area on a chord.
+double shape_of_two_caps(double chord) {
+  const auto excess = [&](double theta) {
+    const double radius = chord / (2 * std::sin(theta));
+    return 2 * radius * radius * (theta - std::sin(theta) * std::cos(theta)) - units::rest_area;
+  };
+  const auto [low, high] = boost::math::tools::bisect(
+      excess, 0.1, pi - 0.1, [](double a, double b) { return std::abs(a - b) < 1e-12; });
+  const double theta = (low + high) / 2;
+  return PolygonShape{.area = units::rest_area, .perimeter = 4 * theta * chord / (2 * std::sin(theta))}
+      .shape_parameter();
+}
+
+double largest_shape_parameter(RunParameters run, double orifice) {
+  run.drag.terminal_speed = 0.02;
+  DropletRun droplet =
+      run_in_channel(resolve(run), {.orifice = orifice, .tip_radius = 0, .start = -0.8, .end = 0.6});
+  double largest = 0;
+  while (!droplet.advance(1)) largest = std::max(largest, droplet.droplet().shape().shape_parameter());
+  EXPECT_EQ(droplet.result().status, RunStatus::passed);
+  return largest;
+}
+
+TEST(InAChannel, TwoCapsAreOneCircleOnAWideChordAndTwoOnANarrowOne) {
+  EXPECT_NEAR(shape_of_two_caps(1 - 1e-9), 1, 1e-6);
+  EXPECT_NEAR(shape_of_two_caps(1e-3), 2, 1e-2);
+  // R = 0.39773, theta = 2.06544 by hand.
+  EXPECT_NEAR(shape_of_two_caps(0.7), 1.09366, 1e-5);
+}
+
+TEST(InAChannel, ADropletThatPassesSlowlyIsTwoCapsOnTheTips) {
+  // The tips are felt half a vertex diameter ahead.
+  for (const auto& [orifice, line_tension] : {std::pair{0.7, 1.0}, {0.9, 1.7}}) {
+    const double chord = orifice - units::regular_edge_length(256);
+    const double exact = shape_of_two_caps(chord);
+    EXPECT_NEAR(largest_shape_parameter(parameters(line_tension), orifice) / exact, 1, 0.002) << orifice;
+  }
+}
+
+TEST(InAChannel, TheShapeConvergesAsVerticesGrowMany) {
+  // To the caps on the whole orifice, as the vertex diameter vanishes.
+  const double coarse = largest_shape_parameter(parameters(0.8, 128), 0.7);
+  const double fine = largest_shape_parameter(parameters(0.8, 384), 0.7);
+  const double exact = shape_of_two_caps(0.7);
+  EXPECT_LT(std::abs(fine - exact), 0.5 * std::abs(coarse - exact));
+}
+
+TEST(InAChannel, TheLiteralContactLetsTheTipSinkIn) {
+  RunParameters run = parameters(1.0);
+  run.dp.wall_contact = WallContact::vertex;
+  const double chord = 0.7 - units::regular_edge_length(256);
+  EXPECT_LT(largest_shape_parameter(run, 0.7), shape_of_two_caps(chord) - 0.005);
+}
+
+TEST(InAChannel, RefusesWhatCannotBe) {
+  const RunParameters run = resolve(parameters(1));
+  for (const ChannelParameters& channel :
+       {ChannelParameters{.orifice = 0.02}, ChannelParameters{.orifice = std::nan("")},
+        ChannelParameters{.wedge_angle = 0}, ChannelParameters{.tip_radius = -1},
+        ChannelParameters{.start = -0.2}, ChannelParameters{.start = 1}, ChannelParameters{.end = -11}})
+    EXPECT_THROW(run_in_channel(run, channel), Error);
+}
+
+TEST(FreeDroplet, IsInEquilibrium) {
+  const RunParameters run = resolve(parameters(10));
+  const double area = polygon_shape(free_droplet(run)).area;
+  // K_a (a_0 - a) = Gamma/R.
+  EXPECT_NEAR(run.dp.area_stiffness * (units::rest_area - area), 10 / std::sqrt(area / pi), 1e-2);
+}
+
+}  // namespace
+}  // namespace clog
