@@ -113,8 +113,8 @@ void resolve_dp(RunParameters& run) {
   if (!dp.perimeter_stiffness) dp.perimeter_stiffness = automatic_perimeter_stiffness(run);
   require_not_negative("perimeter-stiffness", *dp.perimeter_stiffness);
   require(
-      dp.wall_tension >= -0.9 && dp.wall_tension <= 1, "wall-tension", dp.wall_tension,
-      "minus the cosine of the contact angle, so -1 would spread the droplet over every wall) use -0.9..1");
+      dp.wall_tension >= 0.1 && dp.wall_tension <= 1, "wall-tension", dp.wall_tension,
+      "minus the cosine of the contact angle; with less the interface on a wall would buckle) use 0.1..1");
 
   if (dp.perimeter_spring == PerimeterSpring::along && dp.gravity == Gravity::vertex)
     throw Error(

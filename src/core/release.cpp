@@ -81,8 +81,10 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
   // vertices that run together make the interface too stiff for any step. Springs with a tension of their own
   // begin to act with the run.
   RunParameters growing = run;
-  growing.dp.perimeter_spring = PerimeterSpring::along;
-  growing.dp.perimeter_stiffness = 0.3;
+  if (run.dp.perimeter_spring != PerimeterSpring::along) {
+    growing.dp.perimeter_spring = PerimeterSpring::along;
+    growing.dp.perimeter_stiffness = automatic_perimeter_stiffness(growing);
+  }
   DpForces forces(growing, obstacles);
   forces.set_weight(0);
   const double vertex_weight = units::droplet_mass * units::gravity / n;

@@ -51,6 +51,12 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"clog-energy=0.1", [](auto& run) { run.clog_energy = 0.1; }},
         Refusal{"terminal-speed=0", [](auto& run) { run.drag.terminal_speed = 0; }},
         Refusal{"near-wall-drag=-1", [](auto& run) { run.drag.near_wall = -1; }},
+        Refusal{"near-wall-exponent=-1", [](auto& run) { run.drag.near_wall_exponent = -1; }},
+        Refusal{"relative-drag=-1", [](auto& run) { run.drag.relative = -1; }},
+        Refusal{"wall-tension=-1", [](auto& run) { run.dp.wall_tension = -1; }},
+        Refusal{"perimeter-stiffness-ratio=-1", [](auto& run) { run.dp.perimeter_stiffness_ratio = -1; }},
+        Refusal{"perimeter-spring=along contradicts gravity=vertex",
+                [](auto& run) { run.dp.gravity = Gravity::vertex; }},
         Refusal{"line-tension=-0.1", [](auto& run) { run.dp.line_tension = -0.1; }},
         Refusal{"line-tension=nan",
                 [](auto& run) { run.dp.line_tension = std::numeric_limits<double>::quiet_NaN(); }},
@@ -98,10 +104,15 @@ TEST(Resolve, FillsInTheStiffestStableContact) {
 
 TEST(Resolve, FillsInThePerimeterSpring) {
   RunParameters run;
-  run.dp.line_tension = 3;
+  run.dp.line_tension = 2;
+  EXPECT_DOUBLE_EQ(*resolve(run).dp.perimeter_stiffness, 0.01 / 0.03);
+  run.dp.perimeter_spring = PerimeterSpring::mean;
   EXPECT_EQ(*resolve(run).dp.perimeter_stiffness, 1.0);
   run.dp.perimeter_spring = PerimeterSpring::rest;
-  EXPECT_DOUBLE_EQ(*resolve(run).dp.perimeter_stiffness, 3e-3);
+  run.dp.gravity = Gravity::vertex;
+  EXPECT_DOUBLE_EQ(*resolve(run).dp.perimeter_stiffness, 2e-3);
+  run.dp.perimeter_stiffness_ratio = 0.1;
+  EXPECT_DOUBLE_EQ(*resolve(run).dp.perimeter_stiffness, 0.2);
 }
 
 TEST(Resolve, TakesTheStepItProposes) {

@@ -102,6 +102,44 @@ class Run(ProgramTest):
         self.assertGreater(row.distance, 1.4)
         self.assertLess(row.distance, 2)
 
+    def test_a_channel_run_writes_h_speed_shape_and_polygons(self):
+        self.succeed(
+            "clogrun", "channel", "vertices=128", "line-tension=0.3", "terminal-speed=0.08", "--orifice", 0.7,
+            "--start", -1.5, "--end", 1, "--sample-interval", 0.1, "--polygon-interval", 1, "--output", "run.h5",
+        )
+        samples = pandas.read_hdf(self.folder / "run.h5", "trajectory")
+        self.assertEqual(samples.h[0], -1.5)
+        self.assertGreaterEqual(samples.h.iloc[-1], 1)
+        self.assertAlmostEqual(samples.speed_ratio.iloc[-1], 1, places=2)
+        self.assertLess(samples.speed_ratio[samples.h.between(-0.4, 0)].min(), 0.7)
+        self.assertGreater(samples.shape_parameter.max(), 1.07)
+        self.assertAlmostEqual(samples.shape_parameter[0], 1, places=3)
+        energies = ["kinetic", "dissipated", "gravity", "line_tension", "area", "spring", "wall", "self_contact"]
+        total = sum(samples[f"{name}_energy"] for name in energies)
+        self.assertLess(np.ptp(total), 0.01 * np.ptp(samples.gravity_energy))
+        row = pandas.read_hdf(self.folder / "run.h5", "runs").iloc[0]
+        self.assertEqual((row.status, row.obstacle_filling, row.preset), ("passed", "channel", "robust"))
+        with h5py.File(self.folder / "run.h5", "r") as file:
+            self.assertEqual(file["wedges"].shape, (2, 6))
+            self.assertEqual(file["polygons"].shape[1:], (2, 128))
+            self.assertEqual(file.attrs["orifice"], b"0.7")
+
+    def test_sag_prints_how_far_the_droplet_sinks(self):
+        done = self.succeed("clogrun", "sag", "model=sp", "wall-stiffness=1,4")
+        lines = done.stdout.splitlines()
+        self.assertTrue(lines[0].startswith("model,line_tension,wall_stiffness,sag,top_sag"))
+        for line, stiffness in zip(lines[1:], (1, 4), strict=True):
+            self.assertAlmostEqual(float(line.split(",")[3]), np.pi / (16 * stiffness), places=5)
+            self.assertEqual(line.split(",")[-1], "at_rest")
+
+    def test_presets_are_shown_and_stored(self):
+        shown = self.succeed("clogsweep", "--print-config", "preset=literal", "gravity=area").stdout
+        for line in ("preset = literal", "perimeter-spring = rest", "wall-contact = vertex", "gravity = area"):
+            self.assertIn(line, shown)
+        self.succeed("clogrun", "array", "vertices=64", "box=20", "preset=literal", "max-time=1", "--output", "run.h5")
+        row = pandas.read_hdf(self.folder / "run.h5", "runs").iloc[0]
+        self.assertEqual((row.preset, row.wall_contact, row.self_contact), ("literal", "vertex", "off"))
+
     def test_ctrl_c_writes_what_there_is(self):
         process = subprocess.Popen(
             [str(BIN / "clogrun"), "array", "vertices=64", "box=20", "obstacle-gap=1.2", "--output", "run.h5"],
@@ -133,6 +171,14 @@ class Run(ProgramTest):
             ([*out], ["missing system", "clogrun array"]),
             (["channell", *out], ["channell"]),
             (["array"], ["missing --output"]),
+            (["channel", "--output", "r.h5", "--orifice", "0.02"], ["--orifice=0.02", "two vertex diameters"]),
+            (["channel", "--output", "r.h5", "--orifice", "wide"], ["--orifice=wide"]),
+            (["channel", "--output", "r.h5", "--start", "0"], ["--start=0", "upstream"]),
+            (["channel", *out], ["--box", "no meaning"]),
+            (["array", "--orifice", "0.7", *out], ["--orifice", "no meaning"]),
+            (["sag", "--seed", "3"], ["--seed", "no meaning"]),
+            (["sag", "line-tension=nan"], ["line-tension=nan"]),
+            (["array", "gravity=vertex", *out], ["perimeter-spring=along contradicts gravity=vertex"]),
             (["array", "line-tension=1,2", *out], ["2 runs", "clogrun does one"]),
             (["array", "--output", "no/such/folder/r.h5"], ["no/such/folder"]),
             (["array", "--write-obstacles", "words.csv", *out], ["words.csv", "will not overwrite"]),

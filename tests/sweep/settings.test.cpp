@@ -63,5 +63,32 @@ TEST(Settings, RefuseWhatTheyCannotRead) {
   EXPECT_NE(refusal("seeds", "5000000000").find("out of range"), std::string::npos);
 }
 
+TEST(Settings, APresetSetsTheKeysThatWereNotGiven) {
+  Settings settings;
+  settings.set("gravity", "area");
+  settings.set("preset", "literal");
+  EXPECT_EQ(settings.text("perimeter-spring"), "rest");
+  EXPECT_EQ(settings.text("wall-contact"), "vertex");
+  EXPECT_EQ(settings.text("self-contact"), "off");
+  EXPECT_EQ(settings.text("gravity"), "area") << "given by hand before the preset";
+  settings.set("wall-contact", "edge");
+  settings.set("preset", "elastic");
+  EXPECT_EQ(settings.text("wall-contact"), "edge");
+  EXPECT_EQ(settings.text("perimeter-stiffness-ratio"), "0.1");
+  EXPECT_EQ(Settings::from_config(settings.to_config(true)).to_config(false), settings.to_config(false));
+}
+
+TEST(PresetName, IsFoundFromTheValuesUsed) {
+  for (const char* name : {"robust", "elastic", "literal"}) {
+    Settings settings;
+    settings.set("preset", name);
+    RunParameters run;
+    for (const Key& key : keys()) key.apply(run, settings.values(key.name).front());
+    EXPECT_EQ(preset_name(resolve(run)), name);
+    run.dp.self_contact = run.dp.self_contact == SelfContact::on ? SelfContact::off : SelfContact::on;
+    EXPECT_EQ(preset_name(resolve(run)), "custom");
+  }
+}
+
 }  // namespace
 }  // namespace clog::sweep
