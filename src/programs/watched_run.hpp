@@ -68,9 +68,17 @@ int clogrun_sag(cli::CommandLine& line);
 RunParameters single_run(const sweep::Settings& settings);
 
 /// Keys and options that describe an obstacle array.
-inline constexpr std::initializer_list<const char*> array_options = {
-    "obstacle-gap", "obstacle-diameter", "obstacle-density", "seeds", "seed",
-    "box",          "obstacles",         "write-obstacles"};
+inline constexpr std::initializer_list<const char*> array_options = {"obstacle-gap",
+                                                                     "obstacle-diameter",
+                                                                     "obstacle-diameter-spread",
+                                                                     "obstacle-density",
+                                                                     "obstacle-layout",
+                                                                     "lattice-angle",
+                                                                     "seeds",
+                                                                     "seed",
+                                                                     "box",
+                                                                     "obstacles",
+                                                                     "write-obstacles"};
 /// The row of a run elsewhere: its array columns are NaN, `obstacle_filling` names the place.
 sweep::RunRow without_array(sweep::RunRow row, const char* place);
 

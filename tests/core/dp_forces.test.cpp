@@ -293,6 +293,17 @@ TEST(DpForces, AreTheSameSixThousandDiametersDownstream) {
   far.evaluate(downstream, force_downstream);
   EXPECT_NEAR(downstream.frame.global({0, 0})[0], 6003, 1e-9);
   EXPECT_LE((force - force_downstream).abs().maxCoeff(), 1e-12 * force.abs().maxCoeff());
+
+  // The same droplet in coordinates that go on for ever.
+  const ObstacleArray nothing = no_obstacles(8000);
+  DpForces here(bare_parameters(256), nothing), there(bare_parameters(256), nothing);
+  DropletState literal = state_of(state.position, 8000);
+  here.update_contacts(literal, {});
+  here.evaluate(literal, force);
+  literal.x() += 6000;
+  there.update_contacts(literal, {});
+  there.evaluate(literal, force_downstream);
+  EXPECT_GT((force - force_downstream).abs().maxCoeff(), 1e-11 * force.abs().maxCoeff());
 }
 
 TEST(DpForces, AnObstacleBetweenTwoVerticesIsPushedOffByTheirEdge) {

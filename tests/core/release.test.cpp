@@ -1,4 +1,5 @@
 #include "clog/core/release.hpp"
+#include "clog/core/fire.hpp"
 
 #include <gtest/gtest.h>
 
@@ -82,6 +83,28 @@ TEST(Release, LeavesASoftDiskWithoutForce) {
     forces.evaluate(state, force);
     EXPECT_LE(force.abs().maxCoeff(), 1.01 * release_force_tolerance * units::droplet_mass);
   }
+}
+
+TEST(Release, TheLiteralPlacementEnclosesObstacles) {
+  // A full-sized polygon put at the box's centre and relaxed does not feel what lies inside it.
+  int num_runs_with_obstacles_inside = 0;
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    const RunParameters run = test::bare_parameters(64);
+    const ObstacleArray array =
+        sample_obstacles({.gap = 0.4, .diameter = 0.3, .density = {}, .box = 20}, seed);
+    DropletState state = test::state_of(regular_polygon(64, units::rest_area));
+    state.frame.origin = {10, 10};
+    DpForces forces(run, array);
+    forces.set_weight(0);
+    const FireOptions options{.mass = units::droplet_mass / 64,
+                              .largest_step = 5e-4,
+                              .force_tolerance = 1e-6,
+                              .max_iterations = 20000,
+                              .max_move = 1e-3};
+    minimize_fire(forces, state, options);
+    if (num_enclosed(state, array) > 0) ++num_runs_with_obstacles_inside;
+  }
+  EXPECT_GT(num_runs_with_obstacles_inside, 2);
 }
 
 }  // namespace

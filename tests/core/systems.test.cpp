@@ -134,6 +134,34 @@ TEST(OnAWall, SagHasItsStiffAndItsSoftLimit) {
   EXPECT_LT(stiff.displacement_of(area_centroid(stiff.droplet().state().position))[0], 0.015);
 }
 
+/// Longest over shortest edge.
+double edge_ratio(const DropletState& state) {
+  double longest = 0, shortest = 1e9;
+  for (Eigen::Index i = 0, j = state.size() - 1; i < state.size(); j = i++) {
+    const double length = std::hypot(state.x()[i] - state.x()[j], state.y()[i] - state.y()[j]);
+    longest = std::max(longest, length);
+    shortest = std::min(shortest, length);
+  }
+  return longest / shortest;
+}
+
+TEST(OnAWall, VerticesStayEvenlySpreadWhereThoseOfTheLiteralModelSlideDown) {
+  RunParameters run = parameters(1.0);
+  run.max_time = 60;
+  const auto ratio_after = [](const RunParameters& parameters) {
+    DropletRun droplet = run_onto_wall(resolve(parameters));
+    while (!droplet.advance(100)) {
+    }
+    return edge_ratio(droplet.droplet().state());
+  };
+  EXPECT_LT(ratio_after(run), 1.05);
+  run.dp.perimeter_spring = PerimeterSpring::rest;
+  run.dp.gravity = Gravity::vertex;
+  run.dp.self_contact = SelfContact::off;
+  run.dp.wall_contact = WallContact::vertex;
+  EXPECT_GT(ratio_after(run), 5);
+}
+
 TEST(OnAWall, AWettedWallIsMetAtYoungsAngle) {
   // Nearly without weight the droplet is a segment of a circle with contact angle theta, cos theta =
   // -wall-tension: height R (1 - cos theta), area R^2 (theta - sin theta cos theta).

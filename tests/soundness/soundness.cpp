@@ -20,10 +20,10 @@
 
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
-#include "clog/core/systems.hpp"
 #include "clog/core/dp_forces.hpp"
 #include "clog/core/error.hpp"
 #include "clog/core/release.hpp"
+#include "clog/core/systems.hpp"
 #include "clog/core/units.hpp"
 #include "clog/sweep/plan.hpp"
 #include "ending.hpp"
