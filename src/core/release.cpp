@@ -125,7 +125,7 @@ DropletState release_sp(const RunParameters& run, const ObstacleArray& obstacles
       std::sqrt(contact_stiffness(*run.wall_stiffness, units::droplet_diameter) / units::droplet_mass);
   const FireOptions options{.mass = units::droplet_mass,
                             .largest_step = 0.2 / omega,
-                            .force_tolerance = release_force_tolerance * weight,
+                            .force_tolerance = soft_disk_release_tolerance * weight,
                             .max_iterations = 100000,
                             .max_move = 0.01};
   if (!minimize_fire(forces, state, options).converged)

@@ -21,8 +21,9 @@ double clearance(const ObstacleArray& obstacles, double x, double y, double limi
 /// Number of obstacles whose centre lies inside the polygon.
 int num_enclosed(const DropletState& state, const ObstacleArray& obstacles);
 
-/// Largest force component, without weight and springs, that a released droplet may be left with, relative to
-/// the weight of one vertex (DP) or of the disk (SP).
+/// Largest force component, without weight and springs, that a released polygon may be left with, relative to
+/// the weight of one vertex; and a soft disk, relative to its weight.
 inline constexpr double release_force_tolerance = 1e-2;
+inline constexpr double soft_disk_release_tolerance = 1e-4;
 
 }  // namespace clog
