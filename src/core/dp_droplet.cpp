@@ -103,6 +103,15 @@ void DpDroplet::advance(int num_steps) {
   }
 }
 
+Eigen::Array2d DpDroplet::centre() const {
+  return run_.dp.gravity == Gravity::area ? area_centroid(state_.position) : state_.centre();
+}
+
+Eigen::Array2d DpDroplet::centre_velocity() const {
+  return run_.dp.gravity == Gravity::area ? area_centroid_velocity(state_.position, state_.velocity)
+                                          : state_.mean_velocity();
+}
+
 double DpDroplet::kinetic_energy() const { return 0.5 * vertex_mass_ * state_.velocity.square().sum(); }
 
 }  // namespace clog

@@ -33,7 +33,7 @@ DropletRun::DropletRun(const RunParameters& run, std::shared_ptr<const ObstacleA
       obstacles_(std::move(obstacles)),
       droplet_(make_droplet(run_, *obstacles_, std::move(initial))),
       start_frame_(droplet_->state().frame),
-      start_(droplet_->state().centre()),
+      start_(droplet_->centre()),
       end_(end),
       max_steps_(std::max<std::int64_t>(1, std::llround(run_.max_time / run_.time_step))),
       first_quiet_time_(relaxation_times_before_a_clog * run_.drag.terminal_speed / units::gravity) {}

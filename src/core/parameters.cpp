@@ -178,7 +178,7 @@ double automatic_perimeter_stiffness(const RunParameters& run) {
     case PerimeterSpring::mean:
       return 1;
     case PerimeterSpring::along:
-      return 0.01 / run.drag.terminal_speed;
+      return 0.003 / run.drag.terminal_speed;
   }
   return 0;
 }

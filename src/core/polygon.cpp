@@ -113,4 +113,27 @@ Eigen::Array2d area_centroid(const Eigen::ArrayXd& position) {
   return moment / (3 * twice_area);
 }
 
+// The quotient rule on the sums of area_centroid().
+Eigen::Array2d area_centroid_velocity(const Eigen::ArrayXd& position, const Eigen::ArrayXd& velocity) {
+  const Eigen::Index n = position.size() / 2;
+  const auto at = [n](const Eigen::ArrayXd& points, Eigen::Index i) {
+    return Eigen::Array2d(points[i], points[n + i]);
+  };
+  const auto cross = [](const Eigen::Array2d& a, const Eigen::Array2d& b) {
+    return a[0] * b[1] - a[1] * b[0];
+  };
+  const Eigen::Array2d centroid = area_centroid(position);
+  double twice_area = 0;
+  Eigen::Array2d change{0, 0};
+  for (Eigen::Index i = 0, j = n - 1; i < n; j = i++) {
+    const Eigen::Array2d a = at(position, j), b = at(position, i);
+    const Eigen::Array2d va = at(velocity, j), vb = at(velocity, i);
+    const double sector = cross(a, b);
+    const double sector_rate = cross(va, b) + cross(a, vb);
+    twice_area += sector;
+    change += sector_rate * (a + b - 3 * centroid) + sector * (va + vb);
+  }
+  return change / (3 * twice_area);
+}
+
 }  // namespace clog

@@ -77,14 +77,16 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
   state.x() += place[0] - state.frame.origin[0];
   state.y() += place[1] - state.frame.origin[1];
 
-  // Vertices are kept evenly spread whatever the run's springs are: those may be too weak for that, and
-  // vertices that run together make the interface too stiff for any step. Springs with a tension of their own
-  // begin to act with the run.
+  // The droplet grows with every contact, and its vertices are kept evenly spread, whatever its own interface
+  // is: vertices that run together make the interface too stiff for any step, and obstacles slip between
+  // those that are far apart. Springs along the interface have no energy, so they must be gentle for the
+  // minimiser; under a large tension they must not be, since contact then pulls vertices together at the
+  // corners of a squeezed droplet.
   RunParameters growing = run;
-  if (run.dp.perimeter_spring != PerimeterSpring::along) {
-    growing.dp.perimeter_spring = PerimeterSpring::along;
-    growing.dp.perimeter_stiffness = automatic_perimeter_stiffness(growing);
-  }
+  growing.dp.perimeter_spring = PerimeterSpring::along;
+  growing.dp.perimeter_stiffness = 0.01 + 0.03 * run.dp.line_tension;
+  growing.dp.wall_contact = WallContact::edge;
+  growing.dp.self_contact = SelfContact::on;
   DpForces forces(growing, obstacles);
   forces.set_weight(0);
   const double vertex_weight = units::droplet_mass * units::gravity / n;
@@ -99,14 +101,24 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
     if (state.recentre().any()) forces.forget_contacts();
   }
 
-  FireOptions last = fire_options(growing, polygon_shape(state.position).perimeter);
-  last.force_tolerance = release_force_tolerance * vertex_weight;
-  last.max_iterations = 50000;
-  FireOptions longer = last;
+  FireOptions options = fire_options(growing, polygon_shape(state.position).perimeter);
+  options.force_tolerance = release_force_tolerance * vertex_weight;
+  options.max_iterations = 100000;
+  FireOptions longer = options;
   longer.max_iterations = 500000;
-  constexpr double damping_rate = 30;  // [1/t0]
-  if (!minimize_fire(forces, state, last).converged && !settle(forces, state, longer, damping_rate).converged)
-    refuse_release("the grown droplet does not come to rest", "a larger line-tension");
+  constexpr double damping_rate = 3;  // near that of the softest modes [1/t0]
+  bool rests = minimize_fire(forces, state, options).converged ||
+               settle(forces, state, longer, damping_rate).converged;
+  // Then with its own interface; only springs with a tension of their own begin to act with the run.
+  RunParameters own = run;
+  if (own.dp.perimeter_spring != PerimeterSpring::along) {
+    own.dp.perimeter_spring = growing.dp.perimeter_spring;
+    own.dp.perimeter_stiffness = growing.dp.perimeter_stiffness;
+  }
+  DpForces own_forces(own, obstacles);
+  own_forces.set_weight(0);
+  rests = rests && settle(own_forces, state, longer, damping_rate).converged;
+  if (!rests) refuse_release("the grown droplet does not come to rest", "a larger line-tension");
   if (num_enclosed(state, obstacles) > 0)
     refuse_release("the grown droplet encloses an obstacle", "more vertices");
   return state;
@@ -125,7 +137,7 @@ DropletState release_sp(const RunParameters& run, const ObstacleArray& obstacles
       std::sqrt(contact_stiffness(*run.wall_stiffness, units::droplet_diameter) / units::droplet_mass);
   const FireOptions options{.mass = units::droplet_mass,
                             .largest_step = 0.2 / omega,
-                            .force_tolerance = soft_disk_release_tolerance * weight,
+                            .force_tolerance = release_force_tolerance * weight,
                             .max_iterations = 100000,
                             .max_move = 0.01};
   if (!minimize_fire(forces, state, options).converged)

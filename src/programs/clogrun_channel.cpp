@@ -25,7 +25,7 @@ int clogrun_channel(cli::CommandLine& line) {
       "h", "distance of the centre of mass from the orifice, positive downstream [sigma]",
       [start = channel.start](const DropletRun& now) { return start + now.displacement()[0]; });
   watched.add_column("speed_ratio", "v_g/v_t", [](const DropletRun& now) {
-    return now.droplet().state().mean_velocity()[0] / now.parameters().drag.terminal_speed;
+    return now.droplet().centre_velocity()[0] / now.parameters().drag.terminal_speed;
   });
   cli::catch_stop_signals();
   watched.follow();

@@ -57,12 +57,14 @@ WatchedRun::WatchedRun(DropletRun run, Intervals intervals) : run_(std::move(run
 void WatchedRun::add_common_columns() {
   using Run = const DropletRun&;
   add_column("time", "[t0]", [](Run run) { return run.time(); });
-  add_column("distance", "displacement of the centre of mass along the flow since release [sigma]",
+  add_column("distance",
+             "displacement of the centre of mass (of the area with gravity=area, else of the vertices) along "
+             "the flow since release [sigma]",
              [](Run run) { return run.displacement()[0]; });
   add_column("lateral_displacement", "displacement across the flow [sigma]",
              [](Run run) { return run.displacement()[1]; });
   add_column("speed", "of the centre of mass along the flow [sqrt(sigma g)]",
-             [](Run run) { return run.droplet().state().mean_velocity()[0]; });
+             [](Run run) { return run.droplet().centre_velocity()[0]; });
   add_column("kinetic_energy_ratio", "E_k/E_t", [](Run run) { return run.kinetic_energy_ratio(); });
   add_column("area", "[sigma^2]", [](Run run) { return run.droplet().shape().area; });
   add_column("perimeter", "[sigma]", [](Run run) { return run.droplet().shape().perimeter; });

@@ -10,9 +10,23 @@ namespace {
 
 constexpr std::int64_t largest_sweep = 100'000'000;
 
+/// A key that another one leaves without effect was given for nothing.
+void refuse_contradictions(const Settings& settings) {
+  const std::string ratio = "perimeter-stiffness-ratio";
+  if (!settings.is_given(ratio) || settings.text(ratio) == find_key(ratio).default_text) return;
+  if (settings.text("perimeter-spring") != "rest")
+    throw Error("invalid " + ratio + "=" + settings.text(ratio) +
+                " (it belongs to perimeter-spring=rest, not to " + settings.text("perimeter-spring") +
+                ") give perimeter-stiffness, or add perimeter-spring=rest");
+  if (settings.text("perimeter-stiffness") != "auto")
+    throw Error("invalid " + ratio + "=" + settings.text(ratio) + " (perimeter-stiffness=" +
+                settings.text("perimeter-stiffness") + " is given as well) leave one of them out");
+}
+
 }  // namespace
 
 Plan::Plan(const Settings& settings) {
+  refuse_contradictions(settings);
   const bool soft_disk = settings.values("model").front() == "sp";
   for (const Key& key : keys()) {
     const std::vector<std::string>& values = settings.values(key.name);

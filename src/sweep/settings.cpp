@@ -40,11 +40,11 @@ std::vector<Key> make_keys() {
        }},
       {"preset",
        word,
-       {"robust", "elastic", "literal"},
+       {"robust", "heavy-interface", "elastic", "literal"},
        "robust",
-       "sets the keys of the interface together, those given by hand excepted: robust, elastic (rest springs "
-       "of a "
-       "tenth of the tension), literal (the published equations)",
+       "sets the keys of the interface together, those given by hand excepted: robust, heavy-interface (its "
+       "vertices carry the weight; shows the published trends), elastic (rest springs of a tenth of the "
+       "tension), literal (the published equations)",
        true,
        [](RunParameters&, const std::string&) {}},  // Settings::set does it
       {"line-tension",
@@ -193,7 +193,7 @@ std::vector<Key> make_keys() {
        number,
        {"auto"},
        "auto",
-       "K_l [g rho sigma]; auto: ratio times Gamma for rest, 1 for mean, 0.01/V_t for along",
+       "K_l [g rho sigma]; auto: ratio times Gamma for rest, 1 for mean, 0.003/V_t for along",
        true,
        [](RunParameters& run, const std::string& value) {
          run.dp.perimeter_stiffness = number_or_auto(value);
@@ -265,6 +265,13 @@ const std::vector<Preset>& presets() {
         {"wall-contact", "edge"},
         {"self-contact", "on"},
         {"gravity", "area"}}},
+      {"heavy-interface",
+       {{"perimeter-spring", "mean"},
+        {"perimeter-stiffness", "auto"},
+        {"perimeter-stiffness-ratio", "0.001"},
+        {"wall-contact", "edge"},
+        {"self-contact", "on"},
+        {"gravity", "vertex"}}},
       {"elastic",
        {{"perimeter-spring", "rest"},
         {"perimeter-stiffness", "auto"},

@@ -105,7 +105,7 @@ TEST(Resolve, FillsInTheStiffestStableContact) {
 TEST(Resolve, FillsInThePerimeterSpring) {
   RunParameters run;
   run.dp.line_tension = 2;
-  EXPECT_DOUBLE_EQ(*resolve(run).dp.perimeter_stiffness, 0.01 / 0.03);
+  EXPECT_DOUBLE_EQ(*resolve(run).dp.perimeter_stiffness, 0.003 / 0.03);
   run.dp.perimeter_spring = PerimeterSpring::mean;
   EXPECT_EQ(*resolve(run).dp.perimeter_stiffness, 1.0);
   run.dp.perimeter_spring = PerimeterSpring::rest;
@@ -120,6 +120,7 @@ TEST(Resolve, TakesTheStepItProposes) {
     RunParameters run;
     run.wall_stiffness = stiffness;
     run.dp.vertices = 1024;
+    run.dp.line_tension = 10;
     std::string message;
     try {
       resolve(run);

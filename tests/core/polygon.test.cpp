@@ -53,6 +53,21 @@ TEST(Polygon, ARectangleIsMeasuredExactly) {
   EXPECT_DOUBLE_EQ(area_centroid(position)[1], 3);
 }
 
+TEST(Polygon, TheCentroidsVelocityIsItsRateOfChange) {
+  Eigen::ArrayXd position = regular_polygon(20, units::rest_area);
+  Eigen::ArrayXd velocity(position.size());
+  for (Eigen::Index i = 0; i < position.size(); ++i) {
+    position[i] += 0.1 * std::sin(3.7 * static_cast<double>(i)) + 0.4;
+    velocity[i] = std::cos(1.3 * static_cast<double>(i));
+  }
+  const double dt = 1e-5;
+  const Eigen::Array2d change =
+      (area_centroid(position + dt * velocity) - area_centroid(position - dt * velocity)) / (2 * dt);
+  const Eigen::Array2d rate = area_centroid_velocity(position, velocity);
+  EXPECT_NEAR(rate[0], change[0], 1e-8);
+  EXPECT_NEAR(rate[1], change[1], 1e-8);
+}
+
 TEST(DistanceToSegment, IsThatOfTheNearestPoint) {
   EXPECT_DOUBLE_EQ(distance_to_segment({1, 2}, {0, 0}, {3, 0}), 2);
   EXPECT_DOUBLE_EQ(distance_to_segment({-3, 4}, {0, 0}, {3, 0}), 5);

@@ -81,7 +81,7 @@ TEST(Release, LeavesASoftDiskWithoutForce) {
     forces.update_contacts(state, {});
     Eigen::ArrayXd force(2);
     forces.evaluate(state, force);
-    EXPECT_LE(force.abs().maxCoeff(), 1.01 * soft_disk_release_tolerance * units::droplet_mass);
+    EXPECT_LE(force.abs().maxCoeff(), 1.01 * release_force_tolerance * units::droplet_mass);
   }
 }
 

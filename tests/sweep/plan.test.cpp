@@ -47,5 +47,15 @@ TEST(Plan, RefusesListsThatASoftDiskWouldIgnore) {
   }
 }
 
+TEST(Plan, RefusesKeysThatAnotherLeavesWithoutEffect) {
+  EXPECT_THROW(Plan(settings_of({{"perimeter-stiffness-ratio", "0.2"}})), Error);
+  EXPECT_THROW(Plan(settings_of({{"preset", "elastic"},
+                                 {"perimeter-stiffness-ratio", "0.2"},
+                                 {"perimeter-stiffness", "0.3"}})),
+               Error);
+  EXPECT_NO_THROW(Plan(settings_of({{"preset", "elastic"}, {"perimeter-stiffness-ratio", "0.2"}})));
+  EXPECT_NO_THROW(Plan(settings_of({{"preset", "elastic"}, {"perimeter-stiffness", "0.3"}})));
+}
+
 }  // namespace
 }  // namespace clog::sweep

@@ -79,7 +79,7 @@ TEST(Settings, APresetSetsTheKeysThatWereNotGiven) {
 }
 
 TEST(PresetName, IsFoundFromTheValuesUsed) {
-  for (const char* name : {"robust", "elastic", "literal"}) {
+  for (const char* name : {"robust", "heavy-interface", "elastic", "literal"}) {
     Settings settings;
     settings.set("preset", name);
     RunParameters run;

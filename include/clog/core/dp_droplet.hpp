@@ -23,6 +23,8 @@ class DpDroplet final : public Droplet {
 
   void advance(int num_steps) override;
   double kinetic_energy() const override;
+  Eigen::Array2d centre() const override;
+  Eigen::Array2d centre_velocity() const override;
   PolygonShape shape() const override { return polygon_shape(state_.position); }
   PotentialEnergy potential_energy() const override { return forces_.energy(state_); }
   const DpForces& forces() const { return forces_; }

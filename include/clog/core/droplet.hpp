@@ -26,6 +26,10 @@ class Droplet {
   virtual double kinetic_energy() const = 0;
   /// Its gravity term is measured from the frame's origin.
   virtual PotentialEnergy potential_energy() const = 0;
+  /// Centre of mass: of the area where the weight acts on it, otherwise the vertices' mean [sigma], local.
+  virtual Eigen::Array2d centre() const { return state_.centre(); }
+  /// [sqrt(sigma g)]
+  virtual Eigen::Array2d centre_velocity() const { return state_.mean_velocity(); }
   /// Area, perimeter; those of the undeformed disk for the soft disk.
   virtual PolygonShape shape() const = 0;
 

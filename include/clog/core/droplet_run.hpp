@@ -52,7 +52,7 @@ class DropletRun {
   RunResult result() const;
   double time() const { return static_cast<double>(steps_done_) * run_.time_step; }
   /// Along and across the flow since release [sigma].
-  Eigen::Array2d displacement() const { return displacement_of(droplet_->state().centre()); }
+  Eigen::Array2d displacement() const { return displacement_of(droplet_->centre()); }
   /// Of a point in the droplet's frame from the place of release [sigma].
   Eigen::Array2d displacement_of(const Eigen::Array2d& local) const {
     return droplet_->state().frame.displacement(local, start_frame_, start_);

@@ -38,5 +38,7 @@ double distance_to_segment(const Eigen::Array2d& point, const Eigen::Array2d& be
 
 /// Area centroid [sigma].
 Eigen::Array2d area_centroid(const Eigen::ArrayXd& position);
+/// Its rate of change when the vertices move with these velocities.
+Eigen::Array2d area_centroid_velocity(const Eigen::ArrayXd& position, const Eigen::ArrayXd& velocity);
 
 }  // namespace clog

@@ -21,9 +21,8 @@ double clearance(const ObstacleArray& obstacles, double x, double y, double limi
 /// Number of obstacles whose centre lies inside the polygon.
 int num_enclosed(const DropletState& state, const ObstacleArray& obstacles);
 
-/// Largest force component, without weight and springs, that a released polygon may be left with, relative to
-/// the weight of one vertex; and a soft disk, relative to its weight.
-inline constexpr double release_force_tolerance = 1e-2;
-inline constexpr double soft_disk_release_tolerance = 1e-4;
+/// Largest force component, without weight and springs, that a droplet may be released with: relative to the
+/// weight of one vertex (DP), to its own weight (SP).
+inline constexpr double release_force_tolerance = 1e-4;
 
 }  // namespace clog

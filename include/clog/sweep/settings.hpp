@@ -41,6 +41,8 @@ class Settings {
   /// A preset sets the keys that have not been given themselves, before or after it.
   /// @throws Error if there is no such key or its list cannot be read
   void set(const std::string& name, const std::string& text);
+  /// By set(), not by a preset or default.
+  bool is_given(const std::string& name) const { return given_.contains(name); }
   const std::string& text(const std::string& name) const { return texts_.at(name); }
   /// The expanded values of a key.
   const std::vector<std::string>& values(const std::string& name) const { return values_.at(name); }
