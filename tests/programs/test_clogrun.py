@@ -143,7 +143,7 @@ class Run(ProgramTest):
         shown = self.succeed("clogsweep", "--print-config", "preset=literal", "gravity=area").stdout
         for line in ("preset = literal", "perimeter-spring = rest", "wall-contact = vertex", "gravity = area"):
             self.assertIn(line, shown)
-        self.succeed("clogrun", "array", "vertices=64", "box=20", "preset=literal", "max-time=1", "--output", "run.h5")
+        self.succeed("clogrun", "array", "vertices=128", "box=20", "preset=literal", "max-time=1", "--output", "run.h5")
         row = pandas.read_hdf(self.folder / "run.h5", "runs").iloc[0]
         self.assertEqual((row.preset, row.wall_contact, row.self_contact), ("literal", "vertex", "off"))
 
