@@ -263,6 +263,26 @@ TEST(DpDroplet, SplitsTheStepWhenStretchedTooFarForIt) {
   EXPECT_TRUE(film.state().position.allFinite());
 }
 
+TEST(DpDroplet, BlowsUpWhenStretchedAndNotSplit) {
+  // The same film and step with the scheme as published.
+  RunParameters run = bare_parameters(256);
+  run.wall_stiffness = wall_stiffness(700, units::regular_edge_length(256));
+  const ObstacleArray nothing = no_obstacles();
+  DropletState state = state_of(ellipse(256, 9.5));
+  DpForces forces(run, nothing);
+  Eigen::ArrayXd force(2 * 256);
+  forces.update_contacts(state, {.absolute = 1, .relative = 1});
+  forces.evaluate(state, force);
+  const double half_dt_over_m = 0.5 * run.time_step / (units::droplet_mass / 256);
+  for (int step = 0; step < 64; ++step) {
+    state.velocity += half_dt_over_m * force;
+    state.position += run.time_step * state.velocity;
+    forces.evaluate(state, force);
+    state.velocity += half_dt_over_m * force;
+  }
+  EXPECT_FALSE(std::abs(polygon_shape(state.position).area - units::rest_area) < 0.4);
+}
+
 TEST(DpDroplet, IsSlowedByAWallAsTheDragLawSays) {
   // Far above an obstacle the slowdown follows from the mean of (sigma/d)^(4/3) over the vertices.
   RunParameters run = bare_parameters();

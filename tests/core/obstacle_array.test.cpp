@@ -65,6 +65,16 @@ TEST(SampleObstacles, ReachesAGivenDensityExactly) {
   EXPECT_EQ(array.obstacles().size(), 875u);
 }
 
+TEST(SampleObstacles, TheSmallestGapDoesNotFixTheDensity) {
+  // Two arrays that the published rule, all gaps wider than w_ob, admits alike, one ten times as dense.
+  const ObstacleParameters sparse{.gap = 0.2, .diameter = 0.3, .density = 0.25, .box = 40};
+  const ObstacleParameters saturated{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 40};
+  const ObstacleArray few = sample_obstacles(sparse, 1), many = sample_obstacles(saturated, 1);
+  EXPECT_GE(few.smallest_gap(), 0.2 - 1e-12);
+  EXPECT_GE(many.smallest_gap(), 0.2 - 1e-12);
+  EXPECT_GT(many.obstacles().size(), 10 * few.obstacles().size());
+}
+
 TEST(SampleObstacles, PlacesADilutedArrayUniformly) {
   // Counts in the four quarters of a box: chi-squared with 3 degrees of freedom, summed over 20 seeds, stays
   // below the 99.9 % quantile of 60 degrees, 99.6. (Repulsion only makes counts more even.)

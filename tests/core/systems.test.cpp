@@ -235,6 +235,52 @@ TEST(InAChannel, TheLiteralContactLetsTheTipSinkIn) {
   EXPECT_LT(largest_shape_parameter(run, 0.7), shape_of_two_caps(chord) - 0.005);
 }
 
+/// Largest Gamma whose two caps on a chord the weight can still push through: (M g)/max dP/dh over all pairs
+/// of caps of the droplet's area that flanks of 45 degrees admit, h the distance of the centroid.
+double largest_line_tension_that_passes(double chord) {
+  struct Cap {
+    double area, length, moment;  // moment: area times the centroid's distance from the chord
+  };
+  const auto cap = [chord](double theta) {
+    const double radius = chord / (2 * std::sin(theta));
+    const double area = radius * radius * (theta - std::sin(theta) * std::cos(theta));
+    return Cap{area, 2 * radius * theta,
+               2.0 / 3 * std::pow(radius * std::sin(theta), 3) - radius * std::cos(theta) * area};
+  };
+  const double widest = 3 * pi / 4;
+  const auto pair_of_caps = [&](double behind) {
+    const Cap back = cap(behind);
+    const auto missing = [&](double theta) { return cap(theta).area + back.area - units::rest_area; };
+    const auto [low, high] = boost::math::tools::bisect(
+        missing, 1e-4, widest, [](double a, double b) { return std::abs(a - b) < 1e-12; });
+    const Cap front = cap((low + high) / 2);
+    return std::pair((front.moment - back.moment) / units::rest_area, front.length + back.length);
+  };
+  double steepest = 0;
+  for (double theta = widest; theta > pi / 2; theta -= 1e-3) {
+    if (cap(theta).area >= units::rest_area) continue;
+    const auto [h, perimeter] = pair_of_caps(theta);
+    const auto [next_h, next_perimeter] = pair_of_caps(theta - 1e-4);
+    steepest = std::max(steepest, (next_perimeter - perimeter) / (next_h - h));
+  }
+  return units::droplet_mass * units::gravity / steepest;
+}
+
+TEST(InAChannel, ADropletPassesUpToTheLineTensionThatStaticsAllows) {
+  const double limit = largest_line_tension_that_passes(0.7 - units::regular_edge_length(128));
+  EXPECT_NEAR(limit, 1.039, 0.001);
+  for (const double part : {0.96, 1.04}) {
+    RunParameters run = parameters(part * limit, 128);
+    run.drag.terminal_speed = 0.1;
+    run.max_time = 150;
+    DropletRun droplet =
+        run_in_channel(resolve(run), {.orifice = 0.7, .tip_radius = 0, .start = -0.8, .end = 0.6});
+    while (!droplet.advance(100)) {
+    }
+    EXPECT_EQ(droplet.result().status == RunStatus::passed, part < 1) << part;
+  }
+}
+
 TEST(InAChannel, RefusesWhatCannotBe) {
   const RunParameters run = resolve(parameters(1));
   for (const ChannelParameters& channel :
