@@ -4,7 +4,7 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build git                          # to build
   libopenmpi-dev openmpi-bin                         # MPI
-  libhdf5-dev libeigen3-dev                          # the table of runs; arrays
+  libhdf5-dev libeigen3-dev libhwy-dev               # the table of runs; arrays; vector instructions
   libboost-dev libboost-program-options-dev          # random numbers and statistics; command line
   nlohmann-json3-dev                                 # clogfit --format json
   libgtest-dev libbenchmark-dev                      # tests and benchmarks

@@ -8,9 +8,8 @@
 #include "dp_kernel.hpp"
 
 namespace clog {
-namespace {
 
-kernel::WedgePlace place_in(const LocalFrame& frame, const Wedge& wedge) {
+kernel::WedgePlace kernel::place_in(const LocalFrame& frame, const Wedge& wedge) {
   const Eigen::Array2d centre = wedge.centre() - frame.origin - frame.image.cast<double>() * frame.box;
   return {.x = centre[0],
           .y = centre[1],
@@ -21,13 +20,11 @@ kernel::WedgePlace place_in(const LocalFrame& frame, const Wedge& wedge) {
           .sin = std::sin(wedge.half_angle)};
 }
 
-}  // namespace
-
 DpForces::DpForces(const RunParameters& run, const ObstacleArray& obstacles)
     : dp_(run.dp),
       obstacles_(&obstacles),
       vertex_diameter_(units::regular_edge_length(run.dp.vertices)),
-      contact_stiffness_(contact_stiffness(run.wall_stiffness.value(), vertex_diameter_)),
+      contact_stiffness_(clog::contact_stiffness(run.wall_stiffness.value(), vertex_diameter_)),
       weight_(units::droplet_mass * units::gravity),
       walls_(obstacles, vertex_diameter_ / 2,
              dp_.wall_contact == WallContact::edge ? WallContacts::Keep::touched_by_edge
@@ -55,8 +52,7 @@ void DpForces::update_contacts(const DropletState& state, const Travel& travel) 
   walls_.update(state, travel);
   if (wall_distance_.size() > 0) nearest_walls_.update(state, travel);
   if (wets()) adhesive_walls_.update(state, travel);
-  if (dp_.self_contact == SelfContact::on)
-    self_.update(state, travel, polygon_shape(state.position).perimeter / dp_.vertices);
+  if (dp_.self_contact == SelfContact::on) self_.update(state, travel);
 }
 
 void DpForces::forget_contacts() {
@@ -65,8 +61,18 @@ void DpForces::forget_contacts() {
   adhesive_walls_.invalidate();
 }
 
-double DpForces::spring_length() const {
-  return dp_.perimeter_spring == PerimeterSpring::rest ? rest_edge_ : shape_.perimeter / dp_.vertices;
+kernel::Interface DpForces::interface(double area, double perimeter) const {
+  const bool has_tension = dp_.perimeter_spring != PerimeterSpring::along;
+  kernel::Interface interface;
+  interface.line_tension = dp_.line_tension;
+  // The springs to the mean length are unloaded on average: their force needs no derivative of the mean.
+  interface.spring = has_tension ? *dp_.perimeter_stiffness * dp_.vertices : 0;
+  interface.spring_length =
+      dp_.perimeter_spring == PerimeterSpring::rest ? rest_edge_ : perimeter / dp_.vertices;
+  interface.spreading = has_tension ? 0 : *dp_.perimeter_stiffness * dp_.vertices;
+  interface.pressure = -dp_.area_stiffness * (area - rest_area_);
+  interface.vertex_weight = dp_.gravity == Gravity::vertex ? weight_ / dp_.vertices : 0;
+  return interface;
 }
 
 void DpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
@@ -79,20 +85,15 @@ void DpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   const kernel::EdgeArrays edges{edge_x_.data(), edge_y_.data(), edge_length_.data()};
   const kernel::Sums sums = kernel::measure_edges(n, x, y, edges);
   shape_ = {sums.area, sums.perimeter};
-  const bool has_tension = dp_.perimeter_spring != PerimeterSpring::along;
-  kernel::Interface interface;
-  interface.line_tension = dp_.line_tension;
-  // The springs to the mean length are unloaded on average: their force needs no derivative of the mean.
-  interface.spring = has_tension ? *dp_.perimeter_stiffness * n : 0;
-  interface.spring_length = spring_length();
-  interface.spreading = has_tension ? 0 : *dp_.perimeter_stiffness * n;
-  interface.pressure = -dp_.area_stiffness * (shape_.area - rest_area_);
-  interface.vertex_weight = dp_.gravity == Gravity::vertex ? weight_ / n : 0;
-  kernel::interface_forces(n, interface, edges, pull_.data(), fx, fy);
+  kernel::interface_forces(n, interface(shape_.area, shape_.perimeter), edges, pull_.data(), fx, fy);
   if (dp_.gravity == Gravity::area) {
+    // Tension and pressure add up to nothing; springs along the interface have no reaction on their
+    // neighbours, so they push off the liquid inside: the droplet as a whole feels no force from them.
+    const double spread_x = force.head(n).sum();
+    const double spread_y = force.tail(n).sum();
     const kernel::CentroidGradient gradient = kernel::centroid_gradient(n, centroid_gradient_.data());
     kernel::measure_centroid_gradient(n, x, y, edges, sums, gradient);
-    kernel::add_body_force(n, weight_, gradient, fx, fy);
+    kernel::add_body_force(n, weight_ - spread_x, -spread_y, gradient, fx, fy);
   }
 
   add_walls(state, force);
@@ -116,8 +117,8 @@ void DpForces::add_walls(const DropletState& state, Eigen::ArrayXd& force) {
       kernel::add_vertex_wall_forces(n, x, y, slot, walls_.range(), contact_stiffness_, fx, fy);
   }
   for (const Wedge& wedge : obstacles_->wedges())
-    kernel::add_wedge_forces(n, x, y, place_in(state.frame, wedge), walls_.range(), contact_stiffness_, fx,
-                             fy);
+    kernel::add_wedge_forces(n, x, y, kernel::place_in(state.frame, wedge), walls_.range(),
+                             contact_stiffness_, fx, fy);
 }
 
 void DpForces::measure_wall_distance(const DropletState& state) {
@@ -131,7 +132,7 @@ void DpForces::measure_wall_distance(const DropletState& state) {
         n, x, y, {nearest_walls_.slot_x(s), nearest_walls_.slot_y(s), nearest_walls_.slot_radius(s)},
         distance);
   for (const Wedge& wedge : obstacles_->wedges())
-    kernel::shrink_to_wedge_distance(n, x, y, place_in(state.frame, wedge), distance);
+    kernel::shrink_to_wedge_distance(n, x, y, kernel::place_in(state.frame, wedge), distance);
   wall_distance_ = wall_distance_.max(vertex_diameter_ / 2);
 }
 
@@ -151,7 +152,7 @@ DpForces::Wetted DpForces::wetted(const DropletState& state, int vertex) const {
     wetted.normal = away / r;
   }
   for (const Wedge& wedge : obstacles_->wedges()) {
-    const kernel::WedgePlace in_frame = place_in(state.frame, wedge);
+    const kernel::WedgePlace in_frame = kernel::place_in(state.frame, wedge);
     const auto [distance, normal] = distance_to(wedge, place - Eigen::Array2d(in_frame.x, in_frame.y));
     if (distance >= nearest) continue;
     nearest = distance;
@@ -168,16 +169,23 @@ DpForces::Wetted DpForces::wetted(const DropletState& state, int vertex) const {
 /// taken together.
 void DpForces::add_wetting(const DropletState& state, Eigen::ArrayXd& force) const {
   const int n = dp_.vertices;
+  const auto edge = [&](int i) {
+    const int end = i + 1 < n ? i + 1 : 0;
+    return Eigen::Array2d(state.position[end] - state.position[i],
+                          state.position[n + end] - state.position[n + i]);
+  };
   Wetted before = wetted(state, n - 1);
   for (int i = 0; i < n; ++i) {
     const int previous = i > 0 ? i - 1 : n - 1;
     const Wetted here = wetted(state, i);
-    const double pull = extra_tension() * (before.share + here.share) / 2 / edge_length_[previous];
-    force[previous] += pull * edge_x_[previous];
-    force[n + previous] += pull * edge_y_[previous];
-    force[i] -= pull * edge_x_[previous];
-    force[n + i] -= pull * edge_y_[previous];
-    const double push = -extra_tension() * here.slope * (edge_length_[previous] + edge_length_[i]) / 2;
+    const Eigen::Array2d along = edge(previous);
+    const double length = along.matrix().norm();
+    const double pull = extra_tension() * (before.share + here.share) / 2 / length;
+    force[previous] += pull * along[0];
+    force[n + previous] += pull * along[1];
+    force[i] -= pull * along[0];
+    force[n + i] -= pull * along[1];
+    const double push = -extra_tension() * here.slope * (length + edge(i).matrix().norm()) / 2;
     force[i] += push * here.normal[0];
     force[n + i] += push * here.normal[1];
     before = here;
@@ -218,7 +226,7 @@ void DpForces::visit_overlaps(const DropletState& state, Visit visit) const {
       visit(walls_.range() - distance);
     }
   for (const Wedge& wedge : obstacles_->wedges()) {
-    const kernel::WedgePlace place = place_in(state.frame, wedge);
+    const kernel::WedgePlace place = kernel::place_in(state.frame, wedge);
     for (int i = 0; i < n; ++i)
       visit(walls_.range() - distance_to(wedge, vertex(i) - Eigen::Array2d(place.x, place.y)).distance);
   }
@@ -235,7 +243,12 @@ double DpForces::spreading_power(const DropletState& state) const {
   kernel::Interface interface {};
   interface.spreading = *dp_.perimeter_stiffness * n;
   kernel::interface_forces(n, interface, edges, pull.data(), force.data(), force.data() + n);
-  return (force * state.velocity).sum();
+  double power = (force * state.velocity).sum();
+  if (dp_.gravity == Gravity::area) {
+    const Eigen::Array2d reaction{-force.head(n).sum(), -force.tail(n).sum()};
+    power += (reaction * area_centroid_velocity(state.position, state.velocity)).sum();
+  }
+  return power;
 }
 
 double DpForces::deepest_overlap(const DropletState& state) const {

@@ -1,6 +1,5 @@
 #include "dp_kernel.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -74,14 +73,16 @@ void measure_centroid_gradient(int n, const double* __restrict x, const double* 
 }
 
 CLOG_MULTIVERSION
-void add_body_force(int n, double force, CentroidGradient gradient, double* __restrict fx,
+void add_body_force(int n, double force_x, double force_y, CentroidGradient gradient, double* __restrict fx,
                     double* __restrict fy) {
   const double* __restrict xx = gradient.xx;
   const double* __restrict xy = gradient.xy;
+  const double* __restrict yx = gradient.yx;
+  const double* __restrict yy = gradient.yy;
 #pragma omp simd
   for (int i = 0; i < n; ++i) {
-    fx[i] += force * xx[i];
-    fy[i] += force * xy[i];
+    fx[i] += force_x * xx[i] + force_y * yx[i];
+    fy[i] += force_x * xy[i] + force_y * yy[i];
   }
 }
 
@@ -214,114 +215,6 @@ void shrink_to_wall_distance(int n, const double* __restrict x, const double* __
     const double dx = x[i] - slot.x[i];
     const double dy = y[i] - slot.y[i];
     distance[i] = std::min(distance[i], std::sqrt(dx * dx + dy * dy) - slot.radius[i]);
-  }
-}
-
-CLOG_MULTIVERSION
-void kick_and_drift(int n, double damping, double half_dt_over_m, double dt, const double* __restrict f,
-                    double* __restrict v, double* __restrict x) {
-#pragma omp simd
-  for (int i = 0; i < n; ++i) {
-    v[i] = v[i] * (1 - damping) + f[i] * half_dt_over_m;
-    x[i] += dt * v[i];
-  }
-}
-
-CLOG_MULTIVERSION
-void kick(int n, double damping, double half_dt_over_m, const double* __restrict f, double* __restrict v) {
-  const double shrink = 1 / (1 + damping);
-#pragma omp simd
-  for (int i = 0; i < n; ++i) v[i] = (v[i] + f[i] * half_dt_over_m) * shrink;
-}
-
-CLOG_MULTIVERSION
-Drift measure_drift(int n, const double* __restrict vx, const double* __restrict vy,
-                    CentroidGradient gradient) {
-  const double* __restrict xx = gradient.xx;
-  const double* __restrict xy = gradient.xy;
-  const double* __restrict yx = gradient.yx;
-  const double* __restrict yy = gradient.yy;
-  double mean_x = 0, mean_y = 0, area_x = 0, area_y = 0;
-#pragma omp simd reduction(+ : mean_x, mean_y, area_x, area_y)
-  for (int i = 0; i < n; ++i) {
-    mean_x += vx[i];
-    mean_y += vy[i];
-    area_x += xx[i] * vx[i] + xy[i] * vy[i];
-    area_y += yx[i] * vx[i] + yy[i] * vy[i];
-  }
-  return {mean_x / n, mean_y / n, area_x, area_y};
-}
-
-CLOG_MULTIVERSION
-void kick_and_drift(int n, const CoupledDrag& drag, const Drift& drift, double half_dt_over_m, double dt,
-                    const double* __restrict fx, const double* __restrict fy, double* __restrict vx,
-                    double* __restrict vy, double* __restrict x, double* __restrict y) {
-  const double* __restrict rate = drag.rate;
-  const double* __restrict xx = drag.gradient.xx;
-  const double* __restrict xy = drag.gradient.xy;
-  const double* __restrict yx = drag.gradient.yx;
-  const double* __restrict yy = drag.gradient.yy;
-  const double mean = 0.5 * dt * drag.relative_rate;
-  const double area = 0.5 * dt * drag.area_rate * n;
-  const double mean_x = mean * drift.mean_x, mean_y = mean * drift.mean_y;
-  const double area_x = area * drift.area_x, area_y = area * drift.area_y;
-#pragma omp simd
-  for (int i = 0; i < n; ++i) {
-    const double keep = 1 - 0.5 * dt * rate[i];
-    vx[i] = vx[i] * keep + mean_x - area_x * xx[i] - area_y * yx[i] + fx[i] * half_dt_over_m;
-    vy[i] = vy[i] * keep + mean_y - area_x * xy[i] - area_y * yy[i] + fy[i] * half_dt_over_m;
-    x[i] += dt * vx[i];
-    y[i] += dt * vy[i];
-  }
-}
-
-// With s_i = 1/(1 + dt/2 rate_i) and w_i the velocity kicked by the force alone,
-//   v_i = s_i (w_i + e V - b G_i^T V_a),  V = mean v_i,  V_a = sum G_i v_i:
-// four linear equations for V and V_a. They are implicit because the area's part is stiff for a drawn-out
-// droplet, b sum |G_i|^2 growing with the square of its length and perimeter.
-CLOG_MULTIVERSION
-void kick(int n, const CoupledDrag& drag, double half_dt_over_m, double dt, const double* __restrict fx,
-          const double* __restrict fy, double* __restrict vx, double* __restrict vy) {
-  const double* __restrict rate = drag.rate;
-  const double* __restrict xx = drag.gradient.xx;
-  const double* __restrict xy = drag.gradient.xy;
-  const double* __restrict yx = drag.gradient.yx;
-  const double* __restrict yy = drag.gradient.yy;
-  double s = 0, w_x = 0, w_y = 0, g_xx = 0, g_xy = 0, g_yx = 0, g_yy = 0;
-  double gw_x = 0, gw_y = 0, gg_xx = 0, gg_xy = 0, gg_yy = 0;
-#pragma omp simd reduction(+ : s, w_x, w_y, g_xx, g_xy, g_yx, g_yy, gw_x, gw_y, gg_xx, gg_xy, gg_yy)
-  for (int i = 0; i < n; ++i) {
-    const double shrink = 1 / (1 + 0.5 * dt * rate[i]);
-    vx[i] = (vx[i] + fx[i] * half_dt_over_m) * shrink;
-    vy[i] = (vy[i] + fy[i] * half_dt_over_m) * shrink;
-    s += shrink;
-    w_x += vx[i];
-    w_y += vy[i];
-    g_xx += shrink * xx[i];
-    g_xy += shrink * xy[i];
-    g_yx += shrink * yx[i];
-    g_yy += shrink * yy[i];
-    gw_x += xx[i] * vx[i] + xy[i] * vy[i];
-    gw_y += yx[i] * vx[i] + yy[i] * vy[i];
-    gg_xx += shrink * (xx[i] * xx[i] + xy[i] * xy[i]);
-    gg_xy += shrink * (xx[i] * yx[i] + xy[i] * yy[i]);
-    gg_yy += shrink * (yx[i] * yx[i] + yy[i] * yy[i]);
-  }
-  const double e = 0.5 * dt * drag.relative_rate;
-  const double b = 0.5 * dt * drag.area_rate * n;
-  Eigen::Matrix4d matrix;
-  matrix << 1 - e * s / n, 0, b * g_xx / n, b * g_yx / n,  //
-      0, 1 - e * s / n, b * g_xy / n, b * g_yy / n,        //
-      -e * g_xx, -e * g_xy, 1 + b * gg_xx, b * gg_xy,      //
-      -e * g_yx, -e * g_yy, b * gg_xy, 1 + b * gg_yy;
-  const Eigen::Vector4d drift = matrix.inverse() * Eigen::Vector4d(w_x / n, w_y / n, gw_x, gw_y);
-  const double mean_x = e * drift[0], mean_y = e * drift[1];
-  const double area_x = b * drift[2], area_y = b * drift[3];
-#pragma omp simd
-  for (int i = 0; i < n; ++i) {
-    const double shrink = 1 / (1 + 0.5 * dt * rate[i]);
-    vx[i] += shrink * (mean_x - area_x * xx[i] - area_y * yx[i]);
-    vy[i] += shrink * (mean_y - area_x * xy[i] - area_y * yy[i]);
   }
 }
 

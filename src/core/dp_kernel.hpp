@@ -1,5 +1,8 @@
 #pragma once
 
+#include "clog/core/droplet_state.hpp"
+#include "clog/core/wedge.hpp"
+
 /// The loops over vertices that a DP step consists of. Plain arrays of length n (one entry per vertex or
 /// edge), no branch, no allocation; each is compiled for several instruction sets and chosen when the program
 /// starts. Edge i joins vertices i and i + 1, the last one closes the contour.
@@ -33,8 +36,8 @@ inline CentroidGradient centroid_gradient(int n, double* four_arrays) {
 }
 void measure_centroid_gradient(int n, const double* x, const double* y, EdgeArrays edges, const Sums& sums,
                                CentroidGradient gradient);
-/// Adds a body force along +x.
-void add_body_force(int n, double force, CentroidGradient gradient, double* fx, double* fy);
+/// Adds a body force on the area.
+void add_body_force(int n, double force_x, double force_y, CentroidGradient gradient, double* fx, double* fy);
 
 struct Interface {
   double line_tension;   ///< gamma
@@ -68,6 +71,7 @@ struct WedgePlace {
   double axis_x, axis_y;
   double cos, sin;  ///< of the half angle
 };
+WedgePlace place_in(const LocalFrame& frame, const Wedge& wedge);
 /// The same with every vertex against a wedge's surface. Edges need not be tested: they meet a wedge's tip
 /// first, which is in a slot of its own, as a circle.
 void add_wedge_forces(int n, const double* x, const double* y, const WedgePlace& wedge, double range,
@@ -77,30 +81,5 @@ void shrink_to_wedge_distance(int n, const double* x, const double* y, const Wed
                               double* distance);
 /// distance[i] = min(distance[i], distance of vertex i to the slot's circle).
 void shrink_to_wall_distance(int n, const double* x, const double* y, WallSlot slot, double* distance);
-
-/// v (1 - damping) + f half_dt_over_m, then x + dt v, over n numbers; damping = zeta dt/(2m).
-void kick_and_drift(int n, double damping, double half_dt_over_m, double dt, const double* f, double* v,
-                    double* x);
-/// (v + f half_dt_over_m)/(1 + damping).
-void kick(int n, double damping, double half_dt_over_m, const double* f, double* v);
-/// Drag of a vertex i: m (-rate_i v_i + relative_rate V - area_rate N_v G_i^T V_a), V the vertices' mean
-/// velocity, V_a that of the area's centroid, G the centroid gradient. The last two terms couple all
-/// vertices.
-struct CoupledDrag {
-  const double* rate;    ///< [1/t0]
-  double relative_rate;  ///< [1/t0]
-  double area_rate;      ///< [1/t0]
-  CentroidGradient gradient;
-};
-struct Drift {
-  double mean_x, mean_y;
-  double area_x, area_y;
-};
-Drift measure_drift(int n, const double* vx, const double* vy, CentroidGradient gradient);
-/// The same two half kicks with this drag; `drift` is that of v.
-void kick_and_drift(int n, const CoupledDrag& drag, const Drift& drift, double half_dt_over_m, double dt,
-                    const double* fx, const double* fy, double* vx, double* vy, double* x, double* y);
-void kick(int n, const CoupledDrag& drag, double half_dt_over_m, double dt, const double* fx,
-          const double* fy, double* vx, double* vy);
 
 }  // namespace clog::kernel

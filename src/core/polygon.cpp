@@ -30,14 +30,17 @@ PolygonShape polygon_shape(const Eigen::ArrayXd& position) {
   const Eigen::Index n = position.size() / 2;
   const double* x = position.data();
   const double* y = x + n;
-  PolygonShape shape;
-  for (Eigen::Index i = 0, j = n - 1; i < n; j = i++) {
+  double perimeter = 0, area = 0;
+  const auto add_edge = [&](Eigen::Index i, Eigen::Index j) {
     const double ex = x[i] - x[j];
     const double ey = y[i] - y[j];
-    shape.perimeter += std::sqrt(ex * ex + ey * ey);
-    shape.area += 0.5 * (x[j] * ey - y[j] * ex);
-  }
-  return shape;
+    perimeter += std::sqrt(ex * ex + ey * ey);
+    area += 0.5 * (x[j] * ey - y[j] * ex);
+  };
+  add_edge(0, n - 1);
+#pragma omp simd reduction(+ : perimeter, area)
+  for (Eigen::Index i = 1; i < n; ++i) add_edge(i, i - 1);
+  return {.area = area, .perimeter = perimeter};
 }
 
 Eigen::ArrayXd regular_polygon(int num_vertices, double area) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "clog/core/polygon.hpp"
+
 namespace clog {
 namespace {
 
@@ -26,7 +28,7 @@ EdgeContact nearest_point(const SelfContacts::Pair& pair, const double* x, const
   return {std::sqrt(dx * dx + dy * dy), fraction, dx, dy};
 }
 
-void SelfContacts::update(const DropletState& state, const Travel& travel, double mean_edge) {
+void SelfContacts::update(const DropletState& state, const Travel& travel) {
   const Eigen::Index n = state.size();
   if (reference_.size() == 2 * n) {
     const Eigen::Array2d centre = state.centre();
@@ -37,10 +39,10 @@ void SelfContacts::update(const DropletState& state, const Travel& travel, doubl
   }
   // Thin enough that neighbours along a straight contour stay out of reach, unless the droplet moves very
   // fast.
-  rebuild(state, mean_edge, std::clamp(2 * travel.relative, 0.9 * diameter_, widest_skin));
+  rebuild(state, std::clamp(2 * travel.relative, 0.5 * diameter_, widest_skin));
 }
 
-void SelfContacts::rebuild(const DropletState& state, double mean_edge, double skin) {
+void SelfContacts::rebuild(const DropletState& state, double skin) {
   skin_ = skin;
   const int n = static_cast<int>(state.size());
   const double* x = state.position.data();
@@ -50,12 +52,14 @@ void SelfContacts::rebuild(const DropletState& state, double mean_edge, double s
   reference_.head(n) -= centre[0];
   reference_.tail(n) -= centre[1];
   pairs_.clear();
+  items_.clear();
   if (!reference_.allFinite()) return;  // a droplet that has diverged; the run will see it at its next check
 
   // The nearest point of an edge within reach lies within half an edge of one of its ends.
   double longest2 = 0;
   for (int i = 0, j = n - 1; i < n; j = i++)
     longest2 = std::max(longest2, (x[i] - x[j]) * (x[i] - x[j]) + (y[i] - y[j]) * (y[i] - y[j]));
+  const double mean_edge = polygon_shape(state.position).perimeter / n;
   const double reach = diameter_ + 2 * skin_;
   const double end_reach = reach + 0.5 * std::sqrt(longest2);
   const int exclusion = std::max(1, static_cast<int>(std::ceil(contour_exclusion * diameter_ / mean_edge)));
@@ -100,6 +104,17 @@ void SelfContacts::rebuild(const DropletState& state, double mean_edge, double s
     pairs_.erase(
         std::unique(begin, pairs_.end(), [](const Pair& a, const Pair& b) { return a.edge == b.edge; }),
         pairs_.end());
+  }
+  fill_items();
+}
+
+void SelfContacts::fill_items() {
+  items_.clear();
+  for (const Pair& pair : pairs_) {
+    const int group = pair.edge / WallContacts::edges_per_group;
+    if (items_.empty() || items_.back().vertex != pair.vertex || items_.back().group != group)
+      items_.push_back({pair.vertex, group, 0});
+    items_.back().edges |= static_cast<std::uint8_t>(1u << (pair.edge % WallContacts::edges_per_group));
   }
 }
 

@@ -68,6 +68,7 @@ void WallContacts::rebuild(const DropletState& state, double skin) {
   reference_ = state.position;
   num_points_ = state.size();
   num_slots_ = 0;
+  items_.clear();
   if (!reference_.allFinite()) return;  // a droplet that has diverged; the run will see it at its next check
   gather_nearby(state);
   const auto x = state.x();
@@ -92,9 +93,19 @@ void WallContacts::rebuild(const DropletState& state, double skin) {
     num_slots_ = std::max(num_slots_, static_cast<int>(candidates_[i].size()));
   }
 
+  fill_slots();
+  fill_items();
+  const auto [smallest, largest] =
+      std::minmax_element(nearby_.begin(), nearby_.end(),
+                          [](const Obstacle& a, const Obstacle& b) { return a.radius < b.radius; });
+  smallest_radius_ = nearby_.empty() ? 0 : smallest->radius;
+  largest_radius_ = nearby_.empty() ? 0 : largest->radius;
+}
+
+void WallContacts::fill_slots() {
   // Out of reach, yet finite: distances to it stay ordinary numbers.
   constexpr double nowhere = 1e8;
-  slots_.setZero(3 * num_slots_ * num_points_);
+  slots_.setZero(3 * num_slots_ * num_points_ + edges_per_group);  // whole vectors may be read at the end
   for (int s = 0; s < num_slots_; ++s)
     for (Eigen::Index i = 0; i < num_points_; ++i) {
       const bool used = s < static_cast<int>(candidates_[i].size());
@@ -103,6 +114,22 @@ void WallContacts::rebuild(const DropletState& state, double skin) {
       slots_[(3 * s + 1) * num_points_ + i] = obstacle.y;
       slots_[(3 * s + 2) * num_points_ + i] = obstacle.radius;
     }
+}
+
+void WallContacts::fill_items() {
+  items_.clear();
+  constexpr std::size_t none = -1;
+  std::vector<std::size_t> item_of(nearby_.size(), none);  // the latest of each circle
+  for (Eigen::Index i = 0; i < num_points_; ++i) {
+    const int group = static_cast<int>(i) / edges_per_group;
+    for (const int k : candidates_[i]) {
+      if (item_of[k] == none || items_[item_of[k]].group != group) {
+        item_of[k] = items_.size();
+        items_.push_back({nearby_[k].x, nearby_[k].y, nearby_[k].radius + range_, group, 0});
+      }
+      items_[item_of[k]].edges |= static_cast<std::uint8_t>(1u << (i % edges_per_group));
+    }
+  }
 }
 
 }  // namespace clog

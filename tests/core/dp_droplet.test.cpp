@@ -108,6 +108,25 @@ TEST(DpDroplet, WithAreaDragFallsRoundAtTheTerminalSpeed) {
               1e-9);
 }
 
+TEST(DpDroplet, FallsAtTheTerminalSpeedHoweverItsVerticesAreSpread) {
+  const ObstacleArray nothing = no_obstacles(200);
+  RunParameters run;
+  run.dp.vertices = 64;
+  run.dp.line_tension = 10;  // keeps it round
+  run = resolve(run);
+  for (const double crowding : {-0.3, 0.3}) {
+    DropletState state = state_of(regular_polygon(64, units::rest_area), 200);
+    for (int i = 0; i < 64; ++i) {
+      const double angle = 2 * std::numbers::pi * i / 64;
+      state.position[i] = 0.5 * std::cos(angle + crowding * std::sin(angle));
+      state.position[64 + i] = 0.5 * std::sin(angle + crowding * std::sin(angle));
+    }
+    DpDroplet droplet(run, nothing, state);
+    droplet.advance(500);  // the vertices take ten times as long to even out
+    EXPECT_NEAR(droplet.centre_velocity()[0] / run.drag.terminal_speed, 1, 0.01) << crowding;
+  }
+}
+
 TEST(DpDroplet, RelativeDragDampsChangesOfShapeOnly) {
   // A swinging ellipse loses energy faster; its fall is the same.
   const ObstacleArray nothing = no_obstacles();

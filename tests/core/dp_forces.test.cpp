@@ -119,6 +119,26 @@ TEST(DpForces, InternalForcesExertNoNetForceAndNoTorque) {
   EXPECT_NEAR((state.x() * force.tail(256) - state.y() * force.head(256)).sum() / scale, 0, 1e-13);
 }
 
+TEST(DpForces, SpringsAlongTheInterfaceDoNotPushTheDroplet) {
+  // Each vertex is pulled without a reaction on its neighbours; the liquid takes it.
+  const ObstacleArray nothing = no_obstacles();
+  RunParameters run;
+  run.dp.vertices = 64;
+  run.dp.perimeter_stiffness = 0.7;
+  DpForces forces(resolve(run), nothing);
+  DropletState state = state_of(regular_polygon(64, 0.8));
+  for (int i = 0; i < 64; ++i) {
+    // Vertices crowd on one side of an ellipse.
+    const double angle = 2 * std::numbers::pi * i / 64;
+    state.position[i] = 0.6 * std::cos(angle + 0.5 * std::sin(angle));
+    state.position[64 + i] = 0.4 * std::sin(angle + 0.5 * std::sin(angle));
+  }
+  Eigen::ArrayXd force(128);
+  forces.evaluate(state, force);
+  EXPECT_NEAR(force.head(64).sum(), units::droplet_mass * units::gravity, 1e-10);
+  EXPECT_NEAR(force.tail(64).sum(), 0, 1e-10);
+}
+
 TEST(DpForces, AMirroredDropletFeelsMirroredForces) {
   const int n = 256;
   const ObstacleArray wall(20, {{0.2, 0.3, 0.15}});
@@ -257,6 +277,7 @@ TEST(DpForces, SpringsAlongTheInterfaceChangeNeitherAreaNorAnEvenContour) {
   RunParameters run = only([](RunParameters& r) {
     r.dp.perimeter_stiffness = 0.7;
     r.dp.perimeter_spring = PerimeterSpring::along;
+    r.dp.gravity = Gravity::vertex;
   });
   const ObstacleArray nothing = no_obstacles();
   DpForces forces(run, nothing);

@@ -177,7 +177,7 @@ TEST(OnAWall, AWettedWallIsMetAtYoungsAngle) {
     const auto x = droplet.droplet().state().x();
     const double theta = std::acos(-wall_tension);
     const double radius = std::sqrt(units::rest_area / (theta - std::sin(theta) * std::cos(theta)));
-    EXPECT_NEAR((x.maxCoeff() - x.minCoeff()) / (radius * (1 - std::cos(theta))), 1, 0.05) << wall_tension;
+    EXPECT_NEAR((x.maxCoeff() - x.minCoeff()) / (radius * (1 - std::cos(theta))), 1, 0.06) << wall_tension;
   }
 }
 
@@ -197,7 +197,7 @@ double shape_of_two_caps(double chord) {
 double largest_shape_parameter(RunParameters run, double orifice) {
   run.drag.terminal_speed = 0.02;
   DropletRun droplet =
-      run_in_channel(resolve(run), {.orifice = orifice, .tip_radius = 0, .start = -0.8, .end = 0.6});
+      run_in_channel(resolve(run), {.orifice = orifice, .start = -0.8, .end = 0.6});
   double largest = 0;
   while (!droplet.advance(1)) largest = std::max(largest, droplet.droplet().shape().shape_parameter());
   EXPECT_EQ(droplet.result().status, RunStatus::passed);
@@ -230,6 +230,8 @@ TEST(InAChannel, TheShapeConvergesAsVerticesGrowMany) {
 
 TEST(InAChannel, TheLiteralContactLetsTheTipSinkIn) {
   RunParameters run = parameters(1.0);
+  run.dp.perimeter_spring = PerimeterSpring::rest;
+  run.dp.gravity = Gravity::vertex;
   run.dp.wall_contact = WallContact::vertex;
   const double chord = 0.7 - units::regular_edge_length(256);
   EXPECT_LT(largest_shape_parameter(run, 0.7), shape_of_two_caps(chord) - 0.005);
@@ -267,14 +269,13 @@ double largest_line_tension_that_passes(double chord) {
 }
 
 TEST(InAChannel, ADropletPassesUpToTheLineTensionThatStaticsAllows) {
-  const double limit = largest_line_tension_that_passes(0.7 - units::regular_edge_length(128));
-  EXPECT_NEAR(limit, 1.039, 0.001);
-  for (const double part : {0.96, 1.04}) {
-    RunParameters run = parameters(part * limit, 128);
+  const double limit = largest_line_tension_that_passes(0.7 - units::regular_edge_length(256));
+  EXPECT_NEAR(limit, 1.111, 0.001);
+  for (const double part : {0.95, 1.1}) {
+    RunParameters run = parameters(part * limit);
     run.drag.terminal_speed = 0.1;
     run.max_time = 150;
-    DropletRun droplet =
-        run_in_channel(resolve(run), {.orifice = 0.7, .tip_radius = 0, .start = -0.8, .end = 0.6});
+    DropletRun droplet = run_in_channel(resolve(run), {.orifice = 0.7, .start = -0.8, .end = 0.6});
     while (!droplet.advance(100)) {
     }
     EXPECT_EQ(droplet.result().status == RunStatus::passed, part < 1) << part;

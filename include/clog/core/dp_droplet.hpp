@@ -1,13 +1,13 @@
 #pragma once
 
+#include <memory>
+
 #include "clog/core/dp_forces.hpp"
 #include "clog/core/droplet.hpp"
 #include "clog/core/stability.hpp"
 
 namespace clog {
-namespace kernel {
-struct CoupledDrag;
-}
+class DpStepper;
 
 /// Deformable polygon, integrated by velocity Verlet with drag (Cheng et al., "Simulation Methods"):
 ///   v += dt/2 (F - zeta v)/m,  x += dt v,  v = (v + dt/2 F/m)/(1 + dt zeta/(2m)),
@@ -20,6 +20,8 @@ class DpDroplet final : public Droplet {
   /// @param obstacles  must outlive the droplet
   /// @param initial    vertices and velocities
   DpDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial);
+
+  ~DpDroplet() override;
 
   void advance(int num_steps) override;
   double kinetic_energy() const override;
@@ -35,16 +37,7 @@ class DpDroplet final : public Droplet {
   RunParameters run_;
   DpForces forces_;
   double vertex_mass_;
-  Eigen::ArrayXd force_;
-  double far_rate_;           // b_inf/M [1/t0]
-  bool is_coupled_;           // does the drag differ from vertex to vertex, or tie them together?
-  Eigen::ArrayXd drag_rate_;  // of every vertex on its own [1/t0]
-
-  void step(double time_step);
-  void measure_drag();
-  kernel::CoupledDrag coupled_drag();
-  double power_loss();
-  double drag_power();
+  std::unique_ptr<DpStepper> stepper_;
 };
 
 }  // namespace clog

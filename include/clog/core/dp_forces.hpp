@@ -11,6 +11,9 @@
 #include "clog/core/wall_contacts.hpp"
 
 namespace clog {
+namespace kernel {
+struct Interface;
+}
 
 /// Potential energy of a deformable polygon among obstacles and its negative gradient.
 /// Contacts act through lists: update_contacts() must have been called, and nothing have travelled farther
@@ -45,6 +48,17 @@ class DpForces {
 
   double vertex_diameter() const { return vertex_diameter_; }
 
+  /// For the integrator: the terms of the interface at this area and perimeter, and the contacts.
+  kernel::Interface interface(double area, double perimeter) const;
+  double contact_stiffness() const { return contact_stiffness_; }
+  const WallContacts& walls() const { return walls_; }
+  const WallContacts& nearest_walls() const { return nearest_walls_; }
+  const SelfContacts& self_contacts() const { return self_; }
+  const std::vector<Wedge>& wedges() const { return obstacles_->wedges(); }
+  /// Are walls wetted, so that the tension on them differs?
+  bool wets() const { return extra_tension() != 0; }
+  void add_wetting(const DropletState& state, Eigen::ArrayXd& force) const;
+
   /// For the release, where the droplet grows without weight.
   void set_rest_area(double area);
   void set_weight(double weight) { weight_ = weight; }
@@ -68,7 +82,6 @@ class DpForces {
   Eigen::ArrayXd edge_x_, edge_y_, edge_length_, pull_, centroid_gradient_, end_x_, end_y_;
   Eigen::ArrayXd wall_distance_;
 
-  double spring_length() const;
   /// A wall near a vertex, for wetting: how far the tension has changed to that of the wall, its derivative
   /// by the distance [1/sigma], and the direction away from the wall.
   struct Wetted {
@@ -78,10 +91,8 @@ class DpForces {
   };
   Wetted wetted(const DropletState& state, int vertex) const;
   double extra_tension() const { return (dp_.wall_tension - 1) * dp_.line_tension; }
-  bool wets() const { return extra_tension() != 0; }
   void add_walls(const DropletState& state, Eigen::ArrayXd& force);
   void measure_wall_distance(const DropletState& state);
-  void add_wetting(const DropletState& state, Eigen::ArrayXd& force) const;
   /// Calls visit(overlap) for every edge (vertex) and slot or wedge [sigma]; negative where they do not
   /// touch.
   template <class Visit>

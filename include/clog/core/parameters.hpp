@@ -79,7 +79,8 @@ RunParameters resolve(RunParameters parameters);
 
 /// K_l where none is given [g rho sigma]: a fraction of Gamma for springs to the rest length; 1 for those to
 /// the mean length; 0.003/V_t for those along the interface, which even out vertices at a rate of (2 pi)^2
-/// K_l V_t/M = 0.15/t0. Stiffer ones have been seen to flutter where the drag is weak, as they have no energy.
+/// K_l V_t/M = 0.15/t0. Stiffer ones have been seen to flutter where the drag is weak, as they have no
+/// energy.
 double automatic_perimeter_stiffness(const RunParameters& run);
 
 /// Contact stiffness k_c, force over overlap [g rho sigma], of the wall energy U_w = (E_w/2)(1 - 2d/size)^2:

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "clog/core/droplet_state.hpp"
+#include "clog/core/wall_contacts.hpp"
 
 namespace clog {
 
@@ -24,20 +26,29 @@ class SelfContacts {
   explicit SelfContacts(double diameter) : diameter_(diameter) {}
 
   /// Renews the pairs when the shape may change too much on the way to the next update.
-  /// @param mean_edge  mean edge length [sigma]
-  void update(const DropletState& state, const Travel& travel, double mean_edge);
+  void update(const DropletState& state, const Travel& travel);
   void invalidate() { reference_.resize(0); }
   const std::vector<Pair>& pairs() const { return pairs_; }
   double diameter() const { return diameter_; }
+
+  /// The same pairs by vertex: the edges of a group of WallContacts::edges_per_group are bits.
+  struct Item {
+    int vertex;
+    int group;
+    std::uint8_t edges;
+  };
+  const std::vector<Item>& items() const { return items_; }
 
  private:
   double diameter_;
   Eigen::ArrayXd reference_;  // positions relative to their mean when the pairs were made
   std::vector<Pair> pairs_;
+  std::vector<Item> items_;
   std::vector<int> head_, next_;  // vertices by cell
 
   double skin_ = 0;  // of the present pairs
-  void rebuild(const DropletState& state, double mean_edge, double skin);
+  void rebuild(const DropletState& state, double skin);
+  void fill_items();
 };
 
 /// Nearest point of an edge to a vertex.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "clog/core/droplet_state.hpp"
@@ -33,6 +34,19 @@ class WallContacts {
   const double* slot_y(int s) const { return slots_.data() + (3 * s + 1) * num_points_; }
   const double* slot_radius(int s) const { return slots_.data() + (3 * s + 2) * num_points_; }
   double range() const { return range_; }
+  /// Of the circles that the lists are made of.
+  bool radii_are_equal() const { return smallest_radius_ == largest_radius_; }
+  double largest_radius() const { return largest_radius_; }
+
+  /// The same lists by obstacle: circles that some edge (vertex) of a group of `edges_per_group` lists.
+  struct Item {
+    double x, y;   ///< centre, relative to the state's frame [sigma]
+    double reach;  ///< radius + range [sigma]
+    int group;
+    std::uint8_t edges;  ///< those that list it, as bits
+  };
+  static constexpr int edges_per_group = 8;
+  const std::vector<Item>& items() const { return items_; }
 
  private:
   const ObstacleArray* array_;
@@ -45,9 +59,13 @@ class WallContacts {
   Eigen::ArrayXd slots_;
   std::vector<Obstacle> nearby_;
   std::vector<std::vector<int>> candidates_;
+  std::vector<Item> items_;
+  double smallest_radius_ = 0, largest_radius_ = 0;
 
   void rebuild(const DropletState& state, double skin);
   void gather_nearby(const DropletState& state);
+  void fill_slots();
+  void fill_items();
 };
 
 }  // namespace clog

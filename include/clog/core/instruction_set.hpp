@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace clog {
+
+/// The instruction sets that the polygon's step was compiled for and this processor has, the widest first:
+/// of avx512, avx2, baseline. (On processors other than x86 the names are those of the Highway library.)
+std::vector<std::string> instruction_sets();
+/// The one that droplets made from now on use. Results of two sets differ by round-off.
+std::string instruction_set();
+/// Pins it; `auto` goes back to the widest. To be called before threads are made.
+/// @throws Error if this processor has no such set
+void use_instruction_set(const std::string& name);
+
+}  // namespace clog

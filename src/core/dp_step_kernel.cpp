@@ -1,0 +1,467 @@
+#include "dp_step_kernel.hpp"
+
+#include <utility>
+
+#include "clog/core/error.hpp"
+#include "clog/core/instruction_set.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/dp_step_kernel.cpp"
+// Three are enough: any processor, AVX2, AVX-512. (The others bring nothing to double precision.)
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+#include <hwy/foreach_target.h>
+// The targets' code follows.
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace clog::kernel::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<double, edges_per_group>;
+using V = hn::Vec<D>;
+using M = hn::Mask<D>;
+
+constexpr int lanes = static_cast<int>(MaxLanes(D()));
+
+inline V load(const double* p) { return hn::Load(D(), p); }
+inline V load_at(const double* p) { return hn::LoadU(D(), p); }
+inline void store(V v, double* p) { hn::Store(v, D(), p); }
+inline V all(double value) { return hn::Set(D(), value); }
+inline double sum(V v) { return hn::GetLane(hn::SumOfLanes(D(), v)); }
+
+/// 1/sqrt(v) and 1/v to the last bit or two.
+inline V inverse_sqrt(V v) {
+#if HWY_TARGET == HWY_AVX3
+  const V half = hn::Mul(all(0.5), v);
+  V guess{_mm512_rsqrt14_pd(v.raw)};
+  for (int i = 0; i < 2; ++i) guess = hn::Mul(guess, hn::NegMulAdd(half, hn::Mul(guess, guess), all(1.5)));
+  return guess;
+#else
+  return hn::Div(all(1), hn::Sqrt(v));
+#endif
+}
+inline V inverse(V v) {
+#if HWY_TARGET == HWY_AVX3
+  V guess{_mm512_rcp14_pd(v.raw)};
+  for (int i = 0; i < 2; ++i) guess = hn::MulAdd(guess, hn::NegMulAdd(v, guess, all(1)), guess);
+  return guess;
+#else
+  return hn::Div(all(1), v);
+#endif
+}
+
+/// Calls body(i, keep) for every vector of the contour. keep(v) zeroes lanes beyond the last vertex.
+template <class Body>
+inline void for_vectors(int n, Body body) {
+  int i = 0;
+  for (; i + lanes <= n; i += lanes) body(i, [](V v) { return v; });
+  if (i < n) {
+    const M inside = hn::FirstN(D(), static_cast<std::size_t>(n - i));
+    body(i, [inside](V v) { return hn::IfThenElseZero(inside, v); });
+  }
+}
+
+/// Repeats the contour beyond its ends.
+inline void close(double* p, int n) {
+  p[-1] = p[n - 1];
+  for (int k = 0; k < edges_per_group; ++k) p[n + k] = p[k];
+}
+
+Sums measure(int n, const StepArrays& arrays) {
+  const StepArrays a = arrays;  // a copy that stores cannot change
+  V perimeter = all(0), twice_area = all(0), moment_x = all(0), moment_y = all(0);
+  for_vectors(n, [&](int i, auto keep) {
+    const V x = load(a.x + i), y = load(a.y + i);
+    const V next_x = load_at(a.x + i + 1), next_y = load_at(a.y + i + 1);
+    const V ex = hn::Sub(next_x, x), ey = hn::Sub(next_y, y);
+    const V length2 = hn::MulAdd(ex, ex, hn::Mul(ey, ey));
+    const V inverse_length = inverse_sqrt(length2);
+    const V length = hn::Mul(length2, inverse_length);
+    const V cross = keep(hn::MulSub(x, ey, hn::Mul(y, ex)));
+    store(hn::Mul(ex, inverse_length), a.tangent_x + i);
+    store(hn::Mul(ey, inverse_length), a.tangent_y + i);
+    store(length, a.length + i);
+    perimeter = hn::Add(perimeter, keep(length));
+    twice_area = hn::Add(twice_area, cross);
+    moment_x = hn::MulAdd(cross, hn::Add(x, next_x), moment_x);
+    moment_y = hn::MulAdd(cross, hn::Add(y, next_y), moment_y);
+  });
+  for (double* p : {a.tangent_x, a.tangent_y, a.length}) close(p, n);
+  return {sum(twice_area) / 2, sum(perimeter), sum(moment_x) / 6, sum(moment_y) / 6};
+}
+
+void clear_group(int group, const StepArrays& a) {
+  for (int lane = 0; lane < edges_per_group; lane += lanes) {
+    store(all(0), a.push_x + group * edges_per_group + lane);
+    store(all(0), a.push_y + group * edges_per_group + lane);
+  }
+}
+
+void clear_pushes(int n, const StepArrays& a) {
+  for (int group = 0; group * edges_per_group <= n; ++group) clear_group(group, a);
+}
+
+/// Pushes the listed edges of a group off a point by stiffness (reach - distance), where that is positive.
+/// Returns the sum of the pushes.
+struct Push {
+  double x = 0, y = 0;
+};
+inline Push push_off_point(int group, std::uint8_t edges, V px, V py, V reach, V stiffness, V span,
+                           const StepArrays& a) {
+  Push total;
+  for (int lane = 0; lane < edges_per_group; lane += lanes) {
+    const int i = group * edges_per_group + lane;
+    const V tx = load(a.tangent_x + i), ty = load(a.tangent_y + i), length = load(a.length + i);
+    const V to_x = hn::Sub(px, load(a.x + i)), to_y = hn::Sub(py, load(a.y + i));
+    const V along = hn::Min(hn::Max(hn::MulAdd(to_x, tx, hn::Mul(to_y, ty)), all(0)), hn::Mul(length, span));
+    const V dx = hn::MulSub(along, tx, to_x), dy = hn::MulSub(along, ty, to_y);
+    const V distance2 = hn::MulAdd(dx, dx, hn::Mul(dy, dy));
+    const std::uint8_t bits[8] = {static_cast<std::uint8_t>(edges >> lane)};
+    const M touches = hn::And(hn::Lt(distance2, hn::Mul(reach, reach)), hn::LoadMaskBits(D(), bits));
+    if (hn::AllFalse(D(), touches)) continue;
+    // A point on the very centre gets no direction, but no NaN.
+    const V inverse_distance = inverse_sqrt(hn::Max(distance2, all(1e-300)));
+    const V push =
+        hn::IfThenElseZero(touches, hn::Mul(stiffness, hn::MulSub(reach, inverse_distance, all(1))));
+    const V fx = hn::Mul(push, dx), fy = hn::Mul(push, dy);
+    // The edge's two vertices share it as the nearest point divides the edge.
+    const V fraction = hn::Mul(along, inverse(length));
+    const V end_x = hn::Mul(fraction, fx), end_y = hn::Mul(fraction, fy);
+    store(hn::Add(load(a.push_x + i), hn::Sub(fx, end_x)), a.push_x + i);
+    store(hn::Add(load(a.push_y + i), hn::Sub(fy, end_y)), a.push_y + i);
+    hn::StoreU(hn::Add(load_at(a.push_x + i + 1), end_x), D(), a.push_x + i + 1);
+    hn::StoreU(hn::Add(load_at(a.push_y + i + 1), end_y), D(), a.push_y + i + 1);
+    total.x += sum(fx);
+    total.y += sum(fy);
+  }
+  return total;
+}
+
+void push(int n, const WallContacts::Item* walls, std::size_t num_walls, const SelfContacts::Item* self,
+          std::size_t num_self, const Contact& contact, const StepArrays& arrays) {
+  const StepArrays a = arrays;
+  // An edge's end may be the first vertex of the next group, or of the contour.
+  for (const WallContacts::Item* item = walls; item != walls + num_walls; ++item) {
+    clear_group(item->group, a);
+    clear_group(item->group + 1, a);
+  }
+  for (const SelfContacts::Item* item = self; item != self + num_self; ++item) {
+    clear_group(item->group, a);
+    clear_group(item->group + 1, a);
+    clear_group(item->vertex / edges_per_group, a);
+  }
+  clear_group(0, a);
+  a.push_x[n] = a.push_y[n] = 0;
+
+  const V stiffness = all(contact.stiffness), span = all(contact.span);
+  for (const WallContacts::Item* item = walls; item != walls + num_walls; ++item)
+    push_off_point(item->group, item->edges, all(item->x), all(item->y), all(item->reach), stiffness, span,
+                   a);
+  const V diameter = all(contact.diameter), whole = all(1);
+  for (const SelfContacts::Item* item = self; item != self + num_self; ++item) {
+    const Push pushed = push_off_point(item->group, item->edges, all(a.x[item->vertex]),
+                                       all(a.y[item->vertex]), diameter, stiffness, whole, a);
+    a.push_x[item->vertex] -= pushed.x;
+    a.push_y[item->vertex] -= pushed.y;
+  }
+  a.push_x[0] += std::exchange(a.push_x[n], 0);
+  a.push_y[0] += std::exchange(a.push_y[n], 0);
+}
+
+template <bool elastic, bool on_area, bool varying_rate>
+KickSums kick_with(int n, const KickTerms& terms, const InterfaceCoefficients& interface,
+                   const KickCoefficients& coefficients, const StepArrays& arrays) {
+  const StepArrays a = arrays;
+  const V line_tension = all(interface.line_tension);
+  const V spring = all(interface.spring), spreading = all(interface.spreading);
+  const V half_pressure = all(interface.half_pressure);
+  const V body_force = all(interface.body_force), vertex_weight = all(interface.vertex_weight);
+  const V centre_x = all(-3 * interface.centre_x), centre_y = all(-3 * interface.centre_y);
+  const V h1 = all(coefficients.h1), m1 = all(coefficients.m1);
+  const V h2 = all(coefficients.h2), m2 = all(coefficients.m2);
+  const double one_s = 1 / (1 + coefficients.h1 * terms.rate);
+  const V same_s = all(one_s), same_keep = all(1 - coefficients.h2 * terms.rate);
+  V spread_x = all(0), spread_y = all(0);
+  V w_x = all(0), w_y = all(0), gw_x = all(0), gw_y = all(0), gg_xx = all(0), gg_xy = all(0), gg_yy = all(0);
+  V s_sum = all(0), g_xx = all(0), g_xy = all(0), g_yx = all(0), g_yy = all(0);
+  for_vectors(n, [&](int i, auto keep) {
+    const V tx = load(a.tangent_x + i), ty = load(a.tangent_y + i);
+    const V tangent_before_x = load_at(a.tangent_x + i - 1), tangent_before_y = load_at(a.tangent_y + i - 1);
+    const V length = load(a.length + i), length_before = load_at(a.length + i - 1);
+    const V ex = hn::Mul(length, tx), ey = hn::Mul(length, ty);
+    const V before_x = hn::Mul(length_before, tangent_before_x);
+    const V before_y = hn::Mul(length_before, tangent_before_y);
+    const V chord_x = hn::Add(ex, before_x), chord_y = hn::Add(ey, before_y);
+
+    V fx = load(a.push_x + i), fy = load(a.push_y + i);
+    fx = hn::MulAdd(half_pressure, chord_y, fx);
+    fy = hn::NegMulAdd(half_pressure, chord_x, fy);
+    if constexpr (elastic) {
+      const V pull = hn::MulAdd(spring, length, line_tension);
+      const V pull_before = hn::MulAdd(spring, length_before, line_tension);
+      fx = hn::Add(fx, hn::MulSub(pull, tx, hn::Mul(pull_before, tangent_before_x)));
+      fy = hn::Add(fy, hn::MulSub(pull, ty, hn::Mul(pull_before, tangent_before_y)));
+    } else {
+      fx = hn::MulAdd(line_tension, hn::Sub(tx, tangent_before_x), fx);
+      fy = hn::MulAdd(line_tension, hn::Sub(ty, tangent_before_y), fy);
+      const V cosine = hn::Max(hn::MulAdd(tx, tangent_before_x, hn::Mul(ty, tangent_before_y)), all(0));
+      const V unevenness = hn::Mul(hn::Sub(length, length_before), inverse(hn::Add(length, length_before)));
+      const V spread = hn::Mul(hn::Mul(spreading, unevenness), hn::Mul(cosine, cosine));
+      fx = hn::MulAdd(spread, chord_x, fx);
+      fy = hn::MulAdd(spread, chord_y, fy);
+      spread_x = hn::MulAdd(keep(spread), chord_x, spread_x);
+      spread_y = hn::MulAdd(keep(spread), chord_y, spread_y);
+    }
+    V gxx, gxy, gyx, gyy;
+    if constexpr (on_area) {
+      const V from_x = hn::MulAdd(all(3), load(a.x + i), centre_x);
+      const V from_y = hn::MulAdd(all(3), load(a.y + i), centre_y);
+      const V xx = hn::MulSub(ex, ex, hn::Mul(before_x, before_x));
+      const V xy = hn::MulSub(ex, ey, hn::Mul(before_x, before_y));
+      const V yy = hn::MulSub(ey, ey, hn::Mul(before_y, before_y));
+      gxx = keep(hn::MulAdd(from_x, chord_y, xy));
+      gxy = keep(hn::Neg(hn::MulAdd(from_x, chord_x, xx)));
+      gyx = keep(hn::MulAdd(from_y, chord_y, yy));
+      gyy = keep(hn::Neg(hn::MulAdd(from_y, chord_x, xy)));
+      store(gxx, a.grad_xx + i);
+      store(gxy, a.grad_xy + i);
+      store(gyx, a.grad_yx + i);
+      store(gyy, a.grad_yy + i);
+      fx = hn::MulAdd(body_force, gxx, fx);
+      fy = hn::MulAdd(body_force, gxy, fy);
+    } else {
+      fx = hn::Add(fx, vertex_weight);
+    }
+
+    V s = same_s, kept = same_keep;
+    if constexpr (varying_rate) {
+      const V rate = load(a.rate + i);
+      s = inverse(hn::MulAdd(h1, rate, all(1)));
+      kept = hn::NegMulAdd(h2, rate, all(1));
+    }
+    const V wx = hn::Mul(hn::MulAdd(m1, fx, load(a.vx + i)), s);
+    const V wy = hn::Mul(hn::MulAdd(m1, fy, load(a.vy + i)), s);
+    store(hn::MulAdd(wx, kept, hn::Mul(m2, fx)), a.vx + i);
+    store(hn::MulAdd(wy, kept, hn::Mul(m2, fy)), a.vy + i);
+    if (terms.keeps_kicked) {
+      store(wx, a.kicked_x + i);
+      store(wy, a.kicked_y + i);
+    }
+    w_x = hn::Add(w_x, keep(wx));
+    w_y = hn::Add(w_y, keep(wy));
+    if constexpr (varying_rate) s_sum = hn::Add(s_sum, keep(s));
+    if constexpr (on_area) {
+      gw_x = hn::MulAdd(gxx, wx, hn::MulAdd(gxy, wy, gw_x));
+      gw_y = hn::MulAdd(gyx, wx, hn::MulAdd(gyy, wy, gw_y));
+      V sxx = gxx, sxy = gxy, syx = gyx, syy = gyy;
+      if constexpr (varying_rate) {
+        sxx = hn::Mul(s, gxx);
+        sxy = hn::Mul(s, gxy);
+        syx = hn::Mul(s, gyx);
+        syy = hn::Mul(s, gyy);
+        g_xx = hn::Add(g_xx, sxx);
+        g_xy = hn::Add(g_xy, sxy);
+        g_yx = hn::Add(g_yx, syx);
+        g_yy = hn::Add(g_yy, syy);
+      }
+      gg_xx = hn::MulAdd(sxx, gxx, hn::MulAdd(sxy, gxy, gg_xx));
+      gg_xy = hn::MulAdd(sxx, gyx, hn::MulAdd(sxy, gyy, gg_xy));
+      gg_yy = hn::MulAdd(syx, gyx, hn::MulAdd(syy, gyy, gg_yy));
+    }
+  });
+  KickSums sums{.spread_x = sum(spread_x),
+                .spread_y = sum(spread_y),
+                .w_x = sum(w_x),
+                .w_y = sum(w_y),
+                .gw_x = sum(gw_x),
+                .gw_y = sum(gw_y),
+                .gg_xx = sum(gg_xx),
+                .gg_xy = sum(gg_xy),
+                .gg_yy = sum(gg_yy),
+                .s = sum(s_sum),
+                .g_xx = sum(g_xx),
+                .g_xy = sum(g_xy),
+                .g_yx = sum(g_yx),
+                .g_yy = sum(g_yy)};
+  if constexpr (!varying_rate) {
+    sums.s = n * one_s;
+    sums.gg_xx *= one_s;
+    sums.gg_xy *= one_s;
+    sums.gg_yy *= one_s;
+  }
+  return sums;
+}
+
+KickSums kick(int n, const KickTerms& terms, const InterfaceCoefficients& interface,
+              const KickCoefficients& coefficients, const StepArrays& arrays) {
+  using Version = KickSums (*)(int, const KickTerms&, const InterfaceCoefficients&, const KickCoefficients&,
+                               const StepArrays&);
+  constexpr Version versions[2][2][2] = {{{kick_with<false, false, false>, kick_with<false, false, true>},
+                                          {kick_with<false, true, false>, kick_with<false, true, true>}},
+                                         {{kick_with<true, false, false>, kick_with<true, false, true>},
+                                          {kick_with<true, true, false>, kick_with<true, true, true>}}};
+  return versions[terms.elastic][terms.on_area][terms.varying_rate](n, terms, interface, coefficients,
+                                                                    arrays);
+}
+
+template <bool coupled, bool on_area, bool varying_rate>
+void drift_with(int n, const KickTerms& terms, const KickCoefficients& coefficients, const double (&c)[2],
+                const double (&area)[2], double time_step, const StepArrays& arrays) {
+  const StepArrays a = arrays;
+  const V cx = all(c[0]), cy = all(c[1]), ax = all(area[0]), ay = all(area[1]), dt = all(time_step);
+  const V h1 = all(coefficients.h1), weight = all(coefficients.weight);
+  const V same = all(coefficients.weight / (1 + coefficients.h1 * terms.rate));
+  for_vectors(n, [&](int i, auto) {
+    V vx = load(a.vx + i), vy = load(a.vy + i);
+    if constexpr (coupled) {
+      V share = same;
+      if constexpr (varying_rate) share = hn::Mul(weight, inverse(hn::MulAdd(h1, load(a.rate + i), all(1))));
+      V pull_x = cx, pull_y = cy;
+      if constexpr (on_area) {
+        pull_x = hn::NegMulAdd(load(a.grad_xx + i), ax, hn::NegMulAdd(load(a.grad_yx + i), ay, cx));
+        pull_y = hn::NegMulAdd(load(a.grad_xy + i), ax, hn::NegMulAdd(load(a.grad_yy + i), ay, cy));
+      }
+      vx = hn::MulAdd(share, pull_x, vx);
+      vy = hn::MulAdd(share, pull_y, vy);
+    }
+    store(vx, a.vx + i);
+    store(vy, a.vy + i);
+    store(hn::MulAdd(dt, vx, load(a.x + i)), a.x + i);
+    store(hn::MulAdd(dt, vy, load(a.y + i)), a.y + i);
+  });
+  for (double* p : {a.x, a.y, a.vx, a.vy}) close(p, n);
+}
+
+void drift(int n, const KickTerms& terms, bool coupled, const KickCoefficients& coefficients,
+           const double (&c)[2], const double (&area)[2], double dt, const StepArrays& arrays) {
+  using Version = void (*)(int, const KickTerms&, const KickCoefficients&, const double(&)[2],
+                           const double(&)[2], double, const StepArrays&);
+  constexpr Version versions[2][2] = {{drift_with<true, false, false>, drift_with<true, false, true>},
+                                      {drift_with<true, true, false>, drift_with<true, true, true>}};
+  const Version version =
+      coupled ? versions[terms.on_area][terms.varying_rate] : drift_with<false, false, false>;
+  version(n, terms, coefficients, c, area, dt, arrays);
+}
+
+/// v^(-4/3). A first guess from the bits of a number, which are nearly its logarithm, then y = v^(-1/3) by
+/// iterations of third order.
+inline V power_minus_four_thirds(V v) {
+  const hn::RebindToSigned<D> bits;
+  const V scaled = hn::MulAdd(hn::ConvertTo(D(), hn::BitCast(bits, v)), all(-1.0 / 3),
+                              all(4.0 / 3 * 1023 * 4503599627370496.0));
+  V y = hn::BitCast(D(), hn::ConvertTo(bits, scaled));
+  for (int i = 0; i < 3; ++i) {
+    const V r = hn::NegMulAdd(v, hn::Mul(hn::Mul(y, y), y), all(1));
+    y = hn::MulAdd(hn::Mul(y, r), hn::MulAdd(all(2.0 / 9), r, all(1.0 / 3)), y);
+  }
+  return hn::Mul(hn::Mul(y, y), hn::Mul(y, y));
+}
+
+template <bool four_thirds, bool alike>
+void near_wall_rates_with(int n, const NearWalls& walls, const NearWallDrag& drag, const StepArrays& arrays) {
+  const StepArrays a = arrays;
+  const V shortest = all(drag.shortest), power = all(-drag.exponent);
+  const V far = all(drag.far_rate * drag.relative), near = all(drag.far_rate * drag.near_wall);
+  for_vectors(n, [&](int i, auto) {
+    const V x = load(a.x + i), y = load(a.y + i);
+    V nearest = load_at(walls.other_distance + i);
+    V nearest2 = all(1e300);
+    for (int slot = 0; slot < walls.num_slots; ++slot) {
+      const WallSlot& circle = walls.slots[slot];
+      const V dx = hn::Sub(x, load_at(circle.x + i)), dy = hn::Sub(y, load_at(circle.y + i));
+      const V r2 = hn::Max(hn::MulAdd(dx, dx, hn::Mul(dy, dy)), all(1e-300));
+      if constexpr (alike)
+        nearest2 = hn::Min(nearest2, r2);
+      else
+        nearest = hn::Min(nearest, hn::MulSub(r2, inverse_sqrt(r2), load_at(circle.radius + i)));
+    }
+    if constexpr (alike)
+      nearest = hn::Min(nearest, hn::Sub(hn::Mul(nearest2, inverse_sqrt(nearest2)), all(walls.radius)));
+    const V distance = hn::Max(nearest, shortest);
+    V rise;
+    if constexpr (four_thirds)
+      rise = power_minus_four_thirds(distance);
+    else
+      rise = hn::Exp(D(), hn::Mul(power, hn::Log(D(), distance)));
+    store(hn::MulAdd(near, rise, far), a.rate + i);
+  });
+}
+
+void near_wall_rates(int n, const NearWalls& walls, const NearWallDrag& drag, const StepArrays& arrays) {
+  using Version = void (*)(int, const NearWalls&, const NearWallDrag&, const StepArrays&);
+  constexpr Version versions[2][2] = {{near_wall_rates_with<false, false>, near_wall_rates_with<false, true>},
+                                      {near_wall_rates_with<true, false>, near_wall_rates_with<true, true>}};
+  versions[drag.exponent == 4.0 / 3][walls.alike](n, walls, drag, arrays);
+}
+
+/// Named as people call them.
+const char* instruction_set_name() {
+#if HWY_TARGET == HWY_AVX3
+  return "avx512";
+#elif HWY_TARGET == HWY_AVX2
+  return "avx2";
+#elif HWY_ARCH_X86
+  return "baseline";
+#else
+  return hwy::TargetName(HWY_TARGET);
+#endif
+}
+
+StepKernel make_kernel() {
+  return {instruction_set_name(), measure, clear_pushes, push, kick, drift, near_wall_rates};
+}
+
+}  // namespace clog::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace clog {
+namespace kernel {
+
+HWY_EXPORT(make_kernel);
+
+StepKernel step_kernel() { return HWY_DYNAMIC_DISPATCH(make_kernel)(); }
+
+namespace {
+
+/// Lets the next step_kernel() choose among these targets; 0: all that the processor has.
+void allow_targets(std::int64_t targets) {
+  hwy::SetSupportedTargetsForTest(targets);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+}
+
+}  // namespace
+}  // namespace kernel
+
+std::vector<std::string> instruction_sets() {
+  const std::string present = instruction_set();
+  std::vector<std::string> names;
+  kernel::allow_targets(0);
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    kernel::allow_targets(target);
+    names.emplace_back(kernel::step_kernel().name);
+  }
+  use_instruction_set(present);
+  return names;
+}
+
+std::string instruction_set() { return kernel::step_kernel().name; }
+
+void use_instruction_set(const std::string& name) {
+  kernel::allow_targets(0);
+  if (name == "auto") return;
+  std::string names;
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    kernel::allow_targets(target);
+    if (kernel::step_kernel().name == name) return;
+    names += std::string(", ") + kernel::step_kernel().name;
+  }
+  kernel::allow_targets(0);
+  throw Error("this processor has no instruction set '" + name +
+              "', or the program was not compiled for it; it has auto" + names);
+}
+
+}  // namespace clog
+#endif

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <hwy/aligned_allocator.h>
+
+#include <vector>
+
+#include "clog/core/dp_forces.hpp"
+#include "dp_step_kernel.hpp"
+
+namespace clog {
+
+/// Moves a polygon by whole time steps with the vectorised kernel. Between two calls a droplet is its
+/// positions and velocities and nothing else.
+class DpStepper {
+ public:
+  /// @param run     resolved parameters
+  /// @param forces  its contact lists are used; must outlive this object
+  DpStepper(const RunParameters& run, const DpForces& forces);
+
+  /// Takes over a droplet; returns its perimeter [sigma].
+  double load(const DropletState& state);
+  /// `steps` steps of `time_step` of the droplet just loaded. The contact lists must hold for the way.
+  /// @param state  that droplet, at the end with its new positions and velocities
+  /// @param dissipated  if not null, what the drag takes out is added to it, see Droplet::dissipated_energy()
+  void advance(DropletState& state, int steps, double time_step, double* dissipated);
+  const char* instruction_set() const { return kernel_.name; }
+
+ private:
+  RunParameters run_;
+  const DpForces* forces_;
+  kernel::StepKernel kernel_;
+  int n_;
+  hwy::AlignedFreeUniquePtr<double[]> memory_;
+  kernel::StepArrays arrays_;
+  Eigen::ArrayXd distance_;  // to the nearest wedge
+  std::vector<kernel::WallSlot> slots_;
+  kernel::Sums sums_{};
+  kernel::KickTerms terms_{};
+  double relative_rate_, area_rate_;  // see kernel::CoupledDrag
+  bool is_coupled_;
+  struct Coupling {
+    Eigen::Vector2d mean{0, 0};  // V, the vertices' mean velocity
+    Eigen::Vector2d area{0, 0};  // V_a, that of the area's centroid
+  };
+
+  void store(DropletState& state) const;
+  double kick_and_drift(const DropletState& frame, const kernel::KickCoefficients& coefficients,
+                        double half_step, double drift_time, bool measures_loss);
+  void push_off_everything(const DropletState& frame);
+  Coupling couple(const kernel::KickSums& sums, const kernel::KickCoefficients& coefficients) const;
+  double power_loss(const kernel::KickCoefficients& coefficients, const Coupling& coupling,
+                    const double (&c)[2], const double (&a)[2]) const;
+};
+
+}  // namespace clog
