@@ -87,6 +87,7 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
   growing.dp.perimeter_stiffness = 0.01 + 0.03 * run.dp.line_tension;
   growing.dp.wall_contact = WallContact::edge;
   growing.dp.self_contact = SelfContact::on;
+  growing.dp.gravity = Gravity::vertex;  // without weight: the springs need no reaction on the area yet
   DpForces forces(growing, obstacles);
   forces.set_weight(0);
   const double vertex_weight = units::droplet_mass * units::gravity / n;
