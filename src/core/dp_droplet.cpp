@@ -27,14 +27,15 @@ DpDroplet::~DpDroplet() = default;
 void DpDroplet::advance(int num_steps) {
   for (int done = 0; done < num_steps; done += steps_per_check) {
     if (state_.recentre().any()) forces_.forget_contacts();
-    const double perimeter = stepper_->load(state_);
+    const DpStepper::Edges edges = stepper_->load(state_);
     // Its contact lists would take all memory. The run sees it at its next check.
-    if (!(perimeter < burst_perimeter)) return;
+    if (!(edges.perimeter < burst_perimeter)) return;
     const int steps = std::min(steps_per_check, num_steps - done);
     forces_.update_contacts(state_, state_.possible_travel(steps * run_.time_step));
-    const int substeps = num_substeps(stiff_modes(run_.dp, *run_.wall_stiffness, perimeter), run_.time_step);
+    const int substeps = num_substeps(
+        stiff_modes(run_.dp, *run_.wall_stiffness, edges.perimeter, edges.shortest), run_.time_step);
     stepper_->advance(state_, steps * substeps, run_.time_step / substeps,
-                      measures_dissipation_ ? &dissipated_energy_ : nullptr);
+                      measures_dissipation_ ? &work_ : nullptr);
     num_integrated_steps_ += static_cast<std::int64_t>(steps) * substeps;
   }
 }

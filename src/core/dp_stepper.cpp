@@ -39,7 +39,7 @@ DpStepper::DpStepper(const RunParameters& run, const DpForces& forces)
         Eigen::ArrayXd::Constant(n_ + kernel::edges_per_group, std::numeric_limits<double>::infinity());
 }
 
-double DpStepper::load(const DropletState& state) {
+DpStepper::Edges DpStepper::load(const DropletState& state) {
   const auto copy = [this](const double* from, double* to) {
     std::copy_n(from, n_, to);
     to[-1] = to[n_ - 1];
@@ -51,7 +51,7 @@ double DpStepper::load(const DropletState& state) {
   copy(state.velocity.data() + n_, arrays_.vy);
   kernel_.clear_pushes(n_, arrays_);  // the lists may name other groups than before
   sums_ = kernel_.measure(n_, arrays_);
-  return sums_.perimeter;
+  return {.perimeter = sums_.perimeter, .shortest = *std::min_element(arrays_.length, arrays_.length + n_)};
 }
 
 void DpStepper::store(DropletState& state) const {
@@ -61,28 +61,32 @@ void DpStepper::store(DropletState& state) const {
   std::copy_n(arrays_.vy, n_, state.velocity.data() + n_);
 }
 
-void DpStepper::advance(DropletState& state, int steps, double time_step, double* dissipated) {
+void DpStepper::advance(DropletState& state, int steps, double time_step, Droplet::Work* work) {
   const double h = 0.5 * time_step;
   const double h_over_m = h / (units::droplet_mass / n_);
   const kernel::KickCoefficients first{.h1 = 0, .m1 = 0, .h2 = h, .m2 = h_over_m, .weight = 1};
   const kernel::KickCoefficients inner{.h1 = h, .m1 = h_over_m, .h2 = h, .m2 = h_over_m, .weight = 2};
   const kernel::KickCoefficients last{.h1 = h, .m1 = h_over_m, .h2 = 0, .m2 = 0, .weight = 1};
-  const bool measures = dissipated != nullptr;
+  const bool measures = work != nullptr;
   terms_.keeps_kicked = measures;
-  double loss = kick_and_drift(state, first, h, time_step, measures);
+  Droplet::Work power = kick_and_drift(state, first, h, time_step, measures);
   for (int step = 1; step <= steps; ++step) {
-    const double next_loss =
+    const Droplet::Work next =
         kick_and_drift(state, step < steps ? inner : last, h, step < steps ? time_step : 0, measures);
-    if (measures) *dissipated += h * (loss + next_loss);
-    loss = next_loss;
+    if (measures) {
+      work->dissipated += h * (power.dissipated + next.dissipated);
+      work->spreading += h * (power.spreading + next.spreading);
+    }
+    power = next;
   }
   store(state);
 }
 
 /// One force evaluation, the half kicks on its two sides, and the drift to the next one. Returns the power
 /// loss between the two half kicks, if it is wanted.
-double DpStepper::kick_and_drift(const DropletState& frame, const kernel::KickCoefficients& coefficients,
-                                 double half_step, double drift_time, bool measures_loss) {
+Droplet::Work DpStepper::kick_and_drift(const DropletState& frame,
+                                        const kernel::KickCoefficients& coefficients, double half_step,
+                                        double drift_time, bool measures_power) {
   push_off_everything(frame);
   const kernel::Interface at_rest = forces_->interface(sums_.area, sums_.perimeter);
   const kernel::InterfaceCoefficients interface {
@@ -109,10 +113,10 @@ double DpStepper::kick_and_drift(const DropletState& frame, const kernel::KickCo
     a[0] = unit * (drag * coupling.area[0] + impulse * sums.spread_x);
     a[1] = unit * (drag * coupling.area[1] + impulse * sums.spread_y);
   }
-  const double loss = measures_loss ? power_loss(coefficients, coupling, c, a) : 0;
+  const Droplet::Work now = measures_power ? power(coefficients, coupling, c, a) : Droplet::Work{};
   kernel_.drift(n_, terms_, is_coupled_, coefficients, c, a, drift_time, arrays_);
   if (drift_time > 0) sums_ = kernel_.measure(n_, arrays_);
-  return loss;
+  return now;
 }
 
 void DpStepper::push_off_everything(const DropletState& frame) {
@@ -192,8 +196,8 @@ DpStepper::Coupling DpStepper::couple(const kernel::KickSums& sums,
   return {feedback * (mean_w - b / n_ * g.transpose() * area), area};
 }
 
-double DpStepper::power_loss(const kernel::KickCoefficients& coefficients, const Coupling& coupling,
-                             const double (&c)[2], const double (&a)[2]) const {
+Droplet::Work DpStepper::power(const kernel::KickCoefficients& coefficients, const Coupling& coupling,
+                               const double (&c)[2], const double (&a)[2]) const {
   const double vertex_mass = units::droplet_mass / n_;
   DropletState here;
   here.position.resize(2 * n_);
@@ -214,7 +218,7 @@ double DpStepper::power_loss(const kernel::KickCoefficients& coefficients, const
     here.position[n_ + i] = arrays_.y[i];
   }
   loss += n_ * (area_rate_ * coupling.area.squaredNorm() - relative_rate_ * coupling.mean.squaredNorm());
-  return vertex_mass * loss - forces_->spreading_power(here);
+  return {.dissipated = vertex_mass * loss, .spreading = forces_->spreading_power(here)};
 }
 
 }  // namespace clog

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "clog/core/dp_forces.hpp"
+#include "clog/core/droplet.hpp"
 #include "dp_step_kernel.hpp"
 
 namespace clog {
@@ -17,12 +18,15 @@ class DpStepper {
   /// @param forces  its contact lists are used; must outlive this object
   DpStepper(const RunParameters& run, const DpForces& forces);
 
-  /// Takes over a droplet; returns its perimeter [sigma].
-  double load(const DropletState& state);
+  struct Edges {
+    double perimeter, shortest;  ///< [sigma]
+  };
+  /// Takes over a droplet.
+  Edges load(const DropletState& state);
   /// `steps` steps of `time_step` of the droplet just loaded. The contact lists must hold for the way.
   /// @param state  that droplet, at the end with its new positions and velocities
-  /// @param dissipated  if not null, what the drag takes out is added to it, see Droplet::dissipated_energy()
-  void advance(DropletState& state, int steps, double time_step, double* dissipated);
+  /// @param work  if not null, what drag and springs did is added to it
+  void advance(DropletState& state, int steps, double time_step, Droplet::Work* work);
   const char* instruction_set() const { return kernel_.name; }
 
  private:
@@ -44,12 +48,12 @@ class DpStepper {
   };
 
   void store(DropletState& state) const;
-  double kick_and_drift(const DropletState& frame, const kernel::KickCoefficients& coefficients,
-                        double half_step, double drift_time, bool measures_loss);
+  Droplet::Work kick_and_drift(const DropletState& frame, const kernel::KickCoefficients& coefficients,
+                               double half_step, double drift_time, bool measures_power);
   void push_off_everything(const DropletState& frame);
   Coupling couple(const kernel::KickSums& sums, const kernel::KickCoefficients& coefficients) const;
-  double power_loss(const kernel::KickCoefficients& coefficients, const Coupling& coupling,
-                    const double (&c)[2], const double (&a)[2]) const;
+  Droplet::Work power(const kernel::KickCoefficients& coefficients, const Coupling& coupling,
+                      const double (&c)[2], const double (&a)[2]) const;
 };
 
 }  // namespace clog

@@ -108,7 +108,8 @@ ObstacleArray::Pair ObstacleArray::closest_pair() const {
       visit_window({origin_x, origin_y, -radius, radius, -radius, radius, margin},
                    [&, r = radius](std::uint32_t second, double x, double y) {
                      const double gap = std::hypot(x, y) - r - obstacles_[second].radius;
-                     if (second != first && gap < closest.gap)
+                     const bool is_itself = second == first && std::hypot(x, y) < box_ / 2;
+                     if (!is_itself && gap < closest.gap)
                        closest = {obstacles_[first], obstacles_[second], gap};
                    });
     }

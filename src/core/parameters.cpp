@@ -131,13 +131,20 @@ void resolve_dp(RunParameters& run) {
     run.wall_stiffness = wall_stiffness(stiffest, vertex_diameter);
   }
   require_positive("wall-stiffness", *run.wall_stiffness);
+  const double softest_area = dp.line_tension / (units::droplet_diameter / 2) / (0.05 * units::rest_area);
+  require(dp.area_stiffness >= softest_area, "area-stiffness", dp.area_stiffness,
+          "the line tension would compress the droplet by more than 5 %) use at least " + text(softest_area));
 
-  const StiffModes modes = stiff_modes(dp, *run.wall_stiffness, circumference);
+  const StiffModes modes = stiff_modes(dp, *run.wall_stiffness, circumference, circumference / dp.vertices);
   // An automatic contact follows the step; only the other modes limit it then.
-  const double largest = automatic ? std::sqrt(std::min(max_area_omega_dt2 / modes.area,
-                                                        (max_total_omega_dt2 - auto_contact_omega_dt2) /
-                                                            (modes.sum() - modes.contact)))
-                                   : largest_stable_step(modes);
+  const double others = modes.sum() - modes.contact;
+  const double self_part = auto_contact_omega_dt2 * modes.self_contact / modes.contact;
+  const double largest =
+      automatic
+          ? std::sqrt(std::min(
+                {max_area_omega_dt2 / modes.area, (max_total_omega_dt2 - auto_contact_omega_dt2) / others,
+                 (max_total_with_self_omega_dt2 - auto_contact_omega_dt2 - self_part) / others}))
+          : largest_stable_step(modes);
   const double stiffest_omega_dt = std::sqrt(modes.sum()) * run.time_step;
   require(num_substeps(modes, run.time_step) == 1, "time-step", run.time_step,
           "contact, area, tension and spring modes together have omega*dt = " + text(stiffest_omega_dt) +

@@ -54,7 +54,7 @@ LocalFrame frame_around(const Eigen::Array2d& place, double box) {
 
 /// A polygon smaller than the droplet has a smaller perimeter: a stiffer tension mode, a softer area mode.
 FireOptions fire_options(const RunParameters& run, double perimeter) {
-  const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, perimeter);
+  const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, perimeter, perimeter / run.dp.vertices);
   return {.mass = units::droplet_mass / run.dp.vertices,
           .largest_step = 0.5 * largest_stable_step(modes),
           .max_move = 0.05 * units::regular_edge_length(run.dp.vertices)};

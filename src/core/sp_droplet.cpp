@@ -106,12 +106,12 @@ void SpDroplet::advance(int num_steps) {
              state_.velocity.square().sum();
     };
     for (int i = 0; i < steps; ++i) {
-      if (measures_dissipation_) dissipated_energy_ += half_loss();
+      if (measures_dissipation_) work_.dissipated += half_loss();
       state_.velocity = state_.velocity * (1 - damping) + force_ * half_dt_over_m;
       state_.position += dt * state_.velocity;
       forces_.evaluate(state_, force_);
       state_.velocity = (state_.velocity + force_ * half_dt_over_m) / (1 + damping);
-      if (measures_dissipation_) dissipated_energy_ += half_loss();
+      if (measures_dissipation_) work_.dissipated += half_loss();
     }
     num_integrated_steps_ += steps;
   }

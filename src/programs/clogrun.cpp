@@ -40,6 +40,8 @@ cli::CommandLine parse(int argc, char** argv) {
   line.add_positional("system", 1);
   line.settings().set("seeds", "1");
   line.parse(argc, argv);
+  if (line.has("seed") && line.has("seeds"))
+    throw Error("--seed and --seeds contradict each other; give one of them");
   if (line.has("seed")) line.settings().set("seeds", line.get("seed"));
   return line;
 }

@@ -32,8 +32,9 @@ Setup read_setup(cli::CommandLine& line) {
                           {.box = draft.obstacles.box,
                            .default_diameter = draft.obstacles.diameter,
                            .narrowest_gap = polygon ? units::regular_edge_length(draft.dp.vertices) : 0.0}));
-  const double gap = array->smallest_gap();
-  line.settings().set("obstacle-gap", sweep::shortest(std::min(gap, draft.obstacles.box)));
+  // Of few obstacles the gap may be wider than a sampled array of this box could have.
+  const double widest = draft.obstacles.box / 2 - draft.obstacles.diameter;
+  line.settings().set("obstacle-gap", sweep::shortest(std::min(array->smallest_gap(), widest)));
   return {single_run(line.settings()), array};
 }
 

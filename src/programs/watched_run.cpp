@@ -73,7 +73,9 @@ void WatchedRun::add_common_columns() {
   add_column("kinetic_energy", "E_k, of all vertices [g rho sigma^3], as all energies",
              [](Run run) { return run.droplet().kinetic_energy(); });
   add_column("dissipated_energy", "work done against the drag since release",
-             [](Run run) { return run.droplet().dissipated_energy(); });
+             [](Run run) { return run.droplet().work().dissipated; });
+  add_column("spreading_work", "of the springs along the interface, which have no energy, since release",
+             [](Run run) { return run.droplet().work().spreading; });
   add_column("gravity_energy", "-M g times the way along the flow since release",
              [](Run run) { return run.potential_energy().gravity; });
   add_column("line_tension_energy", "sum of tension times length of the edges",

@@ -40,7 +40,8 @@ TEST(StiffModes, BoundTheStiffestModeOfTheDroplet) {
     for (const double line_tension : {0.05, 1.0, 10.0}) {
       RunParameters run = bare_parameters(128);
       run.dp.line_tension = line_tension;
-      StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, polygon_shape(position).perimeter);
+      StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, polygon_shape(position).perimeter,
+                                     polygon_shape(position).perimeter / run.dp.vertices);
       modes.contact = 0;  // nothing to touch here
       const double stiffest = stiffest_omega2(run, position);
       EXPECT_LE(stiffest, 1.001 * modes.sum()) << "Gamma " << line_tension;
@@ -49,15 +50,27 @@ TEST(StiffModes, BoundTheStiffestModeOfTheDroplet) {
     }
 }
 
+TEST(StiffModes, BoundTwoFilmsThatTouch) {
+  const double diameter = units::regular_edge_length(128);
+  RunParameters run = bare_parameters(128);
+  run.dp.line_tension = 0.1;
+  const Eigen::ArrayXd position = dumbbell(128, 0.9 * diameter);
+  const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, polygon_shape(position).perimeter,
+                                       polygon_shape(position).perimeter / 128);
+  const double stiffest = stiffest_omega2(run, position);
+  EXPECT_LE(stiffest, 1.001 * (modes.sum() - modes.contact + modes.self_contact));
+  EXPECT_GT(stiffest, 0.5 * modes.self_contact) << "the film touches itself";
+}
+
 TEST(StiffModes, ContactModeIsThatOfAVertexWithBothItsEdges) {
   const RunParameters run = bare_parameters(128);
-  const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, 3.14);
+  const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, 3.14, 3.14 / run.dp.vertices);
   EXPECT_NEAR(modes.contact, 2 * 1000 * 128 / units::droplet_mass, 1e-6);
 }
 
 TEST(NumSubsteps, IsOneUpToTheLargestStableStep) {
   const RunParameters run = resolve(RunParameters{});
-  const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, 3.14);
+  const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, 3.14, 3.14 / run.dp.vertices);
   const double largest = largest_stable_step(modes);
   EXPECT_EQ(num_substeps(modes, largest), 1);
   EXPECT_EQ(num_substeps(modes, 1.01 * largest), 2);

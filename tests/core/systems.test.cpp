@@ -196,8 +196,7 @@ double shape_of_two_caps(double chord) {
 
 double largest_shape_parameter(RunParameters run, double orifice) {
   run.drag.terminal_speed = 0.02;
-  DropletRun droplet =
-      run_in_channel(resolve(run), {.orifice = orifice, .start = -0.8, .end = 0.6});
+  DropletRun droplet = run_in_channel(resolve(run), {.orifice = orifice, .start = -0.8, .end = 0.6});
   double largest = 0;
   while (!droplet.advance(1)) largest = std::max(largest, droplet.droplet().shape().shape_parameter());
   EXPECT_EQ(droplet.result().status, RunStatus::passed);

@@ -70,6 +70,7 @@ struct CaseReport {
   std::optional<Tail> tail;
   double seconds = 0;  ///< of integration, or of the release
 
+  bool is_given_up() const { return refusal.empty() && ending() == "given up"; }
   bool is_sound() const {
     return refusal.empty() && result.status != RunStatus::failed && soundness::is_sound(worst) &&
            release_force <=
@@ -289,10 +290,9 @@ void print_release_table(const std::vector<CaseReport>& reports, std::size_t num
 }
 
 /// One line for each run, for whoever wants to know more than the table says.
-void write_runs(const std::string& path, const std::vector<CaseReport>& all) {
+void write_runs(std::ofstream& out, const std::string& path, const std::vector<CaseReport>& all) {
   std::vector<CaseReport> reports;
   std::copy_if(all.begin(), all.end(), std::back_inserter(reports), [](const auto& r) { return r.done; });
-  std::ofstream out(path);
   out << "line_tension,gap,density,seed,ending,sound,unsound_since,crossings,enclosed,overlap,area_error,"
          "edge_ratio,perimeter,shape,substeps,distance,time,energy_ratio,tail_speed,tail_level,tail_fall,"
          "tail_band,tail_coherence,steps,seconds\n";
@@ -306,7 +306,7 @@ void write_runs(const std::string& path, const std::vector<CaseReport>& all) {
         << r.result.kinetic_energy_ratio << ',' << tail.mean_speed << ',' << tail.level << ',' << tail.fall
         << ',' << tail.band << ',' << tail.coherence << ',' << r.result.steps << ',' << r.seconds << '\n';
   }
-  if (!out) throw Error("cannot write " + path);
+  if (!out.flush()) throw Error("cannot write " + path);
 }
 
 /// Small line tension and narrow gaps stretch a droplet and split its steps: these take longest.
@@ -391,26 +391,45 @@ int conclude(const std::vector<CaseReport>& reports) {
   const auto sound =
       std::count_if(reports.begin(), reports.end(), [](const auto& r) { return r.done && r.is_sound(); });
   std::printf("\n%td of %td were sound", sound, done);
-  const bool is_complete = static_cast<std::size_t>(done) == reports.size();
-  if (!is_complete) std::printf(", %zu were not looked at", reports.size() - done);
+  const auto given_up =
+      std::count_if(reports.begin(), reports.end(), [](const auto& r) { return r.done && r.is_given_up(); });
+  const bool is_complete = static_cast<std::size_t>(done) == reports.size() && given_up == 0;
+  if (given_up > 0) std::printf(", %td of them given up before their time", given_up);
+  if (static_cast<std::size_t>(done) < reports.size())
+    std::printf(", %zu were not looked at", reports.size() - done);
   std::printf(".\n");
   if (sound < done) return 1;
   return is_complete ? cli::exit_success : cli::exit_incomplete;
 }
 
+/// A whole number in 1..most, or the fallback if the option is not given.
+std::int64_t count_given(const cli::CommandLine& line, const std::string& option, std::int64_t fallback,
+                         std::int64_t most) {
+  if (!line.has(option)) return fallback;
+  const double value = line.get_positive(option);
+  if (value != std::floor(value) || value > static_cast<double>(most))
+    throw Error("invalid --" + option + "=" + line.get(option) + " (must be a whole number) use 1.." +
+                std::to_string(most));
+  return static_cast<std::int64_t>(value);
+}
+
 int body(int argc, char** argv) {
   const cli::CommandLine line = parse(argc, argv);
   if (cli::answer_help_or_version(line, {})) return cli::exit_success;
-  const double cores = std::max(1U, std::thread::hardware_concurrency());
-  const auto num_threads =
-      static_cast<unsigned>(std::ceil(line.has("threads") ? line.get_positive("threads") : cores));
+  const auto num_threads = static_cast<unsigned>(
+      count_given(line, "threads", std::max(1U, std::thread::hardware_concurrency()), 1000));
   const double longest =
       line.has("longest") ? line.get_positive("longest") : std::numeric_limits<double>::infinity();
   const sweep::Plan plan(line.settings());
+  std::ofstream runs;
+  if (line.has("runs")) {
+    runs.open(line.get("runs"));
+    if (!runs) throw Error("cannot write " + line.get("runs"));
+  }
   cli::catch_stop_signals();  // then only what is finished is told of
   std::vector<CaseReport> reports;
   if (line.has("releases")) {
-    reports = planned_releases(plan, std::llround(line.get_positive("releases")));
+    reports = planned_releases(plan, count_given(line, "releases", 0, 10'000'000));
     do_all(reports, num_threads, release_case);
     print_release_table(reports, plan.num_groups());
   } else {
@@ -418,7 +437,7 @@ int body(int argc, char** argv) {
     do_all(reports, num_threads, [=](const RunParameters& run) { return run_case(run, longest); });
     print_table(reports, plan.num_groups());
   }
-  if (line.has("runs")) write_runs(line.get("runs"), reports);
+  if (line.has("runs")) write_runs(runs, line.get("runs"), reports);
   return conclude(reports);
 }
 

@@ -35,14 +35,19 @@ class Droplet {
 
   /// From now on adds up what the drag takes out, which costs a pass over the velocities per step.
   void measure_dissipation() { measures_dissipation_ = true; }
-  /// Energy lost to drag since measure_dissipation() [g rho sigma^3], less the work of springs that have no
-  /// energy; by the trapezoidal rule: second order in the time step, as the integrator.
-  double dissipated_energy() const { return dissipated_energy_; }
+  /// Since measure_dissipation() [g rho sigma^3]: energy lost to drag, and work of the springs along the
+  /// interface, which have no energy. By the trapezoidal rule: second order in the time step, as the
+  /// integrator.
+  struct Work {
+    double dissipated = 0;
+    double spreading = 0;
+  };
+  const Work& work() const { return work_; }
 
  protected:
   DropletState state_;
   bool measures_dissipation_ = false;
-  double dissipated_energy_ = 0;
+  Work work_;
   std::int64_t num_integrated_steps_ = 0;
 };
 

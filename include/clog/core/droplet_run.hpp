@@ -60,7 +60,7 @@ class DropletRun {
   double kinetic_energy_ratio() const;
   /// The gravity term is measured from the place of release.
   PotentialEnergy potential_energy() const;
-  /// From now on the energy lost to drag is added up, see Droplet::dissipated_energy().
+  /// From now on the energy lost to drag is added up, see Droplet::work().
   void measure_dissipation() { droplet_->measure_dissipation(); }
   const Droplet& droplet() const { return *droplet_; }
   const ObstacleArray& obstacles() const { return *obstacles_; }
