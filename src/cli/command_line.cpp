@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "clog/core/error.hpp"
+#include "clog/core/instruction_set.hpp"
 
 namespace clog::cli {
 namespace {
@@ -32,7 +33,11 @@ CommandLine::CommandLine(std::string program, std::string usage, SweepKeys sweep
     : program_(std::move(program)), usage_(std::move(usage)), sweep_keys_(sweep_keys) {
   own_.add_options()("help", "print this and leave")("version", "print versions and leave");
   if (sweep_keys == SweepKeys::none) return;
-  own_.add_options()("config", po::value<std::string>(), "file with lines `key = value`");
+  own_.add_options()("config", po::value<std::string>(), "file with lines `key = value`")(
+      "instruction-set", po::value<std::string>(),
+      "of the processor, for the polygon's step: avx512, avx2, baseline (the widest there is). Results "
+      "differ by "
+      "round-off");
   for (const sweep::Key& key : sweep::keys())
     keys_.add_options()(key.name.c_str(), po::value<std::string>(),
                         (key.help + " (" + key.default_text + ")").c_str());
@@ -63,6 +68,7 @@ void CommandLine::parse(int argc, const char* const* argv) {
     throw Error(std::string(error.what()) + "; see " + program_ + " --help");
   }
   if (sweep_keys_ == SweepKeys::none) return;
+  if (has("instruction-set")) use_instruction_set(get("instruction-set"));
   if (has("config")) read_config(get("config"));
   for (const auto& [name, value] : values_)
     if (is_key(name)) settings_.set(name, value.as<std::string>());

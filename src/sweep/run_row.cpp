@@ -3,6 +3,7 @@
 #include <limits>
 #include <numbers>
 
+#include "clog/core/instruction_set.hpp"
 #include "clog/sweep/settings.hpp"
 
 namespace clog::sweep {
@@ -73,6 +74,7 @@ RunRow describe(const RunParameters& run) {
   row.self_contact = !polygon ? "none" : run.dp.self_contact == SelfContact::on ? "on" : "off";
   row.gravity = !polygon ? "none" : run.dp.gravity == Gravity::vertex ? "vertex" : "area";
   row.clog_energy = run.clog_energy;
+  row.instruction_set = polygon ? instruction_set() : "none";
   return row;
 }
 

@@ -70,6 +70,7 @@ struct RunRow {
 
   double wall_seconds = 0;
   std::int64_t rank = 0;
+  FixedText<16> instruction_set;  ///< of the polygon's step; "none" for sp
   FixedText<64> host;
   std::int64_t attempt = 1;
   FixedText<256> message;

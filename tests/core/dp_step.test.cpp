@@ -1,0 +1,149 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "clog/core/dp_droplet.hpp"
+#include "clog/core/error.hpp"
+#include "clog/core/instruction_set.hpp"
+#include "support.hpp"
+
+namespace clog {
+namespace {
+
+using namespace test;
+
+/// The step as it is written in the documentation, a line for each formula, on the readable force.
+class ReadableDroplet {
+ public:
+  ReadableDroplet(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& initial)
+      : run_(run), n_(run.dp.vertices), forces_(run, obstacles), state_(initial), force_(2 * n_) {
+    forces_.update_contacts(state_, {.absolute = 0.05, .relative = 0.05});
+    forces_.evaluate(state_, force_);
+  }
+  const DropletState& state() const { return state_; }
+
+  void step() {
+    const double h = run_.time_step / 2;
+    const double h_over_m = h * n_ / units::droplet_mass;
+    state_.velocity += h_over_m * force_ + h * drag(state_.velocity);
+    state_.position += run_.time_step * state_.velocity;
+    forces_.evaluate(state_, force_);
+    // The drag of the second half kick is that of its end: by iteration.
+    const Eigen::ArrayXd kicked = state_.velocity + h_over_m * force_;
+    // Averaging keeps the iteration stable next to a wall.
+    for (int i = 0; i < 300; ++i)
+      state_.velocity += 0.4 * (kicked + h * drag(state_.velocity) - state_.velocity);
+  }
+
+ private:
+  RunParameters run_;
+  int n_;
+  DpForces forces_;
+  DropletState state_;
+  Eigen::ArrayXd force_;
+
+  /// Deceleration by drag of vertices with these velocities.
+  Eigen::ArrayXd drag(const Eigen::ArrayXd& v) {
+    const double far = units::gravity / run_.drag.terminal_speed;
+    const bool on_area = run_.dp.gravity == Gravity::area;
+    Eigen::ArrayXd rate = Eigen::ArrayXd::Constant(n_, far * run_.drag.relative);
+    if (run_.drag.near_wall > 0)
+      rate += far * run_.drag.near_wall * forces_.wall_distance().pow(-run_.drag.near_wall_exponent);
+    const double to_mean = far * (on_area ? run_.drag.relative : run_.drag.relative - 1);
+    Eigen::ArrayXd result(2 * n_);
+    result << to_mean * v.head(n_).mean() - rate * v.head(n_),
+        to_mean * v.tail(n_).mean() - rate * v.tail(n_);
+    if (on_area) {
+      const auto g = [this](int k) { return forces_.centroid_gradient().segment(k * n_, n_); };
+      const double area_x = (g(0) * v.head(n_) + g(1) * v.tail(n_)).sum();
+      const double area_y = (g(2) * v.head(n_) + g(3) * v.tail(n_)).sum();
+      result.head(n_) -= far * n_ * (area_x * g(0) + area_y * g(2));
+      result.tail(n_) -= far * n_ * (area_x * g(1) + area_y * g(3));
+    }
+    return result;
+  }
+};
+
+struct StepCase {
+  std::string name;
+  void (*change)(RunParameters&);
+};
+
+class Step : public testing::TestWithParam<StepCase> {
+ protected:
+  void TearDown() override { use_instruction_set("auto"); }
+};
+
+TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
+  // A droplet with a neck so thin that it touches itself, uneven vertices, and an obstacle on the neck and
+  // one at its end.
+  for (const int vertices : {64, 101, 256}) {
+    RunParameters run;
+    run.dp.vertices = vertices;
+    run.dp.line_tension = 0.3;
+    GetParam().change(run);
+    run = resolve(run);
+    const double diameter = units::regular_edge_length(vertices);
+    const double size = std::sqrt(units::rest_area / polygon_shape(dumbbell(vertices, diameter)).area);
+    const double film = 0.98 * diameter;
+    DropletState initial = state_of(shaken(size * dumbbell(vertices, film / size), 0.002 * film));
+    initial.velocity = shaken(Eigen::ArrayXd::Zero(2 * vertices), 0.03, 7);
+    const double end = initial.x().maxCoeff();
+    const ObstacleArray walls(
+        20, {{end + 0.15 + 0.45 * diameter, 0.02, 0.15}, {0.01, film / 2 + 0.1 + 0.45 * diameter, 0.1}});
+    ReadableDroplet readable(run, walls, initial);
+    for (int step = 0; step < 3; ++step) readable.step();
+    for (const std::string& set : instruction_sets()) {
+      use_instruction_set(set);
+      DpDroplet droplet(run, walls, initial);
+      droplet.advance(3);
+      if (run.dp.wall_contact == WallContact::edge) {
+        EXPECT_GT(droplet.potential_energy().wall, 0);
+      }
+      EXPECT_GT(droplet.potential_energy().self_contact, 0);
+      ASSERT_EQ(droplet.num_integrated_steps(), 3) << "the reference has no sub-steps";
+      const double position_error = (droplet.state().position - readable.state().position).abs().maxCoeff();
+      const double velocity_error = (droplet.state().velocity - readable.state().velocity).abs().maxCoeff();
+      EXPECT_LT(position_error, 1e-14) << set << ", " << vertices;
+      EXPECT_LT(velocity_error, 3e-12 * readable.state().velocity.abs().maxCoeff())
+          << set << ", " << vertices;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Interfaces, Step,
+    testing::Values(StepCase{"robust", [](RunParameters&) {}},
+                    StepCase{"robust_near_walls", [](RunParameters& r) { r.drag.near_wall = 0.1; }},
+                    StepCase{"other_exponent",
+                             [](RunParameters& r) {
+                               r.drag.near_wall = 0.1;
+                               r.drag.near_wall_exponent = 1.1;
+                               r.drag.relative = 3;
+                             }},
+                    StepCase{"mean_springs",
+                             [](RunParameters& r) {
+                               r.dp.perimeter_spring = PerimeterSpring::mean;
+                               r.dp.gravity = Gravity::vertex;
+                             }},
+                    StepCase{"rest_springs_near_walls",
+                             [](RunParameters& r) {
+                               r.dp.perimeter_spring = PerimeterSpring::rest;
+                               r.dp.gravity = Gravity::vertex;
+                               r.drag.near_wall = 0.1;
+                               r.drag.relative = 2;
+                             }},
+                    StepCase{"vertex_contact",
+                             [](RunParameters& r) { r.dp.wall_contact = WallContact::vertex; }},
+                    StepCase{"wetted", [](RunParameters& r) { r.dp.wall_tension = 0.5; }}),
+    [](const auto& tested) { return tested.param.name; });
+
+TEST(InstructionSet, OfAnotherProcessorIsRefused) {
+  EXPECT_THROW(use_instruction_set("avx1024"), Error);
+  EXPECT_EQ(instruction_set(), instruction_sets().front());
+}
+
+}  // namespace
+}  // namespace clog
