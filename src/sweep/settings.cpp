@@ -253,8 +253,8 @@ std::vector<Key> make_keys() {
        {"certified", "threshold"},
        "certified",
        "certified: a droplet that slows down is clogged once a stable equilibrium is proved to be at hand, "
-       "or "
-       "by clog-energy; threshold: by clog-energy only",
+       "or by "
+       "clog-energy; threshold: by clog-energy only",
        false,
        [](RunParameters& run, const std::string& value) {
          run.clog_detection = value == "certified" ? ClogDetection::certified : ClogDetection::threshold;
