@@ -164,6 +164,23 @@ TEST(Equilibrium, OfASoftDiskInAGapIsWhereTheForcesBalance) {
   EXPECT_NEAR(found->position[1], 10, 1e-8);
 }
 
+TEST(Equilibrium, TooFarAwayIsRefused) {
+  // So soft that it is in touch with both obstacles, and the energy convex, all the way.
+  const RunParameters run = resolve(soft_disk(2));
+  const ObstacleArray obstacles(20, narrow_gap);
+  Eigen::ArrayXd position(2);
+  position << 9.7, 10;
+  DropletState state = test::state_of(position);
+  const auto search = [&] { return find_equilibrium(run, obstacles, state); };
+  for (int step = 0; step < 100 && !search(); ++step) state.position[0] -= 0.01;
+  ASSERT_TRUE(search().has_value());
+  const double rest = search()->position[0];
+  state.position[0] = rest - 0.9 * farthest_rest;
+  EXPECT_TRUE(search().has_value());
+  state.position[0] = rest - 1.1 * farthest_rest;
+  EXPECT_FALSE(search().has_value());
+}
+
 TEST(Equilibrium, OnTopOfAnObstacleIsRefused) {
   const RunParameters run = resolve(soft_disk());
   Eigen::ArrayXd position(2);
