@@ -6,6 +6,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "clog/core/dp_forces.hpp"
 #include "clog/core/sp_droplet.hpp"
@@ -33,8 +34,11 @@ constexpr double move_tolerance = 1e-7;
 /// its neighbours, then that along it. Of the soft disk: x, y.
 struct Axes {
   Eigen::SparseMatrix<double> directions;  ///< orthonormal columns over all x, then all y
-  /// Of the interface that slides around itself: unit vector over the displacements along it. Empty where
-  /// that counts as any other motion.
+  /// The interface slides around itself: unit vector over the displacements along it, empty where that counts
+  /// as any other motion. After one edge the polygon is the same again, with other names for its vertices:
+  /// the energy only has ripples along this way, from the edges' corners on obstacles, and however far a
+  /// droplet slides, it goes nowhere. So neither the force along it nor the stiffness is asked for. It is the
+  /// last motion to die out, and may stand on top of a ripple now.
   VectorXd slide;
 };
 
@@ -60,6 +64,8 @@ Axes axes_of(const RunParameters& run, const DropletState& state) {
     axes.slide[i] = length;
   }
   axes.slide.normalize();
+  // Springs with an energy leave vertices unevenly spread, ripples are higher, and it pays to follow them to
+  // the end.
   if (run.dp.perimeter_spring != PerimeterSpring::along) axes.slide.resize(0);
   return axes;
 }
@@ -82,7 +88,9 @@ bool is_stable(double bound, const MatrixXd& k) {
 }
 
 /// K, minus the derivative of the force, in two parts: K_tt, of the vertices along the interface, and the
-/// stiffness of the shape, to which the vertices on it adapt at once: K_nn - K_nt K_tt^-1 K_tn.
+/// stiffness of the shape, to which the vertices on it adapt at once: K_nn - K_nt K_tt^-1 K_tn. Were they
+/// held where they are, a droplet that is free to drift aside would seem to be held by its own
+/// discretisation.
 class Stiffness {
  public:
   explicit Stiffness(const MatrixXd& k)

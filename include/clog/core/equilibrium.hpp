@@ -22,8 +22,8 @@ inline constexpr double least_stiffness = 1e-3;
 /// one: then both lie in one basin. A droplet that balances on an obstacle, that could drift aside freely, or
 /// that creeps past a place where there is no equilibrium is refused.
 ///
-/// With springs along the interface, vertices stay where they are on the contour, which has no part in the
-/// equilibrium of the shape: see equilibrium.cpp.
+/// With springs along the interface, how far the interface has slid around itself has no part in this: see
+/// equilibrium.cpp.
 /// @param run    resolved parameters
 /// @param state  of the droplet; its velocities do not count
 std::optional<DropletState> find_equilibrium(const RunParameters& run, const ObstacleArray& obstacles,
