@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "clog/core/dp_droplet.hpp"
+#include "clog/core/equilibrium.hpp"
 #include "clog/core/sp_droplet.hpp"
 #include "clog/core/units.hpp"
 
@@ -18,6 +19,18 @@ constexpr double diverged_energy_ratio = 1e8;
 constexpr double diverged_area_error = 0.5;  // relative
 /// A droplet just released is slow; it cannot be told from a clogged one before it had the time to fall.
 constexpr double relaxation_times_before_a_clog = 10;
+
+/// E_k/E_t below which an equilibrium is looked for. The droplet must also be slow enough not to coast, for
+/// V_t/g at its speed, farther than it may be from it.
+double first_search(double terminal_speed) {
+  constexpr double slow = 1e-4;
+  const double coasting = std::pow(farthest_rest * units::gravity / (terminal_speed * terminal_speed), 2);
+  return std::min(slow, coasting);
+}
+/// After a search in vain the next one waits until E_k/E_t has fallen by so much again,
+constexpr double fall_between_searches = 0.1;
+/// or, once it has risen above so many times the first search's, until the droplet slows down anew.
+constexpr double rise_of_a_moving_droplet = 10;
 
 std::unique_ptr<Droplet> make_droplet(const RunParameters& run, const ObstacleArray& obstacles,
                                       DropletState initial) {
@@ -36,7 +49,8 @@ DropletRun::DropletRun(const RunParameters& run, std::shared_ptr<const ObstacleA
       start_(droplet_->centre()),
       end_(end),
       max_steps_(std::max<std::int64_t>(1, std::llround(run_.max_time / run_.time_step))),
-      first_quiet_time_(relaxation_times_before_a_clog * run_.drag.terminal_speed / units::gravity) {}
+      first_quiet_time_(relaxation_times_before_a_clog * run_.drag.terminal_speed / units::gravity),
+      next_search_(first_search(run_.drag.terminal_speed)) {}
 
 PotentialEnergy DropletRun::potential_energy() const {
   PotentialEnergy energy = droplet_->potential_energy();
@@ -74,9 +88,11 @@ void DropletRun::check() {
     return;
   }
   record_.add(time(), displacement()[0]);
-  const bool is_quiet = energy_ratio < run_.clog_energy && time() > first_quiet_time_;
-  quiet_checks_ = is_quiet ? quiet_checks_ + 1 : 0;
-  if (quiet_checks_ >= 2)
+  if (is_quiet(energy_ratio))
+    clogged_by_ = ClogDetection::threshold;
+  else if (run_.clog_detection == ClogDetection::certified && finds_rest(energy_ratio))
+    clogged_by_ = ClogDetection::certified;
+  if (clogged_by_)
     status_ = RunStatus::clogged;
   else if (displacement()[0] >= end_)
     status_ = RunStatus::passed;
@@ -84,17 +100,39 @@ void DropletRun::check() {
     status_ = RunStatus::flowing;
 }
 
+bool DropletRun::is_quiet(double energy_ratio) {
+  const bool is_quiet = energy_ratio < run_.clog_energy && time() > first_quiet_time_;
+  quiet_checks_ = is_quiet ? quiet_checks_ + 1 : 0;
+  return quiet_checks_ >= 2;
+}
+
+bool DropletRun::finds_rest(double energy_ratio) {
+  const double first = first_search(run_.drag.terminal_speed);
+  if (energy_ratio > rise_of_a_moving_droplet * first) next_search_ = first;
+  if (energy_ratio > next_search_ || time() < first_quiet_time_) return false;
+  next_search_ = fall_between_searches * energy_ratio;
+  std::optional<DropletState> rest = find_equilibrium(run_, *obstacles_, droplet_->state());
+  if (rest) at_rest_ = make_droplet(run_, *obstacles_, std::move(*rest));
+  return at_rest_ != nullptr;
+}
+
 RunResult DropletRun::result() const {
-  const Eigen::Array2d displaced = displacement();
+  const Droplet& last = at_rest_ ? *at_rest_ : *droplet_;
+  const Eigen::Array2d displaced = displacement_of(last.centre());
   return {.status = status_,
+          .clogged_by = clogged_by_,
           .distance = displaced[0],
           .lateral = displaced[1],
           .time = time(),
           .mean_speed = record_.mean_speed(),
           .kinetic_energy_ratio = kinetic_energy_ratio(),
-          .shape_parameter = droplet_->shape().shape_parameter(),
+          .shape_parameter = last.shape().shape_parameter(),
           .steps = droplet_->num_integrated_steps(),
           .message = message_};
+}
+
+const char* name(ClogDetection detection) {
+  return detection == ClogDetection::certified ? "certified" : "threshold";
 }
 
 const char* name(RunStatus status) {

@@ -53,7 +53,8 @@ std::vector<Field> parameter_fields(const RunRow& row) {
           {"wall_tension", value_of(row.wall_tension)},
           {"self_contact", value_of(row.self_contact)},
           {"gravity", value_of(row.gravity)},
-          {"clog_energy", value_of(row.clog_energy)}};
+          {"clog_energy", value_of(row.clog_energy)},
+          {"clog_detection", value_of(row.clog_detection)}};
 }
 
 std::vector<Field> result_fields(const Group& group) {

@@ -79,7 +79,10 @@ std::vector<Column> columns() {
   CLOG_COLUMN(self_contact, "does the interface repel itself");
   CLOG_COLUMN(gravity, "the weight acts on the vertices or on the area");
   CLOG_COLUMN(clog_energy, "clogged when E_k/E_t stays below this");
+  CLOG_COLUMN(clog_detection,
+              "certified: also by a proved equilibrium at hand; threshold: by clog_energy only");
   CLOG_COLUMN(status, "clogged; flowing: max_time reached; interrupted; failed: see message");
+  CLOG_COLUMN(clogged_by, "certified (distance and shape_parameter are those at rest), threshold; none");
   CLOG_COLUMN(distance, "displacement of the centre of mass along the flow since release [sigma]");
   CLOG_COLUMN(lateral_displacement, "displacement across the flow [sigma]");
   CLOG_COLUMN(time, "time since release [t0]");

@@ -75,11 +75,13 @@ RunRow describe(const RunParameters& run) {
   row.gravity = !polygon ? "none" : run.dp.gravity == Gravity::vertex ? "vertex" : "area";
   row.clog_energy = run.clog_energy;
   row.instruction_set = polygon ? instruction_set() : "none";
+  row.clog_detection = clog::name(run.clog_detection);
   return row;
 }
 
 void record(const RunResult& result, RunRow& row) {
   row.status = std::string_view(clog::name(result.status));
+  row.clogged_by = result.clogged_by ? clog::name(*result.clogged_by) : "none";
   row.distance = result.distance;
   row.lateral_displacement = result.lateral;
   row.time = result.time;

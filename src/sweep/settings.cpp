@@ -248,6 +248,17 @@ std::vector<Key> make_keys() {
        "clogged when E_k/E_t stays below this",
        false,
        [](RunParameters& run, const std::string& value) { run.clog_energy = to_number(value); }},
+      {"clog-detection",
+       word,
+       {"certified", "threshold"},
+       "certified",
+       "certified: a droplet that slows down is clogged once a stable equilibrium is proved to be at hand, "
+       "or by "
+       "clog-energy; threshold: by clog-energy only",
+       false,
+       [](RunParameters& run, const std::string& value) {
+         run.clog_detection = value == "certified" ? ClogDetection::certified : ClogDetection::threshold;
+       }},
   };
 }
 

@@ -62,6 +62,7 @@ TEST(DropletRun, EndsFlowingWhenItsTimeIsUp) {
 TEST(DropletRun, AStiffDropletInNarrowGapsClogsAndStaysWhereItIs) {
   RunParameters parameters = small_run(2);
   parameters.max_time = 5000;
+  parameters.clog_detection = ClogDetection::threshold;
   DropletRun run = run_in_array(parameters);
   while (!run.advance(1000)) {
   }

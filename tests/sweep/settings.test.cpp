@@ -38,6 +38,7 @@ TEST(Settings, DefaultsAreThoseOfTheParameters) {
   EXPECT_EQ(actual.time_step, expected.time_step);
   EXPECT_EQ(actual.max_time, expected.max_time);
   EXPECT_EQ(actual.clog_energy, expected.clog_energy);
+  EXPECT_EQ(actual.clog_detection, expected.clog_detection);
 }
 
 TEST(Settings, ReadBackFromTheirOwnText) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "clog/core/displacement_record.hpp"
@@ -17,12 +18,13 @@ enum class RunStatus { running, clogged, flowing, passed, interrupted, failed };
 /// What one run found out.
 struct RunResult {
   RunStatus status = RunStatus::running;
-  double distance = 0;              ///< displacement along the flow since release [sigma]
-  double lateral = 0;               ///< displacement across the flow [sigma]
+  std::optional<ClogDetection> clogged_by;  ///< how a clog was found; empty unless clogged
+  double distance = 0;              ///< displacement along the flow since release, certified: at rest [sigma]
+  double lateral = 0;               ///< displacement across the flow, certified: at rest [sigma]
   double time = 0;                  ///< [t0]
   double mean_speed = 0;            ///< see DisplacementRecord::mean_speed [sqrt(sigma g)]
   double kinetic_energy_ratio = 0;  ///< E_k/E_t at the end
-  double shape_parameter = 0;       ///< A at the end
+  double shape_parameter = 0;       ///< A at the end, certified: at rest
   std::int64_t steps = 0;           ///< integrated steps, sub-steps counted singly
   std::string message;              ///< why it failed
 };
@@ -31,8 +33,9 @@ struct RunResult {
 /// it runs (an array, a channel, onto a wall) is made in systems.hpp.
 ///
 /// The droplet counts as clogged when E_k/E_t (E_t: kinetic energy at terminal speed) has been below
-/// clog-energy at two checks in a row, not before it had ten relaxation times V_t/g to fall. The course of a
-/// run depends on its parameters alone, not on how advance() is called.
+/// clog-energy at two checks in a row, not before it had ten relaxation times V_t/g to fall. With
+/// clog-detection=certified it also does as soon as find_equilibrium() knows where it will rest. The course
+/// of a run depends on its parameters alone, not on how advance() is called, nor on how clogs are found.
 class DropletRun {
  public:
   /// Clogging and the end of the run are looked for, and r(t) is recorded, once in so many steps.
@@ -78,12 +81,18 @@ class DropletRun {
   double first_quiet_time_;
   int quiet_checks_ = 0;
   RunStatus status_ = RunStatus::running;
+  std::optional<ClogDetection> clogged_by_;
+  double next_search_;                // E_k/E_t below which an equilibrium is looked for
+  std::unique_ptr<Droplet> at_rest_;  // of a certified clog
   std::string message_;
   DisplacementRecord record_;
 
   void check();
+  bool is_quiet(double energy_ratio);
+  bool finds_rest(double energy_ratio);
 };
 
 const char* name(RunStatus status);
+const char* name(ClogDetection detection);
 
 }  // namespace clog

@@ -18,6 +18,9 @@ enum class Gravity { vertex, area };
 enum class WallContact { vertex, edge };
 /// How obstacles are placed: random sequential addition, or a tilted square lattice.
 enum class ObstacleLayout { random, lattice };
+/// What it takes for a droplet to count as clogged: kinetic energy below a threshold, or else, long before
+/// that, proof that a stable equilibrium is at hand (equilibrium.hpp).
+enum class ClogDetection { threshold, certified };
 
 /// Deformable polygon, Cheng et al. Eqs. 1-6. Reduced units, see units.hpp.
 struct DpParameters {
@@ -69,6 +72,7 @@ struct RunParameters {
   double time_step = 1e-3;     ///< [t0]
   double max_time = 2e5;       ///< [t0]
   double clog_energy = 1e-17;  ///< E_k/E_t below which a droplet counts as clogged
+  ClogDetection clog_detection = ClogDetection::certified;
   std::uint32_t seed = 1;
 };
 

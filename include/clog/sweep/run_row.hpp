@@ -58,8 +58,10 @@ struct RunRow {
   FixedText<8> self_contact;
   FixedText<8> gravity;
   double clog_energy = 0;
+  FixedText<16> clog_detection;
 
   FixedText<16> status;
+  FixedText<16> clogged_by;  ///< "certified" or "threshold"; "none" unless clogged
   double distance = 0;
   double lateral_displacement = 0;
   double time = 0;
