@@ -20,6 +20,7 @@ DpDroplet::DpDroplet(const RunParameters& run, const ObstacleArray& obstacles, D
       vertex_mass_(units::droplet_mass / run.dp.vertices),
       stepper_(std::make_unique<DpStepper>(run, forces_)) {
   state_ = std::move(initial);
+  forces_.update_contacts(state_, state_.possible_travel(steps_per_check * run_.time_step));
 }
 
 DpDroplet::~DpDroplet() = default;

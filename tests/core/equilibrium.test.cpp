@@ -97,7 +97,7 @@ TEST_P(Certified, ADropletThatBalancesOnAnObstacleSlipsOff) {
   double slowest = 1;
   while (!balanced.advance(1))
     if (balanced.time() > 10) slowest = std::min(slowest, balanced.kinetic_energy_ratio());
-  EXPECT_LT(slowest, 1e-6) << "it never looked as if it were at rest";
+  EXPECT_LT(slowest, 5e-5) << "it never looked as if it were at rest";
   EXPECT_EQ(balanced.result().status, RunStatus::passed);
 }
 
@@ -188,16 +188,15 @@ TEST(Equilibrium, OnTopOfAnObstacleIsRefused) {
   EXPECT_FALSE(find_equilibrium(run, ObstacleArray(20, single), test::state_of(position)).has_value());
 }
 
-/// 128 vertices: near the largest line tension that passes, see
-/// InAChannel.ADropletPassesUpToTheLineTensionThatStaticsAllows.
+/// Near the largest line tension that passes this orifice, about 1.08 with its round tips.
 DropletRun through_orifice(double line_tension, ClogDetection detection) {
   RunParameters run = robust(line_tension);
   run.clog_detection = detection;
-  return run_in_channel(resolve(run), {.orifice = 0.7, .tip_radius = 0, .start = -0.8, .end = 0.6});
+  return run_in_channel(resolve(run), {.orifice = 0.7, .tip_radius = 0.1, .start = -0.8, .end = 0.6});
 }
 
 TEST(Equilibrium, IsNotSeenByADropletThatCreepsThroughAnOrifice) {
-  DropletRun droplet = through_orifice(1.02, ClogDetection::certified);
+  DropletRun droplet = through_orifice(1.074, ClogDetection::certified);
   double slowest = 1;
   for (int num_checks = 1; !droplet.advance(1); ++num_checks) {
     if (droplet.time() > 5) slowest = std::min(slowest, droplet.kinetic_energy_ratio());
@@ -206,13 +205,13 @@ TEST(Equilibrium, IsNotSeenByADropletThatCreepsThroughAnOrifice) {
           find_equilibrium(droplet.parameters(), droplet.obstacles(), droplet.droplet().state()).has_value());
     }
   }
-  EXPECT_LT(slowest, 1e-6) << "it never looked as if it were at rest";
+  EXPECT_LT(slowest, 5e-5) << "it never looked as if it were at rest";
   EXPECT_EQ(droplet.result().status, RunStatus::passed);
 }
 
 TEST(Equilibrium, IsSeenByOneThatIsHeldThere) {
-  const RunResult certified = finished(through_orifice(1.03, ClogDetection::certified));
-  const RunResult waited = finished(through_orifice(1.03, ClogDetection::threshold));
+  const RunResult certified = finished(through_orifice(1.1, ClogDetection::certified));
+  const RunResult waited = finished(through_orifice(1.1, ClogDetection::threshold));
   EXPECT_EQ(certified.clogged_by, ClogDetection::certified);
   EXPECT_EQ(waited.clogged_by, ClogDetection::threshold);
   EXPECT_NEAR(certified.distance, waited.distance, 1e-3);
