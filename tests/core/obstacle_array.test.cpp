@@ -217,7 +217,7 @@ double close_pairs(const ObstacleArray& array, double widest) {
 TEST(SampleObstacles, PacksLikeDiscsThatArriveOneByOne) {
   // Near saturation (2.79 per sigma^2): how many neighbours are about as near as can be.
   const ObstacleParameters parameters{.gap = 0.2, .diameter = 0.3, .density = 2.25, .box = 6};
-  constexpr int num_arrays = 100;
+  constexpr int num_arrays = 250;
   double difference = 0;
   double scatter = 0;
   double expected = 0;
