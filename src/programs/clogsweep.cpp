@@ -121,7 +121,8 @@ int lead(const parallel::Communicator& ranks, const cli::CommandLine& line, cons
   };
   events.idle = [&] { progress.tick(); };
   events.stop_requested = [] { return cli::stop_signalled(); };
-  const bool all_started = parallel::run_tasks(ranks, plan.size(), sweep::run_jobs(plan), events, computes);
+  const bool all_started = parallel::run_tasks(ranks, parallel::TaskOrder(plan.size(), plan.num_groups()),
+                                               sweep::run_jobs(plan), events, computes);
   progress.finish();
   if (all_started && !interrupted) return cli::exit_success;
   std::cerr << program << ": stopped by a signal; finished rows and the distances so far are in "
@@ -152,7 +153,7 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, int argc, char** arg
   cli::catch_stop_signals();
   if (ranks.rank() == 0) return lead(ranks, line, sweep::Plan(line.settings()), *table);
   const sweep::Plan plan(sweep::Settings::from_config(word.substr(4)));
-  parallel::run_tasks(ranks, plan.size(), sweep::run_jobs(plan), {}, false);
+  parallel::run_tasks(ranks, parallel::TaskOrder(0), sweep::run_jobs(plan), {}, false);
   return cli::exit_success;
 }
 
