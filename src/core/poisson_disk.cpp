@@ -1,9 +1,11 @@
+#include <Eigen/Core>
 #include <algorithm>
-#include <boost/random/uniform_01.hpp>
+#include <boost/random/exponential_distribution.hpp>
 #include <boost/random/uniform_int_distribution.hpp>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <numbers>
 #include <random>
 #include <sstream>
@@ -16,18 +18,61 @@
 namespace clog {
 namespace {
 
+// As in dp_kernel.cpp. This file is compiled without fused multiply-adds: the same array on every machine.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#define CLOG_MULTIVERSION __attribute__((target_clones("arch=x86-64-v3", "default")))
+#else
+#define CLOG_MULTIVERSION
+#endif
+
+/// Places are kept in single precision, relative to a cell; this much more distance makes up for the
+/// rounding.
+constexpr double rounding = 1e-5;
+constexpr float nowhere = 1e6;
+
+/// Where an arriving disc is, and the points of its cell and, row by row, of those around it.
+struct Surroundings {
+  float x, y;  // from the corner of its cell
+  const float* points_x;
+  const float* points_y;
+  int row_length;
+  float cell_size;
+};
+
+/// Has the disc room, all being of one size and cells so large that the margin is 2? No branch depends on the
+/// random pattern of taken cells: mispredicted ones would cost more than the work itself.
+CLOG_MULTIVERSION
+bool has_room_among_alike(const Surroundings& disc, float distance2) {
+  constexpr int lanes = 8;  // 5 cells of a row; the next 3 are too far away to matter
+  using Floats [[gnu::vector_size(lanes * sizeof(float))]] = float;
+  using Integers [[gnu::vector_size(lanes * sizeof(float))]] = std::int32_t;
+  const Floats columns = disc.cell_size * Floats{-2, -1, 0, 1, 2, 3, 4, 5};
+  Integers is_near{};
+  for (int row = -2; row <= 2; ++row) {
+    Floats x, y;
+    std::memcpy(&x, disc.points_x + row * disc.row_length - 2, sizeof x);
+    std::memcpy(&y, disc.points_y + row * disc.row_length - 2, sizeof y);
+    const Floats dx = x + columns - disc.x;
+    const Floats dy = y + static_cast<float>(row) * disc.cell_size - disc.y;
+    is_near |= dx * dx + dy * dy < distance2;
+  }
+  std::int32_t any = 0;
+  for (int lane = 0; lane < lanes; ++lane) any |= is_near[lane];
+  return any == 0;
+}
+
 /// Random sequential addition of discs, surfaces at least a gap apart, in a periodic square.
 ///
 /// Each arriving disc draws its place and its radius; one that has no room leaves for good. The space it
 /// draws from has three dimensions: the place, and by how much the radius exceeds the smallest one, its
 /// `excess`. Discs of one size are the flat case, excess 0.
 ///
-/// Darts are thrown in rounds. Within a round they are generated, stored and tested cell by cell, so that
-/// memory is walked in order; each carries a random time, and a dart is accepted when no accepted dart of an
-/// earlier time is too near. The outcome is that of throwing them one after the other in the order of their
-/// times. After each round, only squares that still have room are aimed at, a quarter as large as before; a
-/// square comes with a range of excesses, halved too when it is longer than the square is wide. Room means
-/// room for the smallest disc of the range, so nothing that would be accepted is ever left out.
+/// Discs arrive in squares that may still have room, at first the cells of a grid, as a Poisson process: in
+/// every round independently in every square. They are made square by square, memory walked in order, and
+/// only those that have room among the points of earlier rounds are taken up one after the other, in random
+/// order. After each round squares without room are dropped and the others cut into quarters; a square comes
+/// with a range of excesses, halved too when it is longer than the square is wide. Room means room for the
+/// smallest disc of the range, so nothing that would be accepted is ever left out.
 class SequentialAddition {
  public:
   /// @param distance  between the centres of two of the smallest discs
@@ -35,93 +80,110 @@ class SequentialAddition {
   SequentialAddition(double box, double distance, double largest_excess, std::uint32_t seed)
       : distance_(static_cast<float>(distance)),
         distance2_(static_cast<float>(distance * distance * (1 + rounding))),
-        largest_excess_(static_cast<float>(largest_excess)),
         cells_per_side_(static_cast<int>(std::ceil(box * std::numbers::sqrt2 / distance))),
         cell_size_(box / cells_per_side_),
-        cells_in_reach_(static_cast<int>(std::ceil((distance + 2 * largest_excess) / cell_size_))),
-        point_in_cell_(static_cast<std::size_t>(cells_per_side_) * cells_per_side_),
-        first_dart_in_cell_(point_in_cell_.size(), none),
+        margin_(static_cast<int>(std::ceil((distance + 2 * largest_excess) / cell_size_))),
+        row_length_(cells_per_side_ + 2 * margin_),
+        are_alike_(largest_excess == 0 && margin_ == 2),
+        x_(static_cast<std::size_t>(row_length_) * row_length_ + 3, nowhere),
+        y_(x_.size(), nowhere),
+        excess_(are_alike_ ? 0 : x_.size(), 0.0F),
+        size_(static_cast<float>(cell_size_)),
+        range_(static_cast<float>(largest_excess)),
         engine_(make_engine(seed)) {
-    const std::size_t num_cells_around = (2 * cells_in_reach_ + 1) * (2 * cells_in_reach_ + 1);
-    for (std::vector<float>* near : {&near_x_, &near_y_, &near_excess_}) near->resize(num_cells_around);
+    const std::size_t num_cells_around = (2 * margin_ + 1) * (2 * margin_ + 1);
+    for (std::vector<float>* near : {&near_x_, &near_y_, &near_excess_}) near->resize(num_cells_around + 1);
   }
 
   /// Adds points until there are `target` of them or no room is left.
   void fill(std::size_t target) {
-    const std::int32_t num_cells = static_cast<std::int32_t>(point_in_cell_.size());
-    float size = static_cast<float>(cell_size_);
-    float range = largest_excess_;
-    std::vector<Square> squares(num_cells);
-    for (std::int32_t cell = 0; cell < num_cells; ++cell) squares[cell] = {0, 0, 0, cell};
-    while (num_points_ < target && !squares.empty()) {
-      throw_round(squares, size, range, target - num_points_);
-      size /= 2;
-      const int num_layers = range > size ? 2 : 1;
-      range /= static_cast<float>(num_layers);
-      squares = parts_with_room(squares, size, range, num_layers);
+    for (const double darts_per_cell : first_rounds) {
+      for (int row = 0; row < cells_per_side_; ++row)
+        throw_darts(cells_per_side_, darts_per_cell, [&](int column) { return whole(cell_at(row, column)); });
+      take_up_darts(target);
     }
+    std::vector<std::vector<Square>> rows(cells_per_side_);
+    bool is_first = true;
+    for (std::size_t num_squares = 1; num_points_ < target && num_squares > 0; is_first = false) {
+      halve();
+      num_squares = 0;
+      for (int row = 0; row < cells_per_side_; ++row) {
+        std::vector<Square>& squares = rows[row];
+        parts_.clear();
+        if (is_first)
+          for (int column = 0; column < cells_per_side_; ++column) add_parts(whole(cell_at(row, column)));
+        else
+          for (const Square& square : squares) add_parts(square);
+        squares = std::vector<Square>(parts_.begin(), parts_.end());
+        num_squares += squares.size();
+        throw_darts(static_cast<int>(squares.size()), darts_per_square, [&](int i) { return squares[i]; });
+      }
+      take_up_darts(target);
+    }
+    parts_ = {};
   }
 
   std::vector<Obstacle> circles(double smallest_radius) const {
     std::vector<Obstacle> circles;
     circles.reserve(num_points_);
-    for (std::size_t cell = 0; cell < point_in_cell_.size(); ++cell) {
-      const Point& point = point_in_cell_[cell];
-      const auto row = static_cast<double>(cell / cells_per_side_);
-      const auto column = static_cast<double>(cell % cells_per_side_);
-      if (point.taken())
-        circles.push_back(
-            {column * cell_size_ + point.x, row * cell_size_ + point.y, smallest_radius + point.excess});
-    }
+    for (int row = 0; row < cells_per_side_; ++row)
+      for (int column = 0; column < cells_per_side_; ++column) {
+        const Cell cell = cell_at(row, column);
+        if (x_[cell] != nowhere)
+          circles.push_back({column * cell_size_ + x_[cell], row * cell_size_ + y_[cell],
+                             smallest_radius + (excess_.empty() ? 0 : excess_[cell])});
+      }
     return circles;
   }
 
  private:
-  static constexpr std::int32_t none = -1;
-  /// Places are kept in single precision, relative to a cell; this much more distance makes up for the
-  /// rounding.
-  static constexpr double rounding = 1e-5;
-  /// The one point that a cell can hold (its diagonal is not longer than the smallest distance), from the
-  /// cell's corner.
-  struct Point {
-    float x = -1;
-    float y = -1;
-    float excess = 0;
-    bool taken() const { return x >= 0; }
-  };
-  /// A square that may still have room: its lower left corner from the corner of its cell, and the low end of
-  /// its range of excesses.
+  /// Few at first, while most of them have room. Any numbers give the same statistics; these are fast.
+  static constexpr double first_rounds[] = {0.125, 0.25, 0.5, 1, 0.5};  // darts per cell
+  static constexpr double darts_per_square = 1;                       // in later rounds
+  /// Number of a cell in the grid, whose margins repeat the opposite side.
+  using Cell = std::int32_t;
+  /// A square that may still have room, or a dart: from the corner of its cell, and the low end of its range
+  /// of excesses.
   struct Square {
     float x, y, excess;
-    std::int32_t cell;
-  };
-  enum class Verdict : std::uint8_t { open, accepted, rejected };
-  struct Dart {
-    float x, y, excess;  // place from the cell's corner
-    std::int32_t cell;
-    std::uint32_t time;
-    Verdict verdict;
+    Cell cell;
   };
 
   float distance_;
   float distance2_;
-  float largest_excess_;
   int cells_per_side_;
   double cell_size_;
-  int cells_in_reach_;  // how many cells further a point within the largest distance can lie
+  int margin_;  // how many cells further a point within the largest distance can lie
+  int row_length_;
+  bool are_alike_;  // the usual discs, of one size
+  /// The points, each from its cell's corner. A cell can hold only one, as its diagonal is not longer than
+  /// the smallest distance.
+  std::vector<float> x_, y_, excess_;
   std::size_t num_points_ = 0;
-  std::vector<Point> point_in_cell_;
-  std::vector<std::int32_t> first_dart_in_cell_;
-  std::vector<Dart> darts_;
+  float size_;          // of the squares
+  float range_;         // of their excesses
+  int num_layers_ = 1;  // of excesses that a square was cut into
+  std::vector<Square> parts_;
+  std::vector<Square> darts_;
   std::vector<float> near_x_, near_y_, near_excess_;
   int num_near_ = 0;
+  Cell near_cell_ = -1;
   std::mt19937_64 engine_;
-  boost::random::uniform_01<float> uniform_;
+  boost::random::exponential_distribution<double> exponential_;
 
   static std::mt19937_64 make_engine(std::uint32_t seed) {
     std::seed_seq sequence{seed,
                            std::uint32_t{0x0b57ac1e}};  // the constant keeps this stream apart from others
     return std::mt19937_64(sequence);
+  }
+
+  Cell cell_at(int row, int column) const { return (row + margin_) * row_length_ + column + margin_; }
+
+  static Square whole(Cell cell) { return {0, 0, 0, cell}; }
+
+  /// Uniform in [0, 1), 24 bits.
+  static float uniform(std::uint64_t bits) {
+    return 0x1p-24F * static_cast<float>(static_cast<int>(bits & 0xffffff));
   }
 
   /// Square of the distance that two discs must keep, (distance + both excesses)^2.
@@ -130,159 +192,156 @@ class SequentialAddition {
     return distance2_ + widened * both_excesses * (2 * distance_ + both_excesses);
   }
 
-  /// Calls visit(cell, x, y) for the cells around `cell`, 5 x 5 of them for discs of one size, with the
-  /// neighbour's corner relative to this cell's, until visit returns true.
-  template <class Visit>
-  bool any_neighbour(std::int32_t cell, Visit visit) const {
-    const int row = cell / cells_per_side_;
-    const int column = cell - row * cells_per_side_;
-    const auto wrapped = [this](int index) {
-      return index + (index < 0) * cells_per_side_ - (index >= cells_per_side_) * cells_per_side_;
-    };
-    for (int row_step = -cells_in_reach_; row_step <= cells_in_reach_; ++row_step) {
-      const std::int32_t row_start = wrapped(row + row_step) * cells_per_side_;
-      for (int column_step = -cells_in_reach_; column_step <= cells_in_reach_; ++column_step)
-        if (visit(row_start + wrapped(column + column_step), column_step * cell_size_, row_step * cell_size_))
-          return true;
+  bool has_room(const Square& dart) const {
+    const auto cell_size = static_cast<float>(cell_size_);
+    if (are_alike_)
+      return has_room_among_alike({dart.x, dart.y, &x_[dart.cell], &y_[dart.cell], row_length_, cell_size},
+                                  distance2_);
+    bool is_near = false;
+    for (int row = -margin_; row <= margin_; ++row)
+      for (int column = -margin_; column <= margin_; ++column) {
+        const Cell cell = dart.cell + row * row_length_ + column;
+        const float dx = x_[cell] + static_cast<float>(column) * cell_size - dart.x;
+        const float dy = y_[cell] + static_cast<float>(row) * cell_size - dart.y;
+        is_near |= dx * dx + dy * dy < reach2(excess_[cell] + dart.excess);
+      }
+    return !is_near;
+  }
+
+  /// A Poisson process along the squares; keeps the darts that have room so far.
+  /// @param square_at  (index) -> Square
+  template <class SquareAt>
+  void throw_darts(int num_squares, double darts_each, SquareAt square_at) {
+    const double spacing = 1 / darts_each;
+    for (double place = spacing * exponential_(engine_); place < num_squares;
+         place += spacing * exponential_(engine_)) {
+      Square dart = square_at(static_cast<int>(place));
+      const std::uint64_t bits = engine_();
+      dart.x += size_ * uniform(bits);
+      dart.y += size_ * uniform(bits >> 24);
+      if (range_ > 0) dart.excess += range_ * uniform(engine_());
+      if (has_room(dart)) darts_.push_back(dart);
     }
-    return false;
   }
 
-  /// Collects the points that may lie within the distance of a place in `cell`. No branch depends on the
-  /// random pattern of taken cells: mispredicted ones would cost more than the work itself.
-  void look_around(std::int32_t cell) {
-    num_near_ = 0;
-    any_neighbour(cell, [&](std::int32_t near, double corner_x, double corner_y) {
-      const Point& point = point_in_cell_[near];
-      near_x_[num_near_] = static_cast<float>(corner_x) + point.x;
-      near_y_[num_near_] = static_cast<float>(corner_y) + point.y;
-      near_excess_[num_near_] = point.excess;
-      num_near_ += point.taken();
-      return false;
-    });
-  }
-
-  bool near_a_point(float x, float y, float excess) const {
-    int num_hits = 0;
-    for (int i = 0; i < num_near_; ++i) {
-      const float dx = near_x_[i] - x;
-      const float dy = near_y_[i] - y;
-      num_hits += dx * dx + dy * dy < reach2(near_excess_[i] + excess);
+  /// Tries the darts one after the other in random order.
+  void take_up_darts(std::size_t target) {
+    for (std::size_t i = 0; i < darts_.size(); ++i) {
+      boost::random::uniform_int_distribution<std::size_t> other(i, darts_.size() - 1);
+      std::swap(darts_[i], darts_[other(engine_)]);
     }
-    return num_hits > 0;
-  }
-
-  /// Is the square wholly within the distance of one point, for discs of this excess or more?
-  bool covered(float x, float y, float excess, float size) const {
-    const float half = size / 2;
-    int num_hits = 0;
-    for (int i = 0; i < num_near_; ++i) {
-      const float far_x = std::abs(near_x_[i] - x - half) + half;
-      const float far_y = std::abs(near_y_[i] - y - half) + half;
-      num_hits += far_x * far_x + far_y * far_y < reach2(near_excess_[i] + excess);
+    for (std::size_t i = 0; i < darts_.size() && num_points_ < target; ++i) {
+      constexpr std::size_t ahead = 8;  // memory is slow where places are random: ask for it early
+      if (i + ahead < darts_.size()) prefetch_around(darts_[i + ahead].cell);
+      if (has_room(darts_[i])) add_point(darts_[i]);
     }
-    return num_hits > 0;
+    darts_ = {};
+    near_cell_ = -1;
   }
 
-  /// One dart for every square on average, at most `most` of them accepted, the earliest ones.
-  void throw_round(const std::vector<Square>& squares, float size, float range, std::size_t most) {
-    std::vector<std::uint8_t> num_darts(squares.size(), 0);
-    boost::random::uniform_int_distribution<std::size_t> pick(0, squares.size() - 1);
-    for (std::size_t i = 0; i < squares.size(); ++i) ++num_darts[pick(engine_)];
+  void prefetch_around(Cell cell) const {
+    for (int row = -margin_; row <= margin_; ++row)
+      for (const int column : {-margin_, margin_}) {
+        __builtin_prefetch(&x_[cell + row * row_length_ + column]);
+        __builtin_prefetch(&y_[cell + row * row_length_ + column]);
+      }
+  }
 
-    darts_.clear();
-    std::int32_t cell = none;
-    for (std::size_t i = 0; i < squares.size(); ++i) {
-      const Square& square = squares[i];
-      for (int k = 0; k < num_darts[i]; ++k) {
-        if (square.cell != cell) look_around(cell = square.cell);
-        const float x = square.x + size * uniform_(engine_);
-        const float y = square.y + size * uniform_(engine_);
-        const float excess = range > 0 ? square.excess + range * uniform_(engine_) : 0;
-        const auto time = static_cast<std::uint32_t>(engine_());
-        if (near_a_point(x, y, excess)) continue;
-        if (first_dart_in_cell_[cell] == none)
-          first_dart_in_cell_[cell] = static_cast<std::int32_t>(darts_.size());
-        darts_.push_back({x, y, excess, cell, time, Verdict::open});
+  void add_point(const Square& dart) {
+    const int row = dart.cell / row_length_ - margin_;
+    const int column = dart.cell % row_length_ - margin_;
+    const int n = cells_per_side_;
+    const auto on_grid = [&](int index) { return index >= -margin_ && index < n + margin_; };
+    for (const int image_row : {row - n, row, row + n}) {
+      if (!on_grid(image_row)) continue;
+      for (const int image_column : {column - n, column, column + n}) {
+        if (!on_grid(image_column)) continue;
+        const Cell cell = cell_at(image_row, image_column);
+        x_[cell] = dart.x;
+        y_[cell] = dart.y;
+        if (!excess_.empty()) excess_[cell] = dart.excess;
       }
     }
-    std::vector<std::int32_t> accepted;
-    for (std::int32_t dart = 0; dart < static_cast<std::int32_t>(darts_.size()); ++dart)
-      if (is_accepted(dart)) accepted.push_back(dart);
-    if (accepted.size() > most) {
-      std::sort(accepted.begin(), accepted.end(), [this](auto a, auto b) { return precedes(a, b); });
-      accepted.resize(most);
-    }
-    for (const std::int32_t dart : accepted)
-      point_in_cell_[darts_[dart].cell] = {darts_[dart].x, darts_[dart].y, darts_[dart].excess};
-    num_points_ += accepted.size();
-    for (const Dart& dart : darts_) first_dart_in_cell_[dart.cell] = none;
+    ++num_points_;
   }
 
-  bool precedes(std::int32_t a, std::int32_t b) const {
-    return darts_[a].time != darts_[b].time ? darts_[a].time < darts_[b].time : a < b;
+  /// Collects the points that may lie within the distance of a place in `cell`.
+  void look_around(Cell cell) {
+    if (are_alike_)
+      look_around(cell, 2, nullptr);  // constants let the compiler unroll the loops
+    else
+      look_around(cell, margin_, excess_.data());
   }
-
-  /// Recursion follows strictly earlier darts, a short chain.
-  bool is_accepted(std::int32_t index) {
-    Dart& dart = darts_[index];
-    if (dart.verdict == Verdict::open) {
-      const bool rejected = any_neighbour(dart.cell, [&](std::int32_t near, double corner_x,
-                                                         double corner_y) {
-        for (std::int32_t other = first_dart_in_cell_[near];
-             other != none && other < static_cast<std::int32_t>(darts_.size()) && darts_[other].cell == near;
-             ++other) {
-          const float dx = static_cast<float>(corner_x) + darts_[other].x - dart.x;
-          const float dy = static_cast<float>(corner_y) + darts_[other].y - dart.y;
-          if (dx * dx + dy * dy < reach2(darts_[other].excess + dart.excess) &&
-              darts_[other].verdict != Verdict::rejected && precedes(other, index) && is_accepted(other))
-            return true;
-        }
-        return false;
-      });
-      dart.verdict = rejected ? Verdict::rejected : Verdict::accepted;
-    }
-    return dart.verdict == Verdict::accepted;
-  }
-
-  /// Quarters of the squares, in `num_layers` ranges of excesses each.
-  std::vector<Square> parts_with_room(const std::vector<Square>& squares, float size, float range,
-                                      int num_layers) {
-    std::vector<Square> parts;
-    std::int32_t cell = none;
-    for (const Square& square : squares) {
-      if (point_in_cell_[square.cell].taken()) continue;
-      if (square.cell != cell) look_around(cell = square.cell);
-      if (covered(square.x, square.y, square.excess, 2 * size)) continue;
-      for (int part = 0; part < 4 * num_layers; ++part) {
-        const float x = square.x + static_cast<float>(part & 1) * size;
-        const float y = square.y + static_cast<float>(part >> 1 & 1) * size;
-        const float excess = square.excess + static_cast<float>(part >> 2) * range;
-        if (!covered(x, y, excess, size)) parts.push_back({x, y, excess, cell});
+  [[gnu::always_inline]] inline void look_around(Cell cell, int margin, const float* excess) {
+    const auto cell_size = static_cast<float>(cell_size_);
+    float* near_x = near_x_.data();
+    float* near_y = near_y_.data();
+    int num_near = 0;
+    for (int row = -margin; row <= margin; ++row)
+      for (int column = -margin; column <= margin; ++column) {
+        const Cell near = cell + row * row_length_ + column;
+        near_x[num_near] = x_[near] + static_cast<float>(column) * cell_size;
+        near_y[num_near] = y_[near] + static_cast<float>(row) * cell_size;
+        if (excess) near_excess_[num_near] = excess[near];
+        num_near += x_[near] != nowhere;  // no branch, as above
       }
+    num_near_ = num_near;
+  }
+
+  /// The squares' new size and range of excesses, for add_parts().
+  void halve() {
+    size_ /= 2;
+    num_layers_ = range_ > size_ ? 2 : 1;
+    range_ /= static_cast<float>(num_layers_);
+  }
+
+  /// Adds the quarters of a square, in each layer of excesses, that are not wholly within the distance of one
+  /// point. Distances are those of has_room() to the last bit where squares have become as small as numbers
+  /// can tell: then a square has room or is left out.
+  void add_parts(const Square& square) {
+    if (x_[square.cell] != nowhere) return;
+    if (square.cell != near_cell_) look_around(near_cell_ = square.cell);
+    using Quarters = Eigen::Array4f;
+    const Quarters x = square.x + size_ * Quarters(0, 1, 0, 1);
+    const Quarters y = square.y + size_ * Quarters(0, 0, 1, 1);
+    const float half = size_ / 2;
+    for (int layer = 0; layer < num_layers_; ++layer) {
+      const float excess = square.excess + static_cast<float>(layer) * range_;
+      Quarters slack = Quarters::Constant(nowhere);
+      for (int i = 0; i < num_near_; ++i) {
+        const Quarters far_x = (near_x_[i] - x - half).abs() + half;
+        const Quarters far_y = (near_y_[i] - y - half).abs() + half;
+        slack = slack.min(far_x * far_x + far_y * far_y - reach2(near_excess_[i] + excess));
+      }
+      for (int part = 0; part < 4; ++part)
+        if (slack[part] >= 0) parts_.push_back({x[part], y[part], excess, square.cell});
     }
-    return parts;
   }
 };
+
+/// At most `target` discs; what was needed to find them is given back.
+std::vector<Obstacle> add_circles(const ObstacleParameters& parameters, std::size_t target,
+                                  std::uint32_t seed) {
+  const double smallest = parameters.smallest_diameter();
+  SequentialAddition addition(parameters.box, smallest + parameters.gap,
+                              parameters.diameter_spread * parameters.diameter, seed);
+  addition.fill(target);
+  return addition.circles(smallest / 2);
+}
 
 }  // namespace
 
 ObstacleArray sample_obstacles(const ObstacleParameters& parameters, std::uint32_t seed) {
   if (parameters.layout == ObstacleLayout::lattice) return lattice_obstacles(parameters, seed);
-  const double smallest = parameters.smallest_diameter();
-  SequentialAddition addition(parameters.box, smallest + parameters.gap,
-                              parameters.diameter_spread * parameters.diameter, seed);
   std::size_t target = SIZE_MAX;
   if (parameters.density)
     target = static_cast<std::size_t>(std::llround(*parameters.density * parameters.box * parameters.box));
-  addition.fill(target);
-
-  std::vector<Obstacle> obstacles = addition.circles(smallest / 2);
+  std::vector<Obstacle> obstacles = add_circles(parameters, target, seed);
   if (parameters.density && obstacles.size() < target) {
     std::ostringstream message;
     message << "invalid obstacle-density=" << *parameters.density << " (no more than "
             << static_cast<double>(obstacles.size()) / (parameters.box * parameters.box)
-            << " obstacles per sigma^2 of diameter " << smallest;
+            << " obstacles per sigma^2 of diameter " << parameters.smallest_diameter();
     if (parameters.diameter_spread > 0) message << " to " << parameters.largest_diameter();
     message << " fit with gap " << parameters.gap
             << ") use a lower density, a smaller gap, or obstacle-density=saturated";

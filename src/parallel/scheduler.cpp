@@ -4,8 +4,10 @@
 #include <chrono>
 #include <cstring>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace clog::parallel {
@@ -61,10 +63,10 @@ RunRow signed_row(const Job& job, int rank) {
 
 class Master {
  public:
-  Master(const Communicator& ranks, std::int64_t num_tasks, const JobFactory& make_job,
-         const SweepEvents& events, bool computes)
+  Master(const Communicator& ranks, TaskOrder tasks, const JobFactory& make_job, const SweepEvents& events,
+         bool computes)
       : ranks_(ranks),
-        num_tasks_(num_tasks),
+        tasks_(std::move(tasks)),
         make_job_(make_job),
         events_(events),
         computes_(computes),
@@ -86,27 +88,30 @@ class Master {
       else
         backoff.sleep();
     }
-    return next_task_ == num_tasks_;
+    return tasks_.empty();
   }
 
  private:
   const Communicator& ranks_;
-  std::int64_t num_tasks_;
+  TaskOrder tasks_;
   const JobFactory& make_job_;
   const SweepEvents& events_;
   bool computes_;
-  std::int64_t next_task_ = 0;
   bool stopping_ = false;
   int num_dismissed_ = 0;
   std::vector<bool> busy_;
   std::unique_ptr<Job> own_job_;
-  Clock::time_point last_idle_ = Clock::now();
+  Clock::time_point begin_ = Clock::now();
+  Clock::time_point last_idle_ = begin_;
 
-  bool has_task() const { return !stopping_ && next_task_ < num_tasks_; }
+  bool has_task() const { return !stopping_ && !tasks_.empty(); }
+
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
   std::int64_t take_task(int rank) {
-    events_.started(next_task_, rank);
-    return next_task_++;
+    const std::int64_t next = tasks_.take(seconds());
+    events_.started(next, rank);
+    return next;
   }
 
   /// Answers every waiting message. Returns whether there was one.
@@ -116,12 +121,17 @@ class Master {
       served = true;
       const std::vector<std::byte> bytes = ranks_.receive(*envelope);
       const int worker = envelope->source;
+      std::optional<RunRow> result;
+      if (envelope->tag == row) {
+        result = from_bytes<RunRow>(bytes);
+        tasks_.ended(result->task, seconds());
+      }
       busy_[worker] = has_task();
       const std::int64_t next = busy_[worker] ? take_task(worker) : no_more_tasks;
       ranks_.send(worker, task,
                   bytes_of(next));  // first the task, then the file: workers do not wait for the disk
       if (next == no_more_tasks) ++num_dismissed_;
-      if (envelope->tag == row) events_.ended(from_bytes<RunRow>(bytes));
+      if (result) events_.ended(*result);
     }
     return served;
   }
@@ -136,6 +146,7 @@ class Master {
     if (own_job_->advance() || stopping_) {
       const RunRow result = signed_row(*own_job_, ranks_.rank());
       own_job_.reset();
+      tasks_.ended(result.task, seconds());
       events_.ended(result);
     }
     return true;
@@ -193,11 +204,11 @@ bool computes(int num_ranks, MasterComputes choice) {
          (choice == MasterComputes::automatic && num_ranks <= most_ranks);
 }
 
-bool run_tasks(const Communicator& ranks, std::int64_t num_tasks, const JobFactory& make_job,
+bool run_tasks(const Communicator& ranks, TaskOrder tasks, const JobFactory& make_job,
                const SweepEvents& events, bool master_computes) {
   bool all_handed_out = true;
   if (ranks.rank() == 0)
-    all_handed_out = Master(ranks, num_tasks, make_job, events, master_computes).run();
+    all_handed_out = Master(ranks, std::move(tasks), make_job, events, master_computes).run();
   else
     Worker(ranks, make_job).run();
   // Workers done early wait here: a message to the next sweep must not reach the master of this one, and

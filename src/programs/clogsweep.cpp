@@ -2,20 +2,25 @@
 
 #include <unistd.h>
 
+#include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <string>
 
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/core/error.hpp"
+#include "clog/core/systems.hpp"
 #include "clog/parallel/communicator.hpp"
 #include "clog/parallel/scheduler.hpp"
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/run_job.hpp"
+#include "row_writer.hpp"
 #include "sweep_progress.hpp"
 
 namespace {
@@ -33,8 +38,8 @@ given values, on all MPI ranks, and gathers the results in one HDF5 table.
 void parse(cli::CommandLine& line, int argc, char** argv) {
   namespace po = boost::program_options;
   line.add_options()("output", po::value<std::string>(), "HDF5 file to make")(
-      "dry-run", "print the tasks and their number, run nothing")("print-config",
-                                                                  "print the settings, run nothing")(
+      "dry-run", "print the tasks, their number and cost, run nothing")("print-config",
+                                                                        "print the settings, run nothing")(
       "master-computes", po::value<std::string>()->default_value("auto"),
       "does rank 0 run tasks too: auto (with up to 16 ranks), yes, no");
   line.parse(argc, argv);
@@ -68,6 +73,43 @@ void print_tasks(const sweep::Plan& plan) {
             << (seeds == 1 ? " seed" : " seeds") << " each\n";
 }
 
+/// How long the sweep takes at most, from a short piece of the first and the last parameter set: what a step
+/// costs per vertex there, times the steps of all runs if none of them ends before max-time.
+void print_cost(const sweep::Plan& plan) {
+  using Clock = std::chrono::steady_clock;
+  const auto vertex_steps = [](const RunParameters& run, double time) {
+    return time / run.time_step * (run.model == Model::dp ? run.dp.vertices : 1);
+  };
+  double seconds = 0;
+  double work = 0;
+  for (const std::int64_t group : std::set<std::int64_t>{0, plan.num_groups() - 1}) {
+    const RunParameters run = plan.task(group);
+    try {
+      DropletRun droplet = run_in_array(run);
+      const Clock::time_point begin = Clock::now();
+      const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+      while (elapsed() < 0.5 && !droplet.advance(8)) continue;
+      seconds += elapsed();
+      work += vertex_steps(run, droplet.time());
+    } catch (const Error&) {  // a droplet that cannot be released; its row would say so
+    }
+  }
+  if (work == 0) {
+    std::cout << "# core-hours not known: no droplet could be released\n";
+    return;
+  }
+  double all_work = 0;
+  for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
+    const RunParameters run = plan.task(group);
+    all_work += vertex_steps(run, run.max_time);
+  }
+  all_work *= static_cast<double>(plan.size() / plan.num_groups());
+  const double core_hours = seconds / work * all_work / 3600;
+  std::printf(
+      "# at most %.3g core-hours on this machine, %.3g us per step measured; runs that clog end sooner\n",
+      core_hours, 1e6 * seconds / work * vertex_steps(plan.task(0), plan.task(0).time_step));
+}
+
 store::Provenance provenance(const cli::CommandLine& line, int num_ranks) {
   store::Provenance all = cli::origin(line);
   all.emplace_back("mpi_version", parallel::Communicator::library_version());
@@ -94,7 +136,11 @@ std::optional<int> prepare(const cli::CommandLine& line) {
   master_computes(line.get("master-computes"));
   const sweep::Plan plan(line.settings());
   if (line.has("print-config")) print_config(line.settings(), plan);
-  if (line.has("dry-run")) print_tasks(plan);
+  if (line.has("dry-run")) {
+    print_tasks(plan);
+    std::cout.flush();
+    print_cost(plan);
+  }
   if (line.has("print-config") || line.has("dry-run")) return cli::exit_success;
   line.require("output");
   return std::nullopt;
@@ -111,17 +157,23 @@ int lead(const parallel::Communicator& ranks, const cli::CommandLine& line, cons
   SweepProgress progress(
       std::cerr, isatty(STDERR_FILENO) ? SweepProgress::Screen::terminal : SweepProgress::Screen::plain,
       plan.size(), computing_ranks);
+  RowWriter writer(table);
   bool interrupted = false;
   parallel::SweepEvents events;
   events.started = [&](std::int64_t task, int) { progress.started(task); };
   events.ended = [&](const sweep::RunRow& row) {
-    table.append(row);
+    writer.add(row);
     progress.ended(row);
     interrupted = interrupted || row.status.view() == "interrupted";
   };
-  events.idle = [&] { progress.tick(); };
+  events.idle = [&] {
+    writer.tick();
+    progress.tick();
+  };
   events.stop_requested = [] { return cli::stop_signalled(); };
-  const bool all_started = parallel::run_tasks(ranks, plan.size(), sweep::run_jobs(plan), events, computes);
+  const bool all_started = parallel::run_tasks(ranks, parallel::TaskOrder(plan.size(), plan.num_groups()),
+                                               sweep::run_jobs(plan), events, computes);
+  writer.finish();
   progress.finish();
   if (all_started && !interrupted) return cli::exit_success;
   std::cerr << program << ": stopped by a signal; finished rows and the distances so far are in "
@@ -152,7 +204,7 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, int argc, char** arg
   cli::catch_stop_signals();
   if (ranks.rank() == 0) return lead(ranks, line, sweep::Plan(line.settings()), *table);
   const sweep::Plan plan(sweep::Settings::from_config(word.substr(4)));
-  parallel::run_tasks(ranks, plan.size(), sweep::run_jobs(plan), {}, false);
+  parallel::run_tasks(ranks, parallel::TaskOrder(0), sweep::run_jobs(plan), {}, false);
   return cli::exit_success;
 }
 

@@ -150,24 +150,26 @@ RunTable RunTable::create(const std::string& path, const Provenance& provenance)
   return RunTable(path);
 }
 
-void RunTable::append(const RunRow& row) {
+void RunTable::append(std::span<const RunRow> rows) {
+  if (rows.empty()) return;
   // More than a chunk of rows with its index.
   constexpr std::size_t room = 128 * 1024;
   static_assert(room > 2 * rows_per_chunk * sizeof(RunRow));
-  reserve(path_, room);
+  reserve(path_, room + 2 * rows.size_bytes());
   File file = open_file(path_, H5F_ACC_RDWR);
   {
     const Dataset table(H5Dopen2(file, table_name, H5P_DEFAULT));
     check(table.valid(), "read the table of", path_);
     const Space old_space(H5Dget_space(table));
     const hsize_t old_size = static_cast<hsize_t>(H5Sget_simple_extent_npoints(old_space));
-    const hsize_t new_size = old_size + 1;
-    const hsize_t one = 1;
+    const hsize_t num_rows = rows.size();
+    const hsize_t new_size = old_size + num_rows;
     check(H5Dset_extent(table, &new_size) >= 0, "write", path_);
     const Space place(H5Dget_space(table));
-    H5Sselect_hyperslab(place, H5S_SELECT_SET, &old_size, nullptr, &one, nullptr);
-    const Space single(H5Screate_simple(1, &one, nullptr));
-    check(H5Dwrite(table, memory_type(columns()), single, place, H5P_DEFAULT, &row) >= 0, "write", path_);
+    H5Sselect_hyperslab(place, H5S_SELECT_SET, &old_size, nullptr, &num_rows, nullptr);
+    const Space source(H5Screate_simple(1, &num_rows, nullptr));
+    check(H5Dwrite(table, memory_type(columns()), source, place, H5P_DEFAULT, rows.data()) >= 0, "write",
+          path_);
     // While the table is still open: closing it would write what is left and tell nobody that the disk is
     // full.
     check(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "write", path_);

@@ -53,7 +53,8 @@ void every_task_comes_back_once(const parallel::Communicator& ranks, bool master
     expect(row.distance == static_cast<double>(row.task * row.task), "a row holds its own task's result");
     expect(row.status.view() == "clogged", "a task is run to its end");
   };
-  const bool all = parallel::run_tasks(ranks, num_tasks, make_job, events, master_computes);
+  const bool all =
+      parallel::run_tasks(ranks, parallel::TaskOrder(num_tasks, 7), make_job, events, master_computes);
   if (ranks.rank() != 0) return;
   expect(all, "all tasks were handed out");
   expect(static_cast<std::int64_t>(times_ended.size()) == num_tasks, "no task is lost");
@@ -72,7 +73,7 @@ void a_stop_ends_running_tasks_as_interrupted(const parallel::Communicator& rank
   events.started = [&](std::int64_t, int) { ++num_started; };
   events.ended = [&](const sweep::RunRow&) { stop = ++num_ended >= 10; };
   events.stop_requested = [&] { return stop; };
-  const bool all = parallel::run_tasks(ranks, 10000, make_job, events, true);
+  const bool all = parallel::run_tasks(ranks, parallel::TaskOrder(10000, 7), make_job, events, true);
   if (ranks.rank() != 0) return;
   expect(!all, "a stopped sweep says that tasks are left");
   expect(num_ended == num_started, "every started task has a row");

@@ -98,9 +98,16 @@ class Sweep(ProgramTest):
     def test_a_dry_run_lists_the_tasks_and_runs_none(self):
         done = self.succeed("clogsweep", "line-tension=lin(0.5,1.5,3)", "seeds=1..4", "--dry-run", "--output", "s.h5")
         lines = done.stdout.splitlines()
-        self.assertEqual(len(lines), 1 + 12 + 1)
-        self.assertIn("12 tasks: 3 parameter sets, 4 seeds each", lines[-1])
+        self.assertEqual(len(lines), 1 + 12 + 2)
+        self.assertIn("12 tasks: 3 parameter sets, 4 seeds each", lines[-2])
+        self.assertRegex(lines[-1], "^# at most [0-9.e+-]+ core-hours on this machine")
         self.assertEqual(self.snapshot(), {})
+
+    def test_a_dry_run_foresees_the_core_hours_of_every_step(self):
+        done = self.succeed("clogsweep", *SMALL, "obstacle-gap=1.2,1.3", "max-time=1000", "seeds=1..10", "--dry-run")
+        words = done.stdout.splitlines()[-1].split()
+        core_hours, microseconds = float(words[3]), float(words[8])
+        self.assertAlmostEqual(core_hours * 3.6e9 / microseconds / (20 * 1000 / 1e-3), 1, delta=0.02)
 
     def test_help_and_version(self):
         self.assertIn("--line-tension", self.succeed("clogsweep", "--help").stdout)
@@ -115,7 +122,7 @@ class Sweep(ProgramTest):
     def test_a_task_that_cannot_run_is_a_row(self):
         # Obstacles so large that the middle of the box may be all obstacle.
         self.succeed("clogsweep", "vertices=64", "box=13", "max-time=5", "obstacle-diameter=6", "obstacle-gap=0.06",
-                     "obstacle-density=0.0237", "seeds=1..20", "--output", "s.h5", ranks=2)
+                     "obstacle-density=0.0237", "seeds=51..70", "--output", "s.h5", ranks=2)
         rows = table(self.folder / "s.h5")
         self.assertEqual(len(rows), 20)
         failed = rows[rows.status == "failed"]

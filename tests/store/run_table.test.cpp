@@ -13,6 +13,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <span>
+#include <vector>
 
 #include "clog/core/error.hpp"
 
@@ -72,6 +74,18 @@ TEST_F(RunTableTest, GivesBackEveryRowBitForBit) {
     const sweep::RunRow expected = some_row(task);
     EXPECT_EQ(std::memcmp(&file.rows[task], &expected, sizeof expected), 0) << task;
   }
+}
+
+TEST_F(RunTableTest, TakesManyRowsAtOnce) {
+  RunTable table = RunTable::create(path(), {});
+  std::vector<sweep::RunRow> rows;
+  for (int task = 0; task < 1000; ++task) rows.push_back(some_row(task));
+  table.append(rows[0]);
+  table.append(std::span(rows).subspan(1));
+  table.append(std::span<const sweep::RunRow>());
+  const SweepFile file = read_sweep(path());
+  ASSERT_EQ(file.rows.size(), rows.size());
+  EXPECT_EQ(std::memcmp(file.rows.data(), rows.data(), rows.size() * sizeof(sweep::RunRow)), 0);
 }
 
 TEST_F(RunTableTest, KeepsTheProvenance) {

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "clog/parallel/communicator.hpp"
+#include "clog/parallel/task_order.hpp"
 #include "clog/sweep/job.hpp"
 
 namespace clog::parallel {
@@ -26,14 +27,16 @@ struct SweepEvents {
 /// delay that its slices put between a worker and its next task.
 bool computes(int num_ranks, MasterComputes choice);
 
-/// Works through tasks 0 .. num_tasks - 1 with all ranks; collective.
+/// Works through all tasks with all ranks; collective.
 ///
 /// Rank 0 hands out one task at a time, since tasks differ a thousandfold in length, and gathers the rows.
+/// Rows do not depend on the order of the tasks.
 /// If it computes, it does so in slices between polls. Nobody spins: who has nothing to do sleeps, longer and
 /// longer, up to a few milliseconds.
+/// @param tasks  matter on rank 0
 /// @param make_job  called on the rank that works on the task
 /// @return whether all tasks were handed out (rank 0; true elsewhere)
-bool run_tasks(const Communicator& ranks, std::int64_t num_tasks, const sweep::JobFactory& make_job,
+bool run_tasks(const Communicator& ranks, TaskOrder tasks, const sweep::JobFactory& make_job,
                const SweepEvents& events, bool master_computes);
 
 }  // namespace clog::parallel

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,14 +24,15 @@ void refuse_existing(const std::string& path);
 void refuse_unwritable(const std::string& path);
 
 /// The table of runs of a sweep file. The file is only open while something is written: readers can come at
-/// any moment, and a kill between two rows loses nothing.
+/// any moment, and a kill between two writes loses nothing.
 class RunTable {
  public:
   /// Creates the file with an empty table. @throws Error if it exists or cannot be created
   static RunTable create(const std::string& path, const Provenance& provenance);
 
-  /// Appends one row; it is on the disk when this returns. @throws Error
-  void append(const sweep::RunRow& row);
+  /// Appends rows; they are on the disk when this returns. @throws Error
+  void append(std::span<const sweep::RunRow> rows);
+  void append(const sweep::RunRow& row) { append(std::span(&row, 1)); }
 
  private:
   explicit RunTable(std::string path) : path_(std::move(path)) {}
