@@ -2,6 +2,10 @@
 
 #include <benchmark/benchmark.h>
 
+#include <string>
+
+#include "clog/core/error.hpp"
+#include "clog/core/instruction_set.hpp"
 #include "clog/core/systems.hpp"
 
 namespace {
@@ -16,6 +20,7 @@ RunParameters flowing_droplet(int vertices, double near_wall_drag) {
   run.obstacles.box = 60;
   run.time_step = vertices > 256 ? 2.5e-4 : 1e-3;
   run.max_time = 1e9;
+  run.clog_detection = ClogDetection::threshold;
   run.clog_energy = 1e-300;
   return resolve(run);
 }
@@ -32,10 +37,43 @@ void advance(benchmark::State& state, const RunParameters& parameters) {
       benchmark::Counter(steps * points, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
+void with_instruction_set(benchmark::State& state, const std::string& set) {
+  try {
+    use_instruction_set(set);
+  } catch (const Error& error) {
+    state.SkipWithError(error.what());
+    return;
+  }
+  advance(state, flowing_droplet(256, 0));
+  use_instruction_set("auto");
+}
+
 void polygon(benchmark::State& state) {
   advance(state, flowing_droplet(static_cast<int>(state.range(0)), 0));
 }
-BENCHMARK(polygon)->ArgName("vertices")->Arg(64)->Arg(256)->Arg(1024)->Unit(benchmark::kMillisecond);
+BENCHMARK(polygon)
+    ->ArgName("vertices")
+    ->Arg(64)
+    ->Arg(128)
+    ->Arg(256)
+    ->Arg(512)
+    ->Arg(1024)
+    ->Unit(benchmark::kMillisecond);
+
+void polygon_avx2(benchmark::State& state) { with_instruction_set(state, "avx2"); }
+BENCHMARK(polygon_avx2)->Unit(benchmark::kMillisecond);
+void polygon_baseline(benchmark::State& state) { with_instruction_set(state, "baseline"); }
+BENCHMARK(polygon_baseline)->Unit(benchmark::kMillisecond);
+
+/// Everything on the vertices: nothing couples them but pressure.
+void heavy_interface(benchmark::State& state) {
+  RunParameters run = flowing_droplet(256, 0);
+  run.dp.perimeter_spring = PerimeterSpring::mean;
+  run.dp.perimeter_stiffness.reset();
+  run.dp.gravity = Gravity::vertex;
+  advance(state, resolve(run));
+}
+BENCHMARK(heavy_interface)->Unit(benchmark::kMillisecond);
 
 void polygon_with_near_wall_drag(benchmark::State& state) { advance(state, flowing_droplet(256, 0.2)); }
 BENCHMARK(polygon_with_near_wall_drag)->Unit(benchmark::kMillisecond);
