@@ -45,6 +45,9 @@ void validate_obstacles(const ObstacleParameters& obstacles, int vertices, Model
   require(obstacles.box >= smallest_box, "box", obstacles.box,
           "the droplet would meet its own periodic image) use at least 5");
 
+  require(obstacles.box <= 1e5, "box", obstacles.box,
+          "no droplet gets as far) use at most 1e5; the array is periodic");
+
   if (obstacles.density) require_positive("obstacle-density", *obstacles.density);
   const double spread = obstacles.diameter_spread;
   require(spread >= 0 && spread < 1, "obstacle-diameter-spread", spread,

@@ -12,6 +12,13 @@ constexpr std::int64_t largest_sweep = 100'000'000;
 
 /// A key that another one leaves without effect was given for nothing.
 void refuse_contradictions(const Settings& settings) {
+  if (settings.text("model") == "sp") {
+    for (const Key& key : keys())
+      if (key.dp_only && settings.is_given(key.name) && settings.text(key.name) != key.default_text)
+        throw Error("invalid " + key.name + "=" + settings.text(key.name) +
+                    " (model=sp does not depend on it) leave it out, or use model=dp");
+    return;
+  }
   const std::string ratio = "perimeter-stiffness-ratio";
   if (!settings.is_given(ratio) || settings.text(ratio) == find_key(ratio).default_text) return;
   if (settings.text("perimeter-spring") != "rest")
@@ -27,13 +34,8 @@ void refuse_contradictions(const Settings& settings) {
 
 Plan::Plan(const Settings& settings) {
   refuse_contradictions(settings);
-  const bool soft_disk = settings.values("model").front() == "sp";
   for (const Key& key : keys()) {
     const std::vector<std::string>& values = settings.values(key.name);
-    if (soft_disk && key.dp_only && values.size() > 1)
-      throw Error("invalid " + key.name + "=" + settings.text(key.name) +
-                  " (model=sp does not depend on it: the list " + "would repeat every run " +
-                  std::to_string(values.size()) + " times) give one value or none");
     axes_.push_back({&key, values});
     size_ *= static_cast<std::int64_t>(values.size());
     if (size_ > largest_sweep)
