@@ -52,9 +52,17 @@ inline V inverse(V v) {
 #endif
 }
 
+/// A body that is not inlined keeps its sums in memory.
+#undef CLOG_INLINE
+#if defined(__GNUC__)
+#define CLOG_INLINE __attribute__((always_inline))
+#else
+#define CLOG_INLINE
+#endif
+
 /// Calls body(i, keep) for every vector of the contour. keep(v) zeroes lanes beyond the last vertex.
 template <class Body>
-inline void for_vectors(int n, Body body) {
+HWY_INLINE void for_vectors(int n, Body body) {
   int i = 0;
   for (; i + lanes <= n; i += lanes) body(i, [](V v) { return v; });
   if (i < n) {
@@ -72,7 +80,7 @@ inline void close(double* p, int n) {
 Sums measure(int n, const StepArrays& arrays) {
   const StepArrays a = arrays;  // a copy that stores cannot change
   V perimeter = all(0), twice_area = all(0), moment_x = all(0), moment_y = all(0);
-  for_vectors(n, [&](int i, auto keep) {
+  for_vectors(n, [&](int i, auto keep) CLOG_INLINE {
     const V x = load(a.x + i), y = load(a.y + i);
     const V next_x = load_at(a.x + i + 1), next_y = load_at(a.y + i + 1);
     const V ex = hn::Sub(next_x, x), ey = hn::Sub(next_y, y);
@@ -186,7 +194,7 @@ KickSums kick_with(int n, const KickTerms& terms, const InterfaceCoefficients& i
   V spread_x = all(0), spread_y = all(0);
   V w_x = all(0), w_y = all(0), gw_x = all(0), gw_y = all(0), gg_xx = all(0), gg_xy = all(0), gg_yy = all(0);
   V s_sum = all(0), g_xx = all(0), g_xy = all(0), g_yx = all(0), g_yy = all(0);
-  for_vectors(n, [&](int i, auto keep) {
+  for_vectors(n, [&](int i, auto keep) CLOG_INLINE {
     const V tx = load(a.tangent_x + i), ty = load(a.tangent_y + i);
     const V tangent_before_x = load_at(a.tangent_x + i - 1), tangent_before_y = load_at(a.tangent_y + i - 1);
     const V length = load(a.length + i), length_before = load_at(a.length + i - 1);
@@ -313,7 +321,7 @@ void drift_with(int n, const KickTerms& terms, const KickCoefficients& coefficie
   const V cx = all(c[0]), cy = all(c[1]), ax = all(area[0]), ay = all(area[1]), dt = all(time_step);
   const V h1 = all(coefficients.h1), weight = all(coefficients.weight);
   const V same = all(coefficients.weight / (1 + coefficients.h1 * terms.rate));
-  for_vectors(n, [&](int i, auto) {
+  for_vectors(n, [&](int i, auto) CLOG_INLINE {
     V vx = load(a.vx + i), vy = load(a.vy + i);
     if constexpr (coupled) {
       V share = same;
@@ -364,7 +372,7 @@ void near_wall_rates_with(int n, const NearWalls& walls, const NearWallDrag& dra
   const StepArrays a = arrays;
   const V shortest = all(drag.shortest), power = all(-drag.exponent);
   const V far = all(drag.far_rate * drag.relative), near = all(drag.far_rate * drag.near_wall);
-  for_vectors(n, [&](int i, auto) {
+  for_vectors(n, [&](int i, auto) CLOG_INLINE {
     const V x = load(a.x + i), y = load(a.y + i);
     V nearest = load_at(walls.other_distance + i);
     V nearest2 = all(1e300);
