@@ -22,7 +22,7 @@ RunParameters in_small_box(double line_tension, double gap) {
 
 TEST(Release, NeverEnclosesAnObstacleAndStartsAtRest) {
   for (const double line_tension : {0.2, 1.0, 10.0})
-    for (std::uint32_t seed = 1; seed <= 25; ++seed) {
+    for (std::uint32_t seed = 1; seed <= 60; ++seed) {
       RunParameters run = in_small_box(line_tension, 0.2);
       run.seed = seed;
       run = resolve(run);
