@@ -30,7 +30,8 @@ DpForces::DpForces(const RunParameters& run, const ObstacleArray& obstacles)
              dp_.wall_contact == WallContact::edge ? WallContacts::Keep::touched_by_edge
                                                    : WallContacts::Keep::touched_by_vertex),
       nearest_walls_(obstacles, vertex_diameter_ / 2, WallContacts::Keep::nearest_to_vertex),
-      adhesive_walls_(obstacles, 1.5 * vertex_diameter_, WallContacts::Keep::touched_by_vertex),
+      adhesive_walls_(obstacles, (0.5 + wetting_width) * vertex_diameter_,
+                      WallContacts::Keep::touched_by_vertex),
       self_(vertex_diameter_),
       edge_x_(dp_.vertices),
       edge_y_(dp_.vertices),
@@ -86,19 +87,18 @@ void DpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   const kernel::Sums sums = kernel::measure_edges(n, x, y, edges);
   shape_ = {sums.area, sums.perimeter};
   kernel::interface_forces(n, interface(shape_.area, shape_.perimeter), edges, pull_.data(), fx, fy);
+  Eigen::Array2d spread{force.head(n).sum(), force.tail(n).sum()};
+  if (wets()) spread += add_wetting(state, force);
   if (dp_.gravity == Gravity::area) {
     // Tension and pressure add up to nothing; springs along the interface have no reaction on their
     // neighbours, so they push off the liquid inside: the droplet as a whole feels no force from them.
-    const double spread_x = force.head(n).sum();
-    const double spread_y = force.tail(n).sum();
     const kernel::CentroidGradient gradient = kernel::centroid_gradient(n, centroid_gradient_.data());
     kernel::measure_centroid_gradient(n, x, y, edges, sums, gradient);
-    kernel::add_body_force(n, weight_ - spread_x, -spread_y, gradient, fx, fy);
+    kernel::add_body_force(n, weight_ - spread[0], -spread[1], gradient, fx, fy);
   }
 
   add_walls(state, force);
   if (wall_distance_.size() > 0) measure_wall_distance(state);
-  if (wets()) add_wetting(state, force);
   if (dp_.self_contact == SelfContact::on) add_self_contact(state, force);
 }
 
@@ -136,8 +136,8 @@ void DpForces::measure_wall_distance(const DropletState& state) {
   wall_distance_ = wall_distance_.max(vertex_diameter_ / 2);
 }
 
-/// The tension changes from Gamma, one and a half vertex diameters away from a wall, to that of the wetted
-/// wall where contact begins: a smooth step, so that the energy and the force are continuous.
+/// The tension changes from Gamma, far from a wall, to that of the wetted wall where contact begins: a smooth
+/// step, so that the energy and the force are continuous, and wide enough for the edges to follow its bend.
 DpForces::Wetted DpForces::wetted(const DropletState& state, int vertex) const {
   const int n = dp_.vertices;
   const Eigen::Array2d place{state.position[vertex], state.position[n + vertex]};
@@ -158,22 +158,26 @@ DpForces::Wetted DpForces::wetted(const DropletState& state, int vertex) const {
     nearest = distance;
     wetted.normal = normal;
   }
-  const double t = std::clamp((adhesive_walls_.range() - nearest) / vertex_diameter_, 0.0, 1.0);
-  wetted.share = t * t * (3 - 2 * t);
-  wetted.slope = -6 * t * (1 - t) / vertex_diameter_;
+  const double width = wetting_width * vertex_diameter_;
+  const double t = std::clamp((adhesive_walls_.range() - nearest) / width, 0.0, 1.0);
+  wetted.share = t * t * t * (10 + t * (6 * t - 15));
+  wetted.slope = -30 * t * t * (1 - t) * (1 - t) / width;
   return wetted;
 }
 
 /// U_gamma = sum gamma_e l_e, gamma_e = Gamma + (Gamma_wall - Gamma) times the mean share of its two
 /// vertices: the three-tension energy, Cheng et al. Eq. 2, with the tensions of a wetted wall's two sides
-/// taken together.
-void DpForces::add_wetting(const DropletState& state, Eigen::ArrayXd& force) const {
+/// taken together. On a smooth interface its gradient has no part along the interface, -d(gamma)/ds from the
+/// edges cancels the pull towards the wall; what a polygon leaves of it is an error of its finite edges.
+DpForces::WettingForces DpForces::wetting_forces(const DropletState& state) const {
   const int n = dp_.vertices;
   const auto edge = [&](int i) {
     const int end = i + 1 < n ? i + 1 : 0;
     return Eigen::Array2d(state.position[end] - state.position[i],
                           state.position[n + end] - state.position[n + i]);
   };
+  WettingForces forces{Eigen::ArrayXd::Zero(2 * n), Eigen::ArrayXd::Zero(2 * n)};
+  Eigen::ArrayXd& gradient = forces.gradient;
   Wetted before = wetted(state, n - 1);
   for (int i = 0; i < n; ++i) {
     const int previous = i > 0 ? i - 1 : n - 1;
@@ -181,15 +185,28 @@ void DpForces::add_wetting(const DropletState& state, Eigen::ArrayXd& force) con
     const Eigen::Array2d along = edge(previous);
     const double length = along.matrix().norm();
     const double pull = extra_tension() * (before.share + here.share) / 2 / length;
-    force[previous] += pull * along[0];
-    force[n + previous] += pull * along[1];
-    force[i] -= pull * along[0];
-    force[n + i] -= pull * along[1];
     const double push = -extra_tension() * here.slope * (length + edge(i).matrix().norm()) / 2;
-    force[i] += push * here.normal[0];
-    force[n + i] += push * here.normal[1];
+    gradient[previous] += pull * along[0];
+    gradient[n + previous] += pull * along[1];
+    gradient[i] += push * here.normal[0] - pull * along[0];
+    gradient[n + i] += push * here.normal[1] - pull * along[1];
     before = here;
   }
+  if (dp_.perimeter_spring != PerimeterSpring::along) return forces;
+  for (int i = 0; i < n; ++i) {
+    const Eigen::Array2d chord = edge(i) + edge(i > 0 ? i - 1 : n - 1);
+    const Eigen::Array2d here{gradient[i], gradient[n + i]};
+    const Eigen::Array2d along = (here * chord).sum() / chord.square().sum() * chord;
+    forces.spreading[i] = -along[0];
+    forces.spreading[n + i] = -along[1];
+  }
+  return forces;
+}
+
+Eigen::Array2d DpForces::add_wetting(const DropletState& state, Eigen::ArrayXd& force) const {
+  const WettingForces wetting = wetting_forces(state);
+  force += wetting.gradient + wetting.spreading;
+  return {wetting.spreading.head(dp_.vertices).sum(), wetting.spreading.tail(dp_.vertices).sum()};
 }
 
 void DpForces::add_self_contact(const DropletState& state, Eigen::ArrayXd& force) const {
@@ -243,6 +260,7 @@ double DpForces::spreading_power(const DropletState& state) const {
   kernel::Interface interface {};
   interface.spreading = *dp_.perimeter_stiffness * n;
   kernel::interface_forces(n, interface, edges, pull.data(), force.data(), force.data() + n);
+  if (wets()) force += wetting_forces(state).spreading;
   double power = (force * state.velocity).sum();
   if (dp_.gravity == Gravity::area) {
     const Eigen::Array2d reaction{-force.head(n).sum(), -force.tail(n).sum()};

@@ -96,7 +96,9 @@ Droplet::Work DpStepper::kick_and_drift(const DropletState& frame,
     .body_force = units::droplet_mass * units::gravity / (6 * sums_.area),
     .centre_x = sums_.moment_x / sums_.area, .centre_y = sums_.moment_y / sums_.area
   };
-  const kernel::KickSums sums = kernel_.kick(n_, terms_, interface, coefficients, arrays_);
+  kernel::KickSums sums = kernel_.kick(n_, terms_, interface, coefficients, arrays_);
+  sums.spread_x += wetting_spread_[0];
+  sums.spread_y += wetting_spread_[1];
   double c[2] = {0, 0}, a[2] = {0, 0};
   Coupling coupling;
   if (is_coupled_) {
@@ -137,7 +139,7 @@ void DpStepper::push_off_everything(const DropletState& frame) {
     DropletState here = frame;
     store(here);
     Eigen::ArrayXd force = Eigen::ArrayXd::Zero(2 * n_);
-    forces_->add_wetting(here, force);
+    wetting_spread_ = forces_->add_wetting(here, force);
     for (int i = 0; i < n_; ++i) {
       arrays_.push_x[i] += force[i];
       arrays_.push_y[i] += force[n_ + i];

@@ -38,6 +38,7 @@ class DpStepper {
   kernel::StepArrays arrays_;
   Eigen::ArrayXd distance_;  // to the nearest wedge
   std::vector<kernel::WallSlot> slots_;
+  Eigen::Array2d wetting_spread_{0, 0};  // see DpForces::add_wetting
   kernel::Sums sums_{};
   kernel::KickTerms terms_{};
   double relative_rate_, area_rate_;  // see kernel::CoupledDrag

@@ -24,7 +24,7 @@ StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double per
       .tension = 4 * dp.line_tension / (edge * vertex_mass),
       .spring = 4 * dp.perimeter_stiffness.value() * num_vertices / vertex_mass,
       .wetting = 6 * dp.line_tension * std::abs(dp.wall_tension - 1) * mean_edge /
-                 (vertex_diameter * vertex_diameter * vertex_mass),
+                 (wetting_width * wetting_width * vertex_diameter * vertex_diameter * vertex_mass),
   };
 }
 

@@ -266,11 +266,34 @@ TEST(DpForces, WettedWallsPullWithTheGradientOfTheirEnergy) {
   const ObstacleArray wall(20, {{0.69, 0.05, 0.15}}, {{.tip = {0, 0.52}, .axis = {0, 1}}});
   RunParameters run = only([](RunParameters& r) { r.dp.line_tension = 1.3; });
   run.dp.wall_tension = 0.2;
+  run.dp.perimeter_spring = PerimeterSpring::mean;
   DpForces forces(run, wall);
   const DropletState state = state_of(shaken(regular_polygon(64, 0.8), 0.003));
   EXPECT_LT(force_error(forces, state), 1e-5);
   const double dry = 1.3 * polygon_shape(state.position).perimeter;
   EXPECT_LT(forces.energy(state).line_tension, dry - 0.01);
+}
+
+TEST(DpForces, WettedWallsNeitherPullAlongTheInterfaceNorAlongTheWall) {
+  // Springs along the interface carry no tension, so what the polygon's edges leave of a pull along it is
+  // taken by the liquid: the droplet as a whole is not pushed along a flat wall.
+  const ObstacleArray wall(20, {}, {{.tip = {0.37, 0}, .axis = {1, 0}, .half_angle = std::numbers::pi / 2}});
+  RunParameters run = only([](RunParameters& r) { r.dp.line_tension = 1.3; });
+  run.dp.perimeter_spring = PerimeterSpring::along;
+  run.dp.gravity = Gravity::area;
+  const DropletState state = state_of(shaken(regular_polygon(64, 0.8), 0.003));
+  const auto force_at = [&](double wall_tension) {
+    run.dp.wall_tension = wall_tension;
+    DpForces forces(run, wall);
+    forces.set_weight(0);
+    forces.update_contacts(state, {});
+    Eigen::ArrayXd force(128);
+    forces.evaluate(state, force);
+    return force;
+  };
+  const Eigen::ArrayXd wetting = force_at(0.2) - force_at(1);
+  EXPECT_GT(wetting.head(64).sum(), 0.1);
+  EXPECT_NEAR(wetting.tail(64).sum(), 0, 1e-12);
 }
 
 TEST(DpForces, SpringsAlongTheInterfaceChangeNeitherAreaNorAnEvenContour) {

@@ -33,13 +33,13 @@ DropletRun at_rest_on_a_wall(const RunParameters& run) {
   return droplet;
 }
 
-/// A two-dimensional drop on a wall that it does not wet: Gamma dphi/ds = Gamma kappa_0 + z, z the depth
-/// below the apex, phi the slope's angle, from 0 at the apex to pi at the wall (Young-Laplace), by
-/// Runge-Kutta.
+/// A two-dimensional drop on a wall: Gamma dphi/ds = Gamma kappa_0 + z, z the depth below the apex, phi the
+/// slope's angle, from 0 at the apex to the contact angle at the wall (Young-Laplace), by Runge-Kutta. A wall
+/// that is not wetted has the contact angle pi.
 struct SessileDrop {
   double height = 0, area = 0, half_width = 0, depth_of_centroid = 0;
 };
-SessileDrop sessile_drop(double line_tension, double apex_curvature) {
+SessileDrop sessile_drop(double line_tension, double apex_curvature, double contact_angle) {
   using State = std::array<double, 5>;  // phi, x, z, area, moment of depth
   const auto slope = [&](const State& y) {
     const double dz = std::sin(y[0]);
@@ -49,7 +49,7 @@ SessileDrop sessile_drop(double line_tension, double apex_curvature) {
   const double step = 1e-4;
   State y{};
   SessileDrop drop;
-  while (y[0] < pi) {
+  while (y[0] < contact_angle) {
     const auto moved = [&](const State& k, double h) {
       State z = y;
       for (int i = 0; i < 5; ++i) z[i] += h * k[i];
@@ -65,13 +65,13 @@ SessileDrop sessile_drop(double line_tension, double apex_curvature) {
   drop.depth_of_centroid = y[4] / y[3];
   return drop;
 }
-SessileDrop sessile_drop_of_rest_area(double line_tension) {
+SessileDrop sessile_drop_of_rest_area(double line_tension, double contact_angle = pi) {
   const auto excess = [&](double log_curvature) {
-    return sessile_drop(line_tension, std::exp(log_curvature)).area - units::rest_area;
+    return sessile_drop(line_tension, std::exp(log_curvature), contact_angle).area - units::rest_area;
   };
   const auto [low, high] = boost::math::tools::bisect(
       excess, std::log(1e-4), std::log(2.5), [](double a, double b) { return std::abs(a - b) < 1e-9; });
-  return sessile_drop(line_tension, std::exp((low + high) / 2));
+  return sessile_drop(line_tension, std::exp((low + high) / 2), contact_angle);
 }
 
 class OnAWall : public testing::TestWithParam<double> {};
@@ -162,24 +162,37 @@ TEST(OnAWall, VerticesStayEvenlySpreadWhereThoseOfTheLiteralModelSlideDown) {
   EXPECT_GT(ratio_after(run), 5);
 }
 
+/// Height and half width of a droplet on a wetted wall.
+std::pair<double, double> size_on_a_wetted_wall(RunParameters run, double wall_tension) {
+  run.dp.wall_tension = wall_tension;
+  run.drag.terminal_speed = 0.1;
+  run.max_time = 100;
+  run.clog_energy = 1e-9;
+  const DropletRun droplet = at_rest_on_a_wall(run);
+  const auto x = droplet.droplet().state().x();
+  const auto y = droplet.droplet().state().y();
+  return {x.maxCoeff() - x.minCoeff(), (y.maxCoeff() - y.minCoeff()) / 2};
+}
+
 TEST(OnAWall, AWettedWallIsMetAtYoungsAngle) {
-  // Nearly without weight the droplet is a segment of a circle with contact angle theta, cos theta =
-  // -wall-tension: height R (1 - cos theta), area R^2 (theta - sin theta cos theta). The tension changes within
-  // a vertex diameter of the wall, 0.025 here, which the interface crosses twice.
-  for (const double wall_tension : {0.7, 0.5, 0.3}) {
-    RunParameters run = parameters(5, 128);
-    run.dp.wall_tension = wall_tension;
-    run.drag.terminal_speed = 0.1;
-    run.max_time = 40;
-    DropletRun droplet = run_onto_wall(resolve(run));
-    while (!droplet.advance(100)) {
+  // cos theta = -wall-tension. The tension changes within three vertex diameters of the wall, 0.07 here.
+  for (const double line_tension : {5.0, 0.3})
+    for (const double wall_tension : {0.7, 0.5, 0.3, 0.15}) {
+      const SessileDrop exact = sessile_drop_of_rest_area(line_tension, std::acos(-wall_tension));
+      const auto [height, half_width] = size_on_a_wetted_wall(parameters(line_tension, 128), wall_tension);
+      EXPECT_NEAR(height / exact.height, 1, 0.01) << line_tension << ", " << wall_tension;
+      EXPECT_NEAR(half_width / exact.half_width, 1, 0.03) << line_tension << ", " << wall_tension;
     }
-    EXPECT_LT(droplet.kinetic_energy_ratio(), 1e-4);
-    const auto x = droplet.droplet().state().x();
-    const double theta = std::acos(-wall_tension);
-    const double radius = std::sqrt(units::rest_area / (theta - std::sin(theta) * std::cos(theta)));
-    EXPECT_NEAR((x.maxCoeff() - x.minCoeff()) / (radius * (1 - std::cos(theta))), 1, 0.06) << wall_tension;
-  }
+}
+
+TEST(OnAWall, TheShapeOnAWettedWallHangsNeitherOnTheSpringsNorOnTheVertices) {
+  RunParameters run = parameters(5, 64);
+  run.dp.perimeter_stiffness = 0.1;
+  const auto [height, half_width] = size_on_a_wetted_wall(run, 0.3);
+  run.dp.perimeter_stiffness = 0.3;
+  EXPECT_NEAR(size_on_a_wetted_wall(run, 0.3).first / height, 1, 0.01);
+  run.dp.vertices = 256;
+  EXPECT_NEAR(size_on_a_wetted_wall(run, 0.3).first / height, 1, 0.01);
 }
 
 /// Two caps of equal area on a chord.

@@ -32,7 +32,7 @@ class DpForces {
   /// wall_distance().
   void evaluate(const DropletState& state, Eigen::ArrayXd& force);
   PotentialEnergy energy(const DropletState& state) const;
-  /// Work per time of the springs along the interface, which have no energy.
+  /// Work per time of the forces that spread vertices along the interface and have no energy.
   double spreading_power(const DropletState& state) const;
 
   /// Area and perimeter at the last evaluate().
@@ -57,7 +57,8 @@ class DpForces {
   const std::vector<Wedge>& wedges() const { return obstacles_->wedges(); }
   /// Are walls wetted, so that the tension on them differs?
   bool wets() const { return extra_tension() != 0; }
-  void add_wetting(const DropletState& state, Eigen::ArrayXd& force) const;
+  /// Returns the net force of the part that has no energy, like that of springs along the interface.
+  Eigen::Array2d add_wetting(const DropletState& state, Eigen::ArrayXd& force) const;
 
   /// For the release, where the droplet grows without weight.
   void set_rest_area(double area);
@@ -90,6 +91,13 @@ class DpForces {
     Eigen::Array2d normal{0, 0};
   };
   Wetted wetted(const DropletState& state, int vertex) const;
+  /// The energy's negative gradient, and what springs along the interface, which carry no tension, add to it:
+  /// minus its part along the interface.
+  struct WettingForces {
+    Eigen::ArrayXd gradient;
+    Eigen::ArrayXd spreading;
+  };
+  WettingForces wetting_forces(const DropletState& state) const;
   double extra_tension() const { return (dp_.wall_tension - 1) * dp_.line_tension; }
   void add_walls(const DropletState& state, Eigen::ArrayXd& force);
   void measure_wall_distance(const DropletState& state);

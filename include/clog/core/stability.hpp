@@ -15,7 +15,7 @@ struct StiffModes {
   double tension = 0;  ///< transverse zigzag, 4 Gamma N_v/(l M), l the shortest edge
   double spring = 0;   ///< longitudinal zigzag, 4 K_l N_v^2/M
   double wetting =
-      0;  ///< a wall's pull or push where the tension changes, 6 |Gamma_wall - Gamma| l N_v/(delta^2 M)
+      0;  ///< a wall's pull or push where the tension changes, 6 |Gamma_wall - Gamma| l N_v/(w^2 M)
 
   /// Of a droplet that does not touch itself.
   double sum() const { return contact + area + tension + spring + wetting; }
