@@ -9,8 +9,14 @@
 namespace clog {
 namespace {
 
-/// Contact lists, the frame and the stability bound are looked after once in so many steps.
-constexpr int steps_per_check = 32;
+/// Contact lists, the frame and the stability bound are looked after once in so many steps: at most 32, and
+/// as few as keeps the way possible in between, and with it the lists, short.
+int steps_between_checks(double time_step) {
+  constexpr double longest = 0.04;  // [t0]
+  int steps = 32;
+  while (steps > 1 && steps * time_step > longest) steps /= 2;
+  return steps;
+}
 
 }  // namespace
 
@@ -18,24 +24,25 @@ DpDroplet::DpDroplet(const RunParameters& run, const ObstacleArray& obstacles, D
     : run_(run),
       forces_(run, obstacles),
       vertex_mass_(units::droplet_mass / run.dp.vertices),
+      steps_per_check_(steps_between_checks(run.time_step.value())),
       stepper_(std::make_unique<DpStepper>(run, forces_)) {
   state_ = std::move(initial);
-  forces_.update_contacts(state_, state_.possible_travel(steps_per_check * run_.time_step));
+  forces_.update_contacts(state_, state_.possible_travel(steps_per_check_ * run_.time_step.value()));
 }
 
 DpDroplet::~DpDroplet() = default;
 
 void DpDroplet::advance(int num_steps) {
-  for (int done = 0; done < num_steps; done += steps_per_check) {
+  for (int done = 0; done < num_steps; done += steps_per_check_) {
     if (state_.recentre().any()) forces_.forget_contacts();
     const DpStepper::Edges edges = stepper_->load(state_);
     // Its contact lists would take all memory. The run sees it at its next check.
     if (!(edges.perimeter < burst_perimeter)) return;
-    const int steps = std::min(steps_per_check, num_steps - done);
-    forces_.update_contacts(state_, state_.possible_travel(steps * run_.time_step));
+    const int steps = std::min(steps_per_check_, num_steps - done);
+    forces_.update_contacts(state_, state_.possible_travel(steps * run_.time_step.value()));
     const int substeps = num_substeps(
-        stiff_modes(run_.dp, *run_.wall_stiffness, edges.perimeter, edges.shortest), run_.time_step);
-    stepper_->advance(state_, steps * substeps, run_.time_step / substeps,
+        stiff_modes(run_.dp, *run_.wall_stiffness, edges.perimeter, edges.shortest), run_.time_step.value());
+    stepper_->advance(state_, steps * substeps, run_.time_step.value() / substeps,
                       measures_dissipation_ ? &work_ : nullptr);
     num_integrated_steps_ += static_cast<std::int64_t>(steps) * substeps;
   }

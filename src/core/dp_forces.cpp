@@ -71,7 +71,7 @@ kernel::Interface DpForces::interface(double area, double perimeter) const {
   interface.spring_length =
       dp_.perimeter_spring == PerimeterSpring::rest ? rest_edge_ : perimeter / dp_.vertices;
   interface.spreading = has_tension ? 0 : *dp_.perimeter_stiffness * dp_.vertices;
-  interface.pressure = -dp_.area_stiffness * (area - rest_area_);
+  interface.pressure = -dp_.area_stiffness.value() * (area - rest_area_);
   interface.vertex_weight = dp_.gravity == Gravity::vertex ? weight_ / dp_.vertices : 0;
   return interface;
 }
@@ -281,7 +281,7 @@ PotentialEnergy DpForces::energy(const DropletState& state) const {
   const double* y = x + n;
   const PolygonShape shape = polygon_shape(state.position);
   PotentialEnergy energy;
-  energy.area = 0.5 * dp_.area_stiffness * (shape.area - rest_area_) * (shape.area - rest_area_);
+  energy.area = 0.5 * dp_.area_stiffness.value() * (shape.area - rest_area_) * (shape.area - rest_area_);
   energy.line_tension = dp_.line_tension * shape.perimeter;
   const double height = dp_.gravity == Gravity::vertex ? state.x().mean() : area_centroid(state.position)[0];
   energy.gravity = -weight_ * height;

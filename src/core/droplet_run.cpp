@@ -48,7 +48,7 @@ DropletRun::DropletRun(const RunParameters& run, std::shared_ptr<const ObstacleA
       start_frame_(droplet_->state().frame),
       start_(droplet_->centre()),
       end_(end),
-      max_steps_(std::max<std::int64_t>(1, std::llround(run_.max_time / run_.time_step))),
+      max_steps_(std::max<std::int64_t>(1, std::llround(run_.max_time / run_.time_step.value()))),
       first_quiet_time_(relaxation_times_before_a_clog * run_.drag.terminal_speed / units::gravity),
       next_search_(first_search(run_.drag.terminal_speed)) {}
 

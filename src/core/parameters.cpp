@@ -107,14 +107,53 @@ void resolve_layout(ObstacleParameters& obstacles) {
   obstacles.lattice_angle = lattice->angle;
 }
 
+StiffModes stiff_modes_of_circle(const DpParameters& dp, double wall_stiffness) {
+  const double circumference = std::numbers::pi * units::droplet_diameter;
+  return stiff_modes(dp, wall_stiffness, circumference, circumference / dp.vertices);
+}
+
+/// An automatic contact follows the step; only the other modes limit it then.
+double largest_step_with_automatic_contact(const DpParameters& dp) {
+  const StiffModes modes = stiff_modes_of_circle(dp, 1);
+  const double others = modes.sum() - modes.contact;
+  const double self_part = auto_contact_omega_dt2 * modes.self_contact / modes.contact;
+  return std::sqrt(
+      std::min({max_area_omega_dt2 / modes.area, (max_total_omega_dt2 - auto_contact_omega_dt2) / others,
+                (max_total_with_self_omega_dt2 - auto_contact_omega_dt2 - self_part) / others}));
+}
+
+/// Of a soft disk on one obstacle [1/t0].
+double soft_disk_frequency(const RunParameters& run) {
+  return std::sqrt(contact_stiffness(*run.wall_stiffness, units::droplet_diameter) / units::droplet_mass);
+}
+
+double rounded_down(double value) {
+  const double scale = std::pow(10, 1 - std::floor(std::log10(value)));
+  return std::floor(value * scale * (1 + 1e-12)) / scale;
+}
+
+void resolve_time_step(RunParameters& run) {
+  if (!run.time_step) run.time_step = automatic_time_step(run);
+  const double time_step = *run.time_step;
+  require_positive("time-step", time_step);
+  require(time_step >= 1e-9, "time-step", time_step, "smaller than any mode needs) try 1e-3");
+  require(run.max_time >= time_step, "max-time", run.max_time, "shorter than one time-step)");
+  require(run.max_time / time_step <= 1e15, "max-time", run.max_time,
+          "more than 1e15 steps) use at most " + text(1e15 * time_step));
+  require(time_step <= run.drag.terminal_speed, "time-step", time_step,
+          "does not resolve the drag's relaxation time, terminal-speed=" + text(run.drag.terminal_speed) +
+              ") try " + text(0.1 * run.drag.terminal_speed));
+}
+
 void resolve_dp(RunParameters& run) {
   DpParameters& dp = run.dp;
   require_not_negative("line-tension", dp.line_tension);
-  require_positive("area-stiffness", dp.area_stiffness);
   require(dp.vertices >= 16 && dp.vertices <= 4096, "vertices", dp.vertices, "must lie in 16..4096)");
   require_not_negative("perimeter-stiffness-ratio", dp.perimeter_stiffness_ratio);
   if (!dp.perimeter_stiffness) dp.perimeter_stiffness = automatic_perimeter_stiffness(run);
   require_not_negative("perimeter-stiffness", *dp.perimeter_stiffness);
+  if (!dp.area_stiffness) dp.area_stiffness = automatic_area_stiffness(run);
+  require_positive("area-stiffness", *dp.area_stiffness);
   require(
       dp.wall_tension >= 0.1 && dp.wall_tension <= 1, "wall-tension", dp.wall_tension,
       "minus the cosine of the contact angle; with less the interface on a wall would buckle) use 0.1..1");
@@ -127,29 +166,22 @@ void resolve_dp(RunParameters& run) {
 
   const double vertex_mass = units::droplet_mass / dp.vertices;
   const double vertex_diameter = units::regular_edge_length(dp.vertices);
-  const double circumference = std::numbers::pi * units::droplet_diameter;
   const bool automatic = !run.wall_stiffness;
+  if (!automatic) require_positive("wall-stiffness", *run.wall_stiffness);
+  resolve_time_step(run);
+  const double time_step = *run.time_step;
   if (automatic) {
-    const double stiffest = auto_contact_omega_dt2 / 2 * vertex_mass / (run.time_step * run.time_step);
+    const double stiffest = auto_contact_omega_dt2 / 2 * vertex_mass / (time_step * time_step);
     run.wall_stiffness = wall_stiffness(stiffest, vertex_diameter);
   }
-  require_positive("wall-stiffness", *run.wall_stiffness);
   const double softest_area = dp.line_tension / (units::droplet_diameter / 2) / (0.05 * units::rest_area);
-  require(dp.area_stiffness >= softest_area, "area-stiffness", dp.area_stiffness,
+  require(*dp.area_stiffness >= softest_area, "area-stiffness", *dp.area_stiffness,
           "the line tension would compress the droplet by more than 5 %) use at least " + text(softest_area));
 
-  const StiffModes modes = stiff_modes(dp, *run.wall_stiffness, circumference, circumference / dp.vertices);
-  // An automatic contact follows the step; only the other modes limit it then.
-  const double others = modes.sum() - modes.contact;
-  const double self_part = auto_contact_omega_dt2 * modes.self_contact / modes.contact;
-  const double largest =
-      automatic
-          ? std::sqrt(std::min(
-                {max_area_omega_dt2 / modes.area, (max_total_omega_dt2 - auto_contact_omega_dt2) / others,
-                 (max_total_with_self_omega_dt2 - auto_contact_omega_dt2 - self_part) / others}))
-          : largest_stable_step(modes);
-  const double stiffest_omega_dt = std::sqrt(modes.sum()) * run.time_step;
-  require(num_substeps(modes, run.time_step) == 1, "time-step", run.time_step,
+  const StiffModes modes = stiff_modes_of_circle(dp, *run.wall_stiffness);
+  const double largest = automatic ? largest_step_with_automatic_contact(dp) : largest_stable_step(modes);
+  const double stiffest_omega_dt = std::sqrt(modes.sum()) * time_step;
+  require(num_substeps(modes, time_step) == 1, "time-step", time_step,
           "contact, area, tension and spring modes together have omega*dt = " + text(stiffest_omega_dt) +
               ", wall-stiffness=" + text(*run.wall_stiffness) + ") try " + text(0.99 * largest));
   // A contact too soft to carry the droplet lets obstacles sink into it: demand that a weight of M g on
@@ -167,16 +199,16 @@ void resolve_sp(RunParameters& run) {
         "missing wall-stiffness (E_w is the parameter of model=sp, there is no automatic value) "
         "give for example wall-stiffness=1");
   require_positive("wall-stiffness", *run.wall_stiffness);
+  resolve_time_step(run);
   require(run.drag.near_wall == 0, "near-wall-drag", run.drag.near_wall,
           "the soft disk has no near-wall drag) use 0 with model=sp");
   require(run.drag.relative == 1, "relative-drag", run.drag.relative,
           "the soft disk has no parts that could move relative to each other) use 1 with model=sp");
-  const double omega =
-      std::sqrt(contact_stiffness(*run.wall_stiffness, units::droplet_diameter) / units::droplet_mass);
+  const double omega = soft_disk_frequency(run);
   // Up to a dozen obstacles of a saturated array overlap a soft disk at once.
   const double largest = std::sqrt(max_total_omega_dt2 / 12) / omega;
-  require(run.time_step <= largest, "time-step", run.time_step,
-          "contact has omega*dt = " + text(omega * run.time_step) + ") try " + text(0.99 * largest));
+  require(*run.time_step <= largest, "time-step", *run.time_step,
+          "contact has omega*dt = " + text(omega * *run.time_step) + ") try " + text(0.99 * largest));
 }
 
 }  // namespace
@@ -193,21 +225,40 @@ double automatic_perimeter_stiffness(const RunParameters& run) {
   return 0;
 }
 
+double expected_pressure(const RunParameters& run) {
+  const double bend = run.obstacles.smallest_diameter() / 2 + units::regular_edge_length(run.dp.vertices) / 2;
+  return run.dp.line_tension * (2 / units::droplet_diameter + 1 / bend) +
+         units::gravity * units::droplet_diameter;
+}
+
+double automatic_area_stiffness(const RunParameters& run) {
+  constexpr double published = 1e4;
+  constexpr double compression = 2e-3;
+  return std::min(published, rounded_down(expected_pressure(run) / (compression * units::rest_area)));
+}
+
+double automatic_time_step(const RunParameters& run) {
+  const double drag = 0.1 * run.drag.terminal_speed / units::gravity;
+  if (run.model == Model::sp) return rounded_down(std::min(drag, 0.1 / soft_disk_frequency(run)));
+  constexpr double depth = 0.04;  // of an obstacle in the contact range, over the vertex diameter
+  const double vertex_mass = units::droplet_mass / run.dp.vertices;
+  if (run.wall_stiffness)
+    return rounded_down(
+        std::min(drag, std::sqrt(auto_step_margin) *
+                           largest_stable_step(stiff_modes_of_circle(run.dp, *run.wall_stiffness))));
+  const double stable = std::sqrt(auto_step_margin) * largest_step_with_automatic_contact(run.dp);
+  const double stiff_contact =
+      std::sqrt(depth * auto_contact_omega_dt2 / 2 * vertex_mass / expected_pressure(run));
+  return rounded_down(std::min({drag, stable, stiff_contact}));
+}
+
 RunParameters resolve(RunParameters run) {
-  require_positive("time-step", run.time_step);
   require_positive("max-time", run.max_time);
-  require(run.time_step >= 1e-9, "time-step", run.time_step, "smaller than any mode needs) try 1e-3");
-  require(run.max_time >= run.time_step, "max-time", run.max_time, "shorter than one time-step)");
-  require(run.max_time / run.time_step <= 1e15, "max-time", run.max_time,
-          "more than 1e15 steps) use at most " + text(1e15 * run.time_step));
   require(run.clog_energy > 0 && run.clog_energy < 1e-3, "clog-energy", run.clog_energy,
           "must lie in 0..1e-3, a fraction of the kinetic energy at terminal speed) try 1e-17");
   require_positive("terminal-speed", run.drag.terminal_speed);
   require(run.drag.terminal_speed <= 100, "terminal-speed", run.drag.terminal_speed,
           "the drag would not matter before many boxes have passed) use at most 100");
-  require(run.time_step <= run.drag.terminal_speed, "time-step", run.time_step,
-          "does not resolve the drag's relaxation time, terminal-speed=" + text(run.drag.terminal_speed) +
-              ") try " + text(0.1 * run.drag.terminal_speed));
   require_not_negative("near-wall-drag", run.drag.near_wall);
   require(run.drag.near_wall <= 1000, "near-wall-drag", run.drag.near_wall,
           "the droplet would hang in the drag of its surroundings) use at most 1000");

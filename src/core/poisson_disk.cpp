@@ -139,7 +139,7 @@ class SequentialAddition {
  private:
   /// Few at first, while most of them have room. Any numbers give the same statistics; these are fast.
   static constexpr double first_rounds[] = {0.125, 0.25, 0.5, 1, 0.5};  // darts per cell
-  static constexpr double darts_per_square = 1;                       // in later rounds
+  static constexpr double darts_per_square = 1;                         // in later rounds
   /// Number of a cell in the grid, whose margins repeat the opposite side.
   using Cell = std::int32_t;
   /// A square that may still have room, or a dart: from the corner of its cell, and the low end of its range

@@ -98,12 +98,12 @@ PotentialEnergy SpForces::energy(const DropletState& state) const {
 SpDroplet::SpDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial)
     : run_(run), forces_(run, obstacles) {
   state_ = std::move(initial);
-  forces_.update_contacts(state_, state_.possible_travel(run_.time_step));
+  forces_.update_contacts(state_, state_.possible_travel(run_.time_step.value()));
   force_ = forces_.force_at(state_.position.head<2>(), state_.frame);
 }
 
 void SpDroplet::advance(int num_steps) {
-  const double dt = run_.time_step;
+  const double dt = run_.time_step.value();
   for (int done = 0, steps = 0; done < num_steps; done += steps) {
     // Large steps and high speeds are looked after more often, so that the list of obstacles stays short.
     steps = std::min(most_steps_per_check, num_steps - done);
@@ -119,7 +119,7 @@ void SpDroplet::advance(int num_steps) {
 ///   u = (1 - d) v + h f,  x += dt u,  v = (u + h f)/(1 + d),  h = dt/2M, d = dt b/2M,
 /// followed from one half-step's displacement s = dt u to the next, s' = keep s + gain f.
 void SpDroplet::integrate(int num_steps) {
-  const double dt = run_.time_step;
+  const double dt = run_.time_step.value();
   const double h = 0.5 * dt / units::droplet_mass;
   const double d = 0.5 * dt * units::gravity / run_.drag.terminal_speed;
   const double keep = (1 - d) / (1 + d);

@@ -20,7 +20,7 @@ StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double per
       .self_contact = dp.self_contact == SelfContact::on
                           ? 8 * contact_stiffness(wall_stiffness, vertex_diameter) / vertex_mass
                           : 0,
-      .area = dp.area_stiffness * perimeter * perimeter / units::droplet_mass,
+      .area = dp.area_stiffness.value() * perimeter * perimeter / units::droplet_mass,
       .tension = 4 * dp.line_tension / (edge * vertex_mass),
       .spring = 4 * dp.perimeter_stiffness.value() * num_vertices / vertex_mass,
       .wetting = 6 * dp.line_tension * std::abs(dp.wall_tension - 1) * mean_edge /

@@ -113,7 +113,7 @@ Eigen::ArrayXd free_droplet(const RunParameters& run) {
     const double edge = units::regular_edge_length(n, area);
     const double tension = run.dp.line_tension + spring * (edge - rest_edge);
     area = std::max(units::rest_area / 2,
-                    units::rest_area - tension * n * edge / (2 * area) / run.dp.area_stiffness);
+                    units::rest_area - tension * n * edge / (2 * area) / *run.dp.area_stiffness);
   }
   return regular_polygon(n, area);
 }

@@ -45,7 +45,7 @@ int clogrun_array(cli::CommandLine& line) {
   // Everything that can be wrong is found before anything is computed or written.
   const std::string output = line.require("output");
   const Setup setup = read_setup(line);
-  const auto intervals = WatchedRun::intervals(line, setup.parameters.time_step);
+  const auto intervals = WatchedRun::intervals(line, *setup.parameters.time_step);
   store::refuse_unwritable(output);
   if (line.has("write-obstacles")) {
     store::refuse_unwritable(line.get("write-obstacles"));

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 
 #include "clog/cli/program.hpp"
@@ -9,14 +10,16 @@ namespace clog {
 int clogrun_channel(cli::CommandLine& line) {
   refuse_options(line, "channel", array_options);
   const std::string output = line.require("output");
-  const RunParameters parameters = single_run(line.settings());
   const ChannelParameters channel{
       .orifice = line.get_number("orifice", ChannelParameters{}.orifice),
       .wedge_angle = line.get_number("wedge-angle", ChannelParameters{}.wedge_angle),
       .tip_radius = line.get_number("tip-radius", ChannelParameters{}.tip_radius),
       .start = line.get_number("start", ChannelParameters{}.start),
       .end = line.get_number("end", ChannelParameters{}.end)};
-  const auto intervals = WatchedRun::intervals(line, parameters.time_step);
+  // What `auto` must hold off are the tips.
+  line.settings().set("obstacle-diameter", sweep::shortest(std::max(2 * channel.tip_radius, 1e-3)));
+  const RunParameters parameters = single_run(line.settings());
+  const auto intervals = WatchedRun::intervals(line, *parameters.time_step);
   DropletRun run = run_in_channel(parameters, channel);
   store::refuse_unwritable(output);
 

@@ -37,7 +37,7 @@ int clogrun_sag(cli::CommandLine& line) {
   refuse_options(line, "sag", {"orifice", "wedge-angle", "tip-radius", "start", "end"});
   const sweep::Plan plan(line.settings());
   if (line.has("output")) single_run(line.settings());
-  const auto intervals = WatchedRun::intervals(line, plan.task(0).time_step);
+  const auto intervals = WatchedRun::intervals(line, *plan.task(0).time_step);
   if (line.has("output")) store::refuse_unwritable(line.get("output"));
 
   cli::catch_stop_signals();

@@ -78,7 +78,7 @@ void print_tasks(const sweep::Plan& plan) {
 void print_cost(const sweep::Plan& plan) {
   using Clock = std::chrono::steady_clock;
   const auto vertex_steps = [](const RunParameters& run, double time) {
-    return time / run.time_step * (run.model == Model::dp ? run.dp.vertices : 1);
+    return time / *run.time_step * (run.model == Model::dp ? run.dp.vertices : 1);
   };
   double seconds = 0;
   double work = 0;
@@ -107,7 +107,7 @@ void print_cost(const sweep::Plan& plan) {
   const double core_hours = seconds / work * all_work / 3600;
   std::printf(
       "# at most %.3g core-hours on this machine, %.3g us per step measured; runs that clog end sooner\n",
-      core_hours, 1e6 * seconds / work * vertex_steps(plan.task(0), plan.task(0).time_step));
+      core_hours, 1e6 * seconds / work * vertex_steps(plan.task(0), *plan.task(0).time_step));
 }
 
 store::Provenance provenance(const cli::CommandLine& line, int num_ranks) {
@@ -122,9 +122,10 @@ void print_config(const sweep::Settings& settings, const sweep::Plan& plan) {
   const sweep::RunRow first = sweep::describe(plan.task(0));
   std::cout << settings.to_config(true);
   std::cout << "\n# Values behind `auto` in the first task:\n# wall-stiffness = "
-            << number(first.wall_stiffness) << '\n';
+            << number(first.wall_stiffness) << "\n# time-step = " << number(first.time_step) << '\n';
   if (first.model.view() == "dp")
-    std::cout << "# perimeter-stiffness = " << number(first.perimeter_stiffness) << '\n';
+    std::cout << "# area-stiffness = " << number(first.area_stiffness)
+              << "\n# perimeter-stiffness = " << number(first.perimeter_stiffness) << '\n';
 }
 
 /// What rank 0 does before the sweep: everything a user can get wrong is found here, before any rank

@@ -59,11 +59,11 @@ RunRow describe(const RunParameters& run) {
   row.box = obstacles.box;
   row.seed = run.seed;
   row.vertices = polygon ? run.dp.vertices : 1;
-  row.time_step = run.time_step;
+  row.time_step = *run.time_step;
   row.max_time = run.max_time;
   row.terminal_speed = run.drag.terminal_speed;
   row.near_wall_drag = run.drag.near_wall;
-  row.area_stiffness = polygon ? run.dp.area_stiffness : not_applicable;
+  row.area_stiffness = polygon ? *run.dp.area_stiffness : not_applicable;
   row.near_wall_exponent = polygon ? run.drag.near_wall_exponent : not_applicable;
   row.relative_drag = run.drag.relative;
   row.preset = polygon ? preset_name(run) : "none";

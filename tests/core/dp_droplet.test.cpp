@@ -252,7 +252,7 @@ TEST(DpDroplet, SwingsAtTheFrequencyOfACapillaryMode) {
     now = mode();
     ++step;
   }
-  const double quarter = (step - 1 + before / (before - now)) * run.time_step;
+  const double quarter = (step - 1 + before / (before - now)) * *run.time_step;
   EXPECT_NEAR(quarter * omega / (std::numbers::pi / 2), 1, 0.02);
 }
 
@@ -298,10 +298,10 @@ TEST(DpDroplet, BlowsUpWhenStretchedAndNotSplit) {
   Eigen::ArrayXd force(2 * 256);
   forces.update_contacts(state, {.absolute = 1, .relative = 1});
   forces.evaluate(state, force);
-  const double half_dt_over_m = 0.5 * run.time_step / (units::droplet_mass / 256);
+  const double half_dt_over_m = 0.5 * *run.time_step / (units::droplet_mass / 256);
   for (int step = 0; step < 64; ++step) {
     state.velocity += half_dt_over_m * force;
-    state.position += run.time_step * state.velocity;
+    state.position += *run.time_step * state.velocity;
     forces.evaluate(state, force);
     state.velocity += half_dt_over_m * force;
   }

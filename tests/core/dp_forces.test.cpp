@@ -171,7 +171,7 @@ TEST(DpForces, LaplacePressureOfACircleIsLineTensionOverRadius) {
   const int n = run.dp.vertices;
   const Eigen::ArrayXd position = regular_polygon(n, 0.6);
   const double inner_radius = position[0] * std::cos(std::numbers::pi / n);
-  forces.set_rest_area(0.6 + 2 / inner_radius / run.dp.area_stiffness);
+  forces.set_rest_area(0.6 + 2 / inner_radius / *run.dp.area_stiffness);
   const DropletState state = state_of(position);
   Eigen::ArrayXd force(2 * n);
   forces.evaluate(state, force);

@@ -25,10 +25,10 @@ class ReadableDroplet {
   const DropletState& state() const { return state_; }
 
   void step() {
-    const double h = run_.time_step / 2;
+    const double h = *run_.time_step / 2;
     const double h_over_m = h * n_ / units::droplet_mass;
     state_.velocity += h_over_m * force_ + h * drag(state_.velocity);
-    state_.position += run_.time_step * state_.velocity;
+    state_.position += *run_.time_step * state_.velocity;
     forces_.evaluate(state_, force_);
     // The drag of the second half kick is that of its end: by iteration.
     const Eigen::ArrayXd kicked = state_.velocity + h_over_m * force_;
@@ -83,6 +83,7 @@ TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
     RunParameters run;
     run.dp.vertices = vertices;
     run.dp.line_tension = 0.3;
+    run.time_step = 1e-3;
     GetParam().change(run);
     run = resolve(run);
     const double diameter = units::regular_edge_length(vertices);

@@ -192,6 +192,7 @@ TEST(Equilibrium, OnTopOfAnObstacleIsRefused) {
 DropletRun through_orifice(double line_tension, ClogDetection detection) {
   RunParameters run = robust(line_tension);
   run.clog_detection = detection;
+  run.time_step = 1e-3;
   return run_in_channel(resolve(run), {.orifice = 0.7, .tip_radius = 0.1, .start = -0.8, .end = 0.6});
 }
 

@@ -44,7 +44,9 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"time-step=0", [](auto& run) { run.time_step = 0; }},
         Refusal{"time-step=0.01 (contact, area, tension and spring modes",
                 [](auto& run) { run.time_step = 0.01; }},
-        Refusal{"omega*dt = 416, wall-stiffness=1e+04) try 2.1", [](auto& run) { run.wall_stiffness = 1e4; }},
+        Refusal{
+            "omega*dt = 416, wall-stiffness=1e+04) try 2.1",
+            [](auto& run) { run.wall_stiffness = 1e4, run.time_step = 1e-3, run.dp.area_stiffness = 1e4; }},
         Refusal{"time-step=0.1 (does not resolve the drag", [](auto& run) { run.time_step = 0.1; }},
         Refusal{"max-time=-1", [](auto& run) { run.max_time = -1; }},
         Refusal{"max-time=0.0001 (shorter", [](auto& run) { run.max_time = 1e-4; }},
@@ -96,10 +98,56 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"time-step=0.02 (contact has",
                 [](auto& run) { run.model = Model::sp, run.wall_stiffness = 1e4, run.time_step = 0.02; }}));
 
+/// What resolve() says to these parameters, empty if it takes them.
+std::string refusal(const RunParameters& run) {
+  try {
+    resolve(run);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
 TEST(Resolve, FillsInTheStiffestStableContact) {
-  const RunParameters run = resolve(RunParameters{});
-  const double k = contact_stiffness(*run.wall_stiffness, units::regular_edge_length(256));
+  RunParameters run;
+  run.time_step = 1e-3;
+  const double k = contact_stiffness(*resolve(run).wall_stiffness, units::regular_edge_length(256));
   EXPECT_NEAR(k * 1e-6 / (units::droplet_mass / 256), 0.25, 1e-12);
+}
+
+TEST(Resolve, FillsInTheLargestStepThatHolds) {
+  // Every resolved step passes resolve()'s own checks of stability, for stiff and for soft droplets, many and
+  // few vertices, strong and weak drag, given and automatic contact; and it is no smaller than it need be.
+  for (const int vertices : {16, 64, 256, 1024})
+    for (const double line_tension : {0.0, 0.01, 0.3, 10.0})
+      for (const double terminal_speed : {0.003, 0.03, 1.0}) {
+        RunParameters run;
+        run.dp.vertices = vertices;
+        run.dp.line_tension = line_tension;
+        run.drag.terminal_speed = terminal_speed;
+        run.obstacles.gap = 0.5;
+        const RunParameters resolved = resolve(run);
+        EXPECT_EQ(resolve(resolved).time_step, resolved.time_step);
+        EXPECT_LE(*resolved.time_step, 0.1 * terminal_speed);
+        // Two digits are kept of the smallest of its bounds.
+        const double vertex_mass = units::droplet_mass / vertices;
+        const double contact = std::sqrt(0.01 * vertex_mass / expected_pressure(resolved));
+        RunParameters larger = resolved;
+        larger.wall_stiffness.reset();
+        larger.time_step = *resolved.time_step * 1.1 / std::sqrt(auto_step_margin);
+        EXPECT_TRUE(1.1 * *resolved.time_step > std::min(contact, 0.1 * terminal_speed) ||
+                    refusal(larger).find("omega*dt") != std::string::npos)
+            << vertices << ' ' << line_tension << ' ' << terminal_speed;
+      }
+}
+
+TEST(Resolve, FillsInTheSoftestAreaThatKeepsItsSize) {
+  RunParameters run;
+  run.dp.line_tension = 0.3;
+  const RunParameters soft = resolve(run);
+  EXPECT_NEAR(expected_pressure(soft) / *soft.dp.area_stiffness / units::rest_area, 2e-3, 1e-4);
+  run.dp.line_tension = 10;
+  EXPECT_EQ(resolve(run).dp.area_stiffness, 1e4);  // the published one
 }
 
 TEST(Resolve, FillsInThePerimeterSpring) {
@@ -121,6 +169,7 @@ TEST(Resolve, TakesTheStepItProposes) {
     run.wall_stiffness = stiffness;
     run.dp.vertices = 1024;
     run.dp.line_tension = 10;
+    run.time_step = 1e-3;
     std::string message;
     try {
       resolve(run);
@@ -130,16 +179,6 @@ TEST(Resolve, TakesTheStepItProposes) {
     run.time_step = std::stod(message.substr(message.rfind("try ") + 4));
     EXPECT_NO_THROW(resolve(run));
   }
-}
-
-/// What resolve() says to these parameters, empty if it takes them.
-std::string refusal(const RunParameters& run) {
-  try {
-    resolve(run);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
 }
 
 RunParameters lattice_run(double angle, double box) {

@@ -17,6 +17,8 @@ namespace clog::test {
 inline RunParameters bare_parameters(int vertices = 64) {
   RunParameters run;
   run.dp.vertices = vertices;
+  run.time_step = 1e-3;
+  run.dp.area_stiffness = 1e4;
   run.dp.perimeter_stiffness = 1.0;
   // Terms with an energy: tests compare forces with its gradient.
   run.dp.perimeter_spring = PerimeterSpring::mean;

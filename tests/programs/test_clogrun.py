@@ -33,7 +33,7 @@ class Run(ProgramTest):
                 self.assertEqual(row[column], again[column], column)
 
     def test_it_writes_the_trajectory(self):
-        done = self.succeed("clogrun", "array", *QUICK, "obstacle-gap=1.2", "--sample-interval", 2, "--output", "run.h5")
+        done = self.succeed("clogrun", "array", *QUICK, "obstacle-gap=1.2", "--sample-interval", 2, "time-step=1e-3", "--output", "run.h5")
         self.assertRegex(done.stdout.splitlines()[-1], r"^\d+ steps, [\d.]+ s, [\d.]+ ns per vertex-step$")
         samples = pandas.read_hdf(self.folder / "run.h5", "trajectory")
         self.assertEqual(samples.time[0], 0)

@@ -91,7 +91,7 @@ class Sweep(ProgramTest):
         done = self.succeed("clogsweep", "--config", "sweep.cfg", "--print-config", "seeds=7", "--box", "40")
         for line in ("line-tension = 1,2", "seeds = 7", "box = 40", "vertices = 256"):
             self.assertIn(line + "\n", done.stdout)
-        self.assertRegex(done.stdout, r"\n# wall-stiffness = 0\.0288\d+\n# perimeter-stiffness = 0\.1\n$")
+        self.assertRegex(done.stdout, r"\n# wall-stiffness = 0\.0089\d+\n# time-step = 0\.0018\n# area-stiffness = \d+\n# perimeter-stiffness = 0\.1\n$")
         self.write("printed.cfg", done.stdout)
         self.assertEqual(self.succeed("clogsweep", "--config", "printed.cfg", "--print-config").stdout, done.stdout)
 
@@ -104,7 +104,7 @@ class Sweep(ProgramTest):
         self.assertEqual(self.snapshot(), {})
 
     def test_a_dry_run_foresees_the_core_hours_of_every_step(self):
-        done = self.succeed("clogsweep", *SMALL, "obstacle-gap=1.2,1.3", "max-time=1000", "seeds=1..10", "--dry-run")
+        done = self.succeed("clogsweep", *SMALL, "obstacle-gap=1.2,1.3", "max-time=1000", "seeds=1..10", "time-step=1e-3", "--dry-run")
         words = done.stdout.splitlines()[-1].split()
         core_hours, microseconds = float(words[3]), float(words[8])
         self.assertAlmostEqual(core_hours * 3.6e9 / microseconds / (20 * 1000 / 1e-3), 1, delta=0.02)
@@ -186,7 +186,7 @@ class Refusals(ProgramTest):
             (["model=sp", *out], ["missing wall-stiffness"]),
             (["model=sp", "wall-stiffness=1", "line-tension=1,2", *out], ["does not depend on it"]),
             (["time-step=0.01", *out], ["time-step=0.01", "omega*dt", "try"]),
-            (["wall-stiffness=1e4", *out], ["omega*dt", "try"]),
+            (["wall-stiffness=1e4", "time-step=1e-3", *out], ["omega*dt", "try"]),
             (["obstacle-gap=0.01", *out], ["obstacle-gap=0.01", "vertex"]),
             (["box=2", *out], ["box=2"]),
             (["--config", "missing.cfg", *out], ["missing.cfg"]),

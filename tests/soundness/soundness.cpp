@@ -95,7 +95,7 @@ void look(const DropletRun& run, double substeps, CaseReport& report) {
 /// @param longest  the run is given up after so much computing [s]
 void follow(DropletRun& run, double longest, CaseReport& report) {
   const RunParameters& parameters = report.run;
-  const double check_time = DropletRun::steps_per_check * parameters.time_step;
+  const double check_time = DropletRun::steps_per_check * *parameters.time_step;
   soundness::TailRecorder recorder(parameters.drag.terminal_speed);
   look(run, 1, report);
   for (bool over = false; !over && report.seconds < longest && !cli::stop_signalled();) {
@@ -109,7 +109,7 @@ void follow(DropletRun& run, double longest, CaseReport& report) {
       report.seconds += cpu_seconds() - begin;
       if (in_tail) recorder.add_energy(run.kinetic_energy_ratio(), check_time);
     }
-    const double steps = (run.time() - begin_time) / parameters.time_step;
+    const double steps = (run.time() - begin_time) / *parameters.time_step;
     look(run, static_cast<double>(run.droplet().num_integrated_steps() - begin_steps) / steps, report);
   }
   report.tail = recorder.tail();

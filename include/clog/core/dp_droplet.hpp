@@ -37,6 +37,7 @@ class DpDroplet final : public Droplet {
   RunParameters run_;
   DpForces forces_;
   double vertex_mass_;
+  int steps_per_check_;
   std::unique_ptr<DpStepper> stepper_;
 };
 

@@ -53,7 +53,7 @@ class DropletRun {
 
   /// Of the run so far; status `running` while it is not over.
   RunResult result() const;
-  double time() const { return static_cast<double>(steps_done_) * run_.time_step; }
+  double time() const { return static_cast<double>(steps_done_) * run_.time_step.value(); }
   /// Along and across the flow since release [sigma].
   Eigen::Array2d displacement() const { return displacement_of(droplet_->centre()); }
   /// Of a point in the droplet's frame from the place of release [sigma].

@@ -29,8 +29,8 @@ inline constexpr double wetting_width = 3;
 
 /// Deformable polygon, Cheng et al. Eqs. 1-6. Reduced units, see units.hpp.
 struct DpParameters {
-  double line_tension = 1.0;    ///< Gamma [g rho sigma^2]
-  double area_stiffness = 1e4;  ///< K_a [g rho / sigma]
+  double line_tension = 1.0;             ///< Gamma [g rho sigma^2]
+  std::optional<double> area_stiffness;  ///< K_a [g rho / sigma]; empty: automatic
   PerimeterSpring perimeter_spring = PerimeterSpring::along;
   std::optional<double> perimeter_stiffness;  ///< K_l [g rho sigma]; empty: automatic
   double perimeter_stiffness_ratio = 1e-3;    ///< K_l/Gamma of springs to the rest length
@@ -74,9 +74,9 @@ struct RunParameters {
   std::optional<double> wall_stiffness;  ///< E_w [g rho sigma^3]; empty: stiffest stable value (dp only)
   ObstacleParameters obstacles;
   DragParameters drag;
-  double time_step = 1e-3;     ///< [t0]
-  double max_time = 2e5;       ///< [t0]
-  double clog_energy = 1e-17;  ///< E_k/E_t below which a droplet counts as clogged
+  std::optional<double> time_step;  ///< [t0]; empty: automatic
+  double max_time = 2e5;            ///< [t0]
+  double clog_energy = 1e-17;       ///< E_k/E_t below which a droplet counts as clogged
   ClogDetection clog_detection = ClogDetection::certified;
   std::uint32_t seed = 1;
 };
@@ -91,6 +91,22 @@ RunParameters resolve(RunParameters parameters);
 /// K_l V_t/M = 0.15/t0. Stiffer ones have been seen to flutter where the drag is weak, as they have no
 /// energy.
 double automatic_perimeter_stiffness(const RunParameters& run);
+
+/// Greatest pressure difference over the interface of a droplet held by obstacles that can be expected [g rho
+/// sigma]: that of its own curvature, of a bend around the smallest obstacle, and of a column of liquid one
+/// diameter tall.
+double expected_pressure(const RunParameters& run);
+
+/// K_a where none is given [g rho / sigma]: the expected pressure changes the area by two thousandths, but at
+/// most the published 1e4, which soft droplets do not need and which would cost them steps.
+double automatic_area_stiffness(const RunParameters& run);
+
+/// Time step where none is given [t0], K_a and K_l are. It resolves the drag's relaxation time ten times. For
+/// a polygon every stiff mode of a circle stays within auto_step_margin of its bound (stability.hpp), and an
+/// automatic contact, whose stiffness goes with the step, is so stiff that the expected pressure pushes an
+/// obstacle into its range by a twenty-fifth of a vertex diameter; for a soft disk the step resolves its
+/// contact's period sixty times. Rounded down to two digits.
+double automatic_time_step(const RunParameters& run);
 
 /// Contact stiffness k_c, force over overlap [g rho sigma], of the wall energy U_w = (E_w/2)(1 - 2d/size)^2:
 /// k_c = 4 E_w / size^2. `size` is the vertex diameter (DP) or sigma (SP). And the way back.

@@ -34,6 +34,9 @@ inline constexpr double max_total_with_self_omega_dt2 = 3.9;
 /// The area mode is anharmonic in the perimeter; it gets its own bound.
 inline constexpr double max_area_omega_dt2 = 1.0;
 
+/// The share of every bound that the modes of a circle take with the automatic step.
+inline constexpr double auto_step_margin = 0.8;
+
 /// Modes of a resolved parameter set (see resolve()) at the given perimeter and shortest edge [sigma].
 /// Vertices nearer to each other than a hundredth of the mean edge count as that far apart.
 StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double perimeter, double shortest_edge);
