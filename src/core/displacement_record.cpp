@@ -7,7 +7,7 @@
 namespace clog {
 namespace {
 
-constexpr std::size_t capacity = 4096;
+constexpr std::size_t capacity = 1024;
 constexpr double arrest_distance = 0.01;  // [sigma]
 constexpr double transient_fraction = 0.1;
 constexpr double shortest_travel = 0.5;  // [sigma]
@@ -24,6 +24,18 @@ void DisplacementRecord::add(double time, double displacement) {
     if ((count_ - 1) % stride_ != 0) return;
   }
   samples_.push_back({time, displacement});
+}
+
+void DisplacementRecord::save(ByteWriter& bytes) const {
+  bytes.put(samples_);
+  bytes.put(stride_);
+  bytes.put(count_);
+}
+
+void DisplacementRecord::restore(ByteReader& bytes) {
+  bytes.get(samples_);
+  bytes.get(stride_);
+  bytes.get(count_);
 }
 
 double DisplacementRecord::mean_speed() const {

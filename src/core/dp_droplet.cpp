@@ -27,10 +27,15 @@ DpDroplet::DpDroplet(const RunParameters& run, const ObstacleArray& obstacles, D
       steps_per_check_(steps_between_checks(run.time_step.value())),
       stepper_(std::make_unique<DpStepper>(run, forces_)) {
   state_ = std::move(initial);
-  forces_.update_contacts(state_, state_.possible_travel(steps_per_check_ * run_.time_step.value()));
+  DpDroplet::start_afresh();
 }
 
 DpDroplet::~DpDroplet() = default;
+
+void DpDroplet::start_afresh() {
+  forces_.forget_all_contacts();
+  forces_.update_contacts(state_, state_.possible_travel(steps_per_check_ * run_.time_step.value()));
+}
 
 void DpDroplet::advance(int num_steps) {
   for (int done = 0; done < num_steps; done += steps_per_check_) {

@@ -62,6 +62,11 @@ void DpForces::forget_contacts() {
   adhesive_walls_.invalidate();
 }
 
+void DpForces::forget_all_contacts() {
+  forget_contacts();
+  self_.invalidate();
+}
+
 kernel::Interface DpForces::interface(double area, double perimeter) const {
   const bool has_tension = dp_.perimeter_spring != PerimeterSpring::along;
   kernel::Interface interface;

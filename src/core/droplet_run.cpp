@@ -7,6 +7,7 @@
 
 #include "clog/core/dp_droplet.hpp"
 #include "clog/core/equilibrium.hpp"
+#include "clog/core/error.hpp"
 #include "clog/core/sp_droplet.hpp"
 #include "clog/core/units.hpp"
 
@@ -31,6 +32,9 @@ double first_search(double terminal_speed) {
 constexpr double fall_between_searches = 0.1;
 /// or, once it has risen above so many times the first search's, until the droplet slows down anew.
 constexpr double rise_of_a_moving_droplet = 10;
+
+/// Changes with what a snapshot holds.
+constexpr std::uint64_t snapshot_kind = 0x636c6f6773000001;
 
 std::unique_ptr<Droplet> make_droplet(const RunParameters& run, const ObstacleArray& obstacles,
                                       DropletState initial) {
@@ -70,8 +74,53 @@ bool DropletRun::advance(int num_checks) {
     droplet_->advance(steps);
     steps_done_ += steps;
     check();
+    if (status_ == RunStatus::running && steps_done_ % steps_per_snapshot == 0) take_snapshot();
   }
   return status_ != RunStatus::running;
+}
+
+void DropletRun::take_snapshot() {
+  droplet_->start_afresh();
+  ByteWriter bytes;
+  bytes.put(snapshot_kind);
+  droplet_->save(bytes);
+  start_frame_.save(bytes);
+  bytes.put(start_);
+  bytes.put(steps_done_);
+  bytes.put(quiet_checks_);
+  bytes.put(next_search_);
+  record_.save(bytes);
+  snapshot_ = bytes.take();
+}
+
+DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
+                              std::span<const std::byte> snapshot, double end) {
+  try {
+    ByteReader bytes(snapshot);
+    std::uint64_t kind = 0;
+    bytes.get(kind);
+    if (kind != snapshot_kind) throw Error("the snapshot is of another version");
+    ByteReader rest = bytes;
+    DropletState state;
+    state.restore(bytes);
+    if (state.size() != (run.model == Model::dp ? run.dp.vertices : 1) || state.frame.box != obstacles->box())
+      throw Error("the snapshot is of another run");
+    DropletRun resumed(run, std::move(obstacles), std::move(state), end);
+    resumed.droplet_->restore(rest);
+    resumed.start_frame_.restore(rest);
+    rest.get(resumed.start_);
+    rest.get(resumed.steps_done_);
+    rest.get(resumed.quiet_checks_);
+    rest.get(resumed.next_search_);
+    resumed.record_.restore(rest);
+    if (!rest.at_end()) throw Error("the snapshot is of another run");
+    resumed.snapshot_.assign(snapshot.begin(), snapshot.end());
+    return resumed;
+  } catch (const std::out_of_range&) {
+    throw Error("cannot resume the run (the snapshot is torn); start it anew");
+  } catch (const Error& error) {
+    throw Error(std::string("cannot resume the run (") + error.what() + "); start it anew");
+  }
 }
 
 void DropletRun::check() {

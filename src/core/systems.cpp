@@ -122,6 +122,10 @@ DropletRun run_in_array(const RunParameters& run) {
   return run_in_array(run, sample_or_reuse(run.obstacles, run.seed));
 }
 
+DropletRun resume_in_array(const RunParameters& run, std::span<const std::byte> snapshot) {
+  return DropletRun::resume(run, sample_or_reuse(run.obstacles, run.seed), snapshot);
+}
+
 DropletRun run_in_array(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles) {
   DropletState released = starts_free(run, *obstacles)
                               ? release_droplet(run, ObstacleArray(obstacles->box(), {}))

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "clog/core/error.hpp"
+
 namespace clog {
 namespace {
 
@@ -41,6 +43,58 @@ TEST(DropletRun, IsTheSameHoweverItIsSliced) {
   const RunResult at_once = result_of(small_run(), 100000);
   expect_identical(at_once, result_of(small_run(), 1));
   expect_identical(at_once, result_of(small_run(), 7));
+}
+
+/// Short enough for a test, long enough for three snapshots.
+RunParameters long_run(Model model) {
+  RunParameters run;
+  run.obstacles.box = 20;
+  run.obstacles.gap = 0.5;
+  run.dp.line_tension = 0.05;
+  run.time_step = 1e-3;
+  run.max_time = 850;
+  run.model = model;
+  if (model == Model::sp) run.wall_stiffness = 0.3;
+  if (model == Model::dp) run.dp.vertices = 64, run.drag.near_wall = 0.02;
+  return resolve(run);
+}
+
+TEST(DropletRun, GoesOnFromEverySnapshotBitForBit) {
+  for (const Model model : {Model::dp, Model::sp}) {
+    const RunParameters run = long_run(model);
+    DropletRun whole = run_in_array(run);
+    EXPECT_TRUE(whole.snapshot().empty());
+    std::vector<std::vector<std::byte>> snapshots;
+    while (!whole.advance(1))
+      if (!whole.snapshot().empty() && (snapshots.empty() || snapshots.back() != whole.snapshot()))
+        snapshots.push_back(whole.snapshot());
+    ASSERT_EQ(snapshots.size(), 3u);
+    for (const std::vector<std::byte>& snapshot : snapshots) {
+      DropletRun resumed = resume_in_array(run, snapshot);
+      EXPECT_GT(resumed.time(), 200);
+      while (!resumed.advance(7)) {
+      }
+      expect_identical(resumed.result(), whole.result());
+      EXPECT_EQ(resumed.result().mean_speed, whole.result().mean_speed);
+      EXPECT_TRUE((resumed.droplet().state().position == whole.droplet().state().position).all());
+      EXPECT_EQ(resumed.snapshot(), whole.snapshot());
+    }
+  }
+}
+
+TEST(DropletRun, RefusesASnapshotThatIsTornOrOfAnotherRun) {
+  const RunParameters run = long_run(Model::sp);
+  DropletRun whole = run_in_array(run);
+  while (whole.snapshot().empty()) ASSERT_FALSE(whole.advance(100));
+  std::vector<std::byte> bytes = whole.snapshot();
+  EXPECT_THROW(resume_in_array(long_run(Model::dp), bytes), Error);
+  for (const std::size_t size : {bytes.size() - 1, bytes.size() / 2, std::size_t{4}, std::size_t{0}})
+    EXPECT_THROW(resume_in_array(run, std::span(bytes).first(size)), Error) << size;
+  bytes.push_back(std::byte{0});
+  EXPECT_THROW(resume_in_array(run, bytes), Error);
+  bytes.pop_back();
+  bytes[0] = ~bytes[0];
+  EXPECT_THROW(resume_in_array(run, bytes), Error);
 }
 
 TEST(DropletRun, OfAnotherSeedDiffers) {

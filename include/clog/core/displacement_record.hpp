@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "clog/core/byte_archive.hpp"
+
 namespace clog {
 
 /// r(t) of one run at evenly spaced times, in bounded memory: when it is full, every other sample is dropped
@@ -16,6 +18,9 @@ class DisplacementRecord {
   /// the moment after which the droplet comes no farther than 0.01 sigma [sqrt(sigma g)].
   /// NaN when it travelled less than half a diameter in that time, or fewer than 8 samples lie in it.
   double mean_speed() const;
+
+  void save(ByteWriter& bytes) const;
+  void restore(ByteReader& bytes);
 
  private:
   struct Sample {

@@ -24,6 +24,7 @@ class DpDroplet final : public Droplet {
   ~DpDroplet() override;
 
   void advance(int num_steps) override;
+  void start_afresh() override;
   double kinetic_energy() const override;
   Eigen::Array2d centre() const override;
   Eigen::Array2d centre_velocity() const override;

@@ -27,6 +27,8 @@ class DpForces {
   void update_contacts(const DropletState& state, const Travel& travel);
   /// To be called when local coordinates have moved by a shift of the frame.
   void forget_contacts();
+  /// Those with itself, too, which a shift does not change.
+  void forget_all_contacts();
 
   /// force = -grad U, all x then all y [g rho sigma^2]. Also measures shape() and, with near-wall drag,
   /// wall_distance().

@@ -19,6 +19,13 @@ class Droplet {
   /// Integrates the equations of motion over `num_steps` time steps. A step may be split into sub-steps.
   virtual void advance(int num_steps) = 0;
 
+  /// Forgets everything but what save() saves: contact lists and sums over them are made anew. A droplet
+  /// restored from there moves on exactly as this one does.
+  virtual void start_afresh() = 0;
+  void save(ByteWriter& bytes) const;
+  /// Of a droplet with the same parameters and obstacles; starts afresh.
+  void restore(ByteReader& bytes);
+
   /// Sub-steps done so far.
   std::int64_t num_integrated_steps() const { return num_integrated_steps_; }
   const DropletState& state() const { return state_; }

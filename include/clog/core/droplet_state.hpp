@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "clog/core/byte_archive.hpp"
 #include "clog/core/units.hpp"
 
 namespace clog {
@@ -23,6 +24,18 @@ struct LocalFrame {
   Eigen::Array2d displacement(const Eigen::Array2d& local, const LocalFrame& from,
                               const Eigen::Array2d& from_local) const {
     return (image - from.image).cast<double>() * box + (origin - from.origin) + (local - from_local);
+  }
+  void save(ByteWriter& bytes) const {
+    bytes.put(box);
+    bytes.put(origin);
+    bytes.put(image[0]);
+    bytes.put(image[1]);
+  }
+  void restore(ByteReader& bytes) {
+    bytes.get(box);
+    bytes.get(origin);
+    bytes.get(image[0]);
+    bytes.get(image[1]);
   }
   /// Moves the origin by a whole-numbered step [sigma].
   void shift(const Eigen::Array2d& step) {
@@ -68,6 +81,17 @@ struct DropletState {
     const auto vy = velocity.tail(size());
     return {.absolute = way(std::sqrt((vx.square() + vy.square()).maxCoeff())),
             .relative = way(std::sqrt(((vx - drift[0]).square() + (vy - drift[1]).square()).maxCoeff()))};
+  }
+
+  void save(ByteWriter& bytes) const {
+    bytes.put(position);
+    bytes.put(velocity);
+    frame.save(bytes);
+  }
+  void restore(ByteReader& bytes) {
+    bytes.get(position);
+    bytes.get(velocity);
+    frame.restore(bytes);
   }
 
   /// Keeps local coordinates of order one: moves the frame by whole units when the centre has left the unit
