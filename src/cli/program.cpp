@@ -73,6 +73,7 @@ NamedTexts origin(const CommandLine& line) {
 void catch_stop_signals() {
   std::signal(SIGINT, raise_stop_flag);
   std::signal(SIGTERM, raise_stop_flag);
+  std::signal(SIGUSR1, raise_stop_flag);
 }
 
 bool stop_signalled() { return stop_flag != 0; }

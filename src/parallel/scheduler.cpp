@@ -7,6 +7,7 @@
 #include <optional>
 #include <thread>
 #include <type_traits>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -20,23 +21,29 @@ using Clock = std::chrono::steady_clock;
 
 enum Tag : int {
   ready = 1,  // worker -> master: give me a task (empty)
-  row,        // worker -> master: a RunRow, and give me a task
-  task,       // master -> worker: a task's number, or no_more_tasks
+  ended,      // worker -> master: a Report, and give me a task
+  running,    // worker -> master: a Report
+  task,       // master -> worker: a task's number, or no_more_tasks, and the snapshot to begin at
   stop,       // master -> worker: end the present task as interrupted (empty)
 };
 constexpr std::int64_t no_more_tasks = -1;
 
+/// A message: a plain value and a snapshot, which may be empty.
 template <class T>
-std::span<const std::byte> bytes_of(const T& value) {
+std::vector<std::byte> to_bytes(const T& value, std::span<const std::byte> snapshot) {
   static_assert(std::is_trivially_copyable_v<T>);
-  return std::as_bytes(std::span(&value, 1));
+  std::vector<std::byte> bytes(sizeof value + snapshot.size());
+  std::memcpy(bytes.data(), &value, sizeof value);
+  std::copy(snapshot.begin(), snapshot.end(), bytes.begin() + sizeof value);
+  return bytes;
 }
 
 template <class T>
-T from_bytes(const std::vector<std::byte>& bytes) {
-  T value;
-  std::memcpy(&value, bytes.data(), sizeof value);
-  return value;
+std::pair<T, std::vector<std::byte>> from_bytes(const std::vector<std::byte>& bytes) {
+  std::pair<T, std::vector<std::byte>> message;
+  std::memcpy(&message.first, bytes.data(), sizeof(T));
+  message.second.assign(bytes.begin() + sizeof(T), bytes.end());
+  return message;
 }
 
 /// Sleeps a little longer each time nothing happened.
@@ -54,22 +61,45 @@ class Backoff {
   std::chrono::microseconds pause_ = shortest;
 };
 
-RunRow signed_row(const Job& job, int rank) {
-  RunRow result = job.row();
-  result.rank = rank;
-  result.host = Communicator::host_name();
-  return result;
-}
+/// A task being worked on by this rank, which reports on it from time to time.
+class Work {
+ public:
+  Work(std::unique_ptr<Job> job, int rank, std::chrono::milliseconds report_interval)
+      : job_(std::move(job)), rank_(rank), interval_(report_interval) {}
+
+  bool advance() { return job_->advance(); }
+  Report report() const {
+    Report report{job_->row(), {}};
+    report.row.rank = rank_;
+    report.row.host = Communicator::host_name();
+    if (report.row.status.view() == "interrupted") report.snapshot = job_->snapshot();
+    return report;
+  }
+  std::optional<Report> due_report() {
+    if (Clock::now() - last_report_ < interval_) return std::nullopt;
+    last_report_ = Clock::now();
+    Report now = report();
+    now.row.status = "running";
+    return now;
+  }
+
+ private:
+  std::unique_ptr<Job> job_;
+  int rank_;
+  std::chrono::milliseconds interval_;
+  Clock::time_point last_report_ = Clock::now();
+};
 
 class Master {
  public:
   Master(const Communicator& ranks, TaskOrder tasks, const JobFactory& make_job, const SweepEvents& events,
-         bool computes)
+         bool computes, std::chrono::milliseconds report_interval)
       : ranks_(ranks),
         tasks_(std::move(tasks)),
         make_job_(make_job),
         events_(events),
         computes_(computes),
+        report_interval_(report_interval),
         busy_(ranks.size(), false) {}
 
   bool run() {
@@ -97,10 +127,12 @@ class Master {
   const JobFactory& make_job_;
   const SweepEvents& events_;
   bool computes_;
+  std::chrono::milliseconds report_interval_;
   bool stopping_ = false;
   int num_dismissed_ = 0;
   std::vector<bool> busy_;
-  std::unique_ptr<Job> own_job_;
+  std::optional<Work> own_job_;
+  std::unordered_map<std::int64_t, std::int64_t> attempts_;  // of the tasks that run
   Clock::time_point begin_ = Clock::now();
   Clock::time_point last_idle_ = begin_;
 
@@ -108,10 +140,24 @@ class Master {
 
   double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
-  std::int64_t take_task(int rank) {
+  struct Beginning {
+    std::int64_t task = no_more_tasks;
+    std::vector<std::byte> snapshot;
+  };
+  Beginning take_task(int rank) {
     const std::int64_t next = tasks_.take(seconds());
-    events_.started(next, rank);
-    return next;
+    Start start = events_.started(next, rank);
+    attempts_[next] = start.attempt;
+    return {next, std::move(start.snapshot)};
+  }
+
+  /// What there is to do at once when a task has ended.
+  void take_back(Report& report) {
+    const std::int64_t ended = report.row.task;
+    report.row.attempt = attempts_[ended];
+    attempts_.erase(ended);
+    tasks_.ended(ended, seconds());
+    if (report.row.status.view() == "failed" && events_.tries_again(report.row)) tasks_.put_back(ended);
   }
 
   /// Answers every waiting message. Returns whether there was one.
@@ -121,17 +167,26 @@ class Master {
       served = true;
       const std::vector<std::byte> bytes = ranks_.receive(*envelope);
       const int worker = envelope->source;
-      std::optional<RunRow> result;
-      if (envelope->tag == row) {
-        result = from_bytes<RunRow>(bytes);
-        tasks_.ended(result->task, seconds());
+      std::optional<Report> report;
+      if (envelope->tag != ready) {
+        auto [row, snapshot] = from_bytes<RunRow>(bytes);
+        report = Report{row, std::move(snapshot)};
       }
+      if (envelope->tag == running) {
+        report->row.attempt = attempts_[report->row.task];
+        events_.progressed(*report);
+        continue;
+      }
+      if (report) take_back(*report);
+      // A failed task is told of before it is taken again.
+      if (report && report->row.status.view() == "failed")
+        events_.ended(*std::exchange(report, std::nullopt));
       busy_[worker] = has_task();
-      const std::int64_t next = busy_[worker] ? take_task(worker) : no_more_tasks;
-      ranks_.send(worker, task,
-                  bytes_of(next));  // first the task, then the file: workers do not wait for the disk
-      if (next == no_more_tasks) ++num_dismissed_;
-      if (result) events_.ended(*result);
+      const Beginning next = busy_[worker] ? take_task(worker) : Beginning();
+      // First the task, then the file: workers do not wait for the disk.
+      ranks_.send(worker, task, to_bytes(next.task, next.snapshot));
+      if (!busy_[worker]) ++num_dismissed_;
+      if (report) events_.ended(*report);
     }
     return served;
   }
@@ -141,13 +196,17 @@ class Master {
     if (!computes_) return false;
     if (!own_job_) {
       if (!has_task()) return false;
-      own_job_ = make_job_(take_task(ranks_.rank()));
+      const Beginning next = take_task(ranks_.rank());
+      own_job_.emplace(make_job_(next.task, next.snapshot), ranks_.rank(), report_interval_);
     }
     if (own_job_->advance() || stopping_) {
-      const RunRow result = signed_row(*own_job_, ranks_.rank());
+      Report report = own_job_->report();
       own_job_.reset();
-      tasks_.ended(result.task, seconds());
-      events_.ended(result);
+      take_back(report);
+      events_.ended(report);
+    } else if (std::optional<Report> report = own_job_->due_report()) {
+      report->row.attempt = attempts_[report->row.task];
+      events_.progressed(*report);
     }
     return true;
   }
@@ -161,26 +220,36 @@ class Master {
 
 class Worker {
  public:
-  Worker(const Communicator& ranks, const JobFactory& make_job) : ranks_(ranks), make_job_(make_job) {}
+  Worker(const Communicator& ranks, const JobFactory& make_job, std::chrono::milliseconds report_interval)
+      : ranks_(ranks), make_job_(make_job), report_interval_(report_interval) {}
 
   void run() {
     ranks_.send(master, ready, {});
-    for (std::int64_t next = wait_for_task(); next != no_more_tasks; next = wait_for_task()) {
-      const std::unique_ptr<Job> job = make_job_(next);
+    while (true) {
+      const auto [next, snapshot] = wait_for_task();
+      if (next == no_more_tasks) break;
+      Work work(make_job_(next, snapshot), ranks_.rank(), report_interval_);
       bool stopped = false;
-      while (!stopped && !job->advance()) stopped = take_stop();
-      const RunRow result = signed_row(*job, ranks_.rank());
-      ranks_.send(master, row, bytes_of(result));
+      while (!stopped && !work.advance()) {
+        stopped = take_stop();
+        if (const std::optional<Report> report = work.due_report()) send(running, *report);
+      }
+      send(ended, work.report());
     }
-    take_stop();  // one that crossed our last row
+    take_stop();  // one that crossed our last report
   }
 
  private:
   static constexpr int master = 0;
   const Communicator& ranks_;
   const JobFactory& make_job_;
+  std::chrono::milliseconds report_interval_;
 
-  std::int64_t wait_for_task() const {
+  void send(Tag tag, const Report& report) const {
+    ranks_.send(master, tag, to_bytes(report.row, report.snapshot));
+  }
+
+  std::pair<std::int64_t, std::vector<std::byte>> wait_for_task() const {
     Backoff backoff;
     while (true) {
       if (const auto envelope = ranks_.probe(master, task))
@@ -205,12 +274,13 @@ bool computes(int num_ranks, MasterComputes choice) {
 }
 
 bool run_tasks(const Communicator& ranks, TaskOrder tasks, const JobFactory& make_job,
-               const SweepEvents& events, bool master_computes) {
+               const SweepEvents& events, bool master_computes, std::chrono::milliseconds report_interval) {
   bool all_handed_out = true;
   if (ranks.rank() == 0)
-    all_handed_out = Master(ranks, std::move(tasks), make_job, events, master_computes).run();
+    all_handed_out =
+        Master(ranks, std::move(tasks), make_job, events, master_computes, report_interval).run();
   else
-    Worker(ranks, make_job).run();
+    Worker(ranks, make_job, report_interval).run();
   // Workers done early wait here: a message to the next sweep must not reach the master of this one, and
   // MPI_Finalize would keep their cores busy.
   ranks.wait_for_all();

@@ -3,14 +3,32 @@
 #include <algorithm>
 #include <cassert>
 #include <limits>
+#include <numeric>
 
 namespace clog::parallel {
 
-TaskOrder::TaskOrder(std::int64_t num_tasks, std::int64_t num_groups) : num_left_(num_tasks) {
+namespace {
+
+std::vector<std::int64_t> all_tasks(std::int64_t num_tasks) {
+  std::vector<std::int64_t> tasks(num_tasks);
+  std::iota(tasks.begin(), tasks.end(), std::int64_t{0});
+  return tasks;
+}
+
+}  // namespace
+
+TaskOrder::TaskOrder(std::int64_t num_tasks, std::int64_t num_groups)
+    : TaskOrder(all_tasks(num_tasks), num_groups) {}
+
+TaskOrder::TaskOrder(const std::vector<std::int64_t>& tasks, std::int64_t num_groups)
+    : num_left_(static_cast<std::int64_t>(tasks.size())), groups_(num_groups) {
   assert(num_groups > 0);
-  groups_.resize(std::min(num_groups, num_tasks));
-  for (std::int64_t group = 0; group < static_cast<std::int64_t>(groups_.size()); ++group)
-    groups_[group].num_tasks = (num_tasks - group + num_groups - 1) / num_groups;
+  for (const std::int64_t task : tasks) group_of(task).waiting.push_back(task);
+}
+
+void TaskOrder::put_back(std::int64_t task) {
+  group_of(task).waiting.push_back(task);
+  ++num_left_;
 }
 
 double TaskOrder::expected_time(const Group& group, double now) const {
@@ -22,28 +40,27 @@ double TaskOrder::expected_time(const Group& group, double now) const {
 
 std::int64_t TaskOrder::take(double now) {
   assert(!empty());
-  const Group* next = nullptr;
+  Group* next = nullptr;
   double longest = 0;
-  for (const Group& group : groups_) {
-    if (group.num_taken == group.num_tasks) continue;
+  for (Group& group : groups_) {
+    if (group.waiting.empty()) continue;
     const double expected = expected_time(group, now);
     if (!next || expected > longest || (expected == longest && group.num_taken < next->num_taken)) {
       next = &group;
       longest = expected;
     }
   }
-  const std::int64_t index = next - groups_.data();
-  Group& group = groups_[index];
-  const std::int64_t task = group.num_taken * static_cast<std::int64_t>(groups_.size()) + index;
-  ++group.num_taken;
+  const std::int64_t task = next->waiting.front();
+  next->waiting.pop_front();
+  ++next->num_taken;
   --num_left_;
-  group.start_running += now;
+  next->start_running += now;
   running_since_[task] = now;
   return task;
 }
 
 void TaskOrder::ended(std::int64_t task, double now) {
-  Group& group = groups_[task % static_cast<std::int64_t>(groups_.size())];
+  Group& group = group_of(task);
   const auto running = running_since_.find(task);
   assert(running != running_since_.end());
   ++group.num_ended;

@@ -3,9 +3,10 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <iostream>
+#include <limits>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -20,13 +21,15 @@
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/run_job.hpp"
-#include "row_writer.hpp"
+#include "clog/sweep/value_list.hpp"
+#include "sweep_ledger.hpp"
 #include "sweep_progress.hpp"
 
 namespace {
 
 using namespace clog;
 
+using Clock = std::chrono::steady_clock;
 constexpr const char* program = "clogsweep";
 constexpr const char* usage = R"(clogsweep runs droplets through obstacle arrays for every combination of the
 given values, on all MPI ranks, and gathers the results in one HDF5 table.
@@ -41,7 +44,12 @@ void parse(cli::CommandLine& line, int argc, char** argv) {
       "dry-run", "print the tasks, their number and cost, run nothing")("print-config",
                                                                         "print the settings, run nothing")(
       "master-computes", po::value<std::string>()->default_value("auto"),
-      "does rank 0 run tasks too: auto (with up to 16 ranks), yes, no");
+      "does rank 0 run tasks too: auto (with up to 16 ranks), yes, no")(
+      "max-hours", po::value<std::string>(),
+      "stop after so many hours, as after a signal; the same command goes on")(
+      "attempts", po::value<std::string>()->default_value("2"), "how often a run that fails is tried")(
+      "report-seconds", po::value<std::string>()->default_value("10"),
+      "how often a running task reports how far it has come; a kill loses no more than that");
   line.parse(argc, argv);
 }
 
@@ -50,6 +58,24 @@ parallel::MasterComputes master_computes(const std::string& word) {
   if (word == "yes") return parallel::MasterComputes::yes;
   if (word == "no") return parallel::MasterComputes::no;
   throw Error("invalid --master-computes=" + word + " (is not one of auto, yes, no)");
+}
+
+std::chrono::milliseconds seconds_from(const std::string& text) {
+  return std::chrono::milliseconds(std::llround(1000 * sweep::to_number(text)));
+}
+
+std::chrono::milliseconds report_interval(const cli::CommandLine& line) {
+  const std::chrono::milliseconds interval = seconds_from(line.get("report-seconds"));
+  if (interval.count() < 1)
+    throw Error("invalid --report-seconds=" + line.get("report-seconds") + " (must be 0.001 or more) try 10");
+  return interval;
+}
+
+std::int64_t attempts(const cli::CommandLine& line) {
+  const double number = line.get_number("attempts", 2);
+  if (!(number >= 1 && number <= 1000 && number == std::floor(number)))
+    throw Error("invalid --attempts=" + line.get("attempts") + " (must be a whole number, 1..1000) try 2");
+  return static_cast<std::int64_t>(number);
 }
 
 std::string number(double value) { return sweep::shortest(value); }
@@ -76,7 +102,6 @@ void print_tasks(const sweep::Plan& plan) {
 /// How long the sweep takes at most, from a short piece of the first and the last parameter set: what a step
 /// costs per vertex there, times the steps of all runs if none of them ends before max-time.
 void print_cost(const sweep::Plan& plan) {
-  using Clock = std::chrono::steady_clock;
   const auto vertex_steps = [](const RunParameters& run, double time) {
     return time / *run.time_step * (run.model == Model::dp ? run.dp.vertices : 1);
   };
@@ -147,37 +172,59 @@ std::optional<int> prepare(const cli::CommandLine& line) {
   return std::nullopt;
 }
 
+void announce(const std::string& output, std::int64_t num_runs, const SweepLedger& ledger, int num_ranks) {
+  const auto num_left = static_cast<std::int64_t>(ledger.tasks_left().size());
+  if (num_left < num_runs)
+    std::cerr << output << " has " << num_runs - num_left << " of " << num_runs << " runs"
+              << (num_left == 0 ? "; there is nothing left to do" : "") << std::endl;
+  if (ledger.num_resumed() > 0) std::cerr << ledger.num_resumed() << " go on where they were" << std::endl;
+  if (num_left > 0)
+    std::cerr << num_left << " runs on " << num_ranks
+              << (num_ranks == 1 ? " computing rank" : " computing ranks") << ", results go to " << output
+              << std::endl;
+}
+
 /// Rank 0's part of the sweep.
 int lead(const parallel::Communicator& ranks, const cli::CommandLine& line, const sweep::Plan& plan,
-         store::RunTable& table) {
+         SweepLedger& ledger) {
   const bool computes = parallel::computes(ranks.size(), master_computes(line.get("master-computes")));
   const int computing_ranks = ranks.size() - (computes ? 0 : 1);
-  std::cerr << plan.size() << " runs on " << computing_ranks
-            << (computing_ranks == 1 ? " computing rank" : " computing ranks") << ", results go to "
-            << line.get("output") << std::endl;
+  const auto num_left = static_cast<std::int64_t>(ledger.tasks_left().size());
+  announce(line.get("output"), plan.size(), ledger, computing_ranks);
   SweepProgress progress(
       std::cerr, isatty(STDERR_FILENO) ? SweepProgress::Screen::terminal : SweepProgress::Screen::plain,
-      plan.size(), computing_ranks);
-  RowWriter writer(table);
+      num_left, computing_ranks);
   bool interrupted = false;
+  const Clock::time_point begin = Clock::now();
+  const double max_hours = line.get_number("max-hours", std::numeric_limits<double>::infinity());
   parallel::SweepEvents events;
-  events.started = [&](std::int64_t task, int) { progress.started(task); };
-  events.ended = [&](const sweep::RunRow& row) {
-    writer.add(row);
-    progress.ended(row);
-    interrupted = interrupted || row.status.view() == "interrupted";
+  events.started = [&](std::int64_t task, int rank) {
+    progress.started(task);
+    return ledger.start(task, rank);
   };
+  events.progressed = [&](const parallel::Report& report) { ledger.report(report); };
+  events.ended = [&](const parallel::Report& report) {
+    ledger.report(report);
+    progress.ended(report.row);
+    interrupted = interrupted || report.row.status.view() == "interrupted";
+  };
+  events.tries_again = [&](const sweep::RunRow& failed) { return ledger.tries_again(failed); };
   events.idle = [&] {
-    writer.tick();
+    ledger.tick();
     progress.tick();
   };
-  events.stop_requested = [] { return cli::stop_signalled(); };
-  const bool all_started = parallel::run_tasks(ranks, parallel::TaskOrder(plan.size(), plan.num_groups()),
-                                               sweep::run_jobs(plan), events, computes);
-  writer.finish();
-  progress.finish();
+  events.stop_requested = [&] {
+    return cli::stop_signalled() ||
+           std::chrono::duration<double, std::ratio<3600>>(Clock::now() - begin).count() >= max_hours;
+  };
+  const bool all_started =
+      parallel::run_tasks(ranks, parallel::TaskOrder(ledger.tasks_left(), plan.num_groups()),
+                          sweep::run_jobs(plan), events, computes, report_interval(line));
+  ledger.finish();
+  if (num_left > 0) progress.finish();
   if (all_started && !interrupted) return cli::exit_success;
-  std::cerr << program << ": stopped by a signal; finished rows and the distances so far are in "
+  std::cerr << program << ": stopped by " << (cli::stop_signalled() ? "a signal" : "--max-hours")
+            << "; the same command goes on. Finished rows and the distances so far are in "
             << line.get("output") << std::endl;
   return cli::exit_incomplete;
 }
@@ -185,17 +232,21 @@ int lead(const parallel::Communicator& ranks, const cli::CommandLine& line, cons
 int sweep_on_all_ranks(const parallel::Communicator& ranks, int argc, char** argv) {
   // Rank 0 reads and checks; the others wait for its word: a config to run, or an exit code.
   cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::accepted);
-  std::optional<store::RunTable> table;
+  std::optional<sweep::Plan> plan;
+  std::optional<SweepLedger> ledger;
   std::string word;
   if (ranks.rank() == 0) {
     const int exit_code = cli::run_program(program, [&] {
       parse(line, argc, argv);
       if (const auto over = prepare(line)) return *over;
-      table = store::RunTable::create(line.get("output"), provenance(line, ranks.size()));
+      plan.emplace(line.settings());
+      ledger.emplace(line.get("output"), *plan, line.settings(), provenance(line, ranks.size()),
+                     attempts(line));
+      report_interval(line);
       return cli::exit_success;
     });
-    if (table)
-      word = "run\n" + line.settings().to_config(false);
+    if (ledger && exit_code == cli::exit_success)
+      word = "run " + line.get("report-seconds") + '\n' + line.settings().to_config(false);
     else
       word = "exit " + std::to_string(exit_code);
   }
@@ -203,9 +254,11 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, int argc, char** arg
   if (word.starts_with("exit ")) return std::stoi(word.substr(5));
 
   cli::catch_stop_signals();
-  if (ranks.rank() == 0) return lead(ranks, line, sweep::Plan(line.settings()), *table);
-  const sweep::Plan plan(sweep::Settings::from_config(word.substr(4)));
-  parallel::run_tasks(ranks, parallel::TaskOrder(0), sweep::run_jobs(plan), {}, false);
+  if (ranks.rank() == 0) return lead(ranks, line, *plan, *ledger);
+  const std::size_t end_of_line = word.find('\n');
+  plan.emplace(sweep::Settings::from_config(word.substr(end_of_line + 1)));
+  parallel::run_tasks(ranks, parallel::TaskOrder(0), sweep::run_jobs(*plan), {}, false,
+                      seconds_from(word.substr(4, end_of_line - 4)));
   return cli::exit_success;
 }
 

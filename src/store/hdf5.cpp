@@ -59,24 +59,56 @@ void refuse_unwritable(const std::string& path) {
   std::remove(draft.c_str());
 }
 
-void create_whole(const std::string& path, const std::function<void(hid_t file)>& fill) {
-  refuse_existing(path);
+namespace {
+
+/// Makes a file in the earliest format, has it filled and brings it to the disk; removes it if that fails.
+void write_draft(const std::string& draft, const std::string& path,
+                 const std::function<void(hid_t file)>& fill) {
   prepare_library();
-  const std::string draft = draft_of(path);
   const PropertyList access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
   errno = 0;
-  File file(H5Fcreate(draft.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access));
+  File file(H5Fcreate(draft.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access));
   check(file.valid(), "create", path);
   try {
     fill(file);
-    close_durably(std::move(file), draft);
-    publish(draft, path);
+    errno = 0;
+    check(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "write", path);
+    file = File();
+    const int descriptor = open(draft.c_str(), O_RDONLY | O_CLOEXEC);
+    check(descriptor >= 0, "write", path);
+    const bool synced = fsync(descriptor) == 0;
+    close(descriptor);
+    check(synced, "write", path);
   } catch (...) {
     file = File();
     std::remove(draft.c_str());
     throw;
   }
+}
+
+}  // namespace
+
+void create_whole(const std::string& path, const std::function<void(hid_t file)>& fill) {
+  refuse_existing(path);
+  const std::string draft = draft_of(path);
+  write_draft(draft, path, fill);
+  try {
+    publish(draft, path);
+  } catch (...) {
+    std::remove(draft.c_str());
+    throw;
+  }
+}
+
+void replace_whole(const std::string& path, const std::function<void(hid_t file)>& fill) {
+  const std::string draft = path + ".new";
+  write_draft(draft, path, fill);
+  if (std::rename(draft.c_str(), path.c_str()) == 0) return;
+  const int reason = errno;
+  std::remove(draft.c_str());
+  errno = reason;
+  check(false, "write", path);
 }
 
 File open_file(const std::string& path, unsigned flags) {
@@ -89,31 +121,6 @@ File open_file(const std::string& path, unsigned flags) {
   File file(H5Fopen(path.c_str(), flags, H5P_DEFAULT));
   check(file.valid(), "open", path);
   return file;
-}
-
-void reserve(const std::string& path, std::size_t num_bytes) {
-  errno = 0;
-  const int descriptor = open(path.c_str(), O_WRONLY | O_CLOEXEC);
-  check(descriptor >= 0, "write", path);
-  const off_t size = lseek(descriptor, 0, SEEK_END);
-  // Not every file system can reserve; there, HDF5's own flush is what notices a full disk.
-  const bool reserved =
-      fallocate(descriptor, 0, size, static_cast<off_t>(num_bytes)) == 0 || errno == EOPNOTSUPP;
-  const int reason = errno;
-  close(descriptor);
-  errno = reason;
-  check(reserved, "write", path);
-}
-
-void close_durably(File file, const std::string& path) {
-  errno = 0;
-  check(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "write", path);
-  file = File();
-  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  check(descriptor >= 0, "write", path);
-  const bool synced = fsync(descriptor) == 0;
-  close(descriptor);
-  check(synced, "write", path);
 }
 
 Type text_type(std::size_t length) {

@@ -44,15 +44,10 @@ void prepare_library();
 /// Creates a file in the earliest format under another name, has it filled, brings it to the disk and renames
 /// it: the path never holds half a file. @throws Error if the path exists or cannot be written
 void create_whole(const std::string& path, const std::function<void(hid_t file)>& fill);
+/// The same, replacing a file that is there. One process at a time.
+void replace_whole(const std::string& path, const std::function<void(hid_t file)>& fill);
 /// @throws Error that says what is wrong with the path
 File open_file(const std::string& path, unsigned flags);
-/// Makes sure that the file can grow by some bytes before HDF5 touches it: a write that fails half-way would
-/// leave a file that cannot be opened. HDF5 gives back what it did not need when it closes the file. @throws
-/// Error
-void reserve(const std::string& path, std::size_t num_bytes);
-/// Writes everything to the disk. @throws Error
-void close_durably(File file, const std::string& path);
-
 /// Fixed-length, zero-padded text; the length is at least 1.
 Type text_type(std::size_t length);
 void write_attribute(hid_t object, const std::string& name, const std::string& text);

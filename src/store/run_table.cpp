@@ -81,7 +81,9 @@ std::vector<Column> columns() {
   CLOG_COLUMN(clog_energy, "clogged when E_k/E_t stays below this");
   CLOG_COLUMN(clog_detection,
               "certified: also by a proved equilibrium at hand; threshold: by clog_energy only");
-  CLOG_COLUMN(status, "clogged; flowing: max_time reached; interrupted; failed: see message");
+  CLOG_COLUMN(model_version, "runs of different versions differ though their parameters agree");
+  CLOG_COLUMN(status,
+              "clogged; flowing: max_time reached; running, interrupted: so far; failed: see message");
   CLOG_COLUMN(clogged_by, "certified (distance and shape_parameter are those at rest), threshold; none");
   CLOG_COLUMN(distance, "displacement of the centre of mass along the flow since release [sigma]");
   CLOG_COLUMN(lateral_displacement, "displacement across the flow [sigma]");
@@ -118,7 +120,7 @@ Type disk_type(const std::vector<Column>& all) {
 
 }  // namespace
 
-void write_rows(hid_t file, std::span<const RunRow> rows) {
+void write_rows(hid_t file, std::span<const RunRow> rows, const std::string& path) {
   const std::vector<Column> all = columns();
   const hsize_t size = rows.size();
   const hsize_t unlimited = H5S_UNLIMITED;
@@ -126,12 +128,11 @@ void write_rows(hid_t file, std::span<const RunRow> rows) {
   const PropertyList layout(H5Pcreate(H5P_DATASET_CREATE));
   H5Pset_chunk(layout, 1, &rows_per_chunk);
   const Dataset table(H5Dcreate2(file, table_name, disk_type(all), space, H5P_DEFAULT, layout, H5P_DEFAULT));
-  check(table.valid(), "create the table of runs in", "the new file");
+  check(table.valid(), "create the table of runs in", path);
   for (const Column& column : all) write_attribute(table, column.name, column.meaning);
   if (!rows.empty())
-    check(H5Dwrite(table, memory_type(all), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) >= 0, "write",
-          "the new file");
-  check(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "write", "the new file");
+    check(H5Dwrite(table, memory_type(all), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) >= 0, "write", path);
+  check(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "write", path);
 }
 
 std::string library_version() {
@@ -140,41 +141,13 @@ std::string library_version() {
   return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(release);
 }
 
-RunTable RunTable::create(const std::string& path, const Provenance& provenance) {
-  create_whole(path, [&](hid_t file) {
-    write_rows(file, {});
+void publish_sweep(const std::string& path, std::span<const RunRow> rows, const Provenance& provenance) {
+  replace_whole(path, [&](hid_t file) {
+    write_rows(file, rows, path);
     write_attribute(file, "kind", file_kind);
     write_attribute(file, "format_version", format_version);
     for (const auto& [name, text] : provenance) write_attribute(file, name, text);
   });
-  return RunTable(path);
-}
-
-void RunTable::append(std::span<const RunRow> rows) {
-  if (rows.empty()) return;
-  // More than a chunk of rows with its index.
-  constexpr std::size_t room = 128 * 1024;
-  static_assert(room > 2 * rows_per_chunk * sizeof(RunRow));
-  reserve(path_, room + 2 * rows.size_bytes());
-  File file = open_file(path_, H5F_ACC_RDWR);
-  {
-    const Dataset table(H5Dopen2(file, table_name, H5P_DEFAULT));
-    check(table.valid(), "read the table of", path_);
-    const Space old_space(H5Dget_space(table));
-    const hsize_t old_size = static_cast<hsize_t>(H5Sget_simple_extent_npoints(old_space));
-    const hsize_t num_rows = rows.size();
-    const hsize_t new_size = old_size + num_rows;
-    check(H5Dset_extent(table, &new_size) >= 0, "write", path_);
-    const Space place(H5Dget_space(table));
-    H5Sselect_hyperslab(place, H5S_SELECT_SET, &old_size, nullptr, &num_rows, nullptr);
-    const Space source(H5Screate_simple(1, &num_rows, nullptr));
-    check(H5Dwrite(table, memory_type(columns()), source, place, H5P_DEFAULT, rows.data()) >= 0, "write",
-          path_);
-    // While the table is still open: closing it would write what is left and tell nobody that the disk is
-    // full.
-    check(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "write", path_);
-  }
-  close_durably(std::move(file), path_);
 }
 
 SweepFile read_sweep(const std::string& path) {
@@ -195,8 +168,6 @@ SweepFile read_sweep(const std::string& path) {
   if (!sweep.rows.empty())
     check(H5Dread(table, memory_type(columns()), H5S_ALL, H5S_ALL, H5P_DEFAULT, sweep.rows.data()) >= 0,
           "read the table of", path);
-  // A disk that filled up in the middle of an append leaves a blank row at the end.
-  std::erase_if(sweep.rows, [](const RunRow& row) { return row.status.view().empty(); });
   H5O_info_t root;
   check(H5Oget_info2(file, &root, H5O_INFO_NUM_ATTRS) >= 0, "read the attributes of", path);
   for (hsize_t i = 0; i < root.num_attrs; ++i) {

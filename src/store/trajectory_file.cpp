@@ -85,7 +85,7 @@ void write_trajectory(const std::string& path, const Trajectory& trajectory) {
     if (!trajectory.polygons.empty()) write_polygons(file, trajectory.polygons);
     if (!trajectory.obstacles.empty()) write_obstacles(file, trajectory.obstacles);
     if (!trajectory.wedges.empty()) write_wedges(file, trajectory.wedges);
-    write_rows(file, {&trajectory.row, 1});
+    write_rows(file, {&trajectory.row, 1}, path);
     write_attribute(file, "kind", "clogsweep trajectory");
     write_attribute(file, "format_version", format_version);
     for (const auto& [name, text] : trajectory.provenance) write_attribute(file, name, text);

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <exception>
 
+#include "clog/core/error.hpp"
+
 namespace clog::sweep {
 namespace {
 
@@ -10,17 +12,27 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds slice{5};
 constexpr int checks_per_look_at_the_clock = 8;
 
+DropletRun start(const RunParameters& run, std::span<const std::byte> snapshot) {
+  if (!snapshot.empty()) try {
+      return resume_in_array(run, snapshot);
+    } catch (const Error&) {  // of another version: the run is the same from its beginning
+    }
+  return run_in_array(run);
+}
+
 }  // namespace
 
-RunJob::RunJob(const Plan& plan, std::int64_t task)
-    : run_parameters_(plan.task(task)), row_(describe(run_parameters_)) {
+RunJob::RunJob(const Plan& plan, std::int64_t task, std::span<const std::byte> snapshot)
+    : run_parameters_(plan.task(task)),
+      snapshot_(snapshot.begin(), snapshot.end()),
+      row_(describe(run_parameters_)) {
   row_.task = task;
 }
 
 bool RunJob::advance() {
   const Clock::time_point begin = Clock::now();
   try {
-    if (!run_) run_ = std::make_unique<DropletRun>(run_in_array(run_parameters_));
+    if (!run_) run_ = std::make_unique<DropletRun>(start(run_parameters_, snapshot_));
     while (!over_ && Clock::now() - begin < slice) over_ = run_->advance(checks_per_look_at_the_clock);
   } catch (const std::exception& error) {
     over_ = true;
@@ -48,7 +60,9 @@ RunRow RunJob::row() const {
 }
 
 JobFactory run_jobs(const Plan& plan) {
-  return [&plan](std::int64_t task) { return std::make_unique<RunJob>(plan, task); };
+  return [&plan](std::int64_t task, std::span<const std::byte> snapshot) {
+    return std::make_unique<RunJob>(plan, task, snapshot);
+  };
 }
 
 }  // namespace clog::sweep

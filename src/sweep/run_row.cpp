@@ -1,5 +1,6 @@
 #include "clog/sweep/run_row.hpp"
 
+#include <cstddef>
 #include <limits>
 #include <numbers>
 
@@ -40,6 +41,13 @@ double density_of(const ObstacleParameters& obstacles) {
 
 }  // namespace
 
+std::string identity(const RunRow& row) {
+  // Columns of eight bytes and multiples of them: there are no gaps.
+  constexpr std::size_t begin = offsetof(RunRow, model);
+  constexpr std::size_t end = offsetof(RunRow, status);
+  return {reinterpret_cast<const char*>(&row) + begin, end - begin};
+}
+
 RunRow describe(const RunParameters& run) {
   constexpr double not_applicable = std::numeric_limits<double>::quiet_NaN();
   const bool polygon = run.model == Model::dp;
@@ -76,6 +84,7 @@ RunRow describe(const RunParameters& run) {
   row.clog_energy = run.clog_energy;
   row.instruction_set = polygon ? instruction_set() : "none";
   row.clog_detection = clog::name(run.clog_detection);
+  row.model_version = model_version;
   return row;
 }
 

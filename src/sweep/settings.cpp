@@ -327,6 +327,15 @@ const Key& find_key(std::string_view name) {
               (near.empty() ? "; --help lists the keys" : "; did you mean " + near + "?"));
 }
 
+bool is_same_value(const std::string& a, const std::string& b) {
+  if (a == b) return true;
+  try {
+    return to_number(a) == to_number(b);
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 std::string preset_name(const RunParameters& run) {
   for (const Preset& preset : presets()) {
     RunParameters other = run;

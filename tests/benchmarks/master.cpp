@@ -20,7 +20,7 @@
 
 #include "clog/parallel/scheduler.hpp"
 #include "clog/store/run_table.hpp"
-#include "row_writer.hpp"
+#include "sweep_ledger.hpp"
 #include "sweep_progress.hpp"
 
 namespace {
@@ -79,33 +79,43 @@ int main(int argc, char** argv) {
   const std::string path =
       (std::filesystem::temp_directory_path() / ("bench_master_" + std::to_string(getpid()) + ".h5"))
           .string();
-  std::optional<store::RunTable> table;
-  std::optional<RowWriter> writer;
+  sweep::Settings
+      settings;  // as many tasks as are to be done, in a hundred parameter sets as a large sweep has
+  const std::int64_t num_groups = std::min<std::int64_t>(num_tasks, 100);
+  settings.set("line-tension", "lin(0.1,10," + std::to_string(num_groups) + ")");
+  settings.set("seeds", "1.." + std::to_string(num_tasks / num_groups));
+  const sweep::Plan plan(settings);
+  std::optional<SweepLedger> ledger;
   std::ostringstream screen;  // progress goes nowhere, but is made
   SweepProgress progress(screen, SweepProgress::Screen::terminal, num_tasks, num_workers);
   parallel::SweepEvents events;
   if (ranks.rank() == 0) {
-    table = store::RunTable::create(path, {});
-    writer.emplace(*table);
-    events.started = [&](std::int64_t task, int) { progress.started(task); };
-    events.ended = [&](const sweep::RunRow& row) {
-      writer->add(row);
-      progress.ended(row);
+    ledger.emplace(path, plan, settings, store::Provenance(), 1);
+    events.started = [&](std::int64_t task, int rank) {
+      progress.started(task);
+      return ledger->start(task, rank);
+    };
+    events.progressed = [&](const parallel::Report& report) { ledger->report(report); };
+    events.ended = [&](const parallel::Report& report) {
+      ledger->report(report);
+      progress.ended(report.row);
     };
     events.idle = [&] {
-      writer->tick();
+      ledger->tick();
       progress.tick();
       screen.str("");
     };
   }
   const Clock::time_point begin = Clock::now();
   const double cpu_before = cpu_seconds();
-  // A hundred parameter sets, as a large sweep has.
   parallel::run_tasks(
-      ranks, parallel::TaskOrder(num_tasks, std::min<std::int64_t>(num_tasks, 100)),
-      [&](std::int64_t task) { return std::make_unique<SleepingJob>(task, task_seconds); }, events, false);
+      ranks, parallel::TaskOrder(plan.size(), plan.num_groups()),
+      [&](std::int64_t task, std::span<const std::byte>) {
+        return std::make_unique<SleepingJob>(task, task_seconds);
+      },
+      events, false);
   if (ranks.rank() != 0) return 0;
-  writer->finish();
+  ledger->finish();
   const double cpu = cpu_seconds() - cpu_before;
   const double wall = seconds_since(begin);
   if (rate > 0)

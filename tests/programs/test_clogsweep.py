@@ -196,7 +196,10 @@ class Refusals(ProgramTest):
             (["--config", "twice.cfg", *out], ["twice.cfg", "box", "twice"]),
             (["seeds=" + ",".join(map(str, range(1, 2000))), *out], ["seeds=1,2,3", "too long"]),
             (["--master-computes=perhaps", *out], ["auto, yes, no"]),
-            (["--output", "taken.h5"], ["taken.h5", "will not overwrite"]),
+            (["--output", "taken.h5"], ["taken.h5", "not an HDF5 file"]),
+            (["--max-hours=soon", *out], ["max-hours"]),
+            (["--attempts=0", *out], ["--attempts=0", "1..1000"]),
+            (["--report-seconds=0", *out], ["--report-seconds=0"]),
             (["--output", "no/such/folder/s.h5"], ["no/such/folder"]),
         ]:
             with self.subTest(arguments=arguments):

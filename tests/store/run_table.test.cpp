@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,7 +14,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <span>
 #include <vector>
 
 #include "clog/core/error.hpp"
@@ -60,36 +60,25 @@ std::string refusal(const std::string& path) {
   return "";
 }
 
-TEST_F(RunTableTest, GivesBackEveryRowBitForBit) {
-  RunTable table = RunTable::create(path(), {{"version", "1.2.3"}, {"empty", ""}});
-  for (int task = 0; task < 200; ++task) {
-    table.append(some_row(task));
-    if (task == 0) {
-      EXPECT_EQ(read_sweep(path()).rows.size(), 1u);
-    }
-  }
-  const SweepFile file = read_sweep(path());
-  ASSERT_EQ(file.rows.size(), 200u);
-  for (int task = 0; task < 200; ++task) {
-    const sweep::RunRow expected = some_row(task);
-    EXPECT_EQ(std::memcmp(&file.rows[task], &expected, sizeof expected), 0) << task;
-  }
+std::vector<sweep::RunRow> some_rows(int number) {
+  std::vector<sweep::RunRow> rows;
+  for (int task = 0; task < number; ++task) rows.push_back(some_row(task));
+  return rows;
 }
 
-TEST_F(RunTableTest, TakesManyRowsAtOnce) {
-  RunTable table = RunTable::create(path(), {});
-  std::vector<sweep::RunRow> rows;
-  for (int task = 0; task < 1000; ++task) rows.push_back(some_row(task));
-  table.append(rows[0]);
-  table.append(std::span(rows).subspan(1));
-  table.append(std::span<const sweep::RunRow>());
-  const SweepFile file = read_sweep(path());
-  ASSERT_EQ(file.rows.size(), rows.size());
-  EXPECT_EQ(std::memcmp(file.rows.data(), rows.data(), rows.size() * sizeof(sweep::RunRow)), 0);
+TEST_F(RunTableTest, GivesBackEveryRowBitForBit) {
+  for (const int number : {0, 1, 200, 1000}) {  // each replaces the table before
+    const std::vector<sweep::RunRow> rows = some_rows(number);
+    publish_sweep(path(), rows, {{"version", "1.2.3"}, {"empty", ""}});
+    const SweepFile file = read_sweep(path());
+    ASSERT_EQ(file.rows.size(), rows.size());
+    EXPECT_EQ(std::memcmp(file.rows.data(), rows.data(), rows.size() * sizeof(sweep::RunRow)), 0);
+    EXPECT_EQ(num_files(), 1u) << "no draft is left";
+  }
 }
 
 TEST_F(RunTableTest, KeepsTheProvenance) {
-  RunTable::create(path(), {{"version", "1.2.3"}, {"config", "a = 1\nb = 2\n"}});
+  publish_sweep(path(), {}, {{"version", "1.2.3"}, {"config", "a = 1\nb = 2\n"}});
   const SweepFile file = read_sweep(path());
   EXPECT_TRUE(file.rows.empty());
   EXPECT_NE(std::find(file.provenance.begin(), file.provenance.end(),
@@ -97,27 +86,35 @@ TEST_F(RunTableTest, KeepsTheProvenance) {
             file.provenance.end());
 }
 
-TEST_F(RunTableTest, NeverOverwrites) {
-  RunTable::create(path(), {}).append(some_row(1));
-  EXPECT_THROW(RunTable::create(path(), {}), Error);
-  EXPECT_EQ(read_sweep(path()).rows.size(), 1u);
-}
-
 TEST_F(RunTableTest, LeavesNothingBehindWhereItCannotWrite) {
-  EXPECT_THROW(RunTable::create((folder_ / "no" / "such" / "folder.h5").string(), {}), Error);
+  EXPECT_THROW(publish_sweep((folder_ / "no" / "such" / "folder.h5").string(), {}, {}), Error);
   EXPECT_EQ(num_files(), 0u);
-  RunTable::create(path(), {});
-  EXPECT_EQ(num_files(), 1u) << "no draft is left";
 }
 
-/// Leaves by _Exit(2) when a row is refused. A limit on the size of a file stands for a full disk.
-[[noreturn]] void append_until_refused(const std::string& path) {
+TEST_F(RunTableTest, IsWholeForAReaderAtEveryMoment) {
+  publish_sweep(path(), some_rows(1), {});
+  const pid_t writer = fork();
+  if (writer == 0) {
+    for (int number = 2; number < 150; ++number) publish_sweep(path(), some_rows(number), {});
+    _exit(0);
+  }
+  int num_reads = 0;
+  for (std::size_t before = 1; waitpid(writer, nullptr, WNOHANG) == 0; ++num_reads) {
+    const std::size_t now = read_sweep(path()).rows.size();
+    EXPECT_GE(now, before);
+    before = now;
+  }
+  EXPECT_GT(num_reads, 3);
+  EXPECT_EQ(read_sweep(path()).rows.size(), 149u);
+}
+
+/// Leaves by _Exit(2) when a table is refused. A limit on the size of a file stands for a full disk.
+[[noreturn]] void publish_until_refused(const std::string& path) {
   std::signal(SIGXFSZ, SIG_IGN);
   const rlimit tight{200'000, 200'000};
   setrlimit(RLIMIT_FSIZE, &tight);
   try {
-    RunTable table = RunTable::create(path, {});
-    for (int task = 0; task < 1000; ++task) table.append(some_row(task));
+    for (int number = 0; number < 1000; ++number) publish_sweep(path, some_rows(number), {});
   } catch (const Error& error) {
     std::fputs(error.what(), stderr);
     std::_Exit(2);
@@ -125,20 +122,20 @@ TEST_F(RunTableTest, LeavesNothingBehindWhereItCannotWrite) {
   std::_Exit(0);
 }
 
-TEST_F(RunTableTest, KeepsEveryRowBeforeTheDiskIsFull) {
-  EXPECT_EXIT(append_until_refused(path()), testing::ExitedWithCode(2), "cannot write .*sweep.h5");
+TEST_F(RunTableTest, KeepsTheLastTableWhenTheDiskIsFull) {
+  EXPECT_EXIT(publish_until_refused(path()), testing::ExitedWithCode(2), "cannot write .*sweep.h5");
   const SweepFile file = read_sweep(path());
   EXPECT_GT(file.rows.size(), 50u);
   for (std::size_t task = 0; task < file.rows.size(); ++task)
     EXPECT_EQ(file.rows[task].task, static_cast<std::int64_t>(task));
+  EXPECT_EQ(num_files(), 1u);
 }
 
 TEST_F(RunTableTest, SaysWhatIsWrongWithAFile) {
   EXPECT_NE(refusal(path("missing.h5")).find("no such file"), std::string::npos);
   std::ofstream(path("text.h5")) << "not a table";
   EXPECT_NE(refusal(path("text.h5")).find("not an HDF5 file"), std::string::npos);
-  RunTable table = RunTable::create(path(), {});
-  for (int i = 0; i < 100; ++i) table.append(some_row(i));
+  publish_sweep(path(), some_rows(100), {});
   fs::copy_file(path(), path("torn.h5"));
   fs::resize_file(path("torn.h5"), fs::file_size(path()) / 2);
   EXPECT_NE(refusal(path("torn.h5")).find("cannot open"), std::string::npos) << refusal(path("torn.h5"));

@@ -27,7 +27,7 @@ bool answer_help_or_version(const CommandLine& line, const NamedTexts& libraries
 /// Where a file comes from: program, version, git hash, compiler, config, command line, time.
 NamedTexts origin(const CommandLine& line);
 
-/// From now on SIGINT and SIGTERM only raise a flag.
+/// From now on SIGINT, SIGTERM and SIGUSR1 only raise a flag.
 void catch_stop_signals();
 bool stop_signalled();
 

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
+#include <span>
+#include <vector>
 
 #include "clog/parallel/communicator.hpp"
 #include "clog/parallel/task_order.hpp"
@@ -11,11 +14,26 @@ namespace clog::parallel {
 
 enum class MasterComputes { automatic, yes, no };
 
-/// What rank 0 is told while a sweep runs. Called on rank 0 only, between slices of its own work.
+/// How far a task has come: its row, and a snapshot to go on from, if there is one.
+struct Report {
+  sweep::RunRow row;
+  std::vector<std::byte> snapshot;
+};
+/// Where a task begins.
+struct Start {
+  std::vector<std::byte> snapshot;  ///< empty: at its release
+  std::int64_t attempt = 1;
+};
+
+/// What rank 0 is told while a sweep runs, and asked. Called on rank 0 only, between slices of its own work.
 struct SweepEvents {
-  std::function<void(std::int64_t task, int rank)> started = [](std::int64_t, int) {};
-  /// Every task that was started ends here once; `interrupted` after a stop.
-  std::function<void(const sweep::RunRow&)> ended = [](const sweep::RunRow&) {};
+  std::function<Start(std::int64_t task, int rank)> started = [](std::int64_t, int) { return Start(); };
+  /// Of a task that runs on; its row says `running`. Now and then.
+  std::function<void(const Report&)> progressed = [](const Report&) {};
+  /// Every task that was started ends here once for each attempt; `interrupted` after a stop.
+  std::function<void(const Report&)> ended = [](const Report&) {};
+  /// Of a task that ended as `failed`: is it to be tried again?
+  std::function<bool(const sweep::RunRow&)> tries_again = [](const sweep::RunRow&) { return false; };
   /// About every 0.1 s; less often while this rank samples an array or releases a droplet (a second, in large
   /// boxes).
   std::function<void()> idle = [] {};
@@ -35,8 +53,10 @@ bool computes(int num_ranks, MasterComputes choice);
 /// longer, up to a few milliseconds.
 /// @param tasks  matter on rank 0
 /// @param make_job  called on the rank that works on the task
+/// @param report_interval  time between two reports of a running task
 /// @return whether all tasks were handed out (rank 0; true elsewhere)
 bool run_tasks(const Communicator& ranks, TaskOrder tasks, const sweep::JobFactory& make_job,
-               const SweepEvents& events, bool master_computes);
+               const SweepEvents& events, bool master_computes,
+               std::chrono::milliseconds report_interval = std::chrono::seconds(10));
 
 }  // namespace clog::parallel

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <unordered_map>
 #include <vector>
 
@@ -9,23 +10,28 @@ namespace clog::parallel {
 /// Which task to hand out next: the one expected to run longest, so that no long one is left for the end,
 /// when ranks without work would wait for it.
 ///
-/// Task i belongs to group i % num_groups, whose tasks differ in their seed only and are handed out in order.
-/// A group's expected run time is the mean of an exponential distribution fitted to its finished and, as
-/// censored, its running tasks: all their time over the number that ended. A group of which none has ended is
-/// expected to be longer than any other; among those the one with fewest tasks handed out is next.
+/// Task i of a plan belongs to group i % num_groups, whose tasks differ in their seed only and are handed out
+/// in order. A group's expected run time is the mean of an exponential distribution fitted to its finished
+/// and, as censored, its running tasks: all their time over the number that ended. A group of which none has
+/// ended is expected to be longer than any other; among those the one with fewest tasks handed out is next.
 class TaskOrder {
  public:
+  /// All tasks of a plan.
   explicit TaskOrder(std::int64_t num_tasks, std::int64_t num_groups = 1);
+  /// Those of its tasks that are left to be done.
+  TaskOrder(const std::vector<std::int64_t>& tasks, std::int64_t num_groups);
 
   bool empty() const { return num_left_ == 0; }
   /// Hands out a task; there must be one. Costs a look at every group.
   /// @param now  time [s], from any moment on, the same in all calls
   std::int64_t take(double now);
   void ended(std::int64_t task, double now);
+  /// A task that ended is to be done once more, after the others of its group.
+  void put_back(std::int64_t task);
 
  private:
   struct Group {
-    std::int64_t num_tasks = 0;
+    std::deque<std::int64_t> waiting;
     std::int64_t num_taken = 0;
     std::int64_t num_ended = 0;
     double time_ended = 0;     // run times of the tasks that ended [s]
@@ -35,6 +41,7 @@ class TaskOrder {
   std::vector<Group> groups_;
   std::unordered_map<std::int64_t, double> running_since_;  // by task
 
+  Group& group_of(std::int64_t task) { return groups_[task % static_cast<std::int64_t>(groups_.size())]; }
   double expected_time(const Group& group, double now) const;
 };
 

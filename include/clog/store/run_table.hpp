@@ -10,7 +10,7 @@
 namespace clog::store {
 
 /// Version of the file format; see src/store/README.md.
-inline constexpr const char* format_version = "1";
+inline constexpr const char* format_version = "2";
 
 /// Name and text of the attributes at the file's root: where its numbers come from.
 using Provenance = std::vector<std::pair<std::string, std::string>>;
@@ -23,21 +23,11 @@ void refuse_existing(const std::string& path);
 /// To be asked before hours of work. @throws Error if the path exists or no file can be made there
 void refuse_unwritable(const std::string& path);
 
-/// The table of runs of a sweep file. The file is only open while something is written: readers can come at
-/// any moment, and a kill between two writes loses nothing.
-class RunTable {
- public:
-  /// Creates the file with an empty table. @throws Error if it exists or cannot be created
-  static RunTable create(const std::string& path, const Provenance& provenance);
-
-  /// Appends rows; they are on the disk when this returns. @throws Error
-  void append(std::span<const sweep::RunRow> rows);
-  void append(const sweep::RunRow& row) { append(std::span(&row, 1)); }
-
- private:
-  explicit RunTable(std::string path) : path_(std::move(path)) {}
-  std::string path_;
-};
+/// Makes the sweep's file, or replaces it: the path leads to a whole table at every moment, the old or the
+/// new, so readers may come when they like. It is on the disk when this returns. @throws Error, and the old
+/// file stays
+void publish_sweep(const std::string& path, std::span<const sweep::RunRow> rows,
+                   const Provenance& provenance);
 
 struct SweepFile {
   std::vector<sweep::RunRow> rows;

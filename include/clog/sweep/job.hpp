@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "clog/sweep/run_row.hpp"
 
@@ -17,8 +20,12 @@ class Job {
   virtual bool advance() = 0;
   /// The task's row; `interrupted` if it is not over.
   virtual RunRow row() const = 0;
+  /// From which another job of this task can go on; empty if there is none yet.
+  virtual std::vector<std::byte> snapshot() const { return {}; }
 };
 
-using JobFactory = std::function<std::unique_ptr<Job>(std::int64_t task)>;
+/// Begins a task, or goes on with it from a snapshot that is not empty.
+using JobFactory =
+    std::function<std::unique_ptr<Job>(std::int64_t task, std::span<const std::byte> snapshot)>;
 
 }  // namespace clog::sweep

@@ -11,13 +11,16 @@ namespace clog::sweep {
 /// A run of a plan as a job.
 class RunJob final : public Job {
  public:
-  RunJob(const Plan& plan, std::int64_t task);
+  /// @param snapshot  of the same task; where it cannot be read the run starts anew
+  RunJob(const Plan& plan, std::int64_t task, std::span<const std::byte> snapshot = {});
 
   bool advance() override;
   RunRow row() const override;
+  std::vector<std::byte> snapshot() const override { return run_ ? run_->snapshot() : snapshot_; }
 
  private:
   RunParameters run_parameters_;
+  std::vector<std::byte> snapshot_;
   std::unique_ptr<DropletRun> run_;  // made at the first advance(): the release may fail
   RunRow row_;
   double wall_seconds_ = 0;

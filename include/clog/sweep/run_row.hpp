@@ -59,6 +59,7 @@ struct RunRow {
   FixedText<8> gravity;
   double clog_energy = 0;
   FixedText<16> clog_detection;
+  std::int64_t model_version = 0;  ///< see parameters.hpp
 
   FixedText<16> status;
   FixedText<16> clogged_by;  ///< "certified" or "threshold"; "none" unless clogged
@@ -82,6 +83,9 @@ struct RunRow {
 /// jamming limit of random sequential addition (Feder 1980; value of Wang, Int. J. Mod. Phys. C 5, 707
 /// (1994)).
 double saturated_density(double diameter, double gap);
+
+/// What was run, seed included, as bytes: equal for equal runs, whatever their place in a sweep.
+std::string identity(const RunRow& row);
 
 /// The columns that say what was run.
 RunRow describe(const RunParameters& resolved);

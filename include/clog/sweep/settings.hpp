@@ -27,6 +27,9 @@ const std::vector<Key>& keys();
 /// @throws Error that names the nearest key
 const Key& find_key(std::string_view name);
 
+/// Do two texts of a list mean the same value, as 1e-3 and 0.001 do?
+bool is_same_value(const std::string& a, const std::string& b);
+
 /// The preset whose interface this resolved parameter set has, or `custom`.
 std::string preset_name(const RunParameters& run);
 

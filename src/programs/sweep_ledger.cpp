@@ -1,0 +1,200 @@
+#include "sweep_ledger.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <utility>
+
+#include "clog/core/error.hpp"
+#include "clog/sweep/run_row.hpp"
+#include "clog/sweep/settings.hpp"
+
+namespace clog {
+namespace {
+
+/// A sweep may grow along these. In all others a file and a sweep that goes on with it have values in common.
+const std::set<std::string> axes = {"line-tension",     "wall-stiffness", "obstacle-gap",
+                                    "obstacle-density", "near-wall-drag", "seeds"};
+
+std::string attribute(const store::Provenance& provenance, const std::string& name) {
+  const auto found = std::find_if(provenance.begin(), provenance.end(),
+                                  [&](const auto& attribute) { return attribute.first == name; });
+  return found == provenance.end() ? "" : found->second;
+}
+
+void set_attribute(store::Provenance& provenance, const std::string& name, const std::string& text) {
+  std::erase_if(provenance, [&](const auto& attribute) { return attribute.first == name; });
+  provenance.emplace_back(name, text);
+}
+
+/// Is any value of the one list in the other? Numbers may be written differently.
+bool have_common_value(const std::vector<std::string>& some, const std::vector<std::string>& others) {
+  return std::any_of(some.begin(), some.end(), [&](const std::string& value) {
+    return std::any_of(others.begin(), others.end(),
+                       [&](const std::string& other) { return sweep::is_same_value(value, other); });
+  });
+}
+
+std::string differing_keys(const sweep::Settings& there, const sweep::Settings& here) {
+  std::string all;
+  for (const sweep::Key& key : sweep::keys())
+    if (!axes.contains(key.name) && key.name != "preset" &&
+        !have_common_value(there.values(key.name), here.values(key.name)))
+      all += (all.empty() ? "" : ", ") + key.name + '=' + here.text(key.name) + " (there " +
+             there.text(key.name) + ')';
+  return all;
+}
+
+}  // namespace
+
+SweepLedger::SweepLedger(std::string path, const sweep::Plan& plan, const sweep::Settings& settings,
+                         store::Provenance provenance, std::int64_t attempts)
+    : path_(std::move(path)),
+      plan_(plan),
+      provenance_(std::move(provenance)),
+      attempts_(attempts),
+      journal_(path_ + ".journal") {
+  std::string session;
+  for (const char* name : {"start_time", "version", "git_hash", "num_ranks", "command_line"})
+    session += attribute(provenance_, name) + ' ';
+  session.back() = '\n';
+
+  std::unordered_map<std::string, Entry> known;
+  try {
+    if (std::filesystem::exists(path_)) {
+      store::SweepFile file = store::read_sweep(path_);
+      take_over(file, settings);
+      for (const sweep::RunRow& row : file.rows) known[sweep::identity(row)] = {row, {}};
+    }
+  } catch (const Error&) {
+    if (journal_.take_entries().empty()) journal_.remove();
+    throw;
+  }
+  for (Entry& entry : journal_.take_entries()) {
+    std::string run = sweep::identity(entry.row);
+    known[std::move(run)] = std::move(entry);
+  }
+  set_attribute(provenance_, "sessions", attribute(provenance_, "sessions") + session);
+  find_tasks(std::move(known));
+  publish();
+}
+
+/// A file that is there: do its runs belong to this sweep? Then what it says of its origin stays.
+void SweepLedger::take_over(const store::SweepFile& file, const sweep::Settings& settings) {
+  const std::string remedy = "; give another --output";
+  for (const sweep::RunRow& row : file.rows)
+    if (row.model_version != model_version)
+      throw Error("cannot continue with " + path_ + " (its runs are of model version " +
+                  std::to_string(row.model_version) + ", this program's is " + std::to_string(model_version) +
+                  ": the same parameters would give other results)" + remedy);
+  const std::string differing =
+      differing_keys(sweep::Settings::from_config(attribute(file.provenance, "config")), settings);
+  if (!differing.empty())
+    throw Error("cannot continue with " + path_ + " (it holds runs with other settings: " + differing + ")" +
+                remedy);
+  store::Provenance all = file.provenance;
+  for (const char* name : {"kind", "format_version"})
+    std::erase_if(all, [&](const auto& attribute) { return attribute.first == name; });
+  set_attribute(all, "config", attribute(provenance_, "config"));
+  provenance_ = std::move(all);
+}
+
+bool SweepLedger::is_over(const sweep::RunRow& row) const {
+  const std::string_view status = row.status.view();
+  if (status == "failed") return row.attempt >= attempts_;
+  return status != "running" && status != "interrupted";
+}
+
+void SweepLedger::find_tasks(std::unordered_map<std::string, Entry> known) {
+  for (std::int64_t task = 0; task < plan_.size(); ++task) {
+    if (!known.empty())
+      if (auto found = known.extract(sweep::identity(sweep::describe(plan_.task(task)))); !found.empty()) {
+        Entry& entry = runs_[task] = std::move(found.mapped());
+        entry.row.task = task;
+        if (is_over(entry.row)) continue;
+        if (entry.row.status.view() == "running") entry.row.status = "interrupted";
+        seconds_before_[task] = entry.row.wall_seconds;
+      }
+    tasks_left_.push_back(task);
+  }
+  for (auto& [run, entry] : known) other_runs_.push_back(entry.row);
+  std::sort(other_runs_.begin(), other_runs_.end(),
+            [](const sweep::RunRow& a, const sweep::RunRow& b) { return a.task < b.task; });
+  for (std::size_t i = 0; i < other_runs_.size(); ++i)
+    other_runs_[i].task = plan_.size() + static_cast<std::int64_t>(i);
+}
+
+std::int64_t SweepLedger::num_resumed() const {
+  return std::count_if(tasks_left_.begin(), tasks_left_.end(), [this](std::int64_t task) {
+    const auto run = runs_.find(task);
+    return run != runs_.end() && !run->second.snapshot.empty();
+  });
+}
+
+parallel::Start SweepLedger::start(std::int64_t task, int rank) {
+  const auto [run, is_new] = runs_.try_emplace(task);
+  Entry& entry = run->second;
+  parallel::Start start{entry.snapshot, entry.row.attempt};
+  if (is_new) {
+    entry.row = sweep::describe(plan_.task(task));
+    entry.row.task = task;
+  } else if (entry.row.status.view() == "failed") {
+    start = {{}, entry.row.attempt + 1};
+  }
+  entry.row.attempt = start.attempt;
+  entry.row.status = "running";
+  entry.row.rank = rank;
+  is_published_ = false;
+  return start;
+}
+
+void SweepLedger::report(const parallel::Report& report) {
+  Entry& entry = runs_[report.row.task];
+  entry = {report.row, report.snapshot};
+  if (const auto before = seconds_before_.find(report.row.task); before != seconds_before_.end())
+    entry.row.wall_seconds += before->second;
+  journal_.add(entry.row, entry.snapshot);
+  is_published_ = false;
+}
+
+void SweepLedger::tick() {
+  // Writing the whole table takes longer the more runs there are; it may take two percent of the time.
+  const Clock::duration pause = std::max<Clock::duration>(std::chrono::seconds(1), 50 * publication_time_);
+  if (is_published_ || Clock::now() - last_publication_ < pause) return;
+  publish();
+  if (journal_.num_bytes() > 64'000'000) shorten_journal();
+}
+
+void SweepLedger::publish() {
+  const Clock::time_point begin = Clock::now();
+  std::vector<sweep::RunRow> rows;
+  rows.reserve(runs_.size() + other_runs_.size());
+  for (const auto& [task, entry] : runs_) rows.push_back(entry.row);
+  rows.insert(rows.end(), other_runs_.begin(), other_runs_.end());
+  journal_.flush();
+  store::publish_sweep(path_, rows, provenance_);
+  last_publication_ = Clock::now();
+  publication_time_ = last_publication_ - begin;
+  is_published_ = true;
+}
+
+/// To the snapshots that are still needed; what is over is in the table.
+void SweepLedger::shorten_journal() {
+  std::vector<const Entry*> needed;
+  for (const auto& [task, entry] : runs_)
+    if (!is_over(entry.row)) needed.push_back(&entry);
+  journal_.rewrite(needed);
+}
+
+void SweepLedger::finish() {
+  publish();
+  const bool is_complete =
+      static_cast<std::int64_t>(runs_.size()) == plan_.size() &&
+      std::all_of(runs_.begin(), runs_.end(), [this](const auto& run) { return is_over(run.second.row); });
+  if (is_complete)
+    journal_.remove();
+  else
+    shorten_journal();
+}
+
+}  // namespace clog

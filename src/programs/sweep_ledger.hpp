@@ -1,0 +1,66 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "clog/parallel/scheduler.hpp"
+#include "clog/store/journal.hpp"
+#include "clog/store/run_table.hpp"
+#include "clog/sweep/plan.hpp"
+
+namespace clog {
+
+/// What is known of a sweep's runs, on rank 0 and on the disk: the table of runs, published now and then as a
+/// whole, and the journal beside it, which has what came since and the snapshots of running tasks. A sweep
+/// that was stopped or killed goes on from there. Runs are known by what they are (sweep::identity), not by
+/// their number.
+class SweepLedger {
+ public:
+  /// Reads what is there, and checks that it belongs to this sweep.
+  /// @param attempts  how often a run that fails is tried, over all sessions
+  /// @throws Error if the file is foreign, of another model or other settings, or written to by another sweep
+  SweepLedger(std::string path, const sweep::Plan& plan, const sweep::Settings& settings,
+              store::Provenance provenance, std::int64_t attempts);
+
+  /// Tasks of the plan that are not over.
+  const std::vector<std::int64_t>& tasks_left() const { return tasks_left_; }
+  /// Of those, how many have a snapshot to go on from.
+  std::int64_t num_resumed() const;
+
+  parallel::Start start(std::int64_t task, int rank);
+  void report(const parallel::Report& report);
+  bool tries_again(const sweep::RunRow& failed) const { return failed.attempt < attempts_; }
+  /// Publishes the table if it is time to.
+  void tick();
+  /// Publishes it; a sweep that is complete needs no journal any more.
+  void finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using Entry = store::Journal::Entry;
+
+  std::string path_;
+  const sweep::Plan& plan_;
+  store::Provenance provenance_;
+  std::int64_t attempts_;
+  store::Journal journal_;
+  std::map<std::int64_t, Entry> runs_;     // by task; those that have begun
+  std::vector<sweep::RunRow> other_runs_;  // in the file, but not of this plan
+  std::vector<std::int64_t> tasks_left_;
+  std::unordered_map<std::int64_t, double> seconds_before_;  // spent on a task in earlier sessions [s]
+  bool is_published_ = false;
+  Clock::time_point last_publication_;
+  Clock::duration publication_time_{0};
+
+  bool is_over(const sweep::RunRow& row) const;
+  void take_over(const store::SweepFile& file, const sweep::Settings& settings);
+  void find_tasks(std::unordered_map<std::string, Entry> known);
+  void publish();
+  void shorten_journal();
+};
+
+}  // namespace clog

@@ -1,0 +1,174 @@
+"""Sweeps that are killed, stopped, changed or wrong: nothing is lost, and the same command goes on.
+
+KILLS=100 test_resume.py  kills a hundred times instead of eight.
+"""
+
+import os
+import random
+import signal
+import subprocess
+import time
+import unittest
+
+import pandas
+from support import BIN, MPIRUN, ProgramTest
+
+# What a second computation of the same run may change: who did it, and how long it took.
+TIMING = ["wall_seconds", "rank", "host"]
+# Long runs, each of several snapshots (four a second).
+SWEEP = ["vertices=64", "box=20", "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=4000", "seeds=1..3",
+         "--report-seconds=0.1", "--output", "s.h5"]
+
+
+def table(path):
+    return pandas.read_hdf(path, "runs")
+
+
+class Resumed(ProgramTest):
+    def start(self, *arguments, ranks=2):
+        process = subprocess.Popen([str(MPIRUN), str(ranks), str(BIN / "clogsweep"), *arguments], cwd=self.folder,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                                   start_new_session=True)
+        self.addCleanup(self.kill_all, process)
+        return process
+
+    def kill_all(self, process):
+        """mpirun and its ranks, which have process groups of their own."""
+        for pid in [*self.ranks_of(process), process.pid]:
+            try:
+                os.kill(pid, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
+        process.wait()
+        process.stderr.close()
+
+    def ranks_of(self, process):
+        children = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True)
+        return [int(pid) for pid in children.stdout.split()]
+
+    def wait_for(self, condition, seconds=60):
+        deadline = time.time() + seconds
+        while not condition():
+            self.assertLess(time.time(), deadline, "it did not happen in time")
+            time.sleep(0.02)
+
+    def wait_for_ranks(self, process, number):
+        self.wait_for(lambda: len(self.ranks_of(process)) == number or process.poll() is not None)
+
+    def check_equal(self, name, other):
+        rows, others = (table(self.folder / n).drop(columns=TIMING) for n in (name, other))
+        pandas.testing.assert_frame_equal(rows, others, check_exact=True)
+
+    def test_kills_at_random_moments_lose_nothing(self):
+        self.succeed("clogsweep", *SWEEP[:-1], "whole.h5", ranks=2)
+        chance = random.Random(7)
+        finished = 0
+        for _ in range(int(os.environ.get("KILLS", "8"))):
+            if not (self.folder / "s.h5.journal").exists():
+                (self.folder / "s.h5").unlink(missing_ok=True)  # complete: once more from the beginning
+                finished = 0
+            process = self.start(*SWEEP)
+            self.wait_for_ranks(process, 2)
+            time.sleep(chance.uniform(0, 1.2))
+            victims = [*self.ranks_of(process), process.pid]
+            for victim in chance.sample(victims, chance.randint(1, len(victims))):
+                try:
+                    os.kill(victim, signal.SIGKILL)
+                except ProcessLookupError:
+                    pass
+            # Those that are left notice, or are killed as a batch system would.
+            try:
+                process.wait(timeout=3)
+            except subprocess.TimeoutExpired:
+                pass
+            self.kill_all(process)
+            if not (self.folder / "s.h5").exists():
+                continue  # killed before its first second
+            rows = table(self.folder / "s.h5")
+            over = (~rows.status.isin(["running", "interrupted"])).sum()
+            self.assertGreaterEqual(over, finished, "a finished row was lost")
+            finished = over
+        self.succeed("clogsweep", *SWEEP, ranks=2)
+        self.check_equal("s.h5", "whole.h5")
+        self.assertEqual({path.name for path in self.folder.iterdir()}, {"s.h5", "whole.h5"})
+
+    def test_a_signal_stops_and_the_same_command_goes_on(self):
+        self.succeed("clogsweep", *SWEEP[:-1], "whole.h5", ranks=2)
+        for signal_number in (signal.SIGUSR1, signal.SIGINT):
+            process = self.start(*SWEEP)
+            self.wait_for(lambda: (self.folder / "s.h5.journal").exists())
+            time.sleep(0.7)
+            process.send_signal(signal_number)
+            _, error = process.communicate(timeout=30)
+            self.assertIn("the same command goes on", error)
+            if signal_number == signal.SIGUSR1:  # mpirun kills what is left a second after it forwarded the others
+                self.assertEqual(process.returncode, 75, error)
+            rows = table(self.folder / "s.h5")
+            self.assertGreater((rows.status == "interrupted").sum(), 0)
+        done = self.succeed("clogsweep", *SWEEP, ranks=2)
+        self.assertIn("go on where they were", done.stderr)
+        self.check_equal("s.h5", "whole.h5")
+        again = self.succeed("clogsweep", *SWEEP, ranks=2)
+        self.assertIn("there is nothing left to do", again.stderr)
+        self.check_equal("s.h5", "whole.h5")
+
+    def test_max_hours_stops_it(self):
+        done = self.run_program("clogsweep", *SWEEP, "--max-hours=0.0002")
+        self.assertEqual(done.returncode, 75, done.stderr)
+        self.assertIn("stopped by --max-hours", done.stderr)
+        self.succeed("clogsweep", *SWEEP, ranks=2)
+
+    def test_running_tasks_are_in_the_table(self):
+        process = self.start(*SWEEP)
+        self.wait_for(lambda: (self.folder / "s.h5").exists() and
+                      (table(self.folder / "s.h5").query("status == 'running'").distance > 0).any())
+        refused = self.run_program("clogsweep", *SWEEP)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("another sweep is writing to it", refused.stderr)
+        _, error = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0, error)
+
+    def test_a_sweep_can_grow(self):
+        small = ["vertices=64", "box=20", "max-time=20", "--output", "s.h5"]
+        self.succeed("clogsweep", *small, "line-tension=0.5,1", "seeds=1..2")
+        before = table(self.folder / "s.h5")
+        done = self.succeed("clogsweep", *small, "line-tension=1,2", "seeds=1..3")
+        self.assertIn("s.h5 has 2 of 6 runs", done.stderr)
+        rows = table(self.folder / "s.h5")
+        self.assertEqual(len(rows), 8)
+        self.assertEqual(sorted(rows.task), list(range(8)))
+        self.assertFalse(rows.duplicated(["line_tension", "seed"]).any())
+        kept = before.merge(rows, on=["line_tension", "seed", "distance", "wall_seconds"])
+        self.assertEqual(len(kept), 4)
+
+    def test_other_physics_is_refused_by_name(self):
+        self.succeed("clogsweep", "vertices=64", "box=20", "max-time=20", "seeds=1", "--output", "s.h5")
+        self.refuse("clogsweep", "vertices=64", "box=20", "max-time=20", "seeds=1", "terminal-speed=0.05", "gravity=vertex",
+                    "perimeter-spring=mean", "--output", "s.h5",
+                    words=["terminal-speed=0.05 (there 0.03)", "gravity=vertex (there area)", "another --output"])
+        # Numbers written otherwise are the same.
+        done = self.succeed("clogsweep", "vertices=64", "box=2e1", "max-time=20", "seeds=1", "--output", "s.h5")
+        self.assertIn("nothing left to do", done.stderr)
+
+    def test_foreign_and_torn_files_are_left_alone(self):
+        self.write("s.h5", "not a table")
+        self.refuse("clogsweep", *SWEEP, words=["s.h5", "not an HDF5 file"])
+        self.succeed("clogsweep", "vertices=64", "box=20", "max-time=20", "seeds=1..3", "--output", "t.h5")
+        whole = (self.folder / "t.h5").read_bytes()
+        (self.folder / "s.h5").write_bytes(whole[:len(whole) // 2])
+        self.refuse("clogsweep", *SWEEP, words=["cannot open s.h5"])
+
+    def test_a_failed_run_is_tried_again_up_to_a_limit(self):
+        blocked = ["vertices=64", "box=13", "max-time=5", "obstacle-diameter=6", "obstacle-gap=0.06",
+                   "obstacle-density=0.0237", "seeds=51..70", "--output", "s.h5"]
+        self.succeed("clogsweep", *blocked, "--attempts=3", ranks=2)
+        rows = table(self.folder / "s.h5")
+        self.assertEqual(len(rows), 20)
+        self.assertEqual(set(rows[rows.status == "failed"].attempt), {3})
+        self.assertEqual(set(rows[rows.status != "failed"].attempt), {1})
+        again = self.succeed("clogsweep", *blocked, "--attempts=3")
+        self.assertIn("nothing left to do", again.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
