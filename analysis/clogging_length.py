@@ -32,12 +32,15 @@ CURVE_PARAMETERS = [
     ("near_wall_drag", r"b_0/b_\infty"),
     ("terminal_speed", r"V_t"),
     ("vertices", r"N_v"),
-    ("time_step", r"\Delta t/t_0"),
     ("max_time", r"T/t_0"),
     ("box", r"L/\sigma"),
+    ("clog_energy", r"E_k/E_t"),
+]
+# Their automatic values follow from the others; then they make no curve of their own.
+AUTOMATIC_PARAMETERS = [
+    ("time_step", r"\Delta t/t_0"),
     ("area_stiffness", r"K_a"),
     ("perimeter_stiffness", r"K_l"),
-    ("clog_energy", r"E_k/E_t"),
 ]
 
 
@@ -63,11 +66,20 @@ def caption(groups):
     return ", ".join(words)
 
 
-def curves(groups):
+def follows(name, groups, others):
+    """Is this parameter's value known once the others' are?"""
+    known = {}
+    return all(known.setdefault(tuple(group[o] for o in others), group[name]) == group[name] for group in groups)
+
+
+def curves(groups, abscissa):
     """Groups that differ in the abscissa only, with a label that says how the curves differ."""
     varied = [
         (name, symbol) for name, symbol in CURVE_PARAMETERS if len({group[name] for group in groups}) > 1
     ]
+    for name, symbol in AUTOMATIC_PARAMETERS:
+        if not follows(name, groups, [abscissa, *(varying for varying, _ in varied)]):
+            varied.append((name, symbol))
     # In saturated arrays the density follows from gap and diameter: it needs no place in the label.
     if all(group["obstacle_filling"] == "saturated" for group in groups):
         varied = [(name, symbol) for name, symbol in varied if name != "obstacle_density"]
@@ -83,8 +95,8 @@ def curves(groups):
 
 def draw(groups, abscissa, confidence):
     figure, axes = plt.subplots(figsize=(6.4, 4.8), layout="constrained")
-    num_curves = sum(1 for _ in curves(groups))
-    for index, (label, members) in enumerate(curves(groups)):
+    num_curves = sum(1 for _ in curves(groups, abscissa))
+    for index, (label, members) in enumerate(curves(groups, abscissa)):
         colour, marker = COLOURS[index % len(COLOURS)], MARKERS[index % len(MARKERS)]
         members.sort(key=lambda group: group[abscissa])
         # Curves share their abscissae: moved apart by a percent, their bars can be told from each other.

@@ -71,6 +71,10 @@ std::chrono::milliseconds report_interval(const cli::CommandLine& line) {
   return interval;
 }
 
+double max_hours(const cli::CommandLine& line) {
+  return line.has("max-hours") ? line.get_positive("max-hours") : std::numeric_limits<double>::infinity();
+}
+
 std::int64_t attempts(const cli::CommandLine& line) {
   const double number = line.get_number("attempts", 2);
   if (!(number >= 1 && number <= 1000 && number == std::floor(number)))
@@ -160,6 +164,9 @@ std::optional<int> prepare(const cli::CommandLine& line) {
           line, {{"MPI", parallel::Communicator::library_version()}, {"HDF5", store::library_version()}}))
     return cli::exit_success;
   master_computes(line.get("master-computes"));
+  report_interval(line);
+  attempts(line);
+  max_hours(line);
   const sweep::Plan plan(line.settings());
   if (line.has("print-config")) print_config(line.settings(), plan);
   if (line.has("dry-run")) {
@@ -196,7 +203,7 @@ int lead(const parallel::Communicator& ranks, const cli::CommandLine& line, cons
       num_left, computing_ranks);
   bool interrupted = false;
   const Clock::time_point begin = Clock::now();
-  const double max_hours = line.get_number("max-hours", std::numeric_limits<double>::infinity());
+  const double hours = max_hours(line);
   parallel::SweepEvents events;
   events.started = [&](std::int64_t task, int rank) {
     progress.started(task);
@@ -215,7 +222,7 @@ int lead(const parallel::Communicator& ranks, const cli::CommandLine& line, cons
   };
   events.stop_requested = [&] {
     return cli::stop_signalled() ||
-           std::chrono::duration<double, std::ratio<3600>>(Clock::now() - begin).count() >= max_hours;
+           std::chrono::duration<double, std::ratio<3600>>(Clock::now() - begin).count() >= hours;
   };
   const bool all_started =
       parallel::run_tasks(ranks, parallel::TaskOrder(ledger.tasks_left(), plan.num_groups()),
@@ -242,7 +249,6 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, int argc, char** arg
       plan.emplace(line.settings());
       ledger.emplace(line.get("output"), *plan, line.settings(), provenance(line, ranks.size()),
                      attempts(line));
-      report_interval(line);
       return cli::exit_success;
     });
     if (ledger && exit_code == cli::exit_success)

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <variant>
 
@@ -120,6 +121,43 @@ std::vector<std::string> result_cells(const Group& group, bool with_migration) {
   return cells;
 }
 
+std::vector<bool> varying_fields(const std::vector<Group>& groups) {
+  const std::vector<Field> first = parameter_fields(groups.front().parameters);
+  std::vector<bool> varies(first.size(), false);
+  for (const Group& group : groups) {
+    const std::vector<Field> fields = parameter_fields(group.parameters);
+    for (std::size_t i = 0; i < fields.size(); ++i) varies[i] = varies[i] || fields[i] != first[i];
+  }
+  return varies;
+}
+
+/// Fields that vary, except those whose automatic values follow from the others.
+std::vector<bool> shown_fields(const std::vector<Group>& groups, const std::vector<bool>& varies) {
+  const std::vector<Field> first = parameter_fields(groups.front().parameters);
+  const bool soft_disk = groups.front().parameters.model.view() == "sp";
+  std::set<std::string_view> automatic = {"time_step", "area_stiffness", "perimeter_stiffness"};
+  if (!soft_disk) automatic.insert("wall_stiffness");
+  std::vector<bool> shown(first.size(), false);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const std::string_view name = first[i].first;
+    shown[i] = (varies[i] && !automatic.contains(name)) || name == "obstacle_gap" ||
+               name == (soft_disk ? "wall_stiffness" : "line_tension");
+  }
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    if (!varies[i] || shown[i]) continue;
+    std::map<std::vector<Value>, Value> follows;
+    for (const Group& group : groups) {
+      const std::vector<Field> fields = parameter_fields(group.parameters);
+      std::vector<Value> from;
+      for (std::size_t j = 0; j < fields.size(); ++j)
+        if (shown[j]) from.push_back(fields[j].second);
+      const auto [known, is_new] = follows.try_emplace(from, fields[i].second);
+      if (!is_new && known->second != fields[i].second) shown[i] = true;
+    }
+  }
+  return shown;
+}
+
 }  // namespace
 
 std::vector<Group> group_runs(std::span<const RunRow> rows, double confidence) {
@@ -139,7 +177,7 @@ std::vector<Group> group_runs(std::span<const RunRow> rows, double confidence) {
       group.num_failed += run->status.view() == "failed";
       if (run->status.view() == "failed") continue;
       group.num_flowing += run->status.view() == "flowing";
-      group.num_interrupted += run->status.view() == "interrupted";
+      group.num_interrupted += run->status.view() == "interrupted" || run->status.view() == "running";
       observations.push_back({run->distance, run->status.view() == "clogged"});
       speeds.push_back(run->mean_speed / run->terminal_speed);
       displacements.push_back({run->distance, run->lateral_displacement});
@@ -154,23 +192,16 @@ std::vector<Group> group_runs(std::span<const RunRow> rows, double confidence) {
 
 std::string to_text(const std::vector<Group>& groups, double confidence) {
   const std::vector<Field> first = parameter_fields(groups.front().parameters);
-  std::vector<bool> varies(first.size(), false);
-  for (const Group& group : groups) {
-    const std::vector<Field> fields = parameter_fields(group.parameters);
-    for (std::size_t i = 0; i < fields.size(); ++i) varies[i] = varies[i] || fields[i] != first[i];
-  }
-  const auto is_shown = [&](std::size_t i) {
-    const std::string_view name = first[i].first;
-    const bool soft_disk = groups.front().parameters.model.view() == "sp";
-    return varies[i] || name == "obstacle_gap" || name == (soft_disk ? "wall_stiffness" : "line_tension");
-  };
+  const std::vector<bool> varies = varying_fields(groups);
+  const std::vector<bool> shown = shown_fields(groups, varies);
+  const auto is_shown = [&](std::size_t i) { return shown[i]; };
 
   std::string text = "all runs:";
   std::vector<std::vector<std::string>> lines(1);
   for (std::size_t i = 0; i < first.size(); ++i) {
     if (is_shown(i))
       lines[0].push_back(first[i].first);
-    else if (!exact(first[i].second).empty() && exact(first[i].second) != "none")
+    else if (!varies[i] && !exact(first[i].second).empty() && exact(first[i].second) != "none")
       text += std::string(" ") + first[i].first + "=" + rounded(first[i].second);
   }
   char interval[16];
@@ -193,7 +224,8 @@ std::string to_text(const std::vector<Group>& groups, double confidence) {
   }
   text += "\n\n" + aligned(lines);
   if (num_interrupted > 0)
-    text += "\nnote: " + std::to_string(num_interrupted) + " interrupted runs count as not clogged so far\n";
+    text += "\nnote: " + std::to_string(num_interrupted) +
+            " runs are under way or interrupted: they count as not clogged so far\n";
   if (num_failed > 0)
     text += "\nnote: " + std::to_string(num_failed) +
             " failed runs are left out; their column `message` says why\n";

@@ -68,7 +68,7 @@ class Fit(ProgramTest):
         self.assertEqual(group["clogging_length"], 6)
         self.assertEqual((group["runs"], group["interrupted"], group["failed"]), (3, 1, 1))
         text = self.succeed("clogfit", "sweep.h5").stdout
-        self.assertIn("1 interrupted", text)
+        self.assertIn("1 runs are under way or interrupted", text)
         self.assertIn("1 failed", text)
 
     def test_nothing_clogged_is_a_lower_bound(self):
