@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <iostream>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -24,6 +25,7 @@
 #include "clog/sweep/value_list.hpp"
 #include "sweep_ledger.hpp"
 #include "sweep_progress.hpp"
+#include "sweep_reports.hpp"
 
 namespace {
 
@@ -36,6 +38,11 @@ given values, on all MPI ranks, and gathers the results in one HDF5 table.
 
   mpirun -np 4 clogsweep --config sweep.cfg --output sweep.h5 line-tension=0.2,1,5
   clogsweep --config sweep.cfg --dry-run
+  clogsweep status sweep.h5         how far it is: lambda, <v_g>, time left; also while it runs
+  clogsweep verify sweep.h5         is the file whole?
+  clogsweep replay sweep.h5 TASK    one run once more: the same bits?
+
+A sweep that was stopped or killed goes on with the same command.
 )";
 
 void parse(cli::CommandLine& line, int argc, char** argv) {
@@ -271,6 +278,11 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, int argc, char** arg
 }  // namespace
 
 int main(int argc, char** argv) {
+  // What needs no ranks.
+  const std::map<std::string_view, int (*)(int, const char* const*)> reports = {
+      {"status", clogsweep_status}, {"verify", clogsweep_verify}, {"replay", clogsweep_replay}};
+  if (const auto report = argc > 1 ? reports.find(argv[1]) : reports.end(); report != reports.end())
+    return cli::run_program(std::string(program) + ' ' + argv[1], [&] { return report->second(argc, argv); });
   const parallel::Communicator ranks(argc, argv);
   try {
     return sweep_on_all_ranks(ranks, argc, argv);

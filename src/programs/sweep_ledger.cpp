@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -138,6 +139,8 @@ parallel::Start SweepLedger::start(std::int64_t task, int rank) {
   if (is_new) {
     entry.row = sweep::describe(plan_.task(task));
     entry.row.task = task;
+    entry.row.clogged_by = "none";
+    entry.row.mean_speed = std::numeric_limits<double>::quiet_NaN();  // not known yet
   } else if (entry.row.status.view() == "failed") {
     start = {{}, entry.row.attempt + 1};
   }

@@ -1,31 +1,17 @@
 #include "sweep_progress.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <ostream>
 #include <vector>
 
-#include "clog/fit/clogging_length.hpp"
+#include "time_left.hpp"
 
 namespace clog {
 namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-std::string readable(double seconds) {
-  char text[32];
-  if (seconds < 90)
-    std::snprintf(text, sizeof text, "%.0f s", seconds);
-  else if (seconds < 90 * 60)
-    std::snprintf(text, sizeof text, "%.0f min", seconds / 60);
-  else if (seconds < 48 * 3600)
-    std::snprintf(text, sizeof text, "%.1f h", seconds / 3600);
-  else
-    std::snprintf(text, sizeof text, "%.1f days", seconds / 86400);
-  return text;
 }
 
 }  // namespace
@@ -77,25 +63,18 @@ std::string SweepProgress::line() const {
     std::snprintf(rate, sizeof rate, ", %.3g runs/min", 60 * static_cast<double>(num_ended_) / elapsed);
     text += rate;
   }
-  return text + ", " + readable(elapsed) + " so far" + time_left();
+  return text + ", " + readable_duration(elapsed) + " so far" + time_left();
 }
 
-/// Short runs end first, so the mean over finished runs alone is too small: running ones count as censored,
-/// as for the clogging length. What remains is then a share of the waiting runs for every rank, and a tail in
-/// which the ranks run dry one by one (the largest of W exponential times is 1 + 1/2 + ... + 1/W means).
 std::string SweepProgress::time_left() const {
   if (num_ended_ == num_tasks_) return "";
-  if (num_ended_ == 0) return ", time left not known yet";
-  std::vector<fit::Observation> durations(num_ended_,
-                                          {finished_seconds_ / static_cast<double>(num_ended_), true});
-  for (const auto& [task, begin] : running_) durations.push_back({seconds_since(begin), false});
-  const fit::CloggingLength mean = fit::fit_clogging_length(durations, 0.8);
-  const auto waiting =
-      static_cast<double>(num_tasks_ - num_ended_ - static_cast<std::int64_t>(running_.size()));
-  double tail = 0;
-  for (std::size_t i = 1; i <= running_.size(); ++i) tail += 1.0 / static_cast<double>(i);
-  const double means_left = waiting / num_ranks_ + tail;
-  return ", " + readable(means_left * mean.lower) + " to " + readable(means_left * mean.upper) + " left";
+  // The sum of the finished ones is all that counts.
+  const std::vector<double> finished(num_ended_, finished_seconds_ / static_cast<double>(num_ended_));
+  std::vector<double> running;
+  for (const auto& [task, begin] : running_) running.push_back(seconds_since(begin));
+  const auto num_waiting =
+      static_cast<double>(num_tasks_ - num_ended_ - static_cast<std::int64_t>(running.size()));
+  return ", " + clog::time_left(finished, running, num_waiting, static_cast<std::size_t>(num_ranks_)).text();
 }
 
 }  // namespace clog

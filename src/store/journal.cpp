@@ -118,6 +118,14 @@ Journal::~Journal() {
   if (descriptor_ >= 0) close(descriptor_);
 }
 
+bool Journal::is_open(const std::string& path) {
+  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return false;
+  const bool is_free = flock(descriptor, LOCK_SH | LOCK_NB) == 0;
+  close(descriptor);
+  return !is_free;
+}
+
 void Journal::read_entries() {
   struct stat status {};
   if (fstat(descriptor_, &status) != 0) fail("read", path_);

@@ -3,6 +3,7 @@
 KILLS=100 test_resume.py  kills a hundred times instead of eight.
 """
 
+import json
 import os
 import random
 import signal
@@ -10,13 +11,15 @@ import subprocess
 import time
 import unittest
 
+import h5py
+import numpy as np
 import pandas
 from support import BIN, MPIRUN, ProgramTest
 
 # What a second computation of the same run may change: who did it, and how long it took.
 TIMING = ["wall_seconds", "rank", "host"]
 # Long runs, each of several snapshots (four a second).
-SWEEP = ["vertices=64", "box=20", "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=4000", "seeds=1..3",
+SWEEP = ["vertices=64", "box=20", "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=4000", "seeds=1..6",
          "--report-seconds=0.1", "--output", "s.h5"]
 
 
@@ -122,11 +125,49 @@ class Resumed(ProgramTest):
         process = self.start(*SWEEP)
         self.wait_for(lambda: (self.folder / "s.h5").exists() and
                       (table(self.folder / "s.h5").query("status == 'running'").distance > 0).any())
+        status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
+        self.assertTrue(status["alive"])
+        self.assertEqual(status["runs"], 24)
+        self.assertGreater(status["under_way"], 0)
+        self.assertIn(" running; ", self.succeed("clogsweep", "status", "s.h5").stdout)
         refused = self.run_program("clogsweep", *SWEEP)
         self.assertEqual(refused.returncode, 2)
         self.assertIn("another sweep is writing to it", refused.stderr)
         _, error = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 0, error)
+        self.assertIn("24 of 24 runs over", self.succeed("clogsweep", "status", "s.h5", "--watch").stdout)
+
+    def test_status_counts_runs_under_way_as_not_clogged(self):
+        self.run_program("clogsweep", *SWEEP, "--max-hours=0.0003")
+        status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
+        self.assertFalse(status["alive"])
+        self.assertEqual(status["under_way"], 1)
+        rows = table(self.folder / "s.h5")
+        for group in status["groups"]:
+            members = rows[(rows.line_tension == group["line_tension"]) & (rows.obstacle_gap == group["obstacle_gap"])]
+            clogs = (members.status == "clogged").sum()
+            if clogs:
+                self.assertAlmostEqual(group["clogging_length"], members.distance.sum() / clogs)
+        self.assertIn("the command that began it goes on", self.succeed("clogsweep", "status", "s.h5").stdout)
+        self.assertIn("all whole", self.succeed("clogsweep", "verify", "s.h5").stdout)
+
+    def test_replay_gives_the_same_bits_and_sees_others(self):
+        self.succeed("clogsweep", "vertices=64", "box=20", "max-time=20", "line-tension=0.5,1", "seeds=1..2",
+                     "--output", "s.h5")
+        for task in range(4):
+            self.assertIn("the same bits", self.succeed("clogsweep", "replay", "s.h5", task).stdout)
+        with h5py.File(self.folder / "s.h5", "r+") as file:
+            rows = file["runs"][:]
+            rows["distance"][2] = np.nextafter(rows["distance"][2], 1)
+            rows["time"][3] = -1
+            file["runs"][:] = rows
+        other = self.run_program("clogsweep", "replay", "s.h5", 2)
+        self.assertEqual(other.returncode, 1, other.stdout)
+        self.assertIn("differs from the row in: distance\n", other.stdout)
+        self.assertIn("the file has no task 9", self.run_program("clogsweep", "replay", "s.h5", 9).stderr)
+        verified = self.run_program("clogsweep", "verify", "s.h5")
+        self.assertEqual(verified.returncode, 1)
+        self.assertIn("task 3: a time out of its range", verified.stdout)
 
     def test_a_sweep_can_grow(self):
         small = ["vertices=64", "box=20", "max-time=20", "--output", "s.h5"]

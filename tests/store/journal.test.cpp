@@ -117,8 +117,10 @@ TEST_F(JournalTest, IsOpenOnlyOnceAndItsLockDiesWithItsProcess) {
   char byte = 0;
   ASSERT_EQ(read(ready[0], &byte, 1), 1);
   EXPECT_THROW(Journal journal(path()), Error);
+  EXPECT_TRUE(Journal::is_open(path()));
   kill(other, SIGKILL);
   waitpid(other, nullptr, 0);
+  EXPECT_FALSE(Journal::is_open(path()));
   expect_entries(Journal(path()).take_entries(), 2);
   close(ready[0]);
   close(ready[1]);

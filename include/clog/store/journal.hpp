@@ -26,6 +26,9 @@ class Journal {
   Journal(Journal&&) = delete;
   ~Journal();
 
+  /// Is a sweep writing to this one?
+  static bool is_open(const std::string& path);
+
   /// What the file held when it was opened, oldest first.
   std::vector<Entry> take_entries() { return std::move(entries_); }
   /// @throws Error if the disk is full

@@ -1,0 +1,273 @@
+#include "sweep_reports.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <thread>
+#include <unordered_map>
+#include <vector>
+
+#include "clog/cli/command_line.hpp"
+#include "clog/cli/program.hpp"
+#include "clog/core/error.hpp"
+#include "clog/core/instruction_set.hpp"
+#include "clog/store/journal.hpp"
+#include "clog/store/run_table.hpp"
+#include "clog/sweep/plan.hpp"
+#include "clog/sweep/run_job.hpp"
+#include "clog/sweep/value_list.hpp"
+#include "group_table.hpp"
+#include "time_left.hpp"
+
+namespace clog {
+namespace {
+
+namespace po = boost::program_options;
+using sweep::RunRow;
+
+sweep::Plan plan_of(const store::SweepFile& file) {
+  for (const auto& [name, text] : file.provenance)
+    if (name == "config") return sweep::Plan(sweep::Settings::from_config(text));
+  throw Error("the file does not say what its sweep was; give a file written by clogsweep --output");
+}
+
+cli::CommandLine command(const char* name, const char* usage) {
+  cli::CommandLine line(std::string("clogsweep ") + name, usage, cli::CommandLine::SweepKeys::none);
+  line.add_options()("file", po::value<std::string>(), "sweep file");
+  line.add_positional("file", 1);
+  return line;
+}
+
+/// Parses what follows the command's name. Returns whether there is something to do.
+bool parse(cli::CommandLine& line, int argc, const char* const* argv) {
+  line.parse(argc - 1, argv + 1);
+  if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return false;
+  if (!line.has("file")) throw Error("missing sweep file; try " + line.program() + " sweep.h5");
+  return true;
+}
+
+struct Status {
+  std::int64_t num_runs = 0;
+  std::map<std::string, std::int64_t> by_status;
+  bool is_alive = false;
+  double core_hours = 0;
+  TimeLeft left;
+  std::vector<Group> groups;
+
+  std::int64_t count(const char* status) const {
+    const auto found = by_status.find(status);
+    return found == by_status.end() ? 0 : found->second;
+  }
+  std::int64_t num_over() const { return count("clogged") + count("flowing") + count("failed"); }
+};
+
+Status status_of(const std::string& path, double confidence) {
+  const store::SweepFile file = store::read_sweep(path);
+  Status status;
+  const std::int64_t planned = plan_of(file).size();
+  status.num_runs = planned;
+  status.is_alive = store::Journal::is_open(path + ".journal");
+  std::vector<double> finished, running;
+  for (const RunRow& row : file.rows) {
+    if (row.task >= planned) ++status.num_runs;  // of an earlier config
+    ++status.by_status[std::string(row.status.view())];
+    status.core_hours += row.wall_seconds / 3600;
+    const bool is_over = row.status.view() != "running" && row.status.view() != "interrupted";
+    (is_over ? finished : running).push_back(row.wall_seconds);
+  }
+  const auto num_waiting =
+      static_cast<double>(status.num_runs - static_cast<std::int64_t>(finished.size() + running.size()));
+  status.left = time_left(finished, running, num_waiting, std::max<std::size_t>(1, running.size()));
+  if (!file.rows.empty()) status.groups = group_runs(file.rows, confidence);
+  return status;
+}
+
+std::string to_text(const std::string& path, const Status& status, double confidence) {
+  const auto number = [](std::int64_t value) { return std::to_string(value); };
+  std::string text = path + ": " + number(status.num_over()) + " of " + number(status.num_runs) +
+                     " runs over, " + number(status.count("clogged")) + " clogged, " +
+                     number(status.count("flowing")) + " flowing, " + number(status.count("failed")) +
+                     " failed";
+  if (const std::int64_t under_way = status.count("running") + status.count("interrupted"); under_way > 0)
+    text += "; " + number(under_way) + (status.is_alive ? " running" : " interrupted");
+  char hours[64];
+  std::snprintf(hours, sizeof hours, "; %.3g core-hours", status.core_hours);
+  text += hours;
+  if (status.num_over() == status.num_runs)
+    text += "; complete";
+  else if (!status.is_alive)
+    text += "; no sweep is writing to it: the command that began it goes on";
+  else
+    text += ", " + status.left.text();
+  text += '\n';
+  if (!status.groups.empty()) text += '\n' + to_text(status.groups, confidence);
+  return text;
+}
+
+std::string to_json(const Status& status, double confidence) {
+  nlohmann::ordered_json all;
+  all["runs"] = status.num_runs;
+  all["over"] = status.num_over();
+  for (const char* name : {"clogged", "flowing", "failed"}) all[name] = status.count(name);
+  all["under_way"] = status.count("running") + status.count("interrupted");
+  all["alive"] = status.is_alive;
+  all["core_hours"] = status.core_hours;
+  all["seconds_left"] = status.left.is_known
+                            ? nlohmann::ordered_json{status.left.shortest, status.left.longest}
+                            : nlohmann::ordered_json();
+  all["groups"] = status.groups.empty()
+                      ? nlohmann::ordered_json::array()
+                      : nlohmann::ordered_json::parse(to_json(status.groups, confidence)).at("groups");
+  return all.dump(2) + '\n';
+}
+
+/// What is wrong with a row; empty if nothing is.
+std::string fault_of(const RunRow& row) {
+  static const std::set<std::string_view> known = {"clogged", "flowing", "failed", "running", "interrupted"};
+  if (!known.contains(row.status.view())) return "unknown status '" + std::string(row.status.view()) + "'";
+  if (row.status.view() == "failed") return row.message.view().empty() ? "failed without a reason" : "";
+  if (!std::isfinite(row.distance) || !std::isfinite(row.time) || !std::isfinite(row.shape_parameter))
+    return "a result that is not a number";
+  if (row.time < 0 || row.time > row.max_time + row.time_step || row.steps < 0 || row.wall_seconds < 0)
+    return "a time out of its range";
+  return "";
+}
+
+const RunRow& row_of_task(const store::SweepFile& file, const std::string& word) {
+  const double task = sweep::to_number(word);
+  for (const RunRow& row : file.rows)
+    if (static_cast<double>(row.task) == task) return row;
+  throw Error("the file has no task " + word + "; its column `task` names those it has");
+}
+
+/// Parameters of a run of the file's last config.
+std::int64_t task_in_plan(const sweep::Plan& plan, const RunRow& row) {
+  for (std::int64_t task = 0; task < plan.size(); ++task)
+    if (sweep::identity(sweep::describe(plan.task(task))) == sweep::identity(row)) return task;
+  throw Error("task " + std::to_string(row.task) +
+              " is not of the file's last config (a config of other lists made it, or another version of the "
+              "program)");
+}
+
+std::vector<std::string> differing_results(const RunRow& a, const RunRow& b) {
+  std::vector<std::string> all;
+  const auto compare = [&](const char* name, const auto& x, const auto& y) {
+    if (std::memcmp(&x, &y, sizeof x) != 0) all.emplace_back(name);
+  };
+  compare("status", a.status, b.status);
+  compare("clogged_by", a.clogged_by, b.clogged_by);
+  compare("distance", a.distance, b.distance);
+  compare("lateral_displacement", a.lateral_displacement, b.lateral_displacement);
+  compare("time", a.time, b.time);
+  compare("mean_speed", a.mean_speed, b.mean_speed);
+  compare("kinetic_energy_ratio", a.kinetic_energy_ratio, b.kinetic_energy_ratio);
+  compare("shape_parameter", a.shape_parameter, b.shape_parameter);
+  compare("steps", a.steps, b.steps);
+  return all;
+}
+
+}  // namespace
+
+int clogsweep_status(int argc, const char* const* argv) {
+  cli::CommandLine line =
+      command("status", R"(clogsweep status says how far a sweep is, while it runs or afterwards.
+
+  clogsweep status sweep.h5
+  clogsweep status sweep.h5 --watch
+
+Clogging lengths count runs under way as not clogged so far, at the distance they have reached: finished runs alone
+would give too short ones, since runs that clog early finish first.
+)");
+  line.add_options()("watch", "again every two seconds, until the sweep ends")(
+      "format", po::value<std::string>()->default_value("text"), "text or json")(
+      "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals");
+  if (!parse(line, argc, argv)) return cli::exit_success;
+  const std::string format = line.get("format");
+  if (format != "text" && format != "json")
+    throw Error("invalid --format=" + format + " (is not one of text, json)");
+  const double confidence = line.get_positive("confidence");
+  if (confidence >= 1)
+    throw Error("invalid --confidence=" + line.get("confidence") + " (must lie between 0 and 1)");
+  cli::catch_stop_signals();
+  while (true) {
+    const Status status = status_of(line.get("file"), confidence);
+    if (line.has("watch") && format == "text") std::cout << "\x1b[H\x1b[2J";  // clear the screen
+    std::cout << (format == "json" ? to_json(status, confidence)
+                                   : to_text(line.get("file"), status, confidence))
+              << std::flush;
+    if (!line.has("watch") || !status.is_alive) return cli::exit_success;
+    for (int i = 0; i < 20; ++i) {
+      if (cli::stop_signalled()) return cli::exit_success;
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+  }
+}
+
+int clogsweep_verify(int argc, const char* const* argv) {
+  cli::CommandLine line =
+      command("verify", R"(clogsweep verify reads every row of a sweep's file and says whether it is whole.
+
+  clogsweep verify sweep.h5
+
+Exit code 0: every row can be read and makes sense, none is there twice. 1: one does not. 2: it cannot be read.
+)");
+  if (!parse(line, argc, argv)) return cli::exit_success;
+  const store::SweepFile file = store::read_sweep(line.get("file"));
+  const std::int64_t planned = plan_of(file).size();
+  std::unordered_map<std::string, std::int64_t> seen;
+  std::int64_t num_faults = 0;
+  for (const RunRow& row : file.rows) {
+    std::string fault = fault_of(row);
+    const auto [first, is_new] = seen.emplace(sweep::identity(row), row.task);
+    if (fault.empty() && !is_new) fault = "the same run as task " + std::to_string(first->second);
+    if (fault.empty()) continue;
+    ++num_faults;
+    std::cout << "task " << row.task << ": " << fault << '\n';
+  }
+  std::cout << line.get("file") << ": " << file.rows.size() << " rows of " << planned << " runs, "
+            << (num_faults == 0 ? "all whole" : std::to_string(num_faults) + " faulty") << '\n';
+  return num_faults == 0 ? cli::exit_success : cli::exit_internal_fault;
+}
+
+int clogsweep_replay(int argc, const char* const* argv) {
+  cli::CommandLine line = command(
+      "replay", R"(clogsweep replay does one run of a sweep once more and compares the results bit for bit.
+
+  clogsweep replay sweep.h5 12
+
+Exit code 0: the same bits. 1: other results. The run uses the row's instruction set.
+)");
+  line.add_options()("task", po::value<std::string>(), "the row's number, column `task`");
+  line.add_positional("task", 1);
+  if (!parse(line, argc, argv)) return cli::exit_success;
+  if (!line.has("task")) throw Error("missing task; try clogsweep replay " + line.get("file") + " 0");
+  const store::SweepFile file = store::read_sweep(line.get("file"));
+  const RunRow& row = row_of_task(file, line.get("task"));
+  if (row.status.view() == "running" || row.status.view() == "interrupted")
+    throw Error("task " + line.get("task") + " is not over; let the sweep go on first");
+  const sweep::Plan plan = plan_of(file);
+  const std::int64_t task = task_in_plan(plan, row);
+  if (row.model.view() == "dp") use_instruction_set(std::string(row.instruction_set.view()));
+  sweep::RunJob job(plan, task);
+  while (!job.advance()) {
+  }
+  const RunRow again = job.row();
+  const std::vector<std::string> differing = differing_results(row, again);
+  std::printf("task %s: %s, distance %.17g, %.3g s\n", line.get("task").c_str(), again.status.view().data(),
+              again.distance, again.wall_seconds);
+  if (differing.empty()) {
+    std::printf("the same bits as the row's\n");
+    return cli::exit_success;
+  }
+  std::printf("differs from the row in:");
+  for (const std::string& name : differing) std::printf(" %s", name.c_str());
+  std::printf("\nthe row has %s, distance %.17g\n", row.status.view().data(), row.distance);
+  return cli::exit_internal_fault;
+}
+
+}  // namespace clog

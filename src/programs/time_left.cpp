@@ -1,0 +1,41 @@
+#include "time_left.hpp"
+
+#include <cstdio>
+#include <vector>
+
+#include "clog/fit/clogging_length.hpp"
+
+namespace clog {
+
+std::string readable_duration(double seconds) {
+  char text[32];
+  if (seconds < 90)
+    std::snprintf(text, sizeof text, "%.0f s", seconds);
+  else if (seconds < 90 * 60)
+    std::snprintf(text, sizeof text, "%.0f min", seconds / 60);
+  else if (seconds < 48 * 3600)
+    std::snprintf(text, sizeof text, "%.1f h", seconds / 3600);
+  else
+    std::snprintf(text, sizeof text, "%.1f days", seconds / 86400);
+  return text;
+}
+
+std::string TimeLeft::text() const {
+  return is_known ? readable_duration(shortest) + " to " + readable_duration(longest) + " left"
+                  : "time left not known yet";
+}
+
+TimeLeft time_left(std::span<const double> finished, std::span<const double> running, double num_waiting,
+                   std::size_t num_ranks) {
+  if (finished.empty()) return {};
+  std::vector<fit::Observation> durations;
+  for (const double seconds : finished) durations.push_back({seconds, true});
+  for (const double seconds : running) durations.push_back({seconds, false});
+  const fit::CloggingLength mean = fit::fit_clogging_length(durations, 0.8);
+  double tail = 0;
+  for (std::size_t i = 1; i <= running.size(); ++i) tail += 1.0 / static_cast<double>(i);
+  const double means_left = num_waiting / static_cast<double>(num_ranks) + tail;
+  return {true, means_left * mean.lower, means_left * mean.upper};
+}
+
+}  // namespace clog
