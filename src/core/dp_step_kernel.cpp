@@ -189,50 +189,37 @@ KickSums kick_with(int n, const KickTerms& terms, const InterfaceCoefficients& i
   const V centre_x = all(-3 * interface.centre_x), centre_y = all(-3 * interface.centre_y);
   const V h1 = all(coefficients.h1), m1 = all(coefficients.m1);
   const V h2 = all(coefficients.h2), m2 = all(coefficients.m2);
-  const double one_s = 1 / (1 + coefficients.h1 * terms.rate);
-  const V same_s = all(one_s), same_keep = all(1 - coefficients.h2 * terms.rate);
+  const double one_s = varying_rate ? 1 : 1 / (1 + coefficients.h1 * terms.rate);
+  const V same_s = all(one_s), same_keep = all(one_s * (1 - coefficients.h2 * terms.rate));
   V spread_x = all(0), spread_y = all(0);
   V w_x = all(0), w_y = all(0), gw_x = all(0), gw_y = all(0), gg_xx = all(0), gg_xy = all(0), gg_yy = all(0);
   V s_sum = all(0), g_xx = all(0), g_xy = all(0), g_yx = all(0), g_yy = all(0);
   for_vectors(n, [&](int i, auto keep) CLOG_INLINE {
-    const V tx = load(a.tangent_x + i), ty = load(a.tangent_y + i);
-    const V tangent_before_x = load_at(a.tangent_x + i - 1), tangent_before_y = load_at(a.tangent_y + i - 1);
+    // What takes long comes first: the processor does not look far ahead.
     const V length = load(a.length + i), length_before = load_at(a.length + i - 1);
-    const V ex = hn::Mul(length, tx), ey = hn::Mul(length, ty);
-    const V before_x = hn::Mul(length_before, tangent_before_x);
-    const V before_y = hn::Mul(length_before, tangent_before_y);
-    const V chord_x = hn::Add(ex, before_x), chord_y = hn::Add(ey, before_y);
+    V unevenness, s;
+    if constexpr (!elastic)
+      unevenness = hn::Div(hn::Sub(length, length_before), hn::Add(length, length_before));
+    if constexpr (varying_rate) s = hn::Div(all(1), hn::MulAdd(h1, load(a.rate + i), all(1)));
 
-    V fx = load(a.push_x + i), fy = load(a.push_y + i);
-    fx = hn::MulAdd(half_pressure, chord_y, fx);
-    fy = hn::NegMulAdd(half_pressure, chord_x, fy);
-    if constexpr (elastic) {
-      const V pull = hn::MulAdd(spring, length, line_tension);
-      const V pull_before = hn::MulAdd(spring, length_before, line_tension);
-      fx = hn::Add(fx, hn::MulSub(pull, tx, hn::Mul(pull_before, tangent_before_x)));
-      fy = hn::Add(fy, hn::MulSub(pull, ty, hn::Mul(pull_before, tangent_before_y)));
-    } else {
-      fx = hn::MulAdd(line_tension, hn::Sub(tx, tangent_before_x), fx);
-      fy = hn::MulAdd(line_tension, hn::Sub(ty, tangent_before_y), fy);
-      const V cosine = hn::Max(hn::MulAdd(tx, tangent_before_x, hn::Mul(ty, tangent_before_y)), all(0));
-      const V unevenness = hn::Mul(hn::Sub(length, length_before), inverse(hn::Add(length, length_before)));
-      const V spread = hn::Mul(hn::Mul(spreading, unevenness), hn::Mul(cosine, cosine));
-      fx = hn::MulAdd(spread, chord_x, fx);
-      fy = hn::MulAdd(spread, chord_y, fy);
-      spread_x = hn::MulAdd(keep(spread), chord_x, spread_x);
-      spread_y = hn::MulAdd(keep(spread), chord_y, spread_y);
-    }
+    const V before_x = load_at(a.x + i - 1), before_y = load_at(a.y + i - 1);
+    const V after_x = load_at(a.x + i + 1), after_y = load_at(a.y + i + 1);
+    // The chord between the neighbours, turned outwards.
+    const V out_x = hn::Sub(after_y, before_y), out_y = hn::Sub(before_x, after_x);
+    V fx = hn::MulAdd(half_pressure, out_x, load(a.push_x + i));
+    V fy = hn::MulAdd(half_pressure, out_y, load(a.push_y + i));
     V gxx, gxy, gyx, gyy;
     if constexpr (on_area) {
-      const V from_x = hn::MulAdd(all(3), load(a.x + i), centre_x);
-      const V from_y = hn::MulAdd(all(3), load(a.y + i), centre_y);
-      const V xx = hn::MulSub(ex, ex, hn::Mul(before_x, before_x));
-      const V xy = hn::MulSub(ex, ey, hn::Mul(before_x, before_y));
-      const V yy = hn::MulSub(ey, ey, hn::Mul(before_y, before_y));
-      gxx = keep(hn::MulAdd(from_x, chord_y, xy));
-      gxy = keep(hn::Neg(hn::MulAdd(from_x, chord_x, xx)));
-      gyx = keep(hn::MulAdd(from_y, chord_y, yy));
-      gyy = keep(hn::Neg(hn::MulAdd(from_y, chord_x, xy)));
+      // A vertex moves the area's centroid by the triangle between it and its neighbours: m n^T + k I, with m
+      // the sum of the three corners relative to the centroid, n the chord turned outwards, k twice the area.
+      const V x = load(a.x + i), y = load(a.y + i);
+      const V corners_x = hn::Add(hn::Add(before_x, after_x), hn::Add(x, centre_x));
+      const V corners_y = hn::Add(hn::Add(before_y, after_y), hn::Add(y, centre_y));
+      const V twice_area = hn::MulAdd(hn::Sub(x, before_x), out_x, hn::Mul(hn::Sub(y, before_y), out_y));
+      gxx = keep(hn::MulAdd(corners_x, out_x, twice_area));
+      gxy = keep(hn::Mul(corners_x, out_y));
+      gyx = keep(hn::Mul(corners_y, out_x));
+      gyy = keep(hn::MulAdd(corners_y, out_y, twice_area));
       store(gxx, a.grad_xx + i);
       store(gxy, a.grad_xy + i);
       store(gyx, a.grad_yx + i);
@@ -243,19 +230,38 @@ KickSums kick_with(int n, const KickTerms& terms, const InterfaceCoefficients& i
       fx = hn::Add(fx, vertex_weight);
     }
 
-    V s = same_s, kept = same_keep;
-    if constexpr (varying_rate) {
-      const V rate = load(a.rate + i);
-      s = inverse(hn::MulAdd(h1, rate, all(1)));
-      kept = hn::NegMulAdd(h2, rate, all(1));
+    const V tx = load(a.tangent_x + i), ty = load(a.tangent_y + i);
+    const V tangent_before_x = load_at(a.tangent_x + i - 1), tangent_before_y = load_at(a.tangent_y + i - 1);
+    if constexpr (elastic) {
+      const V pull = hn::MulAdd(spring, length, line_tension);
+      const V pull_before = hn::MulAdd(spring, length_before, line_tension);
+      fx = hn::MulAdd(pull, tx, hn::NegMulAdd(pull_before, tangent_before_x, fx));
+      fy = hn::MulAdd(pull, ty, hn::NegMulAdd(pull_before, tangent_before_y, fy));
+    } else {
+      fx = hn::MulAdd(line_tension, hn::Sub(tx, tangent_before_x), fx);
+      fy = hn::MulAdd(line_tension, hn::Sub(ty, tangent_before_y), fy);
+      const V cosine = hn::Max(hn::MulAdd(tx, tangent_before_x, hn::Mul(ty, tangent_before_y)), all(0));
+      const V spread = hn::Mul(hn::Mul(spreading, hn::Mul(cosine, cosine)), unevenness);
+      fx = hn::NegMulAdd(spread, out_y, fx);
+      fy = hn::MulAdd(spread, out_x, fy);
+      spread_x = hn::NegMulAdd(keep(spread), out_y, spread_x);
+      spread_y = hn::MulAdd(keep(spread), out_x, spread_y);
     }
-    const V wx = hn::Mul(hn::MulAdd(m1, fx, load(a.vx + i)), s);
-    const V wy = hn::Mul(hn::MulAdd(m1, fy, load(a.vy + i)), s);
+
+    // Where s is the same for all it is left to the end.
+    V wx = hn::MulAdd(m1, fx, load(a.vx + i)), wy = hn::MulAdd(m1, fy, load(a.vy + i));
+    V kept = same_keep;
+    if constexpr (varying_rate) {
+      store(s, a.damping + i);
+      kept = hn::NegMulAdd(h2, load(a.rate + i), all(1));
+      wx = hn::Mul(wx, s);
+      wy = hn::Mul(wy, s);
+    }
     store(hn::MulAdd(wx, kept, hn::Mul(m2, fx)), a.vx + i);
     store(hn::MulAdd(wy, kept, hn::Mul(m2, fy)), a.vy + i);
     if (terms.keeps_kicked) {
-      store(wx, a.kicked_x + i);
-      store(wy, a.kicked_y + i);
+      store(hn::Mul(wx, same_s), a.kicked_x + i);
+      store(hn::Mul(wy, same_s), a.kicked_y + i);
     }
     w_x = hn::Add(w_x, keep(wx));
     w_y = hn::Add(w_y, keep(wy));
@@ -295,6 +301,10 @@ KickSums kick_with(int n, const KickTerms& terms, const InterfaceCoefficients& i
                 .g_yy = sum(g_yy)};
   if constexpr (!varying_rate) {
     sums.s = n * one_s;
+    sums.w_x *= one_s;
+    sums.w_y *= one_s;
+    sums.gw_x *= one_s;
+    sums.gw_y *= one_s;
     sums.gg_xx *= one_s;
     sums.gg_xy *= one_s;
     sums.gg_yy *= one_s;
@@ -319,13 +329,13 @@ void drift_with(int n, const KickTerms& terms, const KickCoefficients& coefficie
                 const double (&area)[2], double time_step, const StepArrays& arrays) {
   const StepArrays a = arrays;
   const V cx = all(c[0]), cy = all(c[1]), ax = all(area[0]), ay = all(area[1]), dt = all(time_step);
-  const V h1 = all(coefficients.h1), weight = all(coefficients.weight);
+  const V weight = all(coefficients.weight);
   const V same = all(coefficients.weight / (1 + coefficients.h1 * terms.rate));
   for_vectors(n, [&](int i, auto) CLOG_INLINE {
     V vx = load(a.vx + i), vy = load(a.vy + i);
     if constexpr (coupled) {
       V share = same;
-      if constexpr (varying_rate) share = hn::Mul(weight, inverse(hn::MulAdd(h1, load(a.rate + i), all(1))));
+      if constexpr (varying_rate) share = hn::Mul(weight, load(a.damping + i));
       V pull_x = cx, pull_y = cy;
       if constexpr (on_area) {
         pull_x = hn::NegMulAdd(load(a.grad_xx + i), ax, hn::NegMulAdd(load(a.grad_yx + i), ay, cx));

@@ -24,9 +24,10 @@ struct StepArrays {
   double *push_x, *push_y;                        ///< contact force on the vertices
   double *grad_xx, *grad_xy, *grad_yx, *grad_yy;  ///< 6 a times the centroid's gradient
   double* rate;                                   ///< drag rate of a vertex [1/t0], if it differs
+  double* damping;                                ///< s of a vertex, with the rate; see KickSums
   double *kicked_x, *kicked_y;                    ///< w, if it is wanted; see KickCoefficients
 };
-inline constexpr int num_step_arrays = 16;
+inline constexpr int num_step_arrays = 17;
 
 /// Coefficients of one kick, all in the units of dp_kernel.hpp. With r a vertex's drag rate,
 ///   w = (v + m1 F)/(1 + h1 r),   q = w (1 - h2 r) + m2 F,   v' = q + weight/(1 + h1 r) (c - G^T A):

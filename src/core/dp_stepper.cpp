@@ -17,10 +17,10 @@ DpStepper::DpStepper(const RunParameters& run, const DpForces& forces)
   memory_ = hwy::AllocateAligned<double>(static_cast<std::size_t>(kernel::num_step_arrays) * stride);
   std::fill_n(memory_.get(), static_cast<std::size_t>(kernel::num_step_arrays) * stride, 0.0);
   double* next = memory_.get() + line;
-  for (double** array :
-       {&arrays_.x, &arrays_.y, &arrays_.vx, &arrays_.vy, &arrays_.tangent_x, &arrays_.tangent_y,
-        &arrays_.length, &arrays_.push_x, &arrays_.push_y, &arrays_.grad_xx, &arrays_.grad_xy,
-        &arrays_.grad_yx, &arrays_.grad_yy, &arrays_.rate, &arrays_.kicked_x, &arrays_.kicked_y}) {
+  for (double** array : {&arrays_.x, &arrays_.y, &arrays_.vx, &arrays_.vy, &arrays_.tangent_x,
+                         &arrays_.tangent_y, &arrays_.length, &arrays_.push_x, &arrays_.push_y,
+                         &arrays_.grad_xx, &arrays_.grad_xy, &arrays_.grad_yx, &arrays_.grad_yy,
+                         &arrays_.rate, &arrays_.damping, &arrays_.kicked_x, &arrays_.kicked_y}) {
     *array = next;
     next += stride;
   }
