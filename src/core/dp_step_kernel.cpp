@@ -31,24 +31,22 @@ inline void store(V v, double* p) { hn::Store(v, D(), p); }
 inline V all(double value) { return hn::Set(D(), value); }
 inline double sum(V v) { return hn::GetLane(hn::SumOfLanes(D(), v)); }
 
-/// 1/sqrt(v) and 1/v to the last bit or two.
-inline V inverse_sqrt(V v) {
+/// sqrt(v) and 1/sqrt(v) to the last bit or two.
+struct Root {
+  V root, inverse;
+};
+inline Root square_root(V v) {
 #if HWY_TARGET == HWY_AVX3
-  const V half = hn::Mul(all(0.5), v);
-  V guess{_mm512_rsqrt14_pd(v.raw)};
-  for (int i = 0; i < 2; ++i) guess = hn::Mul(guess, hn::NegMulAdd(half, hn::Mul(guess, guess), all(1.5)));
-  return guess;
+  // A guess of 14 bits and the first terms of (1 - error)^(-1/2).
+  const V inverse{_mm512_rsqrt14_pd(v.raw)};
+  const V root = hn::Mul(v, inverse);
+  const V error = hn::NegMulAdd(root, inverse, all(1));
+  const V missing =
+      hn::Mul(error, hn::MulAdd(error, hn::MulAdd(error, all(5.0 / 16), all(3.0 / 8)), all(1.0 / 2)));
+  return {hn::MulAdd(root, missing, root), hn::MulAdd(inverse, missing, inverse)};
 #else
-  return hn::Div(all(1), hn::Sqrt(v));
-#endif
-}
-inline V inverse(V v) {
-#if HWY_TARGET == HWY_AVX3
-  V guess{_mm512_rcp14_pd(v.raw)};
-  for (int i = 0; i < 2; ++i) guess = hn::MulAdd(guess, hn::NegMulAdd(v, guess, all(1)), guess);
-  return guess;
-#else
-  return hn::Div(all(1), v);
+  const V root = hn::Sqrt(v);
+  return {root, hn::Div(all(1), root)};
 #endif
 }
 
@@ -77,7 +75,8 @@ inline void close(double* p, int n) {
   for (int k = 0; k < edges_per_group; ++k) p[n + k] = p[k];
 }
 
-Sums measure(int n, const StepArrays& arrays) {
+template <bool with_moments>
+Sums measure_with(int n, const StepArrays& arrays) {
   const StepArrays a = arrays;  // a copy that stores cannot change
   V perimeter = all(0), twice_area = all(0), moment_x = all(0), moment_y = all(0);
   for_vectors(n, [&](int i, auto keep) CLOG_INLINE {
@@ -85,19 +84,24 @@ Sums measure(int n, const StepArrays& arrays) {
     const V next_x = load_at(a.x + i + 1), next_y = load_at(a.y + i + 1);
     const V ex = hn::Sub(next_x, x), ey = hn::Sub(next_y, y);
     const V length2 = hn::MulAdd(ex, ex, hn::Mul(ey, ey));
-    const V inverse_length = inverse_sqrt(length2);
-    const V length = hn::Mul(length2, inverse_length);
+    const auto [length, inverse_length] = square_root(length2);
     const V cross = keep(hn::MulSub(x, ey, hn::Mul(y, ex)));
     store(hn::Mul(ex, inverse_length), a.tangent_x + i);
     store(hn::Mul(ey, inverse_length), a.tangent_y + i);
     store(length, a.length + i);
     perimeter = hn::Add(perimeter, keep(length));
     twice_area = hn::Add(twice_area, cross);
-    moment_x = hn::MulAdd(cross, hn::Add(x, next_x), moment_x);
-    moment_y = hn::MulAdd(cross, hn::Add(y, next_y), moment_y);
+    if constexpr (with_moments) {
+      moment_x = hn::MulAdd(cross, hn::Add(x, next_x), moment_x);
+      moment_y = hn::MulAdd(cross, hn::Add(y, next_y), moment_y);
+    }
   });
   for (double* p : {a.tangent_x, a.tangent_y, a.length}) close(p, n);
   return {sum(twice_area) / 2, sum(perimeter), sum(moment_x) / 6, sum(moment_y) / 6};
+}
+
+Sums measure(int n, bool with_moments, const StepArrays& arrays) {
+  return with_moments ? measure_with<true>(n, arrays) : measure_with<false>(n, arrays);
 }
 
 void clear_group(int group, const StepArrays& a) {
@@ -130,12 +134,12 @@ inline Push push_off_point(int group, std::uint8_t edges, V px, V py, V reach, V
     const M touches = hn::And(hn::Lt(distance2, hn::Mul(reach, reach)), hn::LoadMaskBits(D(), bits));
     if (hn::AllFalse(D(), touches)) continue;
     // A point on the very centre gets no direction, but no NaN.
-    const V inverse_distance = inverse_sqrt(hn::Max(distance2, all(1e-300)));
+    const V inverse_distance = square_root(hn::Max(distance2, all(1e-300))).inverse;
     const V push =
         hn::IfThenElseZero(touches, hn::Mul(stiffness, hn::MulSub(reach, inverse_distance, all(1))));
     const V fx = hn::Mul(push, dx), fy = hn::Mul(push, dy);
     // The edge's two vertices share it as the nearest point divides the edge.
-    const V fraction = hn::Mul(along, inverse(length));
+    const V fraction = hn::Div(along, length);
     const V end_x = hn::Mul(fraction, fx), end_y = hn::Mul(fraction, fy);
     store(hn::Add(load(a.push_x + i), hn::Sub(fx, end_x)), a.push_x + i);
     store(hn::Add(load(a.push_y + i), hn::Sub(fy, end_y)), a.push_y + i);
@@ -393,10 +397,9 @@ void near_wall_rates_with(int n, const NearWalls& walls, const NearWallDrag& dra
       if constexpr (alike)
         nearest2 = hn::Min(nearest2, r2);
       else
-        nearest = hn::Min(nearest, hn::MulSub(r2, inverse_sqrt(r2), load_at(circle.radius + i)));
+        nearest = hn::Min(nearest, hn::Sub(square_root(r2).root, load_at(circle.radius + i)));
     }
-    if constexpr (alike)
-      nearest = hn::Min(nearest, hn::Sub(hn::Mul(nearest2, inverse_sqrt(nearest2)), all(walls.radius)));
+    if constexpr (alike) nearest = hn::Min(nearest, hn::Sub(square_root(nearest2).root, all(walls.radius)));
     const V distance = hn::Max(nearest, shortest);
     V rise;
     if constexpr (four_thirds)

@@ -86,8 +86,8 @@ struct NearWallDrag {
 /// One instruction set's versions of the passes.
 struct StepKernel {
   const char* name;  ///< of the instruction set
-  /// First pass: edges and sums over them.
-  Sums (*measure)(int n, const StepArrays& arrays);
+  /// First pass: edges and sums over them; moments of the area only if they are wanted.
+  Sums (*measure)(int n, bool with_moments, const StepArrays& arrays);
   /// Then contacts, on the groups that the lists name. `clear` empties all groups.
   void (*clear_pushes)(int n, const StepArrays& arrays);
   void (*push)(int n, const WallContacts::Item* walls, std::size_t num_walls, const SelfContacts::Item* self,

@@ -50,7 +50,7 @@ DpStepper::Edges DpStepper::load(const DropletState& state) {
   copy(state.velocity.data(), arrays_.vx);
   copy(state.velocity.data() + n_, arrays_.vy);
   kernel_.clear_pushes(n_, arrays_);  // the lists may name other groups than before
-  sums_ = kernel_.measure(n_, arrays_);
+  sums_ = kernel_.measure(n_, terms_.on_area, arrays_);
   return {.perimeter = sums_.perimeter, .shortest = *std::min_element(arrays_.length, arrays_.length + n_)};
 }
 
@@ -117,7 +117,7 @@ Droplet::Work DpStepper::kick_and_drift(const DropletState& frame,
   }
   const Droplet::Work now = measures_power ? power(coefficients, coupling, c, a) : Droplet::Work{};
   kernel_.drift(n_, terms_, is_coupled_, coefficients, c, a, drift_time, arrays_);
-  if (drift_time > 0) sums_ = kernel_.measure(n_, arrays_);
+  if (drift_time > 0) sums_ = kernel_.measure(n_, terms_.on_area, arrays_);
   return now;
 }
 
