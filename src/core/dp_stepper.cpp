@@ -51,7 +51,8 @@ DpStepper::Edges DpStepper::load(const DropletState& state) {
   copy(state.velocity.data() + n_, arrays_.vy);
   kernel_.clear_pushes(n_, arrays_);  // the lists may name other groups than before
   sums_ = kernel_.measure(n_, terms_.on_area, arrays_);
-  return {.perimeter = sums_.perimeter, .shortest = *std::min_element(arrays_.length, arrays_.length + n_)};
+  return {.perimeter = sums_.perimeter,
+          .shortest = Eigen::Map<const Eigen::ArrayXd>(arrays_.length, n_).minCoeff()};
 }
 
 void DpStepper::store(DropletState& state) const {
