@@ -71,8 +71,9 @@ struct KickTerms {
 };
 /// What may be nearest to the vertices.
 struct NearWalls {
-  const WallSlot* slots;
-  int num_slots;
+  const WallContacts::Item* items;  ///< circles, by group
+  std::size_t num_items;
+  double range;                  ///< of the items' reach [sigma]
   bool alike;                    ///< have all circles this radius?
   double radius;                 ///< [sigma]
   const double* other_distance;  ///< to anything that is no circle [sigma]

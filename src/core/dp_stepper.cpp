@@ -152,12 +152,10 @@ void DpStepper::push_off_everything(const DropletState& frame) {
     kernel::shrink_to_wedge_distance(n_, arrays_.x, arrays_.y, kernel::place_in(frame.frame, wedge),
                                      distance_.data());
   const WallContacts& nearest = forces_->nearest_walls();
-  slots_.clear();
-  for (int s = 0; s < nearest.num_slots(); ++s)
-    slots_.push_back({nearest.slot_x(s), nearest.slot_y(s), nearest.slot_radius(s)});
   kernel_.near_wall_rates(n_,
-                          {.slots = slots_.data(),
-                           .num_slots = nearest.num_slots(),
+                          {.items = nearest.items().data(),
+                           .num_items = nearest.items().size(),
+                           .range = nearest.range(),
                            .alike = nearest.radii_are_equal(),
                            .radius = nearest.largest_radius(),
                            .other_distance = distance_.data()},

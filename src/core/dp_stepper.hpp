@@ -37,7 +37,6 @@ class DpStepper {
   hwy::AlignedFreeUniquePtr<double[]> memory_;
   kernel::StepArrays arrays_;
   Eigen::ArrayXd distance_;  // to the nearest wedge
-  std::vector<kernel::WallSlot> slots_;
   Eigen::Array2d wetting_spread_{0, 0};  // see DpForces::add_wetting
   kernel::Sums sums_{};
   kernel::KickTerms terms_{};
