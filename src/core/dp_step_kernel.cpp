@@ -115,6 +115,12 @@ void clear_pushes(int n, const StepArrays& a) {
   for (int group = 0; group * edges_per_group <= n; ++group) clear_group(group, a);
 }
 
+/// Every lane to the next one; 0 to the first.
+inline V to_next_lane(V v) {
+  alignas(64) constexpr std::int64_t before[8] = {0, 0, 1, 2, 3, 4, 5, 6};
+  return hn::IfThenZeroElse(hn::FirstN(D(), 1), hn::TableLookupLanes(v, hn::SetTableIndices(D(), before)));
+}
+
 /// Pushes the listed edges of a group off a point by stiffness (reach - distance), where that is positive.
 /// Returns the sum of the pushes.
 struct Push {
@@ -141,10 +147,13 @@ inline Push push_off_point(int group, std::uint8_t edges, V px, V py, V reach, V
     // The edge's two vertices share it as the nearest point divides the edge.
     const V fraction = hn::Div(along, length);
     const V end_x = hn::Mul(fraction, fx), end_y = hn::Mul(fraction, fy);
-    store(hn::Add(load(a.push_x + i), hn::Sub(fx, end_x)), a.push_x + i);
-    store(hn::Add(load(a.push_y + i), hn::Sub(fy, end_y)), a.push_y + i);
-    hn::StoreU(hn::Add(load_at(a.push_x + i + 1), end_x), D(), a.push_x + i + 1);
-    hn::StoreU(hn::Add(load_at(a.push_y + i + 1), end_y), D(), a.push_y + i + 1);
+    // Added in one go: what was just stored elsewhere could not be loaded at once.
+    const V own_x = hn::Add(hn::Sub(fx, end_x), to_next_lane(end_x));
+    const V own_y = hn::Add(hn::Sub(fy, end_y), to_next_lane(end_y));
+    store(hn::Add(load(a.push_x + i), own_x), a.push_x + i);
+    store(hn::Add(load(a.push_y + i), own_y), a.push_y + i);
+    a.push_x[i + lanes] += hn::ExtractLane(end_x, lanes - 1);
+    a.push_y[i + lanes] += hn::ExtractLane(end_y, lanes - 1);
     total.x += sum(fx);
     total.y += sum(fy);
   }
