@@ -24,9 +24,10 @@ struct StepArrays {
   double *push_x, *push_y;                        ///< contact force on the vertices
   double *grad_xx, *grad_xy, *grad_yx, *grad_yy;  ///< 6 a times the centroid's gradient
   double* rate;                                   ///< drag rate of a vertex [1/t0], if it differs
+  double* damping;                                ///< s of a vertex, with the rate; see KickSums
   double *kicked_x, *kicked_y;                    ///< w, if it is wanted; see KickCoefficients
 };
-inline constexpr int num_step_arrays = 16;
+inline constexpr int num_step_arrays = 17;
 
 /// Coefficients of one kick, all in the units of dp_kernel.hpp. With r a vertex's drag rate,
 ///   w = (v + m1 F)/(1 + h1 r),   q = w (1 - h2 r) + m2 F,   v' = q + weight/(1 + h1 r) (c - G^T A):
@@ -70,8 +71,9 @@ struct KickTerms {
 };
 /// What may be nearest to the vertices.
 struct NearWalls {
-  const WallSlot* slots;
-  int num_slots;
+  const WallContacts::Item* items;  ///< circles, by group
+  std::size_t num_items;
+  double range;                  ///< of the items' reach [sigma]
   bool alike;                    ///< have all circles this radius?
   double radius;                 ///< [sigma]
   const double* other_distance;  ///< to anything that is no circle [sigma]
@@ -85,8 +87,8 @@ struct NearWallDrag {
 /// One instruction set's versions of the passes.
 struct StepKernel {
   const char* name;  ///< of the instruction set
-  /// First pass: edges and sums over them.
-  Sums (*measure)(int n, const StepArrays& arrays);
+  /// First pass: edges and sums over them; moments of the area only if they are wanted.
+  Sums (*measure)(int n, bool with_moments, const StepArrays& arrays);
   /// Then contacts, on the groups that the lists name. `clear` empties all groups.
   void (*clear_pushes)(int n, const StepArrays& arrays);
   void (*push)(int n, const WallContacts::Item* walls, std::size_t num_walls, const SelfContacts::Item* self,

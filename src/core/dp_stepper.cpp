@@ -17,10 +17,10 @@ DpStepper::DpStepper(const RunParameters& run, const DpForces& forces)
   memory_ = hwy::AllocateAligned<double>(static_cast<std::size_t>(kernel::num_step_arrays) * stride);
   std::fill_n(memory_.get(), static_cast<std::size_t>(kernel::num_step_arrays) * stride, 0.0);
   double* next = memory_.get() + line;
-  for (double** array :
-       {&arrays_.x, &arrays_.y, &arrays_.vx, &arrays_.vy, &arrays_.tangent_x, &arrays_.tangent_y,
-        &arrays_.length, &arrays_.push_x, &arrays_.push_y, &arrays_.grad_xx, &arrays_.grad_xy,
-        &arrays_.grad_yx, &arrays_.grad_yy, &arrays_.rate, &arrays_.kicked_x, &arrays_.kicked_y}) {
+  for (double** array : {&arrays_.x, &arrays_.y, &arrays_.vx, &arrays_.vy, &arrays_.tangent_x,
+                         &arrays_.tangent_y, &arrays_.length, &arrays_.push_x, &arrays_.push_y,
+                         &arrays_.grad_xx, &arrays_.grad_xy, &arrays_.grad_yx, &arrays_.grad_yy,
+                         &arrays_.rate, &arrays_.damping, &arrays_.kicked_x, &arrays_.kicked_y}) {
     *array = next;
     next += stride;
   }
@@ -50,8 +50,9 @@ DpStepper::Edges DpStepper::load(const DropletState& state) {
   copy(state.velocity.data(), arrays_.vx);
   copy(state.velocity.data() + n_, arrays_.vy);
   kernel_.clear_pushes(n_, arrays_);  // the lists may name other groups than before
-  sums_ = kernel_.measure(n_, arrays_);
-  return {.perimeter = sums_.perimeter, .shortest = *std::min_element(arrays_.length, arrays_.length + n_)};
+  sums_ = kernel_.measure(n_, terms_.on_area, arrays_);
+  return {.perimeter = sums_.perimeter,
+          .shortest = Eigen::Map<const Eigen::ArrayXd>(arrays_.length, n_).minCoeff()};
 }
 
 void DpStepper::store(DropletState& state) const {
@@ -117,7 +118,7 @@ Droplet::Work DpStepper::kick_and_drift(const DropletState& frame,
   }
   const Droplet::Work now = measures_power ? power(coefficients, coupling, c, a) : Droplet::Work{};
   kernel_.drift(n_, terms_, is_coupled_, coefficients, c, a, drift_time, arrays_);
-  if (drift_time > 0) sums_ = kernel_.measure(n_, arrays_);
+  if (drift_time > 0) sums_ = kernel_.measure(n_, terms_.on_area, arrays_);
   return now;
 }
 
@@ -151,12 +152,10 @@ void DpStepper::push_off_everything(const DropletState& frame) {
     kernel::shrink_to_wedge_distance(n_, arrays_.x, arrays_.y, kernel::place_in(frame.frame, wedge),
                                      distance_.data());
   const WallContacts& nearest = forces_->nearest_walls();
-  slots_.clear();
-  for (int s = 0; s < nearest.num_slots(); ++s)
-    slots_.push_back({nearest.slot_x(s), nearest.slot_y(s), nearest.slot_radius(s)});
   kernel_.near_wall_rates(n_,
-                          {.slots = slots_.data(),
-                           .num_slots = nearest.num_slots(),
+                          {.items = nearest.items().data(),
+                           .num_items = nearest.items().size(),
+                           .range = nearest.range(),
                            .alike = nearest.radii_are_equal(),
                            .radius = nearest.largest_radius(),
                            .other_distance = distance_.data()},

@@ -2,8 +2,6 @@
 
 #include <hwy/aligned_allocator.h>
 
-#include <vector>
-
 #include "clog/core/dp_forces.hpp"
 #include "clog/core/droplet.hpp"
 #include "dp_step_kernel.hpp"
@@ -36,8 +34,7 @@ class DpStepper {
   int n_;
   hwy::AlignedFreeUniquePtr<double[]> memory_;
   kernel::StepArrays arrays_;
-  Eigen::ArrayXd distance_;  // to the nearest wedge
-  std::vector<kernel::WallSlot> slots_;
+  Eigen::ArrayXd distance_;              // to the nearest wedge
   Eigen::Array2d wetting_spread_{0, 0};  // see DpForces::add_wetting
   kernel::Sums sums_{};
   kernel::KickTerms terms_{};
