@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <limits>
 #include <map>
@@ -243,6 +244,16 @@ int lead(const parallel::Communicator& ranks, const cli::CommandLine& line, cons
   return cli::exit_incomplete;
 }
 
+/// srun without PMIx starts as many sweeps as there are tasks, each of which believes that it is alone.
+void refuse_to_be_alone(int num_ranks) {
+  const char* tasks = std::getenv("SLURM_NTASKS");
+  if (num_ranks > 1 || !tasks || std::atoi(tasks) <= 1 || std::getenv("OMPI_COMM_WORLD_SIZE")) return;
+  throw Error(std::string("one rank in a Slurm allocation of ") + tasks +
+              " tasks (srun cannot start this MPI's ranks together); use mpirun as jobs/slurm.sh does, or "
+              "mpirun -np 1 if "
+              "one is meant");
+}
+
 int sweep_on_all_ranks(const parallel::Communicator& ranks, int argc, char** argv) {
   // Rank 0 reads and checks; the others wait for its word: a config to run, or an exit code.
   cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::accepted);
@@ -253,6 +264,7 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, int argc, char** arg
     const int exit_code = cli::run_program(program, [&] {
       parse(line, argc, argv);
       if (const auto over = prepare(line)) return *over;
+      refuse_to_be_alone(ranks.size());
       plan.emplace(line.settings());
       ledger.emplace(line.get("output"), *plan, line.settings(), provenance(line, ranks.size()),
                      attempts(line));

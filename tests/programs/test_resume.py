@@ -14,7 +14,7 @@ import unittest
 import h5py
 import numpy as np
 import pandas
-from support import BIN, MPIRUN, ProgramTest
+from support import BIN, MPIRUN, ROOT, ProgramTest
 
 # What a second computation of the same run may change: who did it, and how long it took.
 TIMING = ["wall_seconds", "rank", "host"]
@@ -209,6 +209,62 @@ class Resumed(ProgramTest):
         self.assertEqual(set(rows[rows.status != "failed"].attempt), {1})
         again = self.succeed("clogsweep", *blocked, "--attempts=3")
         self.assertIn("nothing left to do", again.stderr)
+
+
+class Batch(ProgramTest):
+    """The scripts for batch systems, with the systems' own commands replaced by ones that only take notes."""
+
+    def script(self, name, *arguments, **environment):
+        for command in ("scontrol", "qsub"):
+            stub = self.folder / command
+            stub.write_text(f'#!/bin/sh\necho {command} "$@" >> "{self.folder}/called"\n')
+            stub.chmod(0o755)
+        variables = {**os.environ, "PATH": f"{self.folder}:{os.environ['PATH']}", "CLOG_BIN": str(BIN),
+                     "OMPI_MCA_rmaps_base_oversubscribe": "1", **environment}
+        process = subprocess.Popen([str(ROOT / "jobs" / name), *arguments], cwd=ROOT, env=variables, text=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
+        self.addCleanup(lambda: process.poll() is None and os.killpg(process.pid, signal.SIGKILL))
+        return process
+
+    def called(self):
+        notes = self.folder / "called"
+        return notes.read_text() if notes.exists() else ""
+
+    def sweep(self, *more):
+        return ["vertices=64", "box=20", "obstacle-gap=1.2", "seeds=1..20", *more, "--output", str(self.folder / "s.h5")]
+
+    def test_a_warning_of_slurm_ends_the_sweep_and_the_job_queues_again(self):
+        process = self.script("slurm.sh", *self.sweep("max-time=1e5"), SLURM_JOB_ID="77", SLURM_SUBMIT_DIR=str(ROOT))
+        deadline = time.time() + 60
+        while not (self.folder / "s.h5").exists() or not (table(self.folder / "s.h5").status == "running").any():
+            self.assertLess(time.time(), deadline)
+            time.sleep(0.05)
+        os.kill(process.pid, signal.SIGUSR1)
+        output, _ = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 75, output)
+        self.assertEqual(self.called(), "scontrol requeue 77\n")
+        self.assertGreater((table(self.folder / "s.h5").status == "interrupted").sum(), 0)
+
+    def test_a_complete_sweep_does_not_queue_again(self):
+        process = self.script("slurm.sh", *self.sweep("max-time=5"), SLURM_JOB_ID="77", SLURM_SUBMIT_DIR=str(ROOT))
+        output, _ = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0, output)
+        self.assertEqual(self.called(), "")
+        self.assertEqual(len(table(self.folder / "s.h5")), 20)
+
+    def test_pbs_queues_again_when_its_hours_are_over(self):
+        options = " ".join(self.sweep("max-time=1e5"))
+        process = self.script("pbs.sh", SWEEP=options, HOURS="0.0004", PBS_O_WORKDIR=str(ROOT))
+        output, _ = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 75, output)
+        self.assertEqual(self.called(), f"qsub -v SWEEP={options},HOURS=0.0004 jobs/pbs.sh\n")
+
+    def test_one_rank_of_many_tasks_is_refused(self):
+        done = subprocess.run([str(BIN / "clogsweep"), *self.sweep()], capture_output=True, text=True,
+                              env={**os.environ, "SLURM_NTASKS": "8"}, timeout=60)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("allocation of 8 tasks", done.stderr)
+        self.assertFalse((self.folder / "s.h5").exists())
 
 
 if __name__ == "__main__":

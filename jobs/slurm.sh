@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# A sweep on a cluster with Slurm, from the folder of clogsweep's sources after ./tests/run.sh or a build:
+#   sbatch jobs/slurm.sh --config sweep.cfg --output sweep.h5
+#   sbatch --nodes=8 --ntasks-per-node=64 --time=48:00:00 jobs/slurm.sh --config sweep.cfg --output sweep.h5
+# One job for the whole sweep, on one node or many; no job arrays. Two minutes before the time is up the sweep writes what it has,
+# and the job queues itself again until the sweep is complete. See jobs/README.md.
+#SBATCH --job-name=clogsweep
+#SBATCH --nodes=1
+#SBATCH --ntasks-per-node=32
+#SBATCH --cpus-per-task=1
+#SBATCH --time=24:00:00
+#SBATCH --signal=B:USR1@120
+#SBATCH --requeue
+#SBATCH --open-mode=append
+set -euo pipefail
+cd "${SLURM_SUBMIT_DIR:-.}"
+. jobs/mpi-settings.sh
+. jobs/batch.sh
+code=0
+run_sweep "${CLOG_BIN:-build/release/bin}/clogsweep" "$@" || code=$?
+if ((code == 75)); then
+  echo "not complete; job $SLURM_JOB_ID queues again"
+  scontrol requeue "$SLURM_JOB_ID"
+fi
+exit "$code"
