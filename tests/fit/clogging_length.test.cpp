@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace clog::fit {
@@ -72,6 +74,50 @@ TEST(CloggingLength, IntervalsCoverTheTruthAsOftenAsTheyClaim) {
 TEST(CloggingLength, RefusesAnImpossibleConfidence) {
   EXPECT_THROW(fit_clogging_length({}, 1.0), std::invalid_argument);
   EXPECT_THROW(fit_clogging_length({}, 0.0), std::invalid_argument);
+}
+
+/// A sweep of equal droplets on some workers, looked at when a share of it is done: droplets clog at
+/// exponentially distributed distances and travel at one speed.
+struct LiveSweep {
+  double of_finished = 0;  ///< lambda from finished runs alone, over the truth
+  double of_all = 0;       ///< with the running ones as censored
+};
+LiveSweep look_at(int num_workers, int num_runs, double share_done, std::mt19937& engine) {
+  std::exponential_distribution<double> distance(1);
+  std::multimap<double, double> running;  // end of a run, its begin
+  int num_begun = 0;
+  for (; num_begun < num_workers; ++num_begun) running.emplace(distance(engine), 0);
+  std::vector<Observation> finished;
+  double now = 0;
+  while (static_cast<double>(finished.size()) < share_done * num_runs) {
+    const auto [end, begin] = *running.begin();
+    running.erase(running.begin());
+    now = end;
+    finished.push_back({end - begin, true});
+    if (num_begun++ < num_runs) running.emplace(now + distance(engine), now);
+  }
+  LiveSweep live;
+  live.of_finished = fit_clogging_length(finished, 0.95).length;
+  for (const auto& [end, begin] : running) finished.push_back({now - begin, false});
+  live.of_all = fit_clogging_length(finished, 0.95).length;
+  return live;
+}
+
+TEST(CloggingLength, IsNotTooShortWhileASweepRuns) {
+  std::mt19937 engine(5);
+  for (const auto& [num_workers, bias] : {std::pair{15, 0.5}, {63, 0.2}}) {
+    // 300 runs, 5 % done: 15 finished ones.
+    double of_finished = 0, of_all = 0;
+    constexpr int num_sweeps = 2000;
+    for (int i = 0; i < num_sweeps; ++i) {
+      const LiveSweep live = look_at(num_workers, 300, 0.05, engine);
+      of_finished += live.of_finished / num_sweeps;
+      of_all += live.of_all / num_sweeps;
+    }
+    RecordProperty("finished_alone_" + std::to_string(num_workers), std::to_string(of_finished));
+    EXPECT_LT(of_finished, bias) << num_workers;
+    EXPECT_NEAR(of_all, 1, 0.02) << num_workers;
+  }
 }
 
 }  // namespace
