@@ -18,7 +18,7 @@ cd "${SLURM_SUBMIT_DIR:-.}"
 . jobs/batch.sh
 code=0
 run_sweep "${CLOG_BIN:-build/release/bin}/clogsweep" "$@" || code=$?
-if ((code == 75)); then
+if ((code == 75 && !was_cancelled)); then
   echo "not complete; job $SLURM_JOB_ID queues again"
   scontrol requeue "$SLURM_JOB_ID"
 fi

@@ -17,6 +17,7 @@
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/core/error.hpp"
+#include "clog/core/instruction_set.hpp"
 #include "clog/core/systems.hpp"
 #include "clog/parallel/communicator.hpp"
 #include "clog/parallel/scheduler.hpp"
@@ -220,6 +221,10 @@ int lead(const parallel::Communicator& ranks, const cli::CommandLine& line, cons
   events.progressed = [&](const parallel::Report& report) { ledger.report(report); };
   events.ended = [&](const parallel::Report& report) {
     ledger.report(report);
+    if (report.row.status.view() == "failed" && ledger.tries_again(report.row)) {
+      progress.tried(report.row.task);
+      return;
+    }
     progress.ended(report.row);
     interrupted = interrupted || report.row.status.view() == "interrupted";
   };
@@ -271,7 +276,9 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, int argc, char** arg
       return cli::exit_success;
     });
     if (ledger && exit_code == cli::exit_success)
-      word = "run " + line.get("report-seconds") + '\n' + line.settings().to_config(false);
+      word = "run " + line.get("report-seconds") + ' ' +
+             (line.has("instruction-set") ? line.get("instruction-set") : "auto") + '\n' +
+             line.settings().to_config(false);
     else
       word = "exit " + std::to_string(exit_code);
   }
@@ -281,9 +288,11 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, int argc, char** arg
   cli::catch_stop_signals();
   if (ranks.rank() == 0) return lead(ranks, line, *plan, *ledger);
   const std::size_t end_of_line = word.find('\n');
+  const std::size_t space = word.find(' ', 4);
+  use_instruction_set(word.substr(space + 1, end_of_line - space - 1));
   plan.emplace(sweep::Settings::from_config(word.substr(end_of_line + 1)));
   parallel::run_tasks(ranks, parallel::TaskOrder(0), sweep::run_jobs(*plan), {}, false,
-                      seconds_from(word.substr(4, end_of_line - 4)));
+                      seconds_from(word.substr(4, space - 4)));
   return cli::exit_success;
 }
 

@@ -28,6 +28,16 @@ void set_attribute(store::Provenance& provenance, const std::string& name, const
   provenance.emplace_back(name, text);
 }
 
+/// An attribute holds less than 64 kB: the oldest lines go first, and a long one loses its end.
+std::string latest_lines(std::string text) {
+  constexpr std::size_t longest_line = 2000;
+  constexpr std::size_t longest = 30'000;
+  const std::size_t last = text.rfind('\n', text.size() - 2) + 1;  // 0 if there is only one line
+  if (text.size() - last > longest_line) text = text.substr(0, last + longest_line) + "...\n";
+  while (text.size() > longest) text.erase(0, text.find('\n') + 1);
+  return text;
+}
+
 /// Is any value of the one list in the other? Numbers may be written differently.
 bool have_common_value(const std::vector<std::string>& some, const std::vector<std::string>& others) {
   return std::any_of(some.begin(), some.end(), [&](const std::string& value) {
@@ -71,11 +81,17 @@ SweepLedger::SweepLedger(std::string path, const sweep::Plan& plan, const sweep:
     if (journal_.take_entries().empty()) journal_.remove();
     throw;
   }
-  for (Entry& entry : journal_.take_entries()) {
+  const bool has_table = !known.empty() || std::filesystem::exists(path_);
+  std::vector<Entry> entries = journal_.take_entries();
+  if (!has_table && !entries.empty())
+    throw Error("cannot begin " + path_ + " (its table is gone, but " + path_ + ".journal holds " +
+                std::to_string(entries.size()) +
+                " reports of an earlier sweep); put the table back, or remove the journal to begin anew");
+  for (Entry& entry : entries) {
     std::string run = sweep::identity(entry.row);
     known[std::move(run)] = std::move(entry);
   }
-  set_attribute(provenance_, "sessions", attribute(provenance_, "sessions") + session);
+  set_attribute(provenance_, "sessions", latest_lines(attribute(provenance_, "sessions") + session));
   find_tasks(std::move(known));
   publish();
 }
@@ -118,11 +134,14 @@ void SweepLedger::find_tasks(std::unordered_map<std::string, Entry> known) {
       }
     tasks_left_.push_back(task);
   }
-  for (auto& [run, entry] : known) other_runs_.push_back(entry.row);
+  for (auto& [run, entry] : known) other_runs_.push_back(std::move(entry));
   std::sort(other_runs_.begin(), other_runs_.end(),
-            [](const sweep::RunRow& a, const sweep::RunRow& b) { return a.task < b.task; });
-  for (std::size_t i = 0; i < other_runs_.size(); ++i)
-    other_runs_[i].task = plan_.size() + static_cast<std::int64_t>(i);
+            [](const Entry& a, const Entry& b) { return a.row.task < b.row.task; });
+  for (std::size_t i = 0; i < other_runs_.size(); ++i) {
+    sweep::RunRow& row = other_runs_[i].row;
+    row.task = plan_.size() + static_cast<std::int64_t>(i);
+    if (row.status.view() == "running") row.status = "interrupted";
+  }
 }
 
 std::int64_t SweepLedger::num_resumed() const {
@@ -136,13 +155,14 @@ parallel::Start SweepLedger::start(std::int64_t task, int rank) {
   const auto [run, is_new] = runs_.try_emplace(task);
   Entry& entry = run->second;
   parallel::Start start{entry.snapshot, entry.row.attempt};
-  if (is_new) {
+  const bool failed = !is_new && entry.row.status.view() == "failed";
+  if (failed) start = {{}, entry.row.attempt + 1};
+  if (is_new || failed) {
+    entry.snapshot.clear();
     entry.row = sweep::describe(plan_.task(task));
     entry.row.task = task;
     entry.row.clogged_by = "none";
     entry.row.mean_speed = std::numeric_limits<double>::quiet_NaN();  // not known yet
-  } else if (entry.row.status.view() == "failed") {
-    start = {{}, entry.row.attempt + 1};
   }
   entry.row.attempt = start.attempt;
   entry.row.status = "running";
@@ -156,6 +176,7 @@ void SweepLedger::report(const parallel::Report& report) {
   entry = {report.row, report.snapshot};
   if (const auto before = seconds_before_.find(report.row.task); before != seconds_before_.end())
     entry.row.wall_seconds += before->second;
+  if (entry.row.status.view() == "failed") seconds_before_[entry.row.task] = entry.row.wall_seconds;
   journal_.add(entry.row, entry.snapshot);
   is_published_ = false;
 }
@@ -173,7 +194,7 @@ void SweepLedger::publish() {
   std::vector<sweep::RunRow> rows;
   rows.reserve(runs_.size() + other_runs_.size());
   for (const auto& [task, entry] : runs_) rows.push_back(entry.row);
-  rows.insert(rows.end(), other_runs_.begin(), other_runs_.end());
+  for (const Entry& entry : other_runs_) rows.push_back(entry.row);
   journal_.flush();
   store::publish_sweep(path_, rows, provenance_);
   last_publication_ = Clock::now();
@@ -186,6 +207,8 @@ void SweepLedger::shorten_journal() {
   std::vector<const Entry*> needed;
   for (const auto& [task, entry] : runs_)
     if (!is_over(entry.row)) needed.push_back(&entry);
+  for (const Entry& entry : other_runs_)
+    if (!is_over(entry.row)) needed.push_back(&entry);
   journal_.rewrite(needed);
 }
 
@@ -193,7 +216,9 @@ void SweepLedger::finish() {
   publish();
   const bool is_complete =
       static_cast<std::int64_t>(runs_.size()) == plan_.size() &&
-      std::all_of(runs_.begin(), runs_.end(), [this](const auto& run) { return is_over(run.second.row); });
+      std::all_of(runs_.begin(), runs_.end(), [this](const auto& run) { return is_over(run.second.row); }) &&
+      std::all_of(other_runs_.begin(), other_runs_.end(),
+                  [this](const Entry& run) { return is_over(run.row); });
   if (is_complete)
     journal_.remove();
   else

@@ -48,8 +48,8 @@ class SweepLedger {
   store::Provenance provenance_;
   std::int64_t attempts_;
   store::Journal journal_;
-  std::map<std::int64_t, Entry> runs_;     // by task; those that have begun
-  std::vector<sweep::RunRow> other_runs_;  // in the file, but not of this plan
+  std::map<std::int64_t, Entry> runs_;  // by task; those that have begun
+  std::vector<Entry> other_runs_;       // in the file, but not of this plan
   std::vector<std::int64_t> tasks_left_;
   std::unordered_map<std::int64_t, double> seconds_before_;  // spent on a task in earlier sessions [s]
   bool is_published_ = false;

@@ -20,6 +20,8 @@ class SweepProgress {
 
   void started(std::int64_t task);
   void ended(const sweep::RunRow& row);
+  /// In vain; it will be tried again.
+  void tried(std::int64_t task) { running_.erase(task); }
   /// Prints if it is time to.
   void tick();
   void finish();

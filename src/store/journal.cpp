@@ -94,7 +94,14 @@ bool is_at(int descriptor, const std::string& path) {
 Journal::Journal(std::string path) : path_(std::move(path)) {
   while (true) {
     descriptor_ = open_file(path_, 0);
-    if (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    // Who asks whether it is open holds it for a moment.
+    int locked = -1;
+    for (int attempt = 0; attempt < 10; ++attempt) {
+      locked = flock(descriptor_, LOCK_EX | LOCK_NB);
+      if (locked == 0 || errno != EWOULDBLOCK) break;
+      usleep(20'000);
+    }
+    if (locked != 0) {
       const bool taken = errno == EWOULDBLOCK;
       const int reason = errno;
       close(descriptor_);
@@ -121,9 +128,9 @@ Journal::~Journal() {
 bool Journal::is_open(const std::string& path) {
   const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) return false;
-  const bool is_free = flock(descriptor, LOCK_SH | LOCK_NB) == 0;
+  const bool is_taken = flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   close(descriptor);
-  return !is_free;
+  return is_taken;
 }
 
 void Journal::read_entries() {

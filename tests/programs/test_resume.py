@@ -151,6 +151,35 @@ class Resumed(ProgramTest):
         self.assertIn("the command that began it goes on", self.succeed("clogsweep", "status", "s.h5").stdout)
         self.assertIn("all whole", self.succeed("clogsweep", "verify", "s.h5").stdout)
 
+    def test_a_smaller_sweep_keeps_what_the_larger_one_has_under_way(self):
+        self.run_program("clogsweep", *SWEEP, "--max-hours=0.0003")
+        before = table(self.folder / "s.h5")
+        under_way = before[before.status == "interrupted"]
+        self.assertEqual(len(under_way), 1)
+        other = {0.05: "0.5", 0.5: "0.05"}[under_way.line_tension.iloc[0]]
+        smaller = [*SWEEP[:2], "obstacle-gap=0.5", f"line-tension={other}", "max-time=4000", "seeds=1", "--output", "s.h5"]
+        self.succeed("clogsweep", *smaller)
+        self.assertTrue((self.folder / "s.h5.journal").exists(), "a snapshot is still needed")
+        done = self.succeed("clogsweep", *SWEEP, ranks=2)
+        self.assertIn("1 go on where they were", done.stderr)
+
+    def test_a_journal_without_its_table_is_refused(self):
+        self.run_program("clogsweep", *SWEEP, "--max-hours=0.0003")
+        (self.folder / "s.h5").unlink()
+        self.refuse("clogsweep", *SWEEP, words=["its table is gone", "remove the journal"])
+
+    def test_many_sessions_with_long_commands_fit(self):
+        seeds = "seeds=" + ",".join(str(seed) for seed in range(1, 251))
+        for _ in range(25):
+            self.run_program("clogsweep", "vertices=64", "box=20", "max-time=20", seeds, "--max-hours=1e-7",
+                             "--output", "s.h5")
+        self.assertEqual(self.run_program("clogsweep", "verify", "s.h5").returncode, 0)
+
+    def test_every_rank_uses_the_instruction_set_asked_for(self):
+        self.succeed("clogsweep", "vertices=64", "box=20", "max-time=20", "seeds=1..12", "--instruction-set",
+                     "baseline", "--output", "s.h5", ranks=3)
+        self.assertEqual(set(table(self.folder / "s.h5").instruction_set), {"baseline"})
+
     def test_replay_gives_the_same_bits_and_sees_others(self):
         self.succeed("clogsweep", "vertices=64", "box=20", "max-time=20", "line-tension=0.5,1", "seeds=1..2",
                      "--output", "s.h5")
@@ -253,11 +282,13 @@ class Batch(ProgramTest):
         self.assertEqual(len(table(self.folder / "s.h5")), 20)
 
     def test_pbs_queues_again_when_its_hours_are_over(self):
-        options = " ".join(self.sweep("max-time=1e5"))
-        process = self.script("pbs.sh", SWEEP=options, HOURS="0.0004", PBS_O_WORKDIR=str(ROOT))
+        options = self.folder / "sweep.options"
+        options.write_text("\n".join(self.sweep("max-time=1e5", "line-tension=0.1,0.2")) + "\n")
+        process = self.script("pbs.sh", SWEEP=str(options), HOURS="0.0004", PBS_O_WORKDIR=str(ROOT))
         output, _ = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 75, output)
-        self.assertEqual(self.called(), f"qsub -v SWEEP={options},HOURS=0.0004 jobs/pbs.sh\n")
+        self.assertEqual(self.called(), "qsub -v SWEEP,HOURS,CLOG_BIN jobs/pbs.sh\n")
+        self.assertEqual(set(table(self.folder / "s.h5").line_tension), {0.1, 0.2})
 
     def test_one_rank_of_many_tasks_is_refused(self):
         done = subprocess.run([str(BIN / "clogsweep"), *self.sweep()], capture_output=True, text=True,
