@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cassert>
+#include <string>
+#include <unordered_map>
 
 #include "clog/core/error.hpp"
+#include "clog/sweep/run_row.hpp"
 
 namespace clog::sweep {
 namespace {
@@ -44,7 +47,16 @@ Plan::Plan(const Settings& settings) {
   const auto seeds =
       std::find_if(axes_.begin(), axes_.end(), [](const Axis& axis) { return axis.key->name == "seeds"; });
   std::rotate(axes_.begin(), seeds, seeds + 1);
-  for (std::int64_t index = 0; index < num_groups(); ++index) task(index);
+  // Different texts may mean the same run: tilts that lead to the same lattice, `auto` and the value behind
+  // it.
+  std::unordered_map<std::string, std::int64_t> seen;
+  for (std::int64_t index = 0; index < num_groups(); ++index) {
+    const auto [first, is_new] = seen.emplace(identity(describe(task(index))), index);
+    if (!is_new)
+      throw Error("the sweep's lists lead to the same run twice (parameter sets " +
+                  std::to_string(first->second) + " and " + std::to_string(index) +
+                  " mean the same); leave one of them out");
+  }
 }
 
 std::int64_t Plan::num_groups() const {

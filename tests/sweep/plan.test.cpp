@@ -32,6 +32,14 @@ TEST(Plan, DoesEverySetOnceBeforeTheNextSeed) {
   for (std::int64_t i = 0; i < 6; ++i) EXPECT_EQ(plan.task(i).seed, 7 + i / 2);
 }
 
+TEST(Plan, RefusesListsThatLeadToTheSameRunTwice) {
+  EXPECT_THROW(
+      Plan(settings_of({{"obstacle-layout", "lattice"}, {"lattice-angle", "10,10.01"}, {"box", "20"}})),
+      Error);
+  EXPECT_THROW(Plan(settings_of({{"perimeter-stiffness", "auto,0.1"}})), Error);
+  EXPECT_NO_THROW(Plan(settings_of({{"perimeter-stiffness", "auto,0.2"}})));
+}
+
 TEST(Plan, ChecksEverySetBeforeAnythingRuns) {
   EXPECT_THROW(Plan(settings_of({{"obstacle-gap", "0.2,0.001"}})), Error);
   EXPECT_THROW(Plan(settings_of({{"time-step", "1e-3,0.02"}})), Error);
@@ -49,10 +57,10 @@ TEST(Plan, RefusesKeysThatASoftDiskWouldIgnore) {
 
 TEST(Plan, RefusesKeysThatAnotherLeavesWithoutEffect) {
   EXPECT_THROW(Plan(settings_of({{"perimeter-stiffness-ratio", "0.2"}})), Error);
-  EXPECT_THROW(Plan(settings_of({{"preset", "elastic"},
-                                 {"perimeter-stiffness-ratio", "0.2"},
-                                 {"perimeter-stiffness", "0.3"}})),
-               Error);
+  EXPECT_THROW(
+      Plan(settings_of(
+          {{"preset", "elastic"}, {"perimeter-stiffness-ratio", "0.2"}, {"perimeter-stiffness", "0.3"}})),
+      Error);
   EXPECT_NO_THROW(Plan(settings_of({{"preset", "elastic"}, {"perimeter-stiffness-ratio", "0.2"}})));
   EXPECT_NO_THROW(Plan(settings_of({{"preset", "elastic"}, {"perimeter-stiffness", "0.3"}})));
 }
