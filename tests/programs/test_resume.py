@@ -35,9 +35,9 @@ class Resumed(ProgramTest):
         self.addCleanup(self.kill_all, process)
         return process
 
-    def kill_all(self, process):
-        """mpirun and its ranks, which have process groups of their own."""
-        for pid in [*self.ranks_of(process), process.pid]:
+    def kill_all(self, process, more=()):
+        """mpirun and its ranks, which have process groups of their own; `more` are ranks that may have lost their mpirun."""
+        for pid in [*self.ranks_of(process), process.pid, *more]:
             try:
                 os.kill(pid, signal.SIGKILL)
             except ProcessLookupError:
@@ -84,7 +84,7 @@ class Resumed(ProgramTest):
                 process.wait(timeout=3)
             except subprocess.TimeoutExpired:
                 pass
-            self.kill_all(process)
+            self.kill_all(process, victims)
             if not (self.folder / "s.h5").exists():
                 continue  # killed before its first second
             rows = table(self.folder / "s.h5")
