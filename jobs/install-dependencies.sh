@@ -8,6 +8,7 @@ packages=(
   libboost-dev libboost-program-options-dev          # random numbers and statistics; command line
   nlohmann-json3-dev                                 # clogfit --format json
   libgtest-dev libbenchmark-dev                      # tests and benchmarks
+  procps iproute2                                    # tests that kill ranks, and join two hosts
   python3 python3-h5py python3-pandas python3-tables python3-matplotlib  # figures, and readers for the tests
 )
 missing=()

@@ -2,9 +2,13 @@
 
 import os
 import pathlib
+import signal
 import subprocess
 import tempfile
+import time
 import unittest
+
+import pandas
 
 BIN = pathlib.Path(os.environ["CLOG_BIN"])
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -13,6 +17,11 @@ MPIRUN = ROOT / "tests" / "mpirun.sh"
 # Small droplets in a small box: a run takes some hundredths of a second.
 SMALL = ["vertices=64", "box=20"]
 QUICK = [*SMALL, "max-time=60"]
+# Long runs, each of several snapshots (four a second).
+SWEEP = ["vertices=64", "box=20", "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=4000", "seeds=1..6",
+         "--report-seconds=0.1", "--output", "s.h5"]
+# What a second computation of the same run may change: who did it, and how long it took.
+TIMING = ["wall_seconds", "rank", "host"]
 
 
 class ProgramTest(unittest.TestCase):
@@ -49,3 +58,45 @@ class ProgramTest(unittest.TestCase):
     def write(self, name, text):
         (self.folder / name).write_text(text)
         return name
+
+
+def table(path):
+    return pandas.read_hdf(path, "runs")
+
+
+class SweepTest(ProgramTest):
+    """Sweeps that run while the test looks on."""
+
+    def start(self, *arguments, ranks=2, launcher=MPIRUN):
+        process = subprocess.Popen([str(launcher), str(ranks), str(BIN / "clogsweep"), *arguments], cwd=self.folder,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                                   start_new_session=True)
+        self.addCleanup(self.kill_all, process)
+        return process
+
+    def kill_all(self, process, more=()):
+        """mpirun and its ranks, which have process groups of their own; `more` are ranks that may have lost their mpirun."""
+        for pid in [*self.ranks_of(process), process.pid, *more]:
+            try:
+                os.kill(pid, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
+        process.wait()
+        process.stderr.close()
+
+    def ranks_of(self, process):
+        children = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True)
+        return [int(pid) for pid in children.stdout.split()]
+
+    def wait_for(self, condition, seconds=60):
+        deadline = time.time() + seconds
+        while not condition():
+            self.assertLess(time.time(), deadline, "it did not happen in time")
+            time.sleep(0.02)
+
+    def wait_for_ranks(self, process, number):
+        self.wait_for(lambda: len(self.ranks_of(process)) == number or process.poll() is not None)
+
+    def check_equal(self, name, other):
+        rows, others = (table(self.folder / n).drop(columns=TIMING) for n in (name, other))
+        pandas.testing.assert_frame_equal(rows, others, check_exact=True)

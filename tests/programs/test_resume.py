@@ -13,55 +13,10 @@ import unittest
 
 import h5py
 import numpy as np
-import pandas
-from support import BIN, MPIRUN, ROOT, ProgramTest
-
-# What a second computation of the same run may change: who did it, and how long it took.
-TIMING = ["wall_seconds", "rank", "host"]
-# Long runs, each of several snapshots (four a second).
-SWEEP = ["vertices=64", "box=20", "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=4000", "seeds=1..6",
-         "--report-seconds=0.1", "--output", "s.h5"]
+from support import BIN, ROOT, SWEEP, ProgramTest, SweepTest, table
 
 
-def table(path):
-    return pandas.read_hdf(path, "runs")
-
-
-class Resumed(ProgramTest):
-    def start(self, *arguments, ranks=2):
-        process = subprocess.Popen([str(MPIRUN), str(ranks), str(BIN / "clogsweep"), *arguments], cwd=self.folder,
-                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-                                   start_new_session=True)
-        self.addCleanup(self.kill_all, process)
-        return process
-
-    def kill_all(self, process, more=()):
-        """mpirun and its ranks, which have process groups of their own; `more` are ranks that may have lost their mpirun."""
-        for pid in [*self.ranks_of(process), process.pid, *more]:
-            try:
-                os.kill(pid, signal.SIGKILL)
-            except ProcessLookupError:
-                pass
-        process.wait()
-        process.stderr.close()
-
-    def ranks_of(self, process):
-        children = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True)
-        return [int(pid) for pid in children.stdout.split()]
-
-    def wait_for(self, condition, seconds=60):
-        deadline = time.time() + seconds
-        while not condition():
-            self.assertLess(time.time(), deadline, "it did not happen in time")
-            time.sleep(0.02)
-
-    def wait_for_ranks(self, process, number):
-        self.wait_for(lambda: len(self.ranks_of(process)) == number or process.poll() is not None)
-
-    def check_equal(self, name, other):
-        rows, others = (table(self.folder / n).drop(columns=TIMING) for n in (name, other))
-        pandas.testing.assert_frame_equal(rows, others, check_exact=True)
-
+class Resumed(SweepTest):
     def test_kills_at_random_moments_lose_nothing(self):
         self.succeed("clogsweep", *SWEEP[:-1], "whole.h5", ranks=2)
         chance = random.Random(7)
