@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <iostream>
 #include <limits>
 #include <map>
@@ -13,6 +12,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <string_view>
 
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
@@ -25,6 +25,7 @@
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/run_job.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "sweep_doctor.hpp"
 #include "sweep_ledger.hpp"
 #include "sweep_progress.hpp"
 #include "sweep_reports.hpp"
@@ -43,6 +44,7 @@ given values, on all MPI ranks, and gathers the results in one HDF5 table.
   clogsweep status sweep.h5         how far it is: lambda, <v_g>, time left; also while it runs
   clogsweep verify sweep.h5         is the file whole?
   clogsweep replay sweep.h5 TASK    one run once more: the same bits?
+  mpirun -np 4 clogsweep doctor     will a sweep started like this go well here?
 
 A sweep that was stopped or killed goes on with the same command.
 )";
@@ -249,16 +251,6 @@ int lead(const parallel::Communicator& ranks, const cli::CommandLine& line, cons
   return cli::exit_incomplete;
 }
 
-/// srun without PMIx starts as many sweeps as there are tasks, each of which believes that it is alone.
-void refuse_to_be_alone(int num_ranks) {
-  const char* tasks = std::getenv("SLURM_NTASKS");
-  if (num_ranks > 1 || !tasks || std::atoi(tasks) <= 1 || std::getenv("OMPI_COMM_WORLD_SIZE")) return;
-  throw Error(std::string("one rank in a Slurm allocation of ") + tasks +
-              " tasks (srun cannot start this MPI's ranks together); use mpirun as jobs/slurm.sh does, or "
-              "mpirun -np 1 if "
-              "one is meant");
-}
-
 int sweep_on_all_ranks(const parallel::Communicator& ranks, int argc, char** argv) {
   // Rank 0 reads and checks; the others wait for its word: a config to run, or an exit code.
   cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::accepted);
@@ -306,6 +298,7 @@ int main(int argc, char** argv) {
     return cli::run_program(std::string(program) + ' ' + argv[1], [&] { return report->second(argc, argv); });
   const parallel::Communicator ranks(argc, argv);
   try {
+    if (argc > 1 && std::string_view(argv[1]) == "doctor") return clogsweep_doctor(ranks, argc, argv);
     return sweep_on_all_ranks(ranks, argc, argv);
   } catch (const std::exception& error) {
     // Once the sweep runs, ranks wait for each other: a fault of one must end all.

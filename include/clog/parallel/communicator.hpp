@@ -26,6 +26,8 @@ class Communicator {
 
   /// Collective: every rank returns rank 0's text.
   std::string broadcast(std::string text) const;
+  /// Collective: rank 0 returns every rank's text, in the order of ranks; the others return nothing.
+  std::vector<std::string> gather(const std::string& text) const;
   /// Collective: returns when all ranks have come, sleeping meanwhile (MPI's own barrier spins).
   void wait_for_all() const;
 

@@ -1,0 +1,93 @@
+#include "rank_facts.hpp"
+
+#include <sched.h>
+
+#include <chrono>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "clog/cli/build_info.hpp"
+#include "clog/core/instruction_set.hpp"
+#include "clog/core/systems.hpp"
+#include "clog/parallel/communicator.hpp"
+
+namespace clog {
+namespace {
+
+std::vector<int> allowed_cores() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  std::vector<int> cores;
+  if (sched_getaffinity(0, sizeof set, &set) != 0) return cores;
+  for (int core = 0; core < CPU_SETSIZE; ++core)
+    if (CPU_ISSET(core, &set)) cores.push_back(core);
+  return cores;
+}
+
+/// Containers and batch systems may grant fewer cores than there are: time per period, cgroup version 2.
+double granted_cores() {
+  std::ifstream file("/sys/fs/cgroup/cpu.max");
+  double quota = 0, period = 0;
+  return file >> quota >> period && period > 0 ? quota / period : 0;  // "max" is no number
+}
+
+double available_memory() {
+  std::ifstream file("/proc/meminfo");
+  std::string name;
+  double kilobytes = 0;
+  while (file >> name >> kilobytes) {
+    if (name == "MemAvailable:") return 1024 * kilobytes;
+    file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  }
+  return 0;
+}
+
+double step_cost(double seconds) {
+  RunParameters parameters;
+  parameters.obstacles.box = 20;
+  parameters.obstacles.gap = 0.5;
+  parameters.max_time = 1e9;
+  DropletRun run = run_in_array(resolve(parameters));
+  const auto now = [] { return std::chrono::steady_clock::now(); };
+  const auto begin = now();
+  std::chrono::duration<double> elapsed{};
+  while (elapsed.count() < seconds && !run.advance(8)) elapsed = now() - begin;
+  return 1e9 * elapsed.count() / (static_cast<double>(run.result().steps) * parameters.dp.vertices);
+}
+
+}  // namespace
+
+RankFacts find_rank_facts(int rank, double seconds) {
+  const cli::BuildInfo build = cli::build_info();
+  return {.rank = rank,
+          .host = parallel::Communicator::host_name(),
+          .version = build.version + " (git " + build.git_hash + ")",
+          .instruction_set = instruction_set(),
+          .cores = allowed_cores(),
+          .cores_granted = granted_cores(),
+          .memory = available_memory(),
+          .nanoseconds_per_step = step_cost(seconds)};
+}
+
+std::string to_text(const RankFacts& facts) {
+  return nlohmann::json{{"rank", facts.rank},       {"host", facts.host},
+                        {"version", facts.version}, {"instruction_set", facts.instruction_set},
+                        {"cores", facts.cores},     {"cores_granted", facts.cores_granted},
+                        {"memory", facts.memory},   {"nanoseconds_per_step", facts.nanoseconds_per_step}}
+      .dump();
+}
+
+RankFacts rank_facts_from(const std::string& text) {
+  const nlohmann::json facts = nlohmann::json::parse(text);
+  return {.rank = facts.at("rank"),
+          .host = facts.at("host"),
+          .version = facts.at("version"),
+          .instruction_set = facts.at("instruction_set"),
+          .cores = facts.at("cores"),
+          .cores_granted = facts.at("cores_granted"),
+          .memory = facts.at("memory"),
+          .nanoseconds_per_step = facts.at("nanoseconds_per_step")};
+}
+
+}  // namespace clog

@@ -1,0 +1,60 @@
+"""clogsweep doctor: sees what spoils sweeps, and says what helps."""
+
+import os
+import subprocess
+import unittest
+
+from support import BIN, MPIRUN, ProgramTest
+
+
+class Doctor(ProgramTest):
+    def examine(self, *arguments, ranks=None, before=(), **environment):
+        variables = {key: value for key, value in os.environ.items() if not key.startswith(("SLURM_", "OMPI_"))}
+        command = [*before, *([str(MPIRUN), str(ranks)] if ranks else []), str(BIN / "clogsweep"), "doctor", *arguments]
+        return subprocess.run(command, cwd=self.folder, env={**variables, **environment}, capture_output=True, text=True,
+                              timeout=120)
+
+    def faults(self, done):
+        lines = done.stdout.splitlines()
+        found = {line[6:]: lines[number + 1].strip() for number, line in enumerate(lines) if line.startswith("MEND")}
+        self.assertEqual(done.returncode, 1 if found else 0, done.stdout + done.stderr)
+        return found
+
+    def fault(self, done, words):
+        (remedy,) = [remedy for what, remedy in self.faults(done).items() if words in what]
+        return remedy
+
+    def test_all_is_well_with_one_rank(self):
+        done = self.examine(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+        self.assertEqual(self.faults(done), {})
+        self.assertIn("locks work", done.stdout)
+        self.assertIn(" ns per vertex", done.stdout)
+        self.assertEqual(self.snapshot(), {})
+
+    def test_ranks_that_share_a_core_are_seen(self):
+        core = str(min(os.sched_getaffinity(0)))
+        done = self.examine(ranks=2, before=["taskset", "-c", core])
+        self.assertIn("2 ranks, started together", done.stdout)
+        self.assertIn("OMPI_MCA_hwloc_base_binding_policy=none", self.fault(done, "2 ranks, 1 core"))
+
+    def test_a_lonely_rank_of_many_is_seen(self):
+        self.assertIn("use mpirun", self.fault(self.examine(SLURM_NTASKS="8"), "allocation of 8 tasks"))
+
+    def test_root_in_a_container_is_told(self):
+        done = self.examine()
+        if os.geteuid() == 0:
+            self.assertIn("jobs/mpi-settings.sh", self.fault(done, "refuse to start more for root"))
+        else:
+            self.assertEqual(self.faults(done), {})
+
+    def test_a_folder_that_is_not_there_is_seen(self):
+        self.assertIn("--output", self.fault(self.examine("--output", "nowhere/s.h5"), "cannot write in nowhere"))
+
+    def test_wrong_options_are_refused_on_all_ranks(self):
+        done = self.examine("--outputs=x", ranks=2)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("unknown option", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
