@@ -2,11 +2,41 @@
 
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/tools/minima.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <stdexcept>
+#include <vector>
 
 namespace clog::fit {
+namespace {
+
+namespace tools = boost::math::tools;
+
+Interval chi_squared_interval(double total_distance, double degrees_of_freedom, double confidence) {
+  const boost::math::chi_squared chi2(degrees_of_freedom);
+  const double tail = (1 - confidence) / 2;
+  return {2 * total_distance / quantile(complement(chi2, tail)), 2 * total_distance / quantile(chi2, tail)};
+}
+
+/// In units of the estimate, u = lambda/(S/d), the likelihood falls by 2d (log u + 1/u - 1).
+Interval profile_interval(const CloggingLength& fit, double confidence) {
+  const double allowed =
+      quantile(boost::math::chi_squared(1), confidence) / (2 * static_cast<double>(fit.num_clogs));
+  const auto excess = [=](double log_u) { return log_u + std::expm1(-log_u) - allowed; };
+  const auto root = [&](double from, double to) {
+    std::uintmax_t most_steps = 200;
+    const auto [low, high] =
+        tools::toms748_solve(excess, from, to, tools::eps_tolerance<double>(), most_steps);
+    return fit.length * std::exp((low + high) / 2);
+  };
+  // exp(-x) - 1 + x exceeds `allowed` at both ends: at 1 + allowed, and where x^2/2 does.
+  return {root(-std::sqrt(2 * allowed), 0), root(0, 1 + allowed)};
+}
+
+}  // namespace
 
 CloggingLength fit_clogging_length(std::span<const Observation> runs, double confidence) {
   if (!(confidence > 0 && confidence < 1)) throw std::invalid_argument("confidence must lie between 0 and 1");
@@ -18,16 +48,47 @@ CloggingLength fit_clogging_length(std::span<const Observation> runs, double con
   }
   if (fit.num_clogs == 0) {
     fit.length = std::numeric_limits<double>::quiet_NaN();
-    fit.lower = fit.total_distance / -std::log1p(-confidence);
-    fit.upper = std::numeric_limits<double>::infinity();
+    fit.interval = {fit.total_distance / -std::log1p(-confidence), std::numeric_limits<double>::infinity()};
+    fit.profile = {2 * fit.total_distance / quantile(boost::math::chi_squared(1), confidence),
+                   std::numeric_limits<double>::infinity()};
     return fit;
   }
-  const boost::math::chi_squared chi2(2.0 * fit.num_clogs);
-  const double tail = (1 - confidence) / 2;
   fit.length = fit.total_distance / fit.num_clogs;
-  fit.lower = 2 * fit.total_distance / quantile(complement(chi2, tail));
-  fit.upper = 2 * fit.total_distance / quantile(chi2, tail);
+  const bool is_censored = fit.num_clogs < fit.num_runs;
+  fit.interval = chi_squared_interval(fit.total_distance, 2.0 * fit.num_clogs + is_censored, confidence);
+  fit.profile = profile_interval(fit, confidence);
   return fit;
+}
+
+double least_squares_length(std::span<const Observation> runs) {
+  std::vector<double> clogs;
+  double longest = 0;
+  for (const Observation& run : runs) {
+    longest = std::max(longest, run.distance);
+    if (run.clogged) clogs.push_back(std::max(0.0, run.distance));
+  }
+  if (clogs.size() < 2 || !(longest > 0)) return std::numeric_limits<double>::quiet_NaN();
+  std::sort(clogs.begin(), clogs.end());
+  const auto squares = [&](double log_length) {
+    double sum = 0;
+    for (std::size_t i = 0; i < clogs.size(); ++i) {
+      const double going = 1 - static_cast<double>(i + 1) / static_cast<double>(runs.size());
+      sum += std::pow(going - std::exp(-clogs[i] / std::exp(log_length)), 2);
+    }
+    return sum;
+  };
+  // No fit is longer than a straight line to one clog in so many runs, nor much shorter than the first clog.
+  const double first = std::max(clogs.front(), 1e-6 * longest);
+  const double low = std::log(first / (10 * std::log(static_cast<double>(runs.size()) + 2)));
+  const double high = std::log(10 * longest * static_cast<double>(runs.size()));
+  // The sum may have a local minimum or two: begin from a grid's best.
+  constexpr int num_points = 200;
+  const double spacing = (high - low) / num_points;
+  double best = low;
+  for (int i = 1; i <= num_points; ++i)
+    if (const double point = low + i * spacing; squares(point) < squares(best)) best = point;
+  constexpr int bits = std::numeric_limits<double>::digits / 2;
+  return std::exp(tools::brent_find_minima(squares, best - spacing, best + spacing, bits).first);
 }
 
 }  // namespace clog::fit

@@ -22,8 +22,10 @@ confidence interval and the mean speed with its standard error.
   clogfit sweep.h5 --format csv > table.csv
 
 Runs that did not clog count as censored at the distance they reached. Where no run clogged, lambda is a lower
-bound. The mean speed is in units of the terminal speed, its error comes from the scatter between runs. For lattices, lateral/r is the lateral displacement per
-distance travelled, the tangent of the migration angle, positive towards +y.
+bound. Letters in the last column name what may spoil a length. The mean speed is in units of the terminal speed, its
+error comes from the scatter between runs. For lattices, lateral/r is the lateral displacement per distance travelled, the
+tangent of the migration angle, positive towards +y. csv and json have more: intervals by profile likelihood, the
+published least squares (biased), Weibull's shape with its p-value, capillary numbers; json also P(r).
 )";
 
 int body(int argc, char** argv) {

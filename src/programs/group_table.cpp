@@ -14,67 +14,6 @@
 namespace clog {
 namespace {
 
-using sweep::RunRow;
-/// A number, a count or a word; NaN (not applicable) is an empty word, so that values can be compared.
-using Value = std::variant<std::string, double, std::int64_t>;
-using Field = std::pair<const char*, Value>;
-
-Value value_of(double number) { return std::isnan(number) ? Value(std::string()) : Value(number); }
-Value value_of(std::int64_t count) { return count; }
-Value value_of(int count) { return std::int64_t{count}; }
-template <std::size_t N>
-Value value_of(const sweep::FixedText<N>& text) {
-  return std::string(text.view());
-}
-
-/// What makes a group, most telling first.
-std::vector<Field> parameter_fields(const RunRow& row) {
-  return {{"model", value_of(row.model)},
-          {"obstacle_filling", value_of(row.obstacle_filling)},
-          {"obstacle_diameter", value_of(row.obstacle_diameter)},
-          {"obstacle_diameter_spread", value_of(row.obstacle_diameter_spread)},
-          {"obstacle_gap", value_of(row.obstacle_gap)},
-          {"obstacle_density", value_of(row.obstacle_density)},
-          {"lattice_angle", value_of(row.lattice_angle)},
-          {"line_tension", value_of(row.line_tension)},
-          {"wall_stiffness", value_of(row.wall_stiffness)},
-          {"near_wall_drag", value_of(row.near_wall_drag)},
-          {"near_wall_exponent", value_of(row.near_wall_exponent)},
-          {"relative_drag", value_of(row.relative_drag)},
-          {"terminal_speed", value_of(row.terminal_speed)},
-          {"vertices", value_of(row.vertices)},
-          {"time_step", value_of(row.time_step)},
-          {"max_time", value_of(row.max_time)},
-          {"box", value_of(row.box)},
-          {"area_stiffness", value_of(row.area_stiffness)},
-          {"preset", value_of(row.preset)},
-          {"perimeter_spring", value_of(row.perimeter_spring)},
-          {"perimeter_stiffness", value_of(row.perimeter_stiffness)},
-          {"wall_contact", value_of(row.wall_contact)},
-          {"wall_tension", value_of(row.wall_tension)},
-          {"self_contact", value_of(row.self_contact)},
-          {"gravity", value_of(row.gravity)},
-          {"clog_energy", value_of(row.clog_energy)},
-          {"clog_detection", value_of(row.clog_detection)}};
-}
-
-std::vector<Field> result_fields(const Group& group) {
-  return {{"runs", value_of(group.clogging.num_runs)},
-          {"clogs", value_of(group.clogging.num_clogs)},
-          {"flowing", value_of(group.num_flowing)},
-          {"interrupted", value_of(group.num_interrupted)},
-          {"failed", value_of(group.num_failed)},
-          {"total_distance", value_of(group.clogging.total_distance)},
-          {"clogging_length", value_of(group.clogging.length)},
-          {"clogging_length_lower", value_of(group.clogging.lower)},
-          {"clogging_length_upper", value_of(group.clogging.upper)},
-          {"mean_speed", value_of(group.speed.mean)},
-          {"mean_speed_error", value_of(group.speed.standard_error)},
-          {"mean_speed_runs", value_of(group.speed.num_runs)},
-          {"lateral_slope", value_of(group.migration.slope)},
-          {"lateral_slope_error", value_of(group.migration.standard_error)}};
-}
-
 std::string exact(const Value& value) {
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
   if (const auto* count = std::get_if<std::int64_t>(&value)) return std::to_string(*count);
@@ -105,17 +44,35 @@ std::string aligned(const std::vector<std::vector<std::string>>& lines) {
 
 bool is_lattice(const Group& group) { return group.parameters.obstacle_filling.view() == "lattice"; }
 
+std::string letters(const std::vector<Doubt>& doubts) {
+  std::string all;
+  for (const Doubt doubt : doubts) all += text_of(doubt).letter;
+  return all;
+}
+
+/// What the letters in the last column mean, as far as they occur.
+std::string legend(const std::vector<Group>& groups) {
+  std::string text;
+  for (const DoubtText& doubt : doubt_texts)
+    if (std::any_of(groups.begin(), groups.end(), [&](const Group& group) {
+          return letters(group.doubts).find(doubt.letter) != std::string::npos;
+        }))
+      text += std::string(text.empty() ? "\n" : "") + doubt.letter + ": " + doubt.sentence + '\n';
+  return text;
+}
+
 /// @param with_migration  in random arrays a droplet goes straight on the average: not worth two columns
 std::vector<std::string> result_cells(const Group& group, bool with_migration) {
   const fit::CloggingLength& clogging = group.clogging;
   const bool bounded = clogging.num_clogs > 0;
-  const auto number = [](double value) { return rounded(value_of(value)); };
-  std::vector<std::string> cells = {std::to_string(clogging.num_runs),
-                                    std::to_string(clogging.num_clogs),
-                                    bounded ? number(clogging.length) : "> " + number(clogging.lower),
-                                    bounded ? number(clogging.lower) + " .. " + number(clogging.upper) : "-",
-                                    number(group.speed.mean),
-                                    number(group.speed.standard_error)};
+  const auto number = [](double value) { return std::isnan(value) ? "-" : rounded(value); };
+  std::vector<std::string> cells = {
+      std::to_string(clogging.num_runs),
+      std::to_string(clogging.num_clogs),
+      bounded ? number(clogging.length) : "> " + number(clogging.interval.lower),
+      bounded ? number(clogging.interval.lower) + " .. " + number(clogging.interval.upper) : "-",
+      number(group.speed.mean),
+      number(group.speed.standard_error)};
   if (with_migration)
     cells.insert(cells.end(), {number(group.migration.slope), number(group.migration.standard_error)});
   return cells;
@@ -160,36 +117,6 @@ std::vector<bool> shown_fields(const std::vector<Group>& groups, const std::vect
 
 }  // namespace
 
-std::vector<Group> group_runs(std::span<const RunRow> rows, double confidence) {
-  std::map<std::vector<Field>, std::vector<const RunRow*>> members;
-  for (const RunRow& row : rows) {
-    std::vector<Field> fields = parameter_fields(row);
-    members[std::move(fields)].push_back(&row);
-  }
-  std::vector<Group> groups;
-  for (const auto& [fields, runs] : members) {
-    Group group;
-    group.parameters = *runs.front();
-    std::vector<fit::Observation> observations;
-    std::vector<double> speeds;
-    std::vector<fit::Displacement> displacements;
-    for (const RunRow* run : runs) {
-      group.num_failed += run->status.view() == "failed";
-      if (run->status.view() == "failed") continue;
-      group.num_flowing += run->status.view() == "flowing";
-      group.num_interrupted += run->status.view() == "interrupted" || run->status.view() == "running";
-      observations.push_back({run->distance, run->status.view() == "clogged"});
-      speeds.push_back(run->mean_speed / run->terminal_speed);
-      displacements.push_back({run->distance, run->lateral_displacement});
-    }
-    group.clogging = fit::fit_clogging_length(observations, confidence);
-    group.speed = fit::fit_mean_speed(speeds);
-    group.migration = fit::fit_migration(displacements);
-    groups.push_back(group);
-  }
-  return groups;
-}
-
 std::string to_text(const std::vector<Group>& groups, double confidence) {
   const std::vector<Field> first = parameter_fields(groups.front().parameters);
   const std::vector<bool> varies = varying_fields(groups);
@@ -211,6 +138,9 @@ std::string to_text(const std::vector<Group>& groups, double confidence) {
     lines[0].push_back(title);
   const bool with_migration = std::any_of(groups.begin(), groups.end(), is_lattice);
   if (with_migration) lines[0].insert(lines[0].end(), {"lateral/r", "+-"});
+  const bool with_doubts =
+      std::any_of(groups.begin(), groups.end(), [](const Group& group) { return !group.doubts.empty(); });
+  if (with_doubts) lines[0].push_back("note");
   int num_failed = 0;
   int num_interrupted = 0;
   for (const Group& group : groups) {
@@ -219,16 +149,15 @@ std::string to_text(const std::vector<Group>& groups, double confidence) {
     for (std::size_t i = 0; i < fields.size(); ++i)
       if (is_shown(i)) line.push_back(rounded(fields[i].second));
     for (std::string& cell : result_cells(group, with_migration)) line.push_back(std::move(cell));
+    if (with_doubts) line.push_back(letters(group.doubts));
     num_failed += group.num_failed;
     num_interrupted += group.num_interrupted;
   }
-  text += "\n\n" + aligned(lines);
+  text += "\n\n" + aligned(lines) + legend(groups);
   if (num_interrupted > 0)
-    text += "\nnote: " + std::to_string(num_interrupted) +
-            " runs are under way or interrupted: they count as not clogged so far\n";
+    text += "   " + std::to_string(num_interrupted) + " runs are under way or interrupted\n";
   if (num_failed > 0)
-    text += "\nnote: " + std::to_string(num_failed) +
-            " failed runs are left out; their column `message` says why\n";
+    text += "   " + std::to_string(num_failed) + " failed; their column `message` says why\n";
   return text;
 }
 
@@ -263,7 +192,14 @@ std::string to_json(const std::vector<Group>& groups, double confidence) {
                           ? nlohmann::ordered_json(nullptr)
                           : nlohmann::ordered_json(std::get<std::string>(value));
     }
-    list.push_back(entry);
+    entry["survival"] = nlohmann::ordered_json::array();
+    for (const fit::SurvivalStep& step : group.survival)
+      entry["survival"].push_back({{"distance", step.distance},
+                                   {"at_risk", step.num_at_risk},
+                                   {"clogs", step.num_clogs},
+                                   {"probability", step.probability},
+                                   {"standard_error", step.standard_error}});
+    list.push_back(std::move(entry));
   }
   const nlohmann::ordered_json document = {{"confidence", confidence}, {"groups", list}};
   return document.dump(2) + "\n";

@@ -35,7 +35,7 @@ TimeLeft time_left(std::span<const double> finished, std::span<const double> run
   double tail = 0;
   for (std::size_t i = 1; i <= running.size(); ++i) tail += 1.0 / static_cast<double>(i);
   const double means_left = num_waiting / static_cast<double>(num_ranks) + tail;
-  return {true, means_left * mean.lower, means_left * mean.upper};
+  return {true, means_left * mean.interval.lower, means_left * mean.interval.upper};
 }
 
 }  // namespace clog

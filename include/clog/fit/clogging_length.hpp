@@ -11,23 +11,43 @@ struct Observation {
   bool clogged;
 };
 
+struct Interval {
+  double lower;
+  double upper;
+};
+
 /// Estimate of the clogging length lambda, the mean distance of an exponential law P(r) = exp(-r/lambda)
 /// (Cheng et al. Eq. 13).
 struct CloggingLength {
   int num_runs = 0;
   int num_clogs = 0;
-  double total_distance = 0;  ///< over all runs, clogged or not [sigma]
+  double total_distance = 0;  ///< S, over all runs, clogged or not [sigma]
   double length = 0;          ///< NaN without clogs [sigma]
-  double lower = 0;           ///< [sigma]
-  double upper = 0;           ///< infinite without clogs [sigma]
+  Interval interval{};        ///< by chi-squared; without clogs a lower bound and infinity [sigma]
+  Interval profile{};         ///< by profile likelihood; likewise [sigma]
 };
 
-/// Maximum likelihood for censored exponential data: lambda = (sum of all distances)/(number of clogs).
-/// The two-sided interval is 2 S/chi2_{1-q} .. 2 S/chi2_q with q = (1 - confidence)/2 and 2d degrees of
-/// freedom, S the sum and d the clogs (Epstein and Sobel 1953; Lawless, Statistical Models and Methods for
-/// Lifetime Data, ch. 4). Without clogs, `lower` is the one-sided bound S/log(1/(1 - confidence)). Distances
-/// below zero (a droplet pushed back on release) count as zero.
+/// Maximum likelihood for censored exponential data: lambda = S/d, S the sum of all distances and d the
+/// clogs.
+///
+/// The interval is 2 S/chi2_{1-q} .. 2 S/chi2_q with q = (1 - confidence)/2. With d fixed beforehand, or when
+/// every run has clogged, 2 S/lambda is chi-squared distributed with exactly 2d degrees of freedom (Epstein
+/// and Sobel 1953). Here runs are censored after a given time and d is as random as S: the next clog might
+/// have come just after the last look, which asks for 2d + 2, or just before, which asks for 2d. 2d + 1 lies
+/// between and covers the truth nearly as often as it claims (Cox, Biometrika 40, 354 (1953); Lawless,
+/// Statistical Models and Methods for Lifetime Data, ch. 4). Without clogs there is a one-sided lower bound,
+/// S/log(1/(1 - confidence)), which is 2d + 2.
+///
+/// `profile` holds all lambda with 2 (l(S/d) - l(lambda)) below chi-squared's quantile for one degree of
+/// freedom, l(lambda) = -d log lambda - S/lambda.
+///
+/// Distances below zero (a droplet pushed back on release) count as zero.
 /// @throws std::invalid_argument unless 0 < confidence < 1
 CloggingLength fit_clogging_length(std::span<const Observation> runs, double confidence = 0.95);
+
+/// Least squares of exp(-r/lambda) on P(r) = 1 - N_clog(r)/N at every clog, as published (Cheng et al.,
+/// appendix C) [sigma]. Biased: it takes a censored run for one that would have gone on for ever, and weighs
+/// points as if they were independent. NaN for fewer than two clogs.
+double least_squares_length(std::span<const Observation> runs);
 
 }  // namespace clog::fit

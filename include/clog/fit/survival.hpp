@@ -1,0 +1,37 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "clog/fit/clogging_length.hpp"
+
+namespace clog::fit {
+
+/// A step of the estimated P(r), the probability to travel farther than r without a clog.
+struct SurvivalStep {
+  double distance;        ///< of one or more clogs [sigma]
+  int num_at_risk;        ///< runs that came so far
+  int num_clogs;          ///< of them, at this distance
+  double probability;     ///< P just beyond
+  double standard_error;  ///< Greenwood's
+};
+/// Kaplan and Meier's product-limit estimate (J. Am. Stat. Assoc. 53, 457 (1958)): unbiased whatever the law,
+/// censored runs count as long as they are seen. One step per distance with clogs, in increasing order; at
+/// equal distances clogs come before censorings.
+std::vector<SurvivalStep> survival_curve(std::span<const Observation> runs);
+
+/// Is P(r) an exponential? The likelihood ratio against Weibull's law P(r) = exp(-(r/scale)^shape): with
+/// shape above 1 clogging gets likelier on the way, below 1 it was likelier at the beginning (or runs differ
+/// among each other). Runs of no distance are left out.
+struct WeibullTest {
+  int num_clogs = 0;                  ///< used
+  double shape = 0;                   ///< NaN for fewer than two clogs at different distances
+  double scale = 0;                   ///< [sigma]
+  double exponential_likelihood = 0;  ///< log, maximal
+  double weibull_likelihood = 0;      ///< log, maximal
+  double likelihood_ratio = 0;        ///< twice the difference, chi-squared with one degree of freedom
+  double p_value = 0;                 ///< of a ratio at least as large, were P(r) exponential
+};
+WeibullTest test_exponentiality(std::span<const Observation> runs);
+
+}  // namespace clog::fit

@@ -1,0 +1,131 @@
+#include "groups.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+
+#include "clog/core/units.hpp"
+
+namespace clog {
+namespace {
+
+Value value_of(double number) { return std::isnan(number) ? Value(std::string()) : Value(number); }
+Value value_of(std::int64_t count) { return count; }
+Value value_of(int count) { return std::int64_t{count}; }
+template <std::size_t N>
+Value value_of(const sweep::FixedText<N>& text) {
+  return std::string(text.view());
+}
+
+std::vector<Doubt> doubts_about(const Group& group) {
+  constexpr int few = 5;
+  constexpr double significant = 0.05;
+  std::vector<Doubt> doubts;
+  if (group.clogging.num_clogs < few) doubts.push_back(Doubt::few_clogs);
+  if (group.weibull.p_value < significant) doubts.push_back(Doubt::not_exponential);
+  if (group.num_flowing > 0) doubts.push_back(Doubt::censored_by_time);
+  if (group.num_interrupted > 0 || group.num_failed > 0) doubts.push_back(Doubt::incomplete);
+  return doubts;
+}
+
+}  // namespace
+
+const DoubtText& text_of(Doubt doubt) {
+  return *std::find_if(std::begin(doubt_texts), std::end(doubt_texts),
+                       [=](const DoubtText& text) { return text.doubt == doubt; });
+}
+
+std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence) {
+  std::map<std::vector<Field>, std::vector<const sweep::RunRow*>> members;
+  for (const sweep::RunRow& row : rows) {
+    std::vector<Field> fields = parameter_fields(row);
+    members[std::move(fields)].push_back(&row);
+  }
+  std::vector<Group> groups;
+  for (const auto& [fields, runs] : members) {
+    Group group;
+    group.parameters = *runs.front();
+    std::vector<fit::Observation> observations;
+    std::vector<double> speeds;
+    std::vector<fit::Displacement> displacements;
+    for (const sweep::RunRow* run : runs) {
+      group.num_failed += run->status.view() == "failed";
+      if (run->status.view() == "failed") continue;
+      group.num_flowing += run->status.view() == "flowing";
+      group.num_interrupted += run->status.view() == "interrupted" || run->status.view() == "running";
+      observations.push_back({run->distance, run->status.view() == "clogged"});
+      speeds.push_back(run->mean_speed / run->terminal_speed);
+      displacements.push_back({run->distance, run->lateral_displacement});
+    }
+    group.clogging = fit::fit_clogging_length(observations, confidence);
+    group.least_squares_length = fit::least_squares_length(observations);
+    group.weibull = fit::test_exponentiality(observations);
+    group.survival = fit::survival_curve(observations);
+    group.speed = fit::fit_mean_speed(speeds);
+    group.migration = fit::fit_migration(displacements);
+    group.doubts = doubts_about(group);
+    groups.push_back(std::move(group));
+  }
+  return groups;
+}
+
+std::vector<Field> parameter_fields(const sweep::RunRow& row) {
+  return {{"model", value_of(row.model)},
+          {"obstacle_filling", value_of(row.obstacle_filling)},
+          {"obstacle_diameter", value_of(row.obstacle_diameter)},
+          {"obstacle_diameter_spread", value_of(row.obstacle_diameter_spread)},
+          {"obstacle_gap", value_of(row.obstacle_gap)},
+          {"obstacle_density", value_of(row.obstacle_density)},
+          {"lattice_angle", value_of(row.lattice_angle)},
+          {"line_tension", value_of(row.line_tension)},
+          {"wall_stiffness", value_of(row.wall_stiffness)},
+          {"near_wall_drag", value_of(row.near_wall_drag)},
+          {"near_wall_exponent", value_of(row.near_wall_exponent)},
+          {"relative_drag", value_of(row.relative_drag)},
+          {"terminal_speed", value_of(row.terminal_speed)},
+          {"vertices", value_of(row.vertices)},
+          {"time_step", value_of(row.time_step)},
+          {"max_time", value_of(row.max_time)},
+          {"box", value_of(row.box)},
+          {"area_stiffness", value_of(row.area_stiffness)},
+          {"preset", value_of(row.preset)},
+          {"perimeter_spring", value_of(row.perimeter_spring)},
+          {"perimeter_stiffness", value_of(row.perimeter_stiffness)},
+          {"wall_contact", value_of(row.wall_contact)},
+          {"wall_tension", value_of(row.wall_tension)},
+          {"self_contact", value_of(row.self_contact)},
+          {"gravity", value_of(row.gravity)},
+          {"clog_energy", value_of(row.clog_energy)},
+          {"clog_detection", value_of(row.clog_detection)}};
+}
+
+std::vector<Field> result_fields(const Group& group) {
+  std::string doubts;
+  for (const Doubt doubt : group.doubts)
+    doubts += std::string(doubts.empty() ? "" : " ") + text_of(doubt).word;
+  return {
+      {"runs", value_of(group.clogging.num_runs)},
+      {"clogs", value_of(group.clogging.num_clogs)},
+      {"flowing", value_of(group.num_flowing)},
+      {"interrupted", value_of(group.num_interrupted)},
+      {"failed", value_of(group.num_failed)},
+      {"total_distance", value_of(group.clogging.total_distance)},
+      {"clogging_length", value_of(group.clogging.length)},
+      {"clogging_length_lower", value_of(group.clogging.interval.lower)},
+      {"clogging_length_upper", value_of(group.clogging.interval.upper)},
+      {"clogging_length_profile_lower", value_of(group.clogging.profile.lower)},
+      {"clogging_length_profile_upper", value_of(group.clogging.profile.upper)},
+      {"clogging_length_least_squares", value_of(group.least_squares_length)},
+      {"weibull_shape", value_of(group.weibull.shape)},
+      {"weibull_p_value", value_of(group.weibull.p_value)},
+      {"mean_speed", value_of(group.speed.mean)},
+      {"mean_speed_error", value_of(group.speed.standard_error)},
+      {"mean_speed_runs", value_of(group.speed.num_runs)},
+      {"capillary_number", value_of(group.speed.mean * units::droplet_mass / group.parameters.line_tension)},
+      {"lateral_slope", value_of(group.migration.slope)},
+      {"lateral_slope_error", value_of(group.migration.standard_error)},
+      {"doubts", doubts}};
+}
+
+}  // namespace clog

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "clog/fit/clogging_length.hpp"
+#include "clog/fit/mean_speed.hpp"
+#include "clog/fit/migration.hpp"
+#include "clog/fit/survival.hpp"
+#include "clog/sweep/run_row.hpp"
+
+namespace clog {
+
+/// What may spoil a group's clogging length.
+enum class Doubt {
+  few_clogs,         ///< fewer than five: the interval is wide and its coverage wavers
+  not_exponential,   ///< Weibull's law fits better, p < 0.05
+  censored_by_time,  ///< runs ended by max-time, slow ones nearer than fast ones
+  incomplete,        ///< runs are under way, interrupted or failed
+};
+/// One letter each for tables, a word for files, a sentence for readers.
+struct DoubtText {
+  Doubt doubt;
+  char letter;
+  const char* word;
+  const char* sentence;
+};
+inline constexpr DoubtText doubt_texts[] = {
+    {Doubt::few_clogs, 'f', "few_clogs", "fewer than 5 clogs: more seeds are needed"},
+    {Doubt::not_exponential, 'x', "not_exponential",
+     "P(r) is not exponential (p < 0.05): one length does not describe these runs"},
+    {Doubt::censored_by_time, 't', "censored_by_time",
+     "runs ended by max-time: right if slow droplets are as likely to clog as fast ones"},
+    {Doubt::incomplete, 'i', "incomplete",
+     "runs are under way or interrupted (they count as not clogged so far) or have failed (left out)"}};
+const DoubtText& text_of(Doubt doubt);
+
+/// The runs of a sweep that differ in their seed only, and what they say together.
+struct Group {
+  sweep::RunRow parameters;  ///< of its first run
+  fit::CloggingLength clogging;
+  double least_squares_length = 0;  ///< the published way, biased; NaN for fewer than two clogs
+  fit::WeibullTest weibull;
+  std::vector<fit::SurvivalStep> survival;
+  fit::MeanSpeed speed;  ///< in units of the terminal speed
+  fit::Migration migration;
+  int num_flowing = 0;
+  int num_interrupted = 0;
+  int num_failed = 0;  ///< left out of all fits
+  std::vector<Doubt> doubts;
+};
+
+/// Groups rows by everything but the seed, in the order of their parameters.
+std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence);
+
+/// A number, a count or a word; NaN (not applicable) is an empty word, so that values can be compared.
+using Value = std::variant<std::string, double, std::int64_t>;
+using Field = std::pair<const char*, Value>;
+/// What makes a group, most telling first.
+std::vector<Field> parameter_fields(const sweep::RunRow& row);
+/// What came out.
+std::vector<Field> result_fields(const Group& group);
+
+}  // namespace clog

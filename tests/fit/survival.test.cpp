@@ -1,0 +1,103 @@
+#include "clog/fit/survival.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "leukaemia.hpp"
+
+namespace clog::fit {
+namespace {
+
+TEST(SurvivalCurve, OfTheLeukaemiaTrialIsTheReferenceAnswer) {
+  // R's survival package, survfit().
+  const std::vector<SurvivalStep> steps = survival_curve(leukaemia_treated);
+  ASSERT_EQ(steps.size(), 7u);
+  EXPECT_EQ(steps[0].distance, 6);
+  EXPECT_EQ(steps[0].num_at_risk, 21);
+  EXPECT_EQ(steps[0].num_clogs, 3);
+  EXPECT_NEAR(steps[0].probability, 0.85714286, 1e-8);
+  EXPECT_NEAR(steps[0].standard_error, 0.07636035, 1e-8);
+  EXPECT_EQ(steps[2].distance, 10);
+  EXPECT_EQ(steps[2].num_at_risk, 15);
+  EXPECT_NEAR(steps[2].probability, 0.75294118, 1e-8);
+  EXPECT_NEAR(steps[2].standard_error, 0.09634965, 1e-8);
+  EXPECT_EQ(steps[6].distance, 23);
+  EXPECT_NEAR(steps[6].probability, 0.44817927, 1e-8);  // by hand: 6/7 16/17 14/15 11/12 10/11 6/7 5/6
+}
+
+TEST(SurvivalCurve, OfUncensoredRunsIsTheirShare) {
+  const std::vector<SurvivalStep> steps = survival_curve(leukaemia_placebo);
+  EXPECT_EQ(steps.size(), 12u);
+  for (const SurvivalStep& step : steps) {
+    const double share = step.probability;
+    EXPECT_NEAR(share * 21, std::round(share * 21), 1e-12);
+    if (share > 1e-12) {
+      EXPECT_NEAR(step.standard_error, std::sqrt(share * (1 - share) / 21), 1e-12);  // binomial
+    }
+  }
+  EXPECT_NEAR(steps.back().probability, 0, 1e-15);
+}
+
+TEST(SurvivalCurve, HasNoStepsWithoutClogs) {
+  EXPECT_TRUE(survival_curve(std::vector<Observation>{{5, false}}).empty());
+  EXPECT_TRUE(survival_curve({}).empty());
+}
+
+TEST(Exponentiality, OfTheLeukaemiaTrialIsTheReferenceAnswer) {
+  // R's survival package, survreg() with an exponential and a Weibull law.
+  const WeibullTest treated = test_exponentiality(leukaemia_treated);
+  EXPECT_NEAR(treated.exponential_likelihood, -42.1748803, 1e-7);
+  EXPECT_NEAR(treated.shape, 1.3537345, 1e-7);
+  EXPECT_NEAR(treated.likelihood_ratio, 1.032404, 1e-6);
+  EXPECT_NEAR(treated.p_value, 0.309596, 1e-5);
+  const WeibullTest placebo = test_exponentiality(leukaemia_placebo);
+  EXPECT_NEAR(placebo.exponential_likelihood, -66.3491692, 1e-7);
+  EXPECT_NEAR(placebo.shape, 1.3704999, 1e-7);
+  EXPECT_NEAR(placebo.likelihood_ratio, 2.858123, 1e-6);
+}
+
+TEST(Exponentiality, IsRejectedAsOftenAsItClaimsAndWhereItFails) {
+  std::mt19937_64 engine(3);
+  const auto share_rejected = [&](double shape) {
+    std::weibull_distribution<double> distance(shape, 5);
+    int num_rejected = 0;
+    constexpr int num_samples = 4000;
+    for (int sample = 0; sample < num_samples; ++sample) {
+      std::vector<Observation> runs;
+      for (int i = 0; i < 50; ++i) {
+        const double clog = distance(engine);
+        runs.push_back({std::min(clog, 8.0), clog < 8});
+      }
+      num_rejected += test_exponentiality(runs).p_value < 0.05;
+    }
+    return static_cast<double>(num_rejected) / num_samples;
+  };
+  EXPECT_NEAR(share_rejected(1), 0.05, 0.012);  // standard error 0.0035
+  EXPECT_GT(share_rejected(2), 0.9);
+  EXPECT_GT(share_rejected(0.5), 0.9);
+}
+
+TEST(Exponentiality, SurvivesDegenerateData) {
+  for (const std::vector<Observation>& runs : {std::vector<Observation>{},
+                                               {{3, true}},
+                                               {{3, true}, {3, true}},
+                                               {{0, true}, {-1, true}},
+                                               {{4, false}}}) {
+    EXPECT_TRUE(std::isnan(test_exponentiality(runs).shape));
+    EXPECT_TRUE(std::isnan(test_exponentiality(runs).p_value));
+  }
+  const WeibullTest pushed_back =
+      test_exponentiality(std::vector<Observation>{{-0.1, true}, {1, true}, {2, true}});
+  EXPECT_EQ(pushed_back.num_clogs, 2);
+  EXPECT_TRUE(std::isfinite(pushed_back.shape));
+  // Distances of any size.
+  const std::vector<Observation> tiny{{1e-9, true}, {3e-9, true}, {2e-9, false}},
+      huge{{1e9, true}, {3e9, true}, {2e9, false}};
+  EXPECT_NEAR(test_exponentiality(tiny).shape, test_exponentiality(huge).shape, 1e-9);
+}
+
+}  // namespace
+}  // namespace clog::fit
