@@ -6,7 +6,7 @@ packages=(
   libopenmpi-dev openmpi-bin                         # MPI
   libhdf5-dev libeigen3-dev libhwy-dev               # the table of runs; arrays; vector instructions
   libboost-dev libboost-program-options-dev          # random numbers and statistics; command line
-  nlohmann-json3-dev                                 # clogfit --format json
+  nlohmann-json3-dev libnlopt-cxx-dev                # JSON; the optimiser of clogfit calibrate
   libgtest-dev libbenchmark-dev                      # tests and benchmarks
   procps iproute2                                    # tests that kill ranks, and join two hosts
   python3 python3-h5py python3-pandas python3-tables python3-matplotlib  # figures, and readers for the tests

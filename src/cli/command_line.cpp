@@ -115,6 +115,10 @@ void CommandLine::read_config(const std::string& path) {
   }
 }
 
+std::vector<std::string> CommandLine::get_all(const std::string& option) const {
+  return has(option) ? values_.at(option).as<std::vector<std::string>>() : std::vector<std::string>();
+}
+
 std::string CommandLine::require(const std::string& option) const {
   if (!has(option)) throw Error("missing --" + option + "; see " + program_ + " --help");
   return get(option);

@@ -2,11 +2,13 @@
 
 #include <iostream>
 #include <string>
+#include <string_view>
 
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/core/error.hpp"
 #include "clog/store/run_table.hpp"
+#include "clogfit_calibrate.hpp"
 #include "group_table.hpp"
 
 namespace {
@@ -20,6 +22,7 @@ confidence interval and the mean speed with its standard error.
 
   clogfit sweep.h5
   clogfit sweep.h5 --format csv > table.csv
+  clogfit calibrate trial.csv --orifice 0.7    line tension and near-wall drag from measured speeds
 
 Runs that did not clog count as censored at the distance they reached. Where no run clogged, lambda is a lower
 bound. Letters in the last column name what may spoil a length. The mean speed is in units of the terminal speed, its
@@ -57,5 +60,8 @@ int body(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return clog::cli::run_program(program, [&] { return body(argc, argv); });
+  using namespace clog;
+  if (argc > 1 && std::string_view(argv[1]) == "calibrate")
+    return cli::run_program("clogfit calibrate", [&] { return clogfit_calibrate(argc, argv); });
+  return cli::run_program(program, [&] { return body(argc, argv); });
 }

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "channel_options.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/core/error.hpp"
@@ -32,11 +33,9 @@ cli::CommandLine parse(int argc, char** argv) {
       "polygon-interval", text(), "also write the polygon this often [t0]")(
       "obstacles", text(), "array: CSV file x,y[,diameter] to use; the droplet starts near (box/2, box/2)")(
       "write-obstacles", text(), "array: write the obstacles as a CSV file")(
-      "orifice", text(), "channel: distance w between the wedges' tips [sigma] (0.7)")(
-      "wedge-angle", text(), "channel: of the flanks against the flow [degrees] (45)")(
-      "tip-radius", text(), "channel: of the wedges' rounded tips [sigma] (0.03)")(
       "start", text(), "channel: h at release [sigma] (-10)")("end", text(),
                                                               "channel: h at the end [sigma] (3)");
+  add_channel_options(line);
   line.add_positional("system", 1);
   line.settings().set("seeds", "1");
   line.parse(argc, argv);

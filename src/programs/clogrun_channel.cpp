@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <string>
 
+#include "channel_options.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/core/systems.hpp"
 #include "watched_run.hpp"
@@ -10,15 +11,10 @@ namespace clog {
 int clogrun_channel(cli::CommandLine& line) {
   refuse_options(line, "channel", array_options);
   const std::string output = line.require("output");
-  const ChannelParameters channel{
-      .orifice = line.get_number("orifice", ChannelParameters{}.orifice),
-      .wedge_angle = line.get_number("wedge-angle", ChannelParameters{}.wedge_angle),
-      .tip_radius = line.get_number("tip-radius", ChannelParameters{}.tip_radius),
-      .start = line.get_number("start", ChannelParameters{}.start),
-      .end = line.get_number("end", ChannelParameters{}.end)};
-  // What `auto` must hold off are the tips.
-  line.settings().set("obstacle-diameter", sweep::shortest(std::max(2 * channel.tip_radius, 1e-3)));
-  const RunParameters parameters = single_run(line.settings());
+  ChannelParameters channel = channel_from(line);
+  channel.start = line.get_number("start", channel.start);
+  channel.end = line.get_number("end", channel.end);
+  const RunParameters parameters = channel_run(line.settings(), channel);
   const auto intervals = WatchedRun::intervals(line, *parameters.time_step);
   DropletRun run = run_in_channel(parameters, channel);
   store::refuse_unwritable(output);

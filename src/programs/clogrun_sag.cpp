@@ -6,6 +6,7 @@
 #include "clog/core/error.hpp"
 #include "clog/core/systems.hpp"
 #include "clog/sweep/plan.hpp"
+#include "single_run.hpp"
 #include "watched_run.hpp"
 
 namespace clog {

@@ -151,14 +151,6 @@ int WatchedRun::report() const {
                                                  : cli::exit_success;
 }
 
-RunParameters single_run(const sweep::Settings& settings) {
-  const sweep::Plan plan(settings);
-  if (plan.size() != 1)
-    throw Error("these settings mean " + std::to_string(plan.size()) +
-                " runs, clogrun does one; give single values, or use clogsweep");
-  return plan.task(0);
-}
-
 sweep::RunRow without_array(sweep::RunRow row, const char* place) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   row.obstacle_gap = row.obstacle_diameter = row.obstacle_density = row.box = none;

@@ -64,9 +64,6 @@ int clogrun_array(cli::CommandLine& line);
 int clogrun_channel(cli::CommandLine& line);
 int clogrun_sag(cli::CommandLine& line);
 
-/// The one parameter set that the settings mean. @throws Error if they mean several
-RunParameters single_run(const sweep::Settings& settings);
-
 /// Keys and options that describe an obstacle array.
 inline constexpr std::initializer_list<const char*> array_options = {"obstacle-gap",
                                                                      "obstacle-diameter",

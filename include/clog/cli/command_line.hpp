@@ -27,6 +27,8 @@ class CommandLine {
 
   bool has(const std::string& option) const { return values_.count(option) > 0; }
   std::string get(const std::string& option) const { return values_.at(option).as<std::string>(); }
+  /// Of an option that may be given several times: all its values.
+  std::vector<std::string> get_all(const std::string& option) const;
   /// @throws Error if the option was not given
   std::string require(const std::string& option) const;
   /// @throws Error if the option's value is not a number above zero

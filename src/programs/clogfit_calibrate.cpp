@@ -1,0 +1,255 @@
+#include "clogfit_calibrate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <future>
+#include <iostream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+#include <semaphore>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "channel_options.hpp"
+#include "clog/cli/command_line.hpp"
+#include "clog/cli/program.hpp"
+#include "clog/core/error.hpp"
+#include "clog/fit/calibration.hpp"
+#include "clog/sweep/value_list.hpp"
+#include "laboratory.hpp"
+#include "profile_file.hpp"
+#include "single_run.hpp"
+
+namespace clog {
+namespace {
+
+constexpr const char* program = "clogfit calibrate";
+constexpr const char* usage =
+    R"(clogfit calibrate finds the line tension Gamma and the near-wall drag b_0/b_inf of the simulated
+droplet that passes a channel most like a measured one: those that minimise Delta_v, the relative
+root-mean-square deviation of the speeds. One file per trial.
+
+  clogfit calibrate trial1.csv trial2.csv --orifice 0.7 terminal-speed=0.032
+  clogfit calibrate trial*.csv --orifice 0.4 --diameter 3.5mm --speed 7mm/s --angle 28deg
+  ... --tension 10mN/m --other "1.98mm 8.5deg"
+
+A profile is a CSV file with the header h [sigma], v [v_t], A or, with --diameter and --speed, in laboratory units such
+as h [mm], v [mm/s], A. With --angle the terminal speed V_t follows from the laboratory's quantities.
+)";
+
+using Text = std::string;
+
+cli::CommandLine parse(int argc, const char* const* argv) {
+  namespace po = boost::program_options;
+  cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::accepted);
+  const auto text = [] { return po::value<Text>(); };
+  line.add_options()("profiles", po::value<std::vector<Text>>()->composing(), "CSV files, one per trial")(
+      "diameter", text(), "of the undeformed droplet, e.g. 3.5mm")("speed", text(),
+                                                                   "terminal, far from walls, e.g. 7mm/s")(
+      "angle", text(), "of the plates against the horizontal, e.g. 28deg")(
+      "density", text()->default_value("0.703g/ml"), "of the droplet")(
+      "outer-density", text()->default_value("0.997g/ml"), "of the liquid around it")(
+      "tension", text(), "interfacial, e.g. 10mN/m: for Gamma_exp")(
+      "other", text(), "another experiment's diameter and angle, to scale Gamma to")(
+      "format", text()->default_value("text"), "text or json");
+  add_channel_options(line);
+  line.add_positional("profiles", -1);
+  line.settings().set("seeds", "1");
+  line.parse(argc - 1, argv + 1);
+  return line;
+}
+
+std::optional<double> quantity(const cli::CommandLine& line, const char* option, const char* units) {
+  if (!line.has(option)) return std::nullopt;
+  try {
+    const double value = to_si(line.get(option), units);
+    if (value > 0) return value;
+    throw Error("must be positive");
+  } catch (const Error& error) {
+    throw Error("invalid --" + Text(option) + "=" + line.get(option) + " (" + error.what() + ")");
+  }
+}
+
+Laboratory laboratory(const cli::CommandLine& line) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  const Laboratory lab{.diameter = quantity(line, "diameter", "length").value_or(0),
+                       .terminal_speed = quantity(line, "speed", "speed").value_or(0),
+                       .tilt = quantity(line, "angle", "angle").value_or(0),
+                       .droplet_density = *quantity(line, "density", "density"),
+                       .outer_density = *quantity(line, "outer-density", "density"),
+                       .interfacial_tension = quantity(line, "tension", "tension").value_or(unknown)};
+  if (lab.tilt > std::numbers::pi / 2)
+    throw Error("invalid --angle=" + line.get("angle") + " (beyond 90 degrees)");
+  for (const char* option : {"tension", "other"})
+    if (line.has(option) && (lab.tilt == 0 || lab.diameter == 0))
+      throw Error("--" + Text(option) + " needs --diameter and --angle");
+  if (lab.tilt > 0 && (lab.diameter == 0 || lab.terminal_speed == 0))
+    throw Error("--angle needs --diameter and --speed");
+  return lab;
+}
+
+/// "1.98mm 8.5deg"
+Laboratory other_laboratory(const cli::CommandLine& line, Laboratory lab) {
+  const Text text = line.get("other");
+  const auto space = text.find_last_of(' ');
+  if (space == Text::npos)
+    throw Error("invalid --other=" + text + " (needs a diameter and an angle) try \"1.98mm 8.5deg\"");
+  lab.diameter = to_si(text.substr(0, space), "length");
+  lab.tilt = to_si(text.substr(space + 1), "angle");
+  if (!(lab.diameter > 0 && lab.tilt > 0)) throw Error("invalid --other=" + text + " (must be positive)");
+  return lab;
+}
+
+/// The simulated droplet's way past the frames.
+class ChannelSimulation {
+ public:
+  ChannelSimulation(sweep::Settings settings, ChannelParameters channel, const fit::Profile& measured)
+      : settings_(std::move(settings)), channel_(channel) {
+    const auto [first, last] = std::minmax_element(
+        measured.begin(), measured.end(), [](const fit::Frame& a, const fit::Frame& b) { return a.h < b.h; });
+    // Motion is overdamped: half a diameter before the first frame the start is forgotten. The droplet must
+    // not touch the channel at the start.
+    channel_.start = std::min(first->h - 0.5, -2.0);
+    channel_.end = last->h + 0.1;
+    const double terminal_speed = single_run(settings_).drag.terminal_speed;
+    settings_.set("max-time", sweep::shortest(30 * (channel_.end - channel_.start) / terminal_speed));
+  }
+
+  fit::Profile operator()(double line_tension, double near_wall_drag) const {
+    sweep::Settings settings = settings_;
+    settings.set("line-tension", sweep::shortest(line_tension));
+    settings.set("near-wall-drag", sweep::shortest(near_wall_drag));
+    const RunParameters parameters = channel_run(std::move(settings), channel_);
+    DropletRun run = run_in_channel(parameters, channel_);
+    fit::Profile profile;
+    bool is_over = false;
+    while (!is_over) {
+      profile.push_back({channel_.start + run.displacement()[0],
+                         run.droplet().centre_velocity()[0] / parameters.drag.terminal_speed,
+                         run.droplet().shape().shape_parameter()});
+      is_over = run.advance(1);
+    }
+    const RunResult result = run.result();
+    if (result.status == RunStatus::failed)
+      throw Error("the run with line-tension=" + sweep::shortest(line_tension) +
+                  " near-wall-drag=" + sweep::shortest(near_wall_drag) + " failed: " + result.message);
+    return profile;
+  }
+
+ private:
+  sweep::Settings settings_;
+  ChannelParameters channel_;
+};
+
+/// Trials side by side, on as many cores as there are.
+std::vector<fit::Calibration> calibrate_all(const std::vector<fit::Profile>& profiles,
+                                            const sweep::Settings& settings,
+                                            const ChannelParameters& channel) {
+  std::counting_semaphore<> cores(std::max(1u, std::thread::hardware_concurrency()));
+  std::vector<std::future<fit::Calibration>> running;
+  for (const fit::Profile& profile : profiles)
+    running.push_back(std::async(std::launch::async, [&] {
+      cores.acquire();
+      struct Release {
+        std::counting_semaphore<>& cores;
+        ~Release() { cores.release(); }
+      } release{cores};
+      return fit::calibrate(profile, ChannelSimulation(settings, channel, profile));
+    }));
+  std::vector<fit::Calibration> found;
+  for (auto& trial : running) found.push_back(trial.get());
+  return found;
+}
+
+void print_text(const std::vector<Text>& files, const std::vector<fit::Calibration>& found,
+                const fit::Trials& all, const Laboratory& lab, double terminal_speed,
+                const std::optional<Laboratory>& other) {
+  std::size_t width = 7;
+  for (const Text& file : files) width = std::max(width, file.size());
+  const int w = static_cast<int>(width);
+  std::printf("%-*s  %8s  %8s  %9s  %8s  %8s  %8s\n", w, "profile", "Gamma*", "+-", "b_0/b_inf", "+-",
+              "Delta_v", "Delta_A");
+  for (std::size_t i = 0; i < files.size(); ++i)
+    std::printf("%-*s  %8.4g  %8.2g  %9.4g  %8.2g  %8.3g  %8.3g\n", w, files[i].c_str(),
+                found[i].line_tension, found[i].line_tension_error, found[i].near_wall_drag,
+                found[i].near_wall_drag_error, found[i].deviation.speed, found[i].deviation.shape);
+  if (found.size() > 1)
+    std::printf(
+        "\nmean of %zu trials and their standard deviation: Gamma* = %.3g +- %.2g, b_0*/b_inf = %.3g +- "
+        "%.2g\n",
+        found.size(), all.line_tension, all.line_tension_deviation, all.near_wall_drag,
+        all.near_wall_drag_deviation);
+  else
+    std::printf("\none trial: errors are from the scatter of its frames\n");
+  std::printf("b_inf: V_t = %.4g\n", terminal_speed);
+  if (lab.tilt > 0) std::printf("g_exp = %.3g m/s^2\n", lab.gravity());
+  if (!std::isnan(lab.interfacial_tension))
+    std::printf("Gamma_exp = %.3g, Gamma*/Gamma_exp = %.3g\n", lab.line_tension(),
+                all.line_tension / lab.line_tension());
+  if (other)
+    std::printf("Gamma** = %.3g for a droplet of %.3g mm at %.3g degrees\n",
+                scaled_line_tension(all.line_tension, lab, *other), 1e3 * other->diameter,
+                other->tilt * 180 / std::numbers::pi);
+}
+
+nlohmann::ordered_json number(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+void print_json(const std::vector<Text>& files, const std::vector<fit::Calibration>& found,
+                const fit::Trials& all, const Laboratory& lab, double terminal_speed,
+                const std::optional<Laboratory>& other) {
+  nlohmann::ordered_json trials = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < files.size(); ++i)
+    trials.push_back({{"profile", files[i]},
+                      {"line_tension", found[i].line_tension},
+                      {"line_tension_error", number(found[i].line_tension_error)},
+                      {"near_wall_drag", found[i].near_wall_drag},
+                      {"near_wall_drag_error", number(found[i].near_wall_drag_error)},
+                      {"delta_v", found[i].deviation.speed},
+                      {"delta_a", number(found[i].deviation.shape)},
+                      {"simulations", found[i].num_simulations}});
+  nlohmann::ordered_json document = {{"trials", trials},
+                                     {"line_tension", all.line_tension},
+                                     {"line_tension_deviation", number(all.line_tension_deviation)},
+                                     {"near_wall_drag", all.near_wall_drag},
+                                     {"near_wall_drag_deviation", number(all.near_wall_drag_deviation)},
+                                     {"terminal_speed", terminal_speed}};
+  if (lab.tilt > 0) document["gravity"] = lab.gravity();
+  if (!std::isnan(lab.interfacial_tension)) document["line_tension_experiment"] = lab.line_tension();
+  if (other) document["line_tension_scaled"] = scaled_line_tension(all.line_tension, lab, *other);
+  std::cout << document.dump(2) << '\n';
+}
+
+}  // namespace
+
+int clogfit_calibrate(int argc, const char* const* argv) {
+  cli::CommandLine line = parse(argc, argv);
+  if (cli::answer_help_or_version(line, {})) return cli::exit_success;
+  const std::vector<Text> files = line.get_all("profiles");
+  if (files.empty()) throw Error("missing profile; try clogfit calibrate trial.csv --orifice 0.7");
+  for (const char* key : {"line-tension", "near-wall-drag"})
+    if (line.has(key)) throw Error("--" + Text(key) + " is what " + program + " finds; leave it out");
+  if (line.has("angle") && line.has("terminal-speed"))
+    throw Error("--angle and terminal-speed contradict each other; give one of them");
+  const Text format = line.get("format");
+  if (format != "text" && format != "json")
+    throw Error("invalid --format=" + format + " (is not one of text, json)");
+  const Laboratory lab = laboratory(line);
+  std::optional<Laboratory> other;
+  if (line.has("other")) other = other_laboratory(line, lab);
+  if (lab.tilt > 0) line.settings().set("terminal-speed", sweep::shortest(lab.reduced_terminal_speed()));
+  std::vector<fit::Profile> profiles;
+  for (const Text& file : files) profiles.push_back(read_profile(file, {lab.diameter, lab.terminal_speed}));
+
+  const std::vector<fit::Calibration> found = calibrate_all(profiles, line.settings(), channel_from(line));
+  const double terminal_speed = single_run(line.settings()).drag.terminal_speed;
+  (format == "json" ? print_json : print_text)(files, found, fit::combine(found), lab, terminal_speed, other);
+  return cli::exit_success;
+}
+
+}  // namespace clog

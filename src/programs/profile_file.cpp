@@ -1,0 +1,105 @@
+#include "profile_file.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <optional>
+#include <sstream>
+#include <vector>
+
+#include "clog/core/error.hpp"
+#include "clog/sweep/value_list.hpp"
+#include "laboratory.hpp"
+
+namespace clog {
+namespace {
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string::npos) return "";
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream in(line);
+  for (std::string cell; std::getline(in, cell, ',');) cells.push_back(trimmed(cell));
+  return cells;
+}
+
+/// Where a quantity stands in a line, and what to multiply it with.
+struct Column {
+  std::size_t index;
+  double factor;
+};
+
+/// "h [mm]" is the name h and the unit mm.
+std::pair<std::string, std::string> name_and_unit(const std::string& cell) {
+  const auto bracket = cell.find('[');
+  if (bracket == std::string::npos) return {cell, ""};
+  return {trimmed(cell.substr(0, bracket)), trimmed(cell.substr(bracket + 1, cell.find(']') - bracket - 1))};
+}
+
+double factor(const std::string& unit, const std::string& reduced, const std::string& units, double scale,
+              const char* option) {
+  if (unit == reduced) return 1;
+  if (unit.empty())
+    throw Error("a column has no unit; write " + reduced + " or a laboratory unit in brackets");
+  const double in_si = si_factor(unit, units);
+  if (scale == 0) throw Error("is in " + unit + " and needs " + option);
+  return in_si / scale;
+}
+
+class Columns {
+ public:
+  Columns(const std::string& header, const ProfileScales& scales) {
+    const std::vector<std::string> cells = cells_of(header);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const auto [name, unit] = name_and_unit(cells[i]);
+      if (name == "h") h_ = Column{i, factor(unit, "sigma", "length", scales.diameter, "--diameter")};
+      if (name == "v") v_ = Column{i, factor(unit, "v_t", "speed", scales.terminal_speed, "--speed")};
+      if (name == "A") a_ = Column{i, 1};
+    }
+    if (!h_ || !v_) throw Error("needs a header that names the columns h and v, e.g. h [mm], v [mm/s], A");
+  }
+
+  fit::Frame frame(const std::string& line) const {
+    const std::vector<std::string> cells = cells_of(line);
+    const auto number = [&](const Column& column) {
+      if (column.index >= cells.size()) throw Error("has too few columns");
+      return column.factor * sweep::to_number(cells[column.index]);
+    };
+    const bool has_shape = a_ && a_->index < cells.size() && !cells[a_->index].empty();
+    return {number(*h_), number(*v_), has_shape ? number(*a_) : std::numeric_limits<double>::quiet_NaN()};
+  }
+
+ private:
+  std::optional<Column> h_, v_, a_;
+};
+
+}  // namespace
+
+fit::Profile read_profile(const std::string& path, const ProfileScales& scales) {
+  std::ifstream file(path);
+  if (!file || std::filesystem::is_directory(path))
+    throw Error("cannot read " + path + " (no such file, or not readable)");
+  fit::Profile profile;
+  std::optional<Columns> columns;
+  int line_number = 0;
+  for (std::string line; std::getline(file, line);) {
+    ++line_number;
+    if (trimmed(line).empty() || line.starts_with('#')) continue;
+    try {
+      if (columns)
+        profile.push_back(columns->frame(line));
+      else
+        columns.emplace(line, scales);
+    } catch (const Error& error) {
+      throw Error(path + " line " + std::to_string(line_number) + ": " + error.what());
+    }
+  }
+  if (profile.size() < 3) throw Error(path + " holds fewer than three frames");
+  return profile;
+}
+
+}  // namespace clog

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "clog/fit/calibration.hpp"
+
+namespace clog {
+
+/// Lengths and speeds that profiles in laboratory units are divided by [m, m/s]; 0 if they are not known.
+struct ProfileScales {
+  double diameter = 0;
+  double terminal_speed = 0;
+};
+
+/// Reads a droplet's way through a channel from a CSV file: one line per frame, a header that names columns
+/// and units, e.g. `h [mm], v [mm/s], A` or `h [sigma], v [v_t], A`. h and v are needed, other columns than A
+/// are passed over. Lines starting with # are comments. Empty cells of A are frames without a shape.
+/// @throws Error naming file and line
+fit::Profile read_profile(const std::string& path, const ProfileScales& scales);
+
+}  // namespace clog

@@ -1,0 +1,16 @@
+#include "single_run.hpp"
+
+#include "clog/core/error.hpp"
+#include "clog/sweep/plan.hpp"
+
+namespace clog {
+
+RunParameters single_run(const sweep::Settings& settings) {
+  const sweep::Plan plan(settings);
+  if (plan.size() != 1)
+    throw Error("these settings mean " + std::to_string(plan.size()) +
+                " runs, one is wanted; give single values, or use clogsweep");
+  return plan.task(0);
+}
+
+}  // namespace clog

@@ -1,0 +1,70 @@
+"""clogfit calibrate: profiles of a simulated droplet with noise, in both kinds of units, give back what made them."""
+
+import json
+import math
+import unittest
+
+import h5py
+import numpy as np
+from support import ProgramTest
+
+LINE_TENSION, NEAR_WALL_DRAG = 0.6, 0.1
+CHANNEL = ["--orifice=0.9", "vertices=64"]
+
+
+class Calibrate(ProgramTest):
+    def measure(self, **options):
+        """A droplet's profile, by clogrun."""
+        self.succeed("clogrun", "channel", "--output", "channel.h5", f"line-tension={LINE_TENSION}",
+                     f"near-wall-drag={NEAR_WALL_DRAG}", "--start=-2.5", "--end=1.3", "--sample-interval=0.3",
+                     "terminal-speed=0.05", *CHANNEL)
+        with h5py.File(self.folder / "channel.h5") as file:
+            table = file["trajectory"][:]
+        h = np.linspace(-1.2, 1.2, 49)
+        return h, np.interp(h, table["h"], table["speed_ratio"]), np.interp(h, table["h"], table["shape_parameter"])
+
+    def test_it_recovers_what_made_the_profiles(self):
+        h, v, shape = self.measure()
+        chance = np.random.default_rng(1)
+        noisy = [v * (1 + 0.02 * chance.standard_normal(len(v))) for _ in range(2)]
+        lines = [f"{a:.5g},{b:.5g},{c:.5g}" for a, b, c in zip(h, noisy[0], shape)]
+        self.write("reduced.csv", "\n".join(["h [sigma], v [v_t], A", *lines]))
+        # The other by hand: a droplet of 2 mm at 3 mm/s.
+        lines = [f"{25 * frame}, {2 * a:.4f}, {3 * b:.4f}" for frame, (a, b) in enumerate(zip(h, noisy[1]))]
+        self.write("by_hand.csv", "\n".join(["# trial 2, 21 May", "t [ms], h [mm], v [mm/s]", *lines]))
+        found = json.loads(self.succeed(
+            "clogfit", "calibrate", "reduced.csv", "by_hand.csv", *CHANNEL, "terminal-speed=0.05", "--diameter=2mm",
+            "--speed=3 mm/s", "--format=json").stdout)
+        for trial in found["trials"]:
+            self.assertLess(abs(trial["line_tension"] - LINE_TENSION), 3 * trial["line_tension_error"])
+            self.assertLess(abs(trial["near_wall_drag"] - NEAR_WALL_DRAG), 3 * trial["near_wall_drag_error"] + 1e-3)
+            self.assertLess(trial["line_tension_error"], 0.05)
+            self.assertLess(trial["near_wall_drag_error"], 0.005)
+            self.assertAlmostEqual(trial["delta_v"], 0.02, delta=0.008)
+        self.assertLess(found["trials"][0]["delta_a"], 0.003)
+        self.assertIsNone(found["trials"][1]["delta_a"])
+        tensions = [trial["line_tension"] for trial in found["trials"]]
+        self.assertAlmostEqual(found["line_tension"], sum(tensions) / 2)
+        self.assertAlmostEqual(found["line_tension_deviation"], abs(tensions[0] - tensions[1]) / math.sqrt(2))
+
+    def test_mistakes_get_one_line_and_exit_code_2(self):
+        self.write("p.csv", "h [mm],v [mm/s]\n-1,1\n0,0.5\n1,1\n")
+        for arguments, words in [
+            ([], ["missing profile"]),
+            (["nowhere.csv"], ["cannot read nowhere.csv"]),
+            (["p.csv"], ["p.csv line 1", "--diameter"]),
+            (["p.csv", "--diameter=2", "--speed=3mm/s"], ["--diameter=2", "has no unit"]),
+            (["p.csv", "--diameter=-2mm", "--speed=3mm/s"], ["--diameter=-2mm", "positive"]),
+            (["p.csv", "--angle=8deg"], ["--angle needs --diameter"]),
+            (["p.csv", "--tension=10mN/m"], ["--tension needs"]),
+            (["p.csv", "line-tension=1"], ["--line-tension is what"]),
+            (["p.csv", "--diameter=2mm", "--speed=3mm/s", "vertices=64,128"], ["2 runs, one is wanted"]),
+            (["p.csv", "--diameter=2mm", "--speed=3mm/s", "--format=xml"], ["--format=xml"]),
+            (["p.csv", "--diameter=2mm", "--speed=3mm/s", "--orifice=0.01"], ["orifice"]),
+        ]:
+            with self.subTest(arguments=arguments):
+                self.refuse("clogfit", "calibrate", *arguments, words=words)
+
+
+if __name__ == "__main__":
+    unittest.main()
