@@ -64,36 +64,35 @@ SweepLedger::SweepLedger(std::string path, const sweep::Plan& plan, const sweep:
       plan_(plan),
       provenance_(std::move(provenance)),
       attempts_(attempts),
-      journal_(path_ + ".journal") {
+      journal_(store::journal_path(path_)) {
   std::string session;
   for (const char* name : {"start_time", "version", "git_hash", "num_ranks", "command_line"})
     session += attribute(provenance_, name) + ' ';
   session.back() = '\n';
 
   std::unordered_map<std::string, Entry> known;
-  try {
-    if (std::filesystem::exists(path_)) {
-      store::SweepFile file = store::read_sweep(path_);
-      take_over(file, settings);
-      for (const sweep::RunRow& row : file.rows) known[sweep::identity(row)] = {row, {}};
-    }
-  } catch (const Error&) {
-    if (journal_.take_entries().empty()) journal_.remove();
-    throw;
+  if (std::filesystem::exists(path_)) {
+    store::SweepFile file = store::read_sweep(path_);
+    take_over(file, settings);
+    for (const sweep::RunRow& row : file.rows) known[sweep::identity(row)] = {row, {}};
   }
   const bool has_table = !known.empty() || std::filesystem::exists(path_);
   std::vector<Entry> entries = journal_.take_entries();
   if (!has_table && !entries.empty())
-    throw Error("cannot begin " + path_ + " (its table is gone, but " + path_ + ".journal holds " +
-                std::to_string(entries.size()) +
+    throw Error("cannot begin " + path_ + " (its table is gone, but " + store::journal_path(path_) +
+                " holds " + std::to_string(entries.size()) +
                 " reports of an earlier sweep); put the table back, or remove the journal to begin anew");
   for (Entry& entry : entries) {
     std::string run = sweep::identity(entry.row);
+    // A run that is over in the table is not so in the journal if its last record there was lost.
+    const auto there = known.find(run);
+    if (there != known.end() && is_over(there->second.row) && !is_over(entry.row)) continue;
     known[std::move(run)] = std::move(entry);
   }
   set_attribute(provenance_, "sessions", latest_lines(attribute(provenance_, "sessions") + session));
   find_tasks(std::move(known));
   publish();
+  last_publication_ = Clock::now();
 }
 
 /// A file that is there: do its runs belong to this sweep? Then what it says of its origin stays.
@@ -182,23 +181,24 @@ void SweepLedger::report(const parallel::Report& report) {
 }
 
 void SweepLedger::tick() {
-  // Writing the whole table takes longer the more runs there are; it may take two percent of the time.
+  // Writing the whole table takes longer the more runs there are, and the journal must be rewritten now and
+  // then; they may take two percent of the time.
+  const Clock::time_point begin = Clock::now();
   const Clock::duration pause = std::max<Clock::duration>(std::chrono::seconds(1), 50 * publication_time_);
-  if (is_published_ || Clock::now() - last_publication_ < pause) return;
+  if (is_published_ || begin - last_publication_ < pause) return;
   publish();
-  if (journal_.num_bytes() > 64'000'000) shorten_journal();
+  if (journal_.is_to_be_rewritten()) shorten_journal();
+  last_publication_ = Clock::now();
+  publication_time_ = last_publication_ - begin;
 }
 
 void SweepLedger::publish() {
-  const Clock::time_point begin = Clock::now();
   std::vector<sweep::RunRow> rows;
   rows.reserve(runs_.size() + other_runs_.size());
   for (const auto& [task, entry] : runs_) rows.push_back(entry.row);
   for (const Entry& entry : other_runs_) rows.push_back(entry.row);
   journal_.flush();
   store::publish_sweep(path_, rows, provenance_);
-  last_publication_ = Clock::now();
-  publication_time_ = last_publication_ - begin;
   is_published_ = true;
 }
 

@@ -71,7 +71,7 @@ Status status_of(const std::string& path, double confidence) {
   Status status;
   const std::int64_t planned = plan_of(file).size();
   status.num_runs = planned;
-  status.is_alive = store::Journal::is_open(path + ".journal");
+  status.is_alive = store::Journal::is_open(store::journal_path(path));
   std::vector<double> finished, running;
   for (const RunRow& row : file.rows) {
     if (row.task >= planned) ++status.num_runs;  // of an earlier config

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "clog/core/error.hpp"
+#include "draft.hpp"
 #include "hdf5.hpp"
 #include "run_rows.hpp"
 
