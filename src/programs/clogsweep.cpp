@@ -97,7 +97,7 @@ void print_tasks(const sweep::Plan& plan) {
   std::cout << "# task model line_tension wall_stiffness obstacle_gap obstacle_diameter obstacle_density "
                "near_wall_drag "
                "terminal_speed vertices time_step max_time seed\n";
-  for (std::int64_t i = 0; i < plan.size(); ++i) {
+  for (std::int64_t i = 0; i < plan.size() && !cli::stop_signalled(); ++i) {
     const sweep::RunRow row = sweep::describe(plan.task(i));
     std::cout << i << ' ' << row.model.view() << ' ' << number(row.line_tension) << ' '
               << number(row.wall_stiffness) << ' ' << number(row.obstacle_gap) << ' '
@@ -106,6 +106,7 @@ void print_tasks(const sweep::Plan& plan) {
               << ' ' << number(row.near_wall_drag) << ' ' << number(row.terminal_speed) << ' ' << row.vertices
               << ' ' << number(row.time_step) << ' ' << number(row.max_time) << ' ' << row.seed << '\n';
   }
+  if (cli::stop_signalled()) return;
   const std::int64_t seeds = plan.size() / plan.num_groups();
   std::cout << "# " << plan.size() << " tasks: " << plan.num_groups()
             << (plan.num_groups() == 1 ? " parameter set" : " parameter sets") << ", " << seeds
@@ -181,6 +182,7 @@ std::optional<int> prepare(const cli::CommandLine& line) {
   if (line.has("dry-run")) {
     print_tasks(plan);
     std::cout.flush();
+    if (cli::stop_signalled()) return cli::exit_incomplete;
     print_cost(plan);
   }
   if (line.has("print-config") || line.has("dry-run")) return cli::exit_success;
@@ -285,7 +287,6 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, int argc, char** arg
   word = ranks.broadcast(word);
   if (word.starts_with("exit ")) return std::stoi(word.substr(5));
 
-  cli::catch_stop_signals();
   if (ranks.rank() == 0) return lead(ranks, line, *plan, *ledger);
   const std::size_t end_of_line = word.find('\n');
   const std::size_t space = word.find(' ', 4);
@@ -304,6 +305,7 @@ int main(int argc, char** argv) {
       {"status", clogsweep_status}, {"verify", clogsweep_verify}, {"replay", clogsweep_replay}};
   if (const auto report = argc > 1 ? reports.find(argv[1]) : reports.end(); report != reports.end())
     return cli::run_program(std::string(program) + ' ' + argv[1], [&] { return report->second(argc, argv); });
+  cli::catch_stop_signals();  // one that comes before the sweep begins stops it then
   const parallel::Communicator ranks(argc, argv);
   try {
     return sweep_on_all_ranks(ranks, argc, argv);

@@ -115,6 +115,18 @@ class Resumed(ProgramTest):
         self.assertIn("there is nothing left to do", again.stderr)
         self.check_equal("s.h5", "whole.h5")
 
+    def test_a_signal_while_it_starts_stops_it_too(self):
+        os.mkfifo(self.folder / "s.cfg")  # rank 0 waits for its config
+        process = self.start(*SWEEP, "--config", "s.cfg")
+        with open(self.folder / "s.cfg", "w") as config:
+            for rank in self.ranks_of(process):
+                os.kill(rank, signal.SIGUSR1)
+            config.write("time-step = 1e-3\n")
+        _, error = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 75, error)
+        self.assertIn("stopped by a signal; the same command goes on", error)
+        self.assertLessEqual(set(table(self.folder / "s.h5").status), {"interrupted"})
+
     def test_max_hours_stops_it(self):
         done = self.run_program("clogsweep", *SWEEP, "--max-hours=0.0002")
         self.assertEqual(done.returncode, 75, done.stderr)
@@ -273,6 +285,26 @@ class Batch(ProgramTest):
         self.assertEqual(process.returncode, 75, output)
         self.assertEqual(self.called(), "scontrol requeue 77\n")
         self.assertGreater((table(self.folder / "s.h5").status == "interrupted").sum(), 0)
+
+    def test_a_warning_that_kills_mpirun_at_its_start_queues_again(self):
+        stub = self.folder / "mpirun"
+        stub.write_text("#!/bin/sh\nkill -USR1 $PPID\nsleep 60\n")  # it does not yet know what to do with the signal
+        stub.chmod(0o755)
+        process = self.script("slurm.sh", *self.sweep(), SLURM_JOB_ID="77", SLURM_SUBMIT_DIR=str(ROOT))
+        output, _ = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 75, output)
+        self.assertEqual(self.called(), "scontrol requeue 77\n")
+
+    def test_a_warning_before_the_sweep_begins_does_not_begin_it(self):
+        script = f"""
+            . {ROOT}/jobs/batch.sh
+            trap() {{ builtin trap "$@"; if [[ $1 != - ]]; then kill -USR1 $$; fi; }}  # as soon as it is set
+            code=0
+            run_sweep touch began || code=$?
+            echo $code"""
+        done = subprocess.run(["bash", "-euc", script], cwd=self.folder, capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.stdout, "75\n", done.stderr)
+        self.assertEqual(self.snapshot(), {})
 
     def test_a_complete_sweep_does_not_queue_again(self):
         process = self.script("slurm.sh", *self.sweep("max-time=5"), SLURM_JOB_ID="77", SLURM_SUBMIT_DIR=str(ROOT))
