@@ -129,7 +129,7 @@ void SweepLedger::find_tasks(std::unordered_map<std::string, Entry> known) {
         entry.row.task = task;
         if (is_over(entry.row)) continue;
         if (entry.row.status.view() == "running") entry.row.status = "interrupted";
-        seconds_before_[task] = entry.row.wall_seconds;
+        past_[task].seconds = entry.row.wall_seconds;
       }
     tasks_left_.push_back(task);
   }
@@ -156,6 +156,8 @@ parallel::Start SweepLedger::start(std::int64_t task, int rank) {
   parallel::Start start{entry.snapshot, entry.row.attempt};
   const bool failed = !is_new && entry.row.status.view() == "failed";
   if (failed) start = {{}, entry.row.attempt + 1};
+  if (const auto past = past_.find(task); past != past_.end())
+    past->second.instruction_set = start.snapshot.empty() ? "" : entry.row.instruction_set.view();
   if (is_new || failed) {
     entry.snapshot.clear();
     entry.row = sweep::describe(plan_.task(task));
@@ -173,9 +175,13 @@ parallel::Start SweepLedger::start(std::int64_t task, int rank) {
 void SweepLedger::report(const parallel::Report& report) {
   Entry& entry = runs_[report.row.task];
   entry = {report.row, report.snapshot};
-  if (const auto before = seconds_before_.find(report.row.task); before != seconds_before_.end())
-    entry.row.wall_seconds += before->second;
-  if (entry.row.status.view() == "failed") seconds_before_[entry.row.task] = entry.row.wall_seconds;
+  if (const auto past = past_.find(report.row.task); past != past_.end()) {
+    entry.row.wall_seconds += past->second.seconds;
+    const std::string_view before = past->second.instruction_set.view();
+    if (!before.empty() && before != entry.row.instruction_set.view())
+      entry.row.instruction_set = sweep::mixed_instruction_sets;
+  }
+  if (entry.row.status.view() == "failed") past_[entry.row.task].seconds = entry.row.wall_seconds;
   journal_.add(entry.row, entry.snapshot);
   is_published_ = false;
 }

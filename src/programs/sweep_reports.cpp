@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -240,7 +241,8 @@ int clogsweep_replay(int argc, const char* const* argv) {
 
   clogsweep replay sweep.h5 12
 
-Exit code 0: the same bits. 1: other results. The run uses the row's instruction set.
+Exit code 0: the same bits. 1: other results. 2: it cannot be done again. The run uses the row's instruction set; one
+that went on under another set than it began with cannot be repeated.
 )");
   line.add_options()("task", po::value<std::string>(), "the row's number, column `task`");
   line.add_positional("task", 1);
@@ -250,6 +252,11 @@ Exit code 0: the same bits. 1: other results. The run uses the row's instruction
   const RunRow& row = row_of_task(file, line.get("task"));
   if (row.status.view() == "running" || row.status.view() == "interrupted")
     throw Error("task " + line.get("task") + " is not over; let the sweep go on first");
+  if (row.instruction_set.view() == sweep::mixed_instruction_sets)
+    throw Error(
+        "cannot replay task " + line.get("task") +
+        " bit for bit (it was interrupted and went on under another instruction set, it is not known at "
+        "which step); --instruction-set pins one for all sessions of a sweep");
   const sweep::Plan plan = plan_of(file);
   const std::int64_t task = task_in_plan(plan, row);
   if (row.model.view() == "dp") use_instruction_set(std::string(row.instruction_set.view()));

@@ -192,6 +192,23 @@ class Resumed(ProgramTest):
                      "baseline", "--output", "s.h5", ranks=3)
         self.assertEqual(set(table(self.folder / "s.h5").instruction_set), {"baseline"})
 
+    def test_a_run_under_two_instruction_sets_is_called_mixed(self):
+        self.run_program("clogsweep", *SWEEP, "--max-hours=0.0003")
+        begun = table(self.folder / "s.h5").query("status == 'interrupted'").task.tolist()
+        self.assertEqual(len(begun), 1)
+        done = self.succeed("clogsweep", *SWEEP, "--instruction-set=baseline", ranks=2)
+        self.assertIn("1 go on where they were", done.stderr)
+        rows = table(self.folder / "s.h5").set_index("task")
+        widest = rows.instruction_set[0]
+        if widest == "baseline":  # of a processor that has nothing else
+            self.assertEqual(set(rows.instruction_set), {"baseline"})
+            return
+        self.assertEqual(rows.index[rows.instruction_set == "mixed"].tolist(), begun)
+        self.assertEqual(set(rows.instruction_set), {widest, "baseline", "mixed"})
+        replayed = self.run_program("clogsweep", "replay", "s.h5", *begun)
+        self.assertEqual(replayed.returncode, 2)
+        self.assertIn("another instruction set", replayed.stderr)
+
     def test_replay_gives_the_same_bits_and_sees_others(self):
         self.succeed("clogsweep", "vertices=64", "box=20", "max-time=20", "line-tension=0.5,1", "seeds=1..2",
                      "--output", "s.h5")
