@@ -21,6 +21,7 @@
 #include "clog/core/systems.hpp"
 #include "clog/parallel/communicator.hpp"
 #include "clog/parallel/scheduler.hpp"
+#include "clog/store/journal.hpp"
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/run_job.hpp"
@@ -195,6 +196,10 @@ void announce(const std::string& output, std::int64_t num_runs, const SweepLedge
   if (num_left < num_runs)
     std::cerr << output << " has " << num_runs - num_left << " of " << num_runs << " runs"
               << (num_left == 0 ? "; there is nothing left to do" : "") << std::endl;
+  if (ledger.num_unreadable() > 0)
+    std::cerr << store::journal_path(output) << ": " << ledger.num_unreadable()
+              << (ledger.num_unreadable() == 1 ? " record is" : " records are")
+              << " damaged; what was in there is computed again" << std::endl;
   if (ledger.num_resumed() > 0) std::cerr << ledger.num_resumed() << " go on where they were" << std::endl;
   if (num_left > 0)
     std::cerr << num_left << " runs on " << num_ranks

@@ -30,6 +30,8 @@ class SweepLedger {
   const std::vector<std::int64_t>& tasks_left() const { return tasks_left_; }
   /// Of those, how many have a snapshot to go on from.
   std::int64_t num_resumed() const;
+  /// Records of the journal that were damaged: their runs are a few seconds behind, or begin anew.
+  std::int64_t num_unreadable() const { return journal_.num_unreadable(); }
 
   parallel::Start start(std::int64_t task, int rank);
   void report(const parallel::Report& report);

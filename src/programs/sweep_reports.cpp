@@ -1,5 +1,6 @@
 #include "sweep_reports.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -139,6 +140,18 @@ std::string fault_of(const RunRow& row) {
   return "";
 }
 
+std::string to_text(const store::Journal::Contents& journal, bool is_alive) {
+  const auto num_snapshots = std::count_if(journal.entries.begin(), journal.entries.end(),
+                                           [](const auto& entry) { return !entry.snapshot.empty(); });
+  std::string text = std::to_string(journal.entries.size()) + " records, " + std::to_string(num_snapshots) +
+                     " of them with snapshots, ";
+  text +=
+      journal.num_unreadable == 0 ? "all whole" : std::to_string(journal.num_unreadable) + " more damaged";
+  if (is_alive) return text + "; a sweep is writing to it";
+  if (journal.has_torn_end) text += "; the last one is torn, as after a kill, and will be dropped";
+  return text;
+}
+
 const RunRow& row_of_task(const store::SweepFile& file, const std::string& word) {
   const double task = sweep::to_number(word);
   for (const RunRow& row : file.rows)
@@ -215,7 +228,10 @@ int clogsweep_verify(int argc, const char* const* argv) {
 
   clogsweep verify sweep.h5
 
-Exit code 0: every row can be read and makes sense, none is there twice. 1: one does not. 2: it cannot be read.
+The same for the journal beside it, which is there while the sweep is not complete.
+
+Exit code 0: every row can be read and makes sense, none is there twice, no record of the journal is damaged. 1: this
+is not so. 2: the file or its journal cannot be read.
 )");
   if (!parse(line, argc, argv)) return cli::exit_success;
   const store::SweepFile file = store::read_sweep(line.get("file"));
@@ -232,6 +248,11 @@ Exit code 0: every row can be read and makes sense, none is there twice. 1: one 
   }
   std::cout << line.get("file") << ": " << file.rows.size() << " rows of " << planned << " runs, "
             << (num_faults == 0 ? "all whole" : std::to_string(num_faults) + " faulty") << '\n';
+  const std::string journal = store::journal_path(line.get("file"));
+  if (const auto contents = store::Journal::look(journal)) {
+    std::cout << journal << ": " << to_text(*contents, store::Journal::is_open(journal)) << '\n';
+    num_faults += contents->num_unreadable;
+  }
   return num_faults == 0 ? cli::exit_success : cli::exit_internal_fault;
 }
 

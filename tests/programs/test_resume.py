@@ -180,6 +180,49 @@ class Resumed(ProgramTest):
         (self.folder / "s.h5").unlink()
         self.refuse("clogsweep", *SWEEP, words=["its table is gone", "remove the journal"])
 
+    def test_a_damaged_record_costs_no_other(self):
+        self.succeed("clogsweep", *SWEEP[:-1], "whole.h5", ranks=2)
+        process = self.start(*SWEEP)
+        journal = self.folder / "s.h5.journal"
+        self.wait_for(lambda: journal.exists() and journal.stat().st_size > 100_000)
+        self.kill_all(process)
+        whole = self.succeed("clogsweep", "verify", "s.h5").stdout.splitlines()[1]
+        self.assertRegex(whole, r"^s.h5.journal: \d+ records, \d+ of them with snapshots, all whole")
+        content = bytearray(journal.read_bytes())
+        content[1000] ^= 1  # of the first record
+        journal.write_bytes(content + b"the torn end of a kill")
+        verified = self.run_program("clogsweep", "verify", "s.h5")
+        self.assertEqual(verified.returncode, 1)
+        self.assertRegex(verified.stdout, r"1 more damaged; the last one is torn, as after a kill")
+        self.assertEqual(journal.read_bytes()[:-22], content)
+        done = self.succeed("clogsweep", *SWEEP, ranks=2)
+        self.assertIn("s.h5.journal: 1 record is damaged; what was in there is computed again\n", done.stderr)
+        self.check_equal("s.h5", "whole.h5")
+
+    def test_a_link_is_followed(self):
+        (self.folder / "scratch").mkdir()
+        (self.folder / "s.h5").symlink_to("scratch/target.h5")
+        self.run_program("clogsweep", *SWEEP, "--max-hours=0.0003")
+        self.assertEqual({path.name for path in (self.folder / "scratch").iterdir()}, {"target.h5", "target.h5.journal"})
+        self.succeed("clogsweep", *SWEEP[:-1], "scratch/target.h5", ranks=2)
+        self.assertTrue((self.folder / "s.h5").is_symlink())
+        self.assertIn("24 of 24 runs over", self.succeed("clogsweep", "status", "s.h5").stdout)
+
+    def test_other_files_beside_the_table_stay(self):
+        short = self.write("s.h5.journal", "to do: eat")
+        self.refuse("clogsweep", *SWEEP, words=["not a journal", "another --output"])
+        (self.folder / short).unlink()
+        notes = {self.write(name, name) for name in ("s.h5.new", "s.h5.journal.new", "s.h5.clogsweep-draft1")}
+        self.run_program("clogsweep", *SWEEP, "--max-hours=0.0003")
+        self.succeed("clogsweep", *SWEEP, ranks=2)
+        self.assertEqual(set(self.snapshot()), {"s.h5", *notes})
+        for name in notes:
+            self.assertEqual((self.folder / name).read_text(), name)
+
+    def test_a_table_that_cannot_be_made_leaves_no_journal(self):
+        # The draft's name is longer than a file's may be, the journal's is not.
+        self.refuse("clogsweep", *SWEEP[:-1], 240 * "s", words=["cannot create", "File name too long"])
+
     def test_many_sessions_with_long_commands_fit(self):
         seeds = "seeds=" + ",".join(str(seed) for seed in range(1, 251))
         for _ in range(25):
