@@ -21,6 +21,7 @@
 #include "clog/core/systems.hpp"
 #include "clog/parallel/communicator.hpp"
 #include "clog/parallel/scheduler.hpp"
+#include "clog/store/journal.hpp"
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/run_job.hpp"
@@ -99,7 +100,7 @@ void print_tasks(const sweep::Plan& plan) {
   std::cout << "# task model line_tension wall_stiffness obstacle_gap obstacle_diameter obstacle_density "
                "near_wall_drag "
                "terminal_speed vertices time_step max_time seed\n";
-  for (std::int64_t i = 0; i < plan.size(); ++i) {
+  for (std::int64_t i = 0; i < plan.size() && !cli::stop_signalled(); ++i) {
     const sweep::RunRow row = sweep::describe(plan.task(i));
     std::cout << i << ' ' << row.model.view() << ' ' << number(row.line_tension) << ' '
               << number(row.wall_stiffness) << ' ' << number(row.obstacle_gap) << ' '
@@ -108,6 +109,7 @@ void print_tasks(const sweep::Plan& plan) {
               << ' ' << number(row.near_wall_drag) << ' ' << number(row.terminal_speed) << ' ' << row.vertices
               << ' ' << number(row.time_step) << ' ' << number(row.max_time) << ' ' << row.seed << '\n';
   }
+  if (cli::stop_signalled()) return;
   const std::int64_t seeds = plan.size() / plan.num_groups();
   std::cout << "# " << plan.size() << " tasks: " << plan.num_groups()
             << (plan.num_groups() == 1 ? " parameter set" : " parameter sets") << ", " << seeds
@@ -183,6 +185,7 @@ std::optional<int> prepare(const cli::CommandLine& line) {
   if (line.has("dry-run")) {
     print_tasks(plan);
     std::cout.flush();
+    if (cli::stop_signalled()) return cli::exit_incomplete;
     print_cost(plan);
   }
   if (line.has("print-config") || line.has("dry-run")) return cli::exit_success;
@@ -195,6 +198,10 @@ void announce(const std::string& output, std::int64_t num_runs, const SweepLedge
   if (num_left < num_runs)
     std::cerr << output << " has " << num_runs - num_left << " of " << num_runs << " runs"
               << (num_left == 0 ? "; there is nothing left to do" : "") << std::endl;
+  if (ledger.num_unreadable() > 0)
+    std::cerr << store::journal_path(output) << ": " << ledger.num_unreadable()
+              << (ledger.num_unreadable() == 1 ? " record is" : " records are")
+              << " damaged; what was in there is computed again" << std::endl;
   if (ledger.num_resumed() > 0) std::cerr << ledger.num_resumed() << " go on where they were" << std::endl;
   if (num_left > 0)
     std::cerr << num_left << " runs on " << num_ranks
@@ -277,7 +284,6 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, int argc, char** arg
   word = ranks.broadcast(word);
   if (word.starts_with("exit ")) return std::stoi(word.substr(5));
 
-  cli::catch_stop_signals();
   if (ranks.rank() == 0) return lead(ranks, line, *plan, *ledger);
   const std::size_t end_of_line = word.find('\n');
   const std::size_t space = word.find(' ', 4);
@@ -296,6 +302,7 @@ int main(int argc, char** argv) {
       {"status", clogsweep_status}, {"verify", clogsweep_verify}, {"replay", clogsweep_replay}};
   if (const auto report = argc > 1 ? reports.find(argv[1]) : reports.end(); report != reports.end())
     return cli::run_program(std::string(program) + ' ' + argv[1], [&] { return report->second(argc, argv); });
+  cli::catch_stop_signals();  // one that comes before the sweep begins stops it then
   const parallel::Communicator ranks(argc, argv);
   try {
     if (argc > 1 && std::string_view(argv[1]) == "doctor") return clogsweep_doctor(ranks, argc, argv);

@@ -64,36 +64,35 @@ SweepLedger::SweepLedger(std::string path, const sweep::Plan& plan, const sweep:
       plan_(plan),
       provenance_(std::move(provenance)),
       attempts_(attempts),
-      journal_(path_ + ".journal") {
+      journal_(store::journal_path(path_)) {
   std::string session;
   for (const char* name : {"start_time", "version", "git_hash", "num_ranks", "command_line"})
     session += attribute(provenance_, name) + ' ';
   session.back() = '\n';
 
   std::unordered_map<std::string, Entry> known;
-  try {
-    if (std::filesystem::exists(path_)) {
-      store::SweepFile file = store::read_sweep(path_);
-      take_over(file, settings);
-      for (const sweep::RunRow& row : file.rows) known[sweep::identity(row)] = {row, {}};
-    }
-  } catch (const Error&) {
-    if (journal_.take_entries().empty()) journal_.remove();
-    throw;
+  if (std::filesystem::exists(path_)) {
+    store::SweepFile file = store::read_sweep(path_);
+    take_over(file, settings);
+    for (const sweep::RunRow& row : file.rows) known[sweep::identity(row)] = {row, {}};
   }
   const bool has_table = !known.empty() || std::filesystem::exists(path_);
   std::vector<Entry> entries = journal_.take_entries();
   if (!has_table && !entries.empty())
-    throw Error("cannot begin " + path_ + " (its table is gone, but " + path_ + ".journal holds " +
-                std::to_string(entries.size()) +
+    throw Error("cannot begin " + path_ + " (its table is gone, but " + store::journal_path(path_) +
+                " holds " + std::to_string(entries.size()) +
                 " reports of an earlier sweep); put the table back, or remove the journal to begin anew");
   for (Entry& entry : entries) {
     std::string run = sweep::identity(entry.row);
+    // A run that is over in the table is not so in the journal if its last record there was lost.
+    const auto there = known.find(run);
+    if (there != known.end() && is_over(there->second.row) && !is_over(entry.row)) continue;
     known[std::move(run)] = std::move(entry);
   }
   set_attribute(provenance_, "sessions", latest_lines(attribute(provenance_, "sessions") + session));
   find_tasks(std::move(known));
   publish();
+  last_publication_ = Clock::now();
 }
 
 /// A file that is there: do its runs belong to this sweep? Then what it says of its origin stays.
@@ -130,7 +129,7 @@ void SweepLedger::find_tasks(std::unordered_map<std::string, Entry> known) {
         entry.row.task = task;
         if (is_over(entry.row)) continue;
         if (entry.row.status.view() == "running") entry.row.status = "interrupted";
-        seconds_before_[task] = entry.row.wall_seconds;
+        past_[task].seconds = entry.row.wall_seconds;
       }
     tasks_left_.push_back(task);
   }
@@ -157,6 +156,8 @@ parallel::Start SweepLedger::start(std::int64_t task, int rank) {
   parallel::Start start{entry.snapshot, entry.row.attempt};
   const bool failed = !is_new && entry.row.status.view() == "failed";
   if (failed) start = {{}, entry.row.attempt + 1};
+  if (const auto past = past_.find(task); past != past_.end())
+    past->second.instruction_set = start.snapshot.empty() ? "" : entry.row.instruction_set.view();
   if (is_new || failed) {
     entry.snapshot.clear();
     entry.row = sweep::describe(plan_.task(task));
@@ -174,31 +175,36 @@ parallel::Start SweepLedger::start(std::int64_t task, int rank) {
 void SweepLedger::report(const parallel::Report& report) {
   Entry& entry = runs_[report.row.task];
   entry = {report.row, report.snapshot};
-  if (const auto before = seconds_before_.find(report.row.task); before != seconds_before_.end())
-    entry.row.wall_seconds += before->second;
-  if (entry.row.status.view() == "failed") seconds_before_[entry.row.task] = entry.row.wall_seconds;
+  if (const auto past = past_.find(report.row.task); past != past_.end()) {
+    entry.row.wall_seconds += past->second.seconds;
+    const std::string_view before = past->second.instruction_set.view();
+    if (!before.empty() && before != entry.row.instruction_set.view())
+      entry.row.instruction_set = sweep::mixed_instruction_sets;
+  }
+  if (entry.row.status.view() == "failed") past_[entry.row.task].seconds = entry.row.wall_seconds;
   journal_.add(entry.row, entry.snapshot);
   is_published_ = false;
 }
 
 void SweepLedger::tick() {
-  // Writing the whole table takes longer the more runs there are; it may take two percent of the time.
+  // Writing the whole table takes longer the more runs there are, and the journal must be rewritten now and
+  // then; they may take two percent of the time.
+  const Clock::time_point begin = Clock::now();
   const Clock::duration pause = std::max<Clock::duration>(std::chrono::seconds(1), 50 * publication_time_);
-  if (is_published_ || Clock::now() - last_publication_ < pause) return;
+  if (is_published_ || begin - last_publication_ < pause) return;
   publish();
-  if (journal_.num_bytes() > 64'000'000) shorten_journal();
+  if (journal_.is_to_be_rewritten()) shorten_journal();
+  last_publication_ = Clock::now();
+  publication_time_ = last_publication_ - begin;
 }
 
 void SweepLedger::publish() {
-  const Clock::time_point begin = Clock::now();
   std::vector<sweep::RunRow> rows;
   rows.reserve(runs_.size() + other_runs_.size());
   for (const auto& [task, entry] : runs_) rows.push_back(entry.row);
   for (const Entry& entry : other_runs_) rows.push_back(entry.row);
   journal_.flush();
   store::publish_sweep(path_, rows, provenance_);
-  last_publication_ = Clock::now();
-  publication_time_ = last_publication_ - begin;
   is_published_ = true;
 }
 

@@ -30,6 +30,8 @@ class SweepLedger {
   const std::vector<std::int64_t>& tasks_left() const { return tasks_left_; }
   /// Of those, how many have a snapshot to go on from.
   std::int64_t num_resumed() const;
+  /// Records of the journal that were damaged: their runs are a few seconds behind, or begin anew.
+  std::int64_t num_unreadable() const { return journal_.num_unreadable(); }
 
   parallel::Start start(std::int64_t task, int rank);
   void report(const parallel::Report& report);
@@ -51,7 +53,12 @@ class SweepLedger {
   std::map<std::int64_t, Entry> runs_;  // by task; those that have begun
   std::vector<Entry> other_runs_;       // in the file, but not of this plan
   std::vector<std::int64_t> tasks_left_;
-  std::unordered_map<std::int64_t, double> seconds_before_;  // spent on a task in earlier sessions [s]
+  /// What is known of a task from earlier sessions or attempts.
+  struct Past {
+    double seconds = 0;                    // spent on it
+    sweep::FixedText<16> instruction_set;  // of the snapshot that it goes on from; empty if it begins anew
+  };
+  std::unordered_map<std::int64_t, Past> past_;
   bool is_published_ = false;
   Clock::time_point last_publication_;
   Clock::duration publication_time_{0};

@@ -1,8 +1,10 @@
 #include "sweep_reports.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -71,7 +73,7 @@ Status status_of(const std::string& path, double confidence) {
   Status status;
   const std::int64_t planned = plan_of(file).size();
   status.num_runs = planned;
-  status.is_alive = store::Journal::is_open(path + ".journal");
+  status.is_alive = store::Journal::is_open(store::journal_path(path));
   std::vector<double> finished, running;
   for (const RunRow& row : file.rows) {
     if (row.task >= planned) ++status.num_runs;  // of an earlier config
@@ -136,6 +138,18 @@ std::string fault_of(const RunRow& row) {
   if (row.time < 0 || row.time > row.max_time + row.time_step || row.steps < 0 || row.wall_seconds < 0)
     return "a time out of its range";
   return "";
+}
+
+std::string to_text(const store::Journal::Contents& journal, bool is_alive) {
+  const auto num_snapshots = std::count_if(journal.entries.begin(), journal.entries.end(),
+                                           [](const auto& entry) { return !entry.snapshot.empty(); });
+  std::string text = std::to_string(journal.entries.size()) + " records, " + std::to_string(num_snapshots) +
+                     " of them with snapshots, ";
+  text +=
+      journal.num_unreadable == 0 ? "all whole" : std::to_string(journal.num_unreadable) + " more damaged";
+  if (is_alive) return text + "; a sweep is writing to it";
+  if (journal.has_torn_end) text += "; the last one is torn, as after a kill, and will be dropped";
+  return text;
 }
 
 const RunRow& row_of_task(const store::SweepFile& file, const std::string& word) {
@@ -214,7 +228,10 @@ int clogsweep_verify(int argc, const char* const* argv) {
 
   clogsweep verify sweep.h5
 
-Exit code 0: every row can be read and makes sense, none is there twice. 1: one does not. 2: it cannot be read.
+The same for the journal beside it, which is there while the sweep is not complete.
+
+Exit code 0: every row can be read and makes sense, none is there twice, no record of the journal is damaged. 1: this
+is not so. 2: the file or its journal cannot be read.
 )");
   if (!parse(line, argc, argv)) return cli::exit_success;
   const store::SweepFile file = store::read_sweep(line.get("file"));
@@ -231,6 +248,11 @@ Exit code 0: every row can be read and makes sense, none is there twice. 1: one 
   }
   std::cout << line.get("file") << ": " << file.rows.size() << " rows of " << planned << " runs, "
             << (num_faults == 0 ? "all whole" : std::to_string(num_faults) + " faulty") << '\n';
+  const std::string journal = store::journal_path(line.get("file"));
+  if (const auto contents = store::Journal::look(journal)) {
+    std::cout << journal << ": " << to_text(*contents, store::Journal::is_open(journal)) << '\n';
+    num_faults += contents->num_unreadable;
+  }
   return num_faults == 0 ? cli::exit_success : cli::exit_internal_fault;
 }
 
@@ -240,7 +262,8 @@ int clogsweep_replay(int argc, const char* const* argv) {
 
   clogsweep replay sweep.h5 12
 
-Exit code 0: the same bits. 1: other results. The run uses the row's instruction set.
+Exit code 0: the same bits. 1: other results. 2: it cannot be done again. The run uses the row's instruction set; one
+that went on under another set than it began with cannot be repeated.
 )");
   line.add_options()("task", po::value<std::string>(), "the row's number, column `task`");
   line.add_positional("task", 1);
@@ -250,6 +273,11 @@ Exit code 0: the same bits. 1: other results. The run uses the row's instruction
   const RunRow& row = row_of_task(file, line.get("task"));
   if (row.status.view() == "running" || row.status.view() == "interrupted")
     throw Error("task " + line.get("task") + " is not over; let the sweep go on first");
+  if (row.instruction_set.view() == sweep::mixed_instruction_sets)
+    throw Error(
+        "cannot replay task " + line.get("task") +
+        " bit for bit (it was interrupted and went on under another instruction set, it is not known at "
+        "which step); --instruction-set pins one for all sessions of a sweep");
   const sweep::Plan plan = plan_of(file);
   const std::int64_t task = task_in_plan(plan, row);
   if (row.model.view() == "dp") use_instruction_set(std::string(row.instruction_set.view()));

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "clog/core/error.hpp"
+#include "draft.hpp"
 #include "hdf5.hpp"
 #include "run_rows.hpp"
 
@@ -97,7 +98,7 @@ std::vector<Column> columns() {
   CLOG_COLUMN(steps, "integrated steps");
   CLOG_COLUMN(wall_seconds, "time spent on the run [s]");
   CLOG_COLUMN(rank, "MPI rank that did the run");
-  CLOG_COLUMN(instruction_set, "instruction set of the polygon's step, or none");
+  CLOG_COLUMN(instruction_set, "instruction set of the polygon's step, or none; mixed: it went on under another one");
   CLOG_COLUMN(host, "host of that rank");
   CLOG_COLUMN(attempt, "1 for the first try");
   CLOG_COLUMN(message, "why the run failed");

@@ -27,6 +27,9 @@ struct FixedText {
   bool operator==(const FixedText&) const = default;
 };
 
+/// Instruction set of a run that went on from a snapshot of another one.
+inline constexpr std::string_view mixed_instruction_sets = "mixed";
+
 /// One row of the table of runs: what was run, what came out, where. Plain bytes, so that it can be sent and
 /// stored as it is; the file's columns, units and meanings are listed in store/run_table.cpp.
 struct RunRow {
@@ -73,7 +76,7 @@ struct RunRow {
 
   double wall_seconds = 0;
   std::int64_t rank = 0;
-  FixedText<16> instruction_set;  ///< of the polygon's step; "none" for sp
+  FixedText<16> instruction_set;  ///< of the polygon's step; "none" for sp; or mixed_instruction_sets
   FixedText<64> host;
   std::int64_t attempt = 1;
   FixedText<256> message;
