@@ -12,6 +12,7 @@ namespace clog {
 namespace {
 
 double wrapped(double value, double period) {
+  if (value >= 0 && value < period) return value;
   const double inside = value - period * std::floor(value / period);
   return inside < period ? inside : 0.0;  // a tiny negative value rounds up to the period itself
 }
@@ -48,12 +49,21 @@ std::uint32_t ObstacleArray::cell_of(double x, double y) const {
 void ObstacleArray::bin_obstacles() {
   const std::size_t num_cells = static_cast<std::size_t>(cells_per_side_) * cells_per_side_;
   cell_start_.assign(num_cells + 1, 0);
-  for (const Obstacle& obstacle : obstacles_) ++cell_start_[cell_of(obstacle.x, obstacle.y) + 1];
+  std::vector<std::uint32_t> target(obstacles_.size());
+  for (std::size_t i = 0; i < target.size(); ++i) {
+    target[i] = cell_of(obstacles_[i].x, obstacles_[i].y);
+    ++cell_start_[target[i] + 1];
+  }
   for (std::size_t cell = 0; cell < num_cells; ++cell) cell_start_[cell + 1] += cell_start_[cell];
-  std::vector<Obstacle> sorted(obstacles_.size());
   std::vector<std::uint32_t> next(cell_start_.begin(), cell_start_.end() - 1);
-  for (const Obstacle& obstacle : obstacles_) sorted[next[cell_of(obstacle.x, obstacle.y)]++] = obstacle;
-  obstacles_ = std::move(sorted);
+  for (std::uint32_t& place : target) place = next[place]++;
+  // In place: a second copy would be most of the memory that it takes to build an array.
+  for (std::size_t i = 0; i < target.size(); ++i)
+    while (target[i] != i) {
+      const std::uint32_t place = target[i];
+      std::swap(obstacles_[i], obstacles_[place]);
+      std::swap(target[i], target[place]);
+    }
 }
 
 template <class Visit>
