@@ -174,7 +174,7 @@ class SequentialAddition {
       }
       take_up_darts(target);
     }
-    parts_ = {};
+    darts_ = std::vector<Square>();
   }
 
   std::vector<Obstacle> circles(double smallest_radius) const {
@@ -207,11 +207,14 @@ class SequentialAddition {
   class Squares {
    public:
     void assign(std::span<const Square> squares, bool have_excess) {
-      places_ = std::vector<Place>(squares.size());
-      excess_ = std::vector<float>(have_excess ? squares.size() : 0);
-      for (std::size_t i = 0; i < places_.size(); ++i)
-        places_[i] = {squares[i].x, squares[i].y, squares[i].cell};
-      for (std::size_t i = 0; i < excess_.size(); ++i) excess_[i] = squares[i].excess;
+      // In the same memory: there are fewer and fewer of them.
+      places_.clear();
+      places_.reserve(squares.size());
+      for (const Square& square : squares) places_.push_back({square.x, square.y, square.cell});
+      excess_.clear();
+      if (!have_excess) return;
+      excess_.reserve(squares.size());
+      for (const Square& square : squares) excess_.push_back(square.excess);
     }
     std::size_t size() const { return places_.size(); }
     Square operator[](std::size_t i) const {
@@ -327,7 +330,7 @@ class SequentialAddition {
       if (i + ahead < darts_.size()) prefetch_around(darts_[i + ahead].cell);
       if (has_room(darts_[i])) add_point(darts_[i]);
     }
-    darts_ = {};
+    darts_.clear();
     near_cell_ = -1;
   }
 
