@@ -83,10 +83,9 @@ ObstacleArray ObstacleArrays::find_or_build(const ObstacleParameters& parameters
   if (!name || num_places(parameters) < fewest_shared) return build(parameters, seed);
   const auto begin = std::chrono::steady_clock::now();
   while (std::chrono::steady_clock::now() - begin < longest_wait) {
-    const std::optional<NameLock> lock = NameLock::try_hold(*name);
-    // Looked for under the lock, if it is free: nobody makes one meanwhile.
-    if (auto memory = SharedMemory::find(*name)) return array_over(std::move(memory));
-    if (lock) {
+    if (const std::optional<NameLock> lock = NameLock::try_hold(*name)) {
+      // Nobody makes one meanwhile. Those who wait do not search: that would take the builder's time.
+      if (auto memory = SharedMemory::find(*name)) return array_over(std::move(memory));
       ObstacleArray array = build(parameters, seed);
       auto memory = publish(*name, array);
       return memory ? array_over(std::move(memory)) : array;
