@@ -59,6 +59,11 @@ RunParameters long_run(Model model) {
   return resolve(run);
 }
 
+DropletRun resume_in_array(const RunParameters& run, std::span<const std::byte> snapshot) {
+  return DropletRun::resume(run, std::make_shared<ObstacleArray>(sample_obstacles(run.obstacles, run.seed)),
+                            snapshot);
+}
+
 TEST(DropletRun, GoesOnFromEverySnapshotBitForBit) {
   for (const Model model : {Model::dp, Model::sp}) {
     const RunParameters run = long_run(model);
