@@ -181,6 +181,13 @@ void SweepLedger::report(const parallel::Report& report) {
   is_published_ = false;
 }
 
+void SweepLedger::withdraw_failure(std::int64_t task) {
+  Entry& entry = runs_.at(task);
+  entry.row.status = "interrupted";
+  journal_.add(entry.row, entry.snapshot);
+  is_published_ = false;
+}
+
 void SweepLedger::tick() {
   // Writing the whole table takes longer the more runs there are; it may take two percent of the time.
   const Clock::duration pause = std::max<Clock::duration>(std::chrono::seconds(1), 50 * publication_time_);
