@@ -1,7 +1,5 @@
 /// clogsweep: many independent runs, handed out to MPI ranks, gathered into one table.
 
-#include <unistd.h>
-
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -25,17 +23,15 @@
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/run_job.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "sweep_lead.hpp"
 #include "sweep_ledger.hpp"
-#include "sweep_log.hpp"
 #include "sweep_preview.hpp"
-#include "sweep_progress.hpp"
 #include "sweep_reports.hpp"
 
 namespace {
 
 using namespace clog;
 
-using Clock = std::chrono::steady_clock;
 constexpr const char* program = "clogsweep";
 constexpr const char* usage = R"(clogsweep runs droplets through obstacle arrays for every combination of the
 given values, on all MPI ranks, and gathers the results in one HDF5 table.
@@ -102,6 +98,15 @@ double max_hours(const cli::CommandLine& line) {
   return line.has("max-hours") ? line.get_positive("max-hours") : std::numeric_limits<double>::infinity();
 }
 
+/// Checked, the output's name excepted.
+LeadOptions lead_options(const cli::CommandLine& line) {
+  return {.output = line.has("output") ? line.get("output") : "",
+          .master_computes = master_computes(line.get("master-computes")),
+          .report_interval = report_interval(line),
+          .max_hours = max_hours(line),
+          .log = log_level(line)};
+}
+
 std::int64_t attempts(const cli::CommandLine& line) {
   const double number = line.get_number("attempts", 2);
   if (!(number >= 1 && number <= 1000 && number == std::floor(number)))
@@ -123,12 +128,9 @@ std::optional<int> prepare(const cli::CommandLine& line) {
   if (cli::answer_help_or_version(
           line, {{"MPI", parallel::Communicator::library_version()}, {"HDF5", store::library_version()}}))
     return cli::exit_success;
-  master_computes(line.get("master-computes"));
-  report_interval(line);
+  lead_options(line);
   attempts(line);
-  max_hours(line);
   check_isolate(line);
-  log_level(line);
   const sweep::Plan plan(line.settings());
   if (line.has("print-config")) print_config(line.settings(), plan);
   if (line.has("dry-run")) {
@@ -139,96 +141,6 @@ std::optional<int> prepare(const cli::CommandLine& line) {
   if (line.has("print-config") || line.has("dry-run")) return cli::exit_success;
   line.require("output");
   return std::nullopt;
-}
-
-void announce(const std::string& output, std::int64_t num_runs, const SweepLedger& ledger, int num_ranks) {
-  const auto num_left = static_cast<std::int64_t>(ledger.tasks_left().size());
-  if (num_left < num_runs)
-    std::cerr << output << " has " << num_runs - num_left << " of " << num_runs << " runs"
-              << (num_left == 0 ? "; there is nothing left to do" : "") << std::endl;
-  if (ledger.num_resumed() > 0) std::cerr << ledger.num_resumed() << " go on where they were" << std::endl;
-  if (num_left > 0)
-    std::cerr << num_left << " runs on " << num_ranks
-              << (num_ranks == 1 ? " computing rank" : " computing ranks") << ", results go to " << output
-              << std::endl;
-}
-
-/// Rank 0's part of the sweep.
-int lead(const parallel::Communicator& ranks, const cli::CommandLine& line, const sweep::Plan& plan,
-         const sweep::JobFactory& make_job, SweepLedger& ledger) {
-  const bool computes = parallel::computes(ranks.size(), master_computes(line.get("master-computes")));
-  const int computing_ranks = ranks.size() - (computes ? 0 : 1);
-  const auto num_left = static_cast<std::int64_t>(ledger.tasks_left().size());
-  const SweepLog::Level level = log_level(line);
-  if (level != SweepLog::Level::quiet) announce(line.get("output"), plan.size(), ledger, computing_ranks);
-  SweepProgress progress(std::cerr,
-                         level == SweepLog::Level::quiet ? SweepProgress::Screen::none
-                         : isatty(STDERR_FILENO)         ? SweepProgress::Screen::terminal
-                                                         : SweepProgress::Screen::plain,
-                         num_left, computing_ranks);
-  SweepLog log(progress, level);
-  bool interrupted = false;
-  const Clock::time_point begin = Clock::now();
-  const double hours = max_hours(line);
-  const auto reason_to_stop = [&]() -> const char* {
-    if (cli::stop_signalled()) return "a signal";
-    return std::chrono::duration<double, std::ratio<3600>>(Clock::now() - begin).count() >= hours
-               ? "--max-hours"
-               : nullptr;
-  };
-  parallel::SweepEvents events;
-  events.started = [&](std::int64_t task, int rank) {
-    progress.started(task);
-    parallel::Start start = ledger.start(task, rank);
-    log.started(ledger.row(task),
-                start.snapshot.empty() ? SweepLog::From::release : SweepLog::From::snapshot);
-    return start;
-  };
-  events.progressed = [&](const parallel::Report& report) { ledger.report(report); };
-  events.ended = [&](const parallel::Report& report) {
-    ledger.report(report);
-    if (report.row.status.view() == "failed" && ledger.tries_again(report.row)) {
-      progress.tried(report.row.task);
-      log.failed(report.row, SweepLog::Then::tried_again);
-      return;
-    }
-    progress.ended(report.row);
-    log.ended(report.row);
-    interrupted = interrupted || report.row.status.view() == "interrupted";
-  };
-  events.tries_again = [&](const sweep::RunRow& failed) { return ledger.tries_again(failed); };
-  events.failure_withdrawn = [&](std::int64_t task) {
-    if (!ledger.tries_again(ledger.row(task))) progress.not_ended(ledger.row(task));
-    ledger.withdraw_failure(task);
-    log.failure_withdrawn(ledger.row(task));
-  };
-  events.set_aside = [&](const sweep::RunRow& failed) { log.set_aside(failed); };
-  events.idle = [&] {
-    ledger.tick();
-    progress.tick();
-  };
-  events.stop_requested = [&] {
-    const char* reason = reason_to_stop();
-    if (reason) log.stopping(reason);
-    return reason != nullptr;
-  };
-  const parallel::SweepEnd end =
-      parallel::run_tasks(ranks, parallel::TaskOrder(ledger.tasks_left(), plan.num_groups()), make_job,
-                          events, computes, report_interval(line));
-  ledger.finish();
-  if (num_left > 0) progress.finish();
-  if (end == parallel::SweepEnd::no_rank_left) {
-    std::cerr << program
-              << ": every rank was set aside, for tasks kept failing there (see above); look after these "
-              << "machines. Finished rows and the distances so far are in " << line.get("output")
-              << "; the same command goes on" << std::endl;
-    return cli::exit_internal_fault;
-  }
-  if (end == parallel::SweepEnd::complete && !interrupted) return cli::exit_success;
-  std::cerr << program << ": stopped by " << reason_to_stop()
-            << "; the same command goes on. Finished rows and the distances so far are in "
-            << line.get("output") << std::endl;
-  return cli::exit_incomplete;
 }
 
 /// What rank 0 tells the others: what they are to do, and how. Travels as text.
@@ -299,7 +211,7 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, parallel::IsolatedJo
   cli::catch_stop_signals();
   const Assignment assignment = Assignment::from(word);
   const sweep::JobFactory make_job = assignment.isolate == "yes" ? isolated.jobs(word) : assigned_jobs(word);
-  if (ranks.rank() == 0) return lead(ranks, line, *plan, make_job, *ledger);
+  if (ranks.rank() == 0) return lead_sweep(ranks, lead_options(line), *plan, make_job, *ledger);
   parallel::run_tasks(ranks, parallel::TaskOrder(0), make_job, {}, false,
                       seconds_from(assignment.report_seconds));
   return cli::exit_success;
