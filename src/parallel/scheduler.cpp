@@ -131,7 +131,6 @@ class Master {
   std::unordered_map<std::int64_t, Running> running_;  // by task
   std::unordered_map<int, RunRow> last_failures_;      // by rank
   std::unordered_set<std::int64_t> withdrawn_;         // tasks, until they begin again
-  std::unordered_set<std::int64_t> doubted_;           // withdrawn for a hold: once, or it would never end
   std::optional<Work> own_job_;
   Clock::time_point begin_ = Clock::now();
   Clock::time_point last_idle_ = begin_;
