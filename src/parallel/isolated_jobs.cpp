@@ -66,9 +66,11 @@ void depend_on_parent(pid_t parent) {
   std::int64_t number = 0;
   bool is_over = true;
   while (true) {
-    while (!is_over && !rank.wait(std::chrono::milliseconds(0))) {
+    // At least one slice between two messages: a task that is stopped at once has a snapshot, too.
+    while (!is_over) {
       is_over = job->advance();
       if (is_over) rank.send(over, number, to_bytes(job->row(), {}));
+      if (rank.wait(std::chrono::milliseconds(0))) break;
     }
     const auto message = rank.receive();
     if (!message) _exit(0);
