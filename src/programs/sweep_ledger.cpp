@@ -186,6 +186,13 @@ void SweepLedger::report(const parallel::Report& report) {
   is_published_ = false;
 }
 
+void SweepLedger::withdraw_failure(std::int64_t task) {
+  Entry& entry = runs_.at(task);
+  entry.row.status = "interrupted";
+  journal_.add(entry.row, entry.snapshot);
+  is_published_ = false;
+}
+
 void SweepLedger::tick() {
   // Writing the whole table takes longer the more runs there are, and the journal must be rewritten now and
   // then; they may take two percent of the time.

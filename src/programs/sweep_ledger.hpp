@@ -35,6 +35,10 @@ class SweepLedger {
 
   parallel::Start start(std::int64_t task, int rank);
   void report(const parallel::Report& report);
+  /// Of a run that has begun.
+  const sweep::RunRow& row(std::int64_t task) const { return runs_.at(task).row; }
+  /// Of a run that failed: it is to be done again, as the same attempt.
+  void withdraw_failure(std::int64_t task);
   bool tries_again(const sweep::RunRow& failed) const { return failed.attempt < attempts_; }
   /// Publishes the table if it is time to.
   void tick();

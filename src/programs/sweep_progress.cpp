@@ -29,6 +29,20 @@ void SweepProgress::ended(const sweep::RunRow& row) {
   finished_seconds_ += row.wall_seconds;
 }
 
+void SweepProgress::not_ended(const sweep::RunRow& failed) {
+  --ended_by_status_[std::string(failed.status.view())];
+  --num_ended_;
+}
+
+void SweepProgress::say(const std::string& text) {
+  if (screen_ != Screen::terminal) {
+    out_ << text << std::endl;
+    return;
+  }
+  out_ << '\r' << text << "\x1b[K\n";
+  print(line());
+}
+
 void SweepProgress::tick() {
   const double interval = screen_ == Screen::terminal ? 0.2 : 10;
   if (seconds_since(last_print_) >= interval) print(line());
@@ -41,6 +55,7 @@ void SweepProgress::finish() {
 
 void SweepProgress::print(const std::string& text) {
   last_print_ = Clock::now();
+  if (screen_ == Screen::none) return;
   if (screen_ == Screen::terminal)
     out_ << '\r' << text << "\x1b[K" << std::flush;  // to the left edge; then clear what an older line left
   else

@@ -14,7 +14,7 @@ namespace clog {
 /// elsewhere.
 class SweepProgress {
  public:
-  enum class Screen { terminal, plain };
+  enum class Screen { terminal, plain, none };
 
   SweepProgress(std::ostream& out, Screen screen, std::int64_t num_tasks, int num_computing_ranks);
 
@@ -22,6 +22,10 @@ class SweepProgress {
   void ended(const sweep::RunRow& row);
   /// In vain; it will be tried again.
   void tried(std::int64_t task) { running_.erase(task); }
+  /// One that ended as failed is to be done again.
+  void not_ended(const sweep::RunRow& failed);
+  /// Prints a line that stays, whatever the screen.
+  void say(const std::string& text);
   /// Prints if it is time to.
   void tick();
   void finish();

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <chrono>
+#include <limits>
+#include <string>
+
+#include "clog/parallel/communicator.hpp"
+#include "clog/parallel/scheduler.hpp"
+#include "clog/sweep/job.hpp"
+#include "clog/sweep/plan.hpp"
+#include "sweep_ledger.hpp"
+#include "sweep_log.hpp"
+
+namespace clog {
+
+struct LeadOptions {
+  std::string output;
+  parallel::MasterComputes master_computes = parallel::MasterComputes::automatic;
+  std::chrono::milliseconds report_interval{10'000};
+  double max_hours = std::numeric_limits<double>::infinity();
+  SweepLog::Level log = SweepLog::Level::normal;
+};
+
+/// Rank 0's part of a sweep, while the other ranks are in parallel::run_tasks(): joins the scheduler with
+/// what is kept (the ledger) and what is told (log and progress). Returns the exit code.
+int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, const sweep::Plan& plan,
+               const sweep::JobFactory& make_job, SweepLedger& ledger);
+
+}  // namespace clog
