@@ -1,5 +1,6 @@
 /// clogsweep: many independent runs, handed out to MPI ranks, gathered into one table.
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <iostream>
@@ -23,6 +24,7 @@
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/run_job.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "seed_rule.hpp"
 #include "sweep_doctor.hpp"
 #include "sweep_lead.hpp"
 #include "sweep_ledger.hpp"
@@ -56,6 +58,9 @@ void parse(cli::CommandLine& line, int argc, char** argv) {
       "does rank 0 run tasks too: auto (with up to 16 ranks), yes, no")(
       "max-hours", po::value<std::string>(),
       "stop after so many hours, as after a signal; the same command goes on")(
+      "until-precision", po::value<std::string>(),
+      "add seeds until lambda is known so well, e.g. 10%: half its 95 % interval over lambda")(
+      "most-seeds", po::value<std::string>(), "with --until-precision: per parameter set (20 times `seeds`)")(
       "attempts", po::value<std::string>()->default_value("2"), "how often a run that fails is tried")(
       "report-seconds", po::value<std::string>()->default_value("10"),
       "how often a running task reports how far it has come; a kill loses no more than that")(
@@ -116,11 +121,64 @@ std::int64_t attempts(const cli::CommandLine& line) {
   return static_cast<std::int64_t>(number);
 }
 
-store::Provenance provenance(const cli::CommandLine& line, int num_ranks) {
+double precision(const cli::CommandLine& line) {
+  std::string text = line.get("until-precision");
+  const bool is_percent = text.ends_with('%');
+  if (is_percent) text.pop_back();
+  double number = 0;
+  try {
+    number = sweep::to_number(text) / (is_percent ? 100 : 1);
+  } catch (const Error&) {
+    // said below, with the option's name
+  }
+  if (number >= 0.001 && number < 1) return number;
+  throw Error("invalid --until-precision=" + line.get("until-precision") +
+              " (must lie between 0.1% and 100%) try 20%");
+}
+
+std::int64_t most_seeds(const cli::CommandLine& line, std::int64_t first_seeds) {
+  const double number = line.get_number("most-seeds", static_cast<double>(20 * first_seeds));
+  if (!(number >= static_cast<double>(first_seeds) && number <= 1e6 && number == std::floor(number)))
+    throw Error("invalid --most-seeds=" + line.get("most-seeds") + " (must be a whole number from " +
+                std::to_string(first_seeds) + ", the number of `seeds`, to 1e6)");
+  return static_cast<std::int64_t>(number);
+}
+
+/// A sweep that --until-precision may enlarge: its plan has all seeds that it may come to, those of the
+/// settings first.
+struct Enlarged {
+  sweep::Settings settings;
+  std::int64_t num_first = 0;  ///< tasks to begin with
+  std::optional<SeedRule> rule;
+};
+Enlarged enlarge(const cli::CommandLine& line) {
+  Enlarged sweep{line.settings(), sweep::Plan(line.settings()).size(), std::nullopt};
+  if (!line.has("until-precision")) {
+    if (line.has("most-seeds")) throw Error("--most-seeds needs --until-precision");
+    return sweep;
+  }
+  const std::vector<std::string>& seeds = line.settings().values("seeds");
+  const auto first_seeds = static_cast<std::int64_t>(seeds.size());
+  const std::int64_t most = most_seeds(line, first_seeds);
+  sweep.rule.emplace(precision(line), sweep.num_first / first_seeds, first_seeds, most);
+  if (most == first_seeds) return sweep;
+  long long last = 0;
+  for (const std::string& seed : seeds) last = std::max(last, sweep::to_integer(seed));
+  sweep.settings.set("seeds", line.settings().text("seeds") + "," + std::to_string(last + 1) + ".." +
+                                  std::to_string(last + most - first_seeds));
+  return sweep;
+}
+
+store::Provenance provenance(const cli::CommandLine& line, const Enlarged& sweep, int num_ranks) {
   store::Provenance all = cli::origin(line);
   all.emplace_back("mpi_version", parallel::Communicator::library_version());
   all.emplace_back("hdf5_version", store::library_version());
   all.emplace_back("num_ranks", std::to_string(num_ranks));
+  if (!sweep.rule) return all;
+  for (auto& [name, text] : all)
+    if (name == "config") text = sweep.settings.to_config(false);
+  all.emplace_back("stopping_rule", sweep.rule->text());
+  all.emplace_back("num_wanted", std::to_string(sweep.num_first));
   return all;
 }
 
@@ -133,6 +191,7 @@ std::optional<int> prepare(const cli::CommandLine& line) {
   lead_options(line);
   attempts(line);
   check_isolate(line);
+  enlarge(line);
   const sweep::Plan plan(line.settings());
   if (line.has("print-config")) print_config(line.settings(), plan);
   if (line.has("dry-run")) {
@@ -177,6 +236,7 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, parallel::IsolatedJo
                        char** argv) {
   // Rank 0 reads and checks; the others wait for its word: a config to run, or an exit code.
   cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::accepted);
+  Enlarged sweep;
   std::optional<sweep::Plan> plan;
   std::optional<SweepLedger> ledger;
   std::string word;
@@ -185,15 +245,16 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, parallel::IsolatedJo
       parse(line, argc, argv);
       if (const auto over = prepare(line)) return *over;
       refuse_to_be_alone(ranks.size());
-      plan.emplace(line.settings());
-      ledger.emplace(line.get("output"), *plan, line.settings(), provenance(line, ranks.size()),
-                     attempts(line));
+      sweep = enlarge(line);
+      plan.emplace(sweep.settings);
+      ledger.emplace(line.get("output"), *plan, sweep.settings, provenance(line, sweep, ranks.size()),
+                     sweep.num_first, attempts(line));
       return cli::exit_success;
     });
     if (ledger && exit_code == cli::exit_success)
       word = Assignment{line.get("report-seconds"),
                         line.has("instruction-set") ? line.get("instruction-set") : "auto",
-                        line.get("isolate"), line.settings().to_config(false)}
+                        line.get("isolate"), sweep.settings.to_config(false)}
                  .text();
     else
       word = "exit " + std::to_string(exit_code);
@@ -203,9 +264,8 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, parallel::IsolatedJo
 
   const Assignment assignment = Assignment::from(word);
   const sweep::JobFactory make_job = assignment.isolate == "yes" ? isolated.jobs(word) : assigned_jobs(word);
-  if (ranks.rank() == 0) return lead_sweep(ranks, lead_options(line), *plan, make_job, *ledger);
-  parallel::run_tasks(ranks, parallel::TaskOrder(0), make_job, {}, false,
-                      seconds_from(assignment.report_seconds));
+  if (ranks.rank() == 0) return lead_sweep(ranks, lead_options(line), *plan, make_job, *ledger, sweep.rule);
+  follow_sweep(ranks, make_job, seconds_from(assignment.report_seconds));
   return cli::exit_success;
 }
 

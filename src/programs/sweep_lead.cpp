@@ -18,8 +18,12 @@ namespace clog {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+// What the ranks are told after a round.
+const std::string another_round = "another round";
+const std::string over = "over";
 
-void announce(const std::string& output, std::int64_t num_runs, const SweepLedger& ledger, int num_ranks) {
+void announce(const std::string& output, const SweepLedger& ledger, int num_ranks) {
+  const std::int64_t num_runs = ledger.num_wanted();
   const auto num_left = static_cast<std::int64_t>(ledger.tasks_left().size());
   if (num_left < num_runs)
     std::cerr << output << " has " << num_runs - num_left << " of " << num_runs << " runs"
@@ -43,12 +47,17 @@ SweepProgress::Screen screen(SweepLog::Level level) {
 /// Joins what the scheduler tells and asks with what is kept and what is told to the user.
 class Lead {
  public:
-  Lead(const LeadOptions& options, SweepLedger& ledger, std::int64_t num_tasks, int num_ranks)
+  Lead(const LeadOptions& options, SweepLedger& ledger, int num_ranks)
       : ledger_(ledger),
-        num_tasks_(num_tasks),
-        progress_(std::cerr, screen(options.log), num_tasks, num_ranks),
+        progress_(std::cerr, screen(options.log), num_ranks),
         log_(progress_, options.log),
         max_hours_(options.max_hours) {}
+
+  /// So many tasks more.
+  void expect(std::int64_t num_tasks) {
+    num_tasks_ += num_tasks;
+    progress_.expect(num_tasks);
+  }
 
   parallel::SweepEvents events() {
     parallel::SweepEvents events;
@@ -84,7 +93,7 @@ class Lead {
 
  private:
   SweepLedger& ledger_;
-  std::int64_t num_tasks_;
+  std::int64_t num_tasks_ = 0;
   SweepProgress progress_;
   SweepLog log_;
   double max_hours_;
@@ -121,17 +130,31 @@ class Lead {
 }  // namespace
 
 int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, const sweep::Plan& plan,
-               const sweep::JobFactory& make_job, SweepLedger& ledger) {
+               const sweep::JobFactory& make_job, SweepLedger& ledger, std::optional<SeedRule>& rule) {
   const bool computes = parallel::computes(ranks.size(), options.master_computes);
   const int computing_ranks = ranks.size() - (computes ? 0 : 1);
-  if (options.log != SweepLog::Level::quiet) announce(options.output, plan.size(), ledger, computing_ranks);
-  const std::vector<std::int64_t> tasks = ledger.tasks_left();
-  Lead lead(options, ledger, static_cast<std::int64_t>(tasks.size()), computing_ranks);
-  const parallel::SweepEnd end =
-      parallel::run_tasks(ranks, parallel::TaskOrder(tasks, plan.num_groups()), make_job, lead.events(),
-                          computes, options.report_interval);
+  if (options.log != SweepLog::Level::quiet) announce(options.output, ledger, computing_ranks);
+  Lead lead(options, ledger, computing_ranks);
+  parallel::SweepEnd end = parallel::SweepEnd::complete;
+  bool is_complete = true;
+  while (true) {
+    const std::vector<std::int64_t> tasks = ledger.tasks_left();
+    lead.expect(static_cast<std::int64_t>(tasks.size()));
+    end = parallel::run_tasks(ranks, parallel::TaskOrder(tasks, plan.num_groups()), make_job, lead.events(),
+                              computes, options.report_interval);
+    is_complete = end == parallel::SweepEnd::complete && !lead.was_interrupted();
+    std::vector<std::int64_t> next;
+    if (rule && is_complete)
+      next = rule->next_round([&](std::int64_t task) { return ledger.row(task).status.view() == "clogged"; });
+    ranks.broadcast(next.empty() ? over : another_round);
+    if (next.empty()) break;
+    ledger.want(next);
+  }
   lead.finish();
-  if (end == parallel::SweepEnd::complete && !lead.was_interrupted()) return cli::exit_success;
+  if (is_complete && rule && options.log != SweepLog::Level::quiet)
+    std::cerr << rule->num_reached() << " of " << rule->num_groups()
+              << " parameter sets have reached --until-precision" << std::endl;
+  if (is_complete) return cli::exit_success;
   const bool no_rank_left = end == parallel::SweepEnd::no_rank_left;
   std::cerr << "clogsweep: "
             << (no_rank_left ? std::string("every rank was set aside, see above; look after these machines")
@@ -139,6 +162,13 @@ int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, 
             << "; the same command goes on. Finished rows and the distances so far are in " << options.output
             << std::endl;
   return no_rank_left ? cli::exit_internal_fault : cli::exit_incomplete;
+}
+
+void follow_sweep(const parallel::Communicator& ranks, const sweep::JobFactory& make_job,
+                  std::chrono::milliseconds report_interval) {
+  do {
+    parallel::run_tasks(ranks, parallel::TaskOrder(0), make_job, {}, false, report_interval);
+  } while (ranks.broadcast("") == another_round);
 }
 
 }  // namespace clog

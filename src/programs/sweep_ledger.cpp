@@ -59,12 +59,13 @@ std::string differing_keys(const sweep::Settings& there, const sweep::Settings& 
 }  // namespace
 
 SweepLedger::SweepLedger(std::string path, const sweep::Plan& plan, const sweep::Settings& settings,
-                         store::Provenance provenance, std::int64_t attempts)
+                         store::Provenance provenance, std::int64_t num_wanted, std::int64_t attempts)
     : path_(std::move(path)),
       plan_(plan),
       provenance_(std::move(provenance)),
       attempts_(attempts),
-      journal_(store::journal_path(path_)) {
+      journal_(store::journal_path(path_)),
+      num_wanted_(num_wanted) {
   std::string session;
   for (const char* name : {"start_time", "version", "git_hash", "num_ranks", "command_line"})
     session += attribute(provenance_, name) + ' ';
@@ -111,7 +112,8 @@ void SweepLedger::take_over(const store::SweepFile& file, const sweep::Settings&
   store::Provenance all = file.provenance;
   for (const char* name : {"kind", "format_version"})
     std::erase_if(all, [&](const auto& attribute) { return attribute.first == name; });
-  set_attribute(all, "config", attribute(provenance_, "config"));
+  for (const char* name : {"config", "stopping_rule", "num_wanted"})
+    if (const std::string text = attribute(provenance_, name); !text.empty()) set_attribute(all, name, text);
   provenance_ = std::move(all);
 }
 
@@ -131,7 +133,7 @@ void SweepLedger::find_tasks(std::unordered_map<std::string, Entry> known) {
         if (entry.row.status.view() == "running") entry.row.status = "interrupted";
         past_[task].seconds = entry.row.wall_seconds;
       }
-    tasks_left_.push_back(task);
+    if (task < num_wanted_) tasks_left_.push_back(task);
   }
   for (auto& [run, entry] : known) other_runs_.push_back(std::move(entry));
   std::sort(other_runs_.begin(), other_runs_.end(),
@@ -141,6 +143,16 @@ void SweepLedger::find_tasks(std::unordered_map<std::string, Entry> known) {
     row.task = plan_.size() + static_cast<std::int64_t>(i);
     if (row.status.view() == "running") row.status = "interrupted";
   }
+}
+
+void SweepLedger::want(const std::vector<std::int64_t>& tasks) {
+  num_wanted_ += static_cast<std::int64_t>(tasks.size());
+  set_attribute(provenance_, "num_wanted", std::to_string(num_wanted_));
+  tasks_left_.clear();
+  for (const std::int64_t task : tasks)
+    if (const auto run = runs_.find(task); run == runs_.end() || !is_over(run->second.row))
+      tasks_left_.push_back(task);
+  is_published_ = false;
 }
 
 std::int64_t SweepLedger::num_resumed() const {
@@ -228,7 +240,7 @@ void SweepLedger::shorten_journal() {
 void SweepLedger::finish() {
   publish();
   const bool is_complete =
-      static_cast<std::int64_t>(runs_.size()) == plan_.size() &&
+      static_cast<std::int64_t>(runs_.size()) >= num_wanted_ &&
       std::all_of(runs_.begin(), runs_.end(), [this](const auto& run) { return is_over(run.second.row); }) &&
       std::all_of(other_runs_.begin(), other_runs_.end(),
                   [this](const Entry& run) { return is_over(run.row); });

@@ -21,12 +21,17 @@ namespace clog {
 class SweepLedger {
  public:
   /// Reads what is there, and checks that it belongs to this sweep.
+  /// @param num_wanted  how many of the plan's tasks, from its beginning, are to be done for the time being
   /// @param attempts  how often a run that fails is tried, over all sessions
   /// @throws Error if the file is foreign, of another model or other settings, or written to by another sweep
   SweepLedger(std::string path, const sweep::Plan& plan, const sweep::Settings& settings,
-              store::Provenance provenance, std::int64_t attempts);
+              store::Provenance provenance, std::int64_t num_wanted, std::int64_t attempts);
 
-  /// Tasks of the plan that are not over.
+  /// More of the plan's tasks are to be done; tasks_left() are then those of them that are not over.
+  void want(const std::vector<std::int64_t>& tasks);
+  std::int64_t num_wanted() const { return num_wanted_; }
+
+  /// Tasks that are wanted and not over.
   const std::vector<std::int64_t>& tasks_left() const { return tasks_left_; }
   /// Of those, how many have a snapshot to go on from.
   std::int64_t num_resumed() const;
@@ -56,6 +61,7 @@ class SweepLedger {
   store::Journal journal_;
   std::map<std::int64_t, Entry> runs_;  // by task; those that have begun
   std::vector<Entry> other_runs_;       // in the file, but not of this plan
+  std::int64_t num_wanted_;
   std::vector<std::int64_t> tasks_left_;
   /// What is known of a task from earlier sessions or attempts.
   struct Past {

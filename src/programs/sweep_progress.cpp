@@ -16,9 +16,8 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 
 }  // namespace
 
-SweepProgress::SweepProgress(std::ostream& out, Screen screen, std::int64_t num_tasks,
-                             int num_computing_ranks)
-    : out_(out), screen_(screen), num_tasks_(num_tasks), num_ranks_(num_computing_ranks) {}
+SweepProgress::SweepProgress(std::ostream& out, Screen screen, int num_computing_ranks)
+    : out_(out), screen_(screen), num_ranks_(num_computing_ranks) {}
 
 void SweepProgress::started(std::int64_t task) { running_[task] = Clock::now(); }
 

@@ -16,7 +16,10 @@ class SweepProgress {
  public:
   enum class Screen { terminal, plain, none };
 
-  SweepProgress(std::ostream& out, Screen screen, std::int64_t num_tasks, int num_computing_ranks);
+  SweepProgress(std::ostream& out, Screen screen, int num_computing_ranks);
+
+  /// So many tasks more.
+  void expect(std::int64_t num_tasks) { num_tasks_ += num_tasks; }
 
   void started(std::int64_t task);
   void ended(const sweep::RunRow& row);
@@ -35,7 +38,7 @@ class SweepProgress {
 
   std::ostream& out_;
   Screen screen_;
-  std::int64_t num_tasks_;
+  std::int64_t num_tasks_ = 0;
   int num_ranks_;
   Clock::time_point begin_ = Clock::now();
   Clock::time_point last_print_ = begin_;

@@ -59,6 +59,7 @@ struct Status {
   bool is_alive = false;
   double core_hours = 0;
   TimeLeft left;
+  std::string stopping_rule;  ///< empty: none
   std::vector<Group> groups;
 
   std::int64_t count(const char* status) const {
@@ -73,6 +74,10 @@ Status status_of(const std::string& path, double confidence) {
   Status status;
   const std::int64_t planned = plan_of(file).size();
   status.num_runs = planned;
+  for (const auto& [name, text] : file.provenance) {
+    if (name == "stopping_rule") status.stopping_rule = text;
+    if (name == "num_wanted") status.num_runs = sweep::to_integer(text);
+  }
   status.is_alive = store::Journal::is_open(store::journal_path(path));
   std::vector<double> finished, running;
   for (const RunRow& row : file.rows) {
@@ -107,6 +112,7 @@ std::string to_text(const std::string& path, const Status& status, double confid
   else
     text += ", " + status.left.text();
   text += '\n';
+  if (!status.stopping_rule.empty()) text += status.stopping_rule + '\n';
   if (!status.groups.empty()) text += '\n' + to_text(status.groups, confidence);
   return text;
 }
@@ -122,6 +128,7 @@ std::string to_json(const Status& status, double confidence) {
   all["seconds_left"] = status.left.is_known
                             ? nlohmann::ordered_json{status.left.shortest, status.left.longest}
                             : nlohmann::ordered_json();
+  if (!status.stopping_rule.empty()) all["stopping_rule"] = status.stopping_rule;
   all["groups"] = status.groups.empty()
                       ? nlohmann::ordered_json::array()
                       : nlohmann::ordered_json::parse(to_json(status.groups, confidence)).at("groups");
