@@ -175,7 +175,7 @@ parallel::Start SweepLedger::start(std::int64_t task, int rank) {
     entry.row = sweep::describe(plan_.task(task));
     entry.row.task = task;
     entry.row.clogged_by = "none";
-    entry.row.mean_speed = std::numeric_limits<double>::quiet_NaN();  // not known yet
+    entry.row.mechanism = "none";
   }
   entry.row.attempt = start.attempt;
   entry.row.status = "running";

@@ -186,8 +186,16 @@ std::vector<std::string> differing_results(const RunRow& a, const RunRow& b) {
   compare("lateral_displacement", a.lateral_displacement, b.lateral_displacement);
   compare("time", a.time, b.time);
   compare("mean_speed", a.mean_speed, b.mean_speed);
+  compare("mean_speed_error", a.mean_speed_error, b.mean_speed_error);
+  compare("transient", a.transient, b.transient);
+  compare("travel_time", a.travel_time, b.travel_time);
   compare("kinetic_energy_ratio", a.kinetic_energy_ratio, b.kinetic_energy_ratio);
   compare("shape_parameter", a.shape_parameter, b.shape_parameter);
+  compare("mechanism", a.mechanism, b.mechanism);
+  compare("wrapped_support", a.wrapped_support, b.wrapped_support);
+  compare("num_wrapped", a.num_wrapped, b.num_wrapped);
+  compare("num_gaps", a.num_gaps, b.num_gaps);
+  compare("num_arcs", a.num_arcs, b.num_arcs);
   compare("steps", a.steps, b.steps);
   return all;
 }

@@ -5,7 +5,7 @@ import unittest
 
 from matplotlib import image
 
-from support import QUICK, ROOT, ProgramTest
+from support import BIN, QUICK, ROOT, ProgramTest
 
 
 class Figures(ProgramTest):
@@ -53,10 +53,16 @@ class Figures(ProgramTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assert_picture("droplet")
 
+    def test_clogs_are_drawn_from_a_sweep(self):
+        self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1..2", "--output", "s.h5")
+        done = self.analyse("clogs.py", "s.h5", "--clogrun", BIN / "clogrun", "--output", "clogs", "--most", 3)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assert_picture("clogs")
+
     def test_foreign_files_get_one_line(self):
         self.write("fit.json", json.dumps({"groups": "none"}))
         self.write("run.h5", "nothing")
-        for script, file in [("clogging_length.py", "fit.json"), ("clogging_length.py", "no.json"), ("droplet.py", "run.h5")]:
+        for script, file in [("clogging_length.py", "fit.json"), ("clogging_length.py", "no.json"), ("droplet.py", "run.h5"), ("clogs.py", "run.h5")]:
             with self.subTest(script=script, file=file):
                 done = self.analyse(script, file, "--output", "x")
                 self.assertNotEqual(done.returncode, 0)
