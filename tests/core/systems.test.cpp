@@ -300,8 +300,9 @@ TEST(InAChannel, RefusesWhatCannotBe) {
   const RunParameters run = resolve(parameters(1));
   for (const ChannelParameters& channel :
        {ChannelParameters{.orifice = 0.02}, ChannelParameters{.orifice = std::nan("")},
-        ChannelParameters{.wedge_angle = 0}, ChannelParameters{.tip_radius = -1},
-        ChannelParameters{.start = -0.2}, ChannelParameters{.start = 1}, ChannelParameters{.end = -11}})
+        ChannelParameters{.orifice = 1, .wedge_angle = 0}, ChannelParameters{.wedge_angle = 3},
+        ChannelParameters{.tip_radius = -1}, ChannelParameters{.start = -0.2}, ChannelParameters{.start = 1},
+        ChannelParameters{.end = -11}})
     EXPECT_THROW(run_in_channel(run, channel), Error);
 }
 
