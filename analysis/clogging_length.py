@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Draws the clogging length against line tension (DP) or wall stiffness (SP), one curve per obstacle array.
 
     clogfit sweep.h5 --format json > fit.json
@@ -103,9 +103,14 @@ def draw(groups, abscissa, confidence):
         axes.legend(frameon=False)
     note = f"bars: {100 * confidence:g} % confidence"
     if any(group["clogs"] == 0 for group in groups):
-        note += ", open triangles: lower bound, no run clogged"
+        note += ", open triangles: lower bound, no run clogged, dotted: through bounds"
     style.caption(axes, f"{caption(groups)}\n{note}")
     return figure
+
+
+def refuse(reason):
+    print(f"clogging_length.py: {reason}", file=sys.stderr)
+    return 2
 
 
 def main():
@@ -117,12 +122,13 @@ def main():
         fit = json.loads(arguments.fit.read_text())
         groups = [group for group in fit["groups"] if group["runs"] > 0]
     except (OSError, ValueError, KeyError, TypeError) as error:
-        sys.exit(f"clogging_length.py: cannot read {arguments.fit} ({error}); give the output of clogfit --format json")
+        return refuse(f"cannot read {arguments.fit} ({error}); give the output of clogfit --format json")
     if not groups:
-        sys.exit(f"clogging_length.py: {arguments.fit} holds no finished runs")
+        return refuse(f"{arguments.fit} holds no finished runs")
     abscissa = "line_tension" if groups[0]["model"] == "dp" else "wall_stiffness"
     style.save(draw(groups, abscissa, fit["confidence"]), arguments.output)
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

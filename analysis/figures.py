@@ -1,8 +1,8 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Regenerates a figure of the paper from runs of our own: sweeps or single runs, clogfit, picture.
 
     analysis/figures.py list
-    analysis/figures.py 6c
+    analysis/figures.py 6c 7c
     analysis/figures.py all --size full --output results/figures
 
 The same command goes on with an interrupted sweep, and never repeats finished runs. Figures that share a sweep run it once.
@@ -20,7 +20,7 @@ import sys
 import style
 from paper import arrays, channels  # noqa: F401, they fill the catalogue
 from paper.plate import CATALOGUE
-from paper.workshop import INTERRUPTED, ROOT, Override, ProgramFailed, UserError, Workshop
+from paper.workshop import INTERRUPTED, ROOT, Override, ProgramFailed, UserError, Workshop, measured, programs_in
 
 ORDER = ["1", "2", "3", "4", "5", "6a", "6b", "6c", "7a", "7b", "7c", "8a", "8b", "8ca", "9a", "9b", "A1", "B1", "B2", "C1", "C2", "D", "E"]
 
@@ -30,13 +30,6 @@ def print_list():
     for name in ORDER:
         entry = CATALOGUE[name]
         print(f"{name:5} {entry.cost:24} {', '.join(entry.configs) or '-':24} {entry.caption}")
-
-
-def programs_folder(given):
-    for folder in [given] if given else [ROOT / "build" / "release" / "bin", ROOT / "build" / "laptop" / "bin"]:
-        if (folder / "clogsweep").exists():
-            return folder.resolve()
-    raise UserError(f"no clogsweep in {folder}; build it (cmake --workflow --preset release), or give --programs FOLDER")
 
 
 def git_hash():
@@ -61,7 +54,7 @@ def write(plate, entry, shop, command):
 
 def parse():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("name", help="of the figure, or list, or all")
+    parser.add_argument("names", nargs="+", metavar="NAME", help="of figures, or list, or all")
     parser.add_argument("--size", choices=["reduced", "full"], default="reduced", help="reduced: minutes on two cores; full: as published")
     parser.add_argument("--ranks", type=int, default=2, help="MPI ranks of the sweeps (2)")
     parser.add_argument("--output", type=pathlib.Path, default=ROOT / "results" / "figures", help="folder (results/figures)")
@@ -69,29 +62,33 @@ def parse():
     parser.add_argument("--profile", type=pathlib.Path, action="append", default=[], metavar="FILE.csv",
                         help="measured passage h [sigma], v [v_t], A to draw in 2, 3 (twice: w = 0.9, 0.7), 4, or to compare with in B2")
     parser.add_argument("--set", action="append", default=[], metavar="[CONFIG:]KEY=VALUE",
-                        help="another value than the config's, e.g. clogging:seeds=1..50")
+                        help="another value than the config's, e.g. clogging:seeds=1..50; keys that a figure itself varies in single runs stay")
     parser.add_argument("--programs", type=pathlib.Path, help="folder of clogsweep, clogrun, clogfit (build/release/bin)")
     return parser.parse_args()
 
 
 def body():
     arguments = parse()
-    if arguments.name == "list":
+    if arguments.names == ["list"]:
         print_list()
         return 0
-    if arguments.name != "all" and arguments.name not in CATALOGUE:
-        raise UserError(f"no figure {arguments.name}; analysis/figures.py list names them")
+    names = ORDER if arguments.names == ["all"] else arguments.names
+    for name in names:
+        if name not in CATALOGUE:
+            raise UserError(f"no figure {name}; analysis/figures.py list names them")
     if arguments.ranks < 1:
         raise UserError(f"invalid --ranks {arguments.ranks} (must be positive) try 2")
     shop = Workshop(size=arguments.size, ranks=arguments.ranks, folder=arguments.output / arguments.size,
-                    programs=programs_folder(arguments.programs), overrides=[Override.parse(text) for text in getattr(arguments, "set")],
+                    programs=programs_in(arguments.programs), overrides=[Override.parse(text) for text in getattr(arguments, "set")],
                     profiles=arguments.profile, draw_only=arguments.draw_only)
+    for path in arguments.profile:
+        measured(path)
     try:
         shop.folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise UserError(f"cannot make {shop.folder} ({error.strerror}); give another --output") from error
     command = " ".join([os.path.relpath(sys.argv[0], ROOT), *sys.argv[1:]])
-    for name in ORDER if arguments.name == "all" else [arguments.name]:
+    for name in names:
         write(CATALOGUE[name].draw(shop), CATALOGUE[name], shop, command)
     return 0
 

@@ -35,7 +35,7 @@ def draw_lengths(axes, places, groups, index, label):
     """Clogging lengths with clogfit's intervals; an open triangle is a lower bound, where no run clogged."""
     order = sorted(range(len(groups)), key=lambda i: places[i])
     places, groups = [places[i] for i in order], [groups[i] for i in order]
-    # Not a number where no run clogged: the line is broken there.
+    # Not a number where no run clogged: the line is broken there, and goes on dotted.
     lengths = [math.nan if group["clogs"] == 0 else group["clogging_length"] for group in groups]
     bars = [
         [math.nan if group["clogs"] == 0 else abs(group["clogging_length"] - group[end]) for group in groups]
@@ -45,6 +45,9 @@ def draw_lengths(axes, places, groups, index, label):
         places, lengths, yerr=bars, **curve_style(index), markersize=5, linewidth=1, elinewidth=1, capsize=2.5,
         label=label,
     )
+    if any(group["clogs"] == 0 for group in groups):
+        through = [group["clogging_length_lower"] if group["clogs"] == 0 else group["clogging_length"] for group in groups]
+        axes.plot(places, through, color=curve_style(index)["color"], linewidth=0.8, linestyle=":", zorder=1)
     bounds = [(x, group["clogging_length_lower"]) for x, group in zip(places, groups) if group["clogs"] == 0]
     axes.plot(
         [x for x, _ in bounds], [length for _, length in bounds],

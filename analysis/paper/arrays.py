@@ -52,7 +52,7 @@ def by(groups, name):
 def length_note(groups):
     note = "bars: 95 % confidence"
     if any(group["clogs"] == 0 for group in groups):
-        note += "; open triangles: lower bound, no run clogged"
+        note += "; open triangles: lower bound, no run clogged; dotted: through bounds"
     return note
 
 
@@ -77,7 +77,7 @@ def curves(shop, config, abscissa, parameter, quantity):
     style.grid(axes)
     axes.legend(frameon=False)
     note = length_note(groups) if quantity == "length" else "bars: standard error"
-    style.caption(axes, f"{describe(groups, [parameter])}; {note}")
+    style.caption(axes, f"{describe(groups, [parameter])}\n{note}")
     return Plate(drawing, data)
 
 
@@ -148,11 +148,11 @@ def over_sag(shop, configs, gap, quantity):
     axes.set_xlabel(style.AXES["sag"])
     axes.set_ylabel(style.AXES[quantity])
     axes.axvline(0.25, color="0.75", linewidth=0.8, linestyle=":", zorder=0)
-    axes.text(0.25, 0.02, r" $\delta_s = 0.25\sigma$", color="0.4", fontsize=8, transform=axes.get_xaxis_transform())
+    axes.text(0.25, 0.02, r"$\delta_s = 0.25\sigma$ ", ha="right", color="0.4", fontsize=8, transform=axes.get_xaxis_transform())
     style.grid(axes)
     axes.legend(frameon=False)
     note = length_note(groups) if quantity == "length" else "bars: standard error"
-    style.caption(axes, "\n".join(captions) + f"; {note}")
+    style.caption(axes, "\n".join(captions) + f"\n{note}")
     return Plate(drawing, data)
 
 
@@ -189,7 +189,7 @@ def sag_picture(shop):
         axes.plot([-0.08, 0.08], [0.5, 0.5], color="black", linewidth=1)
         axes.plot([-0.08, 0.08], [0.5 - sag, 0.5 - sag], color="black", linewidth=1)
         axes.annotate("", (0, 0.5 - sag), (0, 0.5), arrowprops={"arrowstyle": "-|>", "color": "black"})
-        axes.text(0.1, 0.5 - sag / 2, rf"$\delta_s = {sag:.3f}\sigma$", va="center")
+        axes.text(0, 0.46 - sag, rf"$\delta_s = {sag:.3f}\sigma$", ha="center", va="top")
         trajectory.frame_limits(axes, (-0.85, -0.25), (0.85, 1.1))
         axes.set_xlabel(r"along the wall $/\sigma$")
         style.caption(axes, title)
@@ -203,7 +203,7 @@ def sag_picture(shop):
 
 def example(shop, mechanism):
     """A clog of the sweep by the given mechanism, run once more with its outline: of those that went at least half a
-    diameter (or, if there are none, of all) the most deformed one."""
+    diameter (or, if there are none, of all) the one of median shape parameter."""
     shop.sweep("clogging")
     rows = shop.rows("clogging")
     if "mechanism" not in rows or not rows.mechanism.any():
@@ -212,7 +212,8 @@ def example(shop, mechanism):
     if clogs.empty:
         raise UserError(f"no {mechanism} clog in {shop.sweep_file('clogging')}; more seeds, or other line tensions")
     travelled = clogs[clogs.distance >= 0.5]
-    row = (clogs if travelled.empty else travelled).sort_values(["shape_parameter", "task"], ascending=[False, True]).iloc[0]
+    ordered = (clogs if travelled.empty else travelled).sort_values(["shape_parameter", "task"])
+    row = ordered.iloc[len(ordered) // 2]
     run = shop.run(f"clog-{mechanism}", "array", "clogging",
                    {"line-tension": float(row.line_tension), "obstacle-gap": float(row.obstacle_gap), "seeds": int(row.seed)},
                    ["--polygon-interval", f"{max(0.5, row.time / 400):.3g}"])

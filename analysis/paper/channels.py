@@ -80,12 +80,12 @@ def geometry(shop):
                      ["--polygon-interval", 4])
     drawing, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.0), layout="constrained", width_ratios=[1, 1.5])
     middle = middle_of(channel)
-    frame = channel.frame_at("h", -0.5)
+    frame = channel.frame_at("h", -0.75)
     trajectory.draw_surroundings(left, channel, middle)
     x, y = channel.polygons[frame] - middle[:, None]
     left.fill(x, y, facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1)
     left.annotate("", (0.0, 0.2), (0.0, -0.2), arrowprops={"arrowstyle": "<->"})
-    left.text(0.04, 0, "$w$", va="center")
+    left.text(0.06, 0, "$w$", va="center")
     left.annotate("", (1.2, 0), (0.75, 0), arrowprops={"arrowstyle": "-|>", "color": "black"})
     left.text(0.97, 0.06, "flow", ha="center")
     trajectory.frame_limits(left, (-1.3, -1.3), (1.3, 1.3))
@@ -113,21 +113,21 @@ def geometry(shop):
 @figure("2", "a droplet squeezes through an orifice of 0.4 diameters: outlines, shape parameter, speed", ["channel"], "20 s")
 def squeezing(shop):
     run = narrow(shop)
-    drawing = plt.figure(figsize=(8.4, 6.6), layout="constrained")
-    grid = drawing.add_gridspec(2, 6, height_ratios=[1, 1.5])
+    drawing = plt.figure(figsize=(9.6, 6.2), layout="constrained")
+    top, bottom = drawing.subfigures(2, 1, height_ratios=[1, 2.4])
     middle = middle_of(run)
-    for place, h in enumerate([-1.0, -0.5, -0.25, 0.0, 0.25, 0.5]):
-        axes = drawing.add_subplot(grid[0, place])
+    for axes, h in zip(top.subplots(1, 6), [-1.0, -0.5, -0.25, 0.0, 0.25, 0.5]):
         frame = run.frame_at("h", h)
         trajectory.draw_surroundings(axes, run, middle)
         x, y = run.polygons[frame] - middle[:, None]
         axes.fill(x, y, facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=0.8)
-        trajectory.frame_limits(axes, (-1.6, -1.1), (1.2, 1.1))
+        trajectory.frame_limits(axes, (-1.55, -0.85), (1.15, 0.85))
         axes.set_xticks([]), axes.set_yticks([])
         reached = np.interp(run.times[frame], run.table["time"], run.table["h"])
-        axes.set_title(rf"$h = {reached:.2f}\sigma$", fontsize=9)
+        axes.set_title(rf"$h = {reached + 0.0:.2f}\sigma$".replace("-0.00", "0.00"), fontsize=9)
+    panels = bottom.subplots(1, 2)
     for place, (column, ordinate) in enumerate([("shape_parameter", "shape"), ("speed_ratio", "profile")]):
-        axes = drawing.add_subplot(grid[1, 3 * place:3 * place + 3])
+        axes = panels[place]
         draw_profile(axes, run, column, 1, "simulation" + ending(run))
         draw_measured(shop, axes, "A" if place == 0 else "v")
         finish(axes, ordinate)
@@ -172,7 +172,7 @@ def two_orifices(shop):
 
 @figure("4", "speed behind an orifice, which overshoots the terminal speed, for three line tensions", ["channel"], "2 min")
 def overshoot(shop):
-    drawing, panels = plt.subplots(1, 2, figsize=(9.6, 4.6), layout="constrained", sharey=True)
+    drawing, panels = plt.subplots(1, 2, figsize=(9.6, 4.6), layout="constrained")
     data = []
     for axes, (orifice, drag) in zip(panels, [(0.7, 0.02), (0.8, 0.0)]):
         for index, line_tension in enumerate([1.85, 1.11, 0.83]):
@@ -185,7 +185,6 @@ def overshoot(shop):
     draw_measured(shop, panels[0], "v")
     for axes in panels:
         axes.legend(frameon=False, fontsize=8, loc="lower right")
-    panels[1].set_ylabel("")
     return Plate(drawing, data)
 
 
@@ -195,7 +194,7 @@ def near_wall_drag(shop):
     speeds, data = [], []
     for distance in distances:
         run = shop.run(f"walls-{distance:g}", "channel", "channel", {"line-tension": 1, "near-wall-drag": 0.07, "terminal-speed": 0.03},
-                       ["--orifice", f"{1 + 2 * distance:g}", "--wedge-angle", 0, "--start", -0.3, "--end", 0.3, "--sample-interval", 0.5])
+                       ["--orifice", f"{1 + 2 * distance:g}", "--wedge-angle", 0, "--start", -1.5, "--end", 1.5, "--sample-interval", 0.5])
         speeds.append(run.table["speed_ratio"][-1])
         data.append({"distance": distance, "speed_ratio": speeds[-1], "ratio": speeds[-1] / (1 - speeds[-1])})
     fit = shop.fit("drag", shop.table("walls", ["d [sigma]", "v [v_t]"], zip(distances, speeds)), "--format", "json")
@@ -206,7 +205,10 @@ def near_wall_drag(shop):
     alpha, strength = fit["near_wall_exponent"], fit["near_wall_drag"]
     axes.plot(d, d**alpha / strength, color=style.COLOURS[0], linewidth=1,
               label=rf"fit: $\alpha = {alpha:.2f}\pm{fit['near_wall_exponent_error'] or math.nan:.2f}$")
-    exponent = run.row["near_wall_exponent"]
+    # A circle whose vertices feel the drag each: b_0/b_inf times the mean of d_i^-alpha over them.
+    exponent, height = run.row["near_wall_exponent"], 0.5 * (1 - np.abs(np.sin(np.linspace(0, 2 * np.pi, run.row["vertices"], endpoint=False))))
+    circle = 1 / (run.row["near_wall_drag"] * np.mean((d[:, None] + height) ** -exponent, axis=1))
+    axes.plot(d, circle, ":", color="black", linewidth=1, label="a circle whose every vertex feels it")
     axes.plot(d, ratio[-1] * (d / distances[-1]) ** exponent, "--", color="0.4", linewidth=1, label=rf"slope {exponent:.3g}, of every vertex")
     style.logarithmic_abscissa(axes)
     axes.set_yscale("log")
@@ -223,7 +225,7 @@ def near_wall_drag(shop):
 def vertices(shop):
     line_tension, counts = (1.08, [32, 64, 128, 256, 512, 1024]) if shop.size == "full" else (0.83, [32, 64, 128, 256, 512])
     drawing, axes = plt.subplots(figsize=(7.2, 5.0), layout="constrained")
-    inset = axes.inset_axes([0.06, 0.1, 0.36, 0.42])
+    inset = axes.inset_axes([0.66, 0.1, 0.32, 0.42])
     data = []
     for index, count in enumerate(counts):
         run = in_channel(shop, f"vertices-{count}", 0.7, line_tension, 0.07, 0.032, vertices=count)
@@ -234,7 +236,7 @@ def vertices(shop):
     inset.set_xlim(-0.4, -0.1)
     inset.set_ylim(0, 0.5)
     inset.tick_params(labelsize=7)
-    axes.legend(frameon=False, fontsize=8, loc="lower right")
+    axes.legend(frameon=False, fontsize=8, loc="lower left")
     style.caption(axes, rf"$w = 0.7\sigma$, $\Gamma = {line_tension:g}$, $b_0/b_\infty = 0.07$, $V_t = 0.032$; interface: {interface_of(run.word('preset'))}"
                   "\ninset: near the first minimum; a cross ends the curve of a droplet that stops")
     return Plate(drawing, data)
@@ -259,7 +261,7 @@ def perimeter_springs(shop):
         axes.plot(places, found, **style.curve_style(index), markersize=5, linewidth=1, label=interface_of(preset))
         data += [{"preset": preset, "stiffness_ratio": x, "delta_v": y} for x, y in zip(places, found)]
     style.logarithmic_abscissa(axes)
-    axes.set_yscale("log")
+    axes.set_ylim(bottom=0)
     axes.set_xlabel(r"stiffness of the perimeter over line tension $K_l/\Gamma$")
     axes.set_ylabel(r"$\Delta_v$ from the measured profile" if shop.profiles else r"$\Delta_v$ from the profile at $K_l/\Gamma = 10^{-4}$")
     style.grid(axes)

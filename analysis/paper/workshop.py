@@ -29,9 +29,38 @@ class ProgramFailed(Exception):
         self.exit_code = exit_code
 
 
-def last_line(text):
-    lines = text.strip().splitlines()
-    return lines[-1] if lines else "no reason given"
+def reason(text):
+    """The line in which a program of ours says why it stopped; mpirun talks around it."""
+    lines = [line for line in text.splitlines() if line.strip()]
+    ours = [line for line in lines if line.startswith(("clogsweep", "clogrun", "clogfit"))]
+    return (ours or lines[-1:] or ["no reason given"])[-1]
+
+
+def programs_in(folder=None):
+    """Folder of the built programs. @param folder  given by the user"""
+    for place in [folder] if folder else [ROOT / "build" / "release" / "bin", ROOT / "build" / "laptop" / "bin"]:
+        if (place / "clogsweep").exists():
+            return place.resolve()
+    raise UserError(f"no clogsweep in {place}; build it (cmake --workflow --preset release), or give --programs FOLDER")
+
+
+def run_program(program, *arguments, ranks=1):
+    """@return what it prints"""
+    command = [str(program), *map(str, arguments)]
+    if ranks > 1:
+        settings = shlex.quote(str(ROOT / "jobs" / "mpi-settings.sh"))
+        command = ["bash", "-c", f'. {settings} && exec mpirun -np {ranks} "$@"', "mpirun", *command]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        while True:
+            try:
+                out, error = process.communicate()
+                break
+            except KeyboardInterrupt:
+                # The terminal has told the programs, too: they end in good order and say where they are.
+                continue
+    if process.returncode != 0:
+        raise ProgramFailed(reason(error or out), process.returncode)
+    return out
 
 
 def config_keys(path):
@@ -99,21 +128,7 @@ class Workshop:
     # Programs
 
     def _call(self, program, *arguments, ranks=1):
-        command = [str(self.programs / program), *map(str, arguments)]
-        if ranks > 1:
-            settings = shlex.quote(str(ROOT / "jobs" / "mpi-settings.sh"))
-            command = ["bash", "-c", f'. {settings} && exec mpirun -np {ranks} "$@"', "mpirun", *command]
-        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-            while True:
-                try:
-                    out, error = process.communicate()
-                    break
-                except KeyboardInterrupt:
-                    # The terminal has told the programs, too: they end in good order and say where they are.
-                    continue
-        if process.returncode != 0:
-            raise ProgramFailed(last_line(error or out), process.returncode)
-        return out
+        return run_program(self.programs / program, *arguments, ranks=ranks)
 
     # Sweeps
 
@@ -162,8 +177,12 @@ class Workshop:
         @param keys  of the config file, e.g. {"line-tension": 0.3}; @param options  e.g. ["--orifice", 0.7]
         """
         file = self.folder / "runs" / f"{name}.h5"
-        keys = {"seeds": 1} | keys
+        if system == "array":
+            keys = {"seeds": 1} | keys
         command = [system, *map(str, options), *self._arguments(config, keys)]
+        if system != "array":
+            # Nothing is random or periodic in a channel or on a wall: such a --set is meant for the others.
+            command = [word for word in command if not word.startswith(("seeds=", "box="))]
         known = trajectory.read(file, needs_frames=False) if file.exists() else None
         if self.draw_only and known is None:
             raise UserError(f"{file} is not there; leave out --draw-only")
