@@ -225,7 +225,7 @@ def near_wall_drag(shop):
 def vertices(shop):
     line_tension, counts = (1.08, [32, 64, 128, 256, 512, 1024]) if shop.size == "full" else (0.83, [32, 64, 128, 256, 512])
     drawing, axes = plt.subplots(figsize=(7.2, 5.0), layout="constrained")
-    inset = axes.inset_axes([0.66, 0.1, 0.32, 0.42])
+    inset = axes.inset_axes([0.74, 0.1, 0.25, 0.36])
     data = []
     for index, count in enumerate(counts):
         run = in_channel(shop, f"vertices-{count}", 0.7, line_tension, 0.07, 0.032, vertices=count)

@@ -8,6 +8,7 @@ import os
 import pathlib
 import shlex
 import subprocess
+import tempfile
 
 import pandas
 import trajectory
@@ -189,11 +190,11 @@ class Workshop:
         if not self.draw_only and (known is None or not self._is_from(known, command)):
             file.parent.mkdir(parents=True, exist_ok=True)
             print(f"run {name}: {file}", flush=True)
-            # clogrun never overwrites; the old one goes when the new one is whole.
-            fresh = file.with_suffix(".new.h5")
-            fresh.unlink(missing_ok=True)
-            self._call("clogrun", *command, "--output", fresh)
-            os.replace(fresh, file)
+            # clogrun never overwrites; the old one goes when the new one is whole. Another figures.py may do the same run.
+            with tempfile.TemporaryDirectory(prefix=f"{name}-", dir=file.parent) as folder:
+                fresh = pathlib.Path(folder) / file.name
+                self._call("clogrun", *command, "--output", fresh)
+                os.replace(fresh, file)
             known = trajectory.read(file, needs_frames=False)
         self._sources.append(
             f"{known.attributes['command_line']}\n    {known.word('status')} at t = {known.row['time']:.6g}; "

@@ -303,10 +303,11 @@ TEST(InAChannel, ParallelWallsSlowACircleByTheMeanDragOfItsVertices) {
   run.drag.terminal_speed = 0.03;
   // Springs that hold the vertices: they do not slide along the interface, back from the walls.
   run.dp.perimeter_spring = PerimeterSpring::rest;
+  run.dp.gravity = Gravity::vertex;
   run.dp.perimeter_stiffness = 1;
   for (const double distance : {0.1, 1.0}) {
     DropletRun droplet =
-        run_in_channel(resolve(run), {.orifice = 1 + 2 * distance, .wedge_angle = 0, .start = 0, .end = 0.4});
+        run_in_channel(resolve(run), {.orifice = 1 + 2 * distance, .wedge_angle = 0, .start = 0, .end = 0.6});
     while (!droplet.advance(100)) {
     }
     double mean = 0;

@@ -23,11 +23,11 @@ TINY = {
     "speed-sp": ["wall-stiffness=1,10", "obstacle-gap=1.0,1.1"],
     "speed-diameter": ["vertices=32", "line-tension=0.1,1"],
     "near-wall-drag": ["vertices=32", "line-tension=0.1,1"],
-    "survival": ["vertices=32"],
+    "survival": ["vertices=32", "obstacle-density=saturated", "max-time=150"],
     "trajectory": ["vertices=32"],
 }
 SETTINGS = [f"{name}:{key}" for name, keys in TINY.items() for key in [*keys, "box=20", "seeds=1..2"]]
-SET = [word for setting in [*SETTINGS, "channel:vertices=64", "max-time=40", "trajectory:max-time=150"] for word in ("--set", setting)]
+SET = [word for setting in [*SETTINGS, "max-time=40", "channel:vertices=64", "channel:max-time=20", "trajectory:max-time=150"] for word in ("--set", setting)]
 
 
 class Analysis(ProgramTest):
