@@ -10,17 +10,19 @@ import argparse
 import base64
 import html
 import io
+import json
 import math
 import pathlib
+import subprocess
 import sys
 import tempfile
 
 import clogging_length
+import clogs
 import h5py
 import numpy as np
 import pandas
 import style
-import trajectory
 from paper.workshop import ProgramFailed, UserError, programs_in, run_program
 from style import plt
 
@@ -105,17 +107,21 @@ def doubts(groups, rows):
     return "<ul>" + "\n".join(words) + "</ul>" if words else "<p>None.</p>"
 
 
-def examples(rows, count):
-    """Clogs to be shown: the typical one of every mechanism, the others spread from the least to the most deformed."""
-    clogs = rows[(rows.status == "clogged") & (rows.model == "dp")].sort_values(["shape_parameter", "task"])
-    if clogs.empty or count == 0:
-        return clogs.head(0)
-    has_mechanism = "mechanism" in clogs and clogs.mechanism.any()
-    kinds = [kind for _, kind in clogs.groupby("mechanism", sort=False)] if has_mechanism else [clogs]
-    typical = pandas.concat([kind.iloc[[len(kind) // 2]] for kind in kinds])
+def examples(clogs_of_sweep, count):
+    """Clogs to be shown: the typical one of every mechanism, the others spread from the least to the most deformed.
+
+    @param clogs_of_sweep  rows as read_clogs() gives them
+    """
+    ordered = sorted(clogs_of_sweep, key=lambda row: (row["shape_parameter"], row["task"]))
+    if not ordered or count == 0:
+        return []
+    kinds = {}
+    for row in ordered:
+        kinds.setdefault(row["mechanism"], []).append(row)
+    typical = [kind[len(kind) // 2] for kind in kinds.values()]
     # The extremes themselves are often the least sound runs.
-    spread = clogs.iloc[np.unique(np.linspace(0.05, 0.95, count) * (len(clogs) - 1)).astype(int)]
-    return pandas.concat([typical, spread]).drop_duplicates("task").head(count)
+    spread = [ordered[int(place)] for place in np.linspace(0.05, 0.95, count) * (len(ordered) - 1)]
+    return list({row["task"]: row for row in typical + spread}.values())[:count]
 
 
 def example_pictures(shown, config, programs):
@@ -123,23 +129,15 @@ def example_pictures(shown, config, programs):
     with tempfile.TemporaryDirectory(prefix="clogsweep-report-") as folder:
         settings = pathlib.Path(folder) / "sweep.cfg"
         settings.write_text(config)
-        for _, row in shown.iterrows():
-            file = pathlib.Path(folder) / f"{row.task}.h5"
-            run_program(programs / "clogrun", "array", "--config", settings, "--output", file, "--polygon-interval", f"{max(0.5, row.time / 20):.3g}",
-                        f"line-tension={row.line_tension:.17g}", f"obstacle-gap={row.obstacle_gap:.17g}",
-                        f"obstacle-diameter={row.obstacle_diameter:.17g}", f"near-wall-drag={row.near_wall_drag:.17g}",
-                        *([f"obstacle-density={row.obstacle_density:.17g}"] if row.obstacle_filling == "density" else []), f"seeds={row.seed}")
-            run = trajectory.read(file)
+        for row in shown:
+            try:
+                polygon, obstacles = clogs.run_again(programs / "clogrun", settings, row, folder)
+            except subprocess.CalledProcessError as error:
+                raise UserError(f"cannot run task {row['task']} again ({error.stderr.strip()}); --examples 0 does without") from error
             figure, axes = plt.subplots(figsize=(4.6, 4.6), layout="constrained")
-            shape = run.polygons[-1]
-            centre = shape.mean(axis=1)
-            trajectory.draw_surroundings(axes, run, centre)
-            axes.fill(*(shape - centre[:, None]), facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1)
-            half = 0.6 + np.abs(shape - centre[:, None]).max()
-            trajectory.frame_limits(axes, (-half, -half), (half, half))
-            mechanism = f"{row.mechanism}, " if row.get("mechanism") else ""
-            pictures.append(picture(figure, f"task {row.task}: {mechanism}line tension {row.line_tension:g}, gap {row.obstacle_gap:g}, seed {row.seed}, "
-                                    f"clogged after {row.distance:.3g} diameters; flow to the right"))
+            clogs.draw(axes, row, polygon, obstacles)
+            pictures.append(picture(figure, f"task {row['task']}: {row['mechanism'].decode()}, seed {row['seed']}, clogged after {row['distance']:.3g} "
+                                    "diameters; flow to the right; touched obstacles blue, contact red, convex hull dashed"))
     return '<div class="pictures">' + "\n".join(pictures) + "</div>" if pictures else "<p>No polygon has clogged.</p>"
 
 
@@ -168,8 +166,6 @@ def page(path, fit, rows, about, pictures):
 
 
 def body():
-    import json
-
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("sweep", type=pathlib.Path, help="output of clogsweep")
     parser.add_argument("--output", type=pathlib.Path, required=True, help="HTML file to write")
@@ -183,7 +179,7 @@ def body():
     rows = pandas.read_hdf(arguments.sweep, "runs")
     with h5py.File(arguments.sweep, "r") as file:
         about = {key: value.decode() if isinstance(value, bytes) else str(value) for key, value in file.attrs.items()}
-    pictures = example_pictures(examples(rows, arguments.examples), about["config"], programs)
+    pictures = example_pictures(examples(clogs.read_clogs(arguments.sweep)[0], arguments.examples), about["config"], programs)
     try:
         arguments.output.write_text(page(arguments.sweep, fit, rows, about, pictures))
     except OSError as error:

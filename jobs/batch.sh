@@ -6,10 +6,14 @@
 run_sweep() {
   local code warned=0 sweep
   was_cancelled=0
-  mpirun "$@" &
+  # Set before the sweep begins, since a warning may come at any time: either $! is there, or the sweep sees `warned`.
+  trap 'warned=1; kill -USR1 "${!:-}" 2>/dev/null || true' USR1
+  trap 'warned=1; was_cancelled=1; kill -USR1 "${!:-}" 2>/dev/null || true' TERM
+  {
+    ((!warned)) || exit 75
+    exec mpirun "$@"
+  } &
   sweep=$!
-  trap 'warned=1; kill -USR1 "$sweep" 2>/dev/null' USR1
-  trap 'warned=1; was_cancelled=1; kill -USR1 "$sweep" 2>/dev/null' TERM
   while true; do
     code=0
     wait "$sweep" || code=$?
@@ -22,5 +26,7 @@ run_sweep() {
     warned=0
   done
   trap - USR1 TERM
+  # Killed by the warning, before mpirun or a rank could take it as one. Nothing has begun, or what has is kept.
+  if ((code > 128)) && [[ $(kill -l "$code") == USR1 ]]; then code=75; fi
   return "$code"
 }

@@ -202,18 +202,20 @@ def sag_picture(shop):
 # Clogs
 
 def example(shop, mechanism):
-    """A clog of the sweep by the given mechanism, run once more with its outline: of those that went at least half a
-    diameter (or, if there are none, of all) the one of median shape parameter."""
+    """A clog of the sweep, run once more with its outline. By squeezing: of those that went at least half a diameter (or, if
+    there are none, of all) the one of median shape. By wrapping: the most compact one that an obstacle holds so, alone or in
+    part, since most are films that few vertices do not resolve."""
     shop.sweep("clogging")
     rows = shop.rows("clogging")
     if "mechanism" not in rows or not rows.mechanism.any():
         raise UserError(f"{shop.sweep_file('clogging')} does not know how droplets clogged (it is of an earlier version); remove it and sweep again")
-    clogs = rows[(rows.status == "clogged") & (rows.mechanism == mechanism)]
+    is_wrapped = mechanism == "wrapped"
+    clogs = rows[(rows.status == "clogged") & rows.mechanism.isin(["wrapped", "hybrid"] if is_wrapped else [mechanism])]
     if clogs.empty:
         raise UserError(f"no {mechanism} clog in {shop.sweep_file('clogging')}; more seeds, or other line tensions")
     travelled = clogs[clogs.distance >= 0.5]
     ordered = (clogs if travelled.empty else travelled).sort_values(["shape_parameter", "task"])
-    row = ordered.iloc[len(ordered) // 2]
+    row = ordered.iloc[0 if is_wrapped else len(ordered) // 2]
     run = shop.run(f"clog-{mechanism}", "array", "clogging",
                    {"line-tension": float(row.line_tension), "obstacle-gap": float(row.obstacle_gap), "seeds": int(row.seed)},
                    ["--polygon-interval", f"{max(0.5, row.time / 400):.3g}"])
@@ -222,7 +224,7 @@ def example(shop, mechanism):
 
 def clog_title(run, row):
     return (rf"{row.mechanism}: $\Gamma = {row.line_tension:g}$, $w_\mathrm{{ob}} = {row.obstacle_gap:g}\sigma$, seed {row.seed}, "
-            rf"$r = {row.distance:.2f}\sigma$" f"\n$N_v = {row.vertices}$; interface: {interface_of(row.preset)}")
+            rf"$r = {row.distance:.2f}\sigma$" f"\n{row.wrapped_support:.0%} of the support from wrapped obstacles; $N_v = {row.vertices}$; interface: {interface_of(row.preset)}")
 
 
 def clog_numbers(run, row, frame):
@@ -279,7 +281,7 @@ def two_ways(shop):
             axes.set_title(f"$t = {run.times[frame]:.0f}\\,t_0$", fontsize=9)
         for axes in line[len(chosen):]:
             axes.axis("off")
-        line[0].set_ylabel(f"{mechanism}\n$\\Gamma = {row.line_tension:g}$, $w_\\mathrm{{ob}} = {row.obstacle_gap:g}\\sigma$, seed {row.seed}", fontsize=9)
+        line[0].set_ylabel(f"{row.mechanism}\n$\\Gamma = {row.line_tension:g}$, $w_\\mathrm{{ob}} = {row.obstacle_gap:g}\\sigma$, seed {row.seed}", fontsize=9)
         data += clog_numbers(run, row, -1)
     drawing.suptitle(f"flow to the right; $N_v = {row.vertices}$; interface: {interface_of(row.preset)}", fontsize=9, color="0.25")
     return Plate(drawing, data)

@@ -103,7 +103,7 @@ ObstacleArray read_obstacles(const std::string& path, const ObstacleFileRules& r
   return array;
 }
 
-void write_obstacles(const std::string& path, const std::vector<Obstacle>& obstacles) {
+void write_obstacles(const std::string& path, std::span<const Obstacle> obstacles) {
   std::ofstream file(path);
   file << "x,y,diameter\n";
   for (const Obstacle& obstacle : obstacles)

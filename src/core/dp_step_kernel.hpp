@@ -7,10 +7,10 @@
 #include "clog/core/wall_contacts.hpp"
 #include "dp_kernel.hpp"
 
-/// The step of a deformable polygon as three passes over its vertices, written with vector types and compiled
+/// The step of a deformable polygon as two passes over its vertices, written with vector types and compiled
 /// for several instruction sets. Same equations as dp_kernel.hpp, which stays readable and is what tests
-/// compare this with. In a pass there is no branch per vertex, no call and no allocation; square roots and
-/// divisions are Newton iterations where the instruction set has a first guess for them.
+/// compare this with. In a pass there is no branch per vertex, no call and no allocation; square roots are
+/// Newton iterations where the instruction set has a first guess for them.
 namespace clog::kernel {
 
 /// Contacts are tested for this many consecutive edges at once, whatever the instruction set.
@@ -21,53 +21,60 @@ inline constexpr int edges_per_group = WallContacts::edges_per_group;
 struct StepArrays {
   double *x, *y, *vx, *vy;
   double *tangent_x, *tangent_y, *length;         ///< of the edges
-  double *push_x, *push_y;                        ///< contact force on the vertices
+  double *push_x, *push_y;                        ///< kick of the vertices by contact
   double *grad_xx, *grad_xy, *grad_yx, *grad_yy;  ///< 6 a times the centroid's gradient
   double* rate;                                   ///< drag rate of a vertex [1/t0], if it differs
-  double* damping;                                ///< s of a vertex, with the rate; see KickSums
+  double *damping, *kept;                         ///< s and s (1 - h2 r), with the rate; see KickCoefficients
   double *kicked_x, *kicked_y;                    ///< w, if it is wanted; see KickCoefficients
 };
-inline constexpr int num_step_arrays = 17;
+inline constexpr int num_step_arrays = 18;
 
-/// Coefficients of one kick, all in the units of dp_kernel.hpp. With r a vertex's drag rate,
-///   w = (v + m1 F)/(1 + h1 r),   q = w (1 - h2 r) + m2 F,   v' = q + weight/(1 + h1 r) (c - G^T A):
-/// w is the velocity kicked by force and own drag, v' the next velocity once the coupled drag (c, A; see
-/// drift()) is known. One kick thereby ends a time step and begins the next. q takes the place of the
-/// velocity.
-struct KickCoefficients {
-  double h1, m1, h2, m2;
-  double weight;
-};
-struct InterfaceCoefficients {
+/// A kick is what a force does to a vertex' velocity in half a time step: F below is the force times
+/// h/(M/N_v).
+struct InterfaceKick {
   double line_tension;  ///< tension where the spring is at length 0
-  double spring;        ///< k_l N_v of springs that carry tension
-  double spreading;     ///< k_l N_v of springs along the interface
+  double spring;        ///< of springs that carry tension
+  double spreading;     ///< of springs along the interface
   double half_pressure;
-  double vertex_weight;       ///< M g/N_v along +x
-  double body_force;          ///< on the area, over 6 a
-  double centre_x, centre_y;  ///< of the area
+  double vertex_weight;  ///< along +x
 };
-struct Contact {
-  double stiffness;  ///< k_c
-  double span;       ///< of walls; 1: edges, 0: their first vertices alone
-  double diameter;   ///< of the self-contact [sigma]
+/// A force on the area, spread over the vertices by the gradient of the area's centroid.
+struct AreaForce {
+  double area;                ///< [sigma^2]
+  double centre_x, centre_y;  ///< of the area [sigma]
+  double x, y;                ///< kick, all but the reaction to the springs along the interface
 };
-/// What the coupled drag needs of a kick, G being 6 a times the centroid's gradient and s = 1/(1 + h1 r).
-struct KickSums {
-  double spread_x, spread_y;      ///< net force of the springs along the interface
-  double w_x, w_y;                ///< sum w
-  double gw_x, gw_y;              ///< sum G w
-  double gg_xx, gg_xy, gg_yy;     ///< sum s G G^T
-  double s;                       ///< sum s
-  double g_xx, g_xy, g_yx, g_yy;  ///< sum s G
+/// Coefficients of one kick. With r a vertex's drag rate and s = 1/(1 + h1 r),
+///   w = s (v + kicks F),   q = w (1 - h2 r) + F,   v' = q + weight s (c - G^T a):
+/// w is the velocity kicked by force and own drag, v' the next velocity once c and a are known (see
+/// Coupling). One kick thereby ends a time step and begins the next. q takes the place of the velocity.
+struct KickCoefficients {
+  double kicks;       ///< 1, or 0 where no time step ends
+  double h1, h2;      ///< [t0]
+  double weight;      ///< 2, or 1 where no time step ends or none begins
+  double half_step;   ///< [t0]
+  bool keeps_kicked;  ///< is w wanted afterwards?
 };
 /// Which terms a kick has. The combinations are compiled apart.
 struct KickTerms {
-  bool elastic;       ///< springs that carry tension; otherwise those along the interface
-  bool on_area;       ///< weight and mean drag act on the area
-  bool varying_rate;  ///< drag rates are those of the array; otherwise `rate`
-  double rate;        ///< [1/t0]
-  bool keeps_kicked;  ///< is w wanted afterwards?
+  bool elastic;                     ///< springs that carry tension; otherwise those along the interface
+  bool on_area;                     ///< weight and mean drag act on the area; they are then coupled
+  bool varying_rate;                ///< drag rates are those of the array; otherwise `rate`
+  bool coupled;                     ///< does any force depend on all velocities?
+  double rate;                      ///< [1/t0]
+  double relative_rate, area_rate;  ///< at which the mean velocities of vertices and area act [1/t0]
+};
+/// Mean velocities, and what they add to those of the vertices.
+struct Coupling {
+  double mean_x = 0, mean_y = 0;  ///< of the vertices
+  double area_x = 0, area_y = 0;  ///< of the area's centroid
+  double c_x = 0, c_y = 0;
+  double a_x = 0, a_y = 0;  ///< with the force on the area, over 6 a
+};
+struct Contact {
+  double stiffness;  ///< k_c as a kick
+  double span;       ///< of walls; 1: edges, 0: their first vertices alone
+  double diameter;   ///< of the self-contact [sigma]
 };
 /// What may be nearest to the vertices.
 struct NearWalls {
@@ -87,20 +94,23 @@ struct NearWallDrag {
 /// One instruction set's versions of the passes.
 struct StepKernel {
   const char* name;  ///< of the instruction set
-  /// First pass: edges and sums over them; moments of the area only if they are wanted.
-  Sums (*measure)(int n, bool with_moments, const StepArrays& arrays);
+  /// Edges and sums over them.
+  Sums (*measure)(int n, const StepArrays& arrays);
   /// Then contacts, on the groups that the lists name. `clear` empties all groups.
   void (*clear_pushes)(int n, const StepArrays& arrays);
   void (*push)(int n, const WallContacts::Item* walls, std::size_t num_walls, const SelfContacts::Item* self,
                std::size_t num_self, const Contact& contact, const StepArrays& arrays);
-  /// Second pass: forces and velocities.
-  KickSums (*kick)(int n, const KickTerms& terms, const InterfaceCoefficients& interface,
+  /// rate = far_rate (relative + near_wall (sigma/d)^exponent), d a vertex' distance to the nearest wall; and
+  /// what follows from it for a kick.
+  void (*near_wall_rates)(int n, const NearWalls& walls, const NearWallDrag& drag,
+                          const KickCoefficients& coefficients, const StepArrays& arrays);
+  /// First pass: forces and velocities.
+  Coupling (*kick)(int n, const KickTerms& terms, const InterfaceKick& interface, const AreaForce& force,
                    const KickCoefficients& coefficients, const StepArrays& arrays);
-  /// Third pass: v = q + weight s (c - G^T A), x += dt v. With `coupled` false, v = q.
-  void (*drift)(int n, const KickTerms& terms, bool coupled, const KickCoefficients& coefficients,
-                const double (&c)[2], const double (&a)[2], double dt, const StepArrays& arrays);
-  /// rate = far_rate (relative + near_wall (sigma/d)^exponent), d a vertex' distance to the nearest wall.
-  void (*near_wall_rates)(int n, const NearWalls& walls, const NearWallDrag& drag, const StepArrays& arrays);
+  /// Second pass: v = q + weight s (c - G^T a), x += dt v, and the edges there. Of the sums the perimeter is
+  /// given for elastic droplets only, and moments where forces act on the area.
+  Sums (*drift)(int n, const KickTerms& terms, const KickCoefficients& coefficients, const Coupling& coupling,
+                double dt, const StepArrays& arrays);
 };
 
 /// The kernel of the widest instruction set of this processor, or of the one that use_instruction_set() asks

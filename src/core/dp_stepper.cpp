@@ -1,8 +1,8 @@
 #include "dp_stepper.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "clog/core/units.hpp"
@@ -17,10 +17,11 @@ DpStepper::DpStepper(const RunParameters& run, const DpForces& forces)
   memory_ = hwy::AllocateAligned<double>(static_cast<std::size_t>(kernel::num_step_arrays) * stride);
   std::fill_n(memory_.get(), static_cast<std::size_t>(kernel::num_step_arrays) * stride, 0.0);
   double* next = memory_.get() + line;
-  for (double** array : {&arrays_.x, &arrays_.y, &arrays_.vx, &arrays_.vy, &arrays_.tangent_x,
-                         &arrays_.tangent_y, &arrays_.length, &arrays_.push_x, &arrays_.push_y,
-                         &arrays_.grad_xx, &arrays_.grad_xy, &arrays_.grad_yx, &arrays_.grad_yy,
-                         &arrays_.rate, &arrays_.damping, &arrays_.kicked_x, &arrays_.kicked_y}) {
+  for (double** array :
+       {&arrays_.x, &arrays_.y, &arrays_.vx, &arrays_.vy, &arrays_.tangent_x, &arrays_.tangent_y,
+        &arrays_.length, &arrays_.push_x, &arrays_.push_y, &arrays_.grad_xx, &arrays_.grad_xy,
+        &arrays_.grad_yx, &arrays_.grad_yy, &arrays_.rate, &arrays_.damping, &arrays_.kept, &arrays_.kicked_x,
+        &arrays_.kicked_y}) {
     *array = next;
     next += stride;
   }
@@ -29,11 +30,10 @@ DpStepper::DpStepper(const RunParameters& run, const DpForces& forces)
   terms_ = {.elastic = run.dp.perimeter_spring != PerimeterSpring::along,
             .on_area = on_area,
             .varying_rate = run.drag.near_wall > 0,
+            .coupled = on_area || run.drag.relative != 1,
             .rate = run.drag.near_wall > 0 ? 0 : far_rate * run.drag.relative,
-            .keeps_kicked = false};
-  relative_rate_ = (on_area ? run.drag.relative : run.drag.relative - 1) * far_rate;
-  area_rate_ = on_area ? far_rate : 0;
-  is_coupled_ = relative_rate_ != 0 || area_rate_ != 0;
+            .relative_rate = (on_area ? run.drag.relative : run.drag.relative - 1) * far_rate,
+            .area_rate = on_area ? far_rate : 0};
   if (terms_.varying_rate)
     distance_ =
         Eigen::ArrayXd::Constant(n_ + kernel::edges_per_group, std::numeric_limits<double>::infinity());
@@ -50,7 +50,7 @@ DpStepper::Edges DpStepper::load(const DropletState& state) {
   copy(state.velocity.data(), arrays_.vx);
   copy(state.velocity.data() + n_, arrays_.vy);
   kernel_.clear_pushes(n_, arrays_);  // the lists may name other groups than before
-  sums_ = kernel_.measure(n_, terms_.on_area, arrays_);
+  sums_ = kernel_.measure(n_, arrays_);
   return {.perimeter = sums_.perimeter,
           .shortest = Eigen::Map<const Eigen::ArrayXd>(arrays_.length, n_).minCoeff()};
 }
@@ -64,16 +64,17 @@ void DpStepper::store(DropletState& state) const {
 
 void DpStepper::advance(DropletState& state, int steps, double time_step, Droplet::Work* work) {
   const double h = 0.5 * time_step;
-  const double h_over_m = h / (units::droplet_mass / n_);
-  const kernel::KickCoefficients first{.h1 = 0, .m1 = 0, .h2 = h, .m2 = h_over_m, .weight = 1};
-  const kernel::KickCoefficients inner{.h1 = h, .m1 = h_over_m, .h2 = h, .m2 = h_over_m, .weight = 2};
-  const kernel::KickCoefficients last{.h1 = h, .m1 = h_over_m, .h2 = 0, .m2 = 0, .weight = 1};
   const bool measures = work != nullptr;
-  terms_.keeps_kicked = measures;
-  Droplet::Work power = kick_and_drift(state, first, h, time_step, measures);
+  const kernel::KickCoefficients first{
+      .kicks = 0, .h1 = 0, .h2 = h, .weight = 1, .half_step = h, .keeps_kicked = measures};
+  const kernel::KickCoefficients inner{
+      .kicks = 1, .h1 = h, .h2 = h, .weight = 2, .half_step = h, .keeps_kicked = measures};
+  const kernel::KickCoefficients last{
+      .kicks = 1, .h1 = h, .h2 = h, .weight = 1, .half_step = h, .keeps_kicked = true};
+  Droplet::Work power = kick_and_drift(state, first, time_step, measures);
   for (int step = 1; step <= steps; ++step) {
-    const Droplet::Work next =
-        kick_and_drift(state, step < steps ? inner : last, h, step < steps ? time_step : 0, measures);
+    const Droplet::Work next = step < steps ? kick_and_drift(state, inner, time_step, measures)
+                                            : kick_and_drift(state, last, 0, measures);
     if (measures) {
       work->dissipated += h * (power.dissipated + next.dissipated);
       work->spreading += h * (power.spreading + next.spreading);
@@ -83,48 +84,38 @@ void DpStepper::advance(DropletState& state, int steps, double time_step, Drople
   store(state);
 }
 
-/// One force evaluation, the half kicks on its two sides, and the drift to the next one. Returns the power
-/// loss between the two half kicks, if it is wanted.
+/// One force evaluation, the half kicks on its two sides, and the drift to the next one; without a drift only
+/// the first half kick. Returns the power loss between the two half kicks, if it is wanted.
 Droplet::Work DpStepper::kick_and_drift(const DropletState& frame,
-                                        const kernel::KickCoefficients& coefficients, double half_step,
-                                        double drift_time, bool measures_power) {
-  push_off_everything(frame);
+                                        const kernel::KickCoefficients& coefficients, double drift_time,
+                                        bool measures_power) {
+  const double impulse = coefficients.half_step / (units::droplet_mass / n_);
+  push_off_everything(frame, coefficients, impulse);
   const kernel::Interface at_rest = forces_->interface(sums_.area, sums_.perimeter);
-  const kernel::InterfaceCoefficients interface {
-    .line_tension = at_rest.line_tension - at_rest.spring * at_rest.spring_length, .spring = at_rest.spring,
-    .spreading = at_rest.spreading, .half_pressure = 0.5 * at_rest.pressure,
-    .vertex_weight = at_rest.vertex_weight,
-    .body_force = units::droplet_mass * units::gravity / (6 * sums_.area),
-    .centre_x = sums_.moment_x / sums_.area, .centre_y = sums_.moment_y / sums_.area
+  const kernel::InterfaceKick interface {
+    .line_tension = impulse * (at_rest.line_tension - at_rest.spring * at_rest.spring_length),
+    .spring = impulse * at_rest.spring, .spreading = impulse * at_rest.spreading,
+    .half_pressure = 0.5 * impulse * at_rest.pressure, .vertex_weight = impulse * at_rest.vertex_weight
   };
-  kernel::KickSums sums = kernel_.kick(n_, terms_, interface, coefficients, arrays_);
-  sums.spread_x += wetting_spread_[0];
-  sums.spread_y += wetting_spread_[1];
-  double c[2] = {0, 0}, a[2] = {0, 0};
-  Coupling coupling;
-  if (is_coupled_) {
-    coupling = couple(sums, coefficients);
-    c[0] = half_step * relative_rate_ * coupling.mean[0];
-    c[1] = half_step * relative_rate_ * coupling.mean[1];
+  const kernel::AreaForce force{.area = sums_.area,
+                                .centre_x = sums_.moment_x / sums_.area,
+                                .centre_y = sums_.moment_y / sums_.area,
+                                .x = impulse * (units::droplet_mass * units::gravity - wetting_spread_[0]),
+                                .y = -impulse * wetting_spread_[1]};
+  const kernel::Coupling coupling = kernel_.kick(n_, terms_, interface, force, coefficients, arrays_);
+  const Droplet::Work now = measures_power ? power(coefficients, coupling) : Droplet::Work{};
+  if (drift_time == 0) {  // w, to which no second half kick was added, is the velocity
+    std::swap(arrays_.vx, arrays_.kicked_x);
+    std::swap(arrays_.vy, arrays_.kicked_y);
   }
-  if (terms_.on_area) {
-    // The reaction to the springs along the interface is a force on the area like its drag; in the kick just
-    // done it is missing.
-    const double unit = 1 / (6 * sums_.area);
-    const double drag = half_step * area_rate_ * n_;
-    const double impulse = std::max(coefficients.m1, coefficients.m2);
-    a[0] = unit * (drag * coupling.area[0] + impulse * sums.spread_x);
-    a[1] = unit * (drag * coupling.area[1] + impulse * sums.spread_y);
-  }
-  const Droplet::Work now = measures_power ? power(coefficients, coupling, c, a) : Droplet::Work{};
-  kernel_.drift(n_, terms_, is_coupled_, coefficients, c, a, drift_time, arrays_);
-  if (drift_time > 0) sums_ = kernel_.measure(n_, terms_.on_area, arrays_);
+  sums_ = kernel_.drift(n_, terms_, coefficients, coupling, drift_time, arrays_);
   return now;
 }
 
-void DpStepper::push_off_everything(const DropletState& frame) {
+void DpStepper::push_off_everything(const DropletState& frame, const kernel::KickCoefficients& coefficients,
+                                    double impulse) {
   const WallContacts& walls = forces_->walls();
-  const double stiffness = forces_->contact_stiffness();
+  const double stiffness = impulse * forces_->contact_stiffness();
   const SelfContacts& self = forces_->self_contacts();
   const std::vector<Wedge>& wedges = forces_->wedges();
   if (!wedges.empty() || forces_->wets()) kernel_.clear_pushes(n_, arrays_);
@@ -142,8 +133,8 @@ void DpStepper::push_off_everything(const DropletState& frame) {
     Eigen::ArrayXd force = Eigen::ArrayXd::Zero(2 * n_);
     wetting_spread_ = forces_->add_wetting(here, force);
     for (int i = 0; i < n_; ++i) {
-      arrays_.push_x[i] += force[i];
-      arrays_.push_y[i] += force[n_ + i];
+      arrays_.push_x[i] += impulse * force[i];
+      arrays_.push_y[i] += impulse * force[n_ + i];
     }
   }
   if (!terms_.varying_rate) return;
@@ -164,41 +155,11 @@ void DpStepper::push_off_everything(const DropletState& frame) {
                            .near_wall = run_.drag.near_wall,
                            .exponent = run_.drag.near_wall_exponent,
                            .far_rate = units::gravity / run_.drag.terminal_speed},
-                          arrays_);
+                          coefficients, arrays_);
 }
 
-// With s_i = 1/(1 + h r_i) and w_i the velocity kicked by the force and the vertex' own drag,
-//   v_i = w_i + s_i (e V - b G_i^T V_a),  V = mean v_i,  V_a = sum G_i v_i,
-// e and b half a step's relative and area rate: four linear equations for V and V_a, of which V is
-// eliminated. They are implicit because the area's part is stiff for a drawn-out droplet, b sum |G_i|^2
-// growing with the square of its length and perimeter.
-DpStepper::Coupling DpStepper::couple(const kernel::KickSums& sums,
-                                      const kernel::KickCoefficients& coefficients) const {
-  const double h = coefficients.h1;
-  const double e = h * relative_rate_;
-  const double s = sums.s / n_;
-  const double feedback = 1 / (1 - e * s);
-  Eigen::Vector2d mean_w = Eigen::Vector2d(sums.w_x, sums.w_y) / n_;
-  if (!terms_.on_area) return {feedback * mean_w, {0, 0}};
-  const double unit = 1 / (6 * sums_.area);
-  const double b = h * area_rate_ * n_;
-  Eigen::Matrix2d g =
-      s * Eigen::Matrix2d::Identity();  // sum s G; sum G is the identity: a shift moves the centroid
-  if (terms_.varying_rate) g << unit * sums.g_xx, unit * sums.g_xy, unit * sums.g_yx, unit * sums.g_yy;
-  Eigen::Matrix2d gg;
-  gg << sums.gg_xx, sums.gg_xy, sums.gg_xy, sums.gg_yy;
-  gg *= unit * unit;
-  const Eigen::Vector2d reaction = -coefficients.m1 * Eigen::Vector2d(sums.spread_x, sums.spread_y);
-  mean_w += g.transpose() * reaction / n_;
-  const Eigen::Vector2d area_w = unit * Eigen::Vector2d(sums.gw_x, sums.gw_y) + gg * reaction;
-  const Eigen::Matrix2d matrix =
-      Eigen::Matrix2d::Identity() + b * gg + e * feedback * b / n_ * g * g.transpose();
-  const Eigen::Vector2d area = matrix.inverse() * (area_w + e * feedback * g * mean_w);
-  return {feedback * (mean_w - b / n_ * g.transpose() * area), area};
-}
-
-Droplet::Work DpStepper::power(const kernel::KickCoefficients& coefficients, const Coupling& coupling,
-                               const double (&c)[2], const double (&a)[2]) const {
+Droplet::Work DpStepper::power(const kernel::KickCoefficients& coefficients,
+                               const kernel::Coupling& coupling) const {
   const double vertex_mass = units::droplet_mass / n_;
   DropletState here;
   here.position.resize(2 * n_);
@@ -208,17 +169,19 @@ Droplet::Work DpStepper::power(const kernel::KickCoefficients& coefficients, con
     const double rate = terms_.varying_rate ? arrays_.rate[i] : terms_.rate;
     const double s =
         coefficients.h1 > 0 ? 1 / (1 + coefficients.h1 * rate) : 0;  // before a kick: no coupling yet
-    const double vx =
-        arrays_.kicked_x[i] + s * (c[0] - arrays_.grad_xx[i] * a[0] - arrays_.grad_yx[i] * a[1]);
-    const double vy =
-        arrays_.kicked_y[i] + s * (c[1] - arrays_.grad_xy[i] * a[0] - arrays_.grad_yy[i] * a[1]);
+    const double vx = arrays_.kicked_x[i] + s * (coupling.c_x - arrays_.grad_xx[i] * coupling.a_x -
+                                                 arrays_.grad_yx[i] * coupling.a_y);
+    const double vy = arrays_.kicked_y[i] + s * (coupling.c_y - arrays_.grad_xy[i] * coupling.a_x -
+                                                 arrays_.grad_yy[i] * coupling.a_y);
     loss += rate * (vx * vx + vy * vy);
     here.velocity[i] = vx;
     here.velocity[n_ + i] = vy;
     here.position[i] = arrays_.x[i];
     here.position[n_ + i] = arrays_.y[i];
   }
-  loss += n_ * (area_rate_ * coupling.area.squaredNorm() - relative_rate_ * coupling.mean.squaredNorm());
+  const double mean2 = coupling.mean_x * coupling.mean_x + coupling.mean_y * coupling.mean_y;
+  const double area2 = coupling.area_x * coupling.area_x + coupling.area_y * coupling.area_y;
+  loss += n_ * (terms_.area_rate * area2 - terms_.relative_rate * mean2);
   return {.dissipated = vertex_mass * loss, .spreading = forces_->spreading_power(here)};
 }
 

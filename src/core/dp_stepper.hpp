@@ -38,20 +38,13 @@ class DpStepper {
   Eigen::Array2d wetting_spread_{0, 0};  // see DpForces::add_wetting
   kernel::Sums sums_{};
   kernel::KickTerms terms_{};
-  double relative_rate_, area_rate_;  // see kernel::CoupledDrag
-  bool is_coupled_;
-  struct Coupling {
-    Eigen::Vector2d mean{0, 0};  // V, the vertices' mean velocity
-    Eigen::Vector2d area{0, 0};  // V_a, that of the area's centroid
-  };
 
   void store(DropletState& state) const;
   Droplet::Work kick_and_drift(const DropletState& frame, const kernel::KickCoefficients& coefficients,
-                               double half_step, double drift_time, bool measures_power);
-  void push_off_everything(const DropletState& frame);
-  Coupling couple(const kernel::KickSums& sums, const kernel::KickCoefficients& coefficients) const;
-  Droplet::Work power(const kernel::KickCoefficients& coefficients, const Coupling& coupling,
-                      const double (&c)[2], const double (&a)[2]) const;
+                               double drift_time, bool measures_power);
+  void push_off_everything(const DropletState& frame, const kernel::KickCoefficients& coefficients,
+                           double impulse);
+  Droplet::Work power(const kernel::KickCoefficients& coefficients, const kernel::Coupling& coupling) const;
 };
 
 }  // namespace clog

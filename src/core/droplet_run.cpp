@@ -168,14 +168,24 @@ bool DropletRun::finds_rest(double energy_ratio) {
 RunResult DropletRun::result() const {
   const Droplet& last = at_rest_ ? *at_rest_ : *droplet_;
   const Eigen::Array2d displaced = displacement_of(last.centre());
+  ClogGeometry geometry;
+  ClogMechanism mechanism = ClogMechanism::none;
+  if (status_ == RunStatus::clogged && run_.model == Model::sp) mechanism = ClogMechanism::squeezed;
+  if (status_ == RunStatus::clogged && run_.model == Model::dp) {
+    const double contact_range = units::regular_edge_length(run_.dp.vertices) / 2;
+    geometry = clog_geometry(last.state(), *obstacles_, contact_range);
+    mechanism = geometry.mechanism();
+  }
   return {.status = status_,
           .clogged_by = clogged_by_,
           .distance = displaced[0],
           .lateral = displaced[1],
           .time = time(),
-          .mean_speed = record_.mean_speed(),
+          .speed = record_.travel_speed(),
           .kinetic_energy_ratio = kinetic_energy_ratio(),
           .shape_parameter = last.shape().shape_parameter(),
+          .mechanism = mechanism,
+          .geometry = geometry,
           .steps = droplet_->num_integrated_steps(),
           .message = message_};
 }

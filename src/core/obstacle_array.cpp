@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <sstream>
+#include <utility>
 
 #include "clog/core/error.hpp"
 #include "clog/core/units.hpp"
@@ -12,18 +14,19 @@ namespace clog {
 namespace {
 
 double wrapped(double value, double period) {
+  if (value >= 0 && value < period) return value;
   const double inside = value - period * std::floor(value / period);
   return inside < period ? inside : 0.0;  // a tiny negative value rounds up to the period itself
 }
 
+int cells_per_side(double box) { return std::max(1, static_cast<int>(box / units::droplet_diameter)); }
+
 }  // namespace
 
 ObstacleArray::ObstacleArray(double box, std::vector<Obstacle> obstacles, std::vector<Wedge> wedges)
-    : box_(box),
-      cells_per_side_(std::max(1, static_cast<int>(box / units::droplet_diameter))),
-      obstacles_(std::move(obstacles)),
-      wedges_(std::move(wedges)) {
-  for (Obstacle& obstacle : obstacles_) {
+    : cells_per_side_(cells_per_side(box)), wedges_(std::move(wedges)) {
+  binned_.box = box;
+  for (Obstacle& obstacle : obstacles) {
     if (!(obstacle.radius > 0) || !std::isfinite(obstacle.radius) || !std::isfinite(obstacle.x) ||
         !std::isfinite(obstacle.y)) {
       std::ostringstream message;
@@ -31,35 +34,60 @@ ObstacleArray::ObstacleArray(double box, std::vector<Obstacle> obstacles, std::v
               << 2 * obstacle.radius << " (must be finite, the diameter positive)";
       throw Error(message.str());
     }
-    obstacle.x = wrapped(obstacle.x, box_);
-    obstacle.y = wrapped(obstacle.y, box_);
-    largest_radius_ = std::max(largest_radius_, obstacle.radius);
+    obstacle.x = wrapped(obstacle.x, box);
+    obstacle.y = wrapped(obstacle.y, box);
+    binned_.largest_radius = std::max(binned_.largest_radius, obstacle.radius);
   }
-  bin_obstacles();
+  struct Memory {
+    std::vector<Obstacle> obstacles;
+    std::vector<std::uint32_t> cell_start;
+  };
+  auto memory = std::make_shared<Memory>();
+  memory->cell_start = bin(obstacles);
+  memory->obstacles = std::move(obstacles);
+  binned_.obstacles = memory->obstacles;
+  binned_.cell_start = memory->cell_start;
+  memory_ = std::move(memory);
+}
+
+ObstacleArray::ObstacleArray(const BinnedObstacles& binned, std::shared_ptr<const void> memory)
+    : binned_(binned), memory_(std::move(memory)), cells_per_side_(cells_per_side(binned.box)) {}
+
+std::size_t ObstacleArray::num_cells(double box) {
+  return static_cast<std::size_t>(cells_per_side(box)) * cells_per_side(box);
 }
 
 std::uint32_t ObstacleArray::cell_of(double x, double y) const {
   const auto index = [this](double value) {
-    return std::min(static_cast<int>(value / box_ * cells_per_side_), cells_per_side_ - 1);
+    return std::min(static_cast<int>(value / box() * cells_per_side_), cells_per_side_ - 1);
   };
   return static_cast<std::uint32_t>(index(y)) * cells_per_side_ + index(x);
 }
 
-void ObstacleArray::bin_obstacles() {
-  const std::size_t num_cells = static_cast<std::size_t>(cells_per_side_) * cells_per_side_;
-  cell_start_.assign(num_cells + 1, 0);
-  for (const Obstacle& obstacle : obstacles_) ++cell_start_[cell_of(obstacle.x, obstacle.y) + 1];
-  for (std::size_t cell = 0; cell < num_cells; ++cell) cell_start_[cell + 1] += cell_start_[cell];
-  std::vector<Obstacle> sorted(obstacles_.size());
-  std::vector<std::uint32_t> next(cell_start_.begin(), cell_start_.end() - 1);
-  for (const Obstacle& obstacle : obstacles_) sorted[next[cell_of(obstacle.x, obstacle.y)]++] = obstacle;
-  obstacles_ = std::move(sorted);
+std::vector<std::uint32_t> ObstacleArray::bin(std::vector<Obstacle>& obstacles) const {
+  std::vector<std::uint32_t> cell_start(num_cells(box()) + 1, 0);
+  std::vector<std::uint32_t> target(obstacles.size());
+  for (std::size_t i = 0; i < target.size(); ++i) {
+    target[i] = cell_of(obstacles[i].x, obstacles[i].y);
+    ++cell_start[target[i] + 1];
+  }
+  std::partial_sum(cell_start.begin(), cell_start.end(), cell_start.begin());
+  std::vector<std::uint32_t> next(cell_start.begin(), cell_start.end() - 1);
+  for (std::uint32_t& place : target) place = next[place]++;
+  // In place: a second copy would be most of the memory that it takes to build an array.
+  for (std::size_t i = 0; i < target.size(); ++i)
+    while (target[i] != i) {
+      const std::uint32_t place = target[i];
+      std::swap(obstacles[i], obstacles[place]);
+      std::swap(target[i], target[place]);
+    }
+  return cell_start;
 }
 
 template <class Visit>
 void ObstacleArray::visit_window(const Window& window, Visit visit) const {
-  const double reach = window.margin + largest_radius_;
-  const double cells_per_length = cells_per_side_ / box_;
+  const double reach = window.margin + binned_.largest_radius;
+  const double cells_per_length = cells_per_side_ / box();
   const auto cell_index = [=](double position) {
     return static_cast<int>(std::floor(position * cells_per_length));
   };
@@ -77,12 +105,12 @@ void ObstacleArray::visit_window(const Window& window, Visit visit) const {
       const int image_x = image_of(column);
       const std::size_t cell = static_cast<std::size_t>(row - image_y * cells_per_side_) * cells_per_side_ +
                                (column - image_x * cells_per_side_);
-      for (std::uint32_t k = cell_start_[cell]; k < cell_start_[cell + 1]; ++k) {
+      for (std::uint32_t k = binned_.cell_start[cell]; k < binned_.cell_start[cell + 1]; ++k) {
         // Subtract the origin first: within the box this is exact, so forces do not depend on where the
         // droplet is.
-        const double x = (obstacles_[k].x - window.origin_x) + image_x * box_;
-        const double y = (obstacles_[k].y - window.origin_y) + image_y * box_;
-        const double margin = window.margin + obstacles_[k].radius;
+        const double x = (binned_.obstacles[k].x - window.origin_x) + image_x * box();
+        const double y = (binned_.obstacles[k].y - window.origin_y) + image_y * box();
+        const double margin = window.margin + binned_.obstacles[k].radius;
         if (x >= window.x_min - margin && x <= window.x_max + margin && y >= window.y_min - margin &&
             y <= window.y_max + margin)
           visit(k, x, y);
@@ -93,7 +121,7 @@ void ObstacleArray::visit_window(const Window& window, Visit visit) const {
 
 void ObstacleArray::gather(const Window& window, std::vector<Obstacle>& out) const {
   visit_window(window, [&](std::uint32_t k, double x, double y) {
-    out.push_back({x, y, obstacles_[k].radius});
+    out.push_back({x, y, binned_.obstacles[k].radius});
   });
 }
 
@@ -103,17 +131,17 @@ ObstacleArray::Pair ObstacleArray::closest_pair() const {
   double margin = 0.125 * units::droplet_diameter;
   do {
     margin *= 2;
-    for (std::uint32_t first = 0; first < obstacles_.size(); ++first) {
-      const auto& [origin_x, origin_y, radius] = obstacles_[first];
+    for (std::uint32_t first = 0; first < binned_.obstacles.size(); ++first) {
+      const auto& [origin_x, origin_y, radius] = binned_.obstacles[first];
       visit_window({origin_x, origin_y, -radius, radius, -radius, radius, margin},
                    [&, r = radius](std::uint32_t second, double x, double y) {
-                     const double gap = std::hypot(x, y) - r - obstacles_[second].radius;
-                     const bool is_itself = second == first && std::hypot(x, y) < box_ / 2;
+                     const double gap = std::hypot(x, y) - r - binned_.obstacles[second].radius;
+                     const bool is_itself = second == first && std::hypot(x, y) < box() / 2;
                      if (!is_itself && gap < closest.gap)
-                       closest = {obstacles_[first], obstacles_[second], gap};
+                       closest = {binned_.obstacles[first], binned_.obstacles[second], gap};
                    });
     }
-  } while (closest.gap > margin && margin < box_);
+  } while (closest.gap > margin && margin < box());
   return closest;
 }
 

@@ -1,6 +1,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <boost/random/exponential_distribution.hpp>
+#include <boost/random/mersenne_twister.hpp>
 #include <boost/random/uniform_int_distribution.hpp>
 #include <cmath>
 #include <cstddef>
@@ -8,6 +9,7 @@
 #include <cstring>
 #include <numbers>
 #include <random>
+#include <span>
 #include <sstream>
 #include <vector>
 
@@ -18,7 +20,8 @@
 namespace clog {
 namespace {
 
-// As in dp_kernel.cpp. This file is compiled without fused multiply-adds: the same array on every machine.
+// As in dp_kernel.cpp; whatever such a function calls must be inlined to be compiled alike. This file is
+// compiled without fused multiply-adds: the same array on every machine.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
 #define CLOG_MULTIVERSION __attribute__((target_clones("arch=x86-64-v3", "default")))
 #else
@@ -30,36 +33,88 @@ namespace {
 constexpr double rounding = 1e-5;
 constexpr float nowhere = 1e6;
 
-/// Where an arriving disc is, and the points of its cell and, row by row, of those around it.
-struct Surroundings {
+struct Point {
   float x, y;  // from the corner of its cell
-  const float* points_x;
-  const float* points_y;
-  int row_length;
-  float cell_size;
 };
 
-/// Has the disc room, all being of one size and cells so large that the margin is 2? No branch depends on the
-/// random pattern of taken cells: mispredicted ones would cost more than the work itself.
-CLOG_MULTIVERSION
-bool has_room_among_alike(const Surroundings& disc, float distance2) {
-  constexpr int lanes = 8;  // 5 cells of a row; the next 3 are too far away to matter
-  using Floats [[gnu::vector_size(lanes * sizeof(float))]] = float;
-  using Integers [[gnu::vector_size(lanes * sizeof(float))]] = std::int32_t;
-  const Floats columns = disc.cell_size * Floats{-2, -1, 0, 1, 2, 3, 4, 5};
-  Integers is_near{};
-  for (int row = -2; row <= 2; ++row) {
-    Floats x, y;
-    std::memcpy(&x, disc.points_x + row * disc.row_length - 2, sizeof x);
-    std::memcpy(&y, disc.points_y + row * disc.row_length - 2, sizeof y);
-    const Floats dx = x + columns - disc.x;
-    const Floats dy = y + static_cast<float>(row) * disc.cell_size - disc.y;
-    is_near |= dx * dx + dy * dy < distance2;
+// No function here that takes or returns vectors is ever called: all are inlined.
+#pragma GCC diagnostic ignored "-Wpsabi"
+constexpr int lanes = 8;
+using Floats [[gnu::vector_size(lanes * sizeof(float))]] = float;
+using Integers [[gnu::vector_size(lanes * sizeof(float))]] = std::int32_t;
+
+/// The points around a cell whose discs are all of one size. No branch depends on the random pattern of taken
+/// cells: mispredicted ones would cost more than the work itself.
+struct Surroundings {
+  const Point* cell;
+  int row_length;
+  float cell_size;
+  float distance2;
+
+  /// Cells are this part of the distance or larger: whoever is in the lower half of one need not look further
+  /// than two cells down and one up.
+  static constexpr double smallest_cell = 1 / 1.49;
+
+  /// Is a point within the distance of a place in the cell?
+  bool reach(float place_x, float place_y) const {
+    Integers is_near{};
+    visit_points(place_x, place_y, [&](const Floats& x, const Floats& y) {
+      const Floats dx = x - place_x;
+      const Floats dy = y - place_y;
+      is_near |= dx * dx + dy * dy < distance2;
+    });
+    return any(is_near) != 0;
   }
-  std::int32_t any = 0;
-  for (int lane = 0; lane < lanes; ++lane) any |= is_near[lane];
-  return any == 0;
-}
+
+  /// Which quarters, each of this size, of a square in the cell lie wholly within the distance of one point?
+  /// One bit each: first along x, then along y.
+  std::int32_t cover_quarters(float square_x, float square_y, float size) const {
+    const float half = size / 2;
+    const auto far2 = [half](const Floats& from_corner) {
+      const Floats far = absolute(from_corner - half) + half;
+      return far * far;
+    };
+    Integers is_covered{};
+    visit_points(square_x, square_y, [&](const Floats& x, const Floats& y) {
+      const Floats x0 = far2(x - square_x), x1 = far2(x - (square_x + size));
+      const Floats y0 = far2(y - square_y), y1 = far2(y - (square_y + size));
+      is_covered |= ((x0 + y0 < distance2) & 1) | ((x1 + y0 < distance2) & 2) | ((x0 + y1 < distance2) & 4) |
+                    ((x1 + y1 < distance2) & 8);
+    });
+    return any(is_covered);
+  }
+
+ private:
+  static Floats absolute(const Floats& values) {
+    return reinterpret_cast<Floats>(reinterpret_cast<Integers>(values) & 0x7fffffff);
+  }
+
+  static std::int32_t any(const Integers& values) {
+    std::int32_t bits = 0;
+    for (int lane = 0; lane < lanes; ++lane) bits |= values[lane];
+    return bits;
+  }
+
+  /// Calls visit(x, y), seen from the cell's corner, for the points that can be within the distance of a
+  /// place in the same quarter of the cell, 2 rows of 4 cells at a time.
+  template <class Visit>
+  void visit_points(float place_x, float place_y, Visit visit) const {
+    const int first_column = -1 - static_cast<int>(place_x < cell_size / 2);
+    const int first_row = -1 - static_cast<int>(place_y < cell_size / 2);
+    // In the order that a vector instruction gives.
+    const Floats columns = Floats{0, 1, 0, 1, 2, 3, 2, 3} + static_cast<float>(first_column);
+    const Floats rows = Floats{0, 0, 1, 1, 0, 0, 1, 1} + static_cast<float>(first_row);
+    const Point* points = cell + first_row * row_length + first_column;
+    for (int row = 0; row < 4; row += 2) {
+      Floats lower, upper;
+      std::memcpy(&lower, points + row * row_length, sizeof lower);
+      std::memcpy(&upper, points + (row + 1) * row_length, sizeof upper);
+      const Floats x = __builtin_shufflevector(lower, upper, 0, 2, 8, 10, 4, 6, 12, 14);
+      const Floats y = __builtin_shufflevector(lower, upper, 1, 3, 9, 11, 5, 7, 13, 15);
+      visit(x + columns * cell_size, y + (rows + static_cast<float>(row)) * cell_size);
+    }
+  }
+};
 
 /// Random sequential addition of discs, surfaces at least a gap apart, in a periodic square.
 ///
@@ -84,10 +139,9 @@ class SequentialAddition {
         cell_size_(box / cells_per_side_),
         margin_(static_cast<int>(std::ceil((distance + 2 * largest_excess) / cell_size_))),
         row_length_(cells_per_side_ + 2 * margin_),
-        are_alike_(largest_excess == 0 && margin_ == 2),
-        x_(static_cast<std::size_t>(row_length_) * row_length_ + 3, nowhere),
-        y_(x_.size(), nowhere),
-        excess_(are_alike_ ? 0 : x_.size(), 0.0F),
+        are_alike_(largest_excess == 0 && cell_size_ > Surroundings::smallest_cell * distance),
+        points_(static_cast<std::size_t>(row_length_) * row_length_, Point{nowhere, nowhere}),
+        excess_(are_alike_ ? 0 : points_.size(), 0.0F),
         size_(static_cast<float>(cell_size_)),
         range_(static_cast<float>(largest_excess)),
         engine_(make_engine(seed)) {
@@ -96,31 +150,31 @@ class SequentialAddition {
   }
 
   /// Adds points until there are `target` of them or no room is left.
-  void fill(std::size_t target) {
+  [[gnu::flatten]] CLOG_MULTIVERSION void fill(std::size_t target) {
     for (const double darts_per_cell : first_rounds) {
       for (int row = 0; row < cells_per_side_; ++row)
         throw_darts(cells_per_side_, darts_per_cell, [&](int column) { return whole(cell_at(row, column)); });
       take_up_darts(target);
     }
-    std::vector<std::vector<Square>> rows(cells_per_side_);
+    std::vector<Squares> rows(cells_per_side_);
     bool is_first = true;
     for (std::size_t num_squares = 1; num_points_ < target && num_squares > 0; is_first = false) {
       halve();
       num_squares = 0;
       for (int row = 0; row < cells_per_side_; ++row) {
-        std::vector<Square>& squares = rows[row];
-        parts_.clear();
+        Squares& squares = rows[row];
+        make_space_for_parts(is_first ? cells_per_side_ : squares.size());
         if (is_first)
           for (int column = 0; column < cells_per_side_; ++column) add_parts(whole(cell_at(row, column)));
         else
-          for (const Square& square : squares) add_parts(square);
-        squares = std::vector<Square>(parts_.begin(), parts_.end());
+          for (std::size_t i = 0; i < squares.size(); ++i) add_parts(squares[i]);
+        squares.assign(std::span(parts_).first(num_parts_), range_ > 0);
         num_squares += squares.size();
         throw_darts(static_cast<int>(squares.size()), darts_per_square, [&](int i) { return squares[i]; });
       }
       take_up_darts(target);
     }
-    parts_ = {};
+    darts_ = std::vector<Square>();
   }
 
   std::vector<Obstacle> circles(double smallest_radius) const {
@@ -129,8 +183,8 @@ class SequentialAddition {
     for (int row = 0; row < cells_per_side_; ++row)
       for (int column = 0; column < cells_per_side_; ++column) {
         const Cell cell = cell_at(row, column);
-        if (x_[cell] != nowhere)
-          circles.push_back({column * cell_size_ + x_[cell], row * cell_size_ + y_[cell],
+        if (is_taken(cell))
+          circles.push_back({column * cell_size_ + points_[cell].x, row * cell_size_ + points_[cell].y,
                              smallest_radius + (excess_.empty() ? 0 : excess_[cell])});
       }
     return circles;
@@ -149,6 +203,34 @@ class SequentialAddition {
     Cell cell;
   };
 
+  /// Squares at rest; there are many, and only those of a mixture differ in their excess.
+  class Squares {
+   public:
+    void assign(std::span<const Square> squares, bool have_excess) {
+      // In the same memory: there are fewer and fewer of them.
+      places_.clear();
+      places_.reserve(squares.size());
+      for (const Square& square : squares) places_.push_back({square.x, square.y, square.cell});
+      excess_.clear();
+      if (!have_excess) return;
+      excess_.reserve(squares.size());
+      for (const Square& square : squares) excess_.push_back(square.excess);
+    }
+    std::size_t size() const { return places_.size(); }
+    Square operator[](std::size_t i) const {
+      const Place& place = places_[i];
+      return {place.x, place.y, excess_.empty() ? 0 : excess_[i], place.cell};
+    }
+
+   private:
+    struct Place {
+      float x, y;
+      Cell cell;
+    };
+    std::vector<Place> places_;
+    std::vector<float> excess_;
+  };
+
   float distance_;
   float distance2_;
   int cells_per_side_;
@@ -158,26 +240,34 @@ class SequentialAddition {
   bool are_alike_;  // the usual discs, of one size
   /// The points, each from its cell's corner. A cell can hold only one, as its diagonal is not longer than
   /// the smallest distance.
-  std::vector<float> x_, y_, excess_;
+  std::vector<Point> points_;
+  std::vector<float> excess_;
   std::size_t num_points_ = 0;
   float size_;          // of the squares
   float range_;         // of their excesses
   int num_layers_ = 1;  // of excesses that a square was cut into
   std::vector<Square> parts_;
-  std::vector<Square> darts_;
+  std::ptrdiff_t num_parts_ = 0;
+  std::vector<Square> arriving_, darts_;
   std::vector<float> near_x_, near_y_, near_excess_;
   int num_near_ = 0;
   Cell near_cell_ = -1;
-  std::mt19937_64 engine_;
+  boost::random::mt19937_64 engine_;
   boost::random::exponential_distribution<double> exponential_;
 
-  static std::mt19937_64 make_engine(std::uint32_t seed) {
+  static boost::random::mt19937_64 make_engine(std::uint32_t seed) {
     std::seed_seq sequence{seed,
                            std::uint32_t{0x0b57ac1e}};  // the constant keeps this stream apart from others
-    return std::mt19937_64(sequence);
+    return boost::random::mt19937_64(sequence);
   }
 
   Cell cell_at(int row, int column) const { return (row + margin_) * row_length_ + column + margin_; }
+
+  bool is_taken(Cell cell) const { return points_[cell].x != nowhere; }
+
+  Surroundings around(Cell cell) const {
+    return {&points_[cell], row_length_, static_cast<float>(cell_size_), distance2_};
+  }
 
   static Square whole(Cell cell) { return {0, 0, 0, cell}; }
 
@@ -193,16 +283,14 @@ class SequentialAddition {
   }
 
   bool has_room(const Square& dart) const {
+    if (are_alike_) return !around(dart.cell).reach(dart.x, dart.y);
     const auto cell_size = static_cast<float>(cell_size_);
-    if (are_alike_)
-      return has_room_among_alike({dart.x, dart.y, &x_[dart.cell], &y_[dart.cell], row_length_, cell_size},
-                                  distance2_);
     bool is_near = false;
     for (int row = -margin_; row <= margin_; ++row)
       for (int column = -margin_; column <= margin_; ++column) {
         const Cell cell = dart.cell + row * row_length_ + column;
-        const float dx = x_[cell] + static_cast<float>(column) * cell_size - dart.x;
-        const float dy = y_[cell] + static_cast<float>(row) * cell_size - dart.y;
+        const float dx = points_[cell].x + static_cast<float>(column) * cell_size - dart.x;
+        const float dy = points_[cell].y + static_cast<float>(row) * cell_size - dart.y;
         is_near |= dx * dx + dy * dy < reach2(excess_[cell] + dart.excess);
       }
     return !is_near;
@@ -213,6 +301,7 @@ class SequentialAddition {
   template <class SquareAt>
   void throw_darts(int num_squares, double darts_each, SquareAt square_at) {
     const double spacing = 1 / darts_each;
+    arriving_.clear();
     for (double place = spacing * exponential_(engine_); place < num_squares;
          place += spacing * exponential_(engine_)) {
       Square dart = square_at(static_cast<int>(place));
@@ -220,8 +309,14 @@ class SequentialAddition {
       dart.x += size_ * uniform(bits);
       dart.y += size_ * uniform(bits >> 24);
       if (range_ > 0) dart.excess += range_ * uniform(engine_());
-      if (has_room(dart)) darts_.push_back(dart);
+      arriving_.push_back(dart);
     }
+    auto kept = arriving_.begin();
+    for (const Square dart : arriving_) {  // no branch, as above
+      *kept = dart;
+      kept += has_room(dart);
+    }
+    darts_.insert(darts_.end(), arriving_.begin(), kept);
   }
 
   /// Tries the darts one after the other in random order.
@@ -235,16 +330,14 @@ class SequentialAddition {
       if (i + ahead < darts_.size()) prefetch_around(darts_[i + ahead].cell);
       if (has_room(darts_[i])) add_point(darts_[i]);
     }
-    darts_ = {};
+    darts_.clear();
     near_cell_ = -1;
   }
 
   void prefetch_around(Cell cell) const {
     for (int row = -margin_; row <= margin_; ++row)
-      for (const int column : {-margin_, margin_}) {
-        __builtin_prefetch(&x_[cell + row * row_length_ + column]);
-        __builtin_prefetch(&y_[cell + row * row_length_ + column]);
-      }
+      for (const int column : {-margin_, margin_})
+        __builtin_prefetch(&points_[cell + row * row_length_ + column]);
   }
 
   void add_point(const Square& dart) {
@@ -257,8 +350,7 @@ class SequentialAddition {
       for (const int image_column : {column - n, column, column + n}) {
         if (!on_grid(image_column)) continue;
         const Cell cell = cell_at(image_row, image_column);
-        x_[cell] = dart.x;
-        y_[cell] = dart.y;
+        points_[cell] = {dart.x, dart.y};
         if (!excess_.empty()) excess_[cell] = dart.excess;
       }
     }
@@ -267,23 +359,15 @@ class SequentialAddition {
 
   /// Collects the points that may lie within the distance of a place in `cell`.
   void look_around(Cell cell) {
-    if (are_alike_)
-      look_around(cell, 2, nullptr);  // constants let the compiler unroll the loops
-    else
-      look_around(cell, margin_, excess_.data());
-  }
-  [[gnu::always_inline]] inline void look_around(Cell cell, int margin, const float* excess) {
     const auto cell_size = static_cast<float>(cell_size_);
-    float* near_x = near_x_.data();
-    float* near_y = near_y_.data();
     int num_near = 0;
-    for (int row = -margin; row <= margin; ++row)
-      for (int column = -margin; column <= margin; ++column) {
+    for (int row = -margin_; row <= margin_; ++row)
+      for (int column = -margin_; column <= margin_; ++column) {
         const Cell near = cell + row * row_length_ + column;
-        near_x[num_near] = x_[near] + static_cast<float>(column) * cell_size;
-        near_y[num_near] = y_[near] + static_cast<float>(row) * cell_size;
-        if (excess) near_excess_[num_near] = excess[near];
-        num_near += x_[near] != nowhere;  // no branch, as above
+        near_x_[num_near] = points_[near].x + static_cast<float>(column) * cell_size;
+        near_y_[num_near] = points_[near].y + static_cast<float>(row) * cell_size;
+        near_excess_[num_near] = excess_[near];
+        num_near += is_taken(near);  // no branch, as above
       }
     num_near_ = num_near;
   }
@@ -295,11 +379,22 @@ class SequentialAddition {
     range_ /= static_cast<float>(num_layers_);
   }
 
+  void make_space_for_parts(std::size_t num_squares) {
+    parts_.resize(std::max(parts_.size(), 4 * num_layers_ * num_squares));
+    num_parts_ = 0;
+  }
+
   /// Adds the quarters of a square, in each layer of excesses, that are not wholly within the distance of one
   /// point. Distances are those of has_room() to the last bit where squares have become as small as numbers
   /// can tell: then a square has room or is left out.
   void add_parts(const Square& square) {
-    if (x_[square.cell] != nowhere) return;
+    if (is_taken(square.cell)) return;
+    if (are_alike_) {
+      const std::int32_t covered = around(square.cell).cover_quarters(square.x, square.y, size_);
+      for (int quarter = 0; quarter < 4; ++quarter)
+        add_quarter(square, quarter, 0, (covered >> quarter & 1) == 0);
+      return;
+    }
     if (square.cell != near_cell_) look_around(near_cell_ = square.cell);
     using Quarters = Eigen::Array4f;
     const Quarters x = square.x + size_ * Quarters(0, 1, 0, 1);
@@ -313,9 +408,14 @@ class SequentialAddition {
         const Quarters far_y = (near_y_[i] - y - half).abs() + half;
         slack = slack.min(far_x * far_x + far_y * far_y - reach2(near_excess_[i] + excess));
       }
-      for (int part = 0; part < 4; ++part)
-        if (slack[part] >= 0) parts_.push_back({x[part], y[part], excess, square.cell});
+      for (int quarter = 0; quarter < 4; ++quarter) add_quarter(square, quarter, excess, slack[quarter] >= 0);
     }
+  }
+
+  void add_quarter(const Square& square, int quarter, float excess, bool has_room) {
+    parts_[num_parts_] = {square.x + size_ * static_cast<float>(quarter & 1),
+                          square.y + size_ * static_cast<float>(quarter >> 1), excess, square.cell};
+    num_parts_ += has_room;  // no branch, as above
   }
 };
 

@@ -94,12 +94,17 @@ int num_self_crossings(const Eigen::ArrayXd& position) {
   return crossings;
 }
 
-double distance_to_segment(const Eigen::Array2d& point, const Eigen::Array2d& begin,
-                           const Eigen::Array2d& end) {
+Eigen::Array2d nearest_on_segment(const Eigen::Array2d& point, const Eigen::Array2d& begin,
+                                  const Eigen::Array2d& end) {
   const Eigen::Array2d edge = end - begin;
   const double length2 = edge.square().sum();
   const double along = length2 > 0 ? std::clamp((edge * (point - begin)).sum() / length2, 0.0, 1.0) : 0.0;
-  return (point - begin - along * edge).matrix().norm();
+  return begin + along * edge;
+}
+
+double distance_to_segment(const Eigen::Array2d& point, const Eigen::Array2d& begin,
+                           const Eigen::Array2d& end) {
+  return (point - nearest_on_segment(point, begin, end)).matrix().norm();
 }
 
 Eigen::Array2d area_centroid(const Eigen::ArrayXd& position) {

@@ -16,20 +16,6 @@ namespace {
 /// Channels and walls have no periodic images: the box is only where their coordinates live.
 constexpr double open_box = 256;
 
-/// The last array is kept: a sweep asks for the same one several times in a row.
-std::shared_ptr<const ObstacleArray> sample_or_reuse(const ObstacleParameters& parameters,
-                                                     std::uint32_t seed) {
-  struct Cache {
-    ObstacleParameters parameters;
-    std::uint32_t seed = 0;
-    std::shared_ptr<const ObstacleArray> array;
-  };
-  thread_local Cache cache;
-  if (!cache.array || !(cache.parameters == parameters) || cache.seed != seed)
-    cache = {parameters, seed, std::make_shared<ObstacleArray>(sample_obstacles(parameters, seed))};
-  return cache.array;
-}
-
 /// In a lattice all voids are alike, so where in one a droplet starts is up to the seed (lattice_obstacles):
 /// if it touches nothing at the box's centre it starts right there, as if there were no obstacles.
 bool starts_free(const RunParameters& run, const ObstacleArray& obstacles) {
@@ -124,11 +110,7 @@ Eigen::ArrayXd free_droplet(const RunParameters& run) {
 }
 
 DropletRun run_in_array(const RunParameters& run) {
-  return run_in_array(run, sample_or_reuse(run.obstacles, run.seed));
-}
-
-DropletRun resume_in_array(const RunParameters& run, std::span<const std::byte> snapshot) {
-  return DropletRun::resume(run, sample_or_reuse(run.obstacles, run.seed), snapshot);
+  return run_in_array(run, std::make_shared<ObstacleArray>(sample_obstacles(run.obstacles, run.seed)));
 }
 
 DropletRun run_in_array(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles) {

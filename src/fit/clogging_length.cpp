@@ -60,6 +60,13 @@ CloggingLength fit_clogging_length(std::span<const Observation> runs, double con
   return fit;
 }
 
+double relative_half_width(std::int64_t num_clogs, double confidence) {
+  if (num_clogs == 0) return std::numeric_limits<double>::infinity();
+  const auto d = static_cast<double>(num_clogs);
+  const Interval interval = chi_squared_interval(d, 2 * d + 1, confidence);  // of an estimate of 1
+  return (interval.upper - interval.lower) / 2;
+}
+
 double least_squares_length(std::span<const Observation> runs) {
   std::vector<double> clogs;
   double longest = 0;

@@ -21,4 +21,26 @@ MeanSpeed fit_mean_speed(std::span<const double> speeds) {
   return fit;
 }
 
+MeanSpeed fit_speed_ratio(std::span<const Travel> runs) {
+  std::vector<Travel> valid;
+  double distance = 0, time = 0;
+  for (const Travel& run : runs) {
+    if (std::isnan(run.distance) || std::isnan(run.time)) continue;
+    valid.push_back(run);
+    distance += run.distance;
+    time += run.time;
+  }
+  constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+  MeanSpeed fit{.num_runs = static_cast<int>(valid.size()), .mean = undefined, .standard_error = undefined};
+  if (valid.empty()) return fit;
+  fit.mean = distance / time;
+  if (valid.size() == 1) return fit;
+  Eigen::ArrayXd without(static_cast<Eigen::Index>(valid.size()));
+  for (Eigen::Index i = 0; i < without.size(); ++i)
+    without[i] = (distance - valid[i].distance) / (time - valid[i].time);
+  const double n = static_cast<double>(valid.size());
+  fit.standard_error = std::sqrt((n - 1) / n * (without - without.mean()).square().sum());
+  return fit;
+}
+
 }  // namespace clog::fit

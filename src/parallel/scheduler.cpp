@@ -2,14 +2,18 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 #include <memory>
+#include <numeric>
 #include <optional>
+#include <set>
 #include <thread>
-#include <type_traits>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
+
+#include "bytes.hpp"
+#include "clog/parallel/rank_trust.hpp"
 
 namespace clog::parallel {
 namespace {
@@ -27,24 +31,6 @@ enum Tag : int {
   stop,       // master -> worker: end the present task as interrupted (empty)
 };
 constexpr std::int64_t no_more_tasks = -1;
-
-/// A message: a plain value and a snapshot, which may be empty.
-template <class T>
-std::vector<std::byte> to_bytes(const T& value, std::span<const std::byte> snapshot) {
-  static_assert(std::is_trivially_copyable_v<T>);
-  std::vector<std::byte> bytes(sizeof value + snapshot.size());
-  std::memcpy(bytes.data(), &value, sizeof value);
-  std::copy(snapshot.begin(), snapshot.end(), bytes.begin() + sizeof value);
-  return bytes;
-}
-
-template <class T>
-std::pair<T, std::vector<std::byte>> from_bytes(const std::vector<std::byte>& bytes) {
-  std::pair<T, std::vector<std::byte>> message;
-  std::memcpy(&message.first, bytes.data(), sizeof(T));
-  message.second.assign(bytes.begin() + sizeof(T), bytes.end());
-  return message;
-}
 
 /// Sleeps a little longer each time nothing happened.
 class Backoff {
@@ -79,6 +65,7 @@ class Work {
     if (Clock::now() - last_report_ < interval_) return std::nullopt;
     last_report_ = Clock::now();
     Report now = report();
+    if (now.row.status.view() != "interrupted") return std::nullopt;  // over, since advance() returned
     now.row.status = "running";
     return now;
   }
@@ -96,18 +83,20 @@ class Master {
          bool computes, std::chrono::milliseconds report_interval)
       : ranks_(ranks),
         tasks_(std::move(tasks)),
+        trust_(computing_ranks(ranks.size(), computes)),
         make_job_(make_job),
         events_(events),
         computes_(computes),
-        report_interval_(report_interval),
-        busy_(ranks.size(), false) {}
+        report_interval_(report_interval) {}
 
-  bool run() {
+  SweepEnd run() {
     const int num_workers = ranks_.size() - 1;
     Backoff backoff;
-    while (num_dismissed_ < num_workers || own_job_ || (computes_ && has_task())) {
+    while (num_dismissed_ < num_workers || !is_over()) {
       const bool served = serve();
       const bool worked = work();
+      answer_waiting();
+      if (!worked && nobody_can_work()) trust_.let_go();
       if (Clock::now() - last_idle_ > std::chrono::milliseconds(100)) {
         last_idle_ = Clock::now();
         events_.idle();
@@ -118,25 +107,51 @@ class Master {
       else
         backoff.sleep();
     }
-    return tasks_.empty();
+    if (!has_tasks()) return SweepEnd::complete;
+    return stopping_ ? SweepEnd::stopped : SweepEnd::no_rank_left;
   }
 
  private:
+  struct Running {
+    int rank;
+    std::int64_t attempt;
+  };
+
   const Communicator& ranks_;
   TaskOrder tasks_;
+  std::vector<std::int64_t> failed_tasks_;  // to be tried again
+  RankTrust trust_;
   const JobFactory& make_job_;
   const SweepEvents& events_;
   bool computes_;
   std::chrono::milliseconds report_interval_;
   bool stopping_ = false;
   int num_dismissed_ = 0;
-  std::vector<bool> busy_;
+  std::set<int> waiting_;                              // workers
+  std::unordered_map<std::int64_t, Running> running_;  // by task
+  std::unordered_map<int, RunRow> last_failures_;      // by rank
+  std::unordered_set<std::int64_t> withdrawn_;         // tasks, until they begin again
   std::optional<Work> own_job_;
-  std::unordered_map<std::int64_t, std::int64_t> attempts_;  // of the tasks that run
   Clock::time_point begin_ = Clock::now();
   Clock::time_point last_idle_ = begin_;
 
-  bool has_task() const { return !stopping_ && !tasks_.empty(); }
+  static std::vector<int> computing_ranks(int num_ranks, bool with_master) {
+    std::vector<int> ranks(num_ranks);
+    std::iota(ranks.begin(), ranks.end(), 0);
+    if (!with_master) ranks.erase(ranks.begin());
+    return ranks;
+  }
+
+  bool has_tasks() const { return !tasks_.empty() || !failed_tasks_.empty(); }
+  bool is_over() const {
+    return running_.empty() && (stopping_ || !has_tasks() || trust_.num_in_service() == 0);
+  }
+
+  /// Are there tasks, but all ranks on hold or waiting for one that is?
+  bool nobody_can_work() const {
+    const bool all_wait = static_cast<int>(waiting_.size()) + num_dismissed_ == ranks_.size() - 1;
+    return running_.empty() && all_wait && !is_over();
+  }
 
   double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
 
@@ -144,68 +159,124 @@ class Master {
     std::int64_t task = no_more_tasks;
     std::vector<std::byte> snapshot;
   };
-  Beginning take_task(int rank) {
-    const std::int64_t next = tasks_.take(seconds());
+  /// The next task for this rank, if there is one for it now.
+  std::optional<Beginning> take_task(int rank) {
+    if (stopping_ || !trust_.may_work(rank)) return std::nullopt;
+    auto failed = std::find_if(failed_tasks_.begin(), failed_tasks_.end(),
+                               [&](std::int64_t task) { return trust_.is_next_for(task, rank); });
+    // Rather here again than no work at all, if this rank is beyond doubt.
+    if (failed == failed_tasks_.end() && tasks_.empty() && trust_.is_trusted(rank))
+      failed = failed_tasks_.begin();
+    std::int64_t next = no_more_tasks;
+    if (failed != failed_tasks_.end()) {
+      next = *failed;
+      failed_tasks_.erase(failed);
+      tasks_.begun_again(next, seconds());
+    } else if (!tasks_.empty()) {
+      next = tasks_.take(seconds());
+    } else {
+      return std::nullopt;
+    }
     Start start = events_.started(next, rank);
-    attempts_[next] = start.attempt;
-    return {next, std::move(start.snapshot)};
+    running_[next] = {rank, start.attempt};
+    withdrawn_.erase(next);
+    return Beginning{next, std::move(start.snapshot)};
   }
 
-  /// What there is to do at once when a task has ended.
+  /// What there is to do at once when a task has ended. A failure is told of here, before the task is taken
+  /// again.
   void take_back(Report& report) {
     const std::int64_t ended = report.row.task;
-    report.row.attempt = attempts_[ended];
-    attempts_.erase(ended);
+    const auto [rank, attempt] = running_.extract(ended).mapped();
+    report.row.attempt = attempt;
     tasks_.ended(ended, seconds());
-    if (report.row.status.view() == "failed" && events_.tries_again(report.row)) tasks_.put_back(ended);
+    if (report.row.status.view() == "interrupted") return;
+    if (report.row.status.view() != "failed") {
+      set_aside(trust_.succeeded(ended, rank));
+      return;
+    }
+    events_.ended(report);
+    if (events_.tries_again(report.row)) failed_tasks_.push_back(ended);
+    last_failures_[rank] = report.row;
+    set_aside(trust_.failed(ended, rank));
+    for (const std::int64_t task : trust_.tasks_in_doubt(rank)) withdraw_failure(task);
   }
 
-  /// Answers every waiting message. Returns whether there was one.
+  void set_aside(const std::vector<int>& ranks) {
+    for (const int rank : ranks) {
+      events_.set_aside(last_failures_.at(rank));
+      for (const std::int64_t task : trust_.unsettled_tasks(rank)) withdraw_failure(task);
+    }
+  }
+
+  void withdraw_failure(std::int64_t task) {
+    if (running_.contains(task) || !withdrawn_.insert(task).second)
+      return;  // it is tried elsewhere, or will be
+    if (std::find(failed_tasks_.begin(), failed_tasks_.end(), task) == failed_tasks_.end())
+      failed_tasks_.push_back(task);
+    events_.failure_withdrawn(task);
+  }
+
+  /// Takes every message that waits. Returns whether there was one.
   bool serve() {
     bool served = false;
     while (const auto envelope = ranks_.probe(Communicator::any, Communicator::any)) {
       served = true;
       const std::vector<std::byte> bytes = ranks_.receive(*envelope);
       const int worker = envelope->source;
-      std::optional<Report> report;
-      if (envelope->tag != ready) {
-        auto [row, snapshot] = from_bytes<RunRow>(bytes);
-        report = Report{row, std::move(snapshot)};
-      }
-      if (envelope->tag == running) {
-        report->row.attempt = attempts_[report->row.task];
-        events_.progressed(*report);
+      if (envelope->tag == ready) {
+        answer(worker);
         continue;
       }
-      if (report) take_back(*report);
-      // A failed task is told of before it is taken again.
-      if (report && report->row.status.view() == "failed")
-        events_.ended(*std::exchange(report, std::nullopt));
-      busy_[worker] = has_task();
-      const Beginning next = busy_[worker] ? take_task(worker) : Beginning();
+      auto [row, snapshot] = from_bytes<RunRow>(bytes);
+      Report report{row, std::move(snapshot)};
+      if (envelope->tag == running) {
+        report.row.attempt = running_.at(report.row.task).attempt;
+        events_.progressed(report);
+        continue;
+      }
+      take_back(report);
       // First the task, then the file: workers do not wait for the disk.
-      ranks_.send(worker, task, to_bytes(next.task, next.snapshot));
-      if (!busy_[worker]) ++num_dismissed_;
-      if (report) events_.ended(*report);
+      answer(worker);
+      if (report.row.status.view() != "failed") events_.ended(report);
     }
     return served;
+  }
+
+  /// Gives a worker its next task; without one it waits.
+  void answer(int worker) {
+    const std::optional<Beginning> next = take_task(worker);
+    if (next)
+      ranks_.send(worker, task, to_bytes(next->task, next->snapshot));
+    else
+      waiting_.insert(worker);
+  }
+
+  void answer_waiting() {
+    if (has_tasks())
+      for (const int worker : std::exchange(waiting_, {})) answer(worker);
+    if (!is_over()) return;
+    for (const int worker : std::exchange(waiting_, {})) {
+      ranks_.send(worker, task, to_bytes(no_more_tasks, {}));
+      ++num_dismissed_;
+    }
   }
 
   /// One slice of this rank's own task. Returns whether there was one.
   bool work() {
     if (!computes_) return false;
     if (!own_job_) {
-      if (!has_task()) return false;
-      const Beginning next = take_task(ranks_.rank());
-      own_job_.emplace(make_job_(next.task, next.snapshot), ranks_.rank(), report_interval_);
+      const std::optional<Beginning> next = take_task(ranks_.rank());
+      if (!next) return false;
+      own_job_.emplace(make_job_(next->task, next->snapshot), ranks_.rank(), report_interval_);
     }
     if (own_job_->advance() || stopping_) {
       Report report = own_job_->report();
       own_job_.reset();
       take_back(report);
-      events_.ended(report);
+      if (report.row.status.view() != "failed") events_.ended(report);
     } else if (std::optional<Report> report = own_job_->due_report()) {
-      report->row.attempt = attempts_[report->row.task];
+      report->row.attempt = running_.at(report->row.task).attempt;
       events_.progressed(*report);
     }
     return true;
@@ -213,8 +284,8 @@ class Master {
 
   void stop_workers() {
     stopping_ = true;
-    for (int worker = 1; worker < ranks_.size(); ++worker)
-      if (busy_[worker]) ranks_.send(worker, stop, {});
+    for (const auto& [task, running] : running_)
+      if (running.rank != ranks_.rank()) ranks_.send(running.rank, stop, {});
   }
 };
 
@@ -273,18 +344,18 @@ bool computes(int num_ranks, MasterComputes choice) {
          (choice == MasterComputes::automatic && num_ranks <= most_ranks);
 }
 
-bool run_tasks(const Communicator& ranks, TaskOrder tasks, const JobFactory& make_job,
-               const SweepEvents& events, bool master_computes, std::chrono::milliseconds report_interval) {
-  bool all_handed_out = true;
+SweepEnd run_tasks(const Communicator& ranks, TaskOrder tasks, const JobFactory& make_job,
+                   const SweepEvents& events, bool master_computes,
+                   std::chrono::milliseconds report_interval) {
+  SweepEnd end = SweepEnd::complete;
   if (ranks.rank() == 0)
-    all_handed_out =
-        Master(ranks, std::move(tasks), make_job, events, master_computes, report_interval).run();
+    end = Master(ranks, std::move(tasks), make_job, events, master_computes, report_interval).run();
   else
     Worker(ranks, make_job, report_interval).run();
   // Workers done early wait here: a message to the next sweep must not reach the master of this one, and
   // MPI_Finalize would keep their cores busy.
   ranks.wait_for_all();
-  return all_handed_out;
+  return end;
 }
 
 }  // namespace clog::parallel

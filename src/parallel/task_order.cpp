@@ -26,10 +26,13 @@ TaskOrder::TaskOrder(const std::vector<std::int64_t>& tasks, std::int64_t num_gr
   for (const std::int64_t task : tasks) group_of(task).waiting.push_back(task);
 }
 
-void TaskOrder::put_back(std::int64_t task) {
-  group_of(task).waiting.push_back(task);
-  ++num_left_;
+void TaskOrder::begin(Group& group, std::int64_t task, double now) {
+  ++group.num_taken;
+  group.start_running += now;
+  running_since_[task] = now;
 }
+
+void TaskOrder::begun_again(std::int64_t task, double now) { begin(group_of(task), task, now); }
 
 double TaskOrder::expected_time(const Group& group, double now) const {
   if (group.num_ended == 0) return std::numeric_limits<double>::infinity();
@@ -52,10 +55,8 @@ std::int64_t TaskOrder::take(double now) {
   }
   const std::int64_t task = next->waiting.front();
   next->waiting.pop_front();
-  ++next->num_taken;
   --num_left_;
-  next->start_running += now;
-  running_since_[task] = now;
+  begin(*next, task, now);
   return task;
 }
 

@@ -1,15 +1,14 @@
 /// clogsweep: many independent runs, handed out to MPI ranks, gathered into one table.
 
-#include <unistd.h>
-
+#include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <iostream>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
-#include <set>
+#include <span>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -18,23 +17,24 @@
 #include "clog/cli/program.hpp"
 #include "clog/core/error.hpp"
 #include "clog/core/instruction_set.hpp"
-#include "clog/core/systems.hpp"
 #include "clog/parallel/communicator.hpp"
+#include "clog/parallel/isolated_jobs.hpp"
 #include "clog/parallel/scheduler.hpp"
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/run_job.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "seed_rule.hpp"
 #include "sweep_doctor.hpp"
+#include "sweep_lead.hpp"
 #include "sweep_ledger.hpp"
-#include "sweep_progress.hpp"
+#include "sweep_preview.hpp"
 #include "sweep_reports.hpp"
 
 namespace {
 
 using namespace clog;
 
-using Clock = std::chrono::steady_clock;
 constexpr const char* program = "clogsweep";
 constexpr const char* usage = R"(clogsweep runs droplets through obstacle arrays for every combination of the
 given values, on all MPI ranks, and gathers the results in one HDF5 table.
@@ -58,9 +58,15 @@ void parse(cli::CommandLine& line, int argc, char** argv) {
       "does rank 0 run tasks too: auto (with up to 16 ranks), yes, no")(
       "max-hours", po::value<std::string>(),
       "stop after so many hours, as after a signal; the same command goes on")(
+      "until-precision", po::value<std::string>(),
+      "add seeds until lambda is known so well, e.g. 10%: half its 95 % interval over lambda")(
+      "most-seeds", po::value<std::string>(), "with --until-precision: per parameter set (20 times `seeds`)")(
       "attempts", po::value<std::string>()->default_value("2"), "how often a run that fails is tried")(
       "report-seconds", po::value<std::string>()->default_value("10"),
-      "how often a running task reports how far it has come; a kill loses no more than that");
+      "how often a running task reports how far it has come; a kill loses no more than that")(
+      "isolate", po::value<std::string>()->default_value("yes"),
+      "tasks run in processes of their own, so that a crash costs one task and not the sweep: yes, no")(
+      "verbose", "a line for every task that starts or ends")("quiet", "errors only");
   line.parse(argc, argv);
 }
 
@@ -69,6 +75,19 @@ parallel::MasterComputes master_computes(const std::string& word) {
   if (word == "yes") return parallel::MasterComputes::yes;
   if (word == "no") return parallel::MasterComputes::no;
   throw Error("invalid --master-computes=" + word + " (is not one of auto, yes, no)");
+}
+
+void check_isolate(const cli::CommandLine& line) {
+  const std::string word = line.get("isolate");
+  if (word != "yes" && word != "no") throw Error("invalid --isolate=" + word + " (is not one of yes, no)");
+}
+
+SweepLog::Level log_level(const cli::CommandLine& line) {
+  if (line.has("verbose") && line.has("quiet"))
+    throw Error("--verbose and --quiet exclude each other; give one");
+  return line.has("verbose") ? SweepLog::Level::verbose
+         : line.has("quiet") ? SweepLog::Level::quiet
+                             : SweepLog::Level::normal;
 }
 
 std::chrono::milliseconds seconds_from(const std::string& text) {
@@ -86,6 +105,15 @@ double max_hours(const cli::CommandLine& line) {
   return line.has("max-hours") ? line.get_positive("max-hours") : std::numeric_limits<double>::infinity();
 }
 
+/// Checked, the output's name excepted.
+LeadOptions lead_options(const cli::CommandLine& line) {
+  return {.output = line.has("output") ? line.get("output") : "",
+          .master_computes = master_computes(line.get("master-computes")),
+          .report_interval = report_interval(line),
+          .max_hours = max_hours(line),
+          .log = log_level(line)};
+}
+
 std::int64_t attempts(const cli::CommandLine& line) {
   const double number = line.get_number("attempts", 2);
   if (!(number >= 1 && number <= 1000 && number == std::floor(number)))
@@ -93,79 +121,65 @@ std::int64_t attempts(const cli::CommandLine& line) {
   return static_cast<std::int64_t>(number);
 }
 
-std::string number(double value) { return sweep::shortest(value); }
-
-void print_tasks(const sweep::Plan& plan) {
-  std::cout << "# task model line_tension wall_stiffness obstacle_gap obstacle_diameter obstacle_density "
-               "near_wall_drag "
-               "terminal_speed vertices time_step max_time seed\n";
-  for (std::int64_t i = 0; i < plan.size(); ++i) {
-    const sweep::RunRow row = sweep::describe(plan.task(i));
-    std::cout << i << ' ' << row.model.view() << ' ' << number(row.line_tension) << ' '
-              << number(row.wall_stiffness) << ' ' << number(row.obstacle_gap) << ' '
-              << number(row.obstacle_diameter) << ' '
-              << (row.obstacle_filling.view() == "saturated" ? "saturated" : number(row.obstacle_density))
-              << ' ' << number(row.near_wall_drag) << ' ' << number(row.terminal_speed) << ' ' << row.vertices
-              << ' ' << number(row.time_step) << ' ' << number(row.max_time) << ' ' << row.seed << '\n';
+double precision(const cli::CommandLine& line) {
+  std::string text = line.get("until-precision");
+  const bool is_percent = text.ends_with('%');
+  if (is_percent) text.pop_back();
+  double number = 0;
+  try {
+    number = sweep::to_number(text) / (is_percent ? 100 : 1);
+  } catch (const Error&) {
+    // said below, with the option's name
   }
-  const std::int64_t seeds = plan.size() / plan.num_groups();
-  std::cout << "# " << plan.size() << " tasks: " << plan.num_groups()
-            << (plan.num_groups() == 1 ? " parameter set" : " parameter sets") << ", " << seeds
-            << (seeds == 1 ? " seed" : " seeds") << " each\n";
+  if (number >= 0.001 && number < 1) return number;
+  throw Error("invalid --until-precision=" + line.get("until-precision") +
+              " (must lie between 0.1% and 100%) try 20%");
 }
 
-/// How long the sweep takes at most, from a short piece of the first and the last parameter set: what a step
-/// costs per vertex there, times the steps of all runs if none of them ends before max-time.
-void print_cost(const sweep::Plan& plan) {
-  const auto vertex_steps = [](const RunParameters& run, double time) {
-    return time / *run.time_step * (run.model == Model::dp ? run.dp.vertices : 1);
-  };
-  double seconds = 0;
-  double work = 0;
-  for (const std::int64_t group : std::set<std::int64_t>{0, plan.num_groups() - 1}) {
-    const RunParameters run = plan.task(group);
-    try {
-      DropletRun droplet = run_in_array(run);
-      const Clock::time_point begin = Clock::now();
-      const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
-      while (elapsed() < 0.5 && !droplet.advance(8)) continue;
-      seconds += elapsed();
-      work += vertex_steps(run, droplet.time());
-    } catch (const Error&) {  // a droplet that cannot be released; its row would say so
-    }
-  }
-  if (work == 0) {
-    std::cout << "# core-hours not known: no droplet could be released\n";
-    return;
-  }
-  double all_work = 0;
-  for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
-    const RunParameters run = plan.task(group);
-    all_work += vertex_steps(run, run.max_time);
-  }
-  all_work *= static_cast<double>(plan.size() / plan.num_groups());
-  const double core_hours = seconds / work * all_work / 3600;
-  std::printf(
-      "# at most %.3g core-hours on this machine, %.3g us per step measured; runs that clog end sooner\n",
-      core_hours, 1e6 * seconds / work * vertex_steps(plan.task(0), *plan.task(0).time_step));
+std::int64_t most_seeds(const cli::CommandLine& line, std::int64_t first_seeds) {
+  const double number = line.get_number("most-seeds", static_cast<double>(20 * first_seeds));
+  if (!(number >= static_cast<double>(first_seeds) && number <= 1e6 && number == std::floor(number)))
+    throw Error("invalid --most-seeds=" + line.get("most-seeds") + " (must be a whole number from " +
+                std::to_string(first_seeds) + ", the number of `seeds`, to 1e6)");
+  return static_cast<std::int64_t>(number);
 }
 
-store::Provenance provenance(const cli::CommandLine& line, int num_ranks) {
+/// A sweep that --until-precision may enlarge: its plan has all seeds that it may come to, those of the
+/// settings first.
+struct Enlarged {
+  sweep::Settings settings;
+  std::int64_t num_first = 0;  ///< tasks to begin with
+  std::optional<SeedRule> rule;
+};
+Enlarged enlarge(const cli::CommandLine& line) {
+  Enlarged sweep{line.settings(), sweep::Plan(line.settings()).size(), std::nullopt};
+  if (!line.has("until-precision")) {
+    if (line.has("most-seeds")) throw Error("--most-seeds needs --until-precision");
+    return sweep;
+  }
+  const std::vector<std::string>& seeds = line.settings().values("seeds");
+  const auto first_seeds = static_cast<std::int64_t>(seeds.size());
+  const std::int64_t most = most_seeds(line, first_seeds);
+  sweep.rule.emplace(precision(line), sweep.num_first / first_seeds, first_seeds, most);
+  if (most == first_seeds) return sweep;
+  long long last = 0;
+  for (const std::string& seed : seeds) last = std::max(last, sweep::to_integer(seed));
+  sweep.settings.set("seeds", line.settings().text("seeds") + "," + std::to_string(last + 1) + ".." +
+                                  std::to_string(last + most - first_seeds));
+  return sweep;
+}
+
+store::Provenance provenance(const cli::CommandLine& line, const Enlarged& sweep, int num_ranks) {
   store::Provenance all = cli::origin(line);
   all.emplace_back("mpi_version", parallel::Communicator::library_version());
   all.emplace_back("hdf5_version", store::library_version());
   all.emplace_back("num_ranks", std::to_string(num_ranks));
+  if (!sweep.rule) return all;
+  for (auto& [name, text] : all)
+    if (name == "config") text = sweep.settings.to_config(false);
+  all.emplace_back("stopping_rule", sweep.rule->text());
+  all.emplace_back("num_wanted", std::to_string(sweep.num_first));
   return all;
-}
-
-void print_config(const sweep::Settings& settings, const sweep::Plan& plan) {
-  const sweep::RunRow first = sweep::describe(plan.task(0));
-  std::cout << settings.to_config(true);
-  std::cout << "\n# Values behind `auto` in the first task:\n# wall-stiffness = "
-            << number(first.wall_stiffness) << "\n# time-step = " << number(first.time_step) << '\n';
-  if (first.model.view() == "dp")
-    std::cout << "# area-stiffness = " << number(first.area_stiffness)
-              << "\n# perimeter-stiffness = " << number(first.perimeter_stiffness) << '\n';
 }
 
 /// What rank 0 does before the sweep: everything a user can get wrong is found here, before any rank
@@ -174,15 +188,16 @@ std::optional<int> prepare(const cli::CommandLine& line) {
   if (cli::answer_help_or_version(
           line, {{"MPI", parallel::Communicator::library_version()}, {"HDF5", store::library_version()}}))
     return cli::exit_success;
-  master_computes(line.get("master-computes"));
-  report_interval(line);
+  lead_options(line);
   attempts(line);
-  max_hours(line);
+  check_isolate(line);
+  enlarge(line);
   const sweep::Plan plan(line.settings());
   if (line.has("print-config")) print_config(line.settings(), plan);
   if (line.has("dry-run")) {
     print_tasks(plan);
     std::cout.flush();
+    if (cli::stop_signalled()) return cli::exit_incomplete;
     print_cost(plan);
   }
   if (line.has("print-config") || line.has("dry-run")) return cli::exit_success;
@@ -190,70 +205,38 @@ std::optional<int> prepare(const cli::CommandLine& line) {
   return std::nullopt;
 }
 
-void announce(const std::string& output, std::int64_t num_runs, const SweepLedger& ledger, int num_ranks) {
-  const auto num_left = static_cast<std::int64_t>(ledger.tasks_left().size());
-  if (num_left < num_runs)
-    std::cerr << output << " has " << num_runs - num_left << " of " << num_runs << " runs"
-              << (num_left == 0 ? "; there is nothing left to do" : "") << std::endl;
-  if (ledger.num_resumed() > 0) std::cerr << ledger.num_resumed() << " go on where they were" << std::endl;
-  if (num_left > 0)
-    std::cerr << num_left << " runs on " << num_ranks
-              << (num_ranks == 1 ? " computing rank" : " computing ranks") << ", results go to " << output
-              << std::endl;
+/// What rank 0 tells the others: what they are to do, and how. Travels as text.
+struct Assignment {
+  std::string report_seconds;
+  std::string instruction_set;
+  std::string isolate;
+  std::string config;
+
+  std::string text() const { return report_seconds + ' ' + instruction_set + ' ' + isolate + '\n' + config; }
+  static Assignment from(const std::string& text) {
+    Assignment assignment;
+    std::istringstream words(text);
+    words >> assignment.report_seconds >> assignment.instruction_set >> assignment.isolate;
+    assignment.config = text.substr(text.find('\n') + 1);
+    return assignment;
+  }
+};
+
+/// The jobs of an assignment, in whichever process they are to be worked on.
+sweep::JobFactory assigned_jobs(const std::string& text) {
+  const Assignment assignment = Assignment::from(text);
+  use_instruction_set(assignment.instruction_set);
+  const auto plan = std::make_shared<sweep::Plan>(sweep::Settings::from_config(assignment.config));
+  return [plan, make_job = sweep::run_jobs(*plan)](std::int64_t task, std::span<const std::byte> snapshot) {
+    return make_job(task, snapshot);
+  };
 }
 
-/// Rank 0's part of the sweep.
-int lead(const parallel::Communicator& ranks, const cli::CommandLine& line, const sweep::Plan& plan,
-         SweepLedger& ledger) {
-  const bool computes = parallel::computes(ranks.size(), master_computes(line.get("master-computes")));
-  const int computing_ranks = ranks.size() - (computes ? 0 : 1);
-  const auto num_left = static_cast<std::int64_t>(ledger.tasks_left().size());
-  announce(line.get("output"), plan.size(), ledger, computing_ranks);
-  SweepProgress progress(
-      std::cerr, isatty(STDERR_FILENO) ? SweepProgress::Screen::terminal : SweepProgress::Screen::plain,
-      num_left, computing_ranks);
-  bool interrupted = false;
-  const Clock::time_point begin = Clock::now();
-  const double hours = max_hours(line);
-  parallel::SweepEvents events;
-  events.started = [&](std::int64_t task, int rank) {
-    progress.started(task);
-    return ledger.start(task, rank);
-  };
-  events.progressed = [&](const parallel::Report& report) { ledger.report(report); };
-  events.ended = [&](const parallel::Report& report) {
-    ledger.report(report);
-    if (report.row.status.view() == "failed" && ledger.tries_again(report.row)) {
-      progress.tried(report.row.task);
-      return;
-    }
-    progress.ended(report.row);
-    interrupted = interrupted || report.row.status.view() == "interrupted";
-  };
-  events.tries_again = [&](const sweep::RunRow& failed) { return ledger.tries_again(failed); };
-  events.idle = [&] {
-    ledger.tick();
-    progress.tick();
-  };
-  events.stop_requested = [&] {
-    return cli::stop_signalled() ||
-           std::chrono::duration<double, std::ratio<3600>>(Clock::now() - begin).count() >= hours;
-  };
-  const bool all_started =
-      parallel::run_tasks(ranks, parallel::TaskOrder(ledger.tasks_left(), plan.num_groups()),
-                          sweep::run_jobs(plan), events, computes, report_interval(line));
-  ledger.finish();
-  if (num_left > 0) progress.finish();
-  if (all_started && !interrupted) return cli::exit_success;
-  std::cerr << program << ": stopped by " << (cli::stop_signalled() ? "a signal" : "--max-hours")
-            << "; the same command goes on. Finished rows and the distances so far are in "
-            << line.get("output") << std::endl;
-  return cli::exit_incomplete;
-}
-
-int sweep_on_all_ranks(const parallel::Communicator& ranks, int argc, char** argv) {
+int sweep_on_all_ranks(const parallel::Communicator& ranks, parallel::IsolatedJobs& isolated, int argc,
+                       char** argv) {
   // Rank 0 reads and checks; the others wait for its word: a config to run, or an exit code.
   cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::accepted);
+  Enlarged sweep;
   std::optional<sweep::Plan> plan;
   std::optional<SweepLedger> ledger;
   std::string word;
@@ -262,29 +245,27 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, int argc, char** arg
       parse(line, argc, argv);
       if (const auto over = prepare(line)) return *over;
       refuse_to_be_alone(ranks.size());
-      plan.emplace(line.settings());
-      ledger.emplace(line.get("output"), *plan, line.settings(), provenance(line, ranks.size()),
-                     attempts(line));
+      sweep = enlarge(line);
+      plan.emplace(sweep.settings);
+      ledger.emplace(line.get("output"), *plan, sweep.settings, provenance(line, sweep, ranks.size()),
+                     sweep.num_first, attempts(line));
       return cli::exit_success;
     });
     if (ledger && exit_code == cli::exit_success)
-      word = "run " + line.get("report-seconds") + ' ' +
-             (line.has("instruction-set") ? line.get("instruction-set") : "auto") + '\n' +
-             line.settings().to_config(false);
+      word = Assignment{line.get("report-seconds"),
+                        line.has("instruction-set") ? line.get("instruction-set") : "auto",
+                        line.get("isolate"), sweep.settings.to_config(false)}
+                 .text();
     else
       word = "exit " + std::to_string(exit_code);
   }
   word = ranks.broadcast(word);
   if (word.starts_with("exit ")) return std::stoi(word.substr(5));
 
-  cli::catch_stop_signals();
-  if (ranks.rank() == 0) return lead(ranks, line, *plan, *ledger);
-  const std::size_t end_of_line = word.find('\n');
-  const std::size_t space = word.find(' ', 4);
-  use_instruction_set(word.substr(space + 1, end_of_line - space - 1));
-  plan.emplace(sweep::Settings::from_config(word.substr(end_of_line + 1)));
-  parallel::run_tasks(ranks, parallel::TaskOrder(0), sweep::run_jobs(*plan), {}, false,
-                      seconds_from(word.substr(4, space - 4)));
+  const Assignment assignment = Assignment::from(word);
+  const sweep::JobFactory make_job = assignment.isolate == "yes" ? isolated.jobs(word) : assigned_jobs(word);
+  if (ranks.rank() == 0) return lead_sweep(ranks, lead_options(line), *plan, make_job, *ledger, sweep.rule);
+  follow_sweep(ranks, make_job, seconds_from(assignment.report_seconds));
   return cli::exit_success;
 }
 
@@ -296,10 +277,17 @@ int main(int argc, char** argv) {
       {"status", clogsweep_status}, {"verify", clogsweep_verify}, {"replay", clogsweep_replay}};
   if (const auto report = argc > 1 ? reports.find(argv[1]) : reports.end(); report != reports.end())
     return cli::run_program(std::string(program) + ' ' + argv[1], [&] { return report->second(argc, argv); });
+  cli::catch_stop_signals();  // one that comes before the sweep begins stops it then
+  std::optional<parallel::IsolatedJobs> isolated;
+  const int exit_code = cli::run_program(program, [&] {
+    isolated.emplace(assigned_jobs);  // before MPI begins
+    return cli::exit_success;
+  });
+  if (exit_code != cli::exit_success) return exit_code;
   const parallel::Communicator ranks(argc, argv);
   try {
     if (argc > 1 && std::string_view(argv[1]) == "doctor") return clogsweep_doctor(ranks, argc, argv);
-    return sweep_on_all_ranks(ranks, argc, argv);
+    return sweep_on_all_ranks(ranks, *isolated, argc, argv);
   } catch (const std::exception& error) {
     // Once the sweep runs, ranks wait for each other: a fault of one must end all.
     std::cerr << program << ": rank " << ranks.rank() << " on " << parallel::Communicator::host_name() << ": "

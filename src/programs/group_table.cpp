@@ -61,8 +61,31 @@ std::string legend(const std::vector<Group>& groups) {
   return text;
 }
 
-/// @param with_migration  in random arrays a droplet goes straight on the average: not worth two columns
-std::vector<std::string> result_cells(const Group& group, bool with_migration) {
+/// Which columns are worth their place.
+struct OptionalColumns {
+  bool mechanisms;  ///< where clogs are not all of one kind
+  bool migration;   ///< in random arrays a droplet goes straight on the average
+};
+
+OptionalColumns optional_columns(const std::vector<Group>& groups) {
+  std::set<ClogMechanism> seen;
+  for (const Group& group : groups)
+    for (const Group::Cause& cause : group.causes)
+      if (cause.clogging.num_clogs > 0) seen.insert(cause.mechanism);
+  return {.mechanisms = seen.size() > 1, .migration = std::any_of(groups.begin(), groups.end(), is_lattice)};
+}
+
+/// Clogs by mechanism, as 3/5/2.
+std::string mechanism_counts(const Group& group) {
+  std::string counts;
+  for (const Group::Cause& cause : group.causes) {
+    if (!counts.empty()) counts += '/';
+    counts += std::to_string(cause.clogging.num_clogs);
+  }
+  return counts.empty() ? "-" : counts;
+}
+
+std::vector<std::string> result_cells(const Group& group, OptionalColumns optional) {
   const fit::CloggingLength& clogging = group.clogging;
   const bool bounded = clogging.num_clogs > 0;
   const auto number = [](double value) { return std::isnan(value) ? "-" : rounded(value); };
@@ -73,7 +96,8 @@ std::vector<std::string> result_cells(const Group& group, bool with_migration) {
       bounded ? number(clogging.interval.lower) + " .. " + number(clogging.interval.upper) : "-",
       number(group.speed.mean),
       number(group.speed.standard_error)};
-  if (with_migration)
+  if (optional.mechanisms) cells.insert(cells.begin() + 2, mechanism_counts(group));
+  if (optional.migration)
     cells.insert(cells.end(), {number(group.migration.slope), number(group.migration.standard_error)});
   return cells;
 }
@@ -133,11 +157,11 @@ std::string to_text(const std::vector<Group>& groups, double confidence) {
   }
   char interval[16];
   std::snprintf(interval, sizeof interval, "%g %%", 100 * confidence);
-  for (const std::string& title : {std::string("runs"), std::string("clogs"), std::string("lambda/sigma"),
-                                   std::string(interval), std::string("<v_g>/v_t"), std::string("+-")})
-    lines[0].push_back(title);
-  const bool with_migration = std::any_of(groups.begin(), groups.end(), is_lattice);
-  if (with_migration) lines[0].insert(lines[0].end(), {"lateral/r", "+-"});
+  const OptionalColumns optional = optional_columns(groups);
+  lines[0].insert(lines[0].end(), {"runs", "clogs"});
+  if (optional.mechanisms) lines[0].push_back("w/s/h");
+  lines[0].insert(lines[0].end(), {"lambda/sigma", interval, "<v_g>/v_t", "+-"});
+  if (optional.migration) lines[0].insert(lines[0].end(), {"lateral/r", "+-"});
   const bool with_doubts =
       std::any_of(groups.begin(), groups.end(), [](const Group& group) { return !group.doubts.empty(); });
   if (with_doubts) lines[0].push_back("note");
@@ -148,12 +172,13 @@ std::string to_text(const std::vector<Group>& groups, double confidence) {
     const std::vector<Field> fields = parameter_fields(group.parameters);
     for (std::size_t i = 0; i < fields.size(); ++i)
       if (is_shown(i)) line.push_back(rounded(fields[i].second));
-    for (std::string& cell : result_cells(group, with_migration)) line.push_back(std::move(cell));
+    for (std::string& cell : result_cells(group, optional)) line.push_back(std::move(cell));
     if (with_doubts) line.push_back(letters(group.doubts));
     num_failed += group.num_failed;
     num_interrupted += group.num_interrupted;
   }
   text += "\n\n" + aligned(lines) + legend(groups);
+  if (optional.mechanisms) text += "w/s/h: clogs by wrapping, by squeezing, by both\n";
   if (num_interrupted > 0)
     text += "   " + std::to_string(num_interrupted) + " runs are under way or interrupted\n";
   if (num_failed > 0)

@@ -29,6 +29,44 @@ std::vector<Doubt> doubts_about(const Group& group) {
   return doubts;
 }
 
+std::vector<Group::Cause> fit_causes(std::span<const sweep::RunRow* const> runs, double confidence) {
+  const auto is_clogged = [](const sweep::RunRow* run) { return run->status.view() == "clogged"; };
+  std::vector<Group::Cause> fits;
+  if (std::any_of(runs.begin(), runs.end(),
+                  [&](const auto* run) { return is_clogged(run) && run->mechanism.view().empty(); }))
+    return fits;
+  for (const ClogMechanism cause : causes) {
+    std::vector<fit::Observation> observations;
+    for (const sweep::RunRow* run : runs)
+      observations.push_back({run->distance, is_clogged(run) && run->mechanism.view() == name(cause)});
+    fits.push_back({cause, fit::fit_clogging_length(observations, confidence)});
+  }
+  return fits;
+}
+
+/// Counts by mechanism and their lengths; without values where they are not known.
+void append_causes(const Group& group, std::vector<Field>& fields) {
+  // Fields are named by literals.
+  struct Names {
+    const char *count, *length, *lower, *upper;
+  };
+  constexpr Names names[] = {
+      {"wrapped", "clogging_length_wrapped", "clogging_length_wrapped_lower",
+       "clogging_length_wrapped_upper"},
+      {"squeezed", "clogging_length_squeezed", "clogging_length_squeezed_lower",
+       "clogging_length_squeezed_upper"},
+      {"hybrid", "clogging_length_hybrid", "clogging_length_hybrid_lower", "clogging_length_hybrid_upper"}};
+  const Value unknown = std::string();
+  for (std::size_t i = 0; i < std::size(names); ++i) {
+    const bool known = !group.causes.empty();
+    const fit::CloggingLength fit = known ? group.causes[i].clogging : fit::CloggingLength();
+    fields.emplace_back(names[i].count, known ? value_of(fit.num_clogs) : unknown);
+    fields.emplace_back(names[i].length, known ? value_of(fit.length) : unknown);
+    fields.emplace_back(names[i].lower, known ? value_of(fit.interval.lower) : unknown);
+    fields.emplace_back(names[i].upper, known ? value_of(fit.interval.upper) : unknown);
+  }
+}
+
 }  // namespace
 
 const DoubtText& text_of(Doubt doubt) {
@@ -48,7 +86,9 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
     group.parameters = *runs.front();
     std::vector<fit::Observation> observations;
     std::vector<double> speeds;
+    std::vector<fit::Travel> travels;
     std::vector<fit::Displacement> displacements;
+    std::vector<const sweep::RunRow*> valid;
     for (const sweep::RunRow* run : runs) {
       group.num_failed += run->status.view() == "failed";
       if (run->status.view() == "failed") continue;
@@ -56,13 +96,17 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
       group.num_interrupted += run->status.view() == "interrupted" || run->status.view() == "running";
       observations.push_back({run->distance, run->status.view() == "clogged"});
       speeds.push_back(run->mean_speed / run->terminal_speed);
+      travels.push_back({run->mean_speed / run->terminal_speed * run->travel_time, run->travel_time});
       displacements.push_back({run->distance, run->lateral_displacement});
+      valid.push_back(run);
     }
     group.clogging = fit::fit_clogging_length(observations, confidence);
     group.least_squares_length = fit::least_squares_length(observations);
     group.weibull = fit::test_exponentiality(observations);
     group.survival = fit::survival_curve(observations);
+    group.causes = fit_causes(valid, confidence);
     group.speed = fit::fit_mean_speed(speeds);
+    group.speed_ratio = fit::fit_speed_ratio(travels);
     group.migration = fit::fit_migration(displacements);
     group.doubts = doubts_about(group);
     groups.push_back(std::move(group));
@@ -104,7 +148,7 @@ std::vector<Field> result_fields(const Group& group) {
   std::string doubts;
   for (const Doubt doubt : group.doubts)
     doubts += std::string(doubts.empty() ? "" : " ") + text_of(doubt).word;
-  return {
+  std::vector<Field> fields = {
       {"runs", value_of(group.clogging.num_runs)},
       {"clogs", value_of(group.clogging.num_clogs)},
       {"flowing", value_of(group.num_flowing)},
@@ -122,10 +166,14 @@ std::vector<Field> result_fields(const Group& group) {
       {"mean_speed", value_of(group.speed.mean)},
       {"mean_speed_error", value_of(group.speed.standard_error)},
       {"mean_speed_runs", value_of(group.speed.num_runs)},
+      {"mean_speed_ratio", value_of(group.speed_ratio.mean)},
+      {"mean_speed_ratio_error", value_of(group.speed_ratio.standard_error)},
       {"capillary_number", value_of(group.speed.mean * units::droplet_mass / group.parameters.line_tension)},
       {"lateral_slope", value_of(group.migration.slope)},
       {"lateral_slope_error", value_of(group.migration.standard_error)},
       {"doubts", doubts}};
+  append_causes(group, fields);
+  return fields;
 }
 
 }  // namespace clog

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "clog/core/clog_geometry.hpp"
 #include "clog/fit/clogging_length.hpp"
 #include "clog/fit/mean_speed.hpp"
 #include "clog/fit/migration.hpp"
@@ -46,13 +47,24 @@ struct Group {
   double least_squares_length = 0;  ///< the published way, biased; NaN for fewer than two clogs
   fit::WeibullTest weibull;
   std::vector<fit::SurvivalStep> survival;
-  fit::MeanSpeed speed;  ///< in units of the terminal speed
+  /// By mechanism: its clogs, all other runs censored there. Empty if the mechanism of a clog is not known.
+  struct Cause {
+    ClogMechanism mechanism;
+    fit::CloggingLength clogging;
+  };
+  std::vector<Cause> causes;
+  fit::MeanSpeed speed;        ///< in units of the terminal speed
+  fit::MeanSpeed speed_ratio;  ///< way over time of all runs together, likewise
   fit::Migration migration;
   int num_flowing = 0;
   int num_interrupted = 0;
   int num_failed = 0;  ///< left out of all fits
   std::vector<Doubt> doubts;
 };
+
+/// Mechanisms with a clogging length of their own.
+inline constexpr ClogMechanism causes[] = {ClogMechanism::wrapped, ClogMechanism::squeezed,
+                                           ClogMechanism::hybrid};
 
 /// Groups rows by everything but the seed, in the order of their parameters.
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence);

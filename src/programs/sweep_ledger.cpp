@@ -59,41 +59,41 @@ std::string differing_keys(const sweep::Settings& there, const sweep::Settings& 
 }  // namespace
 
 SweepLedger::SweepLedger(std::string path, const sweep::Plan& plan, const sweep::Settings& settings,
-                         store::Provenance provenance, std::int64_t attempts)
+                         store::Provenance provenance, std::int64_t num_wanted, std::int64_t attempts)
     : path_(std::move(path)),
       plan_(plan),
       provenance_(std::move(provenance)),
       attempts_(attempts),
-      journal_(path_ + ".journal") {
+      journal_(store::journal_path(path_)),
+      num_wanted_(num_wanted) {
   std::string session;
   for (const char* name : {"start_time", "version", "git_hash", "num_ranks", "command_line"})
     session += attribute(provenance_, name) + ' ';
   session.back() = '\n';
 
   std::unordered_map<std::string, Entry> known;
-  try {
-    if (std::filesystem::exists(path_)) {
-      store::SweepFile file = store::read_sweep(path_);
-      take_over(file, settings);
-      for (const sweep::RunRow& row : file.rows) known[sweep::identity(row)] = {row, {}};
-    }
-  } catch (const Error&) {
-    if (journal_.take_entries().empty()) journal_.remove();
-    throw;
+  if (std::filesystem::exists(path_)) {
+    store::SweepFile file = store::read_sweep(path_);
+    take_over(file, settings);
+    for (const sweep::RunRow& row : file.rows) known[sweep::identity(row)] = {row, {}};
   }
   const bool has_table = !known.empty() || std::filesystem::exists(path_);
   std::vector<Entry> entries = journal_.take_entries();
   if (!has_table && !entries.empty())
-    throw Error("cannot begin " + path_ + " (its table is gone, but " + path_ + ".journal holds " +
-                std::to_string(entries.size()) +
+    throw Error("cannot begin " + path_ + " (its table is gone, but " + store::journal_path(path_) +
+                " holds " + std::to_string(entries.size()) +
                 " reports of an earlier sweep); put the table back, or remove the journal to begin anew");
   for (Entry& entry : entries) {
     std::string run = sweep::identity(entry.row);
+    // A run that is over in the table is not so in the journal if its last record there was lost.
+    const auto there = known.find(run);
+    if (there != known.end() && is_over(there->second.row) && !is_over(entry.row)) continue;
     known[std::move(run)] = std::move(entry);
   }
   set_attribute(provenance_, "sessions", latest_lines(attribute(provenance_, "sessions") + session));
   find_tasks(std::move(known));
   publish();
+  last_publication_ = Clock::now();
 }
 
 /// A file that is there: do its runs belong to this sweep? Then what it says of its origin stays.
@@ -112,7 +112,8 @@ void SweepLedger::take_over(const store::SweepFile& file, const sweep::Settings&
   store::Provenance all = file.provenance;
   for (const char* name : {"kind", "format_version"})
     std::erase_if(all, [&](const auto& attribute) { return attribute.first == name; });
-  set_attribute(all, "config", attribute(provenance_, "config"));
+  for (const char* name : {"config", "stopping_rule", "num_wanted"})
+    if (const std::string text = attribute(provenance_, name); !text.empty()) set_attribute(all, name, text);
   provenance_ = std::move(all);
 }
 
@@ -130,9 +131,9 @@ void SweepLedger::find_tasks(std::unordered_map<std::string, Entry> known) {
         entry.row.task = task;
         if (is_over(entry.row)) continue;
         if (entry.row.status.view() == "running") entry.row.status = "interrupted";
-        seconds_before_[task] = entry.row.wall_seconds;
+        past_[task].seconds = entry.row.wall_seconds;
       }
-    tasks_left_.push_back(task);
+    if (task < num_wanted_) tasks_left_.push_back(task);
   }
   for (auto& [run, entry] : known) other_runs_.push_back(std::move(entry));
   std::sort(other_runs_.begin(), other_runs_.end(),
@@ -142,6 +143,16 @@ void SweepLedger::find_tasks(std::unordered_map<std::string, Entry> known) {
     row.task = plan_.size() + static_cast<std::int64_t>(i);
     if (row.status.view() == "running") row.status = "interrupted";
   }
+}
+
+void SweepLedger::want(const std::vector<std::int64_t>& tasks) {
+  num_wanted_ += static_cast<std::int64_t>(tasks.size());
+  set_attribute(provenance_, "num_wanted", std::to_string(num_wanted_));
+  tasks_left_.clear();
+  for (const std::int64_t task : tasks)
+    if (const auto run = runs_.find(task); run == runs_.end() || !is_over(run->second.row))
+      tasks_left_.push_back(task);
+  is_published_ = false;
 }
 
 std::int64_t SweepLedger::num_resumed() const {
@@ -157,12 +168,14 @@ parallel::Start SweepLedger::start(std::int64_t task, int rank) {
   parallel::Start start{entry.snapshot, entry.row.attempt};
   const bool failed = !is_new && entry.row.status.view() == "failed";
   if (failed) start = {{}, entry.row.attempt + 1};
+  if (const auto past = past_.find(task); past != past_.end())
+    past->second.instruction_set = start.snapshot.empty() ? "" : entry.row.instruction_set.view();
   if (is_new || failed) {
     entry.snapshot.clear();
     entry.row = sweep::describe(plan_.task(task));
     entry.row.task = task;
     entry.row.clogged_by = "none";
-    entry.row.mean_speed = std::numeric_limits<double>::quiet_NaN();  // not known yet
+    entry.row.mechanism = "none";
   }
   entry.row.attempt = start.attempt;
   entry.row.status = "running";
@@ -174,31 +187,43 @@ parallel::Start SweepLedger::start(std::int64_t task, int rank) {
 void SweepLedger::report(const parallel::Report& report) {
   Entry& entry = runs_[report.row.task];
   entry = {report.row, report.snapshot};
-  if (const auto before = seconds_before_.find(report.row.task); before != seconds_before_.end())
-    entry.row.wall_seconds += before->second;
-  if (entry.row.status.view() == "failed") seconds_before_[entry.row.task] = entry.row.wall_seconds;
+  if (const auto past = past_.find(report.row.task); past != past_.end()) {
+    entry.row.wall_seconds += past->second.seconds;
+    const std::string_view before = past->second.instruction_set.view();
+    if (!before.empty() && before != entry.row.instruction_set.view())
+      entry.row.instruction_set = sweep::mixed_instruction_sets;
+  }
+  if (entry.row.status.view() == "failed") past_[entry.row.task].seconds = entry.row.wall_seconds;
+  journal_.add(entry.row, entry.snapshot);
+  is_published_ = false;
+}
+
+void SweepLedger::withdraw_failure(std::int64_t task) {
+  Entry& entry = runs_.at(task);
+  entry.row.status = "interrupted";
   journal_.add(entry.row, entry.snapshot);
   is_published_ = false;
 }
 
 void SweepLedger::tick() {
-  // Writing the whole table takes longer the more runs there are; it may take two percent of the time.
+  // Writing the whole table takes longer the more runs there are, and the journal must be rewritten now and
+  // then; they may take two percent of the time.
+  const Clock::time_point begin = Clock::now();
   const Clock::duration pause = std::max<Clock::duration>(std::chrono::seconds(1), 50 * publication_time_);
-  if (is_published_ || Clock::now() - last_publication_ < pause) return;
+  if (is_published_ || begin - last_publication_ < pause) return;
   publish();
-  if (journal_.num_bytes() > 64'000'000) shorten_journal();
+  if (journal_.is_to_be_rewritten()) shorten_journal();
+  last_publication_ = Clock::now();
+  publication_time_ = last_publication_ - begin;
 }
 
 void SweepLedger::publish() {
-  const Clock::time_point begin = Clock::now();
   std::vector<sweep::RunRow> rows;
   rows.reserve(runs_.size() + other_runs_.size());
   for (const auto& [task, entry] : runs_) rows.push_back(entry.row);
   for (const Entry& entry : other_runs_) rows.push_back(entry.row);
   journal_.flush();
   store::publish_sweep(path_, rows, provenance_);
-  last_publication_ = Clock::now();
-  publication_time_ = last_publication_ - begin;
   is_published_ = true;
 }
 
@@ -215,7 +240,7 @@ void SweepLedger::shorten_journal() {
 void SweepLedger::finish() {
   publish();
   const bool is_complete =
-      static_cast<std::int64_t>(runs_.size()) == plan_.size() &&
+      static_cast<std::int64_t>(runs_.size()) >= num_wanted_ &&
       std::all_of(runs_.begin(), runs_.end(), [this](const auto& run) { return is_over(run.second.row); }) &&
       std::all_of(other_runs_.begin(), other_runs_.end(),
                   [this](const Entry& run) { return is_over(run.row); });

@@ -21,18 +21,29 @@ namespace clog {
 class SweepLedger {
  public:
   /// Reads what is there, and checks that it belongs to this sweep.
+  /// @param num_wanted  how many of the plan's tasks, from its beginning, are to be done for the time being
   /// @param attempts  how often a run that fails is tried, over all sessions
   /// @throws Error if the file is foreign, of another model or other settings, or written to by another sweep
   SweepLedger(std::string path, const sweep::Plan& plan, const sweep::Settings& settings,
-              store::Provenance provenance, std::int64_t attempts);
+              store::Provenance provenance, std::int64_t num_wanted, std::int64_t attempts);
 
-  /// Tasks of the plan that are not over.
+  /// More of the plan's tasks are to be done; tasks_left() are then those of them that are not over.
+  void want(const std::vector<std::int64_t>& tasks);
+  std::int64_t num_wanted() const { return num_wanted_; }
+
+  /// Tasks that are wanted and not over.
   const std::vector<std::int64_t>& tasks_left() const { return tasks_left_; }
   /// Of those, how many have a snapshot to go on from.
   std::int64_t num_resumed() const;
+  /// Records of the journal that were damaged: their runs are a few seconds behind, or begin anew.
+  std::int64_t num_unreadable() const { return journal_.num_unreadable(); }
 
   parallel::Start start(std::int64_t task, int rank);
   void report(const parallel::Report& report);
+  /// Of a run that has begun.
+  const sweep::RunRow& row(std::int64_t task) const { return runs_.at(task).row; }
+  /// Of a run that failed: it is to be done again, as the same attempt.
+  void withdraw_failure(std::int64_t task);
   bool tries_again(const sweep::RunRow& failed) const { return failed.attempt < attempts_; }
   /// Publishes the table if it is time to.
   void tick();
@@ -50,8 +61,14 @@ class SweepLedger {
   store::Journal journal_;
   std::map<std::int64_t, Entry> runs_;  // by task; those that have begun
   std::vector<Entry> other_runs_;       // in the file, but not of this plan
+  std::int64_t num_wanted_;
   std::vector<std::int64_t> tasks_left_;
-  std::unordered_map<std::int64_t, double> seconds_before_;  // spent on a task in earlier sessions [s]
+  /// What is known of a task from earlier sessions or attempts.
+  struct Past {
+    double seconds = 0;                    // spent on it
+    sweep::FixedText<16> instruction_set;  // of the snapshot that it goes on from; empty if it begins anew
+  };
+  std::unordered_map<std::int64_t, Past> past_;
   bool is_published_ = false;
   Clock::time_point last_publication_;
   Clock::duration publication_time_{0};

@@ -16,9 +16,8 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 
 }  // namespace
 
-SweepProgress::SweepProgress(std::ostream& out, Screen screen, std::int64_t num_tasks,
-                             int num_computing_ranks)
-    : out_(out), screen_(screen), num_tasks_(num_tasks), num_ranks_(num_computing_ranks) {}
+SweepProgress::SweepProgress(std::ostream& out, Screen screen, int num_computing_ranks)
+    : out_(out), screen_(screen), num_ranks_(num_computing_ranks) {}
 
 void SweepProgress::started(std::int64_t task) { running_[task] = Clock::now(); }
 
@@ -27,6 +26,20 @@ void SweepProgress::ended(const sweep::RunRow& row) {
   ++ended_by_status_[std::string(row.status.view())];
   ++num_ended_;
   finished_seconds_ += row.wall_seconds;
+}
+
+void SweepProgress::not_ended(const sweep::RunRow& failed) {
+  --ended_by_status_[std::string(failed.status.view())];
+  --num_ended_;
+}
+
+void SweepProgress::say(const std::string& text) {
+  if (screen_ != Screen::terminal) {
+    out_ << text << std::endl;
+    return;
+  }
+  out_ << '\r' << text << "\x1b[K\n";
+  print(line());
 }
 
 void SweepProgress::tick() {
@@ -41,6 +54,7 @@ void SweepProgress::finish() {
 
 void SweepProgress::print(const std::string& text) {
   last_print_ = Clock::now();
+  if (screen_ == Screen::none) return;
   if (screen_ == Screen::terminal)
     out_ << '\r' << text << "\x1b[K" << std::flush;  // to the left edge; then clear what an older line left
   else

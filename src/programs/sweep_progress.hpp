@@ -14,14 +14,21 @@ namespace clog {
 /// elsewhere.
 class SweepProgress {
  public:
-  enum class Screen { terminal, plain };
+  enum class Screen { terminal, plain, none };
 
-  SweepProgress(std::ostream& out, Screen screen, std::int64_t num_tasks, int num_computing_ranks);
+  SweepProgress(std::ostream& out, Screen screen, int num_computing_ranks);
+
+  /// So many tasks more.
+  void expect(std::int64_t num_tasks) { num_tasks_ += num_tasks; }
 
   void started(std::int64_t task);
   void ended(const sweep::RunRow& row);
   /// In vain; it will be tried again.
   void tried(std::int64_t task) { running_.erase(task); }
+  /// One that ended as failed is to be done again.
+  void not_ended(const sweep::RunRow& failed);
+  /// Prints a line that stays, whatever the screen.
+  void say(const std::string& text);
   /// Prints if it is time to.
   void tick();
   void finish();
@@ -31,7 +38,7 @@ class SweepProgress {
 
   std::ostream& out_;
   Screen screen_;
-  std::int64_t num_tasks_;
+  std::int64_t num_tasks_ = 0;
   int num_ranks_;
   Clock::time_point begin_ = Clock::now();
   Clock::time_point last_print_ = begin_;

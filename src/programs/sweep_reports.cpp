@@ -1,8 +1,10 @@
 #include "sweep_reports.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -57,6 +59,7 @@ struct Status {
   bool is_alive = false;
   double core_hours = 0;
   TimeLeft left;
+  std::string stopping_rule;  ///< empty: none
   std::vector<Group> groups;
 
   std::int64_t count(const char* status) const {
@@ -71,7 +74,11 @@ Status status_of(const std::string& path, double confidence) {
   Status status;
   const std::int64_t planned = plan_of(file).size();
   status.num_runs = planned;
-  status.is_alive = store::Journal::is_open(path + ".journal");
+  for (const auto& [name, text] : file.provenance) {
+    if (name == "stopping_rule") status.stopping_rule = text;
+    if (name == "num_wanted") status.num_runs = sweep::to_integer(text);
+  }
+  status.is_alive = store::Journal::is_open(store::journal_path(path));
   std::vector<double> finished, running;
   for (const RunRow& row : file.rows) {
     if (row.task >= planned) ++status.num_runs;  // of an earlier config
@@ -105,6 +112,7 @@ std::string to_text(const std::string& path, const Status& status, double confid
   else
     text += ", " + status.left.text();
   text += '\n';
+  if (!status.stopping_rule.empty()) text += status.stopping_rule + '\n';
   if (!status.groups.empty()) text += '\n' + to_text(status.groups, confidence);
   return text;
 }
@@ -120,6 +128,7 @@ std::string to_json(const Status& status, double confidence) {
   all["seconds_left"] = status.left.is_known
                             ? nlohmann::ordered_json{status.left.shortest, status.left.longest}
                             : nlohmann::ordered_json();
+  if (!status.stopping_rule.empty()) all["stopping_rule"] = status.stopping_rule;
   all["groups"] = status.groups.empty()
                       ? nlohmann::ordered_json::array()
                       : nlohmann::ordered_json::parse(to_json(status.groups, confidence)).at("groups");
@@ -136,6 +145,18 @@ std::string fault_of(const RunRow& row) {
   if (row.time < 0 || row.time > row.max_time + row.time_step || row.steps < 0 || row.wall_seconds < 0)
     return "a time out of its range";
   return "";
+}
+
+std::string to_text(const store::Journal::Contents& journal, bool is_alive) {
+  const auto num_snapshots = std::count_if(journal.entries.begin(), journal.entries.end(),
+                                           [](const auto& entry) { return !entry.snapshot.empty(); });
+  std::string text = std::to_string(journal.entries.size()) + " records, " + std::to_string(num_snapshots) +
+                     " of them with snapshots, ";
+  text +=
+      journal.num_unreadable == 0 ? "all whole" : std::to_string(journal.num_unreadable) + " more damaged";
+  if (is_alive) return text + "; a sweep is writing to it";
+  if (journal.has_torn_end) text += "; the last one is torn, as after a kill, and will be dropped";
+  return text;
 }
 
 const RunRow& row_of_task(const store::SweepFile& file, const std::string& word) {
@@ -165,8 +186,16 @@ std::vector<std::string> differing_results(const RunRow& a, const RunRow& b) {
   compare("lateral_displacement", a.lateral_displacement, b.lateral_displacement);
   compare("time", a.time, b.time);
   compare("mean_speed", a.mean_speed, b.mean_speed);
+  compare("mean_speed_error", a.mean_speed_error, b.mean_speed_error);
+  compare("transient", a.transient, b.transient);
+  compare("travel_time", a.travel_time, b.travel_time);
   compare("kinetic_energy_ratio", a.kinetic_energy_ratio, b.kinetic_energy_ratio);
   compare("shape_parameter", a.shape_parameter, b.shape_parameter);
+  compare("mechanism", a.mechanism, b.mechanism);
+  compare("wrapped_support", a.wrapped_support, b.wrapped_support);
+  compare("num_wrapped", a.num_wrapped, b.num_wrapped);
+  compare("num_gaps", a.num_gaps, b.num_gaps);
+  compare("num_arcs", a.num_arcs, b.num_arcs);
   compare("steps", a.steps, b.steps);
   return all;
 }
@@ -214,7 +243,10 @@ int clogsweep_verify(int argc, const char* const* argv) {
 
   clogsweep verify sweep.h5
 
-Exit code 0: every row can be read and makes sense, none is there twice. 1: one does not. 2: it cannot be read.
+The same for the journal beside it, which is there while the sweep is not complete.
+
+Exit code 0: every row can be read and makes sense, none is there twice, no record of the journal is damaged. 1: this
+is not so. 2: the file or its journal cannot be read.
 )");
   if (!parse(line, argc, argv)) return cli::exit_success;
   const store::SweepFile file = store::read_sweep(line.get("file"));
@@ -231,6 +263,11 @@ Exit code 0: every row can be read and makes sense, none is there twice. 1: one 
   }
   std::cout << line.get("file") << ": " << file.rows.size() << " rows of " << planned << " runs, "
             << (num_faults == 0 ? "all whole" : std::to_string(num_faults) + " faulty") << '\n';
+  const std::string journal = store::journal_path(line.get("file"));
+  if (const auto contents = store::Journal::look(journal)) {
+    std::cout << journal << ": " << to_text(*contents, store::Journal::is_open(journal)) << '\n';
+    num_faults += contents->num_unreadable;
+  }
   return num_faults == 0 ? cli::exit_success : cli::exit_internal_fault;
 }
 
@@ -240,7 +277,8 @@ int clogsweep_replay(int argc, const char* const* argv) {
 
   clogsweep replay sweep.h5 12
 
-Exit code 0: the same bits. 1: other results. The run uses the row's instruction set.
+Exit code 0: the same bits. 1: other results. 2: it cannot be done again. The run uses the row's instruction set; one
+that went on under another set than it began with cannot be repeated.
 )");
   line.add_options()("task", po::value<std::string>(), "the row's number, column `task`");
   line.add_positional("task", 1);
@@ -250,6 +288,11 @@ Exit code 0: the same bits. 1: other results. The run uses the row's instruction
   const RunRow& row = row_of_task(file, line.get("task"));
   if (row.status.view() == "running" || row.status.view() == "interrupted")
     throw Error("task " + line.get("task") + " is not over; let the sweep go on first");
+  if (row.instruction_set.view() == sweep::mixed_instruction_sets)
+    throw Error(
+        "cannot replay task " + line.get("task") +
+        " bit for bit (it was interrupted and went on under another instruction set, it is not known at "
+        "which step); --instruction-set pins one for all sessions of a sweep");
   const sweep::Plan plan = plan_of(file);
   const std::int64_t task = task_in_plan(plan, row);
   if (row.model.view() == "dp") use_instruction_set(std::string(row.instruction_set.view()));

@@ -1,17 +1,17 @@
 #include "hdf5.hpp"
 
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "clog/core/error.hpp"
 #include "clog/store/run_table.hpp"
+#include "draft.hpp"
 
 namespace clog::store {
 
@@ -22,26 +22,9 @@ void prepare_library() {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
-void check(bool succeeded, const std::string& what, const std::string& path) {
-  if (succeeded) return;
-  const std::string reason = errno != 0 ? std::string(" (") + std::strerror(errno) + ")" : "";
-  throw Error("cannot " + what + " " + path + reason + "; check the disk and the permissions");
-}
-
 namespace {
 
-std::string draft_of(const std::string& path) { return path + ".new-" + std::to_string(getpid()); }
-
-/// Renames, but never onto a file that somebody else made meanwhile.
-void publish(const std::string& draft, const std::string& path) {
-  if (renameat2(AT_FDCWD, draft.c_str(), AT_FDCWD, path.c_str(), RENAME_NOREPLACE) == 0) return;
-  if (errno == EINVAL || errno == ENOSYS) {  // a file system that cannot promise it
-    refuse_existing(path);
-    if (std::rename(draft.c_str(), path.c_str()) == 0) return;
-  }
-  check(errno == EEXIST, "create", path);
-  refuse_existing(path);
-}
+constexpr std::string_view hdf5_mark = "\x89HDF\r\n\x1a\n";
 
 }  // namespace
 
@@ -52,63 +35,38 @@ void refuse_existing(const std::string& path) {
 
 void refuse_unwritable(const std::string& path) {
   refuse_existing(path);
-  const std::string draft = draft_of(path);
-  const int descriptor = open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  check(descriptor >= 0, "create", path);
-  close(descriptor);
-  std::remove(draft.c_str());
+  const Draft draft(path, hdf5_mark);
 }
 
 namespace {
 
-/// Makes a file in the earliest format, has it filled and brings it to the disk; removes it if that fails.
-void write_draft(const std::string& draft, const std::string& path,
-                 const std::function<void(hid_t file)>& fill) {
+/// Makes a file in the earliest format in place of the draft, and has it filled.
+void write_draft(const Draft& draft, const std::string& path, const std::function<void(hid_t file)>& fill) {
   prepare_library();
   const PropertyList access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
   errno = 0;
-  File file(H5Fcreate(draft.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access));
+  const File file(H5Fcreate(draft.name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access));
   check(file.valid(), "create", path);
-  try {
-    fill(file);
-    errno = 0;
-    check(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "write", path);
-    file = File();
-    const int descriptor = open(draft.c_str(), O_RDONLY | O_CLOEXEC);
-    check(descriptor >= 0, "write", path);
-    const bool synced = fsync(descriptor) == 0;
-    close(descriptor);
-    check(synced, "write", path);
-  } catch (...) {
-    file = File();
-    std::remove(draft.c_str());
-    throw;
-  }
+  check(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "write", path);  // the mark comes first
+  fill(file);
+  errno = 0;
+  check(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "write", path);
 }
 
 }  // namespace
 
 void create_whole(const std::string& path, const std::function<void(hid_t file)>& fill) {
   refuse_existing(path);
-  const std::string draft = draft_of(path);
+  Draft draft(path, hdf5_mark);
   write_draft(draft, path, fill);
-  try {
-    publish(draft, path);
-  } catch (...) {
-    std::remove(draft.c_str());
-    throw;
-  }
+  draft.publish_new();
 }
 
 void replace_whole(const std::string& path, const std::function<void(hid_t file)>& fill) {
-  const std::string draft = path + ".new";
+  Draft draft(path, hdf5_mark);
   write_draft(draft, path, fill);
-  if (std::rename(draft.c_str(), path.c_str()) == 0) return;
-  const int reason = errno;
-  std::remove(draft.c_str());
-  errno = reason;
-  check(false, "write", path);
+  draft.publish();
 }
 
 File open_file(const std::string& path, unsigned flags) {

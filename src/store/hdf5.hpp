@@ -41,8 +41,8 @@ using PropertyList = Handle<H5Pclose>;
 /// library's locks also fail on many cluster file systems).
 void prepare_library();
 
-/// Creates a file in the earliest format under another name, has it filled, brings it to the disk and renames
-/// it: the path never holds half a file. @throws Error if the path exists or cannot be written
+/// Creates a file in the earliest format as a draft, has it filled and publishes it: the path never holds
+/// half a file. @throws Error if the path exists or cannot be written
 void create_whole(const std::string& path, const std::function<void(hid_t file)>& fill);
 /// The same, replacing a file that is there. One process at a time.
 void replace_whole(const std::string& path, const std::function<void(hid_t file)>& fill);
@@ -53,8 +53,5 @@ Type text_type(std::size_t length);
 void write_attribute(hid_t object, const std::string& name, const std::string& text);
 /// Empty if there is none.
 std::string read_attribute(hid_t object, const std::string& name);
-
-/// @throws Error naming the file if an HDF5 call failed
-void check(bool succeeded, const std::string& what, const std::string& path);
 
 }  // namespace clog::store

@@ -5,12 +5,15 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <boost/crc.hpp>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
+#include <string_view>
+#include <utility>
 
 #include "clog/core/error.hpp"
+#include "draft.hpp"
 
 namespace clog::store {
 namespace {
@@ -26,23 +29,18 @@ struct RecordHeader {
   std::uint32_t check;
   std::uint32_t magic;
 };
+constexpr std::string_view journal_mark = "clogsweep jrnl";  // of every version
 constexpr std::uint32_t record_magic = 0x636c6f67;
 
-std::uint32_t check_sum(std::span<const std::byte> row, std::span<const std::byte> snapshot) {
+std::uint32_t check_sum(std::span<const std::byte> payload) {
   boost::crc_32_type crc;
-  crc.process_bytes(row.data(), row.size());
-  crc.process_bytes(snapshot.data(), snapshot.size());
+  crc.process_bytes(payload.data(), payload.size());
   return crc.checksum();
 }
 
 template <class T>
 std::span<const std::byte> bytes_of(const T& value) {
   return std::as_bytes(std::span(&value, 1));
-}
-
-[[noreturn]] void fail(const char* what, const std::string& path) {
-  throw Error(std::string("cannot ") + what + ' ' + path + " (" + std::strerror(errno) +
-              "); check the disk and the permissions");
 }
 
 /// Whole or not at all.
@@ -55,45 +53,140 @@ void write_all(int descriptor, std::span<const std::byte> bytes, std::uint64_t p
     if (written < 0 && errno == EINTR) continue;
     if (written <= 0) {
       const int reason = written < 0 ? errno : ENOSPC;
-      if (ftruncate(descriptor, static_cast<off_t>(place)) != 0) errno = reason;
-      errno = reason;
-      fail("write", path);
+      const bool is_cut = ftruncate(descriptor, static_cast<off_t>(place)) == 0;
+      errno = is_cut ? reason : errno;
+      check(false, "write", path);
     }
     done += static_cast<std::size_t>(written);
   }
 }
 
+void write_header(int descriptor, const std::string& path) {
+  const FileHeader header;
+  write_all(descriptor, bytes_of(header), 0, path);
+}
+
 /// Writes a record at a place of the file; returns where the next one goes.
 std::uint64_t write_record(int descriptor, const sweep::RunRow& row, std::span<const std::byte> snapshot,
                            std::uint64_t place, const std::string& path) {
-  struct {
-    RecordHeader header;
-    sweep::RunRow row;
-  } record{{sizeof row + snapshot.size(), check_sum(bytes_of(row), snapshot), record_magic}, row};
-  write_all(descriptor, bytes_of(record), place, path);
-  write_all(descriptor, snapshot, place + sizeof record, path);
-  return place + sizeof record + snapshot.size();
+  std::vector<std::byte> record(sizeof(RecordHeader) + sizeof row + snapshot.size());
+  const auto payload = record.begin() + sizeof(RecordHeader);
+  std::ranges::copy(bytes_of(row), payload);
+  std::ranges::copy(snapshot, payload + sizeof row);
+  const RecordHeader header{sizeof row + snapshot.size(), check_sum({payload, record.end()}), record_magic};
+  std::ranges::copy(bytes_of(header), record.begin());
+  write_all(descriptor, record, place, path);
+  return place + record.size();
 }
 
-int open_file(const std::string& path, int flags) {
-  const int descriptor = open(path.c_str(), flags | O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor < 0) fail("write", path);
-  return descriptor;
+std::vector<std::byte> read_all(int descriptor, const std::string& path) {
+  struct stat status {};
+  check(fstat(descriptor, &status) == 0, "read", path);
+  std::vector<std::byte> bytes(static_cast<std::size_t>(status.st_size));
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t got = pread(descriptor, bytes.data() + done, bytes.size() - done, static_cast<off_t>(done));
+    check(got >= 0, "read", path);
+    if (got == 0) break;  // somebody has shortened it meanwhile
+    done += static_cast<std::size_t>(got);
+  }
+  bytes.resize(done);
+  return bytes;
 }
 
-/// Is this still the file that the path leads to? Somebody may have finished and removed it meanwhile.
-bool is_at(int descriptor, const std::string& path) {
-  struct stat ours {
-  }, there{};
-  return fstat(descriptor, &ours) == 0 && stat(path.c_str(), &there) == 0 && ours.st_ino == there.st_ino &&
-         ours.st_dev == there.st_dev;
+/// The header is there; if its maker died at once it is not, or only its beginning.
+bool has_header(std::span<const std::byte> bytes, const std::string& path) {
+  const FileHeader header;
+  const std::size_t size = std::min(bytes.size(), sizeof header);
+  if (!std::ranges::equal(bytes.first(size), bytes_of(header).first(size)))
+    throw Error("cannot read " + path +
+                " (not a journal of this version of clogsweep); give another --output, finish with the "
+                "version that began, or remove it and lose the runs under way");
+  return size == sizeof header;
+}
+
+/// Of the record that begins at a place; nothing if what stands there is no header of one.
+std::optional<RecordHeader> header_at(std::span<const std::byte> bytes, std::size_t place) {
+  RecordHeader header;
+  if (bytes.size() - place < sizeof header) return std::nullopt;
+  std::memcpy(&header, bytes.data() + place, sizeof header);
+  if (header.magic != record_magic || header.size < sizeof(sweep::RunRow)) return std::nullopt;
+  return header;
+}
+
+Journal::Contents parse(std::span<const std::byte> bytes) {
+  Journal::Contents contents;
+  std::size_t end = std::min(sizeof(FileHeader), bytes.size());  // of what could be read
+  std::int64_t num_passed = 0;                                   // headers since then
+  for (std::size_t place = end; place < bytes.size();) {
+    const std::optional<RecordHeader> header = header_at(bytes, place);
+    const std::size_t begin = place + sizeof(RecordHeader);
+    const bool is_whole = header && header->size <= bytes.size() - begin &&
+                          check_sum(bytes.subspan(begin, header->size)) == header->check;
+    if (!is_whole) {
+      if (header) ++num_passed;
+      ++place;  // a size that cannot be trusted does not lead to the next one
+      continue;
+    }
+    if (place > end) contents.num_unreadable += std::max<std::int64_t>(1, num_passed);
+    const std::span payload = bytes.subspan(begin, header->size);
+    Journal::Entry& entry = contents.entries.emplace_back();
+    std::memcpy(&entry.row, payload.data(), sizeof entry.row);
+    entry.snapshot.assign(payload.begin() + sizeof entry.row, payload.end());
+    place = end = begin + payload.size();
+    num_passed = 0;
+  }
+  contents.num_bytes = end;
+  contents.has_torn_end = end < bytes.size();
+  return contents;
 }
 
 }  // namespace
 
-Journal::Journal(std::string path) : path_(std::move(path)) {
+std::string journal_path(const std::string& table) { return follow_links(table) + ".journal"; }
+
+std::optional<Journal::Contents> Journal::look(const std::string& path) {
+  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0 && errno == ENOENT) return std::nullopt;
+  check(descriptor >= 0, "read", path);
+  std::vector<std::byte> bytes;
+  try {
+    bytes = read_all(descriptor, path);
+  } catch (...) {
+    close(descriptor);
+    throw;
+  }
+  close(descriptor);
+  has_header(bytes, path);
+  return parse(bytes);
+}
+
+Journal::Journal(std::string path) : path_(follow_links(path)) {
+  try {
+    open_and_lock();
+    remove_stale_drafts(path_, journal_mark);
+    const std::vector<std::byte> bytes = read_all(descriptor_, path_);
+    if (has_header(bytes, path_)) {
+      contents_ = parse(bytes);
+    } else {
+      write_header(descriptor_, path_);
+      contents_.num_bytes = sizeof(FileHeader);
+      check(fsync(descriptor_) == 0 && sync_folder_of(path_), "write", path_);
+    }
+    if (contents_.has_torn_end)
+      check(ftruncate(descriptor_, static_cast<off_t>(contents_.num_bytes)) == 0, "write", path_);
+  } catch (...) {
+    close_file();
+    throw;
+  }
+}
+
+Journal::~Journal() { close_file(); }
+
+void Journal::open_and_lock() {
   while (true) {
-    descriptor_ = open_file(path_, 0);
+    descriptor_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    check(descriptor_ >= 0, "write", path_);
     // Who asks whether it is open holds it for a moment.
     int locked = -1;
     for (int attempt = 0; attempt < 10; ++attempt) {
@@ -101,28 +194,13 @@ Journal::Journal(std::string path) : path_(std::move(path)) {
       if (locked == 0 || errno != EWOULDBLOCK) break;
       usleep(20'000);
     }
-    if (locked != 0) {
-      const bool taken = errno == EWOULDBLOCK;
-      const int reason = errno;
-      close(descriptor_);
-      errno = reason;
-      if (!taken) fail("lock", path_);
+    if (locked == 0 && is_at(descriptor_, path_)) return;
+    check(locked == 0 || errno == EWOULDBLOCK, "lock", path_);
+    close(std::exchange(descriptor_, -1));
+    if (locked != 0)
       throw Error("cannot continue with " + path_ +
                   " (another sweep is writing to it); wait for it to end, or give another --output");
-    }
-    if (is_at(descriptor_, path_)) break;
-    close(descriptor_);
   }
-  try {
-    read_entries();
-  } catch (...) {
-    close(descriptor_);
-    throw;
-  }
-}
-
-Journal::~Journal() {
-  if (descriptor_ >= 0) close(descriptor_);
 }
 
 bool Journal::is_open(const std::string& path) {
@@ -133,82 +211,46 @@ bool Journal::is_open(const std::string& path) {
   return is_taken;
 }
 
-void Journal::read_entries() {
-  struct stat status {};
-  if (fstat(descriptor_, &status) != 0) fail("read", path_);
-  std::vector<std::byte> bytes(static_cast<std::size_t>(status.st_size));
-  for (std::size_t done = 0; done < bytes.size();) {
-    const ssize_t got =
-        pread(descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(done));
-    if (got <= 0) fail("read", path_);
-    done += static_cast<std::size_t>(got);
-  }
-  std::size_t place = sizeof(FileHeader);
-  if (bytes.size() < place) {  // new, or its maker died at once
-    const FileHeader header;
-    write_all(descriptor_, bytes_of(header), 0, path_);
-  } else {
-    FileHeader header;
-    std::memcpy(&header, bytes.data(), sizeof header);
-    if (!(header == FileHeader()))
-      throw Error(
-          "cannot continue with " + path_ +
-          " (not a journal of this version of clogsweep); finish with the version that began, or remove it "
-          "and lose the runs under way");
-  }
-  RecordHeader header{};
-  while (place + sizeof header <= bytes.size()) {
-    std::memcpy(&header, bytes.data() + place, sizeof header);
-    const std::size_t begin = place + sizeof header;
-    if (header.magic != record_magic || header.size < sizeof(sweep::RunRow) ||
-        header.size > bytes.size() - begin)
-      break;
-    const std::span payload(bytes.data() + begin, static_cast<std::size_t>(header.size));
-    if (check_sum(payload, {}) != header.check) break;
-    Entry entry;
-    std::memcpy(&entry.row, payload.data(), sizeof entry.row);
-    entry.snapshot.assign(payload.begin() + sizeof entry.row, payload.end());
-    entries_.push_back(std::move(entry));
-    place = begin + payload.size();
-  }
-  num_bytes_ = place;
-  if (place < bytes.size() && ftruncate(descriptor_, static_cast<off_t>(place)) != 0) fail("write", path_);
-}
-
 void Journal::add(const sweep::RunRow& row, std::span<const std::byte> snapshot) {
-  num_bytes_ = write_record(descriptor_, row, snapshot, num_bytes_, path_);
+  contents_.num_bytes = write_record(descriptor_, row, snapshot, contents_.num_bytes, path_);
 }
 
-void Journal::flush() {
-  if (fdatasync(descriptor_) != 0) fail("write", path_);
+void Journal::flush() { check(fdatasync(descriptor_) == 0, "write", path_); }
+
+bool Journal::is_to_be_rewritten() const {
+  constexpr std::uint64_t small = 64'000'000;
+  return contents_.num_bytes > std::max(small, 2 * num_rewritten_bytes_);
 }
 
 void Journal::rewrite(std::span<const Entry* const> entries) {
-  const std::string draft = path_ + ".new";
-  const int descriptor = open_file(draft, O_TRUNC);
-  try {
-    // Before it has its name, so that nobody can come between.
-    if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) fail("lock", draft);
-    const FileHeader header;
-    std::uint64_t size = sizeof header;
-    write_all(descriptor, bytes_of(header), 0, draft);
-    for (const Entry* entry : entries)
-      size = write_record(descriptor, entry->row, entry->snapshot, size, draft);
-    if (fdatasync(descriptor) != 0 || std::rename(draft.c_str(), path_.c_str()) != 0) fail("write", draft);
-    num_bytes_ = size;
-  } catch (...) {
-    close(descriptor);
-    std::remove(draft.c_str());
-    throw;
-  }
-  close(descriptor_);
-  descriptor_ = descriptor;
+  Draft draft(path_, journal_mark);
+  // A draft is locked where that is possible; here it must be, before it has its name.
+  check(flock(draft.descriptor(), LOCK_EX | LOCK_NB) == 0, "lock", path_);
+  write_header(draft.descriptor(), path_);
+  std::uint64_t size = sizeof(FileHeader);
+  for (const Entry* entry : entries)
+    size = write_record(draft.descriptor(), entry->row, entry->snapshot, size, path_);
+  draft.publish();
+  close(std::exchange(descriptor_, draft.release()));
+  contents_.num_bytes = num_rewritten_bytes_ = size;
 }
 
 void Journal::remove() {
-  std::remove(path_.c_str());
-  close(descriptor_);
-  descriptor_ = -1;
+  unlink(path_.c_str());
+  sync_folder_of(path_);  // one that came back after a power cut would say nothing that is not in the table
+  close(std::exchange(descriptor_, -1));
+}
+
+/// One that holds nothing is removed.
+void Journal::close_file() {
+  if (descriptor_ < 0) return;
+  struct stat status {};
+  const bool is_empty = contents_.num_bytes <= sizeof(FileHeader) && fstat(descriptor_, &status) == 0 &&
+                        static_cast<std::uint64_t>(status.st_size) <= contents_.num_bytes;
+  if (is_empty)
+    remove();
+  else
+    close(std::exchange(descriptor_, -1));
 }
 
 }  // namespace clog::store

@@ -1,10 +1,15 @@
 #include "clog/store/run_table.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstring>
 #include <span>
+#include <string_view>
 #include <type_traits>
 
 #include "clog/core/error.hpp"
+#include "draft.hpp"
 #include "hdf5.hpp"
 #include "run_rows.hpp"
 
@@ -90,14 +95,26 @@ std::vector<Column> columns() {
   CLOG_COLUMN(time, "time since release [t0]");
   CLOG_COLUMN(
       mean_speed,
-      "slope of r(t) after the first tenth of the run and before the arrest [sqrt(sigma g)]; NaN if it "
-      "moved less than half a diameter in that time");
+      "way over time after the transient and before the arrest [sqrt(sigma g)]; NaN if it moved less than "
+      "half a diameter in that time, or the transient was not over in half the run");
+  CLOG_COLUMN(mean_speed_error,
+              "standard error of mean_speed from its course in this run; NaN for too short a run");
+  CLOG_COLUMN(transient, "time at which the transient ends [t0]");
+  CLOG_COLUMN(travel_time, "time that mean_speed is taken over [t0]");
   CLOG_COLUMN(kinetic_energy_ratio, "E_k/E_t at the end; E_t: kinetic energy at terminal speed");
   CLOG_COLUMN(shape_parameter, "A = perimeter^2/(4 pi area) at the end; 1 for a circle");
+  CLOG_COLUMN(mechanism,
+              "wrapped around obstacles, squeezed in gaps, hybrid; none unless clogged, empty: not known");
+  CLOG_COLUMN(
+      wrapped_support,
+      "part of the support against the flow that wrapped obstacles give; NaN unless a clogged polygon");
+  CLOG_COLUMN(num_wrapped, "touched obstacles that the clogged polygon hangs over; -1: not known");
+  CLOG_COLUMN(num_gaps, "gaps between supporting obstacles that it looks into; -1: not known");
+  CLOG_COLUMN(num_arcs, "arcs of contact; -1: not known");
   CLOG_COLUMN(steps, "integrated steps");
   CLOG_COLUMN(wall_seconds, "time spent on the run [s]");
   CLOG_COLUMN(rank, "MPI rank that did the run");
-  CLOG_COLUMN(instruction_set, "instruction set of the polygon's step, or none");
+  CLOG_COLUMN(instruction_set, "instruction set of the polygon's step, or none; mixed: it went on under another one");
   CLOG_COLUMN(host, "host of that rank");
   CLOG_COLUMN(attempt, "1 for the first try");
   CLOG_COLUMN(message, "why the run failed");
@@ -150,24 +167,50 @@ void publish_sweep(const std::string& path, std::span<const RunRow> rows, const 
   });
 }
 
+namespace {
+
+/// Columns were added in 3: those of the clog's mechanism and of the speed's error.
+constexpr std::array<std::string_view, 2> readable_versions = {"2", format_version};
+
+bool is_readable(std::string_view version) {
+  return std::find(readable_versions.begin(), readable_versions.end(), version) != readable_versions.end();
+}
+
+/// Columns that the table does not have keep the values of a new row.
+void read_columns(hid_t table, std::vector<RunRow>& rows, const std::string& path) {
+  if (rows.empty()) return;
+  const Type stored(H5Dget_type(table));
+  std::vector<Column> known, missing;
+  for (Column& column : columns())
+    (H5Tget_member_index(stored, column.name) >= 0 ? known : missing).push_back(std::move(column));
+  check(H5Dread(table, memory_type(known), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) >= 0,
+        "read the table of", path);
+  const RunRow unknown;
+  for (RunRow& row : rows)
+    for (const Column& column : missing)
+      std::memcpy(reinterpret_cast<char*>(&row) + column.offset,
+                  reinterpret_cast<const char*>(&unknown) + column.offset, H5Tget_size(column.type));
+}
+
+}  // namespace
+
 SweepFile read_sweep(const std::string& path) {
   const File file = open_file(path, H5F_ACC_RDONLY);
   if (read_attribute(file, "kind") != file_kind || H5Lexists(file, table_name, H5P_DEFAULT) <= 0)
     throw Error("cannot read " + path +
                 " (an HDF5 file, but not one of clogsweep's tables of runs); give a file written "
                 "by clogsweep --output");
-  if (const std::string version = read_attribute(file, "format_version"); version != format_version)
+  if (const std::string version = read_attribute(file, "format_version"); !is_readable(version))
     throw Error("cannot read " + path + " (format version " + version + ", this program reads " +
-                format_version + "); use the program that wrote it");
+                std::string(readable_versions.front()) + " to " + format_version +
+                "); use the program that wrote it");
 
   const Dataset table(H5Dopen2(file, table_name, H5P_DEFAULT));
   check(table.valid(), "read the table of", path);
   const Space space(H5Dget_space(table));
   SweepFile sweep;
   sweep.rows.resize(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
-  if (!sweep.rows.empty())
-    check(H5Dread(table, memory_type(columns()), H5S_ALL, H5S_ALL, H5P_DEFAULT, sweep.rows.data()) >= 0,
-          "read the table of", path);
+  read_columns(table, sweep.rows, path);
   H5O_info_t root;
   check(H5Oget_info2(file, &root, H5O_INFO_NUM_ATTRS) >= 0, "read the attributes of", path);
   for (hsize_t i = 0; i < root.num_attrs; ++i) {

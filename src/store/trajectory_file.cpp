@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "draft.hpp"
 #include "hdf5.hpp"
 #include "run_rows.hpp"
 

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <exception>
+#include <utility>
 
 #include "clog/core/error.hpp"
 
@@ -12,19 +13,22 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds slice{5};
 constexpr int checks_per_look_at_the_clock = 8;
 
-DropletRun start(const RunParameters& run, std::span<const std::byte> snapshot) {
+DropletRun start(const RunParameters& run, std::span<const std::byte> snapshot, ObstacleArrays& arrays) {
+  std::shared_ptr<const ObstacleArray> obstacles = arrays.get(run.obstacles, run.seed);
   if (!snapshot.empty()) try {
-      return resume_in_array(run, snapshot);
+      return DropletRun::resume(run, obstacles, snapshot);
     } catch (const Error&) {  // of another version: the run is the same from its beginning
     }
-  return run_in_array(run);
+  return run_in_array(run, std::move(obstacles));
 }
 
 }  // namespace
 
-RunJob::RunJob(const Plan& plan, std::int64_t task, std::span<const std::byte> snapshot)
+RunJob::RunJob(const Plan& plan, std::int64_t task, std::span<const std::byte> snapshot,
+               std::shared_ptr<ObstacleArrays> arrays)
     : run_parameters_(plan.task(task)),
       snapshot_(snapshot.begin(), snapshot.end()),
+      arrays_(std::move(arrays)),
       row_(describe(run_parameters_)) {
   row_.task = task;
 }
@@ -32,7 +36,7 @@ RunJob::RunJob(const Plan& plan, std::int64_t task, std::span<const std::byte> s
 bool RunJob::advance() {
   const Clock::time_point begin = Clock::now();
   try {
-    if (!run_) run_ = std::make_unique<DropletRun>(start(run_parameters_, snapshot_));
+    if (!run_) run_ = std::make_unique<DropletRun>(start(run_parameters_, snapshot_, *arrays_));
     while (!over_ && Clock::now() - begin < slice) over_ = run_->advance(checks_per_look_at_the_clock);
   } catch (const std::exception& error) {
     over_ = true;
@@ -60,8 +64,9 @@ RunRow RunJob::row() const {
 }
 
 JobFactory run_jobs(const Plan& plan) {
-  return [&plan](std::int64_t task, std::span<const std::byte> snapshot) {
-    return std::make_unique<RunJob>(plan, task, snapshot);
+  return [&plan, arrays = std::make_shared<ObstacleArrays>()](std::int64_t task,
+                                                              std::span<const std::byte> snapshot) {
+    return std::make_unique<RunJob>(plan, task, snapshot, arrays);
   };
 }
 

@@ -94,9 +94,17 @@ void record(const RunResult& result, RunRow& row) {
   row.distance = result.distance;
   row.lateral_displacement = result.lateral;
   row.time = result.time;
-  row.mean_speed = result.mean_speed;
+  row.mean_speed = result.speed.mean;
+  row.mean_speed_error = result.speed.error;
+  row.transient = result.speed.transient;
+  row.travel_time = result.speed.time;
   row.kinetic_energy_ratio = result.kinetic_energy_ratio;
   row.shape_parameter = result.shape_parameter;
+  row.mechanism = clog::name(result.mechanism);
+  row.wrapped_support = result.geometry.wrapped_support;
+  row.num_wrapped = result.geometry.num_wrapped;
+  row.num_gaps = result.geometry.num_gaps;
+  row.num_arcs = result.geometry.num_arcs;
   row.steps = result.steps;
   row.message = result.message;
 }

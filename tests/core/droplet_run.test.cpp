@@ -32,6 +32,7 @@ void expect_identical(const RunResult& a, const RunResult& b) {
   EXPECT_EQ(a.kinetic_energy_ratio, b.kinetic_energy_ratio);
   EXPECT_EQ(a.shape_parameter, b.shape_parameter);
   EXPECT_EQ(a.steps, b.steps);
+  EXPECT_EQ(a.mechanism, b.mechanism);
 }
 
 void expect_diverged(const RunResult& result) {
@@ -59,6 +60,11 @@ RunParameters long_run(Model model) {
   return resolve(run);
 }
 
+DropletRun resume_in_array(const RunParameters& run, std::span<const std::byte> snapshot) {
+  return DropletRun::resume(run, std::make_shared<ObstacleArray>(sample_obstacles(run.obstacles, run.seed)),
+                            snapshot);
+}
+
 TEST(DropletRun, GoesOnFromEverySnapshotBitForBit) {
   for (const Model model : {Model::dp, Model::sp}) {
     const RunParameters run = long_run(model);
@@ -75,7 +81,7 @@ TEST(DropletRun, GoesOnFromEverySnapshotBitForBit) {
       while (!resumed.advance(7)) {
       }
       expect_identical(resumed.result(), whole.result());
-      EXPECT_EQ(resumed.result().mean_speed, whole.result().mean_speed);
+      EXPECT_EQ(resumed.result().speed.mean, whole.result().speed.mean);
       EXPECT_TRUE((resumed.droplet().state().position == whole.droplet().state().position).all());
       EXPECT_EQ(resumed.snapshot(), whole.snapshot());
     }
@@ -109,8 +115,9 @@ TEST(DropletRun, EndsFlowingWhenItsTimeIsUp) {
   const RunResult result = result_of(parameters, 100);
   EXPECT_EQ(result.status, RunStatus::flowing);
   EXPECT_NEAR(result.time, 40, 1e-3);  // a whole number of steps
+  EXPECT_EQ(result.mechanism, ClogMechanism::none);
   EXPECT_GT(result.distance, 0.5);
-  EXPECT_GT(result.mean_speed, 0.5 * parameters.drag.terminal_speed);
+  EXPECT_GT(result.speed.mean, 0.5 * parameters.drag.terminal_speed);
 }
 
 TEST(DropletRun, AStiffDropletInNarrowGapsClogsAndStaysWhereItIs) {
@@ -123,6 +130,8 @@ TEST(DropletRun, AStiffDropletInNarrowGapsClogsAndStaysWhereItIs) {
   ASSERT_EQ(run.result().status, RunStatus::clogged);
   EXPECT_LT(run.result().kinetic_energy_ratio, 1e-17);
   EXPECT_LT(run.result().time, 5000);
+  EXPECT_EQ(run.result().mechanism, ClogMechanism::squeezed);
+  EXPECT_GE(run.result().geometry.num_arcs, 2);
 
   // Integrating on must not set it free: the same run with a threshold it cannot reach.
   RunParameters on = parameters;
@@ -196,6 +205,7 @@ TEST(DropletRun, FollowsASoftDiskToo) {
   const RunResult result = result_of(resolve(parameters), 1000);
   EXPECT_EQ(result.status, RunStatus::clogged);
   EXPECT_EQ(result.shape_parameter, 1);
+  EXPECT_EQ(result.mechanism, ClogMechanism::squeezed);
 }
 
 }  // namespace

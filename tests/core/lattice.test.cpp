@@ -155,7 +155,7 @@ TEST(Lattice, LeadsADiskThatFeelsNothingStraight) {
 TEST(Lattice, LeadsToTheOtherSideInAMirror) {
   const RunParameters run = soft_disk(13);
   const ObstacleArray array = lattice_obstacles(run.obstacles, run.seed);
-  std::vector<Obstacle> mirrored = array.obstacles();
+  std::vector<Obstacle> mirrored(array.obstacles().begin(), array.obstacles().end());
   for (Obstacle& obstacle : mirrored) obstacle.y = array.box() - obstacle.y;
   const RunResult result = result_of(run_in_array(run));
   const RunResult mirror =

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <vector>
 
 namespace clog::fit {
@@ -25,6 +26,66 @@ TEST(MeanSpeed, HasNoErrorForOneRunAndNoMeanForNone) {
   EXPECT_TRUE(std::isnan(fit_mean_speed(std::vector<double>{1}).standard_error));
   EXPECT_DOUBLE_EQ(fit_mean_speed(std::vector<double>{1}).mean, 1);
   EXPECT_TRUE(std::isnan(fit_mean_speed({}).mean));
+}
+
+TEST(SpeedRatio, WeighsRunsByTheirTime) {
+  const MeanSpeed fit = fit_speed_ratio(std::vector<Travel>{{1, 1}, {9, 3}, {NAN, NAN}});
+  EXPECT_EQ(fit.num_runs, 2);
+  EXPECT_DOUBLE_EQ(fit.mean, 2.5);
+  EXPECT_DOUBLE_EQ(fit.standard_error, 1);  // 3 and 1 without the one or the other
+}
+
+TEST(SpeedRatio, OfEqualTimesIsTheMeanWithItsError) {
+  const MeanSpeed ratio = fit_speed_ratio(std::vector<Travel>{{2, 2}, {4, 2}, {6, 2}, {8, 2}});
+  const MeanSpeed mean = fit_mean_speed(std::vector<double>{1, 2, 3, 4});
+  EXPECT_DOUBLE_EQ(ratio.mean, mean.mean);
+  EXPECT_NEAR(ratio.standard_error, mean.standard_error, 1e-14);
+}
+
+TEST(SpeedRatio, HasNoErrorForOneRunAndNoMeanForNone) {
+  EXPECT_TRUE(std::isnan(fit_speed_ratio(std::vector<Travel>{{1, 2}}).standard_error));
+  EXPECT_DOUBLE_EQ(fit_speed_ratio(std::vector<Travel>{{1, 2}}).mean, 0.5);
+  EXPECT_TRUE(std::isnan(fit_speed_ratio({}).mean));
+}
+
+/// Runs whose times differ tenfold and whose speeds scatter the more the shorter they are.
+std::vector<Travel> scattered_runs(int number, std::mt19937& engine) {
+  std::uniform_real_distribution<double> log_time(0, std::log(10));
+  std::normal_distribution<double> normal;
+  std::vector<Travel> runs;
+  for (int i = 0; i < number; ++i) {
+    const double time = std::exp(log_time(engine));
+    runs.push_back({time * (0.5 + 0.1 * normal(engine) / std::sqrt(time)), time});
+  }
+  return runs;
+}
+
+/// n/(n - 1) sum (d_i - R t_i)^2/(sum t)^2, to first order in 1/n.
+TEST(SpeedRatio, HasTheLinearisedErrorOfManyRuns) {
+  std::mt19937 engine(1);
+  const std::vector<Travel> runs = scattered_runs(1000, engine);
+  const MeanSpeed fit = fit_speed_ratio(runs);
+  double time = 0, squares = 0;
+  for (const Travel& run : runs) {
+    time += run.time;
+    squares += std::pow(run.distance - fit.mean * run.time, 2);
+  }
+  EXPECT_NEAR(fit.standard_error / (std::sqrt(squares * 1000 / 999) / time), 1, 0.005);
+}
+
+TEST(SpeedRatio, ScattersAsItsErrorSays) {
+  std::mt19937 engine(2);
+  int covered = 0;
+  double squares = 0, squared_errors = 0;
+  constexpr int samples = 5000;
+  for (int i = 0; i < samples; ++i) {
+    const MeanSpeed fit = fit_speed_ratio(scattered_runs(20, engine));
+    squares += std::pow(fit.mean - 0.5, 2);
+    squared_errors += std::pow(fit.standard_error, 2);
+    covered += std::abs(fit.mean - 0.5) < 2.093 * fit.standard_error;  // Student's t, 19 degrees of freedom
+  }
+  EXPECT_NEAR(squared_errors / squares, 1, 0.06);
+  EXPECT_NEAR(static_cast<double>(covered) / samples, 0.95, 0.015);
 }
 
 }  // namespace

@@ -5,49 +5,17 @@
 
 #include <chrono>
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <thread>
+
+#include "support.hpp"
 
 namespace {
 
 using namespace clog;
-
-void expect(bool holds, const char* what) {
-  if (holds) return;
-  std::fprintf(stderr, "failed: %s\n", what);
-  std::_Exit(1);
-}
-
-/// Takes a number of slices that differs from task to task.
-class SyntheticJob final : public sweep::Job {
- public:
-  SyntheticJob(std::int64_t task, std::span<const std::byte> snapshot)
-      : task_(task), slices_left_(1 + task * 7 % 5 - static_cast<std::int64_t>(snapshot.size())) {}
-  bool advance() override {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    return --slices_left_ <= 0;
-  }
-  std::vector<std::byte> snapshot() const override {
-    return std::vector<std::byte>(1 + task_ * 7 % 5 - slices_left_);  // as many bytes as slices are done
-  }
-  sweep::RunRow row() const override {
-    sweep::RunRow row;
-    row.task = task_;
-    row.distance = static_cast<double>(task_ * task_);
-    row.status = slices_left_ > 0 ? "interrupted" : "clogged";
-    row.steps = 1 + task_ * 7 % 5 - slices_left_;
-    return row;
-  }
-
- private:
-  std::int64_t task_;
-  std::int64_t slices_left_;
-};
-
-const sweep::JobFactory make_job = [](std::int64_t task, std::span<const std::byte> snapshot) {
-  return std::make_unique<SyntheticJob>(task, snapshot);
-};
 
 void every_task_comes_back_once(const parallel::Communicator& ranks, bool master_computes,
                                 std::int64_t num_tasks) {
@@ -61,10 +29,10 @@ void every_task_comes_back_once(const parallel::Communicator& ranks, bool master
     expect(row.distance == static_cast<double>(row.task * row.task), "a row holds its own task's result");
     expect(row.status.view() == "clogged", "a task is run to its end");
   };
-  const bool all =
-      parallel::run_tasks(ranks, parallel::TaskOrder(num_tasks, 7), make_job, events, master_computes);
+  const parallel::SweepEnd end = parallel::run_tasks(ranks, parallel::TaskOrder(num_tasks, 7),
+                                                     make_synthetic_job, events, master_computes);
   if (ranks.rank() != 0) return;
-  expect(all, "all tasks were handed out");
+  expect(end == parallel::SweepEnd::complete, "all tasks were handed out");
   expect(static_cast<std::int64_t>(times_ended.size()) == num_tasks, "no task is lost");
   for (const auto& [task, times] : times_ended) expect(times == 1, "no task is done twice");
   if (num_tasks >= 100)
@@ -84,9 +52,10 @@ void a_stop_ends_running_tasks_as_interrupted(const parallel::Communicator& rank
   };
   events.ended = [&](const parallel::Report&) { stop = ++num_ended >= 10; };
   events.stop_requested = [&] { return stop; };
-  const bool all = parallel::run_tasks(ranks, parallel::TaskOrder(10000, 7), make_job, events, true);
+  const parallel::SweepEnd end =
+      parallel::run_tasks(ranks, parallel::TaskOrder(10000, 7), make_synthetic_job, events, true);
   if (ranks.rank() != 0) return;
-  expect(!all, "a stopped sweep says that tasks are left");
+  expect(end == parallel::SweepEnd::stopped, "a stopped sweep says that tasks are left");
   expect(num_ended == num_started, "every started task has a row");
   expect(num_ended < 10 + 3 * ranks.size(), "a stop is quick");
 }
@@ -107,7 +76,8 @@ void running_tasks_report_and_go_on_from_there(const parallel::Communicator& ran
     if (report.row.status.view() == "interrupted") snapshots[report.row.task] = report.snapshot;
   };
   events.stop_requested = [&] { return stop; };
-  parallel::run_tasks(ranks, parallel::TaskOrder(1000), make_job, events, true, std::chrono::milliseconds(2));
+  parallel::run_tasks(ranks, parallel::TaskOrder(1000), make_synthetic_job, events, true,
+                      std::chrono::milliseconds(2));
   expect(ranks.rank() != 0 || num_reports > 0, "running tasks report");
   std::vector<std::int64_t> left;
   for (const auto& [task, snapshot] : snapshots) left.push_back(task);
@@ -119,7 +89,7 @@ void running_tasks_report_and_go_on_from_there(const parallel::Communicator& ran
     expect(report.row.steps == 1 + report.row.task * 7 % 5, "no slice is done twice");
     expect(report.row.status.view() == "clogged", "a task goes on to its end");
   };
-  parallel::run_tasks(ranks, parallel::TaskOrder(left, 1), make_job, events, true);
+  parallel::run_tasks(ranks, parallel::TaskOrder(left, 1), make_synthetic_job, events, true);
   expect(num_ended == static_cast<int>(left.size()), "every interrupted task goes on");
 }
 
@@ -141,11 +111,11 @@ class FailingJob final : public sweep::Job {
 };
 
 void failed_tasks_are_tried_again(const parallel::Communicator& ranks) {
-  // Task 3 never succeeds, the others do in their second attempt, which a snapshot of one byte marks here.
+  // Task 3 never succeeds, task 5 does in its second attempt, which a snapshot of one byte marks here.
   std::map<std::int64_t, std::int64_t> attempts;
   std::map<std::int64_t, int> successes;
   const auto make_failing = [](std::int64_t task, std::span<const std::byte> snapshot) {
-    return std::make_unique<FailingJob>(task, task == 3 || snapshot.empty());
+    return std::make_unique<FailingJob>(task, task == 3 || (task == 5 && snapshot.empty()));
   };
   parallel::SweepEvents events;
   events.started = [&](std::int64_t task, int) {
@@ -161,7 +131,110 @@ void failed_tasks_are_tried_again(const parallel::Communicator& ranks) {
   if (ranks.rank() != 0) return;
   expect(successes.size() == 19 && !successes.contains(3), "what can succeed does");
   expect(attempts[3] == 3, "attempts are limited");
-  expect(attempts[5] == 2, "no more attempts than needed");
+  expect(attempts[5] == 2 && attempts[6] == 1, "no more attempts than needed");
+}
+
+/// Fails on broken ranks, takes some milliseconds on others, and fails everywhere if it is to.
+sweep::JobFactory failing_on(const parallel::Communicator& ranks,
+                             const std::function<bool(int rank)>& is_broken,
+                             const std::function<bool(std::int64_t task)>& is_impossible) {
+  return [&ranks, is_broken, is_impossible](
+             std::int64_t task, std::span<const std::byte> snapshot) -> std::unique_ptr<sweep::Job> {
+    if (is_impossible(task) || is_broken(ranks.rank())) return std::make_unique<FailingJob>(task, true);
+    return std::make_unique<SyntheticJob>(task, snapshot);
+  };
+}
+
+/// What a sweep with broken ranks came to, on rank 0.
+struct Outcome {
+  parallel::SweepEnd end;
+  std::map<std::int64_t, std::string> status;     // by task
+  std::map<std::int64_t, std::int64_t> attempts;  // those that count
+  std::map<std::int64_t, int> starts;
+  std::set<int> set_aside;
+};
+
+Outcome sweep(const parallel::Communicator& ranks, std::int64_t num_tasks, std::int64_t most_attempts,
+              const sweep::JobFactory& make_job) {
+  Outcome outcome;
+  parallel::SweepEvents events;
+  events.started = [&](std::int64_t task, int rank) {
+    expect(!outcome.set_aside.contains(rank), "who was set aside gets no task");
+    ++outcome.starts[task];
+    return parallel::Start{{}, ++outcome.attempts[task]};
+  };
+  events.tries_again = [&](const sweep::RunRow& failed) { return failed.attempt < most_attempts; };
+  events.failure_withdrawn = [&](std::int64_t task) {
+    expect(outcome.status[task] == "failed", "a failure that is withdrawn was told of");
+    --outcome.attempts[task];
+  };
+  events.set_aside = [&](const sweep::RunRow& failed) {
+    expect(failed.status.view() == "failed" && !failed.host.view().empty(), "the rank's failure comes along");
+    expect(outcome.set_aside.insert(static_cast<int>(failed.rank)).second, "nobody is set aside twice");
+  };
+  events.ended = [&](const parallel::Report& report) {
+    outcome.status[report.row.task] = report.row.status.view();
+  };
+  outcome.end = parallel::run_tasks(ranks, parallel::TaskOrder(num_tasks, 5), make_job, events, true);
+  return outcome;
+}
+
+const auto never = [](std::int64_t) { return false; };
+
+void a_broken_rank_is_set_aside_and_its_tasks_done_elsewhere(const parallel::Communicator& ranks,
+                                                             std::int64_t most_attempts) {
+  const int broken = ranks.size() - 1;
+  const auto make_job = failing_on(
+      ranks, [=](int rank) { return rank == broken; }, never);
+  const Outcome outcome = sweep(ranks, 60, most_attempts, make_job);
+  if (ranks.rank() != 0) return;
+  expect(outcome.end == parallel::SweepEnd::complete, "the sweep goes on without it");
+  expect(outcome.set_aside == std::set<int>{broken}, "the broken rank, and no other, is set aside");
+  for (const auto& [task, status] : outcome.status)
+    expect(status == "clogged", "its tasks succeed elsewhere");
+  for (const auto& [task, attempts] : outcome.attempts)
+    expect(attempts <= most_attempts, "attempts are limited");
+}
+
+void most_ranks_may_be_broken(const parallel::Communicator& ranks) {
+  // One attempt only: failures of broken ranks must not count.
+  const auto make_job = failing_on(
+      ranks, [](int rank) { return rank > 0; }, never);
+  const Outcome outcome = sweep(ranks, 60, 1, make_job);
+  if (ranks.rank() != 0) return;
+  expect(outcome.end == parallel::SweepEnd::complete, "one good rank is enough");
+  expect(outcome.set_aside.size() == static_cast<std::size_t>(ranks.size()) - 1, "all others are set aside");
+  for (const auto& [task, status] : outcome.status) expect(status == "clogged", "all tasks succeed");
+}
+
+void impossible_tasks_are_no_rank_to_blame(const parallel::Communicator& ranks) {
+  const auto none = [](int) { return false; };
+  const auto some = [](std::int64_t task) { return task % 5 == 2 || task % 5 == 3; };
+  const auto all = [](std::int64_t) { return true; };
+  for (const std::function<bool(std::int64_t)>& is_impossible :
+       {std::function<bool(std::int64_t)>(some), std::function<bool(std::int64_t)>(all)}) {
+    const Outcome outcome = sweep(ranks, 60, 2, failing_on(ranks, none, is_impossible));
+    if (ranks.rank() != 0) continue;
+    expect(outcome.end == parallel::SweepEnd::complete, "the sweep comes to its end");
+    expect(outcome.set_aside.empty(), "no rank is set aside");
+    expect(outcome.status.size() == 60, "every task has a row");
+    for (const auto& [task, status] : outcome.status)
+      expect(status == (is_impossible(task) ? "failed" : "clogged"), "what can succeed does");
+    for (const auto& [task, starts] : outcome.starts)
+      expect(starts <= (is_impossible(task) ? 2 + ranks.size() : 1),
+             "no more attempts than needed, in doubt one more on each rank");
+  }
+}
+
+void a_sweep_without_a_rank_that_works_ends(const parallel::Communicator& ranks) {
+  // Rank 0 breaks once all others have been set aside.
+  int num_done = 0;
+  const auto make_job = failing_on(
+      ranks, [&](int rank) { return rank > 0 || ++num_done > 60; }, never);
+  const Outcome outcome = sweep(ranks, 200, 2, make_job);
+  if (ranks.rank() != 0) return;
+  expect(outcome.end == parallel::SweepEnd::no_rank_left, "a sweep that no rank can do ends");
+  expect(outcome.set_aside.size() == static_cast<std::size_t>(ranks.size()), "all are set aside");
 }
 
 }  // namespace
@@ -179,5 +252,12 @@ int main(int argc, char** argv) {
   a_stop_ends_running_tasks_as_interrupted(ranks);
   running_tasks_report_and_go_on_from_there(ranks);
   failed_tasks_are_tried_again(ranks);
+  impossible_tasks_are_no_rank_to_blame(ranks);
+  if (ranks.size() > 1) {
+    a_broken_rank_is_set_aside_and_its_tasks_done_elsewhere(ranks, 1);
+    a_broken_rank_is_set_aside_and_its_tasks_done_elsewhere(ranks, 2);
+    most_ranks_may_be_broken(ranks);
+    a_sweep_without_a_rank_that_works_ends(ranks);
+  }
   if (ranks.rank() == 0) std::printf("scheduler holds on %d ranks\n", ranks.size());
 }

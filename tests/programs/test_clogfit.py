@@ -61,6 +61,40 @@ class Fit(ProgramTest):
         self.assertIn("incomplete", group["doubts"])
         self.assertIn("f: fewer than 5 clogs", self.succeed("clogfit", "sweep.h5").stdout)
 
+    def test_each_mechanism_has_a_length_of_its_own(self):
+        self.sweep("seeds=1..10", "max-time=1")
+        mechanisms = [b"wrapped"] * 2 + [b"squeezed"] * 4 + [b"hybrid"] + [b"none"] * 3
+        self.change(distance=np.arange(1.0, 11), status=[b"clogged"] * 7 + [b"flowing"] * 3, mechanism=mechanisms)
+        group, = self.fit()["groups"]
+        self.assertEqual((group["wrapped"], group["squeezed"], group["hybrid"]), (2, 4, 1))
+        lengths = [group[f"clogging_length_{kind}"] for kind in ("wrapped", "squeezed", "hybrid")]
+        self.assertEqual(lengths, [55 / 2, 55 / 4, 55])
+        self.assertAlmostEqual(sum(1 / length for length in lengths), 1 / group["clogging_length"], places=12)
+        self.assertLess(group["clogging_length_wrapped_lower"], 55 / 2)
+        self.assertGreater(group["clogging_length_wrapped_upper"], 55 / 2)
+        self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, "w/s/h.*\n.* 2/4/1 ")
+        self.change(mechanism=[b"squeezed"] * 7 + [b"none"] * 3)
+        group, = self.fit()["groups"]
+        self.assertEqual((group["wrapped"], group["clogging_length_wrapped"]), (0, None))
+        self.assertGreater(group["clogging_length_wrapped_lower"], 0)
+        self.assertNotIn("w/s/h", self.succeed("clogfit", "sweep.h5").stdout)
+
+    def test_files_of_format_version_2_can_be_read(self):
+        rows = self.sweep("max-time=60", "line-tension=2", "seeds=1..3")
+        new = ["mean_speed_error", "transient", "travel_time", "mechanism", "wrapped_support", "num_wrapped", "num_gaps", "num_arcs"]
+        before, = self.fit()["groups"]
+        with h5py.File(self.folder / "sweep.h5", "r+") as file:
+            table = file["runs"][:]
+            del file["runs"]
+            file["runs"] = table[[name for name in table.dtype.names if name not in new]].astype(
+                [(name, table.dtype[name]) for name in table.dtype.names if name not in new])
+            file.attrs["format_version"] = np.bytes_("2")
+        group, = self.fit()["groups"]
+        self.assertEqual((group["runs"], group["clogs"]), (3, int((rows.status == "clogged").sum())))
+        self.assertEqual(group["clogging_length"], before["clogging_length"])
+        for name in ("wrapped", "clogging_length_squeezed", "mean_speed_ratio"):
+            self.assertIsNone(group[name])
+
     def test_groups_agree_with_pandas(self):
         rows = self.sweep("max-time=60", "line-tension=0.4,2", "obstacle-gap=0.2,0.8", "seeds=1..6")
         groups = self.fit()["groups"]
@@ -81,6 +115,8 @@ class Fit(ProgramTest):
             if len(speeds) > 1:
                 self.assertAlmostEqual(group["mean_speed"], speeds.mean(), places=12)
                 self.assertAlmostEqual(group["mean_speed_error"], speeds.sem(), places=12)
+                ratio = (mine.mean_speed / mine.terminal_speed * mine.travel_time).sum() / mine.travel_time.sum()
+                self.assertAlmostEqual(group["mean_speed_ratio"], ratio, places=12)
 
     def test_interrupted_runs_are_censored_and_failed_ones_left_out(self):
         self.sweep("seeds=1..4", "max-time=1")

@@ -1,3 +1,7 @@
+import os
+import pathlib
+import pty
+import re
 import signal
 import subprocess
 import time
@@ -164,6 +168,109 @@ class Stopped(ProgramTest):
         self.assertEqual(set(rows[rows.status == "interrupted"]["rank"]), {0, 1})
 
 
+class Isolated(ProgramTest):
+    """Tasks run in processes of their own."""
+
+    LONG = [*SMALL, "obstacle-gap=1.2", "--output", "s.h5"]
+
+    def start(self, *arguments):
+        process = subprocess.Popen([str(BIN / "clogsweep"), *self.LONG, *arguments], cwd=self.folder,
+                                   stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.kill)
+        return process
+
+    def children_of(self, pid):
+        return [int(child) for child in subprocess.run(["pgrep", "-P", str(pid)], capture_output=True, text=True).stdout.split()]
+
+    def computing_process(self, rank):
+        """The rank's helper starts it."""
+        deadline = time.time() + 60
+        while time.time() < deadline:
+            found = [process for helper in self.children_of(rank.pid) for process in self.children_of(helper)]
+            if found:
+                return found[0]
+            time.sleep(0.02)
+        self.fail("no process computes")
+
+    def test_rows_are_the_same_without(self):
+        sweep = [*QUICK, "line-tension=0.3,2", "obstacle-gap=0.2,0.6", "seeds=1..4", "--output"]
+        self.succeed("clogsweep", *sweep, "yes.h5", "--isolate=yes", ranks=2)
+        self.succeed("clogsweep", *sweep, "no.h5", "--isolate=no", ranks=2)
+        pandas.testing.assert_frame_equal(*(table(self.folder / name).drop(columns=CIRCUMSTANCES)
+                                            for name in ("yes.h5", "no.h5")), check_exact=True)
+
+    def test_a_crash_fails_one_task_and_the_sweep_goes_on(self):
+        process = self.start("--attempts=1", "seeds=1..2", "max-time=3000")
+        os.kill(self.computing_process(process), signal.SIGSEGV)
+        _, error = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 0, error)
+        rows = table(self.folder / "s.h5")
+        self.assertEqual(list(rows.status), ["failed", "flowing"])
+        self.assertEqual(rows.message[0], "its process was ended by SIGSEGV (Segmentation fault)")
+        self.assertRegex(error, r"(?m)^\d\d:\d\d:\d\d task 0 rank 0: failed, attempt 1: its process was ended by SIGSEGV")
+
+    def test_a_task_that_crashed_is_tried_again(self):
+        process = self.start("seeds=1", "max-time=3000")
+        os.kill(self.computing_process(process), signal.SIGKILL)
+        _, error = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 0, error)
+        self.assertIn("attempt 1, will be tried again: its process was ended by SIGKILL", error)
+        rows = table(self.folder / "s.h5")
+        self.assertEqual((rows.status[0], rows.attempt[0], rows.message[0]), ("flowing", 2, ""))
+
+    def test_no_process_outlives_its_rank(self):
+        process = self.start("seeds=1", "max-time=1e5")
+        processes = [*self.children_of(process.pid), self.computing_process(process)]
+        process.kill()
+        process.communicate()
+        deadline = time.time() + 10
+        while any(pathlib.Path(f"/proc/{pid}").exists() for pid in processes):
+            self.assertLess(time.time(), deadline, "a process is left")
+            time.sleep(0.05)
+
+
+class Told(ProgramTest):
+    """What a sweep says while it runs."""
+
+    RUNS = [*QUICK, "seeds=1..3", "--output", "s.h5"]
+    EVENT = r"\d\d:\d\d:\d\d task \d rank 0: (starts|(clogged|flowing) at \S+ sigma after \S+ t0) \(Gamma=1, gap=0.2, seed \d\)"
+
+    def test_verbose_tells_of_every_start_and_end(self):
+        lines = self.succeed("clogsweep", *self.RUNS, "--verbose").stderr.splitlines()
+        self.assertEqual(len([line for line in lines if re.fullmatch(self.EVENT, line)]), 6, lines)
+        self.assertIn("3/3 done", lines[-1])
+
+    def test_by_default_only_what_is_out_of_the_ordinary(self):
+        self.assertNotIn("task", self.succeed("clogsweep", *self.RUNS).stderr)
+        failing = self.succeed("clogsweep", *QUICK, "obstacle-density=9", "seeds=1", "--output", "f.h5").stderr
+        self.assertRegex(failing, r"(?m)^\S+ task 0 rank 0: failed, attempt 1, will be tried again: invalid obstacle-density=9 .*seed 1\)$")
+        self.assertRegex(failing, r"(?m)^\S+ task 0 rank 0: failed, attempt 2: invalid obstacle-density=9 .*seed 1\)$")
+
+    def test_quiet_says_nothing(self):
+        self.assertEqual(self.succeed("clogsweep", *self.RUNS, "--quiet").stderr, "")
+
+    def test_a_terminal_s_progress_line_stays_below_the_events(self):
+        ours, theirs = pty.openpty()
+        process = subprocess.Popen([str(BIN / "clogsweep"), *self.RUNS, "--verbose"], cwd=self.folder, stderr=theirs)
+        os.close(theirs)
+        seen = b""
+        try:
+            while part := os.read(ours, 4096):
+                seen += part
+        except OSError:  # the other end is closed
+            pass
+        os.close(ours)
+        self.assertEqual(process.wait(), 0)
+        # What is on the screen in the end: a carriage return writes over the line, and the escape clears its rest.
+        lines = []
+        for line in seen.decode().removesuffix("\r\n").split("\r\n"):
+            lines.append(line.split("\r")[-1].removesuffix("\x1b[K"))
+            self.assertTrue("\r" not in line or line.endswith("\x1b[K"), line)
+        self.assertEqual(len([line for line in lines if re.fullmatch(self.EVENT, line)]), 6, lines)
+        self.assertEqual(len([line for line in lines if " done, " in line]), 1, lines)
+        self.assertIn("3/3 done", lines[-1])
+
+
 class Refusals(ProgramTest):
     def test_mistakes_get_one_line_and_exit_code_2(self):
         self.write("bad.cfg", "line-tenson = 1\n")
@@ -200,6 +307,8 @@ class Refusals(ProgramTest):
             (["--max-hours=soon", *out], ["max-hours"]),
             (["--attempts=0", *out], ["--attempts=0", "1..1000"]),
             (["--report-seconds=0", *out], ["--report-seconds=0"]),
+            (["--isolate=perhaps", *out], ["--isolate=perhaps", "yes, no"]),
+            (["--verbose", "--quiet", *out], ["--verbose and --quiet"]),
             (["--output", "no/such/folder/s.h5"], ["no/such/folder"]),
         ]:
             with self.subTest(arguments=arguments):

@@ -6,6 +6,7 @@ KILLS=100 test_resume.py  kills a hundred times instead of eight.
 import json
 import os
 import random
+import re
 import signal
 import subprocess
 import time
@@ -15,8 +16,16 @@ import h5py
 import numpy as np
 from support import BIN, ROOT, SWEEP, ProgramTest, SweepTest, table
 
+FEW = [word.replace("1..6", "1") for word in SWEEP]
+
 
 class Resumed(SweepTest):
+    def journal(self):
+        """Numbers of its records, and of those with snapshots."""
+        words = self.run_program("clogsweep", "verify", "s.h5").stdout
+        found = re.search(r"s.h5.journal: (\d+) records, (\d+) of them with snapshots", words)
+        return (int(found[1]), int(found[2])) if found else (0, 0)
+
     def test_kills_at_random_moments_lose_nothing(self):
         self.succeed("clogsweep", *SWEEP[:-1], "whole.h5", ranks=2)
         chance = random.Random(7)
@@ -69,6 +78,18 @@ class Resumed(SweepTest):
         again = self.succeed("clogsweep", *SWEEP, ranks=2)
         self.assertIn("there is nothing left to do", again.stderr)
         self.check_equal("s.h5", "whole.h5")
+
+    def test_a_signal_while_it_starts_stops_it_too(self):
+        os.mkfifo(self.folder / "s.cfg")  # rank 0 waits for its config
+        process = self.start(*SWEEP, "--config", "s.cfg")
+        with open(self.folder / "s.cfg", "w") as config:
+            for rank in self.ranks_of(process):
+                os.kill(rank, signal.SIGUSR1)
+            config.write("time-step = 1e-3\n")
+        _, error = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 75, error)
+        self.assertIn("stopped by a signal; the same command goes on", error)
+        self.assertLessEqual(set(table(self.folder / "s.h5").status), {"interrupted"})
 
     def test_max_hours_stops_it(self):
         done = self.run_program("clogsweep", *SWEEP, "--max-hours=0.0002")
@@ -123,6 +144,48 @@ class Resumed(SweepTest):
         (self.folder / "s.h5").unlink()
         self.refuse("clogsweep", *SWEEP, words=["its table is gone", "remove the journal"])
 
+    def test_a_damaged_record_costs_no_other(self):
+        self.succeed("clogsweep", *FEW[:-1], "whole.h5", ranks=2)
+        process = self.start(*FEW)
+        self.wait_for(lambda: self.journal()[0] >= 2)
+        self.kill_all(process)
+        self.assertIn(", all whole", self.succeed("clogsweep", "verify", "s.h5").stdout)
+        journal = self.folder / "s.h5.journal"
+        content = bytearray(journal.read_bytes())
+        content[500] ^= 1  # of the first record
+        journal.write_bytes(content + b"the torn end of a kill")
+        verified = self.run_program("clogsweep", "verify", "s.h5")
+        self.assertEqual(verified.returncode, 1)
+        self.assertRegex(verified.stdout, r"1 more damaged; the last one is torn, as after a kill")
+        self.assertEqual(journal.read_bytes()[:-22], content)
+        done = self.succeed("clogsweep", *FEW, ranks=2)
+        self.assertIn("s.h5.journal: 1 record is damaged; what was in there is computed again\n", done.stderr)
+        self.check_equal("s.h5", "whole.h5")
+
+    def test_a_link_is_followed(self):
+        (self.folder / "scratch").mkdir()
+        (self.folder / "s.h5").symlink_to("scratch/target.h5")
+        self.run_program("clogsweep", *FEW, "--max-hours=0.0003")
+        self.assertEqual({path.name for path in (self.folder / "scratch").iterdir()}, {"target.h5", "target.h5.journal"})
+        self.succeed("clogsweep", *FEW[:-1], "scratch/target.h5", ranks=2)
+        self.assertTrue((self.folder / "s.h5").is_symlink())
+        self.assertIn("4 of 4 runs over", self.succeed("clogsweep", "status", "s.h5").stdout)
+
+    def test_other_files_beside_the_table_stay(self):
+        short = self.write("s.h5.journal", "to do: eat")
+        self.refuse("clogsweep", *FEW, words=["not a journal", "another --output"])
+        (self.folder / short).unlink()
+        notes = {self.write(name, name) for name in ("s.h5.new", "s.h5.journal.new", "s.h5.clogsweep-draft1")}
+        self.run_program("clogsweep", *FEW, "--max-hours=0.0003")
+        self.succeed("clogsweep", *FEW, ranks=2)
+        self.assertEqual(set(self.snapshot()), {"s.h5", *notes})
+        for name in notes:
+            self.assertEqual((self.folder / name).read_text(), name)
+
+    def test_a_table_that_cannot_be_made_leaves_no_journal(self):
+        # The draft's name is longer than a file's may be, the journal's is not.
+        self.refuse("clogsweep", *SWEEP[:-1], 240 * "s", words=["cannot create", "File name too long"])
+
     def test_many_sessions_with_long_commands_fit(self):
         seeds = "seeds=" + ",".join(str(seed) for seed in range(1, 251))
         for _ in range(25):
@@ -134,6 +197,26 @@ class Resumed(SweepTest):
         self.succeed("clogsweep", "vertices=64", "box=20", "max-time=20", "seeds=1..12", "--instruction-set",
                      "baseline", "--output", "s.h5", ranks=3)
         self.assertEqual(set(table(self.folder / "s.h5").instruction_set), {"baseline"})
+
+    def test_a_run_under_two_instruction_sets_is_called_mixed(self):
+        long = ["vertices=64", "box=20", "obstacle-gap=1.2", "max-time=1e4", "seeds=1..2", "--report-seconds=0.1",
+                "--output", "s.h5"]
+        process = self.start(*long, ranks=1)
+        self.wait_for(lambda: self.journal()[1] > 0)
+        process.send_signal(signal.SIGUSR1)
+        process.communicate(timeout=60)
+        begun = table(self.folder / "s.h5")
+        self.assertEqual(begun.status.tolist(), ["interrupted"])
+        self.succeed("clogsweep", *long, "--instruction-set=baseline", ranks=2)
+        only_one = begun.instruction_set[0] == "baseline"  # this processor has nothing else
+        rows = table(self.folder / "s.h5").set_index("task")
+        self.assertEqual(rows.instruction_set[begun.task[0]], "baseline" if only_one else "mixed")
+        self.assertEqual((rows.instruction_set == "baseline").sum(), 2 if only_one else 1)
+        if only_one:
+            return
+        replayed = self.run_program("clogsweep", "replay", "s.h5", begun.task[0])
+        self.assertEqual(replayed.returncode, 2)
+        self.assertIn("another instruction set", replayed.stderr)
 
     def test_replay_gives_the_same_bits_and_sees_others(self):
         self.succeed("clogsweep", "vertices=64", "box=20", "max-time=20", "line-tension=0.5,1", "seeds=1..2",
@@ -228,6 +311,26 @@ class Batch(ProgramTest):
         self.assertEqual(process.returncode, 75, output)
         self.assertEqual(self.called(), "scontrol requeue 77\n")
         self.assertGreater((table(self.folder / "s.h5").status == "interrupted").sum(), 0)
+
+    def test_a_warning_that_kills_mpirun_at_its_start_queues_again(self):
+        stub = self.folder / "mpirun"
+        stub.write_text("#!/bin/sh\nkill -USR1 $PPID\nexec sleep 60\n")  # it does not yet know what to do with the signal
+        stub.chmod(0o755)
+        process = self.script("slurm.sh", *self.sweep(), SLURM_JOB_ID="77", SLURM_SUBMIT_DIR=str(ROOT))
+        output, _ = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 75, output)
+        self.assertEqual(self.called(), "scontrol requeue 77\n")
+
+    def test_a_warning_before_the_sweep_begins_does_not_begin_it(self):
+        script = f"""
+            . {ROOT}/jobs/batch.sh
+            trap() {{ builtin trap "$@"; if [[ $1 != - ]]; then kill -USR1 $$; fi; }}  # as soon as it is set
+            code=0
+            run_sweep touch began || code=$?
+            echo $code"""
+        done = subprocess.run(["bash", "-euc", script], cwd=self.folder, capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.stdout, "75\n", done.stderr)
+        self.assertEqual(self.snapshot(), {})
 
     def test_a_complete_sweep_does_not_queue_again(self):
         process = self.script("slurm.sh", *self.sweep("max-time=5"), SLURM_JOB_ID="77", SLURM_SUBMIT_DIR=str(ROOT))

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,24 +12,22 @@
 #include <optional>
 
 #include "clog/core/error.hpp"
+#include "support.hpp"
 
 namespace clog::store {
 namespace {
 
 namespace fs = std::filesystem;
 
-class JournalTest : public testing::Test {
+class JournalTest : public FolderTest {
  protected:
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() /
-              (std::string("clog_journal_") + info->name() + "_" + std::to_string(getpid()));
-    fs::create_directory(folder_);
+  std::string path(const std::string& name = "sweep.h5.journal") const { return FolderTest::path(name); }
+  /// Overwrites a byte.
+  void damage(std::uintmax_t place) const {
+    std::fstream file(path(), std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(static_cast<std::streamoff>(place));
+    file.put('x');
   }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string path() const { return (folder_ / "sweep.h5.journal").string(); }
-
-  fs::path folder_;
 };
 
 sweep::RunRow some_row(std::int64_t task) {
@@ -88,19 +85,111 @@ TEST_F(JournalTest, DropsATornRecordAndGoesOnWhereItBegan) {
 
 TEST_F(JournalTest, DropsWhatIsNotWhatWasWritten) {
   { add_entries(*std::make_unique<Journal>(path()), 0, 5); }
-  std::fstream file(path(), std::ios::in | std::ios::out | std::ios::binary);
-  file.seekp(static_cast<std::streamoff>(fs::file_size(path())) - 10);
-  file.put('x');
-  file.close();
-  expect_entries(Journal(path()).take_entries(), 4);
+  damage(fs::file_size(path()) - 10);
+  Journal journal(path());
+  expect_entries(journal.take_entries(), 4);
+  EXPECT_EQ(journal.num_unreadable(), 0) << "the last one may be torn";
+}
+
+TEST_F(JournalTest, LosesNoOtherRecordToADamagedOne) {
+  std::vector<std::uintmax_t> begins;  // of the records
+  {
+    Journal journal(path());
+    for (std::int64_t i = 0; i < 5; ++i) {
+      begins.push_back(journal.num_bytes());
+      add_entries(journal, i, i + 1);
+    }
+  }
+  const std::string whole = text_of("sweep.h5.journal");
+  struct Case {
+    const char* what;
+    std::vector<std::uintmax_t> places;
+    std::vector<std::int64_t> tasks;  // that are left
+  };
+  for (const Case& damaged :
+       {Case{"a row", {begins[1] + 100}, {0, 2, 3, 4}}, Case{"a size", {begins[1] + 1}, {0, 2, 3, 4}},
+        Case{"a magic word", {begins[1] + 12}, {0, 2, 3, 4}},
+        Case{"neighbours", {begins[1] + 100, begins[2] + 100}, {0, 3, 4}},
+        Case{"two", {begins[0] + 100, begins[2] + 100}, {1, 3, 4}}}) {
+    write_text("sweep.h5.journal", whole);
+    for (const std::uintmax_t place : damaged.places) damage(place);
+    Journal journal(path());
+    std::vector<std::int64_t> tasks;
+    for (const Journal::Entry& entry : journal.take_entries()) tasks.push_back(entry.row.task);
+    EXPECT_EQ(tasks, damaged.tasks) << damaged.what;
+    EXPECT_EQ(journal.num_unreadable(), 5 - static_cast<std::int64_t>(tasks.size())) << damaged.what;
+  }
+}
+
+TEST_F(JournalTest, CanBeLookedAtWhileItIsWrittenTo) {
+  EXPECT_FALSE(Journal::look(path()));
+  Journal journal(path());
+  add_entries(journal, 0, 5);
+  fs::resize_file(path(), fs::file_size(path()) - 1);
+  const Journal::Contents contents = Journal::look(path()).value();
+  expect_entries(contents.entries, 4);
+  EXPECT_TRUE(contents.has_torn_end);
+  EXPECT_EQ(fs::file_size(path()), journal.num_bytes() - 1) << "it stays as it is";
 }
 
 TEST_F(JournalTest, RefusesAFileOfAnotherKind) {
-  std::ofstream(path()) << "something else, longer than the journal's header is";
-  EXPECT_THROW(Journal journal(path()), Error);
-  std::string text;
-  std::getline(std::ifstream(path()), text);
-  EXPECT_EQ(text, "something else, longer than the journal's header is");
+  for (const std::string text : {"something else, longer than the journal's header is", "short"}) {
+    write_text("sweep.h5.journal", text);
+    EXPECT_THROW(Journal journal(path()), Error);
+    EXPECT_THROW(Journal::look(path()), Error);
+    EXPECT_EQ(text_of("sweep.h5.journal"), text);
+  }
+}
+
+TEST_F(JournalTest, BeginsAnewWhereItsMakerDiedAtOnce) {
+  { add_entries(*std::make_unique<Journal>(path()), 0, 1); }
+  for (const std::uintmax_t size : {0u, 5u, 23u}) {
+    fs::resize_file(path(), size);
+    Journal journal(path());
+    EXPECT_TRUE(journal.take_entries().empty());
+    add_entries(journal, 0, 2);
+  }
+  expect_entries(Journal(path()).take_entries(), 2);
+}
+
+TEST_F(JournalTest, LeavesNoFileWithoutRecords) {
+  { Journal journal(path()); }
+  EXPECT_EQ(num_files(), 0);
+  EXPECT_EXIT(run_on_full_disk(10, [&] { Journal journal(path()); }), testing::ExitedWithCode(2),
+              "cannot write .*journal");
+  EXPECT_EQ(num_files(), 0);
+}
+
+TEST_F(JournalTest, RemovesItsStaleDraftsAndNoOthers) {
+  write_text("sweep.h5.journal.clogsweep-draft1", "a user's notes");
+  write_text("sweep.h5.journal.clogsweep-draft2", "clogsweep jrnl of a process that was killed");
+  Journal journal(path());
+  EXPECT_EQ(num_files(), 2);
+  journal.rewrite({});
+  EXPECT_EQ(text_of("sweep.h5.journal.clogsweep-draft1"), "a user's notes");
+  EXPECT_EQ(num_files(), 2);
+}
+
+TEST_F(JournalTest, IsRewrittenOnlyWhenItHasDoubled) {
+  const Journal::Entry large{some_row(0), some_snapshot(70'000'000)};
+  const std::vector<const Journal::Entry*> needed{&large};
+  Journal journal(path());
+  EXPECT_FALSE(journal.is_to_be_rewritten());
+  journal.add(large.row, large.snapshot);
+  EXPECT_TRUE(journal.is_to_be_rewritten());
+  journal.rewrite(needed);
+  EXPECT_FALSE(journal.is_to_be_rewritten());
+  journal.add(some_row(1), some_snapshot(60'000'000));
+  EXPECT_FALSE(journal.is_to_be_rewritten());
+  journal.add(some_row(1), some_snapshot(20'000'000));
+  EXPECT_TRUE(journal.is_to_be_rewritten());
+}
+
+TEST_F(JournalTest, LiesBesideTheFileThatALinkLeadsTo) {
+  fs::create_directory(path("scratch"));
+  fs::create_symlink("scratch/target.h5", path("link.h5"));
+  EXPECT_EQ(journal_path(path("link.h5")), path("scratch/target.h5.journal"));
+  EXPECT_EQ(journal_path(path("sweep.h5")), path());
 }
 
 TEST_F(JournalTest, IsOpenOnlyOnceAndItsLockDiesWithItsProcess) {
@@ -141,26 +230,19 @@ TEST_F(JournalTest, KeepsOnlyWhatItIsRewrittenWith) {
 }
 
 TEST_F(JournalTest, CanBeRemoved) {
-  Journal(path()).remove();
+  Journal journal(path());
+  add_entries(journal, 0, 1);
+  journal.remove();
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
-[[noreturn]] void add_until_refused(const std::string& path) {
-  std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit tight{20'000, 20'000};
-  setrlimit(RLIMIT_FSIZE, &tight);
-  Journal journal(path);
-  try {
-    add_entries(journal, 0, 1000);
-  } catch (const Error& error) {
-    std::fputs(error.what(), stderr);
-    std::_Exit(2);
-  }
-  std::_Exit(0);
-}
-
 TEST_F(JournalTest, KeepsWholeRecordsWhenTheDiskIsFull) {
-  EXPECT_EXIT(add_until_refused(path()), testing::ExitedWithCode(2), "cannot write .*journal");
+  const auto add_until_refused = [&] {
+    Journal journal(path());
+    add_entries(journal, 0, 1000);
+  };
+  EXPECT_EXIT(run_on_full_disk(20'000, add_until_refused), testing::ExitedWithCode(2),
+              "cannot write .*journal");
   Journal journal(path());
   const std::vector<Journal::Entry> entries = journal.take_entries();
   EXPECT_GT(entries.size(), 5u);

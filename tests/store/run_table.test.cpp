@@ -2,42 +2,29 @@
 
 #include <gtest/gtest.h>
 
-#include <sys/resource.h>
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <vector>
 
 #include "clog/core/error.hpp"
+#include "support.hpp"
 
 namespace clog::store {
 namespace {
 
 namespace fs = std::filesystem;
 
-class RunTableTest : public testing::Test {
+class RunTableTest : public FolderTest {
  protected:
-  void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() /
-              (std::string("clog_store_") + info->name() + "_" + std::to_string(getpid()));
-    fs::create_directory(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string path(const char* name = "sweep.h5") const { return (folder_ / name).string(); }
-  std::size_t num_files() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-  }
-
-  fs::path folder_;
+  std::string path(const std::string& name = "sweep.h5") const { return FolderTest::path(name); }
 };
 
 sweep::RunRow some_row(std::int64_t task) {
@@ -74,7 +61,7 @@ TEST_F(RunTableTest, GivesBackEveryRowBitForBit) {
     ASSERT_EQ(file.rows.size(), rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i)
       EXPECT_EQ(std::memcmp(&file.rows[i], &rows[i], sizeof(sweep::RunRow)), 0);
-    EXPECT_EQ(num_files(), 1u) << "no draft is left";
+    EXPECT_EQ(num_files(), 1) << "no draft is left";
   }
 }
 
@@ -89,7 +76,45 @@ TEST_F(RunTableTest, KeepsTheProvenance) {
 
 TEST_F(RunTableTest, LeavesNothingBehindWhereItCannotWrite) {
   EXPECT_THROW(publish_sweep((folder_ / "no" / "such" / "folder.h5").string(), {}, {}), Error);
-  EXPECT_EQ(num_files(), 0u);
+  EXPECT_EQ(num_files(), 0);
+  for (const rlim_t num_bytes : {0, 10, 1000})
+    EXPECT_EXIT(run_on_full_disk(num_bytes, [&] { publish_sweep(path(), some_rows(1), {}); }),
+                testing::ExitedWithCode(2), "cannot .*sweep.h5");
+  EXPECT_EQ(num_files(), 0);
+}
+
+TEST_F(RunTableTest, RemovesItsStaleDraftsAndNoOthers) {
+  write_text("sweep.h5.new", "a user's");
+  write_text("sweep.h5.clogsweep-draft1", "also a user's");
+  write_text("sweep.h5.clogsweep-draft2", "\x89HDF\r\n\x1a\n of a process that was killed");
+  publish_sweep(path(), some_rows(2), {});
+  EXPECT_EQ(read_sweep(path()).rows.size(), 2u);
+  EXPECT_EQ(text_of("sweep.h5.new"), "a user's");
+  EXPECT_EQ(text_of("sweep.h5.clogsweep-draft1"), "also a user's");
+  EXPECT_EQ(num_files(), 3);
+}
+
+TEST_F(RunTableTest, LeavesTheDraftOfALivingProcessAlone) {
+  const std::string mark = "\x89HDF\r\n\x1a\n of a process that lives";
+  const std::string name = write_text("sweep.h5.clogsweep-draft1", mark);
+  const int descriptor = open(name.c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_EQ(flock(descriptor, LOCK_EX), 0);
+  publish_sweep(path(), some_rows(2), {});
+  EXPECT_EQ(text_of("sweep.h5.clogsweep-draft1"), mark);
+  close(descriptor);
+}
+
+TEST_F(RunTableTest, UpdatesTheFileThatALinkLeadsTo) {
+  fs::create_directory(path("scratch"));
+  fs::create_symlink("scratch/target.h5", path());
+  for (const int number : {1, 2}) {  // it leads nowhere at first
+    publish_sweep(path(), some_rows(number), {});
+    EXPECT_TRUE(fs::is_symlink(path()));
+    EXPECT_EQ(read_sweep(path("scratch/target.h5")).rows.size(), static_cast<std::size_t>(number));
+    EXPECT_EQ(num_files(), 2);
+  }
+  fs::create_symlink("loop.h5", path("loop.h5"));
+  EXPECT_THROW(publish_sweep(path("loop.h5"), {}, {}), Error);
 }
 
 TEST_F(RunTableTest, IsWholeForAReaderAtEveryMoment) {
@@ -109,27 +134,17 @@ TEST_F(RunTableTest, IsWholeForAReaderAtEveryMoment) {
   EXPECT_EQ(read_sweep(path()).rows.size(), 149u);
 }
 
-/// Leaves by _Exit(2) when a table is refused. A limit on the size of a file stands for a full disk.
-[[noreturn]] void publish_until_refused(const std::string& path) {
-  std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit tight{200'000, 200'000};
-  setrlimit(RLIMIT_FSIZE, &tight);
-  try {
-    for (int number = 0; number < 1000; ++number) publish_sweep(path, some_rows(number), {});
-  } catch (const Error& error) {
-    std::fputs(error.what(), stderr);
-    std::_Exit(2);
-  }
-  std::_Exit(0);
-}
-
 TEST_F(RunTableTest, KeepsTheLastTableWhenTheDiskIsFull) {
-  EXPECT_EXIT(publish_until_refused(path()), testing::ExitedWithCode(2), "cannot write .*sweep.h5");
+  const auto publish_until_refused = [&] {
+    for (int number = 0; number < 1000; ++number) publish_sweep(path(), some_rows(number), {});
+  };
+  EXPECT_EXIT(run_on_full_disk(200'000, publish_until_refused), testing::ExitedWithCode(2),
+              "cannot write .*sweep.h5");
   const SweepFile file = read_sweep(path());
   EXPECT_GT(file.rows.size(), 50u);
   for (std::size_t task = 0; task < file.rows.size(); ++task)
     EXPECT_EQ(file.rows[task].task, static_cast<std::int64_t>(task));
-  EXPECT_EQ(num_files(), 1u);
+  EXPECT_EQ(num_files(), 1);
 }
 
 TEST_F(RunTableTest, SaysWhatIsWrongWithAFile) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,6 @@ struct ObstacleFileRules {
 ObstacleArray read_obstacles(const std::string& path, const ObstacleFileRules& rules);
 
 /// Writes them in the same form, with digits that read back exactly. @throws Error
-void write_obstacles(const std::string& path, const std::vector<Obstacle>& obstacles);
+void write_obstacles(const std::string& path, std::span<const Obstacle> obstacles);
 
 }  // namespace clog::cli

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "clog/core/byte_archive.hpp"
+#include "clog/core/travel_speed.hpp"
 
 namespace clog {
 
@@ -14,19 +15,16 @@ class DisplacementRecord {
   /// To be called once per check of a run, at equal time intervals.
   void add(double time, double displacement);
 
-  /// Speed of travel: least-squares slope of r(t) between the end of the first tenth of the way in time and
-  /// the moment after which the droplet comes no farther than 0.01 sigma [sqrt(sigma g)].
-  /// NaN when it travelled less than half a diameter in that time, or fewer than 8 samples lie in it.
-  double mean_speed() const;
+  /// Speed of travel between the end of the transient and the moment after which the droplet comes no farther
+  /// than 0.01 sigma. Not a number when it travelled less than half a diameter in that time, or as
+  /// travel_speed() says.
+  TravelSpeed travel_speed() const;
 
   void save(ByteWriter& bytes) const;
   void restore(ByteReader& bytes);
 
  private:
-  struct Sample {
-    double time, displacement;
-  };
-  std::vector<Sample> samples_;
+  std::vector<TravelSample> samples_;
   std::int64_t stride_ = 1;
   std::int64_t count_ = 0;
 };

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "clog/core/clog_geometry.hpp"
 #include "clog/core/displacement_record.hpp"
 #include "clog/core/droplet.hpp"
 #include "clog/core/obstacle_array.hpp"
@@ -24,11 +25,13 @@ struct RunResult {
   double distance = 0;              ///< displacement along the flow since release, certified: at rest [sigma]
   double lateral = 0;               ///< displacement across the flow, certified: at rest [sigma]
   double time = 0;                  ///< [t0]
-  double mean_speed = 0;            ///< see DisplacementRecord::mean_speed [sqrt(sigma g)]
+  TravelSpeed speed;                ///< of the way so far
   double kinetic_energy_ratio = 0;  ///< E_k/E_t at the end
   double shape_parameter = 0;       ///< A at the end, certified: at rest
-  std::int64_t steps = 0;           ///< integrated steps, sub-steps counted singly
-  std::string message;              ///< why it failed
+  ClogMechanism mechanism = ClogMechanism::none;  ///< what holds it; a soft disk is always squeezed
+  ClogGeometry geometry;                          ///< of a clogged polygon, certified: at rest
+  std::int64_t steps = 0;                         ///< integrated steps, sub-steps counted singly
+  std::string message;                            ///< why it failed
 };
 
 /// One droplet followed from its release until it clogs, passes the end of its way, or its time is up. Where

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "clog/core/parameters.hpp"
@@ -17,6 +19,15 @@ struct Obstacle {
   bool operator==(const Obstacle&) const = default;
 };
 
+/// Circles sorted into the square cells of a grid, row by row.
+struct BinnedObstacles {
+  double box = 0;             ///< [sigma]
+  double largest_radius = 0;  ///< [sigma]
+  std::span<const Obstacle> obstacles;
+  /// Of each cell, the index of its first obstacle; at the end, their number.
+  std::span<const std::uint32_t> cell_start;
+};
+
 /// Periodic array of circles in a square box, binned into cells of about one droplet diameter so that the
 /// neighbourhood of a droplet is found at a cost that does not depend on the box. There may be wedges as
 /// well, without periodic images.
@@ -26,9 +37,15 @@ class ObstacleArray {
   /// @throws Error if a centre is not finite or a radius not positive and finite
   ObstacleArray(double box, std::vector<Obstacle> obstacles, std::vector<Wedge> wedges = {});
 
-  double box() const { return box_; }
+  /// The same array over memory of another's binned(), a copy of which may come from another process.
+  /// @param memory  keeps it alive
+  ObstacleArray(const BinnedObstacles& binned, std::shared_ptr<const void> memory);
+  const BinnedObstacles& binned() const { return binned_; }
+  static std::size_t num_cells(double box);
+
+  double box() const { return binned_.box; }
   /// All obstacles, ordered by cell.
-  const std::vector<Obstacle>& obstacles() const { return obstacles_; }
+  std::span<const Obstacle> obstacles() const { return binned_.obstacles; }
   const std::vector<Wedge>& wedges() const { return wedges_; }
 
   /// Appends to `out` every obstacle, periodic images included, whose surface may come within `margin` of the
@@ -52,15 +69,14 @@ class ObstacleArray {
   double smallest_gap() const { return closest_pair().gap; }
 
  private:
-  double box_;
+  BinnedObstacles binned_;
+  std::shared_ptr<const void> memory_;  // of the obstacles
   int cells_per_side_;
-  double largest_radius_ = 0;
-  std::vector<Obstacle> obstacles_;
   std::vector<Wedge> wedges_;
-  std::vector<std::uint32_t> cell_start_;
 
   std::uint32_t cell_of(double x, double y) const;
-  void bin_obstacles();
+  /// Sorts the obstacles by cell, and returns where each cell starts.
+  std::vector<std::uint32_t> bin(std::vector<Obstacle>& obstacles) const;
   /// Calls visit(index, x, y) for every obstacle and image that gather() would return.
   template <class Visit>
   void visit_window(const Window& window, Visit visit) const;

@@ -32,6 +32,9 @@ bool encloses(const Eigen::ArrayXd& position, double x, double y);
 /// part of its area.)
 int num_self_crossings(const Eigen::ArrayXd& position);
 
+/// Point of the segment from `begin` to `end` that is nearest to a point [sigma].
+Eigen::Array2d nearest_on_segment(const Eigen::Array2d& point, const Eigen::Array2d& begin,
+                                  const Eigen::Array2d& end);
 /// Distance from a point to the nearest point of the segment from `begin` to `end` [sigma].
 double distance_to_segment(const Eigen::Array2d& point, const Eigen::Array2d& begin,
                            const Eigen::Array2d& end);

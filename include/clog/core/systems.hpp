@@ -9,10 +9,8 @@ namespace clog {
 /// A droplet released in the periodic array that its parameters and seed describe.
 /// @param run  resolved parameters, here and below
 DropletRun run_in_array(const RunParameters& run);
-/// The same in an array given otherwise, e.g. a user's own.
+/// The same in an array given otherwise, e.g. one at hand or a user's own.
 DropletRun run_in_array(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles);
-/// Goes on from a snapshot of such a run, see DropletRun::resume().
-DropletRun resume_in_array(const RunParameters& run, std::span<const std::byte> snapshot);
 
 /// Two wedges, tip to tip across the flow (Cheng et al., Fig. 1a). h is the distance of the centre of mass
 /// from the line through the tips, positive downstream.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 namespace clog::fit {
@@ -44,6 +45,10 @@ struct CloggingLength {
 /// Distances below zero (a droplet pushed back on release) count as zero.
 /// @throws std::invalid_argument unless 0 < confidence < 1
 CloggingLength fit_clogging_length(std::span<const Observation> runs, double confidence = 0.95);
+
+/// Half of the chi-squared interval's width over the estimate, some runs being censored; infinite without
+/// clogs.
+double relative_half_width(std::int64_t num_clogs, double confidence = 0.95);
 
 /// Least squares of exp(-r/lambda) on P(r) = 1 - N_clog(r)/N at every clog, as published (Cheng et al.,
 /// appendix C) [sigma]. Biased: it takes a censored run for one that would have gone on for ever, and weighs

@@ -14,4 +14,15 @@ struct MeanSpeed {
 /// @param speeds  one per run, in any unit; NaN (a run too short to have a speed) is left out
 MeanSpeed fit_mean_speed(std::span<const double> speeds);
 
+/// How far one run went, and how long that took, in any units.
+struct Travel {
+  double distance;
+  double time;
+};
+
+/// Speed of all runs together, (sum of distances)/(sum of times), which weighs a run by its time. The error
+/// is the jackknife's over runs: sqrt((n - 1)/n sum (R_i - mean)^2), R_i the ratio without run i.
+/// @param runs  one each; those with a NaN are left out
+MeanSpeed fit_speed_ratio(std::span<const Travel> runs);
+
 }  // namespace clog::fit

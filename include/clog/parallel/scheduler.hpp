@@ -34,6 +34,11 @@ struct SweepEvents {
   std::function<void(const Report&)> ended = [](const Report&) {};
   /// Of a task that ended as `failed`: is it to be tried again?
   std::function<bool(const sweep::RunRow&)> tries_again = [](const sweep::RunRow&) { return false; };
+  /// Of a task that ended as `failed`: it may have been the rank's fault (see RankTrust), the attempt does
+  /// not count. The task is done once more, whatever tries_again() said.
+  std::function<void(std::int64_t task)> failure_withdrawn = [](std::int64_t) {};
+  /// A rank gets no more tasks; the row, of rank and host, is that of the last task that failed on it.
+  std::function<void(const sweep::RunRow& failed)> set_aside = [](const sweep::RunRow&) {};
   /// About every 0.1 s; less often while this rank samples an array or releases a droplet (a second, in large
   /// boxes).
   std::function<void()> idle = [] {};
@@ -45,18 +50,25 @@ struct SweepEvents {
 /// delay that its slices put between a worker and its next task.
 bool computes(int num_ranks, MasterComputes choice);
 
+enum class SweepEnd {
+  complete,      ///< all tasks were handed out
+  stopped,       ///< as stop_requested() said
+  no_rank_left,  ///< every rank was set aside
+};
+
 /// Works through all tasks with all ranks; collective.
 ///
 /// Rank 0 hands out one task at a time, since tasks differ a thousandfold in length, and gathers the rows.
-/// Rows do not depend on the order of the tasks.
-/// If it computes, it does so in slices between polls. Nobody spins: who has nothing to do sleeps, longer and
+/// Rows do not depend on the order of the tasks. A task that failed is tried again on another rank, if there
+/// is one, before others are begun. A rank on which everything fails is set aside: see RankTrust. If it
+/// computes, it does so in slices between polls. Nobody spins: who has nothing to do sleeps, longer and
 /// longer, up to a few milliseconds.
 /// @param tasks  matter on rank 0
 /// @param make_job  called on the rank that works on the task
 /// @param report_interval  time between two reports of a running task
-/// @return whether all tasks were handed out (rank 0; true elsewhere)
-bool run_tasks(const Communicator& ranks, TaskOrder tasks, const sweep::JobFactory& make_job,
-               const SweepEvents& events, bool master_computes,
-               std::chrono::milliseconds report_interval = std::chrono::seconds(10));
+/// @return how it ended (rank 0; complete elsewhere)
+SweepEnd run_tasks(const Communicator& ranks, TaskOrder tasks, const sweep::JobFactory& make_job,
+                   const SweepEvents& events, bool master_computes,
+                   std::chrono::milliseconds report_interval = std::chrono::seconds(10));
 
 }  // namespace clog::parallel

@@ -26,8 +26,8 @@ class TaskOrder {
   /// @param now  time [s], from any moment on, the same in all calls
   std::int64_t take(double now);
   void ended(std::int64_t task, double now);
-  /// A task that ended is to be done once more, after the others of its group.
-  void put_back(std::int64_t task);
+  /// A task that ended before is begun once more.
+  void begun_again(std::int64_t task, double now);
 
  private:
   struct Group {
@@ -41,6 +41,7 @@ class TaskOrder {
   std::vector<Group> groups_;
   std::unordered_map<std::int64_t, double> running_since_;  // by task
 
+  void begin(Group& group, std::int64_t task, double now);
   Group& group_of(std::int64_t task) { return groups_[task % static_cast<std::int64_t>(groups_.size())]; }
   double expected_time(const Group& group, double now) const;
 };

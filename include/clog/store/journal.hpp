@@ -2,39 +2,57 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "clog/sweep/run_row.hpp"
 
 namespace clog::store {
 
+/// The journal of the table at this path lies beside it (if the path is a link, beside what it leads to).
+std::string journal_path(const std::string& table);
+
 /// What must not be lost between two publications of a sweep's table: rows, and snapshots of runs that go on,
 /// one after the other in a file beside the table. What add() returned from survives the death of the
-/// process, what flush() returned from that of the machine; a torn record at the end is dropped when the file
-/// is opened again. While a journal is open nobody else can open it; the lock dies with its process.
+/// process, what flush() returned from that of the machine. When the file is opened again, a torn record at
+/// the end is dropped, and one that is damaged costs no other. While a journal is open nobody else can open
+/// it; the lock dies with its process. A journal without records is removed when it is closed.
 class Journal {
  public:
   struct Entry {
     sweep::RunRow row;
     std::vector<std::byte> snapshot;
   };
+  struct Contents {
+    std::vector<Entry> entries;       ///< oldest first
+    std::int64_t num_unreadable = 0;  ///< damaged records between readable ones
+    bool has_torn_end = false;        ///< its writer died within a record; or is still at it
+    std::uint64_t num_bytes = 0;      ///< without a torn end
+  };
 
-  /// Opens or makes the file. @throws Error if it is open elsewhere, of another version, or cannot be written
+  /// Opens or makes the file. @throws Error if it is open elsewhere, of another version, something else, or
+  /// cannot be written
   explicit Journal(std::string path);
   Journal(Journal&&) = delete;
   ~Journal();
 
   /// Is a sweep writing to this one?
   static bool is_open(const std::string& path);
+  /// What is in the file, which stays as it is; nothing if there is none. @throws Error if it cannot be read
+  static std::optional<Contents> look(const std::string& path);
 
   /// What the file held when it was opened, oldest first.
-  std::vector<Entry> take_entries() { return std::move(entries_); }
+  std::vector<Entry> take_entries() { return std::move(contents_.entries); }
+  std::int64_t num_unreadable() const { return contents_.num_unreadable; }
   /// @throws Error if the disk is full
   void add(const sweep::RunRow& row, std::span<const std::byte> snapshot);
   void flush();
-  std::uint64_t num_bytes() const { return num_bytes_; }
+  std::uint64_t num_bytes() const { return contents_.num_bytes; }
+  /// Is it large, and twice as long as it was after it was rewritten last?
+  bool is_to_be_rewritten() const;
   /// Replaces the file by one that holds these entries only.
   void rewrite(std::span<const Entry* const> entries);
   /// Removes the file; nothing may be added afterwards.
@@ -43,10 +61,11 @@ class Journal {
  private:
   std::string path_;
   int descriptor_ = -1;
-  std::uint64_t num_bytes_ = 0;
-  std::vector<Entry> entries_;
+  Contents contents_;  ///< when it was opened, but its size is that of now
+  std::uint64_t num_rewritten_bytes_ = 0;
 
-  void read_entries();
+  void open_and_lock();
+  void close_file();
 };
 
 }  // namespace clog::store

@@ -10,7 +10,7 @@
 namespace clog::store {
 
 /// Version of the file format; see src/store/README.md.
-inline constexpr const char* format_version = "2";
+inline constexpr const char* format_version = "3";
 
 /// Name and text of the attributes at the file's root: where its numbers come from.
 using Provenance = std::vector<std::pair<std::string, std::string>>;
@@ -33,6 +33,7 @@ struct SweepFile {
   std::vector<sweep::RunRow> rows;
   Provenance provenance;
 };
+/// Files of format version 2, too: columns that they do not have get the values for "not known".
 /// @throws Error if the file is missing, not HDF5, or not ours
 SweepFile read_sweep(const std::string& path);
 

@@ -4,6 +4,7 @@
 
 #include "clog/core/systems.hpp"
 #include "clog/sweep/job.hpp"
+#include "clog/sweep/obstacle_arrays.hpp"
 #include "clog/sweep/plan.hpp"
 
 namespace clog::sweep {
@@ -12,7 +13,9 @@ namespace clog::sweep {
 class RunJob final : public Job {
  public:
   /// @param snapshot  of the same task; where it cannot be read the run starts anew
-  RunJob(const Plan& plan, std::int64_t task, std::span<const std::byte> snapshot = {});
+  /// @param arrays    from which the run's obstacles come
+  RunJob(const Plan& plan, std::int64_t task, std::span<const std::byte> snapshot = {},
+         std::shared_ptr<ObstacleArrays> arrays = std::make_shared<ObstacleArrays>());
 
   bool advance() override;
   RunRow row() const override;
@@ -21,6 +24,7 @@ class RunJob final : public Job {
  private:
   RunParameters run_parameters_;
   std::vector<std::byte> snapshot_;
+  std::shared_ptr<ObstacleArrays> arrays_;
   std::unique_ptr<DropletRun> run_;  // made at the first advance(): the release may fail
   RunRow row_;
   double wall_seconds_ = 0;

@@ -27,9 +27,14 @@ struct FixedText {
   bool operator==(const FixedText&) const = default;
 };
 
+/// Instruction set of a run that went on from a snapshot of another one.
+inline constexpr std::string_view mixed_instruction_sets = "mixed";
+
 /// One row of the table of runs: what was run, what came out, where. Plain bytes, so that it can be sent and
 /// stored as it is; the file's columns, units and meanings are listed in store/run_table.cpp.
 struct RunRow {
+  static constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+
   std::int64_t task = -1;
   FixedText<8> model;
   double line_tension = 0;  ///< NaN for sp
@@ -37,9 +42,9 @@ struct RunRow {
   double obstacle_gap = 0;
   double obstacle_diameter = 0;
   double obstacle_diameter_spread = 0;
-  double obstacle_density = 0;     ///< for a saturated array the jamming limit, see saturated_density()
-  FixedText<16> obstacle_filling;  ///< "saturated", "density" or "lattice"
-  double lattice_angle = std::numeric_limits<double>::quiet_NaN();  ///< NaN unless a lattice
+  double obstacle_density = 0;       ///< for a saturated array the jamming limit, see saturated_density()
+  FixedText<16> obstacle_filling;    ///< "saturated", "density" or "lattice"
+  double lattice_angle = not_known;  ///< NaN unless a lattice
   double box = 0;
   std::int64_t seed = 0;
   std::int64_t vertices = 0;  ///< 1 for sp
@@ -66,14 +71,22 @@ struct RunRow {
   double distance = 0;
   double lateral_displacement = 0;
   double time = 0;
-  double mean_speed = 0;
+  double mean_speed = not_known;
+  double mean_speed_error = not_known;
+  double transient = not_known;
+  double travel_time = not_known;
   double kinetic_energy_ratio = 0;
   double shape_parameter = 0;
+  FixedText<16> mechanism;  ///< "wrapped", "squeezed", "hybrid", "none"; empty where it is not known
+  double wrapped_support = not_known;
+  std::int64_t num_wrapped = -1;  ///< -1: not known
+  std::int64_t num_gaps = -1;
+  std::int64_t num_arcs = -1;
   std::int64_t steps = 0;
 
   double wall_seconds = 0;
   std::int64_t rank = 0;
-  FixedText<16> instruction_set;  ///< of the polygon's step; "none" for sp
+  FixedText<16> instruction_set;  ///< of the polygon's step; "none" for sp; or mixed_instruction_sets
   FixedText<64> host;
   std::int64_t attempt = 1;
   FixedText<256> message;

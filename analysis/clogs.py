@@ -1,0 +1,131 @@
+#!/usr/bin/python3
+"""Draws the clogged droplets of a sweep on one sheet, with what holds each of them.
+
+    clogsweep --output sweep.h5 line-tension=0.2,0.3,1 seeds=1..10
+    analysis/clogs.py sweep.h5 --output clogs
+
+Runs the clogged rows again (clogrun; an outline is in no table). The flow goes to the right. Touched obstacles are
+dark, arcs of contact red, the droplet's convex hull dashed; titles give the columns mechanism, wrapped_support,
+num_wrapped, num_gaps, num_arcs.
+"""
+
+import argparse
+import concurrent.futures
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import h5py
+import numpy as np
+import style
+from matplotlib.patches import Circle
+from style import plt
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+# Keys that a sweep takes as lists: each row has its own value.
+LISTS = ["line_tension", "obstacle_gap", "near_wall_drag", "seed"]
+
+
+def read_clogs(path):
+    with h5py.File(path, "r") as file:
+        rows, config = file["runs"][:], file.attrs["config"].decode()
+    return [row for row in rows if row["status"] == b"clogged" and row["model"] == b"dp"], config
+
+
+def run_again(clogrun, config, row, folder):
+    """The polygon (2 x N) at the end and the obstacles (n x 3: x, y, diameter) around it."""
+    output = pathlib.Path(folder) / f"{row['task']}.h5"
+    keys = [f"{name.replace('_', '-')}={row[name]!r}" for name in LISTS if name != "seed"] + [f"seeds={row['seed']}"]
+    if row["obstacle_filling"] == b"density":
+        keys.append(f"obstacle-density={row['obstacle_density']!r}")
+    if row["obstacle_filling"] == b"lattice":
+        keys.append(f"lattice-angle={row['lattice_angle']!r}")
+    subprocess.run(
+        [clogrun, "array", "--config", config, "--output", output, "--instruction-set", row["instruction_set"].decode(),
+         "--polygon-interval", "1e9", "--sample-interval", "1e9", *keys],
+        check=True, capture_output=True, text=True,
+    )
+    with h5py.File(output, "r") as file:
+        return file["polygons"][-1], file["obstacles"][:]
+
+
+def distances(polygon, obstacle):
+    """From an obstacle's surface to every edge."""
+    begin, way = polygon, np.roll(polygon, -1, axis=1) - polygon
+    to_centre = obstacle[:2, None] - begin
+    along = np.clip((to_centre * way).sum(axis=0) / (way**2).sum(axis=0), 0, 1)
+    return np.hypot(*(to_centre - along * way)) - obstacle[2] / 2
+
+
+def hull(points):
+    """Corners of the convex hull, counter-clockwise (Andrew's monotone chain)."""
+    def chain(ordered):
+        corners = []
+        for p in ordered:
+            while len(corners) > 1 and np.linalg.det([corners[-1] - corners[-2], p - corners[-2]]) <= 0:
+                corners.pop()
+            corners.append(p)
+        return corners[:-1]
+    ordered = points[np.lexsort(points.T[::-1])]
+    return np.array(chain(ordered) + chain(ordered[::-1]))
+
+
+def draw(axes, row, polygon, obstacles):
+    touching = np.sqrt(np.pi / 4 * 4 * np.tan(np.pi / row["vertices"]) / row["vertices"])  # one vertex diameter
+    low, high = polygon.min(axis=1) - 0.3, polygon.max(axis=1) + 0.3
+    axes.fill(*polygon, facecolor="#E69F00", edgecolor="black", linewidth=0.6, alpha=0.7)
+    axes.plot(*np.vstack([hull(polygon.T), hull(polygon.T)[:1]]).T, color="0.4", linewidth=0.6, linestyle="--")
+    for obstacle in obstacles:
+        touches = np.flatnonzero(distances(polygon, obstacle) < touching)
+        axes.add_patch(Circle(obstacle[:2], obstacle[2] / 2, color="#0072B2" if len(touches) else "0.85"))
+        for edge in touches:
+            axes.plot(*polygon[:, [edge, (edge + 1) % polygon.shape[1]]], color="#D00000", linewidth=1.8)
+    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
+    axes.set_title(
+        rf"{row['mechanism'].decode()} ({row['wrapped_support']:.2f}; {row['num_wrapped']}, {row['num_gaps']}, {row['num_arcs']})"
+        "\n" rf"{row['task']}: $\Gamma = {row['line_tension']:g}$, $w_\mathrm{{ob}} = {row['obstacle_gap']:g}$", fontsize=8,
+    )
+
+
+def refuse(reason):
+    print(f"clogs.py: {reason}", file=sys.stderr)
+    return 2
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("sweep", type=pathlib.Path, help="file of clogsweep --output")
+    parser.add_argument("--output", type=pathlib.Path, required=True, help="name without ending; .png and .pdf are made")
+    parser.add_argument("--clogrun", default=ROOT / "build/release/bin/clogrun", help="the program (%(default)s)")
+    parser.add_argument("--most", type=int, default=30, help="draw so many clogs at most, the first (%(default)s)")
+    parser.add_argument("--mechanism", help="only those of this mechanism")
+    parser.add_argument("--jobs", type=int, default=2, help="runs at a time (%(default)s)")
+    arguments = parser.parse_args()
+    try:
+        rows, config = read_clogs(arguments.sweep)
+        rows = [row for row in rows if arguments.mechanism in (None, row["mechanism"].decode())][: arguments.most]
+    except (OSError, KeyError, ValueError) as error:
+        return refuse(f"cannot read {arguments.sweep} ({error}); give the output of clogsweep")
+    if not rows:
+        return refuse(f"{arguments.sweep} holds no such clogged polygon")
+    with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        config_file = pathlib.Path(folder) / "sweep.cfg"
+        config_file.write_text(config)
+        try:
+            shapes = list(pool.map(lambda row: run_again(arguments.clogrun, config_file, row, folder), rows))
+        except (OSError, subprocess.CalledProcessError) as error:
+            return refuse(f"cannot run clogrun ({getattr(error, 'stderr', '') or error})".rstrip())
+    across = min(6, len(rows))
+    down = -(-len(rows) // across)
+    figure, axes = plt.subplots(down, across, figsize=(2.6 * across, 3 * down), layout="constrained", squeeze=False)
+    for place in axes.flat:
+        place.axis("off")
+    for place, row, shape in zip(axes.flat, rows, shapes):
+        draw(place, row, *shape)
+    style.save(figure, arguments.output)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "clog/sweep/job.hpp"
+
+namespace clog::parallel {
+
+/// Jobs whose work is done by a process of its own, so that a crash ends a task and not the sweep: the task
+/// is then `failed`, with the signal or exit code as its message, and the next one gets a new process.
+///
+/// A process serves one task after the other, and keeps its obstacle array, until it crashes. It is forked
+/// not by the rank but by a helper that was forked before MPI began: no process that computes has ever seen
+/// MPI, its threads or its registered memory, nor any file of the sweep. All of them die with the rank.
+class IsolatedJobs {
+ public:
+  /// From a text, such as a config, to the jobs that it describes. Called once in the helper, and once in the
+  /// rank, whose jobs are only made, for the row that they begin with, and do no work.
+  using Describe = std::function<sweep::JobFactory(const std::string& description)>;
+
+  /// Forks the helper: to be called before MPI_Init, while there are no threads.
+  /// @throws std::system_error if the system has no process or socket left
+  explicit IsolatedJobs(const Describe& describe);
+  ~IsolatedJobs();
+  IsolatedJobs(const IsolatedJobs&) = delete;
+  IsolatedJobs& operator=(const IsolatedJobs&) = delete;
+
+  /// To be called once. Of its jobs one at a time may exist, and none after this object.
+  sweep::JobFactory jobs(const std::string& description);
+
+ private:
+  class Processes;
+  class IsolatedJob;
+
+  Describe describe_;
+  pid_t helper_ = -1;
+  std::unique_ptr<Processes> processes_;
+};
+
+}  // namespace clog::parallel

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+namespace clog::parallel {
+
+/// Whose fault is a failed task: its own, or that of the rank (a broken node)? A task's result depends on no
+/// rank, so the way to know is to try it elsewhere:
+///
+/// - A failure is held against its rank until the rank succeeds with another task, or until the task has
+/// failed on
+///   another rank that is trusted: then it is the task's own fault. Trusted is who has succeeded and is not
+///   on hold.
+/// - Three failures held against a rank put it on hold: no more tasks for it until their cause is known.
+/// - If one of the three then succeeds elsewhere, the rank is set aside for good.
+/// - The last rank left of several cannot be compared with any: it is set aside with three failures held
+/// against it.
+///   A rank that was alone from the beginning never is.
+class RankTrust {
+ public:
+  explicit RankTrust(const std::vector<int>& ranks);
+
+  /// Returns the ranks that this sets aside.
+  std::vector<int> succeeded(std::int64_t task, int rank);
+  std::vector<int> failed(std::int64_t task, int rank);
+  /// Takes all ranks that are left off hold: when none is left to clear up whose fault it is.
+  void let_go();
+
+  int num_in_service() const { return num_in_service_; }
+  bool may_work(int rank) const { return records_.at(rank).in_service && !is_on_hold(rank); }
+  /// Is this the place for another attempt of a task that failed? Not while another rank has not tried it.
+  bool is_next_for(std::int64_t task, int rank) const;
+  bool is_trusted(int rank) const;
+  /// Tasks that failed on this rank, without having failed on a trusted one or succeeded on any.
+  std::vector<std::int64_t> unsettled_tasks(int rank) const;
+  /// Those of them that other ranks are to try, to find out whether this rank may go off hold: as long as
+  /// there are some that have not yet, and not where all tasks seem to fail everywhere.
+  std::vector<std::int64_t> tasks_in_doubt(int rank) const;
+
+ private:
+  struct Record {
+    bool in_service = true;
+    bool has_succeeded = false;
+    bool is_refuted = false;                 // a task held against it has succeeded elsewhere
+    std::vector<std::int64_t> held_against;  // tasks
+  };
+  static constexpr std::size_t most_failures = 3;
+
+  std::unordered_map<int, Record> records_;                       // by rank
+  std::unordered_map<std::int64_t, std::vector<int>> failed_on_;  // by task, until it succeeds: ranks
+  int num_in_service_;
+  int num_ranks_;
+  bool has_let_go_ = false;
+
+  bool is_on_hold(int rank) const;
+  bool has_many_failures(const Record& record) const { return record.held_against.size() >= most_failures; }
+  bool set_aside_if_due(Record& record);
+};
+
+}  // namespace clog::parallel

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "clog/core/obstacle_array.hpp"
+
+namespace clog::sweep {
+
+/// The obstacle arrays of a sweep. The last one is kept: a sweep asks for the same one many times in a row.
+/// Large ones are shared by all processes of the same user and executable on a machine: each is built by one
+/// of them, while the others wait, and is in memory once. Where sharing fails every process builds its own;
+/// nothing else depends on it.
+class ObstacleArrays {
+ public:
+  /// @throws Error as sample_obstacles()
+  std::shared_ptr<const ObstacleArray> get(const ObstacleParameters& parameters, std::uint32_t seed);
+
+  /// How many of the arrays so far were built here.
+  int num_built() const { return num_built_; }
+
+ private:
+  ObstacleParameters parameters_;
+  std::uint32_t seed_ = 0;
+  std::shared_ptr<const ObstacleArray> array_;
+  int num_built_ = 0;
+
+  ObstacleArray build(const ObstacleParameters& parameters, std::uint32_t seed);
+  ObstacleArray find_or_build(const ObstacleParameters& parameters, std::uint32_t seed);
+};
+
+}  // namespace clog::sweep

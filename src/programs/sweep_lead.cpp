@@ -1,0 +1,174 @@
+#include "sweep_lead.hpp"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdint>
+#include <iostream>
+#include <ratio>
+#include <string>
+#include <vector>
+
+#include "clog/cli/program.hpp"
+#include "clog/parallel/task_order.hpp"
+#include "clog/store/journal.hpp"
+#include "sweep_progress.hpp"
+
+namespace clog {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+// What the ranks are told after a round.
+const std::string another_round = "another round";
+const std::string over = "over";
+
+void announce(const std::string& output, const SweepLedger& ledger, int num_ranks) {
+  const std::int64_t num_runs = ledger.num_wanted();
+  const auto num_left = static_cast<std::int64_t>(ledger.tasks_left().size());
+  if (num_left < num_runs)
+    std::cerr << output << " has " << num_runs - num_left << " of " << num_runs << " runs"
+              << (num_left == 0 ? "; there is nothing left to do" : "") << std::endl;
+  if (ledger.num_unreadable() > 0)
+    std::cerr << store::journal_path(output) << ": " << ledger.num_unreadable()
+              << (ledger.num_unreadable() == 1 ? " record is" : " records are")
+              << " damaged; what was in there is computed again" << std::endl;
+  if (ledger.num_resumed() > 0) std::cerr << ledger.num_resumed() << " go on where they were" << std::endl;
+  if (num_left > 0)
+    std::cerr << num_left << " runs on " << num_ranks
+              << (num_ranks == 1 ? " computing rank" : " computing ranks") << ", results go to " << output
+              << std::endl;
+}
+
+SweepProgress::Screen screen(SweepLog::Level level) {
+  if (level == SweepLog::Level::quiet) return SweepProgress::Screen::none;
+  return isatty(STDERR_FILENO) ? SweepProgress::Screen::terminal : SweepProgress::Screen::plain;
+}
+
+/// Joins what the scheduler tells and asks with what is kept and what is told to the user.
+class Lead {
+ public:
+  Lead(const LeadOptions& options, SweepLedger& ledger, int num_ranks)
+      : ledger_(ledger),
+        progress_(std::cerr, screen(options.log), num_ranks),
+        log_(progress_, options.log),
+        max_hours_(options.max_hours) {}
+
+  /// So many tasks more.
+  void expect(std::int64_t num_tasks) {
+    num_tasks_ += num_tasks;
+    progress_.expect(num_tasks);
+  }
+
+  parallel::SweepEvents events() {
+    parallel::SweepEvents events;
+    events.started = [this](std::int64_t task, int rank) { return start(task, rank); };
+    events.progressed = [this](const parallel::Report& report) { ledger_.report(report); };
+    events.ended = [this](const parallel::Report& report) { end(report); };
+    events.tries_again = [this](const sweep::RunRow& failed) { return ledger_.tries_again(failed); };
+    events.failure_withdrawn = [this](std::int64_t task) { withdraw_failure(task); };
+    events.set_aside = [this](const sweep::RunRow& failed) { log_.set_aside(failed); };
+    events.idle = [this] {
+      ledger_.tick();
+      progress_.tick();
+    };
+    events.stop_requested = [this] {
+      const char* reason = reason_to_stop();
+      if (reason) log_.stopping(reason);
+      return reason != nullptr;
+    };
+    return events;
+  }
+
+  void finish() {
+    ledger_.finish();
+    if (num_tasks_ > 0) progress_.finish();
+  }
+  bool was_interrupted() const { return was_interrupted_; }
+  /// None: nullptr.
+  const char* reason_to_stop() const {
+    if (cli::stop_signalled()) return "a signal";
+    const std::chrono::duration<double, std::ratio<3600>> hours = Clock::now() - begin_;
+    return hours.count() >= max_hours_ ? "--max-hours" : nullptr;
+  }
+
+ private:
+  SweepLedger& ledger_;
+  std::int64_t num_tasks_ = 0;
+  SweepProgress progress_;
+  SweepLog log_;
+  double max_hours_;
+  bool was_interrupted_ = false;
+  Clock::time_point begin_ = Clock::now();
+
+  parallel::Start start(std::int64_t task, int rank) {
+    progress_.started(task);
+    parallel::Start start = ledger_.start(task, rank);
+    log_.started(ledger_.row(task),
+                 start.snapshot.empty() ? SweepLog::From::release : SweepLog::From::snapshot);
+    return start;
+  }
+
+  void end(const parallel::Report& report) {
+    ledger_.report(report);
+    if (report.row.status.view() == "failed" && ledger_.tries_again(report.row)) {
+      progress_.tried(report.row.task);
+      log_.failed(report.row, SweepLog::Then::tried_again);
+      return;
+    }
+    progress_.ended(report.row);
+    log_.ended(report.row);
+    was_interrupted_ = was_interrupted_ || report.row.status.view() == "interrupted";
+  }
+
+  void withdraw_failure(std::int64_t task) {
+    if (!ledger_.tries_again(ledger_.row(task))) progress_.not_ended(ledger_.row(task));
+    ledger_.withdraw_failure(task);
+    log_.failure_withdrawn(ledger_.row(task));
+  }
+};
+
+}  // namespace
+
+int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, const sweep::Plan& plan,
+               const sweep::JobFactory& make_job, SweepLedger& ledger, std::optional<SeedRule>& rule) {
+  const bool computes = parallel::computes(ranks.size(), options.master_computes);
+  const int computing_ranks = ranks.size() - (computes ? 0 : 1);
+  if (options.log != SweepLog::Level::quiet) announce(options.output, ledger, computing_ranks);
+  Lead lead(options, ledger, computing_ranks);
+  parallel::SweepEnd end = parallel::SweepEnd::complete;
+  bool is_complete = true;
+  while (true) {
+    const std::vector<std::int64_t> tasks = ledger.tasks_left();
+    lead.expect(static_cast<std::int64_t>(tasks.size()));
+    end = parallel::run_tasks(ranks, parallel::TaskOrder(tasks, plan.num_groups()), make_job, lead.events(),
+                              computes, options.report_interval);
+    is_complete = end == parallel::SweepEnd::complete && !lead.was_interrupted();
+    std::vector<std::int64_t> next;
+    if (rule && is_complete)
+      next = rule->next_round([&](std::int64_t task) { return ledger.row(task).status.view() == "clogged"; });
+    ranks.broadcast(next.empty() ? over : another_round);
+    if (next.empty()) break;
+    ledger.want(next);
+  }
+  lead.finish();
+  if (is_complete && rule && options.log != SweepLog::Level::quiet)
+    std::cerr << rule->num_reached() << " of " << rule->num_groups()
+              << " parameter sets have reached --until-precision" << std::endl;
+  if (is_complete) return cli::exit_success;
+  const bool no_rank_left = end == parallel::SweepEnd::no_rank_left;
+  std::cerr << "clogsweep: "
+            << (no_rank_left ? std::string("every rank was set aside, see above; look after these machines")
+                             : std::string("stopped by ") + lead.reason_to_stop())
+            << "; the same command goes on. Finished rows and the distances so far are in " << options.output
+            << std::endl;
+  return no_rank_left ? cli::exit_internal_fault : cli::exit_incomplete;
+}
+
+void follow_sweep(const parallel::Communicator& ranks, const sweep::JobFactory& make_job,
+                  std::chrono::milliseconds report_interval) {
+  do {
+    parallel::run_tasks(ranks, parallel::TaskOrder(0), make_job, {}, false, report_interval);
+  } while (ranks.broadcast("") == another_round);
+}
+
+}  // namespace clog

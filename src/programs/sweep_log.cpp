@@ -1,0 +1,81 @@
+#include "sweep_log.hpp"
+
+#include <cstdio>
+#include <ctime>
+
+namespace clog {
+namespace {
+
+std::string time_of_day() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  localtime_r(&now, &parts);
+  char text[16];
+  return {text, std::strftime(text, sizeof text, "%H:%M:%S", &parts)};
+}
+
+std::string short_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+std::string who(const sweep::RunRow& row) {
+  return "task " + std::to_string(row.task) + " rank " + std::to_string(row.rank) + ": ";
+}
+
+/// The parameters that most sweeps go along.
+std::string what(const sweep::RunRow& row) {
+  const bool polygon = row.model.view() == "dp";
+  return std::string(polygon ? " (Gamma=" : " (E_w=") +
+         short_number(polygon ? row.line_tension : row.wall_stiffness) +
+         ", gap=" + short_number(row.obstacle_gap) + ", seed " + std::to_string(row.seed) + ')';
+}
+
+std::string where(const sweep::RunRow& row) {
+  return " at " + short_number(row.distance) + " sigma after " + short_number(row.time) + " t0";
+}
+
+}  // namespace
+
+void SweepLog::say(const std::string& text) { progress_.say(time_of_day() + ' ' + text); }
+
+void SweepLog::started(const sweep::RunRow& row, From from) {
+  if (level_ < Level::verbose) return;
+  say(who(row) + (from == From::release ? "starts" : "goes on" + where(row)) +
+      (row.attempt > 1 ? ", attempt " + std::to_string(row.attempt) : "") + what(row));
+}
+
+void SweepLog::ended(const sweep::RunRow& row) {
+  if (row.status.view() == "failed") {
+    failed(row, Then::over);
+    return;
+  }
+  if (level_ < Level::verbose) return;
+  say(who(row) + std::string(row.status.view()) + where(row) + what(row));
+}
+
+void SweepLog::failed(const sweep::RunRow& row, Then then) {
+  if (level_ < Level::normal) return;
+  say(who(row) + "failed, attempt " + std::to_string(row.attempt) +
+      (then == Then::tried_again ? ", will be tried again: " : ": ") + std::string(row.message.view()) +
+      what(row));
+}
+
+void SweepLog::failure_withdrawn(const sweep::RunRow& row) {
+  if (level_ < Level::normal) return;
+  say(who(row) + "the rank itself may be at fault; attempt " + std::to_string(row.attempt) +
+      " does not count" + what(row));
+}
+
+void SweepLog::set_aside(const sweep::RunRow& failed) {
+  say("rank " + std::to_string(failed.rank) + " on " + std::string(failed.host.view()) +
+      " is set aside: task after task fails there, and not elsewhere; the last one said: " +
+      std::string(failed.message.view()));
+}
+
+void SweepLog::stopping(const std::string& reason) {
+  if (level_ >= Level::normal) say("stops, by " + reason);
+}
+
+}  // namespace clog

@@ -1,0 +1,109 @@
+#include "clog/sweep/obstacle_arrays.hpp"
+
+#include <sys/stat.h>
+
+#include <array>
+#include <chrono>
+#include <cstring>
+#include <ios>
+#include <optional>
+#include <span>
+#include <sstream>
+#include <string>
+#include <thread>
+
+#include "shared_memory.hpp"
+
+namespace clog::sweep {
+namespace {
+
+/// Smaller ones are built in less time than it takes to see whether another process has them.
+constexpr double fewest_shared = 1e5;
+/// Someone who takes longer is stuck; one's own array is then the quickest.
+constexpr std::chrono::seconds longest_wait{10};
+constexpr std::chrono::milliseconds pause{5};
+
+/// At least as many obstacles as there will be, up to the part of the area that discs leave empty.
+double num_places(const ObstacleParameters& parameters) {
+  const double per_side = parameters.box / (parameters.smallest_diameter() + parameters.gap);
+  return per_side * per_side;
+}
+
+/// Names the array to processes of this executable. To others, which may make or lay out arrays otherwise, it
+/// means nothing.
+std::optional<std::string> shared_name(const ObstacleParameters& parameters, std::uint32_t seed) {
+  struct stat executable;
+  if (stat("/proc/self/exe", &executable) != 0) return std::nullopt;
+  std::ostringstream name;
+  name << "clogsweep-" << std::hex << executable.st_ino << '-' << executable.st_mtim.tv_sec << '-'
+       << executable.st_mtim.tv_nsec << '-' << seed << '-' << static_cast<int>(parameters.layout)
+       << std::hexfloat;
+  for (const double value : {parameters.gap, parameters.diameter, parameters.diameter_spread,
+                             parameters.density.value_or(-1), parameters.box, parameters.lattice_angle})
+    name << ',' << value;
+  return name.str();
+}
+
+/// What precedes the obstacles and the starts of the cells.
+struct Header {
+  double box;
+  double largest_radius;
+  std::uint64_t num_obstacles;
+};
+
+std::shared_ptr<const SharedMemory> publish(const std::string& name, const ObstacleArray& array) {
+  const BinnedObstacles& binned = array.binned();
+  const Header header{binned.box, binned.largest_radius, binned.obstacles.size()};
+  return SharedMemory::publish(
+      name, std::array{std::as_bytes(std::span(&header, 1)), std::as_bytes(binned.obstacles),
+                       std::as_bytes(binned.cell_start)});
+}
+
+ObstacleArray array_over(std::shared_ptr<const SharedMemory> memory) {
+  Header header;
+  std::memcpy(&header, memory->bytes().data(), sizeof header);
+  const auto* obstacles = reinterpret_cast<const Obstacle*>(memory->bytes().data() + sizeof header);
+  const auto* cell_start = reinterpret_cast<const std::uint32_t*>(obstacles + header.num_obstacles);
+  return ObstacleArray({header.box,
+                        header.largest_radius,
+                        {obstacles, header.num_obstacles},
+                        {cell_start, ObstacleArray::num_cells(header.box) + 1}},
+                       std::move(memory));
+}
+
+}  // namespace
+
+ObstacleArray ObstacleArrays::build(const ObstacleParameters& parameters, std::uint32_t seed) {
+  ++num_built_;
+  return sample_obstacles(parameters, seed);
+}
+
+ObstacleArray ObstacleArrays::find_or_build(const ObstacleParameters& parameters, std::uint32_t seed) {
+  const std::optional<std::string> name = shared_name(parameters, seed);
+  if (!name || num_places(parameters) < fewest_shared) return build(parameters, seed);
+  const auto begin = std::chrono::steady_clock::now();
+  while (std::chrono::steady_clock::now() - begin < longest_wait) {
+    if (const std::optional<NameLock> lock = NameLock::try_hold(*name)) {
+      // Nobody makes one meanwhile. Those who wait do not search: that would take the builder's time.
+      if (auto memory = SharedMemory::find(*name)) return array_over(std::move(memory));
+      ObstacleArray array = build(parameters, seed);
+      auto memory = publish(*name, array);
+      return memory ? array_over(std::move(memory)) : array;
+    }
+    std::this_thread::sleep_for(pause);
+  }
+  return build(parameters, seed);
+}
+
+std::shared_ptr<const ObstacleArray> ObstacleArrays::get(const ObstacleParameters& parameters,
+                                                         std::uint32_t seed) {
+  if (!array_ || !(parameters == parameters_) || seed != seed_) {
+    array_.reset();  // the memory may be needed for the next
+    array_ = std::make_shared<ObstacleArray>(find_or_build(parameters, seed));
+    parameters_ = parameters;
+    seed_ = seed;
+  }
+  return array_;
+}
+
+}  // namespace clog::sweep

@@ -1,0 +1,112 @@
+#include "shared_memory.hpp"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <cctype>
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <system_error>
+
+namespace clog::sweep {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int seals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE;
+
+/// Without the seals its maker is still at work.
+bool is_complete_and_own(int descriptor) {
+  struct stat status;
+  const int found = fcntl(descriptor, F_GET_SEALS);
+  return found != -1 && (found & seals) == seals && fstat(descriptor, &status) == 0 &&
+         status.st_uid == geteuid();
+}
+
+bool write_all(int descriptor, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+}  // namespace
+
+SharedMemory::~SharedMemory() {
+  if (bytes_.data()) munmap(const_cast<std::byte*>(bytes_.data()), bytes_.size());
+  close(descriptor_);
+}
+
+std::shared_ptr<const SharedMemory> SharedMemory::map(int descriptor) {
+  std::shared_ptr<SharedMemory> memory(new SharedMemory(descriptor));
+  struct stat status;
+  if (fstat(descriptor, &status) != 0 || status.st_size == 0) return nullptr;
+  const auto size = static_cast<std::size_t>(status.st_size);
+  void* const begin = mmap(nullptr, size, PROT_READ, MAP_SHARED, descriptor, 0);
+  if (begin == MAP_FAILED) return nullptr;
+  memory->bytes_ = {static_cast<const std::byte*>(begin), size};
+  return memory;
+}
+
+std::shared_ptr<const SharedMemory> SharedMemory::find(const std::string& name) {
+  // What cannot be read is another user's, or has just ended.
+  const fs::path wanted = "/memfd:" + name + " (deleted)";
+  std::error_code error;
+  for (fs::directory_iterator process("/proc", error); process != fs::directory_iterator();
+       process.increment(error)) {
+    if (!std::isdigit(static_cast<unsigned char>(process->path().filename().native()[0]))) continue;
+    std::error_code no_access;
+    for (fs::directory_iterator file(process->path() / "fd", no_access); file != fs::directory_iterator();
+         file.increment(no_access)) {
+      std::error_code gone;
+      if (fs::read_symlink(file->path(), gone) != wanted) continue;
+      const int descriptor = open(file->path().c_str(), O_RDONLY | O_CLOEXEC);
+      if (descriptor < 0) continue;
+      if (is_complete_and_own(descriptor)) return map(descriptor);
+      close(descriptor);
+    }
+  }
+  return nullptr;
+}
+
+std::shared_ptr<const SharedMemory> SharedMemory::publish(
+    const std::string& name, std::span<const std::span<const std::byte>> pieces) {
+  const int descriptor = memfd_create(name.c_str(), MFD_CLOEXEC | MFD_ALLOW_SEALING);
+  if (descriptor < 0) return nullptr;
+  bool is_whole = true;
+  for (const std::span<const std::byte>& piece : pieces) is_whole = is_whole && write_all(descriptor, piece);
+  if (is_whole && fcntl(descriptor, F_ADD_SEALS, seals) == 0) return map(descriptor);
+  close(descriptor);
+  return nullptr;
+}
+
+std::optional<NameLock> NameLock::try_hold(const std::string& name) {
+  // An abstract address, known to this machine only as long as the socket exists. No one ever connects to it.
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string text =
+      "clogsweep-" + std::to_string(geteuid()) + '-' + std::to_string(std::hash<std::string>{}(name));
+  std::memcpy(address.sun_path + 1, text.data(), text.size());
+  const int descriptor = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (descriptor < 0) return std::nullopt;
+  NameLock lock(descriptor);
+  const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + text.size());
+  if (bind(descriptor, reinterpret_cast<const sockaddr*>(&address), length) != 0) return std::nullopt;
+  return lock;
+}
+
+NameLock::~NameLock() {
+  if (socket_ >= 0) close(socket_);
+}
+
+}  // namespace clog::sweep

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace clog::sweep {
+
+/// Memory that processes of one user on one machine read together, found by its name. It is a memfd, sealed
+/// when complete and seen by others in /proc: no file of any kind is made, and the memory goes with the last
+/// process that holds it, however that ends.
+class SharedMemory {
+ public:
+  /// Memory that a process, perhaps this one, holds under the name; nullptr if there is none, or none can be
+  /// had.
+  static std::shared_ptr<const SharedMemory> find(const std::string& name);
+  /// Makes it of pieces, one behind the other; nullptr if the system has no such memory, or no more.
+  /// @param name  up to 200 characters
+  static std::shared_ptr<const SharedMemory> publish(const std::string& name,
+                                                     std::span<const std::span<const std::byte>> pieces);
+
+  SharedMemory(const SharedMemory&) = delete;
+  SharedMemory& operator=(const SharedMemory&) = delete;
+  ~SharedMemory();
+
+  std::span<const std::byte> bytes() const { return bytes_; }
+
+ private:
+  int descriptor_ = -1;  // kept open: it is what others find
+  std::span<const std::byte> bytes_;
+
+  explicit SharedMemory(int descriptor) : descriptor_(descriptor) {}
+  static std::shared_ptr<const SharedMemory> map(int descriptor);
+};
+
+/// What at most one process of this user on this machine holds at a time. It ends with the process.
+class NameLock {
+ public:
+  /// The lock, if nobody has it.
+  static std::optional<NameLock> try_hold(const std::string& name);
+
+  NameLock(NameLock&& other) noexcept : socket_(other.socket_) { other.socket_ = -1; }
+  NameLock& operator=(NameLock&&) = delete;
+  ~NameLock();
+
+ private:
+  int socket_;
+
+  explicit NameLock(int socket) : socket_(socket) {}
+};
+
+}  // namespace clog::sweep

@@ -1,0 +1,146 @@
+/// Tasks that crash their process, under the scheduler on however many ranks mpirun gives it. Exits with 1 on
+/// the first fault.
+
+#include "clog/parallel/isolated_jobs.hpp"
+
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <map>
+#include <numeric>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "clog/parallel/scheduler.hpp"
+#include "support.hpp"
+
+namespace {
+
+using namespace clog;
+
+/// How a task crashes, and what its row then says.
+const std::map<std::int64_t, std::pair<int, std::string>> crashes = {
+    {3, {SIGSEGV, "its process was ended by SIGSEGV (Segmentation fault)"}},
+    {8, {SIGFPE, "its process was ended by SIGFPE (Floating point exception)"}},
+    {17, {SIGABRT, "its process was ended by SIGABRT (Aborted)"}},
+    {29, {SIGKILL, "its process was ended by SIGKILL (Killed, as the kernel does when memory runs out)"}},
+    {34, {0, "its process left with exit code 3"}},
+};
+
+/// From here on tasks are slow, for a rank to ask them how far they are.
+constexpr std::int64_t first_slow_task = 60;
+
+/// Crashes in its last slice, if it is one of those. Its row tells in which process it was.
+class CrashingJob final : public SyntheticJob {
+ public:
+  CrashingJob(std::int64_t task, std::span<const std::byte> snapshot) : SyntheticJob(task, snapshot) {}
+  bool advance() override {
+    if (row().task >= first_slow_task) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    const bool is_over = SyntheticJob::advance();
+    if (const auto crash = crashes.find(row().task); is_over && crash != crashes.end()) {
+      if (crash->second.first == 0) _exit(3);
+      std::raise(crash->second.first);
+    }
+    return is_over;
+  }
+  sweep::RunRow row() const override {
+    sweep::RunRow row = SyntheticJob::row();
+    row.seed = getpid();
+    return row;
+  }
+};
+
+sweep::JobFactory describe(const std::string& description) {
+  expect(description == "crashing jobs", "the description arrives");
+  return [](std::int64_t task, std::span<const std::byte> snapshot) {
+    return std::make_unique<CrashingJob>(task, snapshot);
+  };
+}
+
+void a_crash_fails_its_task_and_no_other(const parallel::Communicator& ranks,
+                                         const sweep::JobFactory& make_job) {
+  constexpr std::int64_t num_tasks = first_slow_task;
+  std::map<std::int64_t, sweep::RunRow> rows;
+  std::map<std::int64_t, std::set<std::int64_t>> processes;  // by rank, of tasks that succeeded
+  std::map<std::int64_t, std::int64_t> attempts;
+  parallel::SweepEvents events;
+  events.started = [&](std::int64_t task, int) { return parallel::Start{{}, ++attempts[task]}; };
+  events.tries_again = [](const sweep::RunRow& failed) { return failed.attempt < 2; };
+  events.failure_withdrawn = [&](std::int64_t task) { --attempts[task]; };
+  events.ended = [&](const parallel::Report& report) {
+    rows[report.row.task] = report.row;
+    if (report.row.status.view() == "clogged") processes[report.row.rank].insert(report.row.seed);
+  };
+  const parallel::SweepEnd end =
+      parallel::run_tasks(ranks, parallel::TaskOrder(num_tasks, 7), make_job, events, true);
+  if (ranks.rank() != 0) return;
+  expect(end == parallel::SweepEnd::complete && rows.size() == num_tasks, "the sweep goes on");
+  for (const auto& [task, row] : rows) {
+    const auto crash = crashes.find(task);
+    expect(row.status.view() == (crash == crashes.end() ? "clogged" : "failed"),
+           "who crashes fails, and nobody else");
+    expect(row.message.view() == (crash == crashes.end() ? "" : crash->second.second),
+           "the row says how it crashed");
+    expect(row.attempt == (crash == crashes.end() ? 1 : 2), "a task that crashed was tried again");
+    if (crash == crashes.end())
+      expect(row.distance == static_cast<double>(task * task), "a row holds its own task's result");
+  }
+  std::size_t num_processes = 0;
+  for (const auto& [rank, of_rank] : processes) {
+    expect(!of_rank.contains(getpid()), "no rank computes itself");
+    num_processes += of_rank.size();
+  }
+  // Every task that crashes is tried twice, and once more if its rank was in doubt.
+  expect(num_processes <= ranks.size() + 3 * crashes.size(), "a process serves many tasks");
+}
+
+void a_stopped_task_goes_on_from_its_snapshot(const parallel::Communicator& ranks,
+                                              const sweep::JobFactory& make_job) {
+  std::map<std::int64_t, parallel::Report> stopped;
+  int num_reports = 0;
+  parallel::SweepEvents events;
+  events.progressed = [&](const parallel::Report& report) {
+    ++num_reports;
+    expect(report.row.status.view() == "running", "a report is of a running task");
+    expect(report.snapshot.size() == static_cast<std::size_t>(report.row.steps), "a report has its snapshot");
+  };
+  events.ended = [&](const parallel::Report& report) {
+    if (report.row.status.view() != "interrupted") return;
+    expect(report.snapshot.size() == static_cast<std::size_t>(report.row.steps),
+           "a stopped task has its snapshot");
+    stopped[report.row.task] = report;
+  };
+  events.stop_requested = [&] { return num_reports > 0; };
+  std::vector<std::int64_t> tasks(1000);
+  std::iota(tasks.begin(), tasks.end(), first_slow_task);
+  const parallel::SweepEnd end = parallel::run_tasks(ranks, parallel::TaskOrder(tasks, 1), make_job, events,
+                                                     true, std::chrono::milliseconds(1));
+  expect(ranks.rank() != 0 || end == parallel::SweepEnd::stopped, "a stop stops");
+  std::vector<std::int64_t> left;
+  for (const auto& [task, report] : stopped) left.push_back(task);
+  std::size_t num_ended = 0;
+  events = parallel::SweepEvents();
+  events.started = [&](std::int64_t task, int) { return parallel::Start{stopped.at(task).snapshot, 1}; };
+  events.ended = [&](const parallel::Report& report) {
+    ++num_ended;
+    expect(report.row.status.view() == "clogged", "a task goes on to its end");
+    expect(report.row.steps == 1 + report.row.task * 7 % 5, "no slice is done twice");
+  };
+  parallel::run_tasks(ranks, parallel::TaskOrder(left, 1), make_job, events, true);
+  expect(num_ended == left.size(), "every stopped task goes on");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  parallel::IsolatedJobs isolated(describe);
+  const parallel::Communicator ranks(argc, argv);
+  const sweep::JobFactory make_job = isolated.jobs("crashing jobs");
+  a_crash_fails_its_task_and_no_other(ranks, make_job);
+  a_stopped_task_goes_on_from_its_snapshot(ranks, make_job);
+  if (ranks.rank() == 0) std::printf("crashes cost one task each on %d ranks\n", ranks.size());
+}

@@ -1,0 +1,213 @@
+#include "clog/sweep/obstacle_arrays.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "clog/sweep/run_job.hpp"
+
+namespace clog::sweep {
+namespace {
+
+/// Large enough to be shared.
+const ObstacleParameters large{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 160};
+const ObstacleParameters small{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 20};
+
+/// That no other test, run at the same time, shares with this one.
+std::uint32_t own_seed() { return static_cast<std::uint32_t>(getpid()); }
+
+ObstacleParameters lattice() {
+  RunParameters run;
+  run.obstacles.box = 170;
+  run.obstacles.layout = ObstacleLayout::lattice;
+  run.obstacles.lattice_angle = 10;
+  return resolve(run).obstacles;
+}
+
+void expect_identical(const ObstacleArray& one, const ObstacleArray& other) {
+  EXPECT_EQ(one.box(), other.box());
+  EXPECT_EQ(one.binned().largest_radius, other.binned().largest_radius);
+  EXPECT_TRUE(std::ranges::equal(one.obstacles(), other.obstacles()));
+  EXPECT_TRUE(std::ranges::equal(one.binned().cell_start, other.binned().cell_start));
+}
+
+/// The file behind an address, as the kernel names it: device and inode; "00:00 0" for a process's own
+/// memory.
+std::string file_behind(const void* address) {
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);) {
+    unsigned long begin = 0, end = 0;
+    char device[32] = "";
+    unsigned long inode = 0;
+    std::sscanf(line.c_str(), "%lx-%lx %*s %*s %31s %lu", &begin, &end, device, &inode);
+    const auto place = reinterpret_cast<unsigned long>(address);
+    if (place >= begin && place < end) return std::string(device) + ' ' + std::to_string(inode);
+  }
+  return "nowhere";
+}
+
+/// Another process that works, tells, and stays until it is killed, without a chance to clean up.
+class OtherProcess {
+ public:
+  /// @param work  what it returns is told
+  explicit OtherProcess(const std::function<std::string()>& work) {
+    int ends[2];
+    if (pipe(ends) != 0) std::abort();
+    process_ = fork();
+    if (process_ == 0) {
+      const std::string told = work() + '\n';
+      if (write(ends[1], told.data(), told.size()) < 0) _exit(1);
+      for (;;) pause();
+    }
+    close(ends[1]);
+    told_ = ends[0];
+  }
+  OtherProcess(const OtherProcess&) = delete;
+  ~OtherProcess() {
+    kill(process_, SIGKILL);
+    waitpid(process_, nullptr, 0);
+    close(told_);
+  }
+
+  std::string told() const {
+    std::string text;
+    for (char next = 0; read(told_, &next, 1) == 1 && next != '\n';) text += next;
+    return text;
+  }
+
+ private:
+  pid_t process_ = -1;
+  int told_ = -1;
+};
+
+TEST(ObstacleArrays, KeepsTheLastOne) {
+  ObstacleArrays arrays;
+  EXPECT_EQ(arrays.get(small, 1), arrays.get(small, 1));
+  EXPECT_EQ(arrays.num_built(), 1);
+  arrays.get(small, 2);
+  EXPECT_EQ(arrays.num_built(), 2);
+}
+
+TEST(ObstacleArrays, AreTheSameSharedOrNot) {
+  for (const ObstacleParameters& parameters :
+       {large, ObstacleParameters{.gap = 0.2, .diameter = 0.3, .density = 1, .box = 160},
+        ObstacleParameters{.gap = 0.2, .diameter = 0.3, .diameter_spread = 0.3, .density = {}, .box = 160},
+        lattice()}) {
+    ObstacleArrays builder, reader;
+    const auto built = builder.get(parameters, own_seed());
+    const auto found = reader.get(parameters, own_seed());
+    EXPECT_EQ(builder.num_built(), 1);
+    EXPECT_EQ(reader.num_built(), 0);
+    expect_identical(*found, *built);
+    expect_identical(*found, sample_obstacles(parameters, own_seed()));
+  }
+}
+
+TEST(ObstacleArrays, TakesNoOtherForTheSame) {
+  ObstacleArrays builder, reader;
+  const auto built = builder.get(large, own_seed());
+  reader.get(large, own_seed() + 1);
+  ObstacleParameters wider = large;
+  wider.gap = std::nextafter(wider.gap, 1);
+  reader.get(wider, own_seed());
+  EXPECT_EQ(reader.num_built(), 2);
+}
+
+TEST(ObstacleArrays, AreInMemoryOnceForAllProcesses) {
+  const auto get = [seed = own_seed()] {
+    ObstacleArrays arrays;
+    static std::shared_ptr<const ObstacleArray> array;  // kept as long as the process stays
+    array = arrays.get(large, seed);
+    return std::to_string(arrays.num_built()) + " built, in " + file_behind(array->obstacles().data());
+  };
+  // All at once: one builds, the others wait for it.
+  std::vector<std::unique_ptr<OtherProcess>> others;
+  for (int i = 0; i < 4; ++i) others.push_back(std::make_unique<OtherProcess>(get));
+  std::vector<std::string> told;
+  for (const auto& other : others) told.push_back(other->told());
+  std::ranges::sort(told);
+  EXPECT_EQ(told[0].substr(0, 2), "0 ");
+  EXPECT_EQ(told[3], '1' + told[0].substr(1));
+  EXPECT_EQ(told[1], told[0]);
+  EXPECT_EQ(told[2], told[0]);
+  EXPECT_EQ(told[0].find("00:00 0"), std::string::npos) << told[0];
+}
+
+TEST(ObstacleArrays, StayWhenTheirBuilderIsKilledAndGoWithTheLastReader) {
+  const std::uint32_t seed = own_seed();
+  ObstacleArrays first, second, third;
+  auto builder = std::make_unique<OtherProcess>([seed] {
+    static ObstacleArrays arrays;
+    arrays.get(large, seed);
+    return std::to_string(arrays.num_built());
+  });
+  ASSERT_EQ(builder->told(), "1");
+  auto array = first.get(large, seed);
+  builder.reset();
+  second.get(large, seed);
+  EXPECT_EQ(first.num_built() + second.num_built(), 0);
+  expect_identical(*array, sample_obstacles(large, seed));
+
+  array.reset();
+  first.get(small, 1);
+  second.get(small, 1);
+  third.get(large, seed);
+  EXPECT_EQ(third.num_built(), 1) << "nothing was left of it";
+}
+
+TEST(ObstacleArrays, AreBuiltByTheNextWhenTheirBuilderIsKilledAtWork) {
+  const std::uint32_t seed = own_seed();
+  const ObstacleParameters slow{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 600};
+  {
+    const OtherProcess builder([&] {
+      if (fork() == 0) {  // tells, and is at work when it is killed
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        ObstacleArrays().get(slow, seed);
+        _exit(0);
+      }
+      usleep(100'000);
+      return std::string("at work");
+    });
+    ASSERT_EQ(builder.told(), "at work");
+  }
+  ObstacleArrays arrays;
+  EXPECT_GT(arrays.get(slow, seed)->obstacles().size(), 900000u);
+  EXPECT_EQ(arrays.num_built(), 1);
+}
+
+TEST(RunJob, GivesTheSameRowInASharedArray) {
+  Settings settings;
+  settings.set("vertices", "64");
+  settings.set("box", "160");
+  settings.set("max-time", "5");
+  settings.set("seeds", std::to_string(own_seed()));
+  const Plan plan(settings);
+  ObstacleArrays builder;
+  const auto built = builder.get(plan.task(0).obstacles, own_seed());
+  const auto reader = std::make_shared<ObstacleArrays>();
+  RunJob job(plan, 0, {}, reader);
+  while (!job.advance()) {
+  }
+  EXPECT_EQ(reader->num_built(), 0);
+  DropletRun run = run_in_array(plan.task(0));
+  while (!run.advance(100)) {
+  }
+  EXPECT_EQ(job.row().distance, run.result().distance);
+  EXPECT_EQ(job.row().lateral_displacement, run.result().lateral);
+  EXPECT_EQ(job.row().steps, run.result().steps);
+  EXPECT_GT(run.result().distance, 0.01);
+}
+
+}  // namespace
+}  // namespace clog::sweep
