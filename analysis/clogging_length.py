@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Draws the clogging length against line tension (DP) or wall stiffness (SP), one curve per obstacle array.
 
     clogfit sweep.h5 --format json > fit.json
@@ -14,14 +14,9 @@ import math
 import pathlib
 import sys
 
-import matplotlib
+import style
+from style import plt
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-
-# Okabe and Ito's palette, safe for colour-blind readers; a marker of its own for every curve besides.
-COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
-MARKERS = ["o", "s", "D", "v", "P", "X", "*"]
 # What a sweep may vary beside the abscissa: name in the file, symbol.
 CURVE_PARAMETERS = [
     ("obstacle_gap", r"w_\mathrm{ob}/\sigma"),
@@ -95,48 +90,27 @@ def curves(groups, abscissa):
 
 def draw(groups, abscissa, confidence):
     figure, axes = plt.subplots(figsize=(6.4, 4.8), layout="constrained")
-    num_curves = sum(1 for _ in curves(groups, abscissa))
-    for index, (label, members) in enumerate(curves(groups, abscissa)):
-        colour, marker = COLOURS[index % len(COLOURS)], MARKERS[index % len(MARKERS)]
-        members.sort(key=lambda group: group[abscissa])
-        # Curves share their abscissae: moved apart by a percent, their bars can be told from each other.
-        places = [group[abscissa] * 1.012 ** (index - (num_curves - 1) / 2) for group in members]
-        # Not a number where no run clogged: the line is broken there.
-        lengths = [math.nan if group["clogs"] == 0 else group["clogging_length"] for group in members]
-        bars = [
-            [math.nan if group["clogs"] == 0 else abs(group["clogging_length"] - group[end]) for group in members]
-            for end in ("clogging_length_lower", "clogging_length_upper")
-        ]
-        axes.errorbar(
-            places, lengths, yerr=bars,
-            color=colour, marker=marker, markersize=5, linewidth=1, elinewidth=1, capsize=2.5, label=label,
-        )
-        bounds = [(x, group["clogging_length_lower"]) for x, group in zip(places, members) if group["clogs"] == 0]
-        axes.plot(
-            [x for x, _ in bounds], [length for _, length in bounds],
-            color=colour, marker="^", markerfacecolor="white", markersize=8, linestyle="none",
-        )
-    axes.set_xscale("log")
+    all_curves = list(curves(groups, abscissa))
+    for index, (label, members) in enumerate(all_curves):
+        places = [group[abscissa] * style.side_by_side(index, len(all_curves)) for group in members]
+        style.draw_lengths(axes, places, members, index, label)
+    style.logarithmic_abscissa(axes, [group[abscissa] for group in groups])
     axes.set_yscale("log")
-    axes.set_xlabel(
-        r"line tension $\Gamma = \gamma/(g\rho\sigma^2)$" if abscissa == "line_tension"
-        else r"wall stiffness $E_w = \epsilon_w/(g\rho\sigma^3)$"
-    )
-    axes.set_ylabel(r"clogging length $\lambda/\sigma$")
-    axes.xaxis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:g}"))
-    values = sorted({group[abscissa] for group in groups})
-    if len(values) <= 10:
-        axes.set_xticks(values, minor=False)
-        axes.xaxis.set_minor_locator(matplotlib.ticker.NullLocator())
-    axes.grid(True, which="major", color="0.9", linewidth=0.6)
-    axes.set_axisbelow(True)
+    axes.set_xlabel(style.AXES[abscissa])
+    axes.set_ylabel(style.AXES["length"])
+    style.grid(axes)
     if axes.get_legend_handles_labels()[1] != [""]:
         axes.legend(frameon=False)
     note = f"bars: {100 * confidence:g} % confidence"
     if any(group["clogs"] == 0 for group in groups):
-        note += ", open triangles: lower bound, no run clogged"
-    axes.set_title(f"{caption(groups)}\n{note}", fontsize=8, color="0.25")
+        note += ", open triangles: lower bound, no run clogged, dotted: through bounds"
+    style.caption(axes, f"{caption(groups)}\n{note}")
     return figure
+
+
+def refuse(reason):
+    print(f"clogging_length.py: {reason}", file=sys.stderr)
+    return 2
 
 
 def main():
@@ -148,14 +122,13 @@ def main():
         fit = json.loads(arguments.fit.read_text())
         groups = [group for group in fit["groups"] if group["runs"] > 0]
     except (OSError, ValueError, KeyError, TypeError) as error:
-        sys.exit(f"clogging_length.py: cannot read {arguments.fit} ({error}); give the output of clogfit --format json")
+        return refuse(f"cannot read {arguments.fit} ({error}); give the output of clogfit --format json")
     if not groups:
-        sys.exit(f"clogging_length.py: {arguments.fit} holds no finished runs")
+        return refuse(f"{arguments.fit} holds no finished runs")
     abscissa = "line_tension" if groups[0]["model"] == "dp" else "wall_stiffness"
-    figure = draw(groups, abscissa, fit["confidence"])
-    figure.savefig(arguments.output.with_suffix(".png"), dpi=160)
-    figure.savefig(arguments.output.with_suffix(".pdf"))
+    style.save(draw(groups, abscissa, fit["confidence"]), arguments.output)
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

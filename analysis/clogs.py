@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Draws the clogged droplets of a sweep on one sheet, with what holds each of them.
 
     clogsweep --output sweep.h5 line-tension=0.2,0.3,1 seeds=1..10
@@ -17,12 +17,10 @@ import sys
 import tempfile
 
 import h5py
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
+import style
 from matplotlib.patches import Circle
+from style import plt
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 # Keys that a sweep takes as lists: each row has its own value.
@@ -90,6 +88,11 @@ def draw(axes, row, polygon, obstacles):
     )
 
 
+def refuse(reason):
+    print(f"clogs.py: {reason}", file=sys.stderr)
+    return 2
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("sweep", type=pathlib.Path, help="file of clogsweep --output")
@@ -103,16 +106,16 @@ def main():
         rows, config = read_clogs(arguments.sweep)
         rows = [row for row in rows if arguments.mechanism in (None, row["mechanism"].decode())][: arguments.most]
     except (OSError, KeyError, ValueError) as error:
-        sys.exit(f"clogs.py: cannot read {arguments.sweep} ({error}); give the output of clogsweep")
+        return refuse(f"cannot read {arguments.sweep} ({error}); give the output of clogsweep")
     if not rows:
-        sys.exit(f"clogs.py: {arguments.sweep} holds no such clogged polygon")
+        return refuse(f"{arguments.sweep} holds no such clogged polygon")
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         config_file = pathlib.Path(folder) / "sweep.cfg"
         config_file.write_text(config)
         try:
             shapes = list(pool.map(lambda row: run_again(arguments.clogrun, config_file, row, folder), rows))
         except (OSError, subprocess.CalledProcessError) as error:
-            sys.exit(f"clogs.py: cannot run clogrun ({getattr(error, 'stderr', '') or error})".rstrip())
+            return refuse(f"cannot run clogrun ({getattr(error, 'stderr', '') or error})".rstrip())
     across = min(6, len(rows))
     down = -(-len(rows) // across)
     figure, axes = plt.subplots(down, across, figsize=(2.6 * across, 3 * down), layout="constrained", squeeze=False)
@@ -120,9 +123,9 @@ def main():
         place.axis("off")
     for place, row, shape in zip(axes.flat, rows, shapes):
         draw(place, row, *shape)
-    for ending, dots in ((".png", 110), (".pdf", None)):
-        figure.savefig(arguments.output.with_suffix(ending), dpi=dots)
+    style.save(figure, arguments.output)
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -66,17 +66,22 @@ void validate(const RunParameters& run, const ChannelParameters& channel, double
   if (!(channel.orifice > narrowest && channel.orifice <= 20))
     refuse("orifice", channel.orifice,
            "must lie between two vertex diameters, " + text(narrowest) + ", and 20 sigma) try 0.7");
-  if (!(channel.wedge_angle >= 5 && channel.wedge_angle <= 85))
-    refuse("wedge-angle", channel.wedge_angle, "degrees against the flow, must lie in 5..85) try 45");
+  const bool is_parallel = channel.wedge_angle == 0;
+  if (!is_parallel && !(channel.wedge_angle >= 5 && channel.wedge_angle <= 85))
+    refuse("wedge-angle", channel.wedge_angle,
+           "degrees against the flow, must lie in 5..85, or be 0 for parallel walls) try 45");
   if (!(std::abs(channel.end) <= 100 && channel.end > channel.start))
     refuse("end", channel.end, "must lie downstream of the start and within 100 sigma of the orifice) try 3");
   if (!(channel.tip_radius >= 0 && channel.tip_radius <= 10))
     refuse("tip-radius", channel.tip_radius, "must lie in 0..10 sigma) try 0.03");
+  if (is_parallel && !(channel.orifice / 2 > reach))
+    refuse("orifice", channel.orifice,
+           "parallel walls must leave the droplet free) use more than " + text(2 * reach));
   const double angle = channel.wedge_angle * std::numbers::pi / 180;
   const double last_start =
       ((channel.orifice / 2 + channel.tip_radius) * std::cos(angle) - channel.tip_radius - reach) /
       std::sin(angle);
-  const bool is_free = last_start > 0 ? channel.start < 100 : channel.start <= last_start;
+  const bool is_free = is_parallel || last_start > 0 ? channel.start < 100 : channel.start <= last_start;
   if (!(channel.start >= -100 && is_free))
     refuse("start", channel.start,
            "the droplet must be upstream, clear of the wedges, within 100 sigma) use at most " +

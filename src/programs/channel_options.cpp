@@ -10,7 +10,7 @@ namespace clog {
 void add_channel_options(cli::CommandLine& line) {
   const auto text = [] { return boost::program_options::value<std::string>(); };
   line.add_options()("orifice", text(), "channel: distance w between the wedges' tips [sigma] (0.7)")(
-      "wedge-angle", text(), "channel: of the flanks against the flow [degrees] (45)")(
+      "wedge-angle", text(), "channel: of the flanks against the flow, 0: parallel walls [degrees] (45)")(
       "tip-radius", text(), "channel: of the wedges' rounded tips [sigma] (0.03)");
 }
 

@@ -9,6 +9,8 @@
 #include "clog/core/error.hpp"
 #include "clog/store/run_table.hpp"
 #include "clogfit_calibrate.hpp"
+#include "clogfit_deviation.hpp"
+#include "clogfit_drag.hpp"
 #include "group_table.hpp"
 
 namespace {
@@ -23,6 +25,8 @@ confidence interval and the mean speed with its standard error.
   clogfit sweep.h5
   clogfit sweep.h5 --format csv > table.csv
   clogfit calibrate trial.csv --orifice 0.7    line tension and near-wall drag from measured speeds
+  clogfit deviation a.csv b.csv                Delta_v and Delta_A of one profile from others
+  clogfit drag speeds.csv                      exponent of the near-wall drag from speeds along a wall
 
 Runs that did not clog count as censored at the distance they reached. Where no run clogged, lambda is a lower
 bound. Letters in the last column name what may spoil a length. The mean speed is in units of the terminal speed, its
@@ -63,5 +67,9 @@ int main(int argc, char** argv) {
   using namespace clog;
   if (argc > 1 && std::string_view(argv[1]) == "calibrate")
     return cli::run_program("clogfit calibrate", [&] { return clogfit_calibrate(argc, argv); });
+  if (argc > 1 && std::string_view(argv[1]) == "deviation")
+    return cli::run_program("clogfit deviation", [&] { return clogfit_deviation(argc, argv); });
+  if (argc > 1 && std::string_view(argv[1]) == "drag")
+    return cli::run_program("clogfit drag", [&] { return clogfit_drag(argc, argv); });
   return cli::run_program(program, [&] { return body(argc, argv); });
 }

@@ -50,40 +50,47 @@ double factor(const std::string& unit, const std::string& reduced, const std::st
   return in_si / scale;
 }
 
+/// Where a length and a speed stand in each line, and the shape if it is there.
 class Columns {
  public:
-  Columns(const std::string& header, const ProfileScales& scales) {
+  Columns(const std::string& length_name, const std::string& header, const ProfileScales& scales) {
     const std::vector<std::string> cells = cells_of(header);
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const auto [name, unit] = name_and_unit(cells[i]);
-      if (name == "h") h_ = Column{i, factor(unit, "sigma", "length", scales.diameter, "--diameter")};
-      if (name == "v") v_ = Column{i, factor(unit, "v_t", "speed", scales.terminal_speed, "--speed")};
-      if (name == "A") a_ = Column{i, 1};
+      if (name == length_name)
+        length_ = Column{i, factor(unit, "sigma", "length", scales.diameter, "--diameter")};
+      if (name == "v") speed_ = Column{i, factor(unit, "v_t", "speed", scales.terminal_speed, "--speed")};
+      if (name == "A") shape_ = Column{i, 1};
     }
-    if (!h_ || !v_) throw Error("needs a header that names the columns h and v, e.g. h [mm], v [mm/s], A");
+    if (!length_ || !speed_)
+      throw Error("needs a header that names the columns " + length_name + " and v, e.g. " + length_name +
+                  " [mm], v [mm/s]");
   }
 
-  fit::Frame frame(const std::string& line) const {
-    const std::vector<std::string> cells = cells_of(line);
-    const auto number = [&](const Column& column) {
-      if (column.index >= cells.size()) throw Error("has too few columns");
-      return column.factor * sweep::to_number(cells[column.index]);
-    };
-    const bool has_shape = a_ && a_->index < cells.size() && !cells[a_->index].empty();
-    return {number(*h_), number(*v_), has_shape ? number(*a_) : std::numeric_limits<double>::quiet_NaN()};
+  double length(const std::vector<std::string>& cells) const { return number(cells, *length_); }
+  double speed(const std::vector<std::string>& cells) const { return number(cells, *speed_); }
+  /// NaN if it is not there
+  double shape(const std::vector<std::string>& cells) const {
+    const bool is_there = shape_ && shape_->index < cells.size() && !cells[shape_->index].empty();
+    return is_there ? number(cells, *shape_) : std::numeric_limits<double>::quiet_NaN();
   }
 
  private:
-  std::optional<Column> h_, v_, a_;
+  static double number(const std::vector<std::string>& cells, const Column& column) {
+    if (column.index >= cells.size()) throw Error("has too few columns");
+    return column.factor * sweep::to_number(cells[column.index]);
+  }
+
+  std::optional<Column> length_, speed_, shape_;
 };
 
-}  // namespace
-
-fit::Profile read_profile(const std::string& path, const ProfileScales& scales) {
+/// @param add  called with the columns and the cells of every line
+template <typename Add>
+void read_lines(const std::string& path, const std::string& length_name, const ProfileScales& scales,
+                Add add) {
   std::ifstream file(path);
   if (!file || std::filesystem::is_directory(path))
     throw Error("cannot read " + path + " (no such file, or not readable)");
-  fit::Profile profile;
   std::optional<Columns> columns;
   int line_number = 0;
   for (std::string line; std::getline(file, line);) {
@@ -91,15 +98,32 @@ fit::Profile read_profile(const std::string& path, const ProfileScales& scales) 
     if (trimmed(line).empty() || line.starts_with('#')) continue;
     try {
       if (columns)
-        profile.push_back(columns->frame(line));
+        add(*columns, cells_of(line));
       else
-        columns.emplace(line, scales);
+        columns.emplace(length_name, line, scales);
     } catch (const Error& error) {
       throw Error(path + " line " + std::to_string(line_number) + ": " + error.what());
     }
   }
+}
+
+}  // namespace
+
+fit::Profile read_profile(const std::string& path, const ProfileScales& scales) {
+  fit::Profile profile;
+  read_lines(path, "h", scales, [&](const Columns& columns, const std::vector<std::string>& cells) {
+    profile.push_back({columns.length(cells), columns.speed(cells), columns.shape(cells)});
+  });
   if (profile.size() < 3) throw Error(path + " holds fewer than three frames");
   return profile;
+}
+
+std::vector<fit::NearWallSpeed> read_near_wall_speeds(const std::string& path, const ProfileScales& scales) {
+  std::vector<fit::NearWallSpeed> speeds;
+  read_lines(path, "d", scales, [&](const Columns& columns, const std::vector<std::string>& cells) {
+    speeds.push_back({columns.length(cells), columns.speed(cells)});
+  });
+  return speeds;
 }
 
 }  // namespace clog

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "clog/fit/calibration.hpp"
+#include "clog/fit/near_wall_drag.hpp"
 
 namespace clog {
 
@@ -17,5 +19,10 @@ struct ProfileScales {
 /// are passed over. Lines starting with # are comments. Empty cells of A are frames without a shape.
 /// @throws Error naming file and line
 fit::Profile read_profile(const std::string& path, const ProfileScales& scales);
+
+/// Reads speeds along a wall in the same way: columns d and v, e.g. `d [mm], v [mm/s]` or `d [sigma], v
+/// [v_t]`.
+/// @throws Error naming file and line
+std::vector<fit::NearWallSpeed> read_near_wall_speeds(const std::string& path, const ProfileScales& scales);
 
 }  // namespace clog

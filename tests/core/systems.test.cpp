@@ -296,12 +296,37 @@ TEST(InAChannel, ADropletPassesUpToTheLineTensionThatStaticsAllows) {
   }
 }
 
+TEST(InAChannel, ParallelWallsSlowACircleByTheMeanDragOfItsVertices) {
+  // A circle midway: zeta = b_inf (1 + b_0/b_inf mean of d_i^-alpha), d_i to the nearer wall.
+  RunParameters run = parameters(1, 128);
+  run.drag.near_wall = 0.07;
+  run.drag.terminal_speed = 0.03;
+  // Springs that hold the vertices: they do not slide along the interface, back from the walls.
+  run.dp.perimeter_spring = PerimeterSpring::rest;
+  run.dp.gravity = Gravity::vertex;
+  run.dp.perimeter_stiffness = 1;
+  for (const double distance : {0.1, 1.0}) {
+    DropletRun droplet =
+        run_in_channel(resolve(run), {.orifice = 1 + 2 * distance, .wedge_angle = 0, .start = 0, .end = 0.6});
+    while (!droplet.advance(100)) {
+    }
+    double mean = 0;
+    for (int i = 0; i < 128; ++i)
+      mean += std::pow(distance + 0.5 * (1 - std::abs(std::sin(2 * pi * i / 128))),
+                       -run.drag.near_wall_exponent) /
+              128;
+    const double speed = droplet.droplet().centre_velocity()[0] / run.drag.terminal_speed;
+    EXPECT_NEAR(speed * (1 + run.drag.near_wall * mean), 1, 0.01) << distance;
+  }
+}
+
 TEST(InAChannel, RefusesWhatCannotBe) {
   const RunParameters run = resolve(parameters(1));
   for (const ChannelParameters& channel :
        {ChannelParameters{.orifice = 0.02}, ChannelParameters{.orifice = std::nan("")},
-        ChannelParameters{.wedge_angle = 0}, ChannelParameters{.tip_radius = -1},
-        ChannelParameters{.start = -0.2}, ChannelParameters{.start = 1}, ChannelParameters{.end = -11}})
+        ChannelParameters{.orifice = 1, .wedge_angle = 0}, ChannelParameters{.wedge_angle = 3},
+        ChannelParameters{.tip_radius = -1}, ChannelParameters{.start = -0.2}, ChannelParameters{.start = 1},
+        ChannelParameters{.end = -11}})
     EXPECT_THROW(run_in_channel(run, channel), Error);
 }
 

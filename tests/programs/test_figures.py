@@ -1,19 +1,51 @@
+import csv
 import json
+import math
+import pathlib
+import shutil
 import subprocess
-import sys
 import unittest
+import xml.etree.ElementTree as xml
 
+import h5py
+import numpy as np
+import pandas
 from matplotlib import image
 
-from support import BIN, QUICK, ROOT, ProgramTest
+from support import BIN, QUICK, ROOT, ProgramTest, table
+
+PYTHON = "/usr/bin/python3" if pathlib.Path("/usr/bin/python3").exists() else "python3"
+# A few seconds for all of them: coarse droplets, short ways.
+TINY = {
+    "clogging": ["vertices=32", "line-tension=0.3,3", "obstacle-gap=0.2,0.4"],
+    "clogging-sp": ["wall-stiffness=1,10", "obstacle-gap=0.2,0.4"],
+    "speed": ["vertices=32", "line-tension=0.1,1", "obstacle-gap=1.0,1.1"],
+    "speed-sp": ["wall-stiffness=1,10", "obstacle-gap=1.0,1.1"],
+    "speed-diameter": ["vertices=32", "line-tension=0.1,1"],
+    "near-wall-drag": ["vertices=32", "line-tension=0.1,1"],
+    "survival": ["vertices=32", "obstacle-density=saturated", "max-time=150"],
+    "trajectory": ["vertices=32"],
+}
+SETTINGS = [f"{name}:{key}" for name, keys in TINY.items() for key in [*keys, "box=20", "seeds=1..2"]]
+SET = [word for setting in [*SETTINGS, "max-time=40", "channel:vertices=64", "channel:max-time=20", "trajectory:max-time=150"] for word in ("--set", setting)]
 
 
-class Figures(ProgramTest):
+class Analysis(ProgramTest):
     def analyse(self, script, *arguments):
-        return subprocess.run(
-            [sys.executable, str(ROOT / "analysis" / script), *map(str, arguments)],
-            cwd=self.folder, capture_output=True, text=True, timeout=120,
-        )
+        return subprocess.run([PYTHON, str(ROOT / "analysis" / script), *map(str, arguments)],
+                              cwd=self.folder, capture_output=True, text=True, timeout=300)
+
+    def draw(self, script, *arguments):
+        done = self.analyse(script, *arguments)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return done
+
+    def refuse_analysis(self, script, *arguments, words):
+        done = self.analyse(script, *arguments)
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
+        for word in words:
+            self.assertIn(word, done.stderr)
 
     def assert_picture(self, name):
         pixels = image.imread(self.folder / f"{name}.png")
@@ -21,53 +53,183 @@ class Figures(ProgramTest):
         self.assertGreater(pixels[..., :3].std(), 0.05, "a picture that is not blank")
         self.assertTrue((self.folder / f"{name}.pdf").read_bytes().startswith(b"%PDF"))
 
-    def test_the_clogging_length_is_drawn_from_a_fit(self):
-        self.succeed("clogsweep", *QUICK, "line-tension=0.3,2", "obstacle-gap=0.2,1.2", "seeds=1..3", "--output", "s.h5")
-        self.write("fit.json", self.succeed("clogfit", "s.h5", "--format", "json").stdout)
-        done = self.analyse("clogging_length.py", "fit.json", "--output", "curve")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assert_picture("curve")
 
-    def test_soft_disks_are_drawn_over_their_stiffness(self):
-        self.succeed("clogsweep", "model=sp", "wall-stiffness=0.3,3", "box=20", "max-time=500", "seeds=1..3", "--output", "s.h5")
-        self.write("fit.json", self.succeed("clogfit", "s.h5", "--format", "json").stdout)
-        done = self.analyse("clogging_length.py", "fit.json", "--output", "curve")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assert_picture("curve")
+class Figures(Analysis):
+    PLACE = "reduced"
 
-    def test_mixtures_and_lattices_are_drawn_too(self):
+    def figures(self, *arguments):
+        return self.draw("figures.py", *arguments, "--output", ".", "--programs", BIN, *SET)
+
+    def drawn(self, name):
+        with open(self.folder / self.PLACE / f"figure-{name}.csv") as file:
+            return list(csv.DictReader(file))
+
+    def fit(self, sweep):
+        return json.loads(self.succeed("clogfit", f"{self.PLACE}/sweeps/{sweep}.h5", "--format", "json").stdout)["groups"]
+
+    def assert_groups(self, name, sweep, quantity):
+        """The numbers beside the picture are clogfit's, every one of them."""
+        groups = [group for group in self.fit(sweep) if group[quantity] is not None]
+        points = [row for row in self.drawn(name) if row["model"] == groups[0]["model"] and row[quantity]]
+        keys = ["obstacle_gap", "obstacle_diameter", "near_wall_drag", "line_tension" if groups[0]["model"] == "dp" else "wall_stiffness"]
+        self.assertEqual(sorted([*(float(point[key]) for key in keys), float(point[quantity])] for point in points),
+                         sorted([*(group[key] for key in keys), group[quantity]] for group in groups))
+
+    def test_curves_show_what_clogfit_says(self):
+        names = {"6c": ("clogging", "clogging_length"), "7a": ("clogging-sp", "clogging_length"), "8a": ("speed", "mean_speed"),
+                 "8b": ("speed-diameter", "mean_speed"), "8ca": ("speed", "capillary_number"), "9a": ("speed-sp", "mean_speed"),
+                 "E": ("near-wall-drag", "mean_speed")}
+        done = self.figures(*names, "7c", "9b", "--ranks", 1)
+        self.assertNotIn("Warning", done.stderr)
+        for name in [*names, "7c", "9b"]:
+            with self.subTest(figure=name):
+                self.assert_picture(f"{self.PLACE}/figure-{name}")
+                about = (self.folder / self.PLACE / f"figure-{name}.txt").read_text()
+                for word in ("seeds 1 to 2", "git", "clogsweep"):
+                    self.assertIn(word, about)
+        for name, (sweep, quantity) in names.items():
+            with self.subTest(figure=name):
+                self.assert_groups(name, sweep, quantity)
+        # A soft disk sinks by pi/(16 E_w).
+        for point in self.drawn("7c"):
+            if point["model"] == "sp":
+                self.assertAlmostEqual(float(point["sag"]), math.pi / 16 / float(point["wall_stiffness"]), delta=1e-4)
+
+        # Once more: nothing runs again, in whatever way it is asked.
+        file = self.folder / self.PLACE / "sweeps" / "clogging.h5"
+        rows = table(file)
+        for way in ([], ["--draw-only"]):
+            self.figures("6c", *way)
+            pandas.testing.assert_frame_equal(table(file), rows, check_exact=True)
+        self.draw_clogs(file)
+        # Other settings than the file's are refused by clogsweep, in its words.
+        self.refuse_analysis("figures.py", "6c", "--output", ".", "--programs", BIN, *SET, "--set", "clogging:box=30", words=["box"])
+        self.make_report(file)
+
+    def draw_clogs(self, sweep):
+        """So short a sweep wraps no droplet: one of its clogs is said to be one."""
+        with h5py.File(sweep, "r+") as file:
+            rows = file["runs"][:]
+            clogged = np.flatnonzero(rows["status"] == b"clogged")
+            rows["mechanism"][clogged] = b"squeezed"
+            rows["mechanism"][clogged[-1]] = b"wrapped"
+            file["runs"][:] = rows
+        self.figures("5", "6a", "6b")
+        for name in ("5", "6a", "6b"):
+            self.assert_picture(f"{self.PLACE}/figure-{name}")
+        wrapped, squeezed = self.drawn("6a")[0], self.drawn("6b")[0]
+        self.assertEqual([wrapped["mechanism"], squeezed["mechanism"]], ["wrapped", "squeezed"])
+        self.assertEqual(float(wrapped["distance"]), rows["distance"][clogged[-1]])
+        with h5py.File(sweep.parent.parent / "runs" / "clog-wrapped.h5") as file:
+            self.assertEqual(file["runs"]["distance"][0], float(wrapped["distance"]), "the same run, bit for bit")
+
+    def make_report(self, sweep):
+        self.draw("report.py", sweep, "--output", "report.html", "--programs", BIN)
+        page = (self.folder / "report.html").read_text()
+        self.assertNotRegex(page, r"(src|href)=\"(?!data:)", "nothing from elsewhere")
+        for group in self.fit("clogging"):
+            self.assertIn(f"<td>{group['mean_speed']:.4g}</td>" if group["mean_speed"] else "<td>-</td>", page)
+        self.assertIn("few clogs", page)
+        self.assertGreaterEqual(page.count("<img"), 3)
+        self.assertIn("command_line: clogsweep", page)
+
+    def test_single_runs_are_drawn_as_they_were_run(self):
+        measured = "\n".join(["h [sigma], v [v_t], A", *(f"{h / 10},{0.5 + 0.01 * h},1.0{abs(h)}" for h in range(-9, 10))])
+        self.write("measured.csv", measured)
+        names = ["1", "2", "3", "4", "7b", "A1", "B1", "B2", "C1", "C2", "D"]
+        self.figures(*names, "--profile", "measured.csv")
+        for name in names:
+            with self.subTest(figure=name):
+                self.assert_picture(f"{self.PLACE}/figure-{name}")
+                self.assertIn("clog", (self.folder / self.PLACE / f"figure-{name}.txt").read_text())
+        with h5py.File(self.folder / self.PLACE / "runs" / "channel-0.4.h5") as file:
+            trajectory = file["trajectory"][:]
+        points = self.drawn("2")
+        self.assertEqual(float(points[0]["h"]), trajectory["h"][0])
+        self.assertTrue(set(float(point["shape_parameter"]) for point in points) <= set(trajectory["shape_parameter"]))
+        steps = self.fit("survival")[0]["survival"]
+        self.assertEqual([float(point["probability"]) for point in self.drawn("C2")[1:1 + len(steps)]], [step["probability"] for step in steps])
+        # A run is used again; one with other settings is not.
+        file = self.folder / self.PLACE / "runs" / "channel-0.4.h5"
+        before = file.stat().st_mtime_ns
+        self.figures("2")
+        self.assertEqual(file.stat().st_mtime_ns, before)
+        self.figures("2", "--set", "channel:max-time=30", "--set", "seeds=1..3")
+        with h5py.File(file) as changed:
+            self.assertEqual(changed["runs"]["max_time"][0], 30)
+
+    def test_mistakes_get_one_line(self):
+        for arguments, words in [
+            (["13"], ["no figure 13", "list"]),
+            (["6c", "--programs", "nowhere"], ["no clogsweep in nowhere"]),
+            (["6c", "--programs", BIN, "--draw-only", "--output", "."], ["clogging.h5", "--draw-only"]),
+            (["6c", "--programs", BIN, "--set", "seeds"], ["--set seeds", "KEY=VALUE"]),
+            (["6c", "--programs", BIN, "--output", ".", "--ranks", "1", "--set", "obstacle-gap=-1"], ["obstacle-gap=-1"]),
+            (["6c", "--programs", BIN, "--ranks", "0"], ["--ranks 0"]),
+            (["2", "--programs", BIN, "--output", ".", *SET, "--profile", "no.csv"], ["cannot read no.csv"]),
+        ]:
+            with self.subTest(arguments=arguments):
+                self.refuse_analysis("figures.py", *arguments, words=words)
+        self.assertIn("A1", self.draw("figures.py", "list").stdout)
+
+
+class Pictures(Analysis):
+    def test_sweeps_of_every_kind_are_drawn_from_a_fit(self):
         soft_disks = ["model=sp", "wall-stiffness=0.3,3", "box=20", "max-time=300", "seeds=1..2"]
         for name, keys in [
-            ("mixture", ["obstacle-diameter-spread=0.3", "obstacle-density=0.5,saturated"]),
-            ("lattice", ["obstacle-layout=lattice", "lattice-angle=0,10"]),
+            ("polygons", [*QUICK, "line-tension=0.3,2", "obstacle-gap=0.2,1.2", "seeds=1..3"]),
+            ("mixture", [*soft_disks, "obstacle-diameter-spread=0.3", "obstacle-density=0.5,saturated"]),
+            ("lattice", [*soft_disks, "obstacle-layout=lattice", "lattice-angle=0,10"]),
         ]:
-            self.succeed("clogsweep", *soft_disks, *keys, "--output", f"{name}.h5")
+            self.succeed("clogsweep", *keys, "--output", f"{name}.h5")
             self.write("fit.json", self.succeed("clogfit", f"{name}.h5", "--format", "json").stdout)
-            done = self.analyse("clogging_length.py", "fit.json", "--output", name)
-            self.assertEqual(done.returncode, 0, done.stderr)
+            self.draw("clogging_length.py", "fit.json", "--output", name)
             self.assert_picture(name)
-
-    def test_a_droplet_is_drawn_from_a_run(self):
-        self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 5, "--output", "run.h5")
-        done = self.analyse("droplet.py", "run.h5", "--output", "droplet")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assert_picture("droplet")
 
     def test_clogs_are_drawn_from_a_sweep(self):
         self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1..2", "--output", "s.h5")
-        done = self.analyse("clogs.py", "s.h5", "--clogrun", BIN / "clogrun", "--output", "clogs", "--most", 3)
-        self.assertEqual(done.returncode, 0, done.stderr)
+        self.draw("clogs.py", "s.h5", "--clogrun", BIN / "clogrun", "--output", "clogs", "--most", 3)
         self.assert_picture("clogs")
 
     def test_foreign_files_get_one_line(self):
         self.write("fit.json", json.dumps({"groups": "none"}))
         self.write("run.h5", "nothing")
-        for script, file in [("clogging_length.py", "fit.json"), ("clogging_length.py", "no.json"), ("droplet.py", "run.h5"), ("clogs.py", "run.h5")]:
+        for script, file in [("clogging_length.py", "fit.json"), ("clogging_length.py", "no.json"), ("droplet.py", "run.h5"),
+                             ("export_vtk.py", "run.h5"), ("clogs.py", "run.h5"), ("report.py", "run.h5")]:
             with self.subTest(script=script, file=file):
-                done = self.analyse(script, file, "--output", "x")
-                self.assertNotEqual(done.returncode, 0)
-                self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
-                self.assertIn("cannot read", done.stderr)
+                self.refuse_analysis(script, file, "--output", "x", words=["cannot read" if script != "report.py" else "run.h5"])
+
+    def numbers(self, parent, name):
+        element, = parent.findall(f".//DataArray[@Name='{name}']")
+        return np.array(element.text.split(), dtype=float)
+
+    def test_a_run_is_drawn_filmed_and_exported(self):
+        self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 15, "--output", "run.h5")
+        self.draw("droplet.py", "run.h5", "--output", "droplet")
+        self.assert_picture("droplet")
+        with h5py.File(self.folder / "run.h5") as file:
+            polygons, times, obstacles = (file[name][:] for name in ("polygons", "polygon_times", "obstacles"))
+        self.draw("droplet.py", "run.h5", "--output", "droplet", "--frames")
+        frames = sorted((self.folder / "droplet-frames").iterdir())
+        self.assertEqual(len(frames), len(times))
+        self.assertNotEqual(frames[0].read_bytes(), frames[-1].read_bytes())
+        film = self.folder / self.draw("droplet.py", "run.h5", "--output", "droplet", "--film", "--colour", "mechanism").stdout.strip()
+        self.assertEqual(film.suffix, ".mp4" if shutil.which("ffmpeg") else ".gif")
+        self.assertIn(film.read_bytes()[:8][4:] if film.suffix == ".mp4" else film.read_bytes()[:4], [b"ftyp", b"GIF8"])
+
+        self.draw("export_vtk.py", "run.h5", "--output", "run")
+        frames = xml.parse(self.folder / "run.pvd").findall(".//DataSet")
+        self.assertEqual([float(frame.get("timestep")) for frame in frames], times.tolist())
+        last = xml.parse(self.folder / frames[-1].get("file"))
+        points = self.numbers(last, "Points").reshape(-1, 3)
+        np.testing.assert_array_equal(points[:, :2], polygons[-1].T)
+        piece, = last.findall(".//Piece")
+        self.assertEqual(int(piece.get("NumberOfPoints")), len(points))
+        self.assertEqual(self.numbers(last, "offsets").tolist(), [len(points)])
+        self.assertEqual(self.numbers(last, "connectivity").tolist(), list(range(len(points))))
+        self.assertEqual(len(self.numbers(last, "vertex_speed")), len(points))
+        discs = xml.parse(self.folder / "run-obstacles.vtp")
+        np.testing.assert_array_equal(self.numbers(discs, "diameter"), obstacles[:, 2])
 
 
 if __name__ == "__main__":

@@ -1,0 +1,113 @@
+#!/usr/bin/python3
+"""Writes a run for ParaView: the droplet's outline over time, and what it moves among.
+
+    clogrun array --output run.h5 --polygon-interval 5 line-tension=0.3 seeds=4
+    analysis/export_vtk.py run.h5 --output run
+    paraview run.pvd
+
+Makes RUN.pvd, which names every frame with its time, the frames in the folder RUN-vtk, and RUN-obstacles.vtp, to be opened beside it:
+discs and walls, cut off five diameters from the droplet's way. All are VTK's XML PolyData, as text. Frames have the
+vertices' speed, and, as field data, the columns of the trajectory at that time. Units are those of src/store/README.md.
+"""
+
+import argparse
+import math
+import os
+import pathlib
+import sys
+import xml.etree.ElementTree as xml
+
+import numpy as np
+import trajectory
+
+
+def data_array(parent, name, values, components=1):
+    values = np.asarray(values)
+    kind = "Int64" if values.dtype.kind == "i" else "Float64"
+    element = xml.SubElement(parent, "DataArray", type=kind, Name=name, format="ascii")
+    if components > 1:
+        element.set("NumberOfComponents", str(components))
+    element.text = " ".join(map(repr, values.ravel().tolist())).replace("nan", "NaN")
+    return element
+
+
+def polydata(outlines, point_data=None, cell_data=None, field_data=None):
+    """Closed polygons. @param outlines  arrays n x 2; @param point_data, cell_data  name -> values"""
+    root = xml.Element("VTKFile", type="PolyData", version="1.0", byte_order="LittleEndian", header_type="UInt64")
+    body = xml.SubElement(root, "PolyData")
+    if field_data:
+        fields = xml.SubElement(body, "FieldData")
+        for name, value in field_data.items():
+            data_array(fields, name, [value]).set("NumberOfTuples", "1")
+    points = np.concatenate(outlines) if outlines else np.empty((0, 2))
+    piece = xml.SubElement(body, "Piece", NumberOfPoints=str(len(points)), NumberOfPolys=str(len(outlines)),
+                           NumberOfVerts="0", NumberOfLines="0", NumberOfStrips="0")
+    for kind, data in [("PointData", point_data), ("CellData", cell_data)]:
+        element = xml.SubElement(piece, kind)
+        for name, values in (data or {}).items():
+            data_array(element, name, values)
+    data_array(xml.SubElement(piece, "Points"), "Points", np.column_stack([points, np.zeros(len(points))]), components=3)
+    polygons = xml.SubElement(piece, "Polys")
+    data_array(polygons, "connectivity", np.arange(len(points)))
+    data_array(polygons, "offsets", np.cumsum([len(outline) for outline in outlines], dtype=np.int64))
+    return xml.ElementTree(root)
+
+
+def collection(files, times):
+    root = xml.Element("VTKFile", type="Collection", version="1.0", byte_order="LittleEndian")
+    body = xml.SubElement(root, "Collection")
+    for file, time in zip(files, times):
+        xml.SubElement(body, "DataSet", timestep=repr(float(time)), group="", part="0", file=file)
+    return xml.ElementTree(root)
+
+
+def write(tree, path):
+    """Under another name first: whoever looks in sees whole files."""
+    fresh = path.with_name(path.name + ".new")
+    tree.write(fresh, encoding="utf-8", xml_declaration=True)
+    os.replace(fresh, path)
+
+
+def surroundings(run):
+    angle = np.linspace(0, 2 * math.pi, 48, endpoint=False)
+    circle = np.column_stack([np.cos(angle), np.sin(angle)])
+    discs = [np.array([x, y]) + diameter / 2 * circle for x, y, diameter in run.obstacles]
+    low, high = run.polygons.min(axis=(0, 2)) - 5, run.polygons.max(axis=(0, 2)) + 5
+    walls = [np.clip(trajectory.wedge_outline(wedge), low, high) for wedge in run.wedges]
+    diameters = [diameter for _, _, diameter in run.obstacles] + [math.nan] * len(walls)
+    return polydata(discs + walls, cell_data={"diameter": np.array(diameters, dtype=float)})
+
+
+def export(run, output):
+    """@return the .pvd file"""
+    folder = output.with_name(output.name + "-vtk")
+    folder.mkdir(parents=True, exist_ok=True)
+    speeds = trajectory.vertex_speeds(run)
+    columns = run.table.dtype.names
+    names = []
+    for frame, (polygon, time) in enumerate(zip(run.polygons, run.times)):
+        fields = {name: float(np.interp(time, run.table["time"], run.table[name])) for name in columns if name != "time"}
+        fields["TimeValue"] = float(time)
+        names.append(f"{folder.name}/droplet-{frame:05d}.vtp")
+        write(polydata([polygon.T], {"vertex_speed": speeds[frame]}, field_data=fields), output.parent / names[-1])
+    write(surroundings(run), output.with_name(output.name + "-obstacles.vtp"))
+    pvd = output.with_name(output.name + ".pvd")
+    write(collection(names, run.times), pvd)
+    return pvd
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("run", type=pathlib.Path, help="output of clogrun with --polygon-interval")
+    parser.add_argument("--output", type=pathlib.Path, required=True, help="name without ending")
+    arguments = parser.parse_args()
+    try:
+        print(export(trajectory.read(arguments.run), arguments.output))
+    except (ValueError, OSError) as error:
+        print(f"export_vtk.py: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,108 @@
+#!/usr/bin/python3
+"""Regenerates a figure of the paper from runs of our own: sweeps or single runs, clogfit, picture.
+
+    analysis/figures.py list
+    analysis/figures.py 6c 7c
+    analysis/figures.py all --size full --output results/figures
+
+The same command goes on with an interrupted sweep, and never repeats finished runs. Figures that share a sweep run it once.
+Beside FOLDER/SIZE/figure-NAME.png are the same as .pdf, the numbers drawn as .csv, and where they came from as .txt.
+"""
+
+import argparse
+import csv
+import datetime
+import os
+import pathlib
+import subprocess
+import sys
+
+import style
+from paper import arrays, channels  # noqa: F401, they fill the catalogue
+from paper.plate import CATALOGUE
+from paper.workshop import INTERRUPTED, ROOT, Override, ProgramFailed, UserError, Workshop, measured, programs_in
+
+ORDER = ["1", "2", "3", "4", "5", "6a", "6b", "6c", "7a", "7b", "7c", "8a", "8b", "8ca", "9a", "9b", "A1", "B1", "B2", "C1", "C2", "D", "E"]
+
+
+def print_list():
+    print(f"{'name':5} {'reduced size':24} {'sweep or settings':24} what")
+    for name in ORDER:
+        entry = CATALOGUE[name]
+        print(f"{name:5} {entry.cost:24} {', '.join(entry.configs) or '-':24} {entry.caption}")
+
+
+def git_hash():
+    done = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short=12", "HEAD"], capture_output=True, text=True)
+    return done.stdout.strip() or "unknown"
+
+
+def write(plate, entry, shop, command):
+    output = shop.folder / f"figure-{entry.name}"
+    sources = shop.take_sources()
+    about = "\n".join([f"Figure {entry.name}, {shop.size} size: {entry.caption}", f"drawn by {command}",
+                       f"git {git_hash()}, {datetime.datetime.now(datetime.timezone.utc):%Y-%m-%dT%H:%M:%SZ}", "from", *sources]) + "\n"
+    style.save(plate.figure, output, {"Title": f"Figure {entry.name}: {entry.caption}", "Description": about, "Software": "clogsweep"})
+    columns = list(dict.fromkeys(name for row in plate.data for name in row))
+    with open(f"{output}.csv", "w", newline="") as out:
+        table = csv.DictWriter(out, columns)
+        table.writeheader()
+        table.writerows(plate.data)
+    pathlib.Path(f"{output}.txt").write_text(about)
+    print(f"{output}.png (and .pdf, .csv, .txt)", flush=True)
+
+
+def parse():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="+", metavar="NAME", help="of figures, or list, or all")
+    parser.add_argument("--size", choices=["reduced", "full"], default="reduced", help="reduced: minutes on two cores; full: as published")
+    parser.add_argument("--ranks", type=int, default=2, help="MPI ranks of the sweeps (2)")
+    parser.add_argument("--output", type=pathlib.Path, default=ROOT / "results" / "figures", help="folder (results/figures)")
+    parser.add_argument("--draw-only", action="store_true", help="run nothing, draw from what is there")
+    parser.add_argument("--profile", type=pathlib.Path, action="append", default=[], metavar="FILE.csv",
+                        help="measured passage h [sigma], v [v_t], A to draw in 2, 3 (twice: w = 0.9, 0.7), 4, or to compare with in B2")
+    parser.add_argument("--set", action="append", default=[], metavar="[CONFIG:]KEY=VALUE",
+                        help="another value than the config's, e.g. clogging:seeds=1..50; keys that a figure itself varies in single runs stay")
+    parser.add_argument("--programs", type=pathlib.Path, help="folder of clogsweep, clogrun, clogfit (build/release/bin)")
+    return parser.parse_args()
+
+
+def body():
+    arguments = parse()
+    if arguments.names == ["list"]:
+        print_list()
+        return 0
+    names = ORDER if arguments.names == ["all"] else arguments.names
+    for name in names:
+        if name not in CATALOGUE:
+            raise UserError(f"no figure {name}; analysis/figures.py list names them")
+    if arguments.ranks < 1:
+        raise UserError(f"invalid --ranks {arguments.ranks} (must be positive) try 2")
+    shop = Workshop(size=arguments.size, ranks=arguments.ranks, folder=arguments.output / arguments.size,
+                    programs=programs_in(arguments.programs), overrides=[Override.parse(text) for text in getattr(arguments, "set")],
+                    profiles=arguments.profile, draw_only=arguments.draw_only)
+    for path in arguments.profile:
+        measured(path)
+    try:
+        shop.folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(f"cannot make {shop.folder} ({error.strerror}); give another --output") from error
+    command = " ".join([os.path.relpath(sys.argv[0], ROOT), *sys.argv[1:]])
+    for name in names:
+        write(CATALOGUE[name].draw(shop), CATALOGUE[name], shop, command)
+    return 0
+
+
+def main():
+    try:
+        return body()
+    except UserError as error:
+        print(f"figures.py: {error}", file=sys.stderr)
+        return 2
+    except ProgramFailed as error:
+        print(f"figures.py: {error}", file=sys.stderr)
+        return error.exit_code if error.exit_code in (2, INTERRUPTED) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

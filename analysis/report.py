@@ -1,0 +1,203 @@
+#!/usr/bin/python3
+"""One page about a sweep: curves, table, example clogs, doubts, where the numbers came from. Opens offline in any browser.
+
+    analysis/report.py sweep.h5 --output report.html
+
+Every number comes from clogfit. Example clogs are run once more by clogrun, to the same bits, in a temporary folder.
+"""
+
+import argparse
+import base64
+import html
+import io
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import clogging_length
+import clogs
+import h5py
+import numpy as np
+import pandas
+import style
+from paper.workshop import ProgramFailed, UserError, programs_in, run_program
+from style import plt
+
+STYLE = """
+body { font: 15px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
+h1 { font-size: 1.5rem; margin-bottom: 0; } h2 { font-size: 1.15rem; margin-top: 2rem; }
+p.about { color: #555; margin-top: .2rem; }
+table { border-collapse: collapse; font-variant-numeric: tabular-nums; }
+.scroll { overflow-x: auto; }
+th, td { padding: .2rem .7rem; text-align: right; border-bottom: 1px solid #ddd; white-space: nowrap; }
+th { border-bottom: 2px solid #888; font-weight: 600; }
+.doubt { color: #9a3b00; } td.doubt { white-space: normal; min-width: 9rem; text-align: left; } .pictures { display: flex; flex-wrap: wrap; gap: 1rem; } .pictures img { max-width: 30rem; width: 100%; }
+figure { margin: 0; flex: 1 1 26rem; } figcaption { color: #555; font-size: .9rem; }
+pre { background: #f5f5f5; padding: .7rem; overflow-x: auto; font-size: .85rem; }
+"""
+# Doubts of clogfit in words.
+DOUBTS = {
+    "few_clogs": "fewer than 5 clogs: more seeds are needed",
+    "not_exponential": "P(r) is not exponential (p &lt; 0.05): one length does not describe these runs",
+    "censored_by_time": "runs ended by max-time: right if slow droplets are as likely to clog as fast ones",
+    "incomplete": "runs are under way, interrupted or have failed",
+}
+
+
+def number(value):
+    return "-" if value is None or (isinstance(value, float) and not math.isfinite(value)) else f"{value:.4g}"
+
+
+def picture(figure, caption):
+    out = io.BytesIO()
+    figure.savefig(out, format="png", dpi=130)
+    plt.close(figure)
+    data = base64.b64encode(out.getvalue()).decode()
+    return f'<figure><img alt="{html.escape(caption)}" src="data:image/png;base64,{data}"><figcaption>{html.escape(caption)}</figcaption></figure>'
+
+
+def speeds(groups, abscissa):
+    figure, axes = plt.subplots(figsize=(6.4, 4.8), layout="constrained")
+    families = list(clogging_length.curves(groups, abscissa))
+    for index, (label, members) in enumerate(families):
+        style.draw_speeds(axes, [group[abscissa] * style.side_by_side(index, len(families)) for group in members], members, index, label)
+    style.logarithmic_abscissa(axes, [group[abscissa] for group in groups])
+    axes.set_xlabel(style.AXES[abscissa])
+    axes.set_ylabel(style.AXES["speed"])
+    style.grid(axes)
+    if axes.get_legend_handles_labels()[1] not in ([], [""]):
+        axes.legend(frameon=False)
+    style.caption(axes, f"{clogging_length.caption(groups)}\nbars: standard error")
+    return figure
+
+
+def varying(groups, abscissa):
+    """Names of the columns that tell the groups apart, the abscissa last."""
+    names = [name for name, _ in clogging_length.CURVE_PARAMETERS
+             if len({group[name] for group in groups}) > 1 and name != "obstacle_density"]
+    return [*names, abscissa]
+
+
+def table(groups, abscissa):
+    names = varying(groups, abscissa)
+    titles = [*names, "runs", "clogs", "&lambda;/&sigma;", "95 %", "&lang;v<sub>g</sub>&rang;/v<sub>t</sub>", "+-", "Ca", "doubts"]
+    lines = ["<tr>" + "".join(f"<th>{title.replace('_', ' ')}</th>" for title in titles) + "</tr>"]
+    for group in groups:
+        bounded = group["clogs"] > 0
+        cells = [*(number(group[name]) for name in names), str(group["runs"]), str(group["clogs"]),
+                 number(group["clogging_length"]) if bounded else f"&gt; {number(group['clogging_length_lower'])}",
+                 f"{number(group['clogging_length_lower'])} .. {number(group['clogging_length_upper'])}" if bounded else "-",
+                 number(group["mean_speed"]), number(group["mean_speed_error"]), number(group["capillary_number"])]
+        doubts = (group["doubts"] or "").replace("_", " ")
+        lines.append("<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + f'<td class="doubt">{html.escape(doubts)}</td></tr>')
+    return '<div class="scroll"><table>' + "\n".join(lines) + "</table></div>"
+
+
+def doubts(groups, rows):
+    words = []
+    for name in dict.fromkeys(name for group in groups for name in (group["doubts"] or "").split()):
+        count = sum(name in (group["doubts"] or "").split() for group in groups)
+        words.append(f"<li class=doubt>{count} of {len(groups)} points: {DOUBTS.get(name, html.escape(name.replace('_', ' ')))}</li>")
+    failed = rows[rows.status == "failed"]
+    for _, row in failed.head(5).iterrows():
+        words.append(f"<li class=doubt>task {row.task} (seed {row.seed}) failed: {html.escape(row.message)}</li>")
+    return "<ul>" + "\n".join(words) + "</ul>" if words else "<p>None.</p>"
+
+
+def examples(clogs_of_sweep, count):
+    """Clogs to be shown: the typical one of every mechanism, the others spread from the least to the most deformed.
+
+    @param clogs_of_sweep  rows as read_clogs() gives them
+    """
+    ordered = sorted(clogs_of_sweep, key=lambda row: (row["shape_parameter"], row["task"]))
+    if not ordered or count == 0:
+        return []
+    kinds = {}
+    for row in ordered:
+        kinds.setdefault(row["mechanism"], []).append(row)
+    typical = [kind[len(kind) // 2] for kind in kinds.values()]
+    # The extremes themselves are often the least sound runs.
+    spread = [ordered[int(place)] for place in np.linspace(0.05, 0.95, count) * (len(ordered) - 1)]
+    return list({row["task"]: row for row in typical + spread}.values())[:count]
+
+
+def example_pictures(shown, config, programs):
+    pictures = []
+    with tempfile.TemporaryDirectory(prefix="clogsweep-report-") as folder:
+        settings = pathlib.Path(folder) / "sweep.cfg"
+        settings.write_text(config)
+        for row in shown:
+            try:
+                polygon, obstacles = clogs.run_again(programs / "clogrun", settings, row, folder)
+            except subprocess.CalledProcessError as error:
+                raise UserError(f"cannot run task {row['task']} again ({error.stderr.strip()}); --examples 0 does without") from error
+            figure, axes = plt.subplots(figsize=(4.6, 4.6), layout="constrained")
+            clogs.draw(axes, row, polygon, obstacles)
+            pictures.append(picture(figure, f"task {row['task']}: {row['mechanism'].decode()}, seed {row['seed']}, clogged after {row['distance']:.3g} "
+                                    "diameters; flow to the right; touched obstacles blue, contact red, convex hull dashed"))
+    return '<div class="pictures">' + "\n".join(pictures) + "</div>" if pictures else "<p>No polygon has clogged.</p>"
+
+
+def page(path, fit, rows, about, pictures):
+    groups = [group for group in fit["groups"] if group["runs"] > 0]
+    abscissa = "line_tension" if groups[0]["model"] == "dp" else "wall_stiffness"
+    finished = int((~rows.status.isin(["running", "interrupted"])).sum())
+    curves = picture(clogging_length.draw(groups, abscissa, fit["confidence"]), "clogging length")
+    if any(group["mean_speed"] is not None for group in groups):
+        curves += picture(speeds(groups, abscissa), "mean speed over terminal speed")
+    counts = rows.status.value_counts().to_dict()
+    provenance = "\n".join([f"{key}: {about[key]}" for key in ("command_line", "version", "git_hash", "compiler", "mpi_version", "hdf5_version", "start_time", "num_ranks")
+                            if key in about])
+    return f"""<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{html.escape(path.name)}</title><style>{STYLE}</style></head><body>
+<h1>Sweep {html.escape(path.name)}</h1>
+<p class="about">{finished} of {len(rows)} runs finished ({html.escape(", ".join(f"{count} {status}" for status, count in counts.items()))}), {len(groups)} points.
+&lambda; is the way after which 1/e of the droplets have not clogged, in droplet diameters; v<sub>t</sub> is the speed of a free droplet.</p>
+<h2>Curves</h2><div class="pictures">{curves}</div>
+<h2>What may spoil these numbers</h2>{doubts(groups, rows)}
+<h2>Example clogs</h2>{pictures}
+<h2>Table</h2>{table(groups, abscissa)}
+<h2>Where they come from</h2><pre>{html.escape(provenance)}</pre><details><summary>All settings</summary><pre>{html.escape(about.get("config", ""))}</pre></details>
+</body></html>
+"""
+
+
+def body():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("sweep", type=pathlib.Path, help="output of clogsweep")
+    parser.add_argument("--output", type=pathlib.Path, required=True, help="HTML file to write")
+    parser.add_argument("--examples", type=int, default=4, help="clogs to show (4); 0 runs nothing")
+    parser.add_argument("--programs", type=pathlib.Path, help="folder of clogrun and clogfit (build/release/bin)")
+    arguments = parser.parse_args()
+    programs = programs_in(arguments.programs)
+    fit = json.loads(run_program(programs / "clogfit", arguments.sweep, "--format", "json"))
+    if not any(group["runs"] > 0 for group in fit["groups"]):
+        raise UserError(f"{arguments.sweep} holds no finished runs")
+    rows = pandas.read_hdf(arguments.sweep, "runs")
+    with h5py.File(arguments.sweep, "r") as file:
+        about = {key: value.decode() if isinstance(value, bytes) else str(value) for key, value in file.attrs.items()}
+    pictures = example_pictures(examples(clogs.read_clogs(arguments.sweep)[0], arguments.examples), about["config"], programs)
+    try:
+        arguments.output.write_text(page(arguments.sweep, fit, rows, about, pictures))
+    except OSError as error:
+        raise UserError(f"cannot write {arguments.output} ({error.strerror})") from error
+    print(arguments.output)
+    return 0
+
+
+def main():
+    try:
+        return body()
+    except UserError as error:
+        print(f"report.py: {error}", file=sys.stderr)
+        return 2
+    except ProgramFailed as error:
+        print(f"report.py: {error}", file=sys.stderr)
+        return error.exit_code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

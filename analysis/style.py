@@ -1,0 +1,102 @@
+"""How all figures look: colours, axes, error bars, and what is written beside a picture."""
+
+import math
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+# Okabe and Ito's palette, safe for colour-blind readers; a marker of its own for every curve besides.
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
+MARKERS = ["o", "s", "D", "v", "P", "X", "*"]
+OBSTACLE = "0.72"
+DROPLET = "#D55E00"
+
+AXES = {
+    "line_tension": r"line tension $\Gamma = \gamma/(g\rho\sigma^2)$",
+    "wall_stiffness": r"wall stiffness $E_w = \epsilon_w/(g\rho\sigma^3)$",
+    "capillary_number": r"capillary number $Ca = (v_g/v_t)\,\pi/(4\Gamma)$",
+    "sag": r"sag under its own weight $\delta_s/\sigma$",
+    "length": r"clogging length $\lambda/\sigma$",
+    "speed": r"mean speed $\langle v_g\rangle/v_t$",
+    "h": r"distance from the orifice $h/\sigma$",
+    "shape": r"shape parameter $\mathcal{A} = P^2/(4\pi a)$",
+    "profile": r"speed $v_g/v_t$",
+}
+
+
+def curve_style(index):
+    colour = COLOURS[index % len(COLOURS)]
+    return {"color": colour, "marker": MARKERS[index % len(MARKERS)]}
+
+
+def draw_lengths(axes, places, groups, index, label):
+    """Clogging lengths with clogfit's intervals; an open triangle is a lower bound, where no run clogged."""
+    order = sorted(range(len(groups)), key=lambda i: places[i])
+    places, groups = [places[i] for i in order], [groups[i] for i in order]
+    # Not a number where no run clogged: the line is broken there, and goes on dotted.
+    lengths = [math.nan if group["clogs"] == 0 else group["clogging_length"] for group in groups]
+    bars = [
+        [math.nan if group["clogs"] == 0 else abs(group["clogging_length"] - group[end]) for group in groups]
+        for end in ("clogging_length_lower", "clogging_length_upper")
+    ]
+    axes.errorbar(
+        places, lengths, yerr=bars, **curve_style(index), markersize=5, linewidth=1, elinewidth=1, capsize=2.5,
+        label=label,
+    )
+    if any(group["clogs"] == 0 for group in groups):
+        through = [group["clogging_length_lower"] if group["clogs"] == 0 else group["clogging_length"] for group in groups]
+        axes.plot(places, through, color=curve_style(index)["color"], linewidth=0.8, linestyle=":", zorder=1)
+    bounds = [(x, group["clogging_length_lower"]) for x, group in zip(places, groups) if group["clogs"] == 0]
+    axes.plot(
+        [x for x, _ in bounds], [length for _, length in bounds],
+        color=curve_style(index)["color"], marker="^", markerfacecolor="white", markersize=8, linestyle="none",
+    )
+
+
+def draw_speeds(axes, places, groups, index, label):
+    """Mean speeds over the terminal speed, with standard errors from the scatter between runs."""
+    points = sorted(
+        (place, group["mean_speed"], group["mean_speed_error"] or 0.0)
+        for place, group in zip(places, groups) if group["mean_speed"] is not None
+    )
+    axes.errorbar(
+        [x for x, _, _ in points], [speed for _, speed, _ in points], yerr=[error for _, _, error in points],
+        **curve_style(index), markersize=5, linewidth=1, elinewidth=1, capsize=2.5, label=label,
+    )
+
+
+def side_by_side(index, num_curves):
+    """Factor on logarithmic abscissae that curves share: moved apart by a percent, their bars can be told apart."""
+    return 1.012 ** (index - (num_curves - 1) / 2)
+
+
+def logarithmic_abscissa(axes, values=()):
+    """Plain numbers, at the values themselves where they are few and far enough from each other."""
+    axes.set_xscale("log")
+    axis = axes.xaxis
+    axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:g}"))
+    values = sorted(set(values))
+    if values and len(values) <= 10 and all(b / a > 1.25 for a, b in zip(values, values[1:])):
+        axis.set_ticks(values, minor=False)
+        axis.set_minor_locator(matplotlib.ticker.NullLocator())
+
+
+def grid(axes):
+    axes.grid(True, which="major", color="0.9", linewidth=0.6)
+    axes.set_axisbelow(True)
+
+
+def caption(axes, text):
+    axes.set_title(text, fontsize=8, color="0.25")
+
+
+def save(figure, output, metadata=None):
+    """Writes OUTPUT.png and OUTPUT.pdf. @param output  path without ending"""
+    # Not with_suffix(): a name may hold a dot.
+    metadata = metadata or {}
+    figure.savefig(f"{output}.png", dpi=160, metadata=metadata)
+    subject = {"Title": metadata.get("Title"), "Subject": metadata.get("Description")}
+    figure.savefig(f"{output}.pdf", metadata={key: value for key, value in subject.items() if value})
+    plt.close(figure)

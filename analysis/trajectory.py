@@ -1,0 +1,99 @@
+"""What clogrun writes of one droplet, and how its surroundings are drawn."""
+
+import dataclasses
+import math
+import pathlib
+
+import h5py
+import numpy as np
+import style
+from matplotlib.collections import PatchCollection
+from matplotlib.patches import Circle, Polygon
+
+
+@dataclasses.dataclass
+class Trajectory:
+    """Shapes as in src/store/README.md; without --polygon-interval there are no frames, obstacles and wedges."""
+
+    path: pathlib.Path
+    table: np.ndarray
+    row: np.void
+    attributes: dict
+    polygons: np.ndarray
+    times: np.ndarray
+    obstacles: np.ndarray
+    wedges: np.ndarray
+
+    def word(self, column):
+        return self.row[column].decode()
+
+    def frame_at(self, column, value):
+        """Index of the frame at which a column of the trajectory first comes nearest to a value."""
+        at_frames = np.interp(self.times, self.table["time"], self.table[column])
+        return int(np.argmin(np.abs(at_frames - value)))
+
+
+def read(path, needs_frames=True):
+    """@throws ValueError with one line if it is not a trajectory (with frames)"""
+    try:
+        with h5py.File(path, "r") as file:
+            frames = [file[name][:] if name in file else np.empty(shape)
+                      for name, shape in [("polygons", (0, 2, 0)), ("polygon_times", (0,)),
+                                          ("obstacles", (0, 3)), ("wedges", (0, 6))]]
+            attributes = {name: value.decode() if isinstance(value, bytes) else str(value)
+                          for name, value in file.attrs.items()}
+            trajectory = Trajectory(pathlib.Path(path), file["trajectory"][:], file["runs"][0], attributes, *frames)
+    except (OSError, KeyError, ValueError) as error:
+        raise ValueError(f"cannot read {path} ({error}); give the output of clogrun with --polygon-interval") from error
+    if needs_frames and len(trajectory.times) == 0:
+        raise ValueError(f"cannot read {path} (holds no polygons); give the output of clogrun with --polygon-interval")
+    return trajectory
+
+
+def wedge_outline(wedge, reach=50.0):
+    """Points around a wedge with a rounded tip, cut off far away. @param wedge  a row of /wedges"""
+    x, y, axis_x, axis_y, half_angle, radius = wedge
+    centre = np.array([x, y]) + radius * np.array([axis_x, axis_y])
+    axis = math.atan2(axis_y, axis_x)
+
+    def direction(angle):
+        return np.array([math.cos(angle), math.sin(angle)])
+
+    sides = [(direction(axis + sign * half_angle), direction(axis + sign * (half_angle + math.pi / 2))) for sign in (1, -1)]
+    (flank, normal), (other_flank, other_normal) = sides
+    start, end = axis + half_angle + math.pi / 2, axis - half_angle - math.pi / 2 + 2 * math.pi
+    arc = [centre + radius * direction(angle) for angle in np.linspace(start, end, 40)]
+    behind = reach * direction(axis)
+    return np.array([centre + reach * flank + behind, centre + reach * flank + radius * normal, *arc,
+                     centre + reach * other_flank + radius * other_normal, centre + reach * other_flank + behind])
+
+
+def draw_surroundings(axes, trajectory, origin=(0.0, 0.0)):
+    """Obstacles and walls, grey."""
+    shift = np.asarray(origin)
+    circles = [Circle((x - shift[0], y - shift[1]), diameter / 2) for x, y, diameter in trajectory.obstacles]
+    axes.add_collection(PatchCollection(circles, facecolor=style.OBSTACLE, edgecolor="none"))
+    for wedge in trajectory.wedges:
+        axes.add_patch(Polygon(wedge_outline(wedge) - shift, facecolor=style.OBSTACLE, edgecolor="none"))
+
+
+def frame_limits(axes, low, high):
+    axes.set_xlim(low[0], high[0])
+    axes.set_ylim(low[1], high[1])
+    axes.set_aspect("equal")
+
+
+def along_the_way(polygons, number):
+    """Frames evenly spaced along the way, not in time: a clogged droplet stands still for most of its run."""
+    centres = polygons.mean(axis=2)
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(centres, axis=0).T))])
+    chosen = np.searchsorted(way, np.linspace(0, way[-1], number)).clip(max=len(polygons) - 1)
+    return np.unique(np.append(chosen, len(polygons) - 1))
+
+
+def vertex_speeds(trajectory):
+    """Speed of every vertex in every frame, by differences between frames [sqrt(sigma g)]."""
+    if len(trajectory.times) < 2:
+        return np.zeros((len(trajectory.times), trajectory.polygons.shape[2]))
+    velocity = np.gradient(trajectory.polygons, trajectory.times, axis=0)
+    return np.hypot(velocity[:, 0], velocity[:, 1])
