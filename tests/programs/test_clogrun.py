@@ -186,7 +186,7 @@ class Run(ProgramTest):
             (["sag", "--seed", "3"], ["--seed", "no meaning"]),
             (["sag", "line-tension=nan"], ["line-tension=nan"]),
             (["array", "gravity=vertex", *out], ["perimeter-spring=along contradicts gravity=vertex"]),
-            (["array", "line-tension=1,2", *out], ["2 runs", "clogrun does one"]),
+            (["array", "line-tension=1,2", *out], ["2 runs", "one is wanted"]),
             (["array", "--output", "no/such/folder/r.h5"], ["no/such/folder"]),
             (["array", "--write-obstacles", "words.csv", *out], ["words.csv", "will not overwrite"]),
             (["array", "--write-obstacles", "r.h5", *out], ["same file"]),
