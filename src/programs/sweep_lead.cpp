@@ -22,12 +22,13 @@ using Clock = std::chrono::steady_clock;
 const std::string another_round = "another round";
 const std::string over = "over";
 
-void announce(const std::string& output, const SweepLedger& ledger, int num_ranks) {
+/// @param may_grow  runs may be added later
+void announce(const std::string& output, const SweepLedger& ledger, bool may_grow, int num_ranks) {
   const std::int64_t num_runs = ledger.num_wanted();
   const auto num_left = static_cast<std::int64_t>(ledger.tasks_left().size());
   if (num_left < num_runs)
     std::cerr << output << " has " << num_runs - num_left << " of " << num_runs << " runs"
-              << (num_left == 0 ? "; there is nothing left to do" : "") << std::endl;
+              << (num_left == 0 && !may_grow ? "; there is nothing left to do" : "") << std::endl;
   if (ledger.num_unreadable() > 0)
     std::cerr << store::journal_path(output) << ": " << ledger.num_unreadable()
               << (ledger.num_unreadable() == 1 ? " record is" : " records are")
@@ -133,7 +134,8 @@ int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, 
                const sweep::JobFactory& make_job, SweepLedger& ledger, std::optional<SeedRule>& rule) {
   const bool computes = parallel::computes(ranks.size(), options.master_computes);
   const int computing_ranks = ranks.size() - (computes ? 0 : 1);
-  if (options.log != SweepLog::Level::quiet) announce(options.output, ledger, computing_ranks);
+  if (options.log != SweepLog::Level::quiet)
+    announce(options.output, ledger, rule.has_value(), computing_ranks);
   Lead lead(options, ledger, computing_ranks);
   parallel::SweepEnd end = parallel::SweepEnd::complete;
   bool is_complete = true;

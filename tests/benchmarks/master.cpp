@@ -87,10 +87,11 @@ int main(int argc, char** argv) {
   const sweep::Plan plan(settings);
   std::optional<SweepLedger> ledger;
   std::ostringstream screen;  // progress goes nowhere, but is made
-  SweepProgress progress(screen, SweepProgress::Screen::terminal, num_tasks, num_workers);
+  SweepProgress progress(screen, SweepProgress::Screen::terminal, num_workers);
+  progress.expect(num_tasks);
   parallel::SweepEvents events;
   if (ranks.rank() == 0) {
-    ledger.emplace(path, plan, settings, store::Provenance(), 1);
+    ledger.emplace(path, plan, settings, store::Provenance(), plan.size(), 1);
     events.started = [&](std::int64_t task, int rank) {
       progress.started(task);
       return ledger->start(task, rank);

@@ -1,0 +1,78 @@
+"""--until-precision: seeds are added where lambda is not known well enough, the same ones however the sweep goes."""
+
+import json
+import unittest
+
+import h5py
+import pandas
+from support import QUICK, TIMING, ProgramTest, table
+
+# At Gamma = 2 every droplet clogs, at 0.3 few do in so short a time.
+SWEEP = [*QUICK, "obstacle-gap=0.3", "line-tension=0.3,2", "seeds=1..4", "--until-precision=75%", "--most-seeds=14"]
+
+
+class Precision(ProgramTest):
+    def check_equal(self, name, other):
+        rows, others = (table(self.folder / n).drop(columns=TIMING) for n in (name, other))
+        pandas.testing.assert_frame_equal(rows, others, check_exact=True)
+
+    def test_it_adds_seeds_where_they_are_needed(self):
+        done = self.succeed("clogsweep", *SWEEP, "--output", "s.h5", ranks=2)
+        groups = {group["line_tension"]: group for group in
+                  json.loads(self.succeed("clogfit", "s.h5", "--format=json").stdout)["groups"]}
+
+        def width(group):
+            return (group["clogging_length_upper"] - group["clogging_length_lower"]) / (2 * group["clogging_length"])
+
+        self.assertLess(width(groups[2]), 0.75)
+        self.assertGreater(groups[2]["runs"], 4)
+        self.assertLess(groups[2]["runs"], 14)
+        if groups[0.3]["runs"] < 14:
+            self.assertLess(width(groups[0.3]), 0.75)
+        self.assertGreaterEqual(groups[0.3]["runs"], groups[2]["runs"])
+        self.assertIn("of 2 parameter sets have reached --until-precision", done.stderr)
+        with h5py.File(self.folder / "s.h5") as file:
+            self.assertIn("within +-75 %", file.attrs["stopping_rule"].decode())
+        status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format=json").stdout)
+        self.assertEqual(status["runs"], groups[0.3]["runs"] + groups[2]["runs"])
+        self.assertEqual(status["over"], status["runs"])
+        self.assertIn("complete", self.succeed("clogsweep", "status", "s.h5").stdout)
+        last = table(self.folder / "s.h5").task.max()
+        self.assertIn("the same bits", self.succeed("clogsweep", "replay", "s.h5", last).stdout)
+
+    def test_the_rows_depend_neither_on_ranks_nor_on_interruptions(self):
+        self.succeed("clogsweep", *SWEEP, "--output", "one.h5")
+        self.succeed("clogsweep", *SWEEP, "--output", "three.h5", ranks=3)
+        self.check_equal("one.h5", "three.h5")
+        stopped = 0
+        while self.run_program("clogsweep", *SWEEP, "--output", "stopped.h5", "--max-hours=0.00004").returncode == 75:
+            stopped += 1
+            self.assertLess(stopped, 200)
+        self.assertGreater(stopped, 0)
+        self.check_equal("one.h5", "stopped.h5")
+        again = self.succeed("clogsweep", *SWEEP, "--output", "one.h5")
+        self.assertIn("parameter sets have reached", again.stderr)
+        self.check_equal("one.h5", "three.h5")
+
+    def test_a_sweep_without_it_can_go_on_with_it(self):
+        plain = [word for word in SWEEP if not word.startswith("--")]
+        self.succeed("clogsweep", *plain, "--output", "s.h5")
+        self.assertEqual(len(table(self.folder / "s.h5")), 8)
+        self.succeed("clogsweep", *SWEEP, "--output", "s.h5")
+        self.succeed("clogsweep", *SWEEP, "--output", "whole.h5")
+        self.check_equal("s.h5", "whole.h5")
+
+    def test_mistakes_get_one_line_and_exit_code_2(self):
+        plain = [*QUICK, "seeds=1..4", "--output", "s.h5"]
+        for arguments, words in [
+            (["--until-precision=0"], ["--until-precision=0", "try 20%"]),
+            (["--until-precision=often"], ["--until-precision=often"]),
+            (["--until-precision=20%", "--most-seeds=3"], ["--most-seeds=3", "from 4"]),
+            (["--most-seeds=30"], ["needs --until-precision"]),
+        ]:
+            with self.subTest(arguments=arguments):
+                self.refuse("clogsweep", *plain, *arguments, words=words)
+
+
+if __name__ == "__main__":
+    unittest.main()
