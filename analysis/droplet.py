@@ -93,6 +93,9 @@ class Film:
         axes.add_collection(self._outline)
         self._clock = axes.text(0.01, 0.97, "", transform=axes.transAxes, va="top", fontsize=9,
                                 bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 2})
+        # Laid out once: frames stay in register, and are drawn faster.
+        self.figure.canvas.draw()
+        self.figure.set_layout_engine("none")
 
     def show(self, frame):
         polygon = self._run.polygons[frame].T
@@ -144,12 +147,14 @@ def main():
     except ValueError as error:
         print(f"droplet.py: {error}", file=sys.stderr)
         return 2
-    if arguments.film:
-        print(write_film(Film(run, arguments.colour), len(run.times), arguments.output, arguments.rate))
-    elif arguments.frames:
-        print(write_frames(Film(run, arguments.colour), len(run.times), pathlib.Path(f"{arguments.output}-frames")))
-    else:
+    if not arguments.film and not arguments.frames:
         style.save(draw(run, arguments.outlines), arguments.output)
+        return 0
+    film = Film(run, arguments.colour)
+    if arguments.film:
+        print(write_film(film, len(run.times), arguments.output, arguments.rate))
+    if arguments.frames:
+        print(write_frames(film, len(run.times), pathlib.Path(f"{arguments.output}-frames")))
     return 0
 
 

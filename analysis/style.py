@@ -97,6 +97,8 @@ def save(figure, output, metadata=None):
     # Not with_suffix(): a name may hold a dot.
     metadata = metadata or {}
     figure.savefig(f"{output}.png", dpi=160, metadata=metadata)
+    # Laid out once.
+    figure.set_layout_engine("none")
     subject = {"Title": metadata.get("Title"), "Subject": metadata.get("Description")}
     figure.savefig(f"{output}.pdf", metadata={key: value for key, value in subject.items() if value})
     plt.close(figure)

@@ -10,7 +10,7 @@ import shlex
 import subprocess
 import tempfile
 
-import pandas
+import h5py
 import trajectory
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -114,9 +114,9 @@ class Workshop:
     def keys(self, name):
         """What a config and --set say together."""
         keys = config_keys(self.config(name))
-        for override in self.overrides:
-            if override.config in (None, name):
-                keys[override.key] = override.value
+        # What is meant for this config alone has the last word.
+        for config in (None, name):
+            keys |= {override.key: override.value for override in self.overrides if override.config == config}
         return keys
 
     def _arguments(self, name, own_keys=None):
@@ -156,11 +156,11 @@ class Workshop:
 
     def rows(self, name):
         """The table of a sweep that sweep() has run."""
+        import pandas  # slow to load, and seldom needed
+
         return pandas.read_hdf(self.sweep_file(name), "runs")
 
     def _note_sweep(self, name):
-        import h5py
-
         with h5py.File(self.sweep_file(name), "r") as file:
             about = {key: file.attrs[key].decode() for key in ("command_line", "version", "git_hash", "start_time")}
             rows = file["runs"][:]
@@ -246,6 +246,8 @@ class Workshop:
 
 def measured(path):
     """Columns h, v, A of a measured passage in reduced units, as clogfit calibrate reads it; for display."""
+    import pandas  # slow to load, and seldom needed
+
     try:
         table = pandas.read_csv(path, comment="#", skipinitialspace=True)
     except (OSError, ValueError) as error:

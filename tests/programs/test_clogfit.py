@@ -12,6 +12,47 @@ import pandas
 from support import BIN, SMALL, ProgramTest
 
 
+class Profiles(ProgramTest):
+    """clogfit drag and clogfit deviation, from CSV files."""
+
+    def test_the_exponent_of_the_near_wall_drag_comes_from_speeds_along_a_wall(self):
+        distances = [0.05, 0.1, 0.3, 1.0]
+        speeds = [1 / (1 + 0.07 * d ** -1.25) for d in distances]
+        self.write("reduced.csv", "\n".join(["d [sigma], v [v_t]", *(f"{d},{v}" for d, v in zip(distances, speeds))]))
+        # The same in a laboratory: a droplet of 2 mm at 0.5 mm/s.
+        self.write("mm.csv", "\n".join(["# tilt 5 deg", "frame, d [mm], v [mm/s]", *(f"7,{2 * d},{v / 2}" for d, v in zip(distances, speeds))]))
+        for arguments in (["reduced.csv"], ["mm.csv", "--diameter", "2mm", "--speed=0.5 mm/s"]):
+            fit = json.loads(self.succeed("clogfit", "drag", *arguments, "--format", "json").stdout)
+            self.assertAlmostEqual(fit["near_wall_exponent"], 1.25, places=9)
+            self.assertAlmostEqual(fit["near_wall_drag"], 0.07, places=9)
+            self.assertEqual(fit["speeds"], 4)
+        self.assertIn("alpha = 1.25 ", self.succeed("clogfit", "drag", "reduced.csv").stdout)
+
+    def test_the_deviation_between_profiles_is_that_of_the_interpolated_simulation(self):
+        self.write("measured.csv", "h [sigma], v [v_t], A\n-0.5,0.55,1.05\n0,0.6,1.1\n0.5,0.9,1.0\n")
+        self.write("simulated.csv", "h [sigma], v [v_t], A\n-1,1,1\n0,0.5,1.1\n1,1,1\n")
+        found, = json.loads(self.succeed("clogfit", "deviation", "measured.csv", "simulated.csv").stdout)["deviations"]
+        # Simulated 0.75, 0.5, 0.75 and 1.05, 1.1, 1.05.
+        self.assertAlmostEqual(found["delta_v"], math.sqrt(((0.2 / 0.75) ** 2 + 0.2 ** 2 + 0.2 ** 2) / 3), places=12)
+        self.assertAlmostEqual(found["delta_a"], math.sqrt((0.05 / 1.05) ** 2 / 3), places=12)
+
+    def test_mistakes_get_one_line_and_exit_code_2(self):
+        self.write("good.csv", "h [sigma], v [v_t]\n0,1\n1,1\n2,1\n")
+        self.write("fast.csv", "d [sigma], v [v_t]\n0.1,0.5\n0.2,1.5\n")
+        for arguments, words in [
+            (["drag"], ["missing file"]),
+            (["drag", "no.csv"], ["cannot read no.csv"]),
+            (["drag", "fast.csv"], ["fast.csv", "between 0 and v_t"]),
+            (["drag", "good.csv"], ["columns d and v"]),
+            (["drag", "fast.csv", "--diameter", "2"], ["--diameter=2"]),
+            (["drag", "fast.csv", "--format", "xml"], ["--format=xml"]),
+            (["deviation", "good.csv"], ["missing profiles"]),
+            (["deviation", "good.csv", "no.csv"], ["cannot read no.csv"]),
+        ]:
+            with self.subTest(arguments=arguments):
+                self.refuse("clogfit", *arguments, words=words)
+
+
 class Fit(ProgramTest):
     def sweep(self, *settings):
         self.succeed("clogsweep", *SMALL, *settings, "--output", "sweep.h5")
