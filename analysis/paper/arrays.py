@@ -224,7 +224,7 @@ def example(shop, mechanism):
 
 def clog_title(run, row):
     return (rf"{row.mechanism}: $\Gamma = {row.line_tension:g}$, $w_\mathrm{{ob}} = {row.obstacle_gap:g}\sigma$, seed {row.seed}, "
-            rf"$r = {row.distance:.2f}\sigma$" f"\n{row.wrapped_support:.0%} of the support from wrapped obstacles; $N_v = {row.vertices}$; interface: {interface_of(row.preset)}")
+            rf"$r = {row.distance:.2f}\sigma$" f"\n{row.wrapped_support:.0%} of the support from wrapped obstacles, $N_v = {row.vertices}$\ninterface: {interface_of(row.preset)}")
 
 
 def clog_numbers(run, row, frame):
