@@ -126,8 +126,9 @@ ClogGeometry clog_geometry(const Eigen::ArrayXd& position, std::span<const Obsta
   for (std::size_t i = 0; i < arcs.size(); ++i) {
     const Arc& from = arcs[i];
     const Arc& to = arcs[(i + 1) % arcs.size()];
-    if (from.obstacle == to.obstacle || contacts.obstacles[from.obstacle].support <= 0 ||
-        contacts.obstacles[to.obstacle].support <= 0)
+    if (from.obstacle == to.obstacle) continue;
+    // One side may push across the flow only, or a little downstream, and is a side of the gap all the same.
+    if (std::max(contacts.obstacles[from.obstacle].support, contacts.obstacles[to.obstacle].support) <= 0)
       continue;
     // The outward normal of a counter-clockwise contour points downstream where y grows.
     const double begin_y = polygon.vertex(polygon.next(from.last_edge))[1];

@@ -1,6 +1,7 @@
 #include "clog/core/systems.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <sstream>
 #include <utility>
@@ -61,6 +62,16 @@ std::string text(double value) {
   return out.str();
 }
 
+double last_free_start(const ChannelParameters& channel, double reach) {
+  constexpr double everywhere = std::numeric_limits<double>::infinity();
+  if (channel.wedge_angle == 0) return everywhere;
+  const double angle = channel.wedge_angle * std::numbers::pi / 180;
+  const double last =
+      ((channel.orifice / 2 + channel.tip_radius) * std::cos(angle) - channel.tip_radius - reach) /
+      std::sin(angle);
+  return last > 0 ? everywhere : last;
+}
+
 void validate(const RunParameters& run, const ChannelParameters& channel, double reach) {
   const double narrowest = 2 * vertex_diameter(run);
   if (!(channel.orifice > narrowest && channel.orifice <= 20))
@@ -77,11 +88,8 @@ void validate(const RunParameters& run, const ChannelParameters& channel, double
   if (is_parallel && !(channel.orifice / 2 > reach))
     refuse("orifice", channel.orifice,
            "parallel walls must leave the droplet free) use more than " + text(2 * reach));
-  const double angle = channel.wedge_angle * std::numbers::pi / 180;
-  const double last_start =
-      ((channel.orifice / 2 + channel.tip_radius) * std::cos(angle) - channel.tip_radius - reach) /
-      std::sin(angle);
-  const bool is_free = is_parallel || last_start > 0 ? channel.start < 100 : channel.start <= last_start;
+  const double last_start = last_free_start(channel, reach);
+  const bool is_free = std::isinf(last_start) ? channel.start < 100 : channel.start <= last_start;
   if (!(channel.start >= -100 && is_free))
     refuse("start", channel.start,
            "the droplet must be upstream, clear of the wedges, within 100 sigma) use at most " +
@@ -89,6 +97,10 @@ void validate(const RunParameters& run, const ChannelParameters& channel, double
 }
 
 }  // namespace
+
+double last_free_start(const RunParameters& run, const ChannelParameters& channel) {
+  return last_free_start(channel, reach(run, free_droplet(run)));
+}
 
 Eigen::ArrayXd free_droplet(const RunParameters& run) {
   if (run.model == Model::sp) return Eigen::ArrayXd::Zero(2);

@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t batch_size = 5;
 constexpr std::size_t fewest_batches = 10;
+constexpr std::size_t fewest_for_error = 200;
 /// Standard error of a mean, over that mean, below which the transient is over: the rest may be round-off.
 constexpr double negligible_error = 1e-6;
 
@@ -58,7 +59,7 @@ std::optional<std::size_t> transient_length(std::span<const double> values) {
 }
 
 double blocked_error(std::span<const double> values) {
-  if (values.size() < 2) return TravelSpeed::unknown;
+  if (values.size() < fewest_for_error) return TravelSpeed::unknown;
   const double n = static_cast<double>(values.size());
   const double unblocked = squared_error_of_mean(values);
   if (unblocked == 0) return 0;

@@ -6,6 +6,7 @@
 #include <exception>
 #include <limits>
 #include <nlopt.hpp>
+#include <optional>
 #include <stdexcept>
 
 namespace clog::fit {
@@ -15,27 +16,32 @@ constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 constexpr double never_reached = 10;
 
 /// The simulated droplet at h, if it came there.
-Frame at(const Profile& simulated, double h) {
+std::optional<Frame> at(const Profile& simulated, double h) {
   for (std::size_t i = 1; i < simulated.size(); ++i) {
     const Frame& before = simulated[i - 1];
     const Frame& after = simulated[i];
     if (!(before.h <= h && h <= after.h)) continue;
     const double share = after.h > before.h ? (h - before.h) / (after.h - before.h) : 0;
-    return {h, before.speed + share * (after.speed - before.speed),
-            before.shape + share * (after.shape - before.shape)};
+    return Frame{h, before.speed + share * (after.speed - before.speed),
+                 before.shape + share * (after.shape - before.shape)};
   }
-  return {h, undefined, undefined};
+  return std::nullopt;
 }
 
 /// (v_measured - v_simulated)/v_simulated of every frame.
-Eigen::VectorXd speed_residuals(const Profile& measured, const Profile& simulated) {
-  Eigen::VectorXd residuals(static_cast<Eigen::Index>(measured.size()));
+struct SpeedResiduals {
+  Eigen::VectorXd values;
+  int num_never_reached = 0;
+};
+SpeedResiduals speed_residuals(const Profile& measured, const Profile& simulated) {
+  SpeedResiduals residuals{Eigen::VectorXd(static_cast<Eigen::Index>(measured.size()))};
   for (std::size_t i = 0; i < measured.size(); ++i) {
-    const double speed = at(simulated, measured[i].h).speed;
-    const double relative = measured[i].speed / speed - 1;
-    residuals[static_cast<Eigen::Index>(i)] = speed > 0 && std::isfinite(relative)
-                                                  ? std::clamp(relative, -never_reached, never_reached)
-                                                  : never_reached;
+    const std::optional<Frame> frame = at(simulated, measured[i].h);
+    residuals.num_never_reached += !frame;
+    const double relative = frame ? measured[i].speed / frame->speed - 1 : never_reached;
+    residuals.values[static_cast<Eigen::Index>(i)] = frame && frame->speed > 0 && std::isfinite(relative)
+                                                         ? std::clamp(relative, -never_reached, never_reached)
+                                                         : never_reached;
   }
   return residuals;
 }
@@ -51,11 +57,13 @@ struct Search {
   int num_simulations = 0;
   std::exception_ptr fault = nullptr;  // of a simulation; NLopt would swallow its message
 
-  Eigen::VectorXd residuals(double log_tension, double drag) {
+  SpeedResiduals residuals(double log_tension, double drag) {
     ++num_simulations;
     return speed_residuals(measured, simulate(std::exp(log_tension), drag));
   }
-  double delta(double log_tension, double drag) { return root_mean_square(residuals(log_tension, drag)); }
+  double delta(double log_tension, double drag) {
+    return root_mean_square(residuals(log_tension, drag).values);
+  }
 };
 
 std::vector<double> best_of_grid(Search& search, const CalibrationRange& range) {
@@ -104,23 +112,33 @@ std::vector<double> minimise(Search& search, std::vector<double> place, const Ca
   return place;
 }
 
-/// Standard errors of log Gamma and b_0/b_inf, by finite differences wide enough for the runs' own noise.
+/// Standard errors of log Gamma and b_0/b_inf, by finite differences wide enough for the runs' own noise. NaN
+/// beside a line tension at which the droplet clogs on its way: there the residuals jump, and have no slope.
 Eigen::Vector2d errors(Search& search, const std::vector<double>& place) {
   constexpr double tension_step = 0.05;
   const double drag_step = 0.01;
   const double drag_below = std::max(0.0, place[1] - drag_step);
-  const Eigen::VectorXd here = search.residuals(place[0], place[1]);
-  Eigen::MatrixX2d slopes(here.size(), 2);
-  slopes.col(0) = (search.residuals(place[0] + tension_step, place[1]) -
-                   search.residuals(place[0] - tension_step, place[1])) /
-                  (2 * tension_step);
-  slopes.col(1) =
-      (search.residuals(place[0], place[1] + drag_step) - search.residuals(place[0], drag_below)) /
-      (place[1] + drag_step - drag_below);
-  const double variance = here.squaredNorm() / static_cast<double>(here.size() - 2);
+  const SpeedResiduals here = search.residuals(place[0], place[1]);
+  const SpeedResiduals stiffer = search.residuals(place[0] + tension_step, place[1]);
+  const SpeedResiduals softer = search.residuals(place[0] - tension_step, place[1]);
+  const SpeedResiduals slower = search.residuals(place[0], place[1] + drag_step);
+  const SpeedResiduals faster = search.residuals(place[0], drag_below);
+  for (const SpeedResiduals* beside : {&stiffer, &softer, &slower, &faster})
+    if (beside->num_never_reached != here.num_never_reached) return {undefined, undefined};
+  Eigen::MatrixX2d slopes(here.values.size(), 2);
+  slopes.col(0) = (stiffer.values - softer.values) / (2 * tension_step);
+  slopes.col(1) = (slower.values - faster.values) / (place[1] + drag_step - drag_below);
+  const double variance = here.values.squaredNorm() / static_cast<double>(here.values.size() - 2);
   const Eigen::Matrix2d information = slopes.transpose() * slopes;
   if (!(information.determinant() > 1e-12 * information.diagonal().prod())) return {undefined, undefined};
   return (variance * information.inverse()).diagonal().cwiseSqrt();
+}
+
+/// Zero drag is no bound that hides something better.
+bool is_at_bound(const std::vector<double>& place, const CalibrationRange& range) {
+  constexpr double margin = 0.01;
+  return place[0] < std::log(range.least_tension) + margin ||
+         place[0] > std::log(range.most_tension) - margin || place[1] > range.most_drag * (1 - margin);
 }
 
 }  // namespace
@@ -130,13 +148,14 @@ Deviation deviation(const Profile& measured, const Profile& simulated) {
   double squares = 0;
   int num_shapes = 0;
   for (const Frame& frame : measured) {
-    if (std::isnan(frame.shape)) continue;
-    const double shape = at(simulated, frame.h).shape;
-    const double relative = std::isnan(shape) ? never_reached : (frame.shape - shape) / shape;
+    const std::optional<Frame> simulation = at(simulated, frame.h);
+    if (std::isnan(frame.shape) || (simulation && std::isnan(simulation->shape))) continue;
+    const double relative =
+        simulation ? (frame.shape - simulation->shape) / simulation->shape : never_reached;
     squares += relative * relative;
     ++num_shapes;
   }
-  return {root_mean_square(speed_residuals(measured, simulated)),
+  return {root_mean_square(speed_residuals(measured, simulated).values),
           num_shapes > 0 ? std::sqrt(squares / num_shapes) : undefined};
 }
 
@@ -146,12 +165,15 @@ Calibration calibrate(const Profile& measured, const Simulation& simulate, const
   const std::vector<double> place = minimise(search, best_of_grid(search, range), range);
   const Eigen::Vector2d error = errors(search, place);
   const double tension = std::exp(place[0]);
+  const Profile best = simulate(tension, place[1]);
   return {.line_tension = tension,
           .near_wall_drag = place[1],
           .line_tension_error = tension * error[0],
           .near_wall_drag_error = error[1],
-          .deviation = deviation(measured, simulate(tension, place[1])),
-          .num_simulations = search.num_simulations + 1};
+          .deviation = deviation(measured, best),
+          .num_simulations = search.num_simulations + 1,
+          .is_at_bound = is_at_bound(place, range),
+          .num_never_reached = speed_residuals(measured, best).num_never_reached};
 }
 
 Trials combine(std::span<const Calibration> trials) {

@@ -33,7 +33,7 @@ Interval profile_interval(const CloggingLength& fit, double confidence) {
     return fit.length * std::exp((low + high) / 2);
   };
   // exp(-x) - 1 + x exceeds `allowed` at both ends: at 1 + allowed, and where x^2/2 does.
-  return {root(-std::sqrt(2 * allowed), 0), root(0, 1 + allowed)};
+  return {root(-1.01 * std::sqrt(2 * allowed), 0), root(0, 1 + allowed)};
 }
 
 }  // namespace
@@ -63,7 +63,7 @@ CloggingLength fit_clogging_length(std::span<const Observation> runs, double con
 double relative_half_width(std::int64_t num_clogs, double confidence) {
   if (num_clogs == 0) return std::numeric_limits<double>::infinity();
   const auto d = static_cast<double>(num_clogs);
-  const Interval interval = chi_squared_interval(d, 2 * d + 1, confidence);  // of an estimate of 1
+  const Interval interval = chi_squared_interval(d, 2 * d, confidence);  // of an estimate of 1
   return (interval.upper - interval.lower) / 2;
 }
 

@@ -5,10 +5,14 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 
 namespace clog::fit {
 namespace {
+
+/// Of the mean distance; shorter ones count as that in the test, for Weibull's law knows no zero.
+constexpr double shortest_share = 1e-3;
 
 /// Sums over runs with x = r/(longest r), so that no power overflows.
 struct PowerSums {
@@ -28,7 +32,9 @@ PowerSums power_sums(const std::vector<double>& log_x, double shape) {
 }  // namespace
 
 std::vector<SurvivalStep> survival_curve(std::span<const Observation> runs) {
-  std::vector<Observation> sorted(runs.begin(), runs.end());
+  std::vector<Observation> sorted;
+  std::copy_if(runs.begin(), runs.end(), std::back_inserter(sorted),
+               [](const Observation& run) { return !std::isnan(run.distance); });
   std::sort(sorted.begin(), sorted.end(),
             [](const Observation& a, const Observation& b) { return a.distance < b.distance; });
   std::vector<SurvivalStep> steps;
@@ -55,19 +61,25 @@ std::vector<SurvivalStep> survival_curve(std::span<const Observation> runs) {
 WeibullTest test_exponentiality(std::span<const Observation> runs) {
   WeibullTest test;
   double longest = 0;
-  for (const Observation& run : runs) longest = std::max(longest, run.distance);
+  double sum = 0;
+  for (const Observation& run : runs) {
+    longest = std::max(longest, run.distance);
+    sum += std::max(0.0, run.distance);
+  }
+  const double shortest = shortest_share * sum / static_cast<double>(runs.size());
   std::vector<double> log_x;
   double clog_logs = 0;
   double total = 0;
   bool clogs_differ = false;
   double some_clog = 0;
   for (const Observation& run : runs) {
-    if (!(run.distance > 0)) continue;
-    log_x.push_back(std::log(run.distance / longest));
-    total += run.distance;
+    if (!(longest > 0)) break;
+    const double distance = std::max(run.distance, shortest);
+    log_x.push_back(std::log(distance / longest));
+    total += distance;
     if (!run.clogged) continue;
-    clogs_differ = clogs_differ || (test.num_clogs > 0 && run.distance != some_clog);
-    some_clog = run.distance;
+    clogs_differ = clogs_differ || (test.num_clogs > 0 && distance != some_clog);
+    some_clog = distance;
     ++test.num_clogs;
     clog_logs += log_x.back();
   }

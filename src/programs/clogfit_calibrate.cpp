@@ -84,6 +84,8 @@ Laboratory laboratory(const cli::CommandLine& line) {
                        .interfacial_tension = quantity(line, "tension", "tension").value_or(unknown)};
   if (lab.tilt > std::numbers::pi / 2)
     throw Error("invalid --angle=" + line.get("angle") + " (beyond 90 degrees)");
+  if (lab.droplet_density == lab.outer_density)
+    throw Error("--density and --outer-density are equal: nothing drives the droplet");
   for (const char* option : {"tension", "other"})
     if (line.has(option) && (lab.tilt == 0 || lab.diameter == 0))
       throw Error("--" + Text(option) + " needs --diameter and --angle");
@@ -113,7 +115,7 @@ class ChannelSimulation {
         measured.begin(), measured.end(), [](const fit::Frame& a, const fit::Frame& b) { return a.h < b.h; });
     // Motion is overdamped: half a diameter before the first frame the start is forgotten. The droplet must
     // not touch the channel at the start.
-    channel_.start = std::min(first->h - 0.5, -2.0);
+    channel_.start = std::min({first->h - 0.5, -2.0, last_free_start(single_run(settings_), channel_) - 0.1});
     channel_.end = last->h + 0.1;
     const double terminal_speed = single_run(settings_).drag.terminal_speed;
     settings_.set("max-time", sweep::shortest(30 * (channel_.end - channel_.start) / terminal_speed));
@@ -133,11 +135,7 @@ class ChannelSimulation {
                          run.droplet().shape().shape_parameter()});
       is_over = run.advance(1);
     }
-    const RunResult result = run.result();
-    if (result.status == RunStatus::failed)
-      throw Error("the run with line-tension=" + sweep::shortest(line_tension) +
-                  " near-wall-drag=" + sweep::shortest(near_wall_drag) + " failed: " + result.message);
-    return profile;
+    return profile;  // of a droplet that breaks, as far as it came
   }
 
  private:
@@ -165,6 +163,20 @@ std::vector<fit::Calibration> calibrate_all(const std::vector<fit::Profile>& pro
   return found;
 }
 
+/// What a reader must know before he uses a trial's numbers.
+std::vector<Text> warnings(const fit::Calibration& found) {
+  std::vector<Text> all;
+  if (found.is_at_bound) all.push_back("the best is at the end of what was searched, and may lie beyond");
+  if (found.num_never_reached > 0)
+    all.push_back("no simulated droplet comes to " + std::to_string(found.num_never_reached) +
+                  " of the frames: look at --orifice, at the units and at h");
+  if (std::isnan(found.line_tension_error))
+    all.push_back(
+        "no errors: the frames do not determine both, or the droplet clogs at a line tension beside this "
+        "one");
+  return all;
+}
+
 void print_text(const std::vector<Text>& files, const std::vector<fit::Calibration>& found,
                 const fit::Trials& all, const Laboratory& lab, double terminal_speed,
                 const std::optional<Laboratory>& other) {
@@ -177,6 +189,9 @@ void print_text(const std::vector<Text>& files, const std::vector<fit::Calibrati
     std::printf("%-*s  %8.4g  %8.2g  %9.4g  %8.2g  %8.3g  %8.3g\n", w, files[i].c_str(),
                 found[i].line_tension, found[i].line_tension_error, found[i].near_wall_drag,
                 found[i].near_wall_drag_error, found[i].deviation.speed, found[i].deviation.shape);
+  for (std::size_t i = 0; i < files.size(); ++i)
+    for (const Text& warning : warnings(found[i]))
+      std::printf("note: %s: %s\n", files[i].c_str(), warning.c_str());
   if (found.size() > 1)
     std::printf(
         "\nmean of %zu trials and their standard deviation: Gamma* = %.3g +- %.2g, b_0*/b_inf = %.3g +- "
@@ -212,7 +227,8 @@ void print_json(const std::vector<Text>& files, const std::vector<fit::Calibrati
                       {"near_wall_drag_error", number(found[i].near_wall_drag_error)},
                       {"delta_v", found[i].deviation.speed},
                       {"delta_a", number(found[i].deviation.shape)},
-                      {"simulations", found[i].num_simulations}});
+                      {"simulations", found[i].num_simulations},
+                      {"warnings", warnings(found[i])}});
   nlohmann::ordered_json document = {{"trials", trials},
                                      {"line_tension", all.line_tension},
                                      {"line_tension_deviation", number(all.line_tension_deviation)},

@@ -75,7 +75,7 @@ OptionalColumns optional_columns(const std::vector<Group>& groups) {
   return {.mechanisms = seen.size() > 1, .migration = std::any_of(groups.begin(), groups.end(), is_lattice)};
 }
 
-/// Clogs by mechanism, as 3/5/2.
+/// Clogs by mechanism, as 3/5/2/0.
 std::string mechanism_counts(const Group& group) {
   std::string counts;
   for (const Group::Cause& cause : group.causes) {
@@ -89,13 +89,16 @@ std::vector<std::string> result_cells(const Group& group, OptionalColumns option
   const fit::CloggingLength& clogging = group.clogging;
   const bool bounded = clogging.num_clogs > 0;
   const auto number = [](double value) { return std::isnan(value) ? "-" : rounded(value); };
+  // One or two runs that happened to come far enough to have a speed say little of all.
+  constexpr int fewest_speeds = 3;
+  const bool has_speed = group.speed.num_runs >= fewest_speeds;
   std::vector<std::string> cells = {
       std::to_string(clogging.num_runs),
       std::to_string(clogging.num_clogs),
       bounded ? number(clogging.length) : "> " + number(clogging.interval.lower),
       bounded ? number(clogging.interval.lower) + " .. " + number(clogging.interval.upper) : "-",
-      number(group.speed.mean),
-      number(group.speed.standard_error)};
+      has_speed ? number(group.speed.mean) : "-",
+      has_speed ? number(group.speed.standard_error) : "-"};
   if (optional.mechanisms) cells.insert(cells.begin() + 2, mechanism_counts(group));
   if (optional.migration)
     cells.insert(cells.end(), {number(group.migration.slope), number(group.migration.standard_error)});
@@ -159,7 +162,7 @@ std::string to_text(const std::vector<Group>& groups, double confidence) {
   std::snprintf(interval, sizeof interval, "%g %%", 100 * confidence);
   const OptionalColumns optional = optional_columns(groups);
   lines[0].insert(lines[0].end(), {"runs", "clogs"});
-  if (optional.mechanisms) lines[0].push_back("w/s/h");
+  if (optional.mechanisms) lines[0].push_back("w/s/h/o");
   lines[0].insert(lines[0].end(), {"lambda/sigma", interval, "<v_g>/v_t", "+-"});
   if (optional.migration) lines[0].insert(lines[0].end(), {"lateral/r", "+-"});
   const bool with_doubts =
@@ -178,7 +181,7 @@ std::string to_text(const std::vector<Group>& groups, double confidence) {
     num_interrupted += group.num_interrupted;
   }
   text += "\n\n" + aligned(lines) + legend(groups);
-  if (optional.mechanisms) text += "w/s/h: clogs by wrapping, by squeezing, by both\n";
+  if (optional.mechanisms) text += "w/s/h/o: clogs by wrapping, by squeezing, by both, by neither\n";
   if (num_interrupted > 0)
     text += "   " + std::to_string(num_interrupted) + " runs are under way or interrupted\n";
   if (num_failed > 0)

@@ -19,7 +19,8 @@ namespace clog {
 /// What may spoil a group's clogging length.
 enum class Doubt {
   few_clogs,         ///< fewer than five: the interval is wide and its coverage wavers
-  not_exponential,   ///< Weibull's law fits better, p < 0.05
+  not_exponential,   ///< Weibull's law fits better, p < 0.05 by Holm's test of all groups with ten clogs or
+                     ///< more
   censored_by_time,  ///< runs ended by max-time, slow ones nearer than fast ones
   incomplete,        ///< runs are under way, interrupted or failed
 };
@@ -33,7 +34,8 @@ struct DoubtText {
 inline constexpr DoubtText doubt_texts[] = {
     {Doubt::few_clogs, 'f', "few_clogs", "fewer than 5 clogs: more seeds are needed"},
     {Doubt::not_exponential, 'x', "not_exponential",
-     "P(r) is not exponential (p < 0.05): one length does not describe these runs"},
+     "P(r) is not exponential (p < 0.05, Holm's test of all groups): one length does not describe these "
+     "runs"},
     {Doubt::censored_by_time, 't', "censored_by_time",
      "runs ended by max-time: right if slow droplets are as likely to clog as fast ones"},
     {Doubt::incomplete, 'i', "incomplete",
@@ -62,9 +64,9 @@ struct Group {
   std::vector<Doubt> doubts;
 };
 
-/// Mechanisms with a clogging length of their own.
+/// Mechanisms with a clogging length of their own; `none` are clogs of none of the others.
 inline constexpr ClogMechanism causes[] = {ClogMechanism::wrapped, ClogMechanism::squeezed,
-                                           ClogMechanism::hybrid};
+                                           ClogMechanism::hybrid, ClogMechanism::none};
 
 /// Groups rows by everything but the seed, in the order of their parameters.
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence);

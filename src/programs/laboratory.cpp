@@ -1,7 +1,7 @@
 #include "laboratory.hpp"
 
-#include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <numbers>
 
@@ -29,10 +29,9 @@ double si_factor(const std::string& unit, const std::string& units) {
 }
 
 double to_si(const std::string& text, const std::string& units) {
-  std::size_t end = 0;
-  while (end < text.size() && (std::isdigit(static_cast<unsigned char>(text[end])) || text[end] == '.' ||
-                               text[end] == '-' || text[end] == '+'))
-    ++end;
+  char* rest = nullptr;
+  std::strtod(text.c_str(), &rest);
+  const auto end = static_cast<std::size_t>(rest - text.c_str());
   const std::size_t unit = text.find_first_not_of(' ', end);
   if (unit == std::string::npos)
     throw Error("'" + text + "' has no unit; write for example 3.5" + known_units.at(units).begin()->first);

@@ -93,6 +93,15 @@ TEST(ClogGeometry, ADiscOnTwoObstaclesIsSqueezed) {
   EXPECT_EQ(geometry.mechanism(), ClogMechanism::squeezed);
 }
 
+TEST(ClogGeometry, ADiscWedgedAgainstAnObstacleBesideItIsSqueezed) {
+  // The one beside it pushes across the flow, or a little downstream.
+  for (const double beside : {-90.0, -100.0}) {
+    const ClogGeometry geometry = disc_on({beside, 17}).geometry();
+    expect_counts(geometry, 0, 1, 2);
+    EXPECT_EQ(geometry.mechanism(), ClogMechanism::squeezed) << beside;
+  }
+}
+
 TEST(ClogGeometry, ObstaclesFromBehindMakeNoGap) {
   expect_counts(disc_on({-40, 40, 150, 210}).geometry(), 0, 1, 4);
 }

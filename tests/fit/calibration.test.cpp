@@ -46,6 +46,7 @@ TEST(Deviation, CountsWhatIsNeverReachedAndLeavesOutUnknownShapes) {
   const Profile stuck{{0, 1, 1}, {1, 0.5, 1.1}};
   EXPECT_NEAR(deviation({{2, 1, unknown}}, stuck).speed, 10, 1e-12);
   EXPECT_TRUE(std::isnan(deviation({{0.5, 0.75, unknown}}, stuck).shape));
+  EXPECT_TRUE(std::isnan(deviation({{0.5, 1, 1.1}}, {{0, 1, unknown}, {1, 1, unknown}}).shape));
   EXPECT_NEAR(deviation({{0.5, 0.75, unknown}, {0, 1, 1.1}}, stuck).shape, 0.1, 1e-12);
   EXPECT_THROW(deviation({}, stuck), std::invalid_argument);
 }
@@ -90,6 +91,38 @@ TEST(Calibrate, HasNoErrorsWhereTheProfileDoesNotDetermineBoth) {
   const Calibration found = calibrate(measured(1, 0.1, 0.01, 3), insensitive);
   EXPECT_TRUE(std::isnan(found.line_tension_error));
   EXPECT_NEAR(found.near_wall_drag, 0.1, 0.02);
+}
+
+TEST(Calibrate, SaysWhereItsRangeEnds) {
+  EXPECT_TRUE(calibrate(measured(100, 0.1, 0, 1), model).is_at_bound);
+  EXPECT_TRUE(calibrate(measured(1, 5, 0, 1), model).is_at_bound);
+  EXPECT_FALSE(calibrate(measured(1, 0, 0, 1), model).is_at_bound);
+}
+
+TEST(Calibrate, HasNoErrorsBesideALineTensionAtWhichTheDropletClogs) {
+  const Simulation clogging = [](double tension, double drag) {
+    Profile profile = model(tension, drag);
+    if (tension > 1) profile.resize(profile.size() / 2);
+    return profile;
+  };
+  const Calibration beside = calibrate(measured(0.98, 0.1, 0.02, 2), clogging);
+  EXPECT_LE(beside.line_tension, 1);
+  EXPECT_TRUE(std::isnan(beside.line_tension_error));
+  EXPECT_EQ(beside.num_never_reached, 0);
+  const Calibration away = calibrate(measured(0.5, 0.1, 0.02, 2), clogging);
+  EXPECT_GT(away.line_tension_error, 0);
+}
+
+TEST(Calibrate, CountsTheFramesThatNoSimulationReaches) {
+  const Simulation stuck = [](double tension, double drag) {
+    Profile profile = model(tension, drag);
+    profile.resize(profile.size() / 2);
+    return profile;
+  };
+  const Profile frames = measured(1, 0.1, 0, 1);
+  const Calibration found = calibrate(frames, stuck);
+  EXPECT_NEAR(found.num_never_reached, static_cast<double>(frames.size()) / 2, 1);
+  EXPECT_GT(found.deviation.speed, 5);
 }
 
 TEST(Calibrate, RefusesTooFewFrames) {

@@ -80,6 +80,18 @@ TEST(Exponentiality, IsRejectedAsOftenAsItClaimsAndWhereItFails) {
   EXPECT_GT(share_rejected(0.5), 0.9);
 }
 
+TEST(Exponentiality, SeesClogsAtRelease) {
+  // Twelve of thirty do not get anywhere.
+  std::mt19937_64 engine(7);
+  std::exponential_distribution<double> distance(1);
+  std::vector<Observation> runs(12, {-0.001, true});
+  while (runs.size() < 30) runs.push_back({distance(engine), true});
+  const WeibullTest test = test_exponentiality(runs);
+  EXPECT_EQ(test.num_clogs, 30);
+  EXPECT_LT(test.shape, 0.6);
+  EXPECT_LT(test.p_value, 1e-4);
+}
+
 TEST(Exponentiality, SurvivesDegenerateData) {
   for (const std::vector<Observation>& runs : {std::vector<Observation>{},
                                                {{3, true}},
@@ -89,10 +101,8 @@ TEST(Exponentiality, SurvivesDegenerateData) {
     EXPECT_TRUE(std::isnan(test_exponentiality(runs).shape));
     EXPECT_TRUE(std::isnan(test_exponentiality(runs).p_value));
   }
-  const WeibullTest pushed_back =
-      test_exponentiality(std::vector<Observation>{{-0.1, true}, {1, true}, {2, true}});
-  EXPECT_EQ(pushed_back.num_clogs, 2);
-  EXPECT_TRUE(std::isfinite(pushed_back.shape));
+  const std::vector<Observation> not_a_number{{std::nan(""), false}, {1, true}};
+  EXPECT_EQ(survival_curve(not_a_number).size(), 1u);
   // Distances of any size.
   const std::vector<Observation> tiny{{1e-9, true}, {3e-9, true}, {2e-9, false}},
       huge{{1e9, true}, {3e9, true}, {2e9, false}};

@@ -36,9 +36,9 @@ TEST(Laboratory, GivesThePublishedNumbers) {
 }
 
 TEST(Laboratory, ScalesLineTensionsAsPublished) {
-  // Gamma_exp goes the same way: 0.57 at 28 degrees and 3.5 mm, 5.80 and 3.47 in the other two experiments; two
-  // digits are printed, and angles to a tenth of a degree. (The fitted 0.16 +- 0.01 scales to 1.59 and 0.97,
-  // published are 1.7 +- 0.1 and 1.08 +- 0.09.)
+  // Gamma_exp goes the same way: 0.57 at 28 degrees and 3.5 mm, 5.80 and 3.47 in the other two experiments;
+  // two digits are printed, and angles to a tenth of a degree. (The fitted 0.16 +- 0.01 scales to 1.59 and
+  // 0.97, published are 1.7 +- 0.1 and 1.08 +- 0.09.)
   const Laboratory calibrated = octane(3.5, 28, 7);
   EXPECT_NEAR(scaled_line_tension(0.57, calibrated, octane(1.98, 8.5, 0.97)), 5.80, 0.17);
   EXPECT_NEAR(scaled_line_tension(0.57, calibrated, octane(3.30, 5.0, 1.1)), 3.47, 0.10);
@@ -47,6 +47,7 @@ TEST(Laboratory, ScalesLineTensionsAsPublished) {
 TEST(Units, AreReadWithAndWithoutSpace) {
   EXPECT_DOUBLE_EQ(to_si("3.5mm", "length"), 3.5e-3);
   EXPECT_DOUBLE_EQ(to_si("3.5 mm", "length"), 3.5e-3);
+  EXPECT_DOUBLE_EQ(to_si("3.5e-3m", "length"), 3.5e-3);
   EXPECT_DOUBLE_EQ(to_si("7mm/s", "speed"), 7e-3);
   EXPECT_DOUBLE_EQ(to_si("180deg", "angle"), std::numbers::pi);
   EXPECT_DOUBLE_EQ(to_si("10 mJ/m^2", "tension"), 0.01);
@@ -100,7 +101,8 @@ TEST_F(ProfileFile, SaysWhatIsWrongAndWhere) {
   EXPECT_NE(fault("h,v\n1,1\n").find("no unit"), std::string::npos);
   EXPECT_NE(fault("h [furlong],v [v_t]\n").find("furlong"), std::string::npos);
   EXPECT_NE(fault("x,y\n1,1\n").find("columns h and v"), std::string::npos);
-  EXPECT_NE(fault("h [sigma],v [v_t]\n1,1\n1,fast\n").find("line 3: 'fast' is not a finite number"), std::string::npos)
+  EXPECT_NE(fault("h [sigma],v [v_t]\n1,1\n1,fast\n").find("line 3: 'fast' is not a finite number"),
+            std::string::npos)
       << fault("h [sigma],v [v_t]\n1,1\n1,fast\n");
   EXPECT_NE(fault("h [sigma],v [v_t]\n1,1\n1\n").find("line 3: has too few columns"), std::string::npos);
   EXPECT_NE(fault("h [sigma],v [v_t]\n1,1\n").find("fewer than three frames"), std::string::npos);

@@ -57,6 +57,7 @@ class Calibrate(ProgramTest):
             (["p.csv", "--diameter=-2mm", "--speed=3mm/s"], ["--diameter=-2mm", "positive"]),
             (["p.csv", "--angle=8deg"], ["--angle needs --diameter"]),
             (["p.csv", "--tension=10mN/m"], ["--tension needs"]),
+            (["p.csv", "--density=1g/ml", "--outer-density=1g/ml"], ["--density and --outer-density are equal"]),
             (["p.csv", "line-tension=1"], ["--line-tension is what"]),
             (["p.csv", "--diameter=2mm", "--speed=3mm/s", "vertices=64,128"], ["2 runs, one is wanted"]),
             (["p.csv", "--diameter=2mm", "--speed=3mm/s", "--format=xml"], ["--format=xml"]),

@@ -105,16 +105,17 @@ class Fit(ProgramTest):
     def test_each_mechanism_has_a_length_of_its_own(self):
         self.sweep("seeds=1..10", "max-time=1")
         mechanisms = [b"wrapped"] * 2 + [b"squeezed"] * 4 + [b"hybrid"] + [b"none"] * 3
-        self.change(distance=np.arange(1.0, 11), status=[b"clogged"] * 7 + [b"flowing"] * 3, mechanism=mechanisms)
+        self.change(distance=np.arange(1.0, 11), status=[b"clogged"] * 8 + [b"flowing"] * 2, mechanism=mechanisms)
         group, = self.fit()["groups"]
-        self.assertEqual((group["wrapped"], group["squeezed"], group["hybrid"]), (2, 4, 1))
-        lengths = [group[f"clogging_length_{kind}"] for kind in ("wrapped", "squeezed", "hybrid")]
-        self.assertEqual(lengths, [55 / 2, 55 / 4, 55])
+        kinds = ("wrapped", "squeezed", "hybrid", "other")
+        self.assertEqual([group[kind] for kind in kinds], [2, 4, 1, 1])
+        lengths = [group[f"clogging_length_{kind}"] for kind in kinds]
+        self.assertEqual(lengths, [55 / 2, 55 / 4, 55, 55])
         self.assertAlmostEqual(sum(1 / length for length in lengths), 1 / group["clogging_length"], places=12)
         self.assertLess(group["clogging_length_wrapped_lower"], 55 / 2)
         self.assertGreater(group["clogging_length_wrapped_upper"], 55 / 2)
-        self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, "w/s/h.*\n.* 2/4/1 ")
-        self.change(mechanism=[b"squeezed"] * 7 + [b"none"] * 3)
+        self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, "w/s/h/o.*\n.* 2/4/1/1 ")
+        self.change(mechanism=[b"squeezed"] * 8 + [b"none"] * 2)
         group, = self.fit()["groups"]
         self.assertEqual((group["wrapped"], group["clogging_length_wrapped"]), (0, None))
         self.assertGreater(group["clogging_length_wrapped_lower"], 0)

@@ -17,8 +17,9 @@ struct ClogGeometry {
   /// Of all the obstacles' support against the flow, the part that comes from wrapped ones; NaN without any.
   double wrapped_support = std::numeric_limits<double>::quiet_NaN();
   int num_wrapped = 0;  ///< touched obstacles that the droplet hangs over
-  int num_gaps = 0;     ///< pairs of supporting obstacles between which the interface looks downstream
-  int num_arcs = 0;     ///< runs of successive edges in contact with one obstacle
+  int num_gaps =
+      0;  ///< pairs of obstacles, one at least supporting, between which the interface looks downstream
+  int num_arcs = 0;  ///< runs of successive edges in contact with one obstacle
 
   /// Hybrid when wrapped obstacles and others each give a third of the support.
   ClogMechanism mechanism() const;

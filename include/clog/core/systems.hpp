@@ -21,6 +21,9 @@ struct ChannelParameters {
   double start = -10;        ///< h at release [sigma]
   double end = 3;            ///< h at which the run is over [sigma]
 };
+/// The largest h at which the free droplet is upstream and clear of the channel [sigma]; infinite if it
+/// touches nothing anywhere.
+double last_free_start(const RunParameters& run, const ChannelParameters& channel);
 /// A circular droplet, at rest, on the channel's axis.
 /// @throws Error if the channel is too narrow for vertices, or the droplet would touch it at the start
 DropletRun run_in_channel(const RunParameters& run, const ChannelParameters& channel);

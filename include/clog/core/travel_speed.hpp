@@ -38,7 +38,8 @@ std::optional<std::size_t> transient_length(std::span<const double> values);
 /// values (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461 (1989)). Of these estimates, which grow until the
 /// blocks are independent, it is that of the shortest block B with B^3 > 2 n (e_B/e_1)^4, where what is left
 /// of the correlation is as small as the scatter of the estimate (Lee et al., Phys. Rev. E 83, 066706
-/// (2011)). NaN if no block is long enough and fewer than n/2.
+/// (2011)). NaN if no block is long enough and fewer than n/2, and for
+/// fewer than 200 values, whose errors would be too small where neighbours are correlated.
 double blocked_error(std::span<const double> values);
 
 }  // namespace clog

@@ -38,8 +38,8 @@ class WallContacts {
   bool radii_are_equal() const { return smallest_radius_ == largest_radius_; }
   double largest_radius() const { return largest_radius_; }
 
-  /// The same lists by obstacle: circles that some edge (vertex) of a group of `edges_per_group` lists, in the
-  /// groups' order.
+  /// The same lists by obstacle: circles that some edge (vertex) of a group of `edges_per_group` lists, in
+  /// the groups' order.
   struct Item {
     double x, y;   ///< centre, relative to the state's frame [sigma]
     double reach;  ///< radius + range [sigma]

@@ -33,11 +33,13 @@ struct Calibration {
   double near_wall_drag_error = 0;  ///< likewise; both NaN if the profile does not determine both
   Deviation deviation{};            ///< of the best run
   int num_simulations = 0;
+  bool is_at_bound = false;   ///< of the range: the best may lie beyond
+  int num_never_reached = 0;  ///< frames at an h that the best run's droplet did not come to
 };
 /// Where Delta_v is sought.
 struct CalibrationRange {
   double least_tension = 0.02;
-  double most_tension = 20;
+  double most_tension = 10;
   double most_drag = 2;
 };
 /// Simulated profile for a line tension and b_0/b_inf.

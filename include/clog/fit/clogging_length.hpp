@@ -46,8 +46,8 @@ struct CloggingLength {
 /// @throws std::invalid_argument unless 0 < confidence < 1
 CloggingLength fit_clogging_length(std::span<const Observation> runs, double confidence = 0.95);
 
-/// Half of the chi-squared interval's width over the estimate, some runs being censored; infinite without
-/// clogs.
+/// Half of the chi-squared interval's width over the estimate; infinite without clogs. That where all runs
+/// have clogged, which is a little wider than with censored ones.
 double relative_half_width(std::int64_t num_clogs, double confidence = 0.95);
 
 /// Least squares of exp(-r/lambda) on P(r) = 1 - N_clog(r)/N at every clog, as published (Cheng et al.,
