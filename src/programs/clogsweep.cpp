@@ -138,9 +138,9 @@ double precision(const cli::CommandLine& line) {
 
 std::int64_t most_seeds(const cli::CommandLine& line, std::int64_t first_seeds) {
   const double number = line.get_number("most-seeds", static_cast<double>(20 * first_seeds));
-  if (!(number >= static_cast<double>(first_seeds) && number <= 1e6 && number == std::floor(number)))
+  if (!(number >= static_cast<double>(first_seeds) && number <= 1e5 && number == std::floor(number)))
     throw Error("invalid --most-seeds=" + line.get("most-seeds") + " (must be a whole number from " +
-                std::to_string(first_seeds) + ", the number of `seeds`, to 1e6)");
+                std::to_string(first_seeds) + ", the number of `seeds`, to 1e5)");
   return static_cast<std::int64_t>(number);
 }
 
@@ -164,6 +164,10 @@ Enlarged enlarge(const cli::CommandLine& line) {
   if (most == first_seeds) return sweep;
   long long last = 0;
   for (const std::string& seed : seeds) last = std::max(last, sweep::to_integer(seed));
+  constexpr long long largest_seed = 4'294'967'295;
+  if (last + most - first_seeds > largest_seed)
+    throw Error("invalid --most-seeds=" + std::to_string(most) + " (seeds after " + std::to_string(last) +
+                " would exceed " + std::to_string(largest_seed) + ") begin with smaller seeds");
   sweep.settings.set("seeds", line.settings().text("seeds") + "," + std::to_string(last + 1) + ".." +
                                   std::to_string(last + most - first_seeds));
   return sweep;

@@ -148,6 +148,8 @@ int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, 
     std::vector<std::int64_t> next;
     if (rule && is_complete)
       next = rule->next_round([&](std::int64_t task) { return ledger.row(task).status.view() == "clogged"; });
+    // Of an earlier call with a higher precision: finished, though not asked for any more.
+    if (rule && is_complete && next.empty()) next = ledger.tasks_begun();
     ranks.broadcast(next.empty() ? over : another_round);
     if (next.empty()) break;
     ledger.want(next);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <limits>
 #include <set>
+#include <unordered_set>
 #include <utility>
 
 #include "clog/core/error.hpp"
@@ -46,6 +47,10 @@ bool have_common_value(const std::vector<std::string>& some, const std::vector<s
   });
 }
 
+bool has_result(const sweep::RunRow& row) {
+  return row.status.view() == "clogged" || row.status.view() == "flowing";
+}
+
 std::string differing_keys(const sweep::Settings& there, const sweep::Settings& here) {
   std::string all;
   for (const sweep::Key& key : sweep::keys())
@@ -72,10 +77,14 @@ SweepLedger::SweepLedger(std::string path, const sweep::Plan& plan, const sweep:
   session.back() = '\n';
 
   std::unordered_map<std::string, Entry> known;
+  std::unordered_set<std::string> with_results;
   if (std::filesystem::exists(path_)) {
     store::SweepFile file = store::read_sweep(path_);
     take_over(file, settings);
-    for (const sweep::RunRow& row : file.rows) known[sweep::identity(row)] = {row, {}};
+    for (const sweep::RunRow& row : file.rows) {
+      known[sweep::identity(row)] = {row, {}};
+      if (has_result(row)) with_results.insert(sweep::identity(row));
+    }
   }
   const bool has_table = !known.empty() || std::filesystem::exists(path_);
   std::vector<Entry> entries = journal_.take_entries();
@@ -85,10 +94,8 @@ SweepLedger::SweepLedger(std::string path, const sweep::Plan& plan, const sweep:
                 " reports of an earlier sweep); put the table back, or remove the journal to begin anew");
   for (Entry& entry : entries) {
     std::string run = sweep::identity(entry.row);
-    // A run that is over in the table is not so in the journal if its last record there was lost.
-    const auto there = known.find(run);
-    if (there != known.end() && is_over(there->second.row) && !is_over(entry.row)) continue;
-    known[std::move(run)] = std::move(entry);
+    // A run that has its result in the table is not over in the journal if its last record there was lost.
+    if (has_result(entry.row) || !with_results.contains(run)) known[std::move(run)] = std::move(entry);
   }
   set_attribute(provenance_, "sessions", latest_lines(attribute(provenance_, "sessions") + session));
   find_tasks(std::move(known));
@@ -112,8 +119,10 @@ void SweepLedger::take_over(const store::SweepFile& file, const sweep::Settings&
   store::Provenance all = file.provenance;
   for (const char* name : {"kind", "format_version"})
     std::erase_if(all, [&](const auto& attribute) { return attribute.first == name; });
-  for (const char* name : {"config", "stopping_rule", "num_wanted"})
-    if (const std::string text = attribute(provenance_, name); !text.empty()) set_attribute(all, name, text);
+  for (const char* name : {"config", "stopping_rule", "num_wanted"}) {
+    std::erase_if(all, [&](const auto& attribute) { return attribute.first == name; });
+    if (const std::string text = attribute(provenance_, name); !text.empty()) all.emplace_back(name, text);
+  }
   provenance_ = std::move(all);
 }
 
@@ -124,7 +133,11 @@ bool SweepLedger::is_over(const sweep::RunRow& row) const {
 }
 
 void SweepLedger::find_tasks(std::unordered_map<std::string, Entry> known) {
+  std::int64_t last_seed = -1;
+  for (const auto& [run, entry] : known) last_seed = std::max(last_seed, entry.row.seed);
   for (std::int64_t task = 0; task < plan_.size(); ++task) {
+    // Seeds that may be added later follow in increasing order: none beyond has begun yet.
+    if (task >= num_wanted_ && (known.empty() || plan_.task(task).seed > last_seed)) break;
     if (!known.empty())
       if (auto found = known.extract(sweep::identity(sweep::describe(plan_.task(task)))); !found.empty()) {
         Entry& entry = runs_[task] = std::move(found.mapped());
@@ -155,11 +168,26 @@ void SweepLedger::want(const std::vector<std::int64_t>& tasks) {
   is_published_ = false;
 }
 
+std::vector<std::int64_t> SweepLedger::tasks_begun() const {
+  std::vector<std::int64_t> tasks;
+  for (const auto& [task, entry] : runs_)
+    if (!is_over(entry.row)) tasks.push_back(task);
+  return tasks;
+}
+
 std::int64_t SweepLedger::num_resumed() const {
   return std::count_if(tasks_left_.begin(), tasks_left_.end(), [this](std::int64_t task) {
     const auto run = runs_.find(task);
     return run != runs_.end() && !run->second.snapshot.empty();
   });
+}
+
+sweep::RunRow SweepLedger::new_row(std::int64_t task) const {
+  sweep::RunRow row = sweep::describe(plan_.task(task));
+  row.task = task;
+  row.clogged_by = "none";
+  row.mechanism = "none";
+  return row;
 }
 
 parallel::Start SweepLedger::start(std::int64_t task, int rank) {
@@ -172,10 +200,7 @@ parallel::Start SweepLedger::start(std::int64_t task, int rank) {
     past->second.instruction_set = start.snapshot.empty() ? "" : entry.row.instruction_set.view();
   if (is_new || failed) {
     entry.snapshot.clear();
-    entry.row = sweep::describe(plan_.task(task));
-    entry.row.task = task;
-    entry.row.clogged_by = "none";
-    entry.row.mechanism = "none";
+    entry.row = new_row(task);
   }
   entry.row.attempt = start.attempt;
   entry.row.status = "running";
@@ -200,6 +225,11 @@ void SweepLedger::report(const parallel::Report& report) {
 
 void SweepLedger::withdraw_failure(std::int64_t task) {
   Entry& entry = runs_.at(task);
+  const std::int64_t attempt = entry.row.attempt;
+  const double seconds = entry.row.wall_seconds;
+  entry.row = new_row(task);  // what a bad rank made of it is no distance so far
+  entry.row.attempt = attempt;
+  entry.row.wall_seconds = seconds;
   entry.row.status = "interrupted";
   journal_.add(entry.row, entry.snapshot);
   is_published_ = false;

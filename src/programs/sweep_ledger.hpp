@@ -30,6 +30,8 @@ class SweepLedger {
   /// More of the plan's tasks are to be done; tasks_left() are then those of them that are not over.
   void want(const std::vector<std::int64_t>& tasks);
   std::int64_t num_wanted() const { return num_wanted_; }
+  /// Tasks that have begun and are not over, wanted or not.
+  std::vector<std::int64_t> tasks_begun() const;
 
   /// Tasks that are wanted and not over.
   const std::vector<std::int64_t>& tasks_left() const { return tasks_left_; }
@@ -74,6 +76,7 @@ class SweepLedger {
   Clock::duration publication_time_{0};
 
   bool is_over(const sweep::RunRow& row) const;
+  sweep::RunRow new_row(std::int64_t task) const;
   void take_over(const store::SweepFile& file, const sweep::Settings& settings);
   void find_tasks(std::unordered_map<std::string, Entry> known);
   void publish();

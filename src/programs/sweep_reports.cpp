@@ -87,8 +87,9 @@ Status status_of(const std::string& path, double confidence) {
     const bool is_over = row.status.view() != "running" && row.status.view() != "interrupted";
     (is_over ? finished : running).push_back(row.wall_seconds);
   }
-  const auto num_waiting =
-      static_cast<double>(status.num_runs - static_cast<std::int64_t>(finished.size() + running.size()));
+  const auto num_known = static_cast<std::int64_t>(finished.size() + running.size());
+  status.num_runs = std::max(status.num_runs, num_known);
+  const auto num_waiting = static_cast<double>(status.num_runs - num_known);
   status.left = time_left(finished, running, num_waiting, std::max<std::size_t>(1, running.size()));
   if (!file.rows.empty()) status.groups = group_runs(file.rows, confidence);
   return status;

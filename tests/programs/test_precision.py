@@ -62,12 +62,37 @@ class Precision(ProgramTest):
         self.succeed("clogsweep", *SWEEP, "--output", "whole.h5")
         self.check_equal("s.h5", "whole.h5")
 
+    def test_less_precision_finishes_what_more_had_begun(self):
+        more = [*SWEEP[:-2], "--until-precision=30%", "--most-seeds=60"]
+        while True:  # stopped when a later round has begun
+            done = self.run_program("clogsweep", *more, "--output", "s.h5", "--max-hours=0.00004")
+            self.assertEqual(done.returncode, 75, "it was over too soon")
+            rows = table(self.folder / "s.h5")
+            if len(rows) > 8 and (rows.status == "interrupted").any():
+                break
+        self.succeed("clogsweep", *SWEEP[:-2], "--until-precision=90%", "--most-seeds=60", "--output", "s.h5")
+        rows = table(self.folder / "s.h5")
+        self.assertFalse(rows.status.isin(["running", "interrupted"]).any())
+        self.assertFalse((self.folder / "s.h5.journal").exists())
+        self.assertIn("; complete", self.succeed("clogsweep", "status", "s.h5").stdout)
+
+    def test_a_sweep_that_goes_on_without_it_forgets_the_rule(self):
+        self.succeed("clogsweep", *SWEEP, "--output", "s.h5")
+        plain = [word.replace("1..4", "1..6") for word in SWEEP if not word.startswith("--")]
+        self.succeed("clogsweep", *plain, "--output", "s.h5")
+        with h5py.File(self.folder / "s.h5") as file:
+            self.assertNotIn("stopping_rule", file.attrs)
+        status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format=json").stdout)
+        self.assertEqual(status["over"], status["runs"])
+        self.assertEqual(status["runs"], len(table(self.folder / "s.h5")))
+
     def test_mistakes_get_one_line_and_exit_code_2(self):
-        plain = [*QUICK, "seeds=1..4", "--output", "s.h5"]
+        plain = [*QUICK, "--output", "s.h5"]
         for arguments, words in [
-            (["--until-precision=0"], ["--until-precision=0", "try 20%"]),
+            (["--until-precision=0%"], ["--until-precision=0%", "try 20%"]),
             (["--until-precision=often"], ["--until-precision=often"]),
-            (["--until-precision=20%", "--most-seeds=3"], ["--most-seeds=3", "from 4"]),
+            (["seeds=1..4", "--until-precision=20%", "--most-seeds=3"], ["--most-seeds=3", "from 4"]),
+            (["seeds=4294967290..4294967293", "--until-precision=75%"], ["--most-seeds=80", "smaller seeds"]),
             (["--most-seeds=30"], ["needs --until-precision"]),
         ]:
             with self.subTest(arguments=arguments):

@@ -1,0 +1,110 @@
+#include "sweep_ledger.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "clog/store/journal.hpp"
+#include "clog/store/run_table.hpp"
+
+namespace clog {
+namespace {
+
+/// A sweep of two runs, whose ledger is opened again and again as after kills.
+class LedgerTest : public testing::Test {
+ protected:
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("clog_ledger_" + std::to_string(::getpid()));
+  sweep::Settings settings_ = [] {
+    sweep::Settings settings;
+    settings.set("seeds", "1..2");
+    return settings;
+  }();
+  sweep::Plan plan_{settings_};
+
+  void SetUp() override { std::filesystem::create_directory(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::string path() const { return (folder_ / "s.h5").string(); }
+
+  SweepLedger open(std::int64_t attempts = 1) {
+    return SweepLedger(path(), plan_, settings_, {{"config", settings_.to_config(false)}}, 2, attempts);
+  }
+  static parallel::Report report(const SweepLedger& ledger, std::int64_t task, const char* status,
+                                 double distance, std::vector<std::byte> snapshot = {}) {
+    parallel::Report report{ledger.row(task), std::move(snapshot)};
+    report.row.status = status;
+    report.row.distance = distance;
+    return report;
+  }
+  const std::vector<std::byte> snapshot_{10, std::byte{7}};
+};
+
+TEST_F(LedgerTest, GoesOnFromTheSnapshotOfARunWhoseFailureWasWithdrawn) {
+  {
+    SweepLedger ledger = open();
+    ledger.start(0, 1);
+    ledger.report(report(ledger, 0, "failed", std::nan("")));
+    ledger.withdraw_failure(0);
+    ledger.start(0, 0);
+    ledger.report(report(ledger, 0, "running", 3.5, snapshot_));
+  }
+  SweepLedger ledger = open();
+  EXPECT_EQ(ledger.tasks_left(), (std::vector<std::int64_t>{0, 1}));
+  EXPECT_EQ(ledger.num_resumed(), 1);
+  EXPECT_EQ(ledger.start(0, 0).snapshot, snapshot_);
+  EXPECT_EQ(ledger.row(0).distance, 3.5);
+}
+
+TEST_F(LedgerTest, TakesNoDistanceFromAnAttemptThatDoesNotCount) {
+  SweepLedger ledger = open();
+  ledger.start(0, 1);
+  parallel::Report failed = report(ledger, 0, "failed", std::nan(""));
+  failed.row.message = "diverged";
+  failed.row.wall_seconds = 3;
+  ledger.report(failed);
+  ledger.withdraw_failure(0);
+  EXPECT_EQ(ledger.row(0).status.view(), "interrupted");
+  EXPECT_EQ(ledger.row(0).distance, 0);
+  EXPECT_EQ(ledger.row(0).message.view(), "");
+  EXPECT_EQ(ledger.row(0).wall_seconds, 3);
+  EXPECT_EQ(ledger.start(0, 0).attempt, 1);
+}
+
+TEST_F(LedgerTest, KeepsAFailureThatCounts) {
+  {
+    SweepLedger ledger = open();
+    ledger.start(1, 0);
+    ledger.report(report(ledger, 1, "failed", 0));
+  }
+  EXPECT_EQ(open().tasks_left(), std::vector<std::int64_t>{0});
+  EXPECT_EQ(open(2).tasks_left(), (std::vector<std::int64_t>{0, 1}));
+}
+
+TEST_F(LedgerTest, KeepsAResultOfTheTableWhateverTheJournalLacks) {
+  {
+    SweepLedger ledger = open();
+    ledger.start(0, 0);
+    ledger.report(report(ledger, 0, "running", 1, snapshot_));
+    ledger.start(1, 0);
+    ledger.report(report(ledger, 1, "running", 2, snapshot_));
+    ledger.report(report(ledger, 0, "clogged", 4));
+    ledger.finish();
+  }
+  {
+    store::Journal journal(store::journal_path(path()));
+    sweep::RunRow older = store::read_sweep(path()).rows[0];
+    older.status = "running";
+    journal.add(older, snapshot_);
+  }
+  SweepLedger ledger = open();
+  EXPECT_EQ(ledger.tasks_left(), std::vector<std::int64_t>{1});
+  EXPECT_EQ(ledger.row(0).distance, 4);
+}
+
+}  // namespace
+}  // namespace clog
