@@ -102,6 +102,8 @@ Draft::~Draft() {
   if (descriptor_ >= 0) close(descriptor_);
 }
 
+void Draft::unlock() { flock(descriptor_, LOCK_UN); }
+
 void Draft::publish() {
   check(fsync(descriptor_) == 0 && std::rename(name_.c_str(), path_.c_str()) == 0, "write", path_);
   name_.clear();

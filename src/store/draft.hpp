@@ -23,7 +23,7 @@ bool sync_folder_of(const std::string& path);
 void remove_stale_drafts(const std::string& path, std::string_view mark);
 
 /// A file that is not yet complete, beside the path that it is for (links followed), under a name that nobody
-/// has. It is locked as long as it is open; one that is not, and begins as ours do, was left behind by a
+/// has. It is locked as long as it is open, or until unlock(); one that is not, and begins as ours do, was left behind by a
 /// process that was killed, and is removed by the next that makes one. Other files of such a name stay.
 class Draft {
  public:
@@ -37,6 +37,9 @@ class Draft {
   const std::string& name() const { return name_; }
   int descriptor() const { return descriptor_; }
 
+  /// To be called before it is published, if others are to read it from then on: HDF5 locks the files that it
+  /// reads, and fails where somebody else has.
+  void unlock();
   /// Gives it the path's name, and the disk both; a file that is there is replaced. @throws Error
   void publish();
   /// The same, but never onto a file that somebody else has made. @throws Error

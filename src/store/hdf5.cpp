@@ -60,12 +60,14 @@ void create_whole(const std::string& path, const std::function<void(hid_t file)>
   refuse_existing(path);
   Draft draft(path, hdf5_mark);
   write_draft(draft, path, fill);
+  draft.unlock();
   draft.publish_new();
 }
 
 void replace_whole(const std::string& path, const std::function<void(hid_t file)>& fill) {
   Draft draft(path, hdf5_mark);
   write_draft(draft, path, fill);
+  draft.unlock();
   draft.publish();
 }
 

@@ -134,6 +134,25 @@ TEST_F(RunTableTest, IsWholeForAReaderAtEveryMoment) {
   EXPECT_EQ(read_sweep(path()).rows.size(), 149u);
 }
 
+TEST_F(RunTableTest, IsNeverLockedWhereReadersLookForIt) {
+  // As HDF5 does before it reads, in h5py and pandas.
+  publish_sweep(path(), some_rows(1), {});
+  const pid_t writer = fork();
+  if (writer == 0) {
+    for (int number = 2; number < 150; ++number) publish_sweep(path(), some_rows(number), {});
+    _exit(0);
+  }
+  int num_locked = 0, num_looks = 0;
+  for (; waitpid(writer, nullptr, WNOHANG) == 0; ++num_looks) {
+    const int file = open(path().c_str(), O_RDONLY);
+    ASSERT_GE(file, 0);
+    num_locked += flock(file, LOCK_SH | LOCK_NB) != 0;
+    close(file);
+  }
+  EXPECT_GT(num_looks, 100);
+  EXPECT_EQ(num_locked, 0);
+}
+
 TEST_F(RunTableTest, KeepsTheLastTableWhenTheDiskIsFull) {
   const auto publish_until_refused = [&] {
     for (int number = 0; number < 1000; ++number) publish_sweep(path(), some_rows(number), {});
