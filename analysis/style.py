@@ -78,7 +78,7 @@ def logarithmic_abscissa(axes, values=()):
     axis = axes.xaxis
     axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:g}"))
     values = sorted(set(values))
-    if values and len(values) <= 10 and all(b / a > 1.25 for a, b in zip(values, values[1:])):
+    if values and len(values) <= 10 and all(b / a > 1.19 for a, b in zip(values, values[1:])):
         axis.set_ticks(values, minor=False)
         axis.set_minor_locator(matplotlib.ticker.NullLocator())
 
