@@ -3,14 +3,13 @@
 #include <sched.h>
 
 #include <chrono>
-#include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "clog/cli/build_info.hpp"
 #include "clog/core/instruction_set.hpp"
 #include "clog/core/systems.hpp"
 #include "clog/parallel/communicator.hpp"
+#include "host_limits.hpp"
 
 namespace clog {
 namespace {
@@ -23,24 +22,6 @@ std::vector<int> allowed_cores() {
   for (int core = 0; core < CPU_SETSIZE; ++core)
     if (CPU_ISSET(core, &set)) cores.push_back(core);
   return cores;
-}
-
-/// Containers and batch systems may grant fewer cores than there are: time per period, cgroup version 2.
-double granted_cores() {
-  std::ifstream file("/sys/fs/cgroup/cpu.max");
-  double quota = 0, period = 0;
-  return file >> quota >> period && period > 0 ? quota / period : 0;  // "max" is no number
-}
-
-double available_memory() {
-  std::ifstream file("/proc/meminfo");
-  std::string name;
-  double kilobytes = 0;
-  while (file >> name >> kilobytes) {
-    if (name == "MemAvailable:") return 1024 * kilobytes;
-    file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-  }
-  return 0;
 }
 
 double step_cost(double seconds) {

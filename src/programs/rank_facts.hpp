@@ -12,8 +12,8 @@ struct RankFacts {
   std::string version;              ///< with the git hash
   std::string instruction_set;      ///< the widest
   std::vector<int> cores;           ///< that the rank may run on
-  double cores_granted = 0;         ///< by the control group's quota, to all of its processes; 0: no limit
-  double memory = 0;                ///< still available on the host [bytes]
+  double cores_granted = 0;         ///< by control groups, to all of their processes; 0: no limit
+  double memory = 0;                ///< still available, on the host and in control groups [bytes]
   double nanoseconds_per_step = 0;  ///< and vertex, while all ranks compute
 };
 

@@ -101,7 +101,7 @@ Finding cores(const std::string& host, const std::vector<const RankFacts*>& rank
             "start no more ranks than cores; if there are more cores, ranks are bound: set "
             "OMPI_MCA_hwloc_base_binding_policy=none"};
   if (granted > 0 && granted < static_cast<double>(ranks.size()))
-    return {where + ", of which " + formatted("%.3g", granted) + " are granted (/sys/fs/cgroup/cpu.max)",
+    return {where + ", of which " + formatted("%.3g", granted) + " are granted (cpu.max of a control group)",
             "ask for more cores, or start fewer ranks"};
   for (const auto& [set, number] : ranks_by_cores)
     if (static_cast<std::size_t>(number) > set.size())
@@ -116,7 +116,7 @@ Finding memory(const std::string& host, const std::vector<const RankFacts*>& ran
   constexpr double needed = 100e6;  // of a rank with an array of 500 sigma, generously
   const double available = ranks.front()->memory / static_cast<double>(ranks.size());
   const std::string what = host + ": " + formatted("%.3g GB of memory per rank", available / 1e9);
-  if (available > 0 && available < needed) return {what, "start fewer ranks per host, or take a smaller box"};
+  if (available < needed) return {what, "start fewer ranks per host, or take a smaller box"};
   return {what};
 }
 

@@ -2,6 +2,7 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstring>
@@ -19,8 +20,6 @@ namespace {
 
 /// Smaller ones are built in less time than it takes to see whether another process has them.
 constexpr double fewest_shared = 1e5;
-/// Someone who takes longer is stuck; one's own array is then the quickest.
-constexpr std::chrono::seconds longest_wait{10};
 constexpr std::chrono::milliseconds pause{5};
 
 /// At least as many obstacles as there will be, up to the part of the area that discs leave empty.
@@ -78,20 +77,41 @@ ObstacleArray ObstacleArrays::build(const ObstacleParameters& parameters, std::u
   return sample_obstacles(parameters, seed);
 }
 
+std::chrono::duration<double> ObstacleArrays::longest_wait(const ObstacleParameters& parameters) {
+  // A place takes half a microsecond, times the places within reach of the largest obstacle, times up to two.
+  constexpr double ten_builds = 10 * 1e-6;
+  const double reach =
+      (parameters.largest_diameter() + parameters.gap) / (parameters.smallest_diameter() + parameters.gap);
+  return std::chrono::duration<double>(std::max(10.0, ten_builds * num_places(parameters) * reach * reach));
+}
+
 ObstacleArray ObstacleArrays::find_or_build(const ObstacleParameters& parameters, std::uint32_t seed) {
   const std::optional<std::string> name = shared_name(parameters, seed);
   if (!name || num_places(parameters) < fewest_shared) return build(parameters, seed);
   const auto begin = std::chrono::steady_clock::now();
-  while (std::chrono::steady_clock::now() - begin < longest_wait) {
-    if (const std::optional<NameLock> lock = NameLock::try_hold(*name)) {
+  const auto end = begin + longest_wait(parameters);
+  bool has_waited = false;
+  do {
+    const NameLock lock(*name);
+    if (lock.state() == NameLock::State::impossible) return build(parameters, seed);
+    if (lock.state() == NameLock::State::held) {
       // Nobody makes one meanwhile. Those who wait do not search: that would take the builder's time.
-      if (auto memory = SharedMemory::find(*name)) return array_over(std::move(memory));
+      if (auto memory = SharedMemory::find(*name)) {
+        is_waiting_worthwhile_ = true;
+        return array_over(std::move(memory));
+      }
+      // The one waited for has been killed, or what it made cannot be seen: it may run in another container.
+      if (has_waited) is_waiting_worthwhile_ = false;
       ObstacleArray array = build(parameters, seed);
       auto memory = publish(*name, array);
       return memory ? array_over(std::move(memory)) : array;
     }
+    if (!is_waiting_worthwhile_) return build(parameters, seed);
     std::this_thread::sleep_for(pause);
-  }
+    has_waited = true;
+  } while (std::chrono::steady_clock::now() < end);
+  // Someone who takes longer is stuck; one's own array is then the quickest.
+  is_waiting_worthwhile_ = false;
   return build(parameters, seed);
 }
 

@@ -90,19 +90,19 @@ std::shared_ptr<const SharedMemory> SharedMemory::publish(
   return nullptr;
 }
 
-std::optional<NameLock> NameLock::try_hold(const std::string& name) {
+NameLock::NameLock(const std::string& name) : socket_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+  if (socket_ < 0) return;
   // An abstract address, known to this machine only as long as the socket exists. No one ever connects to it.
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   const std::string text =
       "clogsweep-" + std::to_string(geteuid()) + '-' + std::to_string(std::hash<std::string>{}(name));
   std::memcpy(address.sun_path + 1, text.data(), text.size());
-  const int descriptor = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  if (descriptor < 0) return std::nullopt;
-  NameLock lock(descriptor);
   const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + text.size());
-  if (bind(descriptor, reinterpret_cast<const sockaddr*>(&address), length) != 0) return std::nullopt;
-  return lock;
+  if (bind(socket_, reinterpret_cast<const sockaddr*>(&address), length) == 0)
+    state_ = State::held;
+  else if (errno == EADDRINUSE)
+    state_ = State::held_by_another;
 }
 
 NameLock::~NameLock() {

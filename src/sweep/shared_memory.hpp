@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 
@@ -38,17 +37,20 @@ class SharedMemory {
 /// What at most one process of this user on this machine holds at a time. It ends with the process.
 class NameLock {
  public:
-  /// The lock, if nobody has it.
-  static std::optional<NameLock> try_hold(const std::string& name);
+  enum class State { held, held_by_another, impossible };
 
-  NameLock(NameLock&& other) noexcept : socket_(other.socket_) { other.socket_ = -1; }
-  NameLock& operator=(NameLock&&) = delete;
+  /// Takes the lock, if nobody has it and the system can make one.
+  explicit NameLock(const std::string& name);
+
+  NameLock(const NameLock&) = delete;
+  NameLock& operator=(const NameLock&) = delete;
   ~NameLock();
+
+  State state() const { return state_; }
 
  private:
   int socket_;
-
-  explicit NameLock(int socket) : socket_(socket) {}
+  State state_ = State::impossible;
 };
 
 }  // namespace clog::sweep

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -10,12 +11,15 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "clog/sweep/run_job.hpp"
+#include "shared_memory.hpp"
 
 namespace clog::sweep {
 namespace {
@@ -55,6 +59,16 @@ std::string file_behind(const void* address) {
     if (place >= begin && place < end) return std::string(device) + ' ' + std::to_string(inode);
   }
   return "nowhere";
+}
+
+int num_sockets(pid_t process) {
+  namespace fs = std::filesystem;
+  int number = 0;
+  for (const fs::directory_entry& file : fs::directory_iterator("/proc/" + std::to_string(process) + "/fd")) {
+    std::error_code is_closed;
+    if (fs::read_symlink(file.path(), is_closed).native().starts_with("socket:")) ++number;
+  }
+  return number;
 }
 
 /// Another process that works, tells, and stays until it is killed, without a chance to clean up.
@@ -186,15 +200,106 @@ TEST(ObstacleArrays, AreBuiltByTheNextWhenTheirBuilderIsKilledAtWork) {
   EXPECT_EQ(arrays.num_built(), 1);
 }
 
+TEST(ObstacleArrays, AreNotWaitedForAgainAfterAWaitForNothing) {
+  const std::uint32_t seed = own_seed();
+  const ObstacleParameters slow{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 400};
+  const auto start_and_stop_builder = [&] {
+    const pid_t builder = fork();
+    if (builder == 0) {
+      prctl(PR_SET_PDEATHSIG, SIGKILL);
+      ObstacleArrays builds;
+      builds.get(slow, seed);
+      for (;;) pause();
+    }
+    while (num_sockets(builder) <= num_sockets(getpid())) usleep(1000);  // until it has the lock
+    kill(builder, SIGSTOP);
+    return builder;
+  };
+  const auto get_and_signal = [&](ObstacleArrays& arrays, pid_t builder, int signal) {
+    std::thread later([&] {
+      usleep(300'000);
+      kill(builder, signal);
+    });
+    arrays.get(slow, seed);
+    later.join();
+    kill(builder, SIGKILL);
+    waitpid(builder, nullptr, 0);
+  };
+  ObstacleArrays arrays;
+  get_and_signal(arrays, start_and_stop_builder(), SIGKILL);
+  EXPECT_EQ(arrays.num_built(), 1);
+
+  // The next one would be there in the end, but is not waited for.
+  arrays.get(small, 1);
+  get_and_signal(arrays, start_and_stop_builder(), SIGCONT);
+  EXPECT_EQ(arrays.num_built(), 3);
+
+  // What is there is still found, and then again waited for.
+  ObstacleArrays other;
+  other.get(large, seed);
+  arrays.get(large, seed);
+  EXPECT_EQ(arrays.num_built(), 3);
+  get_and_signal(arrays, start_and_stop_builder(), SIGCONT);
+  EXPECT_EQ(arrays.num_built(), 3);
+}
+
+TEST(ObstacleArrays, AreWaitedForAsLongAsTheyTake) {
+  using std::chrono::seconds;
+  EXPECT_EQ(ObstacleArrays::longest_wait(small), seconds(10));
+  ObstacleParameters huge = large;
+  huge.box = 2200;
+  EXPECT_GT(ObstacleArrays::longest_wait(huge), seconds(190));  // takes 10 s of CPU time
+  ObstacleParameters huger = huge;
+  huger.box = 4400;
+  EXPECT_EQ(ObstacleArrays::longest_wait(huger), 4 * ObstacleArrays::longest_wait(huge));
+  ObstacleParameters mixture = huge;
+  mixture.diameter_spread = 0.9;
+  EXPECT_GT(ObstacleArrays::longest_wait(mixture), seconds(4500));  // takes some 450 s
+}
+
+TEST(ObstacleArrays, AreBuiltAtOnceWhereNothingCanBeLocked) {
+  ObstacleArrays other;
+  const auto held = other.get(large, own_seed());
+  const OtherProcess without_files([seed = own_seed()] {
+    rlimit usual;
+    getrlimit(RLIMIT_NOFILE, &usual);
+    const rlimit none{0, usual.rlim_max};
+    setrlimit(RLIMIT_NOFILE, &none);
+    const bool is_possible = NameLock("x").state() != NameLock::State::impossible;
+    std::thread later([&] {  // who waits until then finds it
+      usleep(300'000);
+      setrlimit(RLIMIT_NOFILE, &usual);
+    });
+    ObstacleArrays arrays;
+    arrays.get(large, seed);
+    later.join();
+    return std::to_string(is_possible) + " possible, " + std::to_string(arrays.num_built()) + " built";
+  });
+  EXPECT_EQ(without_files.told(), "0 possible, 1 built");
+}
+
+TEST(NameLock, IsHeldByOneAtATime) {
+  const std::string name = "test " + std::to_string(own_seed());
+  {
+    const NameLock lock(name);
+    EXPECT_EQ(lock.state(), NameLock::State::held);
+    EXPECT_EQ(NameLock(name).state(), NameLock::State::held_by_another);
+  }
+  EXPECT_EQ(NameLock(name).state(), NameLock::State::held);
+}
+
 TEST(RunJob, GivesTheSameRowInASharedArray) {
+  // A run that goes far, around obstacles, and does not depend on the last bits.
   Settings settings;
+  settings.set("line-tension", "0.1");
+  settings.set("obstacle-density", "1");
   settings.set("vertices", "64");
   settings.set("box", "160");
-  settings.set("max-time", "5");
-  settings.set("seeds", std::to_string(own_seed()));
+  settings.set("max-time", "60");
+  settings.set("seeds", "1");
   const Plan plan(settings);
   ObstacleArrays builder;
-  const auto built = builder.get(plan.task(0).obstacles, own_seed());
+  const auto built = builder.get(plan.task(0).obstacles, plan.task(0).seed);
   const auto reader = std::make_shared<ObstacleArrays>();
   RunJob job(plan, 0, {}, reader);
   while (!job.advance()) {
@@ -206,7 +311,8 @@ TEST(RunJob, GivesTheSameRowInASharedArray) {
   EXPECT_EQ(job.row().distance, run.result().distance);
   EXPECT_EQ(job.row().lateral_displacement, run.result().lateral);
   EXPECT_EQ(job.row().steps, run.result().steps);
-  EXPECT_GT(run.result().distance, 0.01);
+  EXPECT_GT(run.result().distance, 1);
+  EXPECT_GT(std::abs(run.result().lateral), 0.01);
 }
 
 }  // namespace

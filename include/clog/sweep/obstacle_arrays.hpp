@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 
@@ -9,8 +10,8 @@ namespace clog::sweep {
 
 /// The obstacle arrays of a sweep. The last one is kept: a sweep asks for the same one many times in a row.
 /// Large ones are shared by all processes of the same user and executable on a machine: each is built by one
-/// of them, while the others wait, and is in memory once. Where sharing fails every process builds its own;
-/// nothing else depends on it.
+/// of them, while the others wait, and is in memory once. Where sharing fails every process waits in vain
+/// once, and builds its own; nothing else depends on it.
 class ObstacleArrays {
  public:
   /// @throws Error as sample_obstacles()
@@ -19,11 +20,16 @@ class ObstacleArrays {
   /// How many of the arrays so far were built here.
   int num_built() const { return num_built_; }
 
+  /// How long another process that builds the array is waited for: at least ten times as long as that takes,
+  /// as the processors may be shared and the memory slow, and never less than 10 s.
+  static std::chrono::duration<double> longest_wait(const ObstacleParameters& parameters);
+
  private:
   ObstacleParameters parameters_;
   std::uint32_t seed_ = 0;
   std::shared_ptr<const ObstacleArray> array_;
   int num_built_ = 0;
+  bool is_waiting_worthwhile_ = true;  ///< until a wait was for nothing, and again once another's is found
 
   ObstacleArray build(const ObstacleParameters& parameters, std::uint32_t seed);
   ObstacleArray find_or_build(const ObstacleParameters& parameters, std::uint32_t seed);
