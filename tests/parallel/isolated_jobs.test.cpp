@@ -75,8 +75,7 @@ void a_crash_fails_its_task_and_no_other(const parallel::Communicator& ranks,
     rows[report.row.task] = report.row;
     if (report.row.status.view() == "clogged") processes[report.row.rank].insert(report.row.seed);
   };
-  const parallel::SweepEnd end =
-      parallel::run_tasks(ranks, parallel::TaskOrder(num_tasks, 7), make_job, events, true);
+  const parallel::SweepEnd end = run_once(ranks, parallel::TaskOrder(num_tasks, 7), make_job, events, true);
   if (ranks.rank() != 0) return;
   expect(end == parallel::SweepEnd::complete && rows.size() == num_tasks, "the sweep goes on");
   for (const auto& [task, row] : rows) {
@@ -117,8 +116,8 @@ void a_stopped_task_goes_on_from_its_snapshot(const parallel::Communicator& rank
   events.stop_requested = [&] { return num_reports > 0; };
   std::vector<std::int64_t> tasks(1000);
   std::iota(tasks.begin(), tasks.end(), first_slow_task);
-  const parallel::SweepEnd end = parallel::run_tasks(ranks, parallel::TaskOrder(tasks, 1), make_job, events,
-                                                     true, std::chrono::milliseconds(1));
+  const parallel::SweepEnd end =
+      run_once(ranks, parallel::TaskOrder(tasks, 1), make_job, events, true, std::chrono::milliseconds(1));
   expect(ranks.rank() != 0 || end == parallel::SweepEnd::stopped, "a stop stops");
   std::vector<std::int64_t> left;
   for (const auto& [task, report] : stopped) left.push_back(task);
@@ -130,7 +129,7 @@ void a_stopped_task_goes_on_from_its_snapshot(const parallel::Communicator& rank
     expect(report.row.status.view() == "clogged", "a task goes on to its end");
     expect(report.row.steps == 1 + report.row.task * 7 % 5, "no slice is done twice");
   };
-  parallel::run_tasks(ranks, parallel::TaskOrder(left, 1), make_job, events, true);
+  run_once(ranks, parallel::TaskOrder(left, 1), make_job, events, true);
   expect(num_ended == left.size(), "every stopped task goes on");
 }
 
