@@ -53,18 +53,17 @@ class Work {
       : job_(std::move(job)), rank_(rank), interval_(report_interval) {}
 
   bool advance() { return job_->advance(); }
-  Report report() const {
-    Report report{job_->row(), {}};
-    report.row.rank = rank_;
-    report.row.host = Communicator::host_name();
-    if (report.row.status.view() == "interrupted") report.snapshot = job_->snapshot();
-    return report;
+  /// That of a task that is over, or is stopped now.
+  Report last_report() {
+    constexpr std::chrono::seconds patience{2};
+    const Clock::time_point deadline = Clock::now() + patience;
+    while (!job_->refresh() && Clock::now() < deadline) job_->advance();
+    return report();
   }
   std::optional<Report> due_report() {
-    if (Clock::now() - last_report_ < interval_) return std::nullopt;
+    if (Clock::now() - last_report_ < interval_ || !job_->refresh()) return std::nullopt;
     last_report_ = Clock::now();
     Report now = report();
-    if (now.row.status.view() != "interrupted") return std::nullopt;  // over, since advance() returned
     now.row.status = "running";
     return now;
   }
@@ -74,6 +73,14 @@ class Work {
   int rank_;
   std::chrono::milliseconds interval_;
   Clock::time_point last_report_ = Clock::now();
+
+  Report report() const {
+    Report report{job_->row(), {}};
+    report.row.rank = rank_;
+    report.row.host = Communicator::host_name();
+    if (report.row.status.view() == "interrupted") report.snapshot = job_->snapshot();
+    return report;
+  }
 };
 
 class Master {
@@ -258,7 +265,7 @@ class Master {
       own_job_.emplace(make_job_(next->task, next->snapshot), ranks_.rank(), report_interval_);
     }
     if (own_job_->advance() || stopping_) {
-      Report report = own_job_->report();
+      Report report = own_job_->last_report();
       own_job_.reset();
       take_back(report);
       if (report.row.status.view() != "failed") events_.ended(report);
@@ -292,7 +299,7 @@ class Worker {
         stopped = take_stop();
         if (const std::optional<Report> report = work.due_report()) send(running, *report);
       }
-      send(ended, work.report());
+      send(ended, work.last_report());
     }
     take_stop();  // one that crossed our last report
   }

@@ -109,7 +109,13 @@ class Lead {
     return start;
   }
 
-  void end(const parallel::Report& report) {
+  void end(parallel::Report report) {
+    // Stopped before it was heard of since it went on: it is where its snapshot and its row here are.
+    if (report.row.status.view() == "interrupted" && report.row.steps == 0 && !report.snapshot.empty()) {
+      report.row = ledger_.row(report.row.task);
+      report.row.status = "interrupted";
+      report.row.wall_seconds = 0;  // the ledger adds what was before
+    }
     ledger_.report(report);
     if (report.row.status.view() == "failed" && ledger_.tries_again(report.row)) {
       progress_.tried(report.row.task);

@@ -77,6 +77,7 @@ enum class SweepEnd {
 /// is one, before others are begun. A rank on which everything fails is set aside: see RankTrust. If it
 /// computes, it does so in slices between polls. Nobody spins: who has nothing to do sleeps, longer and
 /// longer, up to a few milliseconds.
+/// A task that is stopped has two seconds to say how far it is; else its last report is taken.
 /// @param schedule  matters on rank 0
 /// @param make_job  called on the rank that works on the task
 /// @param report_interval  time between two reports of a running task
