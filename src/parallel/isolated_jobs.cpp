@@ -8,8 +8,9 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <fstream>
+#include <optional>
 #include <span>
-#include <stdexcept>
 #include <system_error>
 #include <tuple>
 #include <utility>
@@ -27,6 +28,7 @@ using Clock = std::chrono::steady_clock;
 
 enum Kind : std::int64_t {
   describe_jobs = 1,  // rank -> helper: the description
+  process_began,      // helper -> rank: its pid
   process_ended,      // helper -> rank: an Ending
   begin,              // rank -> process: a task's number and the snapshot to begin at
   report,             // rank -> process: how far is it (empty); and the answer: a row and its snapshot
@@ -34,18 +36,21 @@ enum Kind : std::int64_t {
   drop,               // rank -> process: work no more on this (empty)
 };
 
+/// How long a rank waits for a process that should answer at once: a stopped one never does.
+constexpr std::chrono::milliseconds patience{2000};
+
 /// How a process came to its end.
 struct Ending {
   int fork_error = 0;  // errno, if it never began
-  int wait_status = 0;
+  int code = 0;        // of SIGCHLD: CLD_EXITED or another
+  int status = 0;      // exit code or signal
 };
 
 std::string describe(const Ending& ending) {
   if (ending.fork_error != 0)
     return std::string("no process could be started for it: ") + std::strerror(ending.fork_error);
-  if (!WIFSIGNALED(ending.wait_status))
-    return "its process left with exit code " + std::to_string(WEXITSTATUS(ending.wait_status));
-  const int signal = WTERMSIG(ending.wait_status);
+  if (ending.code == CLD_EXITED) return "its process left with exit code " + std::to_string(ending.status);
+  const int signal = ending.status;
   const char* name = sigabbrev_np(signal);
   const char* meaning = sigdescr_np(signal);
   return "its process was ended by SIG" + std::string(name ? name : std::to_string(signal)) + " (" +
@@ -59,6 +64,10 @@ void depend_on_parent(pid_t parent) {
   if (getppid() != parent) _exit(0);  // it was quicker
   for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) std::signal(signal, SIG_IGN);
 }
+
+/// When memory runs out, the kernel is to take this process, and neither the helper nor the rank, without
+/// which the sweep is over.
+void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj") << 1000; }
 
 /// The life of a process that computes. An exception that gets out is a crash like any other.
 [[noreturn]] void compute(const Socket& rank, const JobFactory& make_job) noexcept {
@@ -94,19 +103,30 @@ void depend_on_parent(pid_t parent) {
   if (!description) _exit(0);
   const JobFactory make_job =
       describe({reinterpret_cast<const char*>(description->bytes.data()), description->bytes.size()});
+  pid_t last = -1;
   while (true) {
     Socket socket = rank.receive_socket();
     if (!socket.is_open()) _exit(0);
+    if (last > 0) waitpid(last, nullptr, 0);
     const pid_t self = getpid();
     const pid_t process = fork();
     if (process == 0) {
       depend_on_parent(self);
+      be_first_when_memory_runs_out();
       compute(socket, make_job);
     }
-    Ending ending{process < 0 ? errno : 0, 0};
+    Ending ending{process < 0 ? errno : 0};
     socket.close();
-    while (process > 0 && waitpid(process, &ending.wait_status, 0) < 0 && errno == EINTR) continue;
+    if (process > 0) {
+      rank.send(process_began, 0, to_bytes(process, {}));
+      // It stays a zombie until the rank wants the next: the rank may kill it, and no other of its number.
+      siginfo_t end{};
+      while (waitid(P_PID, process, &end, WEXITED | WNOWAIT) < 0 && errno == EINTR) continue;
+      ending.code = end.si_code;
+      ending.status = end.si_status;
+    }
     rank.send(process_ended, 0, to_bytes(ending, {}));
+    last = process;
   }
 }
 
@@ -115,38 +135,54 @@ void depend_on_parent(pid_t parent) {
 /// The rank's side of its helper and of the process that computes now.
 class IsolatedJobs::Processes {
  public:
-  explicit Processes(Socket helper) : helper_(std::move(helper)) {}
+  Processes(Socket helper, pid_t helper_pid) : helper_(std::move(helper)), helper_pid_(helper_pid) {
+    helper_.limit_halts(patience);
+  }
 
   void send_description(const std::string& description) const {
     helper_.send(describe_jobs, 0, std::as_bytes(std::span(description)));
   }
 
-  /// Begins a job in a process that lives. Returns its number.
+  /// Is there a helper still? Without one no job can begin.
+  bool have_helper() const { return helper_.is_open(); }
+
+  /// Begins a job in a process that lives, or finds out that the helper does not. Returns its number.
   std::int64_t begin_job(std::int64_t task, std::span<const std::byte> snapshot) {
     // What an earlier job left, or that the process has died since.
     while (process_.is_open() && process_.wait(std::chrono::milliseconds(0)))
       if (!process_.receive()) bury();
+    ++last_job_;
+    if (!have_helper()) return last_job_;
     if (!process_.is_open()) {
       auto [mine, theirs] = Socket::pair();
+      mine.limit_halts(patience);
       helper_.send_socket(theirs);
       process_ = std::move(mine);
     }
-    process_.send(begin, ++last_job_, to_bytes(task, snapshot));
+    process_.send(begin, last_job_, to_bytes(task, snapshot));
     return last_job_;
   }
 
   const Socket& process() const { return process_; }
 
-  /// Returns how the process that has died came to its end.
-  Ending bury() {
+  /// Ends the process, if it has not died by itself. Returns how it came to its end; none: the helper, who
+  /// should know, has died or is stopped, and is given up.
+  std::optional<Ending> bury() {
     process_.close();
-    const auto message = helper_.receive();
-    if (!message) throw std::runtime_error("the helper that starts the processes of tasks has died");
-    return from_bytes<Ending>(message->bytes).first;
+    while (helper_.wait(patience)) {
+      const auto message = helper_.receive();
+      if (!message) break;
+      if (message->kind == process_ended) return from_bytes<Ending>(message->bytes).first;
+      kill(from_bytes<pid_t>(message->bytes).first, SIGKILL);
+    }
+    kill(helper_pid_, SIGKILL);
+    helper_.close();
+    return std::nullopt;
   }
 
  private:
   Socket helper_;
+  pid_t helper_pid_;
   Socket process_;
   std::int64_t last_job_ = 0;
 };
@@ -156,9 +192,15 @@ class IsolatedJobs::IsolatedJob final : public Job {
   IsolatedJob(Processes& processes, const RunRow& row, std::span<const std::byte> snapshot)
       : processes_(processes), number_(processes.begin_job(row.task, snapshot)) {
     last_.row = row;
+    last_.snapshot.assign(snapshot.begin(), snapshot.end());
+    if (!processes_.have_helper()) fail(without_helper);
   }
   ~IsolatedJob() override {
-    if (processes_.process().is_open()) processes_.process().send(drop, number_, {});
+    if (!processes_.process().is_open()) return;
+    if (is_asked_ && !last_.is_over)
+      processes_.bury();  // it may never answer
+    else
+      processes_.process().send(drop, number_, {});
   }
 
   bool advance() override {
@@ -166,17 +208,22 @@ class IsolatedJobs::IsolatedJob final : public Job {
     if (!last_.is_over && processes_.process().wait(slice)) receive();
     return last_.is_over;
   }
-  RunRow row() const override {
-    if (!last_.is_over) {
-      processes_.process().send(report, number_, {});
-      while (receive() != report && processes_.process().is_open()) continue;
-    }
-    return last_.row;
+  bool refresh() override {
+    if (last_.is_over || std::exchange(has_answered_, false)) return true;
+    if (!is_asked_) processes_.process().send(report, number_, {});
+    is_asked_ = true;
+    return false;
   }
+  RunRow row() const override { return last_.row; }
   std::vector<std::byte> snapshot() const override { return last_.snapshot; }
 
  private:
-  /// What is known of it, from the process. Asking is not changing, hence `mutable`.
+  static constexpr const char* without_helper =
+      "the helper that starts its rank's processes was killed or stopped; the rank goes on without, and now "
+      "a "
+      "crash there ends the sweep";
+
+  /// What is known of it: how it began, or the process's last message.
   struct Known {
     RunRow row;
     std::vector<std::byte> snapshot;
@@ -184,23 +231,26 @@ class IsolatedJobs::IsolatedJob final : public Job {
   };
   Processes& processes_;
   std::int64_t number_;
-  mutable Known last_;
+  Known last_;
+  bool is_asked_ = false;
+  bool has_answered_ = false;
   Clock::time_point begin_ = Clock::now();
 
-  /// Takes in a message and returns its kind.
-  std::int64_t receive() const {
+  void receive() {
     const auto message = processes_.process().receive();
     if (!message) {
-      fail(describe(processes_.bury()));
-      return process_ended;
+      const std::optional<Ending> ending = processes_.bury();
+      fail(ending ? describe(*ending) : without_helper);
+      return;
     }
-    if (message->job != number_) return 0;  // of an earlier job, which was dropped meanwhile
+    if (message->job != number_) return;  // of an earlier job, which was dropped meanwhile
     std::tie(last_.row, last_.snapshot) = from_bytes<RunRow>(message->bytes);
-    last_.is_over = last_.is_over || message->kind == over;
-    return message->kind;
+    last_.is_over = message->kind == over;
+    is_asked_ = false;
+    has_answered_ = true;
   }
 
-  void fail(const std::string& reason) const {
+  void fail(const std::string& reason) {
     last_.is_over = true;
     last_.snapshot.clear();
     last_.row.status = "failed";
@@ -219,7 +269,7 @@ IsolatedJobs::IsolatedJobs(const Describe& describe) : describe_(describe) {
     mine.close();
     start_processes(theirs, describe);
   }
-  processes_ = std::make_unique<Processes>(std::move(mine));
+  processes_ = std::make_unique<Processes>(std::move(mine), helper_);
 }
 
 IsolatedJobs::~IsolatedJobs() {
@@ -229,7 +279,9 @@ IsolatedJobs::~IsolatedJobs() {
 
 JobFactory IsolatedJobs::jobs(const std::string& description) {
   processes_->send_description(description);
-  return [this, make_job = describe_(description)](std::int64_t task, std::span<const std::byte> snapshot) {
+  return [this, make_job = describe_(description)](
+             std::int64_t task, std::span<const std::byte> snapshot) -> std::unique_ptr<Job> {
+    if (!processes_->have_helper()) return make_job(task, snapshot);
     return std::make_unique<IsolatedJob>(*processes_, make_job(task, {})->row(), snapshot);
   };
 }

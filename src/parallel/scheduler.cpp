@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "bytes.hpp"
-#include "clog/parallel/rank_trust.hpp"
 
 namespace clog::parallel {
 namespace {
@@ -54,18 +53,17 @@ class Work {
       : job_(std::move(job)), rank_(rank), interval_(report_interval) {}
 
   bool advance() { return job_->advance(); }
-  Report report() const {
-    Report report{job_->row(), {}};
-    report.row.rank = rank_;
-    report.row.host = Communicator::host_name();
-    if (report.row.status.view() == "interrupted") report.snapshot = job_->snapshot();
-    return report;
+  /// That of a task that is over, or is stopped now.
+  Report last_report() {
+    constexpr std::chrono::seconds patience{2};
+    const Clock::time_point deadline = Clock::now() + patience;
+    while (!job_->refresh() && Clock::now() < deadline) job_->advance();
+    return report();
   }
   std::optional<Report> due_report() {
-    if (Clock::now() - last_report_ < interval_) return std::nullopt;
+    if (Clock::now() - last_report_ < interval_ || !job_->refresh()) return std::nullopt;
     last_report_ = Clock::now();
     Report now = report();
-    if (now.row.status.view() != "interrupted") return std::nullopt;  // over, since advance() returned
     now.row.status = "running";
     return now;
   }
@@ -75,18 +73,24 @@ class Work {
   int rank_;
   std::chrono::milliseconds interval_;
   Clock::time_point last_report_ = Clock::now();
+
+  Report report() const {
+    Report report{job_->row(), {}};
+    report.row.rank = rank_;
+    report.row.host = Communicator::host_name();
+    if (report.row.status.view() == "interrupted") report.snapshot = job_->snapshot();
+    return report;
+  }
 };
 
 class Master {
  public:
-  Master(const Communicator& ranks, TaskOrder tasks, const JobFactory& make_job, const SweepEvents& events,
-         bool computes, std::chrono::milliseconds report_interval)
+  Master(const Communicator& ranks, Schedule& schedule, const JobFactory& make_job, const SweepEvents& events,
+         std::chrono::milliseconds report_interval)
       : ranks_(ranks),
-        tasks_(std::move(tasks)),
-        trust_(computing_ranks(ranks.size(), computes)),
+        schedule_(schedule),
         make_job_(make_job),
         events_(events),
-        computes_(computes),
         report_interval_(report_interval) {}
 
   SweepEnd run() {
@@ -96,7 +100,7 @@ class Master {
       const bool served = serve();
       const bool worked = work();
       answer_waiting();
-      if (!worked && nobody_can_work()) trust_.let_go();
+      if (!worked && nobody_can_work()) schedule_.trust.let_go();
       if (Clock::now() - last_idle_ > std::chrono::milliseconds(100)) {
         last_idle_ = Clock::now();
         events_.idle();
@@ -118,33 +122,22 @@ class Master {
   };
 
   const Communicator& ranks_;
-  TaskOrder tasks_;
+  Schedule& schedule_;
   std::vector<std::int64_t> failed_tasks_;  // to be tried again
-  RankTrust trust_;
   const JobFactory& make_job_;
   const SweepEvents& events_;
-  bool computes_;
   std::chrono::milliseconds report_interval_;
   bool stopping_ = false;
   int num_dismissed_ = 0;
   std::set<int> waiting_;                              // workers
   std::unordered_map<std::int64_t, Running> running_;  // by task
-  std::unordered_map<int, RunRow> last_failures_;      // by rank
   std::unordered_set<std::int64_t> withdrawn_;         // tasks, until they begin again
   std::optional<Work> own_job_;
-  Clock::time_point begin_ = Clock::now();
-  Clock::time_point last_idle_ = begin_;
+  Clock::time_point last_idle_ = Clock::now();
 
-  static std::vector<int> computing_ranks(int num_ranks, bool with_master) {
-    std::vector<int> ranks(num_ranks);
-    std::iota(ranks.begin(), ranks.end(), 0);
-    if (!with_master) ranks.erase(ranks.begin());
-    return ranks;
-  }
-
-  bool has_tasks() const { return !tasks_.empty() || !failed_tasks_.empty(); }
+  bool has_tasks() const { return !schedule_.tasks.empty() || !failed_tasks_.empty(); }
   bool is_over() const {
-    return running_.empty() && (stopping_ || !has_tasks() || trust_.num_in_service() == 0);
+    return running_.empty() && (stopping_ || !has_tasks() || schedule_.trust.num_in_service() == 0);
   }
 
   /// Are there tasks, but all ranks on hold or waiting for one that is?
@@ -153,7 +146,8 @@ class Master {
     return running_.empty() && all_wait && !is_over();
   }
 
-  double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
+  /// The same clock in all rounds.
+  static double seconds() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
 
   struct Beginning {
     std::int64_t task = no_more_tasks;
@@ -161,19 +155,19 @@ class Master {
   };
   /// The next task for this rank, if there is one for it now.
   std::optional<Beginning> take_task(int rank) {
-    if (stopping_ || !trust_.may_work(rank)) return std::nullopt;
+    if (stopping_ || !schedule_.trust.may_work(rank)) return std::nullopt;
     auto failed = std::find_if(failed_tasks_.begin(), failed_tasks_.end(),
-                               [&](std::int64_t task) { return trust_.is_next_for(task, rank); });
+                               [&](std::int64_t task) { return schedule_.trust.is_next_for(task, rank); });
     // Rather here again than no work at all, if this rank is beyond doubt.
-    if (failed == failed_tasks_.end() && tasks_.empty() && trust_.is_trusted(rank))
+    if (failed == failed_tasks_.end() && schedule_.tasks.empty() && schedule_.trust.is_trusted(rank))
       failed = failed_tasks_.begin();
     std::int64_t next = no_more_tasks;
     if (failed != failed_tasks_.end()) {
       next = *failed;
       failed_tasks_.erase(failed);
-      tasks_.begun_again(next, seconds());
-    } else if (!tasks_.empty()) {
-      next = tasks_.take(seconds());
+      schedule_.tasks.begun_again(next, seconds());
+    } else if (!schedule_.tasks.empty()) {
+      next = schedule_.tasks.take(seconds());
     } else {
       return std::nullopt;
     }
@@ -189,23 +183,23 @@ class Master {
     const std::int64_t ended = report.row.task;
     const auto [rank, attempt] = running_.extract(ended).mapped();
     report.row.attempt = attempt;
-    tasks_.ended(ended, seconds());
+    schedule_.tasks.ended(ended, seconds());
     if (report.row.status.view() == "interrupted") return;
     if (report.row.status.view() != "failed") {
-      set_aside(trust_.succeeded(ended, rank));
+      set_aside(schedule_.trust.succeeded(ended, rank));
       return;
     }
     events_.ended(report);
     if (events_.tries_again(report.row)) failed_tasks_.push_back(ended);
-    last_failures_[rank] = report.row;
-    set_aside(trust_.failed(ended, rank));
-    for (const std::int64_t task : trust_.tasks_in_doubt(rank)) withdraw_failure(task);
+    schedule_.last_failures[rank] = report.row;
+    set_aside(schedule_.trust.failed(ended, rank));
+    for (const std::int64_t task : schedule_.trust.tasks_in_doubt(rank)) withdraw_failure(task);
   }
 
   void set_aside(const std::vector<int>& ranks) {
     for (const int rank : ranks) {
-      events_.set_aside(last_failures_.at(rank));
-      for (const std::int64_t task : trust_.unsettled_tasks(rank)) withdraw_failure(task);
+      events_.set_aside(schedule_.last_failures.at(rank));
+      for (const std::int64_t task : schedule_.trust.unsettled_tasks(rank)) withdraw_failure(task);
     }
   }
 
@@ -264,14 +258,14 @@ class Master {
 
   /// One slice of this rank's own task. Returns whether there was one.
   bool work() {
-    if (!computes_) return false;
+    if (!schedule_.master_computes) return false;
     if (!own_job_) {
       const std::optional<Beginning> next = take_task(ranks_.rank());
       if (!next) return false;
       own_job_.emplace(make_job_(next->task, next->snapshot), ranks_.rank(), report_interval_);
     }
     if (own_job_->advance() || stopping_) {
-      Report report = own_job_->report();
+      Report report = own_job_->last_report();
       own_job_.reset();
       take_back(report);
       if (report.row.status.view() != "failed") events_.ended(report);
@@ -305,7 +299,7 @@ class Worker {
         stopped = take_stop();
         if (const std::optional<Report> report = work.due_report()) send(running, *report);
       }
-      send(ended, work.report());
+      send(ended, work.last_report());
     }
     take_stop();  // one that crossed our last report
   }
@@ -336,7 +330,17 @@ class Worker {
   }
 };
 
+std::vector<int> computing_ranks(int num_ranks, bool with_master) {
+  std::vector<int> ranks(num_ranks);
+  std::iota(ranks.begin(), ranks.end(), 0);
+  if (!with_master) ranks.erase(ranks.begin());
+  return ranks;
+}
+
 }  // namespace
+
+Schedule::Schedule(TaskOrder first, int num_ranks, bool with_master)
+    : tasks(std::move(first)), master_computes(with_master), trust(computing_ranks(num_ranks, with_master)) {}
 
 bool computes(int num_ranks, MasterComputes choice) {
   constexpr int most_ranks = 16;
@@ -344,12 +348,11 @@ bool computes(int num_ranks, MasterComputes choice) {
          (choice == MasterComputes::automatic && num_ranks <= most_ranks);
 }
 
-SweepEnd run_tasks(const Communicator& ranks, TaskOrder tasks, const JobFactory& make_job,
-                   const SweepEvents& events, bool master_computes,
-                   std::chrono::milliseconds report_interval) {
+SweepEnd run_tasks(const Communicator& ranks, Schedule& schedule, const JobFactory& make_job,
+                   const SweepEvents& events, std::chrono::milliseconds report_interval) {
   SweepEnd end = SweepEnd::complete;
   if (ranks.rank() == 0)
-    end = Master(ranks, std::move(tasks), make_job, events, master_computes, report_interval).run();
+    end = Master(ranks, schedule, make_job, events, report_interval).run();
   else
     Worker(ranks, make_job, report_interval).run();
   // Workers done early wait here: a message to the next sweep must not reach the master of this one, and

@@ -2,6 +2,7 @@
 
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -54,6 +55,12 @@ void Socket::close() {
   descriptor_ = -1;
 }
 
+void Socket::limit_halts(std::chrono::milliseconds longest) const {
+  const timeval limit{longest.count() / 1000, longest.count() % 1000 * 1000};
+  setsockopt(descriptor_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+  setsockopt(descriptor_, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
+}
+
 bool Socket::write_all(const void* bytes, std::size_t num_bytes) const {
   const char* next = static_cast<const char*>(bytes);
   while (num_bytes > 0) {
@@ -79,7 +86,9 @@ bool Socket::read_all(void* bytes, std::size_t num_bytes) const {
 
 void Socket::send(std::int64_t kind, std::int64_t job, std::span<const std::byte> bytes) const {
   const Header header{kind, job, bytes.size()};
-  if (write_all(&header, sizeof header)) write_all(bytes.data(), bytes.size());
+  // After half a message no other would be understood.
+  if (!write_all(&header, sizeof header) || !write_all(bytes.data(), bytes.size()))
+    ::shutdown(descriptor_, SHUT_RDWR);
 }
 
 std::optional<Socket::Message> Socket::receive() const {
@@ -92,7 +101,7 @@ std::optional<Socket::Message> Socket::receive() const {
 
 bool Socket::wait(std::chrono::milliseconds longest) const {
   pollfd state{descriptor_, POLLIN, 0};
-  return ::poll(&state, 1, static_cast<int>(longest.count())) > 0;
+  return uninterrupted([&] { return ::poll(&state, 1, static_cast<int>(longest.count())); }) > 0;
 }
 
 void Socket::send_socket(const Socket& socket) const {

@@ -32,10 +32,13 @@ class Socket {
     std::vector<std::byte> bytes;
   };
   bool is_open() const { return descriptor_ >= 0; }
+  /// From now on a message that has begun, in either direction, and comes to a halt for so long counts as the
+  /// other process's death: it may have been stopped.
+  void limit_halts(std::chrono::milliseconds longest) const;
   void close();
   /// A message to a process that has died is lost.
   void send(std::int64_t kind, std::int64_t job, std::span<const std::byte> bytes) const;
-  /// Waits for a message; none: the other process has died.
+  /// Waits for a message, without bound unless halts are limited; none: the other process has died.
   std::optional<Message> receive() const;
   /// Is there something to receive, be it the end?
   bool wait(std::chrono::milliseconds longest) const;

@@ -20,9 +20,13 @@ std::vector<std::int64_t> all_tasks(std::int64_t num_tasks) {
 TaskOrder::TaskOrder(std::int64_t num_tasks, std::int64_t num_groups)
     : TaskOrder(all_tasks(num_tasks), num_groups) {}
 
-TaskOrder::TaskOrder(const std::vector<std::int64_t>& tasks, std::int64_t num_groups)
-    : num_left_(static_cast<std::int64_t>(tasks.size())), groups_(num_groups) {
+TaskOrder::TaskOrder(const std::vector<std::int64_t>& tasks, std::int64_t num_groups) : groups_(num_groups) {
   assert(num_groups > 0);
+  add(tasks);
+}
+
+void TaskOrder::add(const std::vector<std::int64_t>& tasks) {
+  num_left_ += static_cast<std::int64_t>(tasks.size());
   for (const std::int64_t task : tasks) group_of(task).waiting.push_back(task);
 }
 

@@ -109,7 +109,13 @@ class Lead {
     return start;
   }
 
-  void end(const parallel::Report& report) {
+  void end(parallel::Report report) {
+    // Stopped before it was heard of since it went on: it is where its snapshot and its row here are.
+    if (report.row.status.view() == "interrupted" && report.row.steps == 0 && !report.snapshot.empty()) {
+      report.row = ledger_.row(report.row.task);
+      report.row.status = "interrupted";
+      report.row.wall_seconds = 0;  // the ledger adds what was before
+    }
     ledger_.report(report);
     if (report.row.status.view() == "failed" && ledger_.tries_again(report.row)) {
       progress_.tried(report.row.task);
@@ -137,13 +143,14 @@ int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, 
   if (options.log != SweepLog::Level::quiet)
     announce(options.output, ledger, rule.has_value(), computing_ranks);
   Lead lead(options, ledger, computing_ranks);
+  parallel::Schedule schedule(parallel::TaskOrder(0, plan.num_groups()), ranks.size(), computes);
   parallel::SweepEnd end = parallel::SweepEnd::complete;
   bool is_complete = true;
   while (true) {
     const std::vector<std::int64_t> tasks = ledger.tasks_left();
     lead.expect(static_cast<std::int64_t>(tasks.size()));
-    end = parallel::run_tasks(ranks, parallel::TaskOrder(tasks, plan.num_groups()), make_job, lead.events(),
-                              computes, options.report_interval);
+    schedule.tasks.add(tasks);
+    end = parallel::run_tasks(ranks, schedule, make_job, lead.events(), options.report_interval);
     is_complete = end == parallel::SweepEnd::complete && !lead.was_interrupted();
     std::vector<std::int64_t> next;
     if (rule && is_complete)
@@ -170,8 +177,9 @@ int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, 
 
 void follow_sweep(const parallel::Communicator& ranks, const sweep::JobFactory& make_job,
                   std::chrono::milliseconds report_interval) {
+  parallel::Schedule none(parallel::TaskOrder(0), ranks.size(), false);
   do {
-    parallel::run_tasks(ranks, parallel::TaskOrder(0), make_job, {}, false, report_interval);
+    parallel::run_tasks(ranks, none, make_job, {}, report_interval);
   } while (ranks.broadcast("") == another_round);
 }
 

@@ -109,12 +109,13 @@ int main(int argc, char** argv) {
   }
   const Clock::time_point begin = Clock::now();
   const double cpu_before = cpu_seconds();
+  parallel::Schedule schedule(parallel::TaskOrder(plan.size(), plan.num_groups()), ranks.size(), false);
   parallel::run_tasks(
-      ranks, parallel::TaskOrder(plan.size(), plan.num_groups()),
+      ranks, schedule,
       [&](std::int64_t task, std::span<const std::byte>) {
         return std::make_unique<SleepingJob>(task, task_seconds);
       },
-      events, false);
+      events);
   if (ranks.rank() != 0) return 0;
   ledger->finish();
   const double cpu = cpu_seconds() - cpu_before;

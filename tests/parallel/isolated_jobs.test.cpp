@@ -7,6 +7,7 @@
 
 #include <csignal>
 #include <cstdio>
+#include <fstream>
 #include <map>
 #include <numeric>
 #include <set>
@@ -34,12 +35,35 @@ const std::map<std::int64_t, std::pair<int, std::string>> crashes = {
 /// From here on tasks are slow, for a rank to ask them how far they are.
 constexpr std::int64_t first_slow_task = 60;
 
+/// From here on tasks stop their process for good, in their first slice.
+constexpr std::int64_t first_hanging_task = 10'000;
+/// From here on tasks kill, or stop, the helper of their process.
+constexpr std::int64_t first_task_that_kills_the_helper = 20'000;
+constexpr std::int64_t first_task_that_stops_the_helper = 30'000;
+
+/// Of the test itself, before it forks.
+const pid_t rank_pid = getpid();
+
+int oom_score_adj() {
+  int score = 0;
+  std::ifstream("/proc/self/oom_score_adj") >> score;
+  return score;
+}
+
 /// Crashes in its last slice, if it is one of those. Its row tells in which process it was.
 class CrashingJob final : public SyntheticJob {
  public:
   CrashingJob(std::int64_t task, std::span<const std::byte> snapshot) : SyntheticJob(task, snapshot) {}
   bool advance() override {
-    if (row().task >= first_slow_task) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    const std::int64_t task = row().task;
+    if (getpid() != rank_pid && task >= first_task_that_stops_the_helper) {
+      kill(getppid(), SIGSTOP);
+      _exit(0);
+    }
+    if (getpid() != rank_pid && task >= first_task_that_kills_the_helper) kill(getppid(), SIGKILL);
+    if (task >= first_hanging_task && task < first_task_that_kills_the_helper) std::raise(SIGSTOP);
+    if (task >= first_slow_task && task < first_hanging_task)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
     const bool is_over = SyntheticJob::advance();
     if (const auto crash = crashes.find(row().task); is_over && crash != crashes.end()) {
       if (crash->second.first == 0) _exit(3);
@@ -50,6 +74,7 @@ class CrashingJob final : public SyntheticJob {
   sweep::RunRow row() const override {
     sweep::RunRow row = SyntheticJob::row();
     row.seed = getpid();
+    row.time = oom_score_adj();
     return row;
   }
 };
@@ -75,8 +100,7 @@ void a_crash_fails_its_task_and_no_other(const parallel::Communicator& ranks,
     rows[report.row.task] = report.row;
     if (report.row.status.view() == "clogged") processes[report.row.rank].insert(report.row.seed);
   };
-  const parallel::SweepEnd end =
-      parallel::run_tasks(ranks, parallel::TaskOrder(num_tasks, 7), make_job, events, true);
+  const parallel::SweepEnd end = run_once(ranks, parallel::TaskOrder(num_tasks, 7), make_job, events, true);
   if (ranks.rank() != 0) return;
   expect(end == parallel::SweepEnd::complete && rows.size() == num_tasks, "the sweep goes on");
   for (const auto& [task, row] : rows) {
@@ -88,6 +112,8 @@ void a_crash_fails_its_task_and_no_other(const parallel::Communicator& ranks,
     expect(row.attempt == (crash == crashes.end() ? 1 : 2), "a task that crashed was tried again");
     if (crash == crashes.end())
       expect(row.distance == static_cast<double>(task * task), "a row holds its own task's result");
+    if (crash == crashes.end())
+      expect(row.time == 1000, "when memory runs out, a process that computes goes first");
   }
   std::size_t num_processes = 0;
   for (const auto& [rank, of_rank] : processes) {
@@ -117,8 +143,8 @@ void a_stopped_task_goes_on_from_its_snapshot(const parallel::Communicator& rank
   events.stop_requested = [&] { return num_reports > 0; };
   std::vector<std::int64_t> tasks(1000);
   std::iota(tasks.begin(), tasks.end(), first_slow_task);
-  const parallel::SweepEnd end = parallel::run_tasks(ranks, parallel::TaskOrder(tasks, 1), make_job, events,
-                                                     true, std::chrono::milliseconds(1));
+  const parallel::SweepEnd end =
+      run_once(ranks, parallel::TaskOrder(tasks, 1), make_job, events, true, std::chrono::milliseconds(1));
   expect(ranks.rank() != 0 || end == parallel::SweepEnd::stopped, "a stop stops");
   std::vector<std::int64_t> left;
   for (const auto& [task, report] : stopped) left.push_back(task);
@@ -130,17 +156,81 @@ void a_stopped_task_goes_on_from_its_snapshot(const parallel::Communicator& rank
     expect(report.row.status.view() == "clogged", "a task goes on to its end");
     expect(report.row.steps == 1 + report.row.task * 7 % 5, "no slice is done twice");
   };
-  parallel::run_tasks(ranks, parallel::TaskOrder(left, 1), make_job, events, true);
+  run_once(ranks, parallel::TaskOrder(left, 1), make_job, events, true);
   expect(num_ended == left.size(), "every stopped task goes on");
+}
+
+void hanging_tasks_block_nobody(const parallel::Communicator& ranks, const sweep::JobFactory& make_job) {
+  // Every rank has one, and reports on it are due all the time.
+  std::vector<std::int64_t> tasks(ranks.size());
+  std::iota(tasks.begin(), tasks.end(), first_hanging_task);
+  const std::vector<std::byte> snapshot(3);
+  int num_started = 0;
+  int num_idle = 0;
+  std::size_t num_stopped = 0;
+  parallel::SweepEvents events;
+  events.started = [&](std::int64_t, int) {
+    ++num_started;
+    return parallel::Start{snapshot, 1};
+  };
+  events.idle = [&] { num_idle += num_started == ranks.size(); };
+  events.stop_requested = [&] { return num_idle > 3; };
+  events.ended = [&](const parallel::Report& report) {
+    ++num_stopped;
+    expect(report.row.status.view() == "interrupted", "a task that hangs can be stopped");
+    expect(report.snapshot == snapshot, "the last known snapshot is kept");
+  };
+  const parallel::SweepEnd end =
+      run_once(ranks, parallel::TaskOrder(tasks, 1), make_job, events, true, std::chrono::milliseconds(1));
+  expect(ranks.rank() != 0 || (end == parallel::SweepEnd::complete && num_stopped == tasks.size()),
+         "a stop ends all tasks that hang");
+  std::iota(tasks.begin(), tasks.end(), first_slow_task);
+  events = parallel::SweepEvents();
+  events.ended = [&](const parallel::Report& report) {
+    expect(report.row.status.view() == "clogged", "the next task gets a process that does not hang");
+  };
+  run_once(ranks, parallel::TaskOrder(tasks, 1), make_job, events, true);
+}
+
+void a_rank_goes_on_without_its_helper(const parallel::Communicator& ranks, const sweep::JobFactory& make_job,
+                                       std::int64_t first_task) {
+  std::vector<std::int64_t> tasks(40);
+  std::iota(tasks.begin(), tasks.end(), first_task);
+  std::map<std::int64_t, std::string> status;
+  std::map<std::int64_t, int> failures;  // by rank
+  parallel::SweepEvents events;
+  events.tries_again = [](const sweep::RunRow&) { return true; };
+  events.ended = [&](const parallel::Report& report) {
+    status[report.row.task] = report.row.status.view();
+    if (report.row.status.view() == "failed") {
+      ++failures[report.row.rank];
+      expect(report.row.message.view() ==
+                 "the helper that starts its rank's processes was killed or stopped; the rank goes on "
+                 "without, and now a crash there ends the sweep",
+             "the row says what happened");
+    } else if (report.row.rank == 0) {
+      expect(report.row.seed == rank_pid, "the rank does the work itself");
+    }
+  };
+  const parallel::SweepEnd end = run_once(ranks, parallel::TaskOrder(tasks, 1), make_job, events, true);
+  if (ranks.rank() != 0) return;
+  expect(end == parallel::SweepEnd::complete && status.size() == tasks.size(), "the sweep goes on");
+  for (const auto& [task, last] : status) expect(last == "clogged", "no task is lost");
+  expect(!failures.empty(), "a helper died");
+  for (const auto& [rank, times] : failures) expect(times == 1, "the loss costs one attempt on each rank");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   parallel::IsolatedJobs isolated(describe);
+  parallel::IsolatedJobs others(describe);
   const parallel::Communicator ranks(argc, argv);
   const sweep::JobFactory make_job = isolated.jobs("crashing jobs");
   a_crash_fails_its_task_and_no_other(ranks, make_job);
   a_stopped_task_goes_on_from_its_snapshot(ranks, make_job);
+  hanging_tasks_block_nobody(ranks, make_job);
+  a_rank_goes_on_without_its_helper(ranks, make_job, first_task_that_kills_the_helper);
+  a_rank_goes_on_without_its_helper(ranks, others.jobs("crashing jobs"), first_task_that_stops_the_helper);
   if (ranks.rank() == 0) std::printf("crashes cost one task each on %d ranks\n", ranks.size());
 }

@@ -8,8 +8,10 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <set>
 #include <thread>
+#include <vector>
 
 #include "support.hpp"
 
@@ -29,8 +31,8 @@ void every_task_comes_back_once(const parallel::Communicator& ranks, bool master
     expect(row.distance == static_cast<double>(row.task * row.task), "a row holds its own task's result");
     expect(row.status.view() == "clogged", "a task is run to its end");
   };
-  const parallel::SweepEnd end = parallel::run_tasks(ranks, parallel::TaskOrder(num_tasks, 7),
-                                                     make_synthetic_job, events, master_computes);
+  const parallel::SweepEnd end =
+      run_once(ranks, parallel::TaskOrder(num_tasks, 7), make_synthetic_job, events, master_computes);
   if (ranks.rank() != 0) return;
   expect(end == parallel::SweepEnd::complete, "all tasks were handed out");
   expect(static_cast<std::int64_t>(times_ended.size()) == num_tasks, "no task is lost");
@@ -53,7 +55,7 @@ void a_stop_ends_running_tasks_as_interrupted(const parallel::Communicator& rank
   events.ended = [&](const parallel::Report&) { stop = ++num_ended >= 10; };
   events.stop_requested = [&] { return stop; };
   const parallel::SweepEnd end =
-      parallel::run_tasks(ranks, parallel::TaskOrder(10000, 7), make_synthetic_job, events, true);
+      run_once(ranks, parallel::TaskOrder(10000, 7), make_synthetic_job, events, true);
   if (ranks.rank() != 0) return;
   expect(end == parallel::SweepEnd::stopped, "a stopped sweep says that tasks are left");
   expect(num_ended == num_started, "every started task has a row");
@@ -76,8 +78,7 @@ void running_tasks_report_and_go_on_from_there(const parallel::Communicator& ran
     if (report.row.status.view() == "interrupted") snapshots[report.row.task] = report.snapshot;
   };
   events.stop_requested = [&] { return stop; };
-  parallel::run_tasks(ranks, parallel::TaskOrder(1000), make_synthetic_job, events, true,
-                      std::chrono::milliseconds(2));
+  run_once(ranks, parallel::TaskOrder(1000), make_synthetic_job, events, true, std::chrono::milliseconds(2));
   expect(ranks.rank() != 0 || num_reports > 0, "running tasks report");
   std::vector<std::int64_t> left;
   for (const auto& [task, snapshot] : snapshots) left.push_back(task);
@@ -89,7 +90,7 @@ void running_tasks_report_and_go_on_from_there(const parallel::Communicator& ran
     expect(report.row.steps == 1 + report.row.task * 7 % 5, "no slice is done twice");
     expect(report.row.status.view() == "clogged", "a task goes on to its end");
   };
-  parallel::run_tasks(ranks, parallel::TaskOrder(left, 1), make_synthetic_job, events, true);
+  run_once(ranks, parallel::TaskOrder(left, 1), make_synthetic_job, events, true);
   expect(num_ended == static_cast<int>(left.size()), "every interrupted task goes on");
 }
 
@@ -127,7 +128,7 @@ void failed_tasks_are_tried_again(const parallel::Communicator& ranks) {
     expect(report.row.attempt == attempts[report.row.task], "a row says which attempt it was");
     if (report.row.status.view() == "clogged") ++successes[report.row.task];
   };
-  parallel::run_tasks(ranks, parallel::TaskOrder(20, 4), make_failing, events, true);
+  run_once(ranks, parallel::TaskOrder(20, 4), make_failing, events, true);
   if (ranks.rank() != 0) return;
   expect(successes.size() == 19 && !successes.contains(3), "what can succeed does");
   expect(attempts[3] == 3, "attempts are limited");
@@ -175,7 +176,7 @@ Outcome sweep(const parallel::Communicator& ranks, std::int64_t num_tasks, std::
   events.ended = [&](const parallel::Report& report) {
     outcome.status[report.row.task] = report.row.status.view();
   };
-  outcome.end = parallel::run_tasks(ranks, parallel::TaskOrder(num_tasks, 5), make_job, events, true);
+  outcome.end = run_once(ranks, parallel::TaskOrder(num_tasks, 5), make_job, events, true);
   return outcome;
 }
 
@@ -194,6 +195,27 @@ void a_broken_rank_is_set_aside_and_its_tasks_done_elsewhere(const parallel::Com
     expect(status == "clogged", "its tasks succeed elsewhere");
   for (const auto& [task, attempts] : outcome.attempts)
     expect(attempts <= most_attempts, "attempts are limited");
+}
+
+void who_was_set_aside_stays_so_in_the_next_round(const parallel::Communicator& ranks) {
+  const int broken = ranks.size() - 1;
+  const auto make_job = failing_on(
+      ranks, [=](int rank) { return rank == broken; }, never);
+  std::set<int> set_aside;
+  parallel::SweepEvents events;
+  events.started = [&](std::int64_t, int rank) {
+    expect(!set_aside.contains(rank), "who was set aside gets no task in any round");
+    return parallel::Start();
+  };
+  events.set_aside = [&](const sweep::RunRow& failed) { set_aside.insert(static_cast<int>(failed.rank)); };
+  parallel::Schedule schedule(parallel::TaskOrder(0, 5), ranks.size(), true);
+  for (std::int64_t round = 0; round < 3; ++round) {
+    std::vector<std::int64_t> tasks(30);
+    std::iota(tasks.begin(), tasks.end(), 30 * round);
+    schedule.tasks.add(tasks);
+    parallel::run_tasks(ranks, schedule, make_job, events);
+    expect(ranks.rank() != 0 || set_aside == std::set<int>{broken}, "the broken rank is set aside");
+  }
 }
 
 void most_ranks_may_be_broken(const parallel::Communicator& ranks) {
@@ -256,6 +278,7 @@ int main(int argc, char** argv) {
   if (ranks.size() > 1) {
     a_broken_rank_is_set_aside_and_its_tasks_done_elsewhere(ranks, 1);
     a_broken_rank_is_set_aside_and_its_tasks_done_elsewhere(ranks, 2);
+    who_was_set_aside_stays_so_in_the_next_round(ranks);
     most_ranks_may_be_broken(ranks);
     a_sweep_without_a_rank_that_works_ends(ranks);
   }

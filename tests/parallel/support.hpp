@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "clog/parallel/scheduler.hpp"
 #include "clog/sweep/job.hpp"
 
 /// For programs that test the scheduler under mpirun, where every rank has to leave when one finds a fault.
@@ -51,5 +52,14 @@ inline const sweep::JobFactory make_synthetic_job = [](std::int64_t task,
                                                        std::span<const std::byte> snapshot) {
   return std::make_unique<SyntheticJob>(task, snapshot);
 };
+
+/// A sweep of one round.
+inline parallel::SweepEnd run_once(const parallel::Communicator& ranks, const parallel::TaskOrder& tasks,
+                                   const sweep::JobFactory& make_job, const parallel::SweepEvents& events,
+                                   bool master_computes,
+                                   std::chrono::milliseconds report_interval = std::chrono::seconds(10)) {
+  parallel::Schedule schedule(tasks, ranks.size(), master_computes);
+  return parallel::run_tasks(ranks, schedule, make_job, events, report_interval);
+}
 
 }  // namespace clog

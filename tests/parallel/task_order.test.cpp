@@ -38,6 +38,18 @@ TEST(TaskOrder, GoesOnWithTheGroupThatRanLongest) {
   EXPECT_EQ(tasks.take(7), 5);
 }
 
+TEST(TaskOrder, RemembersRunTimesInTheNextRound) {
+  TaskOrder tasks(std::vector<std::int64_t>{0, 1, 2}, 3);
+  for (const std::int64_t task : {0, 1, 2}) EXPECT_EQ(tasks.take(0), task);
+  tasks.ended(0, 1);
+  tasks.ended(1, 3);
+  tasks.ended(2, 2);
+  EXPECT_TRUE(tasks.empty());
+  tasks.add({3, 4, 5});
+  EXPECT_EQ(tasks.take(3), 4) << "its group ran longest";
+  EXPECT_EQ(tasks.take(3), 5);
+}
+
 TEST(TaskOrder, ExpectsAGroupWithoutResultsToBeLong) {
   TaskOrder tasks(6, 3);
   for (int group = 0; group < 3; ++group) tasks.take(0);

@@ -192,6 +192,12 @@ class Isolated(ProgramTest):
             time.sleep(0.02)
         self.fail("no process computes")
 
+    def wait_for_end_of(self, processes):
+        deadline = time.time() + 10
+        while any(pathlib.Path(f"/proc/{pid}").exists() for pid in processes):
+            self.assertLess(time.time(), deadline, "a process is left")
+            time.sleep(0.05)
+
     def test_rows_are_the_same_without(self):
         sweep = [*QUICK, "line-tension=0.3,2", "obstacle-gap=0.2,0.6", "seeds=1..4", "--output"]
         self.succeed("clogsweep", *sweep, "yes.h5", "--isolate=yes", ranks=2)
@@ -218,15 +224,49 @@ class Isolated(ProgramTest):
         rows = table(self.folder / "s.h5")
         self.assertEqual((rows.status[0], rows.attempt[0], rows.message[0]), ("flowing", 2, ""))
 
+    def test_a_process_that_hangs_does_not_keep_the_sweep_from_stopping(self):
+        sweep = ["seeds=1", "max-time=2e4", "--report-seconds=0.1"]
+        process = self.start(*sweep)
+        computing = self.computing_process(process)
+        deadline = time.time() + 60
+        while not table(self.folder / "s.h5").distance.gt(0).any():
+            self.assertLess(time.time(), deadline, "no report is published")
+            time.sleep(0.1)
+        os.kill(computing, signal.SIGSTOP)
+        time.sleep(0.5)  # reports are asked for meanwhile
+        process.send_signal(signal.SIGTERM)
+        _, error = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 75, error)
+        rows = table(self.folder / "s.h5")
+        self.assertEqual(rows.status[0], "interrupted")
+        self.assertGreater(rows.distance[0], 0, "the last report counts")
+        self.wait_for_end_of([computing])
+        hung_at = rows.distance[0]
+        # Hung once more, before anything was heard of it: it is where it was.
+        process = self.start(*sweep[:2], "--report-seconds=100")
+        os.kill(self.computing_process(process), signal.SIGSTOP)
+        process.send_signal(signal.SIGTERM)
+        _, error = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 75, error)
+        self.assertEqual(table(self.folder / "s.h5").distance[0], hung_at)
+        self.assertIn("1 go on where they were", self.succeed("clogsweep", *self.LONG, *sweep).stderr)
+        self.assertEqual(table(self.folder / "s.h5").status[0], "flowing")
+
+    def test_a_sweep_goes_on_without_the_helper(self):
+        process = self.start("seeds=1..2", "max-time=3000")
+        self.computing_process(process)
+        os.kill(self.children_of(process.pid)[0], signal.SIGKILL)
+        _, error = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 0, error)
+        self.assertEqual(error.count("the helper that starts its rank's processes was killed"), 1, error)
+        self.assertEqual(list(table(self.folder / "s.h5").status), ["flowing", "flowing"])
+
     def test_no_process_outlives_its_rank(self):
         process = self.start("seeds=1", "max-time=1e5")
         processes = [*self.children_of(process.pid), self.computing_process(process)]
         process.kill()
         process.communicate()
-        deadline = time.time() + 10
-        while any(pathlib.Path(f"/proc/{pid}").exists() for pid in processes):
-            self.assertLess(time.time(), deadline, "a process is left")
-            time.sleep(0.05)
+        self.wait_for_end_of(processes)
 
 
 class Told(ProgramTest):

@@ -16,10 +16,15 @@ namespace clog::parallel {
 /// A process serves one task after the other, and keeps its obstacle array, until it crashes. It is forked
 /// not by the rank but by a helper that was forked before MPI began: no process that computes has ever seen
 /// MPI, its threads or its registered memory, nor any file of the sweep. All of them die with the rank.
+///
+/// A rank waits for none of them: a process that hangs costs its own task only, and a stop two seconds more.
+/// If the helper dies, the present task is `failed`, and the rank does the work of the next ones itself. When
+/// memory runs out the kernel takes the processes that compute first.
 class IsolatedJobs {
  public:
   /// From a text, such as a config, to the jobs that it describes. Called once in the helper, and once in the
-  /// rank, whose jobs are only made, for the row that they begin with, and do no work.
+  /// rank, whose jobs are only made, for the row that they begin with, and do no work while there is a
+  /// helper.
   using Describe = std::function<sweep::JobFactory(const std::string& description)>;
 
   /// Forks the helper: to be called before MPI_Init, while there are no threads.

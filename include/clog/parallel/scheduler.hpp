@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "clog/parallel/communicator.hpp"
+#include "clog/parallel/rank_trust.hpp"
 #include "clog/parallel/task_order.hpp"
 #include "clog/sweep/job.hpp"
 
@@ -50,25 +52,38 @@ struct SweepEvents {
 /// delay that its slices put between a worker and its next task.
 bool computes(int num_ranks, MasterComputes choice);
 
+/// What rank 0 knows of a sweep's tasks and ranks. It lasts over all rounds of a sweep: who was set aside
+/// stays so, and measured run times go on to count.
+struct Schedule {
+  /// @param first  tasks of the first round
+  Schedule(TaskOrder first, int num_ranks, bool with_master);
+
+  TaskOrder tasks;
+  bool master_computes;
+  RankTrust trust;
+  std::unordered_map<int, sweep::RunRow> last_failures;  ///< by rank
+};
+
 enum class SweepEnd {
   complete,      ///< all tasks were handed out
   stopped,       ///< as stop_requested() said
   no_rank_left,  ///< every rank was set aside
 };
 
-/// Works through all tasks with all ranks; collective.
+/// Works through all tasks with all ranks, a round of a sweep; collective.
 ///
 /// Rank 0 hands out one task at a time, since tasks differ a thousandfold in length, and gathers the rows.
 /// Rows do not depend on the order of the tasks. A task that failed is tried again on another rank, if there
 /// is one, before others are begun. A rank on which everything fails is set aside: see RankTrust. If it
 /// computes, it does so in slices between polls. Nobody spins: who has nothing to do sleeps, longer and
 /// longer, up to a few milliseconds.
-/// @param tasks  matter on rank 0
+/// A task that is stopped has two seconds to say how far it is; else its last report is taken.
+/// @param schedule  matters on rank 0
 /// @param make_job  called on the rank that works on the task
 /// @param report_interval  time between two reports of a running task
 /// @return how it ended (rank 0; complete elsewhere)
-SweepEnd run_tasks(const Communicator& ranks, TaskOrder tasks, const sweep::JobFactory& make_job,
-                   const SweepEvents& events, bool master_computes,
+SweepEnd run_tasks(const Communicator& ranks, Schedule& schedule, const sweep::JobFactory& make_job,
+                   const SweepEvents& events,
                    std::chrono::milliseconds report_interval = std::chrono::seconds(10));
 
 }  // namespace clog::parallel

@@ -21,6 +21,9 @@ class TaskOrder {
   /// Those of its tasks that are left to be done.
   TaskOrder(const std::vector<std::int64_t>& tasks, std::int64_t num_groups);
 
+  /// More of them, for another round.
+  void add(const std::vector<std::int64_t>& tasks);
+
   bool empty() const { return num_left_ == 0; }
   /// Hands out a task; there must be one. Costs a look at every group.
   /// @param now  time [s], from any moment on, the same in all calls
@@ -37,7 +40,7 @@ class TaskOrder {
     double time_ended = 0;     // run times of the tasks that ended [s]
     double start_running = 0;  // sum of the starts of those that run
   };
-  std::int64_t num_left_;
+  std::int64_t num_left_ = 0;
   std::vector<Group> groups_;
   std::unordered_map<std::int64_t, double> running_since_;  // by task
 

@@ -18,6 +18,9 @@ class Job {
   /// Works for some milliseconds. Returns whether the task is over. Faults of the task itself end it with a
   /// row of status `failed`; advance() does not throw.
   virtual bool advance() = 0;
+  /// Do row() and snapshot() say how far the task is now? Never waits. A job whose work is done by another
+  /// process asks it, and is up to date for one call once advance() has met with the answer.
+  virtual bool refresh() { return true; }
   /// The task's row; `interrupted` if it is not over.
   virtual RunRow row() const = 0;
   /// From which another job of this task can go on; empty if there is none yet.
