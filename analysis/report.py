@@ -38,13 +38,6 @@ th { border-bottom: 2px solid #888; font-weight: 600; }
 figure { margin: 0; flex: 1 1 26rem; } figcaption { color: #555; font-size: .9rem; }
 pre { background: #f5f5f5; padding: .7rem; overflow-x: auto; font-size: .85rem; }
 """
-# Doubts of clogfit in words.
-DOUBTS = {
-    "few_clogs": "fewer than 5 clogs: more seeds are needed",
-    "not_exponential": "P(r) is not exponential (p &lt; 0.05): one length does not describe these runs",
-    "censored_by_time": "runs ended by max-time: right if slow droplets are as likely to clog as fast ones",
-    "incomplete": "runs are under way, interrupted or have failed",
-}
 
 
 def number(value):
@@ -96,11 +89,12 @@ def table(groups, abscissa):
     return '<div class="scroll"><table>' + "\n".join(lines) + "</table></div>"
 
 
-def doubts(groups, rows):
+def doubts(groups, sentences, rows):
+    """@param sentences  of clogfit, by the words that its groups hold"""
     words = []
     for name in dict.fromkeys(name for group in groups for name in (group["doubts"] or "").split()):
         count = sum(name in (group["doubts"] or "").split() for group in groups)
-        words.append(f"<li class=doubt>{count} of {len(groups)} points: {DOUBTS.get(name, html.escape(name.replace('_', ' ')))}</li>")
+        words.append(f"<li class=doubt>{count} of {len(groups)} points: {html.escape(sentences[name])}</li>")
     failed = rows[rows.status == "failed"]
     for _, row in failed.head(5).iterrows():
         words.append(f"<li class=doubt>task {row.task} (seed {row.seed}) failed: {html.escape(row.message)}</li>")
@@ -157,7 +151,7 @@ def page(path, fit, rows, about, pictures):
 <p class="about">{finished} of {len(rows)} runs finished ({html.escape(", ".join(f"{count} {status}" for status, count in counts.items()))}), {len(groups)} points.
 &lambda; is the way after which 1/e of the droplets have not clogged, in droplet diameters; v<sub>t</sub> is the speed of a free droplet.</p>
 <h2>Curves</h2><div class="pictures">{curves}</div>
-<h2>What may spoil these numbers</h2>{doubts(groups, rows)}
+<h2>What may spoil these numbers</h2>{doubts(groups, fit["doubts"], rows)}
 <h2>Example clogs</h2>{pictures}
 <h2>Table</h2>{table(groups, abscissa)}
 <h2>Where they come from</h2><pre>{html.escape(provenance)}</pre><details><summary>All settings</summary><pre>{html.escape(about.get("config", ""))}</pre></details>

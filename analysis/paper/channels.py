@@ -78,7 +78,7 @@ def geometry(shop):
     channel = narrow(shop)
     array = shop.run("geometry", "array", "trajectory", {"line-tension": 0.3, "obstacle-gap": 1.0, "max-time": 300.0},
                      ["--polygon-interval", 4])
-    drawing, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.0), layout="constrained", width_ratios=[1, 1.5])
+    drawing, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.4), layout="constrained", width_ratios=[1, 1.5])
     middle = middle_of(channel)
     frame = channel.frame_at("h", -0.75)
     trajectory.draw_surroundings(left, channel, middle)

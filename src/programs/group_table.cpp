@@ -229,7 +229,10 @@ std::string to_json(const std::vector<Group>& groups, double confidence) {
                                    {"standard_error", step.standard_error}});
     list.push_back(std::move(entry));
   }
-  const nlohmann::ordered_json document = {{"confidence", confidence}, {"groups", list}};
+  nlohmann::ordered_json sentences;
+  for (const DoubtText& doubt : doubt_texts) sentences[doubt.word] = doubt.sentence;
+  const nlohmann::ordered_json document = {
+      {"confidence", confidence}, {"doubts", sentences}, {"groups", list}};
   return document.dump(2) + "\n";
 }
 

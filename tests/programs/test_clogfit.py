@@ -91,10 +91,12 @@ class Fit(ProgramTest):
     def test_it_says_what_spoils_a_length(self):
         self.sweep("seeds=1..24", "max-time=1")
         self.change(distance=[5.0] * 12 + [5.1] * 12, status=[b"clogged"] * 24)  # anything but exponential
-        group, = self.fit()["groups"]
+        fit = self.fit()
+        group, = fit["groups"]
         self.assertEqual(group["doubts"], "not_exponential")
         text = self.succeed("clogfit", "sweep.h5").stdout
         self.assertIn("x: P(r) is not exponential", text)
+        self.assertIn("x: " + fit["doubts"]["not_exponential"], text)
         self.assertNotIn("f: ", text)
         self.change(status=[b"clogged"] * 3 + [b"running"] * 21)
         group, = self.fit()["groups"]
