@@ -16,6 +16,7 @@ import h5py
 import numpy as np
 from support import BIN, ROOT, SWEEP, ProgramTest, SweepTest, table
 
+STEPS_PER_SNAPSHOT = 2**18
 FEW = [word.replace("1..6", "1") for word in SWEEP]
 
 
@@ -64,7 +65,7 @@ class Resumed(SweepTest):
         for signal_number in (signal.SIGUSR1, signal.SIGINT):
             process = self.start(*SWEEP)
             self.wait_for(lambda: (self.folder / "s.h5").exists() and
-                          (table(self.folder / "s.h5").status == "running").any())
+                          (table(self.folder / "s.h5").query("status == 'running'").steps > STEPS_PER_SNAPSHOT).any())
             process.send_signal(signal_number)
             _, error = process.communicate(timeout=30)
             if signal_number == signal.SIGUSR1:  # mpirun kills what is left a second after it forwarded the others
@@ -128,9 +129,12 @@ class Resumed(SweepTest):
         self.assertIn("all whole", self.succeed("clogsweep", "verify", "s.h5").stdout)
 
     def test_a_smaller_sweep_keeps_what_the_larger_one_has_under_way(self):
-        self.run_program("clogsweep", *SWEEP, "--max-hours=0.0003")
-        before = table(self.folder / "s.h5")
-        under_way = before[before.status == "interrupted"]
+        for _ in range(100):  # until it is stopped where a run has a snapshot
+            self.assertEqual(self.run_program("clogsweep", *SWEEP, "--max-hours=0.0001").returncode, 75)
+            before = table(self.folder / "s.h5")
+            under_way = before[before.status == "interrupted"]
+            if (under_way.steps > STEPS_PER_SNAPSHOT).any():
+                break
         self.assertEqual(len(under_way), 1)
         other = {0.05: "0.5", 0.5: "0.05"}[under_way.line_tension.iloc[0]]
         smaller = [*SWEEP[:2], "obstacle-gap=0.5", f"line-tension={other}", "max-time=4000", "seeds=1", "--output", "s.h5"]
