@@ -93,7 +93,11 @@ void DpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   shape_ = {sums.area, sums.perimeter};
   kernel::interface_forces(n, interface(shape_.area, shape_.perimeter), edges, pull_.data(), fx, fy);
   Eigen::Array2d spread{force.head(n).sum(), force.tail(n).sum()};
-  if (wets()) spread += add_wetting(state, force);
+  if (wets()) {
+    const WettingForces wetting = wetting_forces(state);
+    force += wetting.gradient + wetting.spreading;
+    spread += wetting.net_spreading();
+  }
   if (dp_.gravity == Gravity::area) {
     // Tension and pressure add up to nothing; springs along the interface have no reaction on their
     // neighbours, so they push off the liquid inside: the droplet as a whole feels no force from them.
@@ -208,12 +212,6 @@ DpForces::WettingForces DpForces::wetting_forces(const DropletState& state) cons
   return forces;
 }
 
-Eigen::Array2d DpForces::add_wetting(const DropletState& state, Eigen::ArrayXd& force) const {
-  const WettingForces wetting = wetting_forces(state);
-  force += wetting.gradient + wetting.spreading;
-  return {wetting.spreading.head(dp_.vertices).sum(), wetting.spreading.tail(dp_.vertices).sum()};
-}
-
 void DpForces::add_self_contact(const DropletState& state, Eigen::ArrayXd& force) const {
   const int n = dp_.vertices;
   const double* x = state.position.data();
@@ -252,26 +250,6 @@ void DpForces::visit_overlaps(const DropletState& state, Visit visit) const {
     for (int i = 0; i < n; ++i)
       visit(walls_.range() - distance_to(wedge, vertex(i) - Eigen::Array2d(place.x, place.y)).distance);
   }
-}
-
-double DpForces::spreading_power(const DropletState& state) const {
-  if (dp_.perimeter_spring != PerimeterSpring::along) return 0;
-  const int n = dp_.vertices;
-  Eigen::ArrayXd force(2 * n);
-  Eigen::ArrayXd pull(n);
-  Eigen::ArrayXd edge_x(n), edge_y(n), length(n);
-  const kernel::EdgeArrays edges{edge_x.data(), edge_y.data(), length.data()};
-  kernel::measure_edges(n, state.position.data(), state.position.data() + n, edges);
-  kernel::Interface interface {};
-  interface.spreading = *dp_.perimeter_stiffness * n;
-  kernel::interface_forces(n, interface, edges, pull.data(), force.data(), force.data() + n);
-  if (wets()) force += wetting_forces(state).spreading;
-  double power = (force * state.velocity).sum();
-  if (dp_.gravity == Gravity::area) {
-    const Eigen::Array2d reaction{-force.head(n).sum(), -force.tail(n).sum()};
-    power += (reaction * area_centroid_velocity(state.position, state.velocity)).sum();
-  }
-  return power;
 }
 
 double DpForces::deepest_overlap(const DropletState& state) const {

@@ -103,20 +103,101 @@ void push(int n, const WallContacts::Item* walls, std::size_t num_walls, const S
   a.push_y[0] += std::exchange(a.push_y[n], 0);
 }
 
+/// A wedge and vertices near it: away_from() of dp_kernel.cpp, for a vector of them.
+class WedgeVectors {
+ public:
+  explicit WedgeVectors(const WedgePlace& w)
+      : x_(all(w.x)),
+        y_(all(w.y)),
+        axis_x_(all(w.axis_x)),
+        axis_y_(all(w.axis_y)),
+        cos_(all(w.cos)),
+        sin_(all(w.sin)) {}
+
+  struct Seen {
+    V dx, dy;         ///< from the centre of the tip
+    V across;         ///< distance from the axis, with its sign
+    V to_flank;       ///< distance from the sharp wedge
+    M is_before_tip;  ///< where `to_flank` is not the distance
+
+    HWY_INLINE V distance2() const { return hn::MulAdd(dx, dx, hn::Mul(dy, dy)); }
+  };
+  HWY_INLINE Seen seen_from(V x, V y) const {
+    const V dx = hn::Sub(x, x_), dy = hn::Sub(y, y_);
+    const V along = hn::MulAdd(dx, axis_x_, hn::Mul(dy, axis_y_));
+    const V across = hn::MulSub(dy, axis_x_, hn::Mul(dx, axis_y_));
+    const V off = hn::Abs(across);
+    return {dx, dy, across, hn::MulSub(off, cos_, hn::Mul(along, sin_)),
+            hn::Lt(hn::MulAdd(off, sin_, hn::Mul(along, cos_)), all(0))};
+  }
+  /// Unit vector from the flank that is nearest.
+  HWY_INLINE void flank_normal(const Seen& seen, V& x, V& y) const {
+    const V side_cos = hn::IfThenElse(hn::Lt(seen.across, all(0)), hn::Neg(cos_), cos_);
+    x = hn::Neg(hn::MulAdd(side_cos, axis_y_, hn::Mul(sin_, axis_x_)));
+    y = hn::MulSub(side_cos, axis_x_, hn::Mul(sin_, axis_y_));
+  }
+
+ private:
+  V x_, y_, axis_x_, axis_y_, cos_, sin_;
+};
+
+void push_off_wedges(int n, const WedgePlace* wedges, std::size_t num_wedges, double range, double stiffness,
+                     const StepArrays& arrays) {
+  const StepArrays a = arrays;
+  for (const WedgePlace* place = wedges; place != wedges + num_wedges; ++place) {
+    const WedgeVectors wedge(*place);
+    const V reach = all(range + place->radius);
+    for_vectors(n, [&](int i, auto keep) CLOG_INLINE {
+      const WedgeVectors::Seen seen = wedge.seen_from(load(a.x + i), load(a.y + i));
+      const V r2 = seen.distance2();
+      const M touches = hn::Or(hn::And(seen.is_before_tip, hn::Lt(r2, hn::Mul(reach, reach))),
+                               hn::AndNot(seen.is_before_tip, hn::Lt(seen.to_flank, reach)));
+      if (hn::AllFalse(D(), touches)) return;
+      const auto [r, inverse_r] = square_root(hn::Max(r2, all(1e-300)));
+      const V distance = hn::IfThenElse(seen.is_before_tip, r, seen.to_flank);
+      const V push = keep(hn::IfThenElseZero(touches, hn::Mul(all(stiffness), hn::Sub(reach, distance))));
+      V normal_x, normal_y;
+      wedge.flank_normal(seen, normal_x, normal_y);
+      normal_x = hn::IfThenElse(seen.is_before_tip, hn::Mul(seen.dx, inverse_r), normal_x);
+      normal_y = hn::IfThenElse(seen.is_before_tip, hn::Mul(seen.dy, inverse_r), normal_y);
+      store(hn::MulAdd(push, normal_x, load(a.push_x + i)), a.push_x + i);
+      store(hn::MulAdd(push, normal_y, load(a.push_y + i)), a.push_y + i);
+    });
+  }
+}
+
 /// v^(-4/3) by way of y = v^(-1/3): a first guess from the bits of a number, which are nearly its logarithm,
-/// then twice the first terms of (1 - error)^(-1/3). The guess leaves an error of at most 0.103, five terms
-/// leave 5e-6, three more nothing.
+/// then the first terms of (1 - error)^(-1/3), and of the fourth power of that. The guess leaves an error of
+/// at most 0.103, five terms leave 5e-6, three more nothing.
 inline V power_minus_four_thirds(V v) {
   const hn::RebindToSigned<D> bits;
   const V scaled = hn::MulAdd(hn::ConvertTo(D(), hn::BitCast(bits, v)), all(-1.0 / 3),
                               all((4.0 / 3 * 1023 - 0.068) * 4503599627370496.0));
-  V y = hn::BitCast(D(), hn::ConvertTo(bits, scaled));
-  V error = hn::NegMulAdd(v, hn::Mul(hn::Mul(y, y), y), all(1));
-  const V series = hn::MulAdd(error, hn::MulAdd(error, all(35.0 / 243), all(14.0 / 81)), all(2.0 / 9));
-  y = hn::MulAdd(hn::Mul(y, error), hn::MulAdd(error, series, all(1.0 / 3)), y);
-  error = hn::NegMulAdd(v, hn::Mul(hn::Mul(y, y), y), all(1));
-  y = hn::MulAdd(hn::Mul(y, error), hn::MulAdd(error, all(2.0 / 9), all(1.0 / 3)), y);
-  return hn::Mul(hn::Mul(y, y), hn::Mul(y, y));
+  const V guess = hn::BitCast(D(), truncated(scaled));
+  const V off = hn::NegMulAdd(v, hn::Mul(hn::Mul(guess, guess), guess), all(1));
+  const V series = hn::MulAdd(off, hn::MulAdd(off, all(35.0 / 243), all(14.0 / 81)), all(2.0 / 9));
+  const V y = hn::MulAdd(hn::Mul(guess, off), hn::MulAdd(off, series, all(1.0 / 3)), guess);
+  const V y2 = hn::Mul(y, y), y4 = hn::Mul(y2, y2);
+  const V error = hn::NegMulAdd(v, hn::Mul(y2, y), all(1));
+  return hn::MulAdd(hn::Mul(y4, error), hn::MulAdd(error, all(14.0 / 9), all(4.0 / 3)), y4);
+}
+
+HWY_INLINE V distance(V squared) { return square_root(hn::Max(squared, all(1e-300))).root; }
+
+/// distances[i] = the distance of vertex i to a wedge, if that is less; but no less than `shortest`.
+void shrink_to_wedge_distances(int n, const NearWalls& walls, V shortest, const StepArrays& a,
+                               double* distances) {
+  for (const WedgePlace* place = walls.wedges; place != walls.wedges + walls.num_wedges; ++place) {
+    const WedgeVectors wedge(*place);
+    const V radius = all(place->radius);
+    for_vectors(n, [&](int i, auto) CLOG_INLINE {
+      const WedgeVectors::Seen seen = wedge.seen_from(load(a.x + i), load(a.y + i));
+      V to_wedge = seen.to_flank;
+      if (!hn::AllFalse(D(), seen.is_before_tip))
+        to_wedge = hn::IfThenElse(seen.is_before_tip, distance(seen.distance2()), to_wedge);
+      store(hn::Max(hn::Min(load(distances + i), hn::Sub(to_wedge, radius)), shortest), distances + i);
+    });
+  }
 }
 
 template <bool four_thirds, bool alike>
@@ -132,23 +213,18 @@ void near_wall_rates_with(int n, const NearWalls& walls, const NearWallDrag& dra
     while (end != walls.items + walls.num_items && end->group == group) ++end;
     for (int i = group * edges_per_group; i < (group + 1) * edges_per_group; i += lanes) {
       const V x = load(a.x + i), y = load(a.y + i);
-      V nearest = load_at(walls.other_distance + i);
-      V nearest2 = all(1e300);
+      // Of circles alike the nearest is that with the nearest centre: one root for all.
+      V nearest = all(1e300);
       for (const WallContacts::Item* circle = begin; circle != end; ++circle) {
         const V dx = hn::Sub(x, all(circle->x)), dy = hn::Sub(y, all(circle->y));
         const V r2 = hn::MulAdd(dx, dx, hn::Mul(dy, dy));
-        if constexpr (alike)
-          nearest2 = hn::Min(nearest2, r2);
-        else
-          nearest = hn::Min(
-              nearest, hn::Sub(square_root(hn::Max(r2, all(1e-300))).root, all(circle->reach - walls.range)));
+        nearest = hn::Min(nearest, alike ? r2 : hn::Sub(distance(r2), all(circle->reach - walls.range)));
       }
-      if constexpr (alike)
-        nearest =
-            hn::Min(nearest, hn::Sub(square_root(hn::Max(nearest2, all(1e-300))).root, all(walls.radius)));
+      if constexpr (alike) nearest = hn::Sub(distance(nearest), all(walls.radius));
       store(hn::Max(nearest, shortest), a.rate + i);
     }
   }
+  shrink_to_wedge_distances(n, walls, shortest, a, a.rate);
   // Apart from the search, or the processor sees too few of these long chains at once.
   for_vectors(n, [&](int i, auto) CLOG_INLINE {
     const V distance = load(a.rate + i);
@@ -158,7 +234,7 @@ void near_wall_rates_with(int n, const NearWalls& walls, const NearWallDrag& dra
     else
       rise = hn::Exp(D(), hn::Mul(power, hn::Log(D(), distance)));
     const V rate = hn::MulAdd(near, rise, far);
-    const V s = hn::Div(all(1), hn::MulAdd(h1, rate, all(1)));
+    const V s = reciprocal(hn::MulAdd(h1, rate, all(1)));
     store(rate, a.rate + i);
     store(s, a.damping + i);
     store(hn::Mul(s, hn::NegMulAdd(h2, rate, all(1))), a.kept + i);

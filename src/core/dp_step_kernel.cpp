@@ -29,7 +29,8 @@ const char* instruction_set_name() {
 }
 
 StepKernel make_kernel() {
-  return {instruction_set_name(), measure, clear_pushes, push, near_wall_rates, kick, drift};
+  return {instruction_set_name(), measure, clear_pushes, push, push_off_wedges,
+          near_wall_rates,        kick,    power,        drift};
 }
 
 }  // namespace clog::kernel::HWY_NAMESPACE

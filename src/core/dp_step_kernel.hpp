@@ -22,12 +22,13 @@ struct StepArrays {
   double *x, *y, *vx, *vy;
   double *tangent_x, *tangent_y, *length;         ///< of the edges
   double *push_x, *push_y;                        ///< kick of the vertices by contact
+  double *wetting_x, *wetting_y;                  ///< the part of the kick by wetting that has no energy
   double *grad_xx, *grad_xy, *grad_yx, *grad_yy;  ///< 6 a times the centroid's gradient
   double* rate;                                   ///< drag rate of a vertex [1/t0], if it differs
   double *damping, *kept;                         ///< s and s (1 - h2 r), with the rate; see KickCoefficients
   double *kicked_x, *kicked_y;                    ///< w, if it is wanted; see KickCoefficients
 };
-inline constexpr int num_step_arrays = 18;
+inline constexpr int num_step_arrays = 20;
 
 /// A kick is what a force does to a vertex' velocity in half a time step: F below is the force times
 /// h/(M/N_v).
@@ -71,6 +72,12 @@ struct Coupling {
   double c_x = 0, c_y = 0;
   double a_x = 0, a_y = 0;  ///< with the force on the area, over 6 a
 };
+/// Powers, each for M/N_v = 1.
+struct Power {
+  double drag;                ///< sum r_i v_i^2, the vertices' own share of the dissipation
+  double spreading;           ///< sum F_i v_i of what spreads vertices along the interface, F_i the kick
+  double spread_x, spread_y;  ///< sum F_i
+};
 struct Contact {
   double stiffness;  ///< k_c as a kick
   double span;       ///< of walls; 1: edges, 0: their first vertices alone
@@ -80,10 +87,11 @@ struct Contact {
 struct NearWalls {
   const WallContacts::Item* items;  ///< circles, by group
   std::size_t num_items;
-  double range;                  ///< of the items' reach [sigma]
-  bool alike;                    ///< have all circles this radius?
-  double radius;                 ///< [sigma]
-  const double* other_distance;  ///< to anything that is no circle [sigma]
+  double range;   ///< of the items' reach [sigma]
+  bool alike;     ///< have all circles this radius?
+  double radius;  ///< [sigma]
+  const WedgePlace* wedges;
+  std::size_t num_wedges;
 };
 struct NearWallDrag {
   double shortest;  ///< distances count as no less [sigma]
@@ -100,6 +108,9 @@ struct StepKernel {
   void (*clear_pushes)(int n, const StepArrays& arrays);
   void (*push)(int n, const WallContacts::Item* walls, std::size_t num_walls, const SelfContacts::Item* self,
                std::size_t num_self, const Contact& contact, const StepArrays& arrays);
+  /// Adds the vertices' contact with wedges' surfaces up to `range` [sigma]; see add_wedge_forces().
+  void (*push_off_wedges)(int n, const WedgePlace* wedges, std::size_t num_wedges, double range,
+                          double stiffness, const StepArrays& arrays);
   /// rate = far_rate (relative + near_wall (sigma/d)^exponent), d a vertex' distance to the nearest wall; and
   /// what follows from it for a kick.
   void (*near_wall_rates)(int n, const NearWalls& walls, const NearWallDrag& drag,
@@ -107,6 +118,9 @@ struct StepKernel {
   /// First pass: forces and velocities.
   Coupling (*kick)(int n, const KickTerms& terms, const InterfaceKick& interface, const AreaForce& force,
                    const KickCoefficients& coefficients, const StepArrays& arrays);
+  /// Between the passes, if it is wanted: powers at the end of a time step, of which the kick has kept w.
+  Power (*power)(int n, const KickTerms& terms, const InterfaceKick& interface,
+                 const KickCoefficients& coefficients, const Coupling& coupling, const StepArrays& arrays);
   /// Second pass: v = q + weight s (c - G^T a), x += dt v, and the edges there. Of the sums the perimeter is
   /// given for elastic droplets only, and moments where forces act on the area.
   Sums (*drift)(int n, const KickTerms& terms, const KickCoefficients& coefficients, const Coupling& coupling,

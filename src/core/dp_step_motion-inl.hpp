@@ -110,7 +110,15 @@ HWY_INLINE Coupling couple(int n, const KickTerms& terms, const AreaForce& force
   return result;
 }
 
-template <bool elastic, bool on_area, bool varying_rate>
+/// Kick of a vertex by the springs along the interface, as a multiple of the chord between its neighbours.
+HWY_INLINE V spread_along_chord(V spreading, V length, V length_before, V tx, V tx_before, V ty,
+                                V ty_before) {
+  const V unevenness = hn::Div(hn::Sub(length, length_before), hn::Add(length, length_before));
+  const V cosine = hn::Max(hn::MulAdd(tx, tx_before, hn::Mul(ty, ty_before)), all(0));
+  return hn::Mul(hn::Mul(spreading, hn::Mul(cosine, cosine)), unevenness);
+}
+
+template <bool elastic, bool coupled, bool on_area, bool varying_rate>
 Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface, const AreaForce& force,
                    const KickCoefficients& coefficients, const StepArrays& arrays) {
   const StepArrays a = arrays;  // a copy that stores cannot change
@@ -136,9 +144,9 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
     last_tx = tx;
     last_ty = ty;
     // What takes long comes first: the processor does not look far ahead.
-    V unevenness;
+    V spread;
     if constexpr (!elastic)
-      unevenness = hn::Div(hn::Sub(length, length_before), hn::Add(length, length_before));
+      spread = keep(spread_along_chord(spreading, length, length_before, tx, tx_before, ty, ty_before));
 
     const V ex = hn::Mul(length, tx), ey = hn::Mul(length, ty);
     const V ex_before = hn::Mul(length_before, tx_before), ey_before = hn::Mul(length_before, ty_before);
@@ -154,8 +162,6 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
     } else {
       fx = hn::MulAdd(line_tension, hn::Sub(tx, tx_before), fx);
       fy = hn::MulAdd(line_tension, hn::Sub(ty, ty_before), fy);
-      const V cosine = hn::Max(hn::MulAdd(tx, tx_before, hn::Mul(ty, ty_before)), all(0));
-      const V spread = keep(hn::Mul(hn::Mul(spreading, hn::Mul(cosine, cosine)), unevenness));
       fx = hn::MulAdd(spread, chord_x, fx);
       fy = hn::MulAdd(spread, chord_y, fy);
       spread_x = hn::MulAdd(spread, chord_x, spread_x);
@@ -176,11 +182,11 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
       store(hn::Mul(wx, s), a.kicked_x + i);
       store(hn::Mul(wy, s), a.kicked_y + i);
     }
-    if constexpr (varying_rate) {
+    if constexpr (coupled && varying_rate) {
       s_sum = hn::Add(s_sum, keep(s));
       w_x = hn::MulAdd(keep(s), wx, w_x);
       w_y = hn::MulAdd(keep(s), wy, w_y);
-    } else {
+    } else if constexpr (coupled) {
       w_x = hn::Add(w_x, keep(wx));
       w_y = hn::Add(w_y, keep(wy));
     }
@@ -217,7 +223,7 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
       gg_yy = hn::MulAdd(syx, gyx, hn::MulAdd(syy, gyy, gg_yy));
     }
   });
-  if (!terms.coupled) return {};
+  if constexpr (!coupled) return {};
   const auto w = sums(w_x, w_y, spread_x, spread_y);
   const auto gw = sums(gw_x, gw_y, gg_xx, gg_xy);
   KickSums total{.force_x = force.x - w[2],
@@ -249,12 +255,56 @@ Coupling kick(int n, const KickTerms& terms, const InterfaceKick& interface, con
               const KickCoefficients& coefficients, const StepArrays& arrays) {
   using Version = Coupling (*)(int, const KickTerms&, const InterfaceKick&, const AreaForce&,
                                const KickCoefficients&, const StepArrays&);
-  constexpr Version versions[2][2][2] = {{{kick_with<false, false, false>, kick_with<false, false, true>},
-                                          {kick_with<false, true, false>, kick_with<false, true, true>}},
-                                         {{kick_with<true, false, false>, kick_with<true, false, true>},
-                                          {kick_with<true, true, false>, kick_with<true, true, true>}}};
-  return versions[terms.elastic][terms.on_area][terms.varying_rate](n, terms, interface, force, coefficients,
-                                                                    arrays);
+  constexpr Version coupled[2][2][2] = {
+      {{kick_with<false, true, false, false>, kick_with<false, true, false, true>},
+       {kick_with<false, true, true, false>, kick_with<false, true, true, true>}},
+      {{kick_with<true, true, false, false>, kick_with<true, true, false, true>},
+       {kick_with<true, true, true, false>, kick_with<true, true, true, true>}}};
+  constexpr Version free[2][2] = {
+      {kick_with<false, false, false, false>, kick_with<false, false, false, true>},
+      {kick_with<true, false, false, false>, kick_with<true, false, false, true>}};
+  const Version version = terms.coupled ? coupled[terms.elastic][terms.on_area][terms.varying_rate]
+                                        : free[terms.elastic][terms.varying_rate];
+  return version(n, terms, interface, force, coefficients, arrays);
+}
+
+Power power(int n, const KickTerms& terms, const InterfaceKick& interface,
+            const KickCoefficients& coefficients, const Coupling& coupling, const StepArrays& arrays) {
+  const StepArrays a = arrays;
+  const bool ends_step = coefficients.kicks > 0;  // otherwise w is the velocity
+  const double one_s = ends_step ? 1 / (1 + coefficients.h1 * terms.rate) : 0;
+  const V cx = all(coupling.c_x), cy = all(coupling.c_y), ax = all(coupling.a_x), ay = all(coupling.a_y);
+  const V spreading = all(interface.spreading);
+  V drag = all(0), spread_power = all(0), spread_x = all(0), spread_y = all(0);
+  for_vectors(n, [&](int i, auto keep) CLOG_INLINE {
+    V s = all(one_s), rate = all(terms.rate);
+    if (terms.varying_rate) {
+      if (ends_step) s = load(a.damping + i);
+      rate = load(a.rate + i);
+    }
+    V pull_x = cx, pull_y = cy;
+    if (terms.on_area) {
+      pull_x = hn::NegMulAdd(load(a.grad_xx + i), ax, hn::NegMulAdd(load(a.grad_yx + i), ay, cx));
+      pull_y = hn::NegMulAdd(load(a.grad_xy + i), ax, hn::NegMulAdd(load(a.grad_yy + i), ay, cy));
+    }
+    const V vx = hn::MulAdd(s, pull_x, load(a.kicked_x + i));
+    const V vy = hn::MulAdd(s, pull_y, load(a.kicked_y + i));
+    drag = hn::Add(drag, keep(hn::Mul(rate, hn::MulAdd(vx, vx, hn::Mul(vy, vy)))));
+    if (terms.elastic) return;
+    const V length = load(a.length + i), length_before = load_at(a.length + i - 1);
+    const V tx = load(a.tangent_x + i), tx_before = load_at(a.tangent_x + i - 1);
+    const V ty = load(a.tangent_y + i), ty_before = load_at(a.tangent_y + i - 1);
+    const V spread = keep(spread_along_chord(spreading, length, length_before, tx, tx_before, ty, ty_before));
+    const V chord_x = hn::MulAdd(length, tx, hn::Mul(length_before, tx_before));
+    const V chord_y = hn::MulAdd(length, ty, hn::Mul(length_before, ty_before));
+    const V fx = hn::MulAdd(spread, chord_x, keep(load(a.wetting_x + i)));
+    const V fy = hn::MulAdd(spread, chord_y, keep(load(a.wetting_y + i)));
+    spread_power = hn::MulAdd(fx, vx, hn::MulAdd(fy, vy, spread_power));
+    spread_x = hn::Add(spread_x, fx);
+    spread_y = hn::Add(spread_y, fy);
+  });
+  const auto s = sums(drag, spread_power, spread_x, spread_y);
+  return {.drag = s[0], .spreading = s[1], .spread_x = s[2], .spread_y = s[3]};
 }
 
 template <bool elastic, bool coupled, bool on_area, bool varying_rate>

@@ -97,6 +97,28 @@ HWY_INLINE Root square_root(V v) {
 #endif
 }
 
+/// 1/v to the last bit or two. A division of eight numbers keeps its unit busy for 16 cycles.
+HWY_INLINE V reciprocal(V v) {
+#if HWY_TARGET == HWY_AVX3
+  // A guess of 14 bits and 1 / (1 - error) = (1 + error) (1 + error^2) (1 + error^4 ...
+  const V guess{_mm512_rcp14_pd(v.raw)};
+  const V error = hn::NegMulAdd(v, guess, all(1));
+  const V better = hn::MulAdd(guess, error, guess);
+  return hn::MulAdd(better, hn::Mul(error, error), better);
+#else
+  return hn::Div(all(1), v);
+#endif
+}
+
+/// Towards zero, of numbers that an integer can hold.
+HWY_INLINE hn::Vec<hn::RebindToSigned<D>> truncated(V v) {
+#if HWY_TARGET == HWY_AVX3
+  return hn::Vec<hn::RebindToSigned<D>>{_mm512_cvttpd_epi64(v.raw)};  // Highway's looks after all others, too
+#else
+  return hn::ConvertTo(hn::RebindToSigned<D>(), v);
+#endif
+}
+
 /// A body that is not inlined keeps its sums in memory.
 #undef CLOG_INLINE
 #if defined(__GNUC__)

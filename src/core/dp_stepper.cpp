@@ -1,7 +1,6 @@
 #include "dp_stepper.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -18,10 +17,10 @@ DpStepper::DpStepper(const RunParameters& run, const DpForces& forces)
   std::fill_n(memory_.get(), static_cast<std::size_t>(kernel::num_step_arrays) * stride, 0.0);
   double* next = memory_.get() + line;
   for (double** array :
-       {&arrays_.x, &arrays_.y, &arrays_.vx, &arrays_.vy, &arrays_.tangent_x, &arrays_.tangent_y,
-        &arrays_.length, &arrays_.push_x, &arrays_.push_y, &arrays_.grad_xx, &arrays_.grad_xy,
-        &arrays_.grad_yx, &arrays_.grad_yy, &arrays_.rate, &arrays_.damping, &arrays_.kept, &arrays_.kicked_x,
-        &arrays_.kicked_y}) {
+       {&arrays_.x,         &arrays_.y,       &arrays_.vx,      &arrays_.vy,       &arrays_.tangent_x,
+        &arrays_.tangent_y, &arrays_.length,  &arrays_.push_x,  &arrays_.push_y,   &arrays_.wetting_x,
+        &arrays_.wetting_y, &arrays_.grad_xx, &arrays_.grad_xy, &arrays_.grad_yx,  &arrays_.grad_yy,
+        &arrays_.rate,      &arrays_.damping, &arrays_.kept,    &arrays_.kicked_x, &arrays_.kicked_y}) {
     *array = next;
     next += stride;
   }
@@ -34,9 +33,6 @@ DpStepper::DpStepper(const RunParameters& run, const DpForces& forces)
             .rate = run.drag.near_wall > 0 ? 0 : far_rate * run.drag.relative,
             .relative_rate = (on_area ? run.drag.relative : run.drag.relative - 1) * far_rate,
             .area_rate = on_area ? far_rate : 0};
-  if (terms_.varying_rate)
-    distance_ =
-        Eigen::ArrayXd::Constant(n_ + kernel::edges_per_group, std::numeric_limits<double>::infinity());
 }
 
 DpStepper::Edges DpStepper::load(const DropletState& state) {
@@ -50,6 +46,8 @@ DpStepper::Edges DpStepper::load(const DropletState& state) {
   copy(state.velocity.data(), arrays_.vx);
   copy(state.velocity.data() + n_, arrays_.vy);
   kernel_.clear_pushes(n_, arrays_);  // the lists may name other groups than before
+  wedges_.clear();
+  for (const Wedge& wedge : forces_->wedges()) wedges_.push_back(kernel::place_in(state.frame, wedge));
   sums_ = kernel_.measure(n_, arrays_);
   return {.perimeter = sums_.perimeter,
           .shortest = Eigen::Map<const Eigen::ArrayXd>(arrays_.length, n_).minCoeff()};
@@ -103,7 +101,7 @@ Droplet::Work DpStepper::kick_and_drift(const DropletState& frame,
                                 .x = impulse * (units::droplet_mass * units::gravity - wetting_spread_[0]),
                                 .y = -impulse * wetting_spread_[1]};
   const kernel::Coupling coupling = kernel_.kick(n_, terms_, interface, force, coefficients, arrays_);
-  const Droplet::Work now = measures_power ? power(coefficients, coupling) : Droplet::Work{};
+  const Droplet::Work now = measures_power ? power(interface, coefficients, coupling) : Droplet::Work{};
   if (drift_time == 0) {  // w, to which no second half kick was added, is the velocity
     std::swap(arrays_.vx, arrays_.kicked_x);
     std::swap(arrays_.vy, arrays_.kicked_y);
@@ -117,31 +115,26 @@ void DpStepper::push_off_everything(const DropletState& frame, const kernel::Kic
   const WallContacts& walls = forces_->walls();
   const double stiffness = impulse * forces_->contact_stiffness();
   const SelfContacts& self = forces_->self_contacts();
-  const std::vector<Wedge>& wedges = forces_->wedges();
-  if (!wedges.empty() || forces_->wets()) kernel_.clear_pushes(n_, arrays_);
+  if (!wedges_.empty() || forces_->wets()) kernel_.clear_pushes(n_, arrays_);
   kernel_.push(n_, walls.items().data(), walls.items().size(), self.items().data(), self.items().size(),
                {.stiffness = stiffness,
                 .span = run_.dp.wall_contact == WallContact::edge ? 1.0 : 0.0,
                 .diameter = self.diameter()},
                arrays_);
-  for (const Wedge& wedge : wedges)
-    kernel::add_wedge_forces(n_, arrays_.x, arrays_.y, kernel::place_in(frame.frame, wedge), walls.range(),
-                             stiffness, arrays_.push_x, arrays_.push_y);
+  kernel_.push_off_wedges(n_, wedges_.data(), wedges_.size(), walls.range(), stiffness, arrays_);
   if (forces_->wets()) {
     DropletState here = frame;
     store(here);
-    Eigen::ArrayXd force = Eigen::ArrayXd::Zero(2 * n_);
-    wetting_spread_ = forces_->add_wetting(here, force);
+    const DpForces::WettingForces wetting = forces_->wetting_forces(here);
+    wetting_spread_ = wetting.net_spreading();
     for (int i = 0; i < n_; ++i) {
-      arrays_.push_x[i] += impulse * force[i];
-      arrays_.push_y[i] += impulse * force[n_ + i];
+      arrays_.wetting_x[i] = impulse * wetting.spreading[i];
+      arrays_.wetting_y[i] = impulse * wetting.spreading[n_ + i];
+      arrays_.push_x[i] += impulse * wetting.gradient[i] + arrays_.wetting_x[i];
+      arrays_.push_y[i] += impulse * wetting.gradient[n_ + i] + arrays_.wetting_y[i];
     }
   }
   if (!terms_.varying_rate) return;
-  if (!wedges.empty()) distance_.setConstant(std::numeric_limits<double>::infinity());
-  for (const Wedge& wedge : wedges)
-    kernel::shrink_to_wedge_distance(n_, arrays_.x, arrays_.y, kernel::place_in(frame.frame, wedge),
-                                     distance_.data());
   const WallContacts& nearest = forces_->nearest_walls();
   kernel_.near_wall_rates(n_,
                           {.items = nearest.items().data(),
@@ -149,7 +142,8 @@ void DpStepper::push_off_everything(const DropletState& frame, const kernel::Kic
                            .range = nearest.range(),
                            .alike = nearest.radii_are_equal(),
                            .radius = nearest.largest_radius(),
-                           .other_distance = distance_.data()},
+                           .wedges = wedges_.data(),
+                           .num_wedges = wedges_.size()},
                           {.shortest = forces_->contact_range(),
                            .relative = run_.drag.relative,
                            .near_wall = run_.drag.near_wall,
@@ -158,31 +152,18 @@ void DpStepper::push_off_everything(const DropletState& frame, const kernel::Kic
                           coefficients, arrays_);
 }
 
-Droplet::Work DpStepper::power(const kernel::KickCoefficients& coefficients,
+/// What drag takes and the springs along the interface give per time, where a time step ends.
+Droplet::Work DpStepper::power(const kernel::InterfaceKick& interface,
+                               const kernel::KickCoefficients& coefficients,
                                const kernel::Coupling& coupling) const {
+  const kernel::Power vertices = kernel_.power(n_, terms_, interface, coefficients, coupling, arrays_);
   const double vertex_mass = units::droplet_mass / n_;
-  DropletState here;
-  here.position.resize(2 * n_);
-  here.velocity.resize(2 * n_);
-  double loss = 0;
-  for (int i = 0; i < n_; ++i) {
-    const double rate = terms_.varying_rate ? arrays_.rate[i] : terms_.rate;
-    const double s =
-        coefficients.h1 > 0 ? 1 / (1 + coefficients.h1 * rate) : 0;  // before a kick: no coupling yet
-    const double vx = arrays_.kicked_x[i] + s * (coupling.c_x - arrays_.grad_xx[i] * coupling.a_x -
-                                                 arrays_.grad_yx[i] * coupling.a_y);
-    const double vy = arrays_.kicked_y[i] + s * (coupling.c_y - arrays_.grad_xy[i] * coupling.a_x -
-                                                 arrays_.grad_yy[i] * coupling.a_y);
-    loss += rate * (vx * vx + vy * vy);
-    here.velocity[i] = vx;
-    here.velocity[n_ + i] = vy;
-    here.position[i] = arrays_.x[i];
-    here.position[n_ + i] = arrays_.y[i];
-  }
   const double mean2 = coupling.mean_x * coupling.mean_x + coupling.mean_y * coupling.mean_y;
   const double area2 = coupling.area_x * coupling.area_x + coupling.area_y * coupling.area_y;
-  loss += n_ * (terms_.area_rate * area2 - terms_.relative_rate * mean2);
-  return {.dissipated = vertex_mass * loss, .spreading = forces_->spreading_power(here)};
+  const double reaction = vertices.spread_x * coupling.area_x + vertices.spread_y * coupling.area_y;
+  return {.dissipated =
+              vertex_mass * (vertices.drag + n_ * (terms_.area_rate * area2 - terms_.relative_rate * mean2)),
+          .spreading = vertex_mass / coefficients.half_step * (vertices.spreading - reaction)};
 }
 
 }  // namespace clog

@@ -2,6 +2,8 @@
 
 #include <hwy/aligned_allocator.h>
 
+#include <vector>
+
 #include "clog/core/dp_forces.hpp"
 #include "clog/core/droplet.hpp"
 #include "dp_step_kernel.hpp"
@@ -34,8 +36,8 @@ class DpStepper {
   int n_;
   hwy::AlignedFreeUniquePtr<double[]> memory_;
   kernel::StepArrays arrays_;
-  Eigen::ArrayXd distance_;              // to the nearest wedge
-  Eigen::Array2d wetting_spread_{0, 0};  // see DpForces::add_wetting
+  std::vector<kernel::WedgePlace> wedges_;  // in the droplet's frame
+  Eigen::Array2d wetting_spread_{0, 0};     // of wetting, see DpForces::wetting_forces()
   kernel::Sums sums_{};
   kernel::KickTerms terms_{};
 
@@ -44,7 +46,8 @@ class DpStepper {
                                double drift_time, bool measures_power);
   void push_off_everything(const DropletState& frame, const kernel::KickCoefficients& coefficients,
                            double impulse);
-  Droplet::Work power(const kernel::KickCoefficients& coefficients, const kernel::Coupling& coupling) const;
+  Droplet::Work power(const kernel::InterfaceKick& interface, const kernel::KickCoefficients& coefficients,
+                      const kernel::Coupling& coupling) const;
 };
 
 }  // namespace clog

@@ -25,16 +25,19 @@ RunParameters flowing_droplet(int vertices, double near_wall_drag) {
   return resolve(run);
 }
 
+void count_steps(benchmark::State& state, std::int64_t num_steps, int points) {
+  const auto steps = static_cast<double>(num_steps);
+  state.counters["steps/s"] = benchmark::Counter(steps, benchmark::Counter::kIsRate);
+  state.counters["time per vertex-step"] =
+      benchmark::Counter(steps * points, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
 void advance(benchmark::State& state, const RunParameters& parameters) {
   DropletRun run = run_in_array(parameters);
   run.advance(100);
   const std::int64_t before = run.result().steps;
   for (auto _ : state) run.advance(100);
-  const auto steps = static_cast<double>(run.result().steps - before);
-  const double points = parameters.model == Model::dp ? parameters.dp.vertices : 1;
-  state.counters["steps/s"] = benchmark::Counter(steps, benchmark::Counter::kIsRate);
-  state.counters["time per vertex-step"] =
-      benchmark::Counter(steps * points, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  count_steps(state, run.result().steps - before, parameters.model == Model::dp ? parameters.dp.vertices : 1);
 }
 
 void with_instruction_set(benchmark::State& state, const std::string& set) {
@@ -67,13 +70,20 @@ BENCHMARK(polygon_baseline)->Unit(benchmark::kMillisecond);
 
 /// Everything on the vertices: nothing couples them but pressure.
 void heavy_interface(benchmark::State& state) {
-  RunParameters run = flowing_droplet(256, 0);
+  RunParameters run =
+      flowing_droplet(static_cast<int>(state.range(0)), 0.01 * static_cast<double>(state.range(1)));
   run.dp.perimeter_spring = PerimeterSpring::mean;
   run.dp.perimeter_stiffness.reset();
   run.dp.gravity = Gravity::vertex;
   advance(state, resolve(run));
 }
-BENCHMARK(heavy_interface)->Unit(benchmark::kMillisecond);
+BENCHMARK(heavy_interface)
+    ->ArgNames({"vertices", "near_wall_drag_percent"})
+    ->Args({64, 0})
+    ->Args({256, 0})
+    ->Args({1024, 0})
+    ->Args({256, 20})
+    ->Unit(benchmark::kMillisecond);
 
 void polygon_with_near_wall_drag(benchmark::State& state) { advance(state, flowing_droplet(256, 0.2)); }
 BENCHMARK(polygon_with_near_wall_drag)->Unit(benchmark::kMillisecond);
@@ -85,6 +95,25 @@ void wrapped_polygon(benchmark::State& state) {
   advance(state, resolve(run));
 }
 BENCHMARK(wrapped_polygon)->Unit(benchmark::kMillisecond);
+
+/// The way up to a channel and through it, as clogrun follows it: with the account of what drag takes.
+void polygon_in_channel(benchmark::State& state) {
+  RunParameters run = flowing_droplet(256, 0.01 * static_cast<double>(state.range(0)));
+  run.drag.terminal_speed = 0.032;
+  std::int64_t steps = 0;
+  for (auto _ : state) {
+    DropletRun passage = run_in_channel(run, {.start = -2});
+    passage.measure_dissipation();
+    passage.advance(1'000'000);
+    steps += passage.result().steps;
+  }
+  count_steps(state, steps, run.dp.vertices);
+}
+BENCHMARK(polygon_in_channel)
+    ->ArgName("near_wall_drag_percent")
+    ->Arg(0)
+    ->Arg(7)
+    ->Unit(benchmark::kMillisecond);
 
 void soft_disk(benchmark::State& state) {
   RunParameters run = flowing_droplet(256, 0);

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -66,6 +68,15 @@ class ReadableDroplet {
   }
 };
 
+/// Of the nearest vertex.
+double distance_from(const Wedge& wedge, const DropletState& state) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < state.size(); ++i)
+    nearest = std::min(
+        nearest, distance_to(wedge, Eigen::Array2d(state.x()[i], state.y()[i]) - wedge.centre()).distance);
+  return nearest;
+}
+
 struct StepCase {
   std::string name;
   void (*change)(RunParameters&);
@@ -77,8 +88,8 @@ class Step : public testing::TestWithParam<StepCase> {
 };
 
 TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
-  // A droplet with a neck so thin that it touches itself, uneven vertices, and an obstacle on the neck and
-  // one at its end.
+  // A droplet with a neck so thin that it touches itself, uneven vertices, an obstacle on the neck and one at
+  // its end, and a wedge on the neck and at the other end.
   for (const int vertices : {64, 101, 256}) {
     RunParameters run;
     run.dp.vertices = vertices;
@@ -92,8 +103,20 @@ TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
     DropletState initial = state_of(shaken(size * dumbbell(vertices, film / size), 0.002 * film));
     initial.velocity = shaken(Eigen::ArrayXd::Zero(2 * vertices), 0.03, 7);
     const double end = initial.x().maxCoeff();
+    // A flank of one wedge touches a vertex, and the tip of the other.
+    const double touching = 0.45 * diameter;
+    Eigen::Index left, below;
+    initial.x().minCoeff(&left);
+    (initial.x().abs() + (initial.y() > 0).cast<double>()).minCoeff(&below);
+    const std::vector<Wedge> wedges = {
+        {.tip = {initial.x()[left] - touching, 0.03}, .axis = {-0.6, 0.8}, .half_angle = 1.2, .radius = 0.02},
+        {.tip = {initial.x()[below], initial.y()[below] - touching},
+         .axis = {0, -1},
+         .half_angle = 0.5,
+         .radius = 0.03}};
     const ObstacleArray walls(
-        20, {{end + 0.15 + 0.45 * diameter, 0.02, 0.15}, {0.01, film / 2 + 0.1 + 0.45 * diameter, 0.1}});
+        20, {{end + 0.15 + touching, 0.02, 0.15}, {0.01, film / 2 + 0.1 + touching, 0.1}}, wedges);
+    for (const Wedge& wedge : wedges) ASSERT_LT(distance_from(wedge, initial), diameter / 2);
     ReadableDroplet readable(run, walls, initial);
     for (int step = 0; step < 3; ++step) readable.step();
     for (const std::string& set : instruction_sets()) {

@@ -34,8 +34,6 @@ class DpForces {
   /// wall_distance().
   void evaluate(const DropletState& state, Eigen::ArrayXd& force);
   PotentialEnergy energy(const DropletState& state) const;
-  /// Work per time of the forces that spread vertices along the interface and have no energy.
-  double spreading_power(const DropletState& state) const;
 
   /// Area and perimeter at the last evaluate().
   const PolygonShape& shape() const { return shape_; }
@@ -59,8 +57,17 @@ class DpForces {
   const std::vector<Wedge>& wedges() const { return obstacles_->wedges(); }
   /// Are walls wetted, so that the tension on them differs?
   bool wets() const { return extra_tension() != 0; }
-  /// Returns the net force of the part that has no energy, like that of springs along the interface.
-  Eigen::Array2d add_wetting(const DropletState& state, Eigen::ArrayXd& force) const;
+  /// The energy's negative gradient, and what springs along the interface, which carry no tension, add to it:
+  /// minus its part along the interface, which has no energy.
+  struct WettingForces {
+    Eigen::ArrayXd gradient;
+    Eigen::ArrayXd spreading;
+    Eigen::Array2d net_spreading() const {
+      const Eigen::Index n = spreading.size() / 2;
+      return {spreading.head(n).sum(), spreading.tail(n).sum()};
+    }
+  };
+  WettingForces wetting_forces(const DropletState& state) const;
 
   /// For the release, where the droplet grows without weight.
   void set_rest_area(double area);
@@ -93,13 +100,6 @@ class DpForces {
     Eigen::Array2d normal{0, 0};
   };
   Wetted wetted(const DropletState& state, int vertex) const;
-  /// The energy's negative gradient, and what springs along the interface, which carry no tension, add to it:
-  /// minus its part along the interface.
-  struct WettingForces {
-    Eigen::ArrayXd gradient;
-    Eigen::ArrayXd spreading;
-  };
-  WettingForces wetting_forces(const DropletState& state) const;
   double extra_tension() const { return (dp_.wall_tension - 1) * dp_.line_tension; }
   void add_walls(const DropletState& state, Eigen::ArrayXd& force);
   void measure_wall_distance(const DropletState& state);
