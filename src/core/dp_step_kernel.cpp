@@ -28,9 +28,9 @@ const char* instruction_set_name() {
 #endif
 }
 
-StepKernel make_kernel() {
-  return {instruction_set_name(), measure, clear_pushes, push, push_off_wedges,
-          near_wall_rates,        kick,    power,        drift};
+StepKernel make_kernel(const KickTerms& terms) {
+  return {instruction_set_name(), measure, clear_pushes,        push, push_off_wedges, near_wall_rates,
+          kick_version(terms),    power,   drift_version(terms)};
 }
 
 }  // namespace clog::kernel::HWY_NAMESPACE
@@ -42,7 +42,7 @@ namespace kernel {
 
 HWY_EXPORT(make_kernel);
 
-StepKernel step_kernel() { return HWY_DYNAMIC_DISPATCH(make_kernel)(); }
+StepKernel step_kernel(const KickTerms& terms) { return HWY_DYNAMIC_DISPATCH(make_kernel)(terms); }
 
 namespace {
 
@@ -61,13 +61,13 @@ std::vector<std::string> instruction_sets() {
   kernel::allow_targets(0);
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     kernel::allow_targets(target);
-    names.emplace_back(kernel::step_kernel().name);
+    names.emplace_back(kernel::step_kernel({}).name);
   }
   use_instruction_set(present);
   return names;
 }
 
-std::string instruction_set() { return kernel::step_kernel().name; }
+std::string instruction_set() { return kernel::step_kernel({}).name; }
 
 void use_instruction_set(const std::string& name) {
   kernel::allow_targets(0);
@@ -75,8 +75,8 @@ void use_instruction_set(const std::string& name) {
   std::string names;
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     kernel::allow_targets(target);
-    if (kernel::step_kernel().name == name) return;
-    names += std::string(", ") + kernel::step_kernel().name;
+    if (kernel::step_kernel({}).name == name) return;
+    names += std::string(", ") + kernel::step_kernel({}).name;
   }
   kernel::allow_targets(0);
   throw Error("this processor has no instruction set '" + name +

@@ -127,8 +127,8 @@ struct StepKernel {
                 double dt, const StepArrays& arrays);
 };
 
-/// The kernel of the widest instruction set of this processor, or of the one that use_instruction_set() asks
-/// for.
-StepKernel step_kernel();
+/// The kernel for these terms, of the widest instruction set of this processor or of the one that
+/// use_instruction_set() asks for.
+StepKernel step_kernel(const KickTerms& terms);
 
 }  // namespace clog::kernel

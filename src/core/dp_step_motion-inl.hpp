@@ -251,21 +251,17 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
   return couple(n, terms, force, coefficients, total);
 }
 
-Coupling kick(int n, const KickTerms& terms, const InterfaceKick& interface, const AreaForce& force,
-              const KickCoefficients& coefficients, const StepArrays& arrays) {
-  using Version = Coupling (*)(int, const KickTerms&, const InterfaceKick&, const AreaForce&,
-                               const KickCoefficients&, const StepArrays&);
-  constexpr Version coupled[2][2][2] = {
+decltype(StepKernel::kick) kick_version(const KickTerms& terms) {
+  constexpr decltype(StepKernel::kick) coupled[2][2][2] = {
       {{kick_with<false, true, false, false>, kick_with<false, true, false, true>},
        {kick_with<false, true, true, false>, kick_with<false, true, true, true>}},
       {{kick_with<true, true, false, false>, kick_with<true, true, false, true>},
        {kick_with<true, true, true, false>, kick_with<true, true, true, true>}}};
-  constexpr Version free[2][2] = {
+  constexpr decltype(StepKernel::kick) free[2][2] = {
       {kick_with<false, false, false, false>, kick_with<false, false, false, true>},
       {kick_with<true, false, false, false>, kick_with<true, false, false, true>}};
-  const Version version = terms.coupled ? coupled[terms.elastic][terms.on_area][terms.varying_rate]
-                                        : free[terms.elastic][terms.varying_rate];
-  return version(n, terms, interface, force, coefficients, arrays);
+  return terms.coupled ? coupled[terms.elastic][terms.on_area][terms.varying_rate]
+                       : free[terms.elastic][terms.varying_rate];
 }
 
 Power power(int n, const KickTerms& terms, const InterfaceKick& interface,
@@ -338,14 +334,21 @@ Sums drift_with(int n, const KickTerms& terms, const KickCoefficients& coefficie
     return to;
   };
   EdgeMeasure<elastic, on_area> edges{a};
+  // Edges a vector behind the vertices they need: then the processor works on both at once.
   const Point first = move(0);
-  Point here = first;
+  Point here = first, next = n > lanes ? move(lanes) : first;
   int i = 0;
-  for (; i + lanes < n; i += lanes) {
-    const Point next = move(i + lanes);
+  const auto measure_behind = [&]() CLOG_INLINE {
     edges.add(i, here.x, here.y, shifted_forward(here.x, next.x), shifted_forward(here.y, next.y), KeepAll());
     here = next;
+    i += lanes;
+  };
+  while (i + 2 * lanes < n) {
+    const Point after = move(i + 2 * lanes);
+    measure_behind();
+    next = after;
   }
+  if (i + lanes < n) measure_behind();
   close(a.x, n);
   close(a.y, n);
   if (i + lanes == n)
@@ -356,19 +359,15 @@ Sums drift_with(int n, const KickTerms& terms, const KickCoefficients& coefficie
   return edges.total(n);
 }
 
-Sums drift(int n, const KickTerms& terms, const KickCoefficients& coefficients, const Coupling& coupling,
-           double dt, const StepArrays& arrays) {
-  using Version =
-      Sums (*)(int, const KickTerms&, const KickCoefficients&, const Coupling&, double, const StepArrays&);
-  constexpr Version coupled[2][2][2] = {
+decltype(StepKernel::drift) drift_version(const KickTerms& terms) {
+  constexpr decltype(StepKernel::drift) coupled[2][2][2] = {
       {{drift_with<false, true, false, false>, drift_with<false, true, false, true>},
        {drift_with<false, true, true, false>, drift_with<false, true, true, true>}},
       {{drift_with<true, true, false, false>, drift_with<true, true, false, true>},
        {drift_with<true, true, true, false>, drift_with<true, true, true, true>}}};
-  constexpr Version free[2] = {drift_with<false, false, false, false>, drift_with<true, false, false, false>};
-  const Version version =
-      terms.coupled ? coupled[terms.elastic][terms.on_area][terms.varying_rate] : free[terms.elastic];
-  return version(n, terms, coefficients, coupling, dt, arrays);
+  constexpr decltype(StepKernel::drift) free[2] = {drift_with<false, false, false, false>,
+                                                   drift_with<true, false, false, false>};
+  return terms.coupled ? coupled[terms.elastic][terms.on_area][terms.varying_rate] : free[terms.elastic];
 }
 
 }  // namespace clog::kernel::HWY_NAMESPACE

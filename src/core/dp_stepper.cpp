@@ -8,8 +8,28 @@
 
 namespace clog {
 
+namespace {
+
+kernel::KickTerms terms_of(const RunParameters& run) {
+  const double far_rate = units::gravity / run.drag.terminal_speed;
+  const bool on_area = run.dp.gravity == Gravity::area;
+  return {.elastic = run.dp.perimeter_spring != PerimeterSpring::along,
+          .on_area = on_area,
+          .varying_rate = run.drag.near_wall > 0,
+          .coupled = on_area || run.drag.relative != 1,
+          .rate = run.drag.near_wall > 0 ? 0 : far_rate * run.drag.relative,
+          .relative_rate = (on_area ? run.drag.relative : run.drag.relative - 1) * far_rate,
+          .area_rate = on_area ? far_rate : 0};
+}
+
+}  // namespace
+
 DpStepper::DpStepper(const RunParameters& run, const DpForces& forces)
-    : run_(run), forces_(&forces), kernel_(kernel::step_kernel()), n_(run.dp.vertices) {
+    : run_(run),
+      forces_(&forces),
+      terms_(terms_of(run)),
+      kernel_(kernel::step_kernel(terms_)),
+      n_(run.dp.vertices) {
   // Every array on a cache line, with room for an entry before and a group behind it.
   constexpr int line = 8;
   const int stride = (n_ + line - 1) / line * line + 3 * line;
@@ -24,15 +44,6 @@ DpStepper::DpStepper(const RunParameters& run, const DpForces& forces)
     *array = next;
     next += stride;
   }
-  const double far_rate = units::gravity / run.drag.terminal_speed;
-  const bool on_area = run.dp.gravity == Gravity::area;
-  terms_ = {.elastic = run.dp.perimeter_spring != PerimeterSpring::along,
-            .on_area = on_area,
-            .varying_rate = run.drag.near_wall > 0,
-            .coupled = on_area || run.drag.relative != 1,
-            .rate = run.drag.near_wall > 0 ? 0 : far_rate * run.drag.relative,
-            .relative_rate = (on_area ? run.drag.relative : run.drag.relative - 1) * far_rate,
-            .area_rate = on_area ? far_rate : 0};
 }
 
 DpStepper::Edges DpStepper::load(const DropletState& state) {
@@ -121,7 +132,8 @@ void DpStepper::push_off_everything(const DropletState& frame, const kernel::Kic
                 .span = run_.dp.wall_contact == WallContact::edge ? 1.0 : 0.0,
                 .diameter = self.diameter()},
                arrays_);
-  kernel_.push_off_wedges(n_, wedges_.data(), wedges_.size(), walls.range(), stiffness, arrays_);
+  if (!wedges_.empty())
+    kernel_.push_off_wedges(n_, wedges_.data(), wedges_.size(), walls.range(), stiffness, arrays_);
   if (forces_->wets()) {
     DropletState here = frame;
     store(here);

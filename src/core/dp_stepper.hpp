@@ -32,6 +32,7 @@ class DpStepper {
  private:
   RunParameters run_;
   const DpForces* forces_;
+  kernel::KickTerms terms_;
   kernel::StepKernel kernel_;
   int n_;
   hwy::AlignedFreeUniquePtr<double[]> memory_;
@@ -39,7 +40,6 @@ class DpStepper {
   std::vector<kernel::WedgePlace> wedges_;  // in the droplet's frame
   Eigen::Array2d wetting_spread_{0, 0};     // of wetting, see DpForces::wetting_forces()
   kernel::Sums sums_{};
-  kernel::KickTerms terms_{};
 
   void store(DropletState& state) const;
   Droplet::Work kick_and_drift(const DropletState& frame, const kernel::KickCoefficients& coefficients,
