@@ -33,6 +33,12 @@ def read_clogs(path):
     return [row for row in rows if row["status"] == b"clogged" and row["model"] == b"dp"], config
 
 
+def mechanism(row):
+    """As clogfit calls it: a clog whose mechanism is `none` of the three is another one."""
+    name = row["mechanism"].decode()
+    return "other" if name == "none" else name
+
+
 def run_again(clogrun, config, row, folder):
     """The polygon (2 x N) at the end and the obstacles (n x 3: x, y, diameter) around it."""
     output = pathlib.Path(folder) / f"{row['task']}.h5"
@@ -83,7 +89,7 @@ def draw(axes, row, polygon, obstacles):
             axes.plot(*polygon[:, [edge, (edge + 1) % polygon.shape[1]]], color="#D00000", linewidth=1.8)
     axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
     axes.set_title(
-        rf"{row['mechanism'].decode()} ({row['wrapped_support']:.2f}; {row['num_wrapped']}, {row['num_gaps']}, {row['num_arcs']})"
+        rf"{mechanism(row)} ({row['wrapped_support']:.2f}; {row['num_wrapped']}, {row['num_gaps']}, {row['num_arcs']})"
         "\n" rf"{row['task']}: $\Gamma = {row['line_tension']:g}$, $w_\mathrm{{ob}} = {row['obstacle_gap']:g}$", fontsize=8,
     )
 
@@ -99,12 +105,12 @@ def main():
     parser.add_argument("--output", type=pathlib.Path, required=True, help="name without ending; .png and .pdf are made")
     parser.add_argument("--clogrun", default=ROOT / "build/release/bin/clogrun", help="the program (%(default)s)")
     parser.add_argument("--most", type=int, default=30, help="draw so many clogs at most, the first (%(default)s)")
-    parser.add_argument("--mechanism", help="only those of this mechanism")
+    parser.add_argument("--mechanism", choices=["wrapped", "squeezed", "hybrid", "other"], help="only these")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time (%(default)s)")
     arguments = parser.parse_args()
     try:
         rows, config = read_clogs(arguments.sweep)
-        rows = [row for row in rows if arguments.mechanism in (None, row["mechanism"].decode())][: arguments.most]
+        rows = [row for row in rows if arguments.mechanism in (None, mechanism(row))][: arguments.most]
     except (OSError, KeyError, ValueError) as error:
         return refuse(f"cannot read {arguments.sweep} ({error}); give the output of clogsweep")
     if not rows:

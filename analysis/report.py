@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """One page about a sweep: curves, table, example clogs, doubts, where the numbers came from. Opens offline in any browser.
 
-    analysis/report.py sweep.h5 --output report.html
+    clogfit report sweep.h5 --output report.html      # is analysis/report.py
 
 Every number comes from clogfit. Example clogs are run once more by clogrun, to the same bits, in a temporary folder.
 """
@@ -130,7 +130,7 @@ def example_pictures(shown, config, programs):
                 raise UserError(f"cannot run task {row['task']} again ({error.stderr.strip()}); --examples 0 does without") from error
             figure, axes = plt.subplots(figsize=(4.6, 4.6), layout="constrained")
             clogs.draw(axes, row, polygon, obstacles)
-            pictures.append(picture(figure, f"task {row['task']}: {row['mechanism'].decode()}, seed {row['seed']}, clogged after {row['distance']:.3g} "
+            pictures.append(picture(figure, f"task {row['task']}: {clogs.mechanism(row)}, seed {row['seed']}, clogged after {row['distance']:.3g} "
                                     "diameters; flow to the right; touched obstacles blue, contact red, convex hull dashed"))
     return '<div class="pictures">' + "\n".join(pictures) + "</div>" if pictures else "<p>No polygon has clogged.</p>"
 

@@ -203,14 +203,16 @@ def sag_picture(shop):
 
 def example(shop, mechanism):
     """A clog of the sweep, run once more with its outline. By squeezing: of those that went at least half a diameter (or, if
-    there are none, of all) the one of median shape. By wrapping: the most compact one that an obstacle holds so, alone or in
-    part, since most are films that few vertices do not resolve."""
+    there are none, of all) the one of median shape. By wrapping: the most compact one, of those that only hang over obstacles, if
+    there are any; drawn-out ones are films that few vertices do not resolve."""
     shop.sweep("clogging")
     rows = shop.rows("clogging")
     if "mechanism" not in rows or not rows.mechanism.any():
         raise UserError(f"{shop.sweep_file('clogging')} does not know how droplets clogged (it is of an earlier version); remove it and sweep again")
     is_wrapped = mechanism == "wrapped"
-    clogs = rows[(rows.status == "clogged") & rows.mechanism.isin(["wrapped", "hybrid"] if is_wrapped else [mechanism])]
+    clogs = rows[(rows.status == "clogged") & (rows.mechanism == mechanism)]
+    if is_wrapped and clogs.empty:
+        clogs = rows[(rows.status == "clogged") & (rows.mechanism == "hybrid")]
     if clogs.empty:
         raise UserError(f"no {mechanism} clog in {shop.sweep_file('clogging')}; more seeds, or other line tensions")
     travelled = clogs[clogs.distance >= 0.5]

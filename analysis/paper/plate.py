@@ -8,7 +8,7 @@ CATALOGUE = {}
 INTERFACES = {
     "robust": "robust, weight on the liquid",
     "heavy-interface": "heavy-interface, weight on the interface",
-    "elastic": "elastic",
+    "elastic": "elastic, weight on the interface, which stretches",
     "literal": "literal, as published",
 }
 

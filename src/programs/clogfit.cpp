@@ -11,6 +11,7 @@
 #include "clogfit_calibrate.hpp"
 #include "clogfit_deviation.hpp"
 #include "clogfit_drag.hpp"
+#include "clogfit_report.hpp"
 #include "group_table.hpp"
 
 namespace {
@@ -27,6 +28,7 @@ confidence interval and the mean speed with its standard error.
   clogfit calibrate trial.csv --orifice 0.7    line tension and near-wall drag from measured speeds
   clogfit deviation a.csv b.csv                Delta_v and Delta_A of one profile from others
   clogfit drag speeds.csv                      exponent of the near-wall drag from speeds along a wall
+  clogfit report sweep.h5 --output page.html   curves, doubts, example clogs, table, provenance on one page
 
 Runs that did not clog count as censored at the distance they reached. Where no run clogged, lambda is a lower
 bound. Letters in the last column name what may spoil a length. The mean speed is in units of the terminal speed, its
@@ -71,5 +73,7 @@ int main(int argc, char** argv) {
     return cli::run_program("clogfit deviation", [&] { return clogfit_deviation(argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "drag")
     return cli::run_program("clogfit drag", [&] { return clogfit_drag(argc, argv); });
+  if (argc > 1 && std::string_view(argv[1]) == "report")
+    return cli::run_program("clogfit report", [&] { return clogfit_report(argc, argv); });
   return cli::run_program(program, [&] { return body(argc, argv); });
 }

@@ -146,7 +146,7 @@ class Figures(Analysis):
             self.assertEqual(file["runs"]["distance"][0], float(wrapped["distance"]), "the same run, bit for bit")
 
     def make_report(self, sweep):
-        self.draw("report.py", sweep, "--output", "report.html", "--examples", 2, "--programs", BIN)
+        self.succeed("clogfit", "report", sweep, "--output", "report.html", "--examples", 2)
         page = (self.folder / "report.html").read_text()
         self.assertNotRegex(page, r"(src|href)=\"(?!data:)", "nothing from elsewhere")
         fit = json.loads(self.succeed("clogfit", sweep, "--format", "json").stdout)
