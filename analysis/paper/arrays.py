@@ -202,9 +202,8 @@ def sag_picture(shop):
 # Clogs
 
 def example(shop, mechanism):
-    """A clog of the sweep, run once more with its outline. By squeezing: of those that went at least half a diameter (or, if
-    there are none, of all) the one of median shape. By wrapping: the most compact one, of those that only hang over obstacles, if
-    there are any; drawn-out ones are films that few vertices do not resolve."""
+    """A clog of the sweep, run once more with its outline. By squeezing: the stiffest that went at least half a diameter, if any
+    did. By wrapping: the one of median shape, of those that only hang over obstacles, if there are any."""
     shop.sweep("clogging")
     rows = shop.rows("clogging")
     if "mechanism" not in rows or not rows.mechanism.any():
@@ -215,9 +214,11 @@ def example(shop, mechanism):
         clogs = rows[(rows.status == "clogged") & (rows.mechanism == "hybrid")]
     if clogs.empty:
         raise UserError(f"no {mechanism} clog in {shop.sweep_file('clogging')}; more seeds, or other line tensions")
-    travelled = clogs[clogs.distance >= 0.5]
-    ordered = (clogs if travelled.empty else travelled).sort_values(["shape_parameter", "task"])
-    row = ordered.iloc[0 if is_wrapped else len(ordered) // 2]
+    if is_wrapped:
+        row = clogs.sort_values(["shape_parameter", "task"]).iloc[len(clogs) // 2]
+    else:
+        travelled = clogs[clogs.distance >= 0.5]
+        row = (clogs if travelled.empty else travelled).sort_values(["line_tension", "task"]).iloc[-1]
     run = shop.run(f"clog-{mechanism}", "array", "clogging",
                    {"line-tension": float(row.line_tension), "obstacle-gap": float(row.obstacle_gap), "seeds": int(row.seed)},
                    ["--polygon-interval", f"{max(0.5, row.time / 400):.3g}"])
@@ -352,7 +353,7 @@ def displacement(shop):
     data = []
     for index, line_tension in enumerate([0.04, 0.1, 0.2, 0.5, 1.0]):
         run = shop.run(f"displacement-{line_tension:g}", "array", "trajectory",
-                       {"line-tension": line_tension, "obstacle-gap": 1.1, "preset": "heavy-interface"}, ["--sample-interval", 2])
+                       {"line-tension": line_tension, "obstacle-gap": 1.1, "preset": "elastic"}, ["--sample-interval", 2])
         speed = run.row["mean_speed"] / run.row["terminal_speed"]
         label = rf"$\Gamma = {line_tension:g}$" + (rf": $v_g = {speed:.2f}\,v_t$" if math.isfinite(speed) else "") + (
             ", clogged" if run.word("status") == "clogged" else "")

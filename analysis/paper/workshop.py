@@ -187,6 +187,8 @@ class Workshop:
         known = trajectory.read(file, needs_frames=False) if file.exists() else None
         if self.draw_only and known is None:
             raise UserError(f"{file} is not there; leave out --draw-only")
+        if self.draw_only:
+            self._refuse_others(file, known, keys)
         if not self.draw_only and (known is None or not self._is_from(known, command)):
             file.parent.mkdir(parents=True, exist_ok=True)
             print(f"run {name}: {file}", flush=True)
@@ -200,6 +202,17 @@ class Workshop:
             f"{known.attributes['command_line']}\n    {known.word('status')} at t = {known.row['time']:.6g}; "
             f"clogrun {known.attributes['version']}, git {known.attributes['git_hash']}, {known.attributes['start_time']}; file {file}")
         return known
+
+    @staticmethod
+    def _refuse_others(file, known, keys):
+        """A run kept from before may be another one than the figure wants now."""
+        for key, value in keys.items():
+            column = "seed" if key == "seeds" else key.replace("-", "_")
+            if column not in known.row.dtype.names:
+                continue
+            there = known.row[column]
+            if (there.decode() != str(value)) if isinstance(there, bytes) else (there != value):
+                raise UserError(f"{file} is another run ({column} is {there}, the figure needs {value}); leave out --draw-only")
 
     @staticmethod
     def _is_from(known, command):

@@ -1,9 +1,12 @@
 /// clogfit: from the table of runs to clogging lengths and mean speeds.
 
+#include <algorithm>
 #include <iostream>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "analysis_script.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/core/error.hpp"
@@ -11,7 +14,6 @@
 #include "clogfit_calibrate.hpp"
 #include "clogfit_deviation.hpp"
 #include "clogfit_drag.hpp"
-#include "clogfit_report.hpp"
 #include "group_table.hpp"
 
 namespace {
@@ -63,6 +65,16 @@ int body(int argc, char** argv) {
   return cli::exit_success;
 }
 
+/// One page of HTML about a sweep: analysis/report.py, which asks this very program for the numbers.
+int report(int argc, char** argv) {
+  std::vector<std::string> arguments(argv + 2, argv + argc);
+  if (std::find(arguments.begin(), arguments.end(), "--programs") == arguments.end()) {
+    arguments.emplace_back("--programs");
+    arguments.push_back(own_folder());
+  }
+  become_script(find_analysis_script("report.py"), arguments);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -74,6 +86,6 @@ int main(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "drag")
     return cli::run_program("clogfit drag", [&] { return clogfit_drag(argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "report")
-    return cli::run_program("clogfit report", [&] { return clogfit_report(argc, argv); });
+    return cli::run_program("clogfit report", [&] { return report(argc, argv); });
   return cli::run_program(program, [&] { return body(argc, argv); });
 }

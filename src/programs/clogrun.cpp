@@ -1,7 +1,9 @@
 /// clogrun: one droplet, watched closely.
 
+#include <filesystem>
 #include <string>
 
+#include "analysis_script.hpp"
 #include "channel_options.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
@@ -18,6 +20,7 @@ constexpr const char* usage = R"(clogrun follows one droplet and writes what hap
   clogrun array --output run.h5 line-tension=0.3 obstacle-gap=0.35 seeds=7
   clogrun array --output run.h5 --obstacles mine.csv box=60 --polygon-interval 1
   clogrun channel --output run.h5 --orifice 0.7 line-tension=1.08 near-wall-drag=0.07 terminal-speed=0.032
+  clogrun array --output run.h5 line-tension=0.3 --polygon-interval 5 --frames film
   clogrun sag line-tension=0.1,0.3,1          prints how far the droplet sinks onto a flat wall
 
 In an array, the same keys and seed as a row of a sweep give that row's run, bit for bit.
@@ -31,6 +34,7 @@ cli::CommandLine parse(int argc, char** argv) {
       "output", text(), "HDF5 file to make")("seed", text(), "short for seeds=N")(
       "sample-interval", text()->default_value("1"), "time between samples [t0]")(
       "polygon-interval", text(), "also write the polygon this often [t0]")(
+      "frames", text(), "also make a film of the polygons, without ending: .mp4 with ffmpeg, .gif otherwise")(
       "obstacles", text(), "array: CSV file x,y[,diameter] to use; the droplet starts near (box/2, box/2)")(
       "write-obstacles", text(), "array: write the obstacles as a CSV file")(
       "start", text(), "channel: h at release [sigma] (-10)")("end", text(),
@@ -45,12 +49,24 @@ cli::CommandLine parse(int argc, char** argv) {
   return line;
 }
 
+int follow(cli::CommandLine& line, const std::string& system) {
+  const auto run = system == "array" ? clogrun_array : clogrun_channel;
+  if (!line.has("frames")) return run(line);
+  if (!line.has("polygon-interval"))
+    throw Error(
+        "--frames has nothing to show without --polygon-interval; give the time between frames [t0], e.g. "
+        "--polygon-interval 5");
+  const std::filesystem::path script = find_analysis_script("droplet.py");
+  const int exit_code = run(line);
+  if (exit_code != cli::exit_success) return exit_code;
+  become_script(script, {line.get("output"), "--output", line.get("frames"), "--film"});
+}
+
 int body(int argc, char** argv) {
   cli::CommandLine line = parse(argc, argv);
   if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return cli::exit_success;
   const std::string system = line.has("system") ? line.get("system") : "";
-  if (system == "array") return clogrun_array(line);
-  if (system == "channel") return clogrun_channel(line);
+  if (system == "array" || system == "channel") return follow(line, system);
   if (system == "sag") return clogrun_sag(line);
   throw Error((system.empty() ? "missing system" : "unknown system '" + system + "'") +
               "; try clogrun array, clogrun channel or clogrun sag");

@@ -35,7 +35,7 @@ Sag sag_of(const DropletRun& run, const Eigen::ArrayXd& before) {
 
 int clogrun_sag(cli::CommandLine& line) {
   refuse_options(line, "sag", array_options);
-  refuse_options(line, "sag", {"orifice", "wedge-angle", "tip-radius", "start", "end"});
+  refuse_options(line, "sag", {"orifice", "wedge-angle", "tip-radius", "start", "end", "frames"});
   const sweep::Plan plan(line.settings());
   if (line.has("output")) single_run(line.settings());
   const auto intervals = WatchedRun::intervals(line, *plan.task(0).time_step);

@@ -42,9 +42,11 @@ std::vector<Key> make_keys() {
        word,
        {"robust", "heavy-interface", "elastic", "literal"},
        "robust",
-       "sets the keys of the interface together, those given by hand excepted: robust, heavy-interface (its "
-       "vertices carry the weight; shows the published trends), elastic (rest springs of a tenth of the "
-       "tension), literal (the published equations)",
+       "sets the keys of the interface together, those given by hand excepted: robust (weight on the "
+       "liquid), "
+       "heavy-interface (weight on the interface), elastic (the same, and it stretches like rubber, K_l = "
+       "0.1 Gamma; "
+       "shows the published trends), literal (the published equations)",
        true,
        [](RunParameters&, const std::string&) {}},  // Settings::set does it
       {"line-tension",

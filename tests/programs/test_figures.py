@@ -144,6 +144,12 @@ class Figures(Analysis):
         self.assertEqual(float(wrapped["distance"]), rows["distance"][clogged[-1]])
         with h5py.File(sweep.parent.parent / "runs" / "clog-wrapped.h5") as file:
             self.assertEqual(file["runs"]["distance"][0], float(wrapped["distance"]), "the same run, bit for bit")
+        # What is drawn from files alone is never labelled as another run.
+        with h5py.File(sweep, "r+") as file:
+            rows["mechanism"][clogged] = b"squeezed"
+            rows["mechanism"][clogged[0]] = b"wrapped"
+            file["runs"][:] = rows
+        self.refuse_analysis("figures.py", "6a", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["another run"])
 
     def make_report(self, sweep):
         self.succeed("clogfit", "report", sweep, "--output", "report.html", "--examples", 2)
@@ -228,7 +234,9 @@ class Pictures(Analysis):
         return np.array(element.text.split(), dtype=float)
 
     def test_a_run_is_drawn_filmed_and_exported(self):
-        self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 15, "--output", "run.h5")
+        self.refuse("clogrun", "array", *QUICK, "--frames", "film", "--output", "run.h5", words=["--frames", "--polygon-interval"])
+        told = self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 15, "--output", "run.h5", "--frames", "film").stdout
+        self.assertGreater((self.folder / told.splitlines()[-1]).stat().st_size, 1000)
         self.draw("droplet.py", "run.h5", "--output", "droplet")
         self.assert_picture("droplet")
         with h5py.File(self.folder / "run.h5") as file:
