@@ -81,7 +81,7 @@ def curves(shop, config, abscissa, parameter, quantity):
     return Plate(drawing, data)
 
 
-@figure("6c", "clogging length against line tension for four smallest gaps (deformable polygon)", ["clogging"], "1 min")
+@figure("6c", "clogging length against line tension for four smallest gaps (deformable polygon)", ["clogging"], "6 min")
 def lengths_of_polygons(shop):
     return curves(shop, "clogging", "line_tension", "obstacle_gap", "length")
 
@@ -91,17 +91,17 @@ def lengths_of_disks(shop):
     return curves(shop, "clogging-sp", "wall_stiffness", "obstacle_gap", "length")
 
 
-@figure("8a", "mean speed against line tension for four wide gaps (deformable polygon)", ["speed"], "30 s")
+@figure("8a", "mean speed against line tension for four wide gaps (deformable polygon)", ["speed"], "2 min")
 def speeds_of_polygons(shop):
     return curves(shop, "speed", "line_tension", "obstacle_gap", "speed")
 
 
-@figure("8b", "mean speed against line tension for three obstacle diameters", ["speed-diameter"], "30 s")
+@figure("8b", "mean speed against line tension for three obstacle diameters", ["speed-diameter"], "2 min")
 def speeds_by_diameter(shop):
     return curves(shop, "speed-diameter", "line_tension", "obstacle_diameter", "speed")
 
 
-@figure("8ca", "the speeds of 8a against the capillary number", ["speed"], "30 s, shared with 8a")
+@figure("8ca", "the speeds of 8a against the capillary number", ["speed"], "2 min, shared with 8a")
 def speeds_by_capillary_number(shop):
     return curves(shop, "speed", "capillary_number", "obstacle_gap", "speed")
 
@@ -111,7 +111,7 @@ def speeds_of_disks(shop):
     return curves(shop, "speed-sp", "wall_stiffness", "obstacle_gap", "speed")
 
 
-@figure("E", "mean speed against line tension for three near-wall drags", ["near-wall-drag"], "1 min")
+@figure("E", "mean speed against line tension for three near-wall drags", ["near-wall-drag"], "3 min")
 def speeds_by_drag(shop):
     return curves(shop, "near-wall-drag", "line_tension", "near_wall_drag", "speed")
 
