@@ -101,7 +101,8 @@ def draw(groups, abscissa, confidence):
     style.grid(axes)
     if axes.get_legend_handles_labels()[1] != [""]:
         axes.legend(frameon=False)
-    note = f"bars: {100 * confidence:g} % confidence"
+    presets = {group["preset"] for group in groups if group["model"] == "dp"}
+    note = (f"interface: {presets.pop()}; " if len(presets) == 1 else "") + f"bars: {100 * confidence:g} % confidence"
     if any(group["clogs"] == 0 for group in groups):
         note += ", open triangles: lower bound, no run clogged, dotted: through bounds"
     style.caption(axes, f"{caption(groups)}\n{note}")
