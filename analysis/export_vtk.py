@@ -6,7 +6,7 @@
     paraview run.pvd
 
 Makes RUN.pvd, which names every frame with its time, the frames in the folder RUN-vtk, and RUN-obstacles.vtp, to be opened beside it:
-discs and walls, cut off five diameters from the droplet's way. All are VTK's XML PolyData, as text. Frames have the
+discs and walls (of diameter 0), cut off five diameters from the droplet's way. All are VTK's XML PolyData, as text. Frames have the
 vertices' speed, and, as field data, the columns of the trajectory at that time. Units are those of src/store/README.md.
 """
 
@@ -27,7 +27,9 @@ def data_array(parent, name, values, components=1):
     element = xml.SubElement(parent, "DataArray", type=kind, Name=name, format="ascii")
     if components > 1:
         element.set("NumberOfComponents", str(components))
-    element.text = " ".join(map(repr, values.ravel().tolist())).replace("nan", "NaN")
+    if not np.isfinite(values).all():
+        raise ValueError(f"{name} holds what is no number, which VTK's readers cannot read")
+    element.text = " ".join(map(repr, values.ravel().tolist()))
     return element
 
 
@@ -74,7 +76,7 @@ def surroundings(run):
     discs = [np.array([x, y]) + diameter / 2 * circle for x, y, diameter in run.obstacles]
     low, high = run.polygons.min(axis=(0, 2)) - 5, run.polygons.max(axis=(0, 2)) + 5
     walls = [np.clip(trajectory.wedge_outline(wedge), low, high) for wedge in run.wedges]
-    diameters = [diameter for _, _, diameter in run.obstacles] + [math.nan] * len(walls)
+    diameters = [diameter for _, _, diameter in run.obstacles] + [0] * len(walls)
     return polydata(discs + walls, cell_data={"diameter": np.array(diameters, dtype=float)})
 
 
@@ -87,6 +89,7 @@ def export(run, output):
     names = []
     for frame, (polygon, time) in enumerate(zip(run.polygons, run.times)):
         fields = {name: float(np.interp(time, run.table["time"], run.table[name])) for name in columns if name != "time"}
+        fields = {name: value for name, value in fields.items() if math.isfinite(value)}
         fields["TimeValue"] = float(time)
         names.append(f"{folder.name}/droplet-{frame:05d}.vtp")
         write(polydata([polygon.T], {"vertex_speed": speeds[frame]}, field_data=fields), output.parent / names[-1])

@@ -263,6 +263,16 @@ class Pictures(Analysis):
         discs = xml.parse(self.folder / "run-obstacles.vtp")
         np.testing.assert_array_equal(self.numbers(discs, "diameter"), obstacles[:, 2])
 
+    def test_a_channel_is_exported_in_numbers_that_vtk_reads(self):
+        """Its readers stop at the first NaN."""
+        self.succeed("clogrun", "channel", "vertices=32", "line-tension=0.5", "max-time=30", "--start", -1, "--polygon-interval", 10, "--output", "run.h5")
+        self.draw("export_vtk.py", "run.h5", "--output", "run")
+        walls = xml.parse(self.folder / "run-obstacles.vtp")
+        self.assertEqual(self.numbers(walls, "diameter").tolist(), [0, 0])
+        for file in [self.folder / "run-obstacles.vtp", *(self.folder / "run-vtk").iterdir()]:
+            for array in xml.parse(file).findall(".//DataArray"):
+                self.assertTrue(np.isfinite(np.array(array.text.split(), dtype=float)).all(), f"{file.name}: {array.get('Name')}")
+
 
 if __name__ == "__main__":
     unittest.main()
