@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -263,13 +264,18 @@ TEST(ObstacleArrays, AreBuiltAtOnceWhereNothingCanBeLocked) {
   const OtherProcess without_files([seed = own_seed()] {
     rlimit usual;
     getrlimit(RLIMIT_NOFILE, &usual);
+    // Who waits until then finds the array. Begun before: sanitizers look at a new thread by way of a file.
+    std::atomic<bool> has_begun = false;
+    std::thread later([&] {
+      has_begun = true;
+      has_begun.notify_one();
+      usleep(500'000);
+      setrlimit(RLIMIT_NOFILE, &usual);
+    });
+    has_begun.wait(false);
     const rlimit none{0, usual.rlim_max};
     setrlimit(RLIMIT_NOFILE, &none);
     const bool is_possible = NameLock("x").state() != NameLock::State::impossible;
-    std::thread later([&] {  // who waits until then finds it
-      usleep(300'000);
-      setrlimit(RLIMIT_NOFILE, &usual);
-    });
     ObstacleArrays arrays;
     arrays.get(large, seed);
     later.join();
