@@ -99,7 +99,8 @@ def refuse(reason):
     return 2
 
 
-def task_list(words):
+def numbers(words):
+    """Type of an option; argparse names it in its error."""
     return {int(word) for word in words.split(",")}
 
 
@@ -109,14 +110,20 @@ def main():
     parser.add_argument("--output", type=pathlib.Path, required=True, help="name without ending; .png and .pdf are made")
     parser.add_argument("--clogrun", default=ROOT / "build/release/bin/clogrun", help="the program (%(default)s)")
     parser.add_argument("--most", type=int, default=30, help="draw so many clogs at most, the first (%(default)s)")
-    parser.add_argument("--tasks", type=task_list, help="only these, e.g. 3,17,40")
+    parser.add_argument("--tasks", type=numbers, help="only these, e.g. 3,17,40")
     parser.add_argument("--mechanism", choices=["wrapped", "squeezed", "hybrid", "other"], help="only these")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time (%(default)s)")
     arguments = parser.parse_args()
     try:
         rows, config = read_clogs(arguments.sweep)
-        rows = [row for row in rows if arguments.mechanism in (None, mechanism(row)) and (not arguments.tasks or row["task"] in arguments.tasks)]
-        rows = rows[: arguments.most]
+        rows = [row for row in rows if arguments.mechanism in (None, mechanism(row))]
+        if arguments.tasks:
+            missing = arguments.tasks - {row["task"] for row in rows}
+            if missing:
+                return refuse(f"--tasks: {', '.join(map(str, sorted(missing)))} of {arguments.sweep} are no such clogged polygons")
+            rows = [row for row in rows if row["task"] in arguments.tasks]
+        else:
+            rows = rows[: arguments.most]
     except (OSError, KeyError, ValueError) as error:
         return refuse(f"cannot read {arguments.sweep} ({error}); give the output of clogsweep")
     if not rows:

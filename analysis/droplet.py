@@ -7,7 +7,7 @@
 
 The flow goes to the right. In a picture the last outline is filled; earlier ones are thin, evenly spaced along the way,
 coloured by time. A film is DROPLET.mp4 if ffmpeg is there, DROPLET.gif if Pillow is, and numbered pictures in the folder
-DROPLET-frames with --frames. In it the way of the centre is a line, and the droplet has the colour of its vertices' speed or,
+DROPLET-frames with --pictures. In it the way of the centre is a line, and the droplet has the colour of its vertices' speed or,
 with --colour mechanism, of how it ended.
 """
 
@@ -134,7 +134,7 @@ def main():
     parser.add_argument("--output", type=pathlib.Path, required=True, help="name without ending; .png and .pdf are made")
     parser.add_argument("--outlines", type=int, default=12, help="how many moments to show in a picture (12)")
     parser.add_argument("--film", action="store_true", help="a film instead: .mp4 (ffmpeg) or .gif")
-    parser.add_argument("--frames", action="store_true", help="numbered pictures in OUTPUT-frames instead")
+    parser.add_argument("--pictures", action="store_true", help="numbered pictures in OUTPUT-frames instead")
     parser.add_argument("--colour", choices=["speed", "mechanism"], default="speed", help="of the droplet in a film (speed)")
     parser.add_argument("--rate", type=int, default=20, help="frames of a film a second (20)")
     arguments = parser.parse_args()
@@ -147,13 +147,13 @@ def main():
     except ValueError as error:
         print(f"droplet.py: {error}", file=sys.stderr)
         return 2
-    if not arguments.film and not arguments.frames:
+    if not arguments.film and not arguments.pictures:
         style.save(draw(run, arguments.outlines), arguments.output)
         return 0
     film = Film(run, arguments.colour)
     if arguments.film:
         print(write_film(film, len(run.times), arguments.output, arguments.rate))
-    if arguments.frames:
+    if arguments.pictures:
         print(write_frames(film, len(run.times), pathlib.Path(f"{arguments.output}-frames")))
     return 0
 

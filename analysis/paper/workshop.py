@@ -205,7 +205,7 @@ class Workshop:
 
     @staticmethod
     def _refuse_others(file, known, keys):
-        """A run kept from before may be another one than the figure wants now."""
+        """A run kept from before may be of another droplet than the figure wants now; the keys it sets itself tell."""
         for key, value in keys.items():
             column = "seed" if key == "seeds" else key.replace("-", "_")
             if column not in known.row.dtype.names:

@@ -1,6 +1,5 @@
 /// clogfit: from the table of runs to clogging lengths and mean speeds.
 
-#include <algorithm>
 #include <iostream>
 #include <string>
 #include <string_view>
@@ -67,11 +66,9 @@ int body(int argc, char** argv) {
 
 /// One page of HTML about a sweep: analysis/report.py, which asks this very program for the numbers.
 int report(int argc, char** argv) {
-  std::vector<std::string> arguments(argv + 2, argv + argc);
-  if (std::find(arguments.begin(), arguments.end(), "--programs") == arguments.end()) {
-    arguments.emplace_back("--programs");
-    arguments.push_back(own_folder());
-  }
+  // The user's own --programs comes later and has the last word.
+  std::vector<std::string> arguments = {"--programs", own_folder()};
+  arguments.insert(arguments.end(), argv + 2, argv + argc);
   become_script(find_analysis_script("report.py"), arguments);
 }
 

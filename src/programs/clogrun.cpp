@@ -34,7 +34,7 @@ cli::CommandLine parse(int argc, char** argv) {
       "output", text(), "HDF5 file to make")("seed", text(), "short for seeds=N")(
       "sample-interval", text()->default_value("1"), "time between samples [t0]")(
       "polygon-interval", text(), "also write the polygon this often [t0]")(
-      "frames", text(), "also make a film of the polygons, without ending: .mp4 with ffmpeg, .gif otherwise")(
+      "frames", text(), "also make a film of the polygons with this name: .mp4 with ffmpeg, .gif otherwise")(
       "obstacles", text(), "array: CSV file x,y[,diameter] to use; the droplet starts near (box/2, box/2)")(
       "write-obstacles", text(), "array: write the obstacles as a CSV file")(
       "start", text(), "channel: h at release [sigma] (-10)")("end", text(),
@@ -49,17 +49,30 @@ cli::CommandLine parse(int argc, char** argv) {
   return line;
 }
 
-int follow(cli::CommandLine& line, const std::string& system) {
-  const auto run = system == "array" ? clogrun_array : clogrun_channel;
-  if (!line.has("frames")) return run(line);
+/// Name of a film, without ending. @throws Error  where none could be written
+std::filesystem::path film_name(const cli::CommandLine& line) {
+  const std::filesystem::path name = line.get("frames");
   if (!line.has("polygon-interval"))
     throw Error(
         "--frames has nothing to show without --polygon-interval; give the time between frames [t0], e.g. "
         "--polygon-interval 5");
+  if (!name.has_filename())
+    throw Error("invalid --frames=" + name.string() + " (names no file); try --frames film");
+  if (name.has_parent_path() && !std::filesystem::is_directory(name.parent_path()))
+    throw Error("cannot write " + name.string() + " (no folder " + name.parent_path().string() +
+                "); make it first");
+  const bool has_ending = name.extension() == ".mp4" || name.extension() == ".gif";
+  return has_ending ? std::filesystem::path(name).replace_extension() : name;
+}
+
+int follow(cli::CommandLine& line, const std::string& system) {
+  const auto run = system == "array" ? clogrun_array : clogrun_channel;
+  if (!line.has("frames")) return run(line);
+  const std::filesystem::path film = film_name(line);
   const std::filesystem::path script = find_analysis_script("droplet.py");
   const int exit_code = run(line);
   if (exit_code != cli::exit_success) return exit_code;
-  become_script(script, {line.get("output"), "--output", line.get("frames"), "--film"});
+  become_script(script, {line.get("output"), "--output=" + film.string(), "--film"});
 }
 
 int body(int argc, char** argv) {

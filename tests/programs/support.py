@@ -11,6 +11,7 @@ import unittest
 import pandas
 
 BIN = pathlib.Path(os.environ["CLOG_BIN"])
+STEPS_PER_SNAPSHOT = 2**18  # runs that were stopped go on from a snapshot
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MPIRUN = ROOT / "tests" / "mpirun.sh"
 

@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 import pandas
 
-from support import BIN, MPIRUN, QUICK, ROOT, SMALL, ProgramTest
+from support import BIN, MPIRUN, QUICK, ROOT, SMALL, STEPS_PER_SNAPSHOT, ProgramTest
 
 # Columns that tell where and how fast a row was made, not what came out.
 CIRCUMSTANCES = ["wall_seconds", "rank", "host"]
@@ -229,7 +229,8 @@ class Isolated(ProgramTest):
         process = self.start(*sweep)
         computing = self.computing_process(process)
         deadline = time.time() + 60
-        while not table(self.folder / "s.h5").distance.gt(0).any():
+        # Before its first snapshot a run would go on from its beginning.
+        while not table(self.folder / "s.h5").steps.gt(STEPS_PER_SNAPSHOT).any():
             self.assertLess(time.time(), deadline, "no report is published")
             time.sleep(0.1)
         os.kill(computing, signal.SIGSTOP)

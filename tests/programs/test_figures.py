@@ -144,7 +144,7 @@ class Figures(Analysis):
         self.assertEqual(float(wrapped["distance"]), rows["distance"][clogged[-1]])
         with h5py.File(sweep.parent.parent / "runs" / "clog-wrapped.h5") as file:
             self.assertEqual(file["runs"]["distance"][0], float(wrapped["distance"]), "the same run, bit for bit")
-        # What is drawn from files alone is never labelled as another run.
+        # What is drawn from files alone is not labelled as another droplet.
         with h5py.File(sweep, "r+") as file:
             rows["mechanism"][clogged] = b"squeezed"
             rows["mechanism"][clogged[0]] = b"wrapped"
@@ -220,6 +220,7 @@ class Pictures(Analysis):
         self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1..2", "--output", "s.h5")
         self.draw("clogs.py", "s.h5", "--clogrun", BIN / "clogrun", "--output", "clogs", "--most", 2)
         self.assert_picture("clogs")
+        self.refuse_analysis("clogs.py", "s.h5", "--clogrun", BIN / "clogrun", "--output", "clogs", "--tasks", "0,77", words=["77"])
 
     def test_foreign_files_get_one_line(self):
         self.write("fit.json", json.dumps({"groups": "none"}))
@@ -235,13 +236,16 @@ class Pictures(Analysis):
 
     def test_a_run_is_drawn_filmed_and_exported(self):
         self.refuse("clogrun", "array", *QUICK, "--frames", "film", "--output", "run.h5", words=["--frames", "--polygon-interval"])
-        told = self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 15, "--output", "run.h5", "--frames", "film").stdout
+        for name, words in [("nowhere/film", ["no folder nowhere"]), ("", ["names no file"])]:
+            self.refuse("clogrun", "array", *QUICK, "--polygon-interval", 15, f"--frames={name}", "--output", "run.h5", words=words)
+        told = self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 15, "--output", "run.h5", "--frames", "film.mp4").stdout
+        self.assertIn(told.splitlines()[-1], ["film.mp4", "film.gif"])
         self.assertGreater((self.folder / told.splitlines()[-1]).stat().st_size, 1000)
         self.draw("droplet.py", "run.h5", "--output", "droplet")
         self.assert_picture("droplet")
         with h5py.File(self.folder / "run.h5") as file:
             polygons, times, obstacles = (file[name][:] for name in ("polygons", "polygon_times", "obstacles"))
-        told = self.draw("droplet.py", "run.h5", "--output", "droplet", "--frames", "--film", "--colour", "mechanism").stdout
+        told = self.draw("droplet.py", "run.h5", "--output", "droplet", "--pictures", "--film", "--colour", "mechanism").stdout
         frames = sorted((self.folder / "droplet-frames").iterdir())
         self.assertEqual(len(frames), len(times))
         self.assertNotEqual(frames[0].read_bytes(), frames[-1].read_bytes())

@@ -14,9 +14,8 @@ import unittest
 
 import h5py
 import numpy as np
-from support import BIN, ROOT, SWEEP, ProgramTest, SweepTest, table
+from support import BIN, ROOT, STEPS_PER_SNAPSHOT, SWEEP, ProgramTest, SweepTest, table
 
-STEPS_PER_SNAPSHOT = 2**18
 FEW = [word.replace("1..6", "1") for word in SWEEP]
 
 

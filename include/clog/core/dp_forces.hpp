@@ -57,11 +57,13 @@ class DpForces {
   const std::vector<Wedge>& wedges() const { return obstacles_->wedges(); }
   /// Are walls wetted, so that the tension on them differs?
   bool wets() const { return extra_tension() != 0; }
-  /// The energy's negative gradient, and what springs along the interface, which carry no tension, add to it:
-  /// minus its part along the interface, which has no energy.
+  /// Forces of wetted walls on the vertices, which add up: all x then all y [g rho sigma^2]. `gradient` is
+  /// minus the energy's. `spreading` is minus its part along the interface, where springs carry no tension
+  /// (`along`), otherwise 0; it has no energy.
   struct WettingForces {
     Eigen::ArrayXd gradient;
     Eigen::ArrayXd spreading;
+    /// The net force of `spreading`. The liquid takes it: weight on the area is reduced by it.
     Eigen::Array2d net_spreading() const {
       const Eigen::Index n = spreading.size() / 2;
       return {spreading.head(n).sum(), spreading.tail(n).sum()};
