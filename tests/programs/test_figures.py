@@ -228,7 +228,8 @@ class Pictures(Analysis):
         for script, file in [("clogging_length.py", "fit.json"), ("droplet.py", "run.h5"),
                              ("export_vtk.py", "run.h5"), ("clogs.py", "run.h5"), ("report.py", "run.h5")]:
             with self.subTest(script=script, file=file):
-                self.refuse_analysis(script, file, "--output", "x", words=["cannot read" if script != "report.py" else "run.h5"])
+                programs = ["--programs", BIN] if script == "report.py" else []
+                self.refuse_analysis(script, file, "--output", "x", *programs, words=["run.h5" if programs else "cannot read"])
 
     def numbers(self, parent, name):
         element, = parent.findall(f".//DataArray[@Name='{name}']")
@@ -236,7 +237,7 @@ class Pictures(Analysis):
 
     def test_a_run_is_drawn_filmed_and_exported(self):
         self.refuse("clogrun", "array", *QUICK, "--frames", "film", "--output", "run.h5", words=["--frames", "--polygon-interval"])
-        for name, words in [("nowhere/film", ["no folder nowhere"]), ("", ["names no file"])]:
+        for name, words in [("nowhere/film", ["no folder nowhere"]), ("film/", ["names no file"])]:
             self.refuse("clogrun", "array", *QUICK, "--polygon-interval", 15, f"--frames={name}", "--output", "run.h5", words=words)
         told = self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 15, "--output", "run.h5", "--frames", "film.mp4").stdout
         self.assertIn(told.splitlines()[-1], ["film.mp4", "film.gif"])
