@@ -14,7 +14,7 @@ import unittest
 
 import h5py
 import numpy as np
-from support import BIN, ROOT, STEPS_PER_SNAPSHOT, SWEEP, ProgramTest, SweepTest, table
+from support import BIN, ROOT, SLOW, STEPS_PER_SNAPSHOT, SWEEP, ProgramTest, SweepTest, table
 
 FEW = [word.replace("1..6", "1") for word in SWEEP]
 
@@ -72,9 +72,9 @@ class Resumed(SweepTest):
         self.assertEqual({path.name for path in self.folder.iterdir()}, {"s.h5", "whole.h5"})
 
     def test_a_signal_stops_and_the_same_command_goes_on(self):
-        self.succeed("clogsweep", *SWEEP[:-1], "whole.h5", ranks=2)
+        self.succeed("clogsweep", *SLOW[:-1], "whole.h5", ranks=2)
         for signal_number in (signal.SIGUSR1, signal.SIGINT):
-            process = self.start(*SWEEP)
+            process = self.start(*SLOW)
             self.wait_for(lambda: (self.folder / "s.h5").exists() and
                           (table(self.folder / "s.h5").query("status == 'running'").steps > STEPS_PER_SNAPSHOT).any())
             process.send_signal(signal_number)
@@ -84,10 +84,10 @@ class Resumed(SweepTest):
                 self.assertEqual(process.returncode, 75, error)
                 rows = table(self.folder / "s.h5")
                 self.assertGreater((rows.status == "interrupted").sum(), 0)
-        done = self.succeed("clogsweep", *SWEEP, ranks=2)
+        done = self.succeed("clogsweep", *SLOW, ranks=2)
         self.assertIn("go on where they were", done.stderr)
         self.check_equal("s.h5", "whole.h5")
-        again = self.succeed("clogsweep", *SWEEP, ranks=2)
+        again = self.succeed("clogsweep", *SLOW, ranks=2)
         self.assertIn("there is nothing left to do", again.stderr)
         self.check_equal("s.h5", "whole.h5")
 
@@ -155,8 +155,8 @@ class Resumed(SweepTest):
         self.refuse("clogsweep", *SWEEP, words=["its table is gone", "remove the journal"])
 
     def test_a_damaged_record_costs_no_other(self):
-        self.succeed("clogsweep", *FEW[:-1], "whole.h5", ranks=2)
-        process = self.start(*FEW)
+        self.succeed("clogsweep", *SLOW[:-1], "whole.h5", ranks=2)
+        process = self.start(*SLOW)
         self.wait_for(lambda: self.journal()[0] >= 2)
         self.kill_all(process)
         self.assertIn(", all whole", self.succeed("clogsweep", "verify", "s.h5").stdout)
@@ -168,7 +168,7 @@ class Resumed(SweepTest):
         self.assertEqual(verified.returncode, 1)
         self.assertRegex(verified.stdout, r"1 more damaged; the last one is torn, as after a kill")
         self.assertEqual(journal.read_bytes()[:-22], content)
-        done = self.succeed("clogsweep", *FEW, ranks=2)
+        done = self.succeed("clogsweep", *SLOW, ranks=2)
         self.assertIn("s.h5.journal: 1 record is damaged; what was in there is computed again\n", done.stderr)
         self.check_equal("s.h5", "whole.h5")
 
@@ -209,7 +209,7 @@ class Resumed(SweepTest):
         self.assertEqual(set(table(self.folder / "s.h5").instruction_set), {"baseline"})
 
     def test_a_run_under_two_instruction_sets_is_called_mixed(self):
-        long = ["vertices=64", "box=20", "obstacle-gap=1.2", "max-time=1e4", "seeds=1..2", "--report-seconds=0.1",
+        long = ["vertices=64", "box=20", "obstacle-gap=1.2", "max-time=2e4", "seeds=1..2", "--report-seconds=0.1",
                 "--output", "s.h5"]
         process = self.start(*long, ranks=1)
         self.wait_for(lambda: self.journal()[1] > 0)
