@@ -38,19 +38,23 @@ void DpDroplet::start_afresh() {
 }
 
 void DpDroplet::advance(int num_steps) {
+  if (state_.recentre().any()) forces_.forget_contacts();
+  stepper_->load(state_);
+  Work* const work = measures_dissipation_ ? &work_ : nullptr;
   for (int done = 0; done < num_steps; done += steps_per_check_) {
-    if (state_.recentre().any()) forces_.forget_contacts();
-    const DpStepper::Edges edges = stepper_->load(state_);
+    const DpStepper::Edges edges = stepper_->edges();
     // Its contact lists would take all memory. The run sees it at its next check.
-    if (!(edges.perimeter < burst_perimeter)) return;
+    if (!(edges.perimeter < burst_perimeter)) break;
     const int steps = std::min(steps_per_check_, num_steps - done);
-    forces_.update_contacts(state_, state_.possible_travel(steps * run_.time_step.value()));
+    const Travel travel = state_.possible_travel(steps * run_.time_step.value());
+    forces_.update_contacts(state_, travel);
+    stepper_->look(travel);
     const int substeps = num_substeps(
         stiff_modes(run_.dp, *run_.wall_stiffness, edges.perimeter, edges.shortest), run_.time_step.value());
-    stepper_->advance(state_, steps * substeps, run_.time_step.value() / substeps,
-                      measures_dissipation_ ? &work_ : nullptr);
+    stepper_->advance(state_, steps * substeps, run_.time_step.value() / substeps, work);
     num_integrated_steps_ += static_cast<std::int64_t>(steps) * substeps;
   }
+  stepper_->finish(state_, work);
 }
 
 Eigen::Array2d DpDroplet::centre() const {

@@ -28,79 +28,236 @@ void clear_pushes(int n, const StepArrays& a) {
 }
 
 /// Every lane to the next one; 0 to the first.
-inline V to_next_lane(V v) {
+HWY_INLINE V to_next_lane(V v) {
   alignas(64) constexpr std::int64_t before[8] = {0, 0, 1, 2, 3, 4, 5, 6};
   return hn::IfThenZeroElse(hn::FirstN(D(), 1), hn::TableLookupLanes(v, hn::SetTableIndices(D(), before)));
 }
 
-/// Pushes the listed edges of a group off a point by stiffness (reach - distance), where that is positive.
-/// Returns the sum of the pushes.
-struct Push {
-  double x = 0, y = 0;
+HWY_INLINE M lanes_of(int bits, int first) {
+  const std::uint8_t shifted[8] = {static_cast<std::uint8_t>(bits >> first)};
+  return hn::LoadMaskBits(D(), shifted);
+}
+
+HWY_INLINE int bits_of(M mask) {
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(D(), mask, bits);
+  return bits[0];
+}
+
+/// `lanes` consecutive edges.
+struct EdgeVectors {
+  V x, y, tx, ty, length;
+  HWY_INLINE EdgeVectors(int i, const StepArrays& a)
+      : x(load(a.x + i)),
+        y(load(a.y + i)),
+        tx(load(a.tangent_x + i)),
+        ty(load(a.tangent_y + i)),
+        length(load(a.length + i)) {}
 };
-inline Push push_off_point(int group, std::uint8_t edges, V px, V py, V reach, V stiffness, V span,
-                           const StepArrays& a) {
-  Push total;
-  for (int lane = 0; lane < edges_per_group; lane += lanes) {
-    const int i = group * edges_per_group + lane;
-    const V tx = load(a.tangent_x + i), ty = load(a.tangent_y + i), length = load(a.length + i);
-    const V to_x = hn::Sub(px, load(a.x + i)), to_y = hn::Sub(py, load(a.y + i));
-    const V along = hn::Min(hn::Max(hn::MulAdd(to_x, tx, hn::Mul(to_y, ty)), all(0)), hn::Mul(length, span));
-    const V dx = hn::MulSub(along, tx, to_x), dy = hn::MulSub(along, ty, to_y);
-    const V distance2 = hn::MulAdd(dx, dx, hn::Mul(dy, dy));
-    const std::uint8_t bits[8] = {static_cast<std::uint8_t>(edges >> lane)};
-    const M touches = hn::And(hn::Lt(distance2, hn::Mul(reach, reach)), hn::LoadMaskBits(D(), bits));
-    if (hn::AllFalse(D(), touches)) continue;
-    // A point on the very centre gets no direction, but no NaN.
-    const V inverse_distance = square_root(hn::Max(distance2, all(1e-300))).inverse;
-    const V push =
-        hn::IfThenElseZero(touches, hn::Mul(stiffness, hn::MulSub(reach, inverse_distance, all(1))));
-    const V fx = hn::Mul(push, dx), fy = hn::Mul(push, dy);
-    // The edge's two vertices share it as the nearest point divides the edge.
-    const V fraction = hn::Div(along, length);
-    const V end_x = hn::Mul(fraction, fx), end_y = hn::Mul(fraction, fy);
-    // Added in one go: what was just stored elsewhere could not be loaded at once.
-    const V own_x = hn::Add(hn::Sub(fx, end_x), to_next_lane(end_x));
-    const V own_y = hn::Add(hn::Sub(fy, end_y), to_next_lane(end_y));
-    store(hn::Add(load(a.push_x + i), own_x), a.push_x + i);
-    store(hn::Add(load(a.push_y + i), own_y), a.push_y + i);
-    a.push_x[i + lanes] += hn::ExtractLane(end_x, lanes - 1);
-    a.push_y[i + lanes] += hn::ExtractLane(end_y, lanes - 1);
-    total.x += sum(fx);
-    total.y += sum(fy);
+
+/// The points of edges that are nearest to points given, one for each edge.
+struct NearestPoints {
+  V along;   ///< of their edge
+  V dx, dy;  ///< from the points given
+  V distance2;
+
+  /// @param span  1: edges count, 0: their first vertices alone
+  HWY_INLINE NearestPoints(const EdgeVectors& edges, V x, V y, V span) {
+    const V to_x = hn::Sub(x, edges.x), to_y = hn::Sub(y, edges.y);
+    along = hn::Min(hn::Max(hn::MulAdd(to_x, edges.tx, hn::Mul(to_y, edges.ty)), all(0)),
+                    hn::Mul(edges.length, span));
+    dx = hn::MulSub(along, edges.tx, to_x);
+    dy = hn::MulSub(along, edges.ty, to_y);
+    distance2 = hn::MulAdd(dx, dx, hn::Mul(dy, dy));
   }
-  return total;
+  HWY_INLINE M are_nearer_than(V reach) const { return hn::Lt(distance2, hn::Mul(reach, reach)); }
+};
+
+struct Push {
+  V x, y;
+};
+/// Pushes on edges, until they are handed to the vertices.
+class EdgePushes {
+ public:
+  HWY_INLINE EdgePushes() : x_(all(0)), y_(all(0)), along_x_(all(0)), along_y_(all(0)) {}
+  /// Pushes edges off their points by stiffness (reach - distance), where they touch. An edge's two vertices
+  /// share it as the nearest point divides the edge.
+  HWY_INLINE Push add(const NearestPoints& nearest, M touch, V reach, V stiffness) {
+    // A point on the very edge gets no direction, but no NaN.
+    const V inverse_distance = square_root(hn::Max(nearest.distance2, all(1e-300))).inverse;
+    const V size = hn::IfThenElseZero(touch, hn::Mul(stiffness, hn::MulSub(reach, inverse_distance, all(1))));
+    const Push push{hn::Mul(size, nearest.dx), hn::Mul(size, nearest.dy)};
+    x_ = hn::Add(x_, push.x);
+    y_ = hn::Add(y_, push.y);
+    along_x_ = hn::MulAdd(nearest.along, push.x, along_x_);
+    along_y_ = hn::MulAdd(nearest.along, push.y, along_y_);
+    return push;
+  }
+  /// To the vertices. @param i  the first edge
+  HWY_INLINE void hand_out(int i, const EdgeVectors& edges, const StepArrays& a) const {
+    const V inverse_length = reciprocal(edges.length);
+    hand_out(x_, hn::Mul(along_x_, inverse_length), a.push_x + i);
+    hand_out(y_, hn::Mul(along_y_, inverse_length), a.push_y + i);
+  }
+
+ private:
+  V x_, y_, along_x_, along_y_;
+
+  static HWY_INLINE void hand_out(V whole, V end, double* p) {
+    // Added in one go: what was just stored elsewhere could not be loaded at once.
+    store(hn::Add(load(p), hn::Add(hn::Sub(whole, end), to_next_lane(end))), p);
+    p[lanes] += hn::ExtractLane(end, lanes - 1);
+  }
+};
+
+void push_off_circles(const WallContacts::Item* items, std::size_t num_items, const Contact& contact,
+                      const StepArrays& a) {
+  const V span = all(contact.span), stiffness = all(contact.stiffness);
+  for (const WallContacts::Item* item = items; item != items + num_items; ++item) {
+    const V reach = all(item->reach);
+    for (int lane = 0; lane < edges_per_group; lane += lanes) {
+      const int i = item->group * edges_per_group + lane;
+      const EdgeVectors edges(i, a);
+      const NearestPoints nearest(edges, all(item->x), all(item->y), span);
+      const M touch = hn::And(nearest.are_nearer_than(reach), lanes_of(item->edges, lane));
+      if (hn::AllFalse(D(), touch)) continue;
+      EdgePushes pushes;
+      pushes.add(nearest, touch, reach, stiffness);
+      pushes.hand_out(i, edges, a);
+    }
+  }
+}
+
+/// The lanes from the first to the last, twice, and the other way round.
+constexpr auto orders = [] {
+  std::array<std::array<std::int64_t, 2 * lanes>, 2> order{};
+  for (int k = 0; k < 2 * lanes; ++k) {
+    order[0][k] = k % lanes;
+    order[1][k] = lanes - 1 - k % lanes;
+  }
+  return order;
+}();
+
+/// Consecutive vertices, one for each edge of a vector.
+class PairedVertices {
+ public:
+  /// @param lane  of the item's edges the first
+  HWY_INLINE PairedVertices(const SelfContacts::Item& item, int lane, const StepArrays& a)
+      : first_(item.vertices + (item.backwards ? edges_per_group - lanes - lane : lane)),
+        order_(orders[item.backwards].data()) {
+    const auto order = hn::SetTableIndices(D(), order_);
+    x_ = hn::TableLookupLanes(load_at(a.x + first_), order);
+    y_ = hn::TableLookupLanes(load_at(a.y + first_), order);
+  }
+  HWY_INLINE V x() const { return x_; }
+  HWY_INLINE V y() const { return y_; }
+
+  /// What pushes edges pushes their vertices back. Whole aligned vectors are read and written: one that lies
+  /// across two just stored would have to wait until these are in the cache.
+  HWY_INLINE void push_back(const Push& push, const StepArrays& a) const {
+    const int beyond = first_ & (lanes - 1), aligned = first_ - beyond;
+    const auto turned = hn::SetTableIndices(D(), order_ + lanes - beyond);
+    const M later = lanes_of((1 << beyond) - 1, 0);
+    const V x = hn::TableLookupLanes(push.x, turned), y = hn::TableLookupLanes(push.y, turned);
+    subtract(hn::IfThenZeroElse(later, x), a.push_x + aligned);
+    subtract(hn::IfThenZeroElse(later, y), a.push_y + aligned);
+    subtract(hn::IfThenElseZero(later, x), a.push_x + aligned + lanes);
+    subtract(hn::IfThenElseZero(later, y), a.push_y + aligned + lanes);
+  }
+
+ private:
+  int first_;
+  const std::int64_t* order_;
+  V x_, y_;
+
+  static HWY_INLINE void subtract(V v, double* p) { store(hn::Sub(load(p), v), p); }
+};
+
+/// Edges and vertices push each other off.
+void push_off_each_other(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
+                         const StepArrays& a) {
+  const V reach = all(contact.diameter), stiffness = all(contact.stiffness);
+  const SelfContacts::Item* const end = items + num_items;
+  for (const SelfContacts::Item *begin = items, *next = items; begin != end; begin = next) {
+    while (next != end && next->edges == begin->edges) ++next;
+    for (int lane = 0; lane < edges_per_group; lane += lanes) {
+      const int i = begin->edges + lane;
+      const EdgeVectors edges(i, a);
+      EdgePushes pushes;
+      for (const SelfContacts::Item* item = begin; item != next; ++item) {
+        const PairedVertices vertices(*item, lane, a);
+        const NearestPoints nearest(edges, vertices.x(), vertices.y(), all(1));
+        const M touch = hn::And(nearest.are_nearer_than(reach), lanes_of(item->pairs, lane));
+        if (hn::AllFalse(D(), touch)) continue;
+        vertices.push_back(pushes.add(nearest, touch, reach, stiffness), a);
+      }
+      pushes.hand_out(i, edges, a);
+    }
+  }
+}
+
+std::size_t keep_near_circles(WallContacts::Item* items, std::size_t num_items, double way,
+                              const Contact& contact, const StepArrays& arrays) {
+  const StepArrays a = arrays;
+  const V span = all(contact.span);
+  std::size_t num_near = 0;
+  for (std::size_t k = 0; k < num_items; ++k) {
+    WallContacts::Item item = items[k];
+    int near = 0;
+    for (int lane = 0; lane < edges_per_group; lane += lanes) {
+      const EdgeVectors edges(item.group * edges_per_group + lane, a);
+      const NearestPoints nearest(edges, all(item.x), all(item.y), span);
+      near |= bits_of(nearest.are_nearer_than(all(item.reach + way))) << lane;
+    }
+    item.edges &= static_cast<std::uint8_t>(near);
+    items[num_near] = item;
+    num_near += item.edges != 0;
+  }
+  return num_near;
+}
+
+std::size_t keep_near_pairs(SelfContacts::Item* items, std::size_t num_items, double way,
+                            const Contact& contact, const StepArrays& arrays) {
+  const StepArrays a = arrays;
+  const V reach = all(contact.diameter + way);
+  std::size_t num_near = 0;
+  for (std::size_t k = 0; k < num_items; ++k) {
+    SelfContacts::Item item = items[k];
+    int near = 0;
+    for (int lane = 0; lane < edges_per_group; lane += lanes) {
+      const EdgeVectors edges(item.edges + lane, a);
+      const PairedVertices vertices(item, lane, a);
+      const NearestPoints nearest(edges, vertices.x(), vertices.y(), all(1));
+      near |= bits_of(nearest.are_nearer_than(reach)) << lane;
+    }
+    item.pairs &= static_cast<std::uint8_t>(near);
+    items[num_near] = item;
+    num_near += item.pairs != 0;
+  }
+  return num_near;
 }
 
 void push(int n, const WallContacts::Item* walls, std::size_t num_walls, const SelfContacts::Item* self,
           std::size_t num_self, const Contact& contact, const StepArrays& arrays) {
   const StepArrays a = arrays;
-  // An edge's end may be the first vertex of the next group, or of the contour.
-  for (const WallContacts::Item* item = walls; item != walls + num_walls; ++item) {
-    clear_group(item->group, a);
-    clear_group(item->group + 1, a);
+  if (num_self > 0) {
+    clear_pushes(n + edges_per_group - 1, a);
+  } else {
+    // An edge's end may be the first vertex of the next group, or of the contour.
+    for (const WallContacts::Item* item = walls; item != walls + num_walls; ++item) {
+      clear_group(item->group, a);
+      clear_group(item->group + 1, a);
+    }
+    clear_group(0, a);
+    a.push_x[n] = a.push_y[n] = 0;
   }
-  for (const SelfContacts::Item* item = self; item != self + num_self; ++item) {
-    clear_group(item->group, a);
-    clear_group(item->group + 1, a);
-    clear_group(item->vertex / edges_per_group, a);
+  push_off_circles(walls, num_walls, contact, a);
+  push_off_each_other(self, num_self, contact, a);
+  const int beyond = num_self > 0 ? edges_per_group : 1;
+  for (int i = 0; i < beyond; ++i) {
+    a.push_x[i] += std::exchange(a.push_x[n + i], 0);
+    a.push_y[i] += std::exchange(a.push_y[n + i], 0);
   }
-  clear_group(0, a);
-  a.push_x[n] = a.push_y[n] = 0;
-
-  const V stiffness = all(contact.stiffness), span = all(contact.span);
-  for (const WallContacts::Item* item = walls; item != walls + num_walls; ++item)
-    push_off_point(item->group, item->edges, all(item->x), all(item->y), all(item->reach), stiffness, span,
-                   a);
-  const V diameter = all(contact.diameter), whole = all(1);
-  for (const SelfContacts::Item* item = self; item != self + num_self; ++item) {
-    const Push pushed = push_off_point(item->group, item->edges, all(a.x[item->vertex]),
-                                       all(a.y[item->vertex]), diameter, stiffness, whole, a);
-    a.push_x[item->vertex] -= pushed.x;
-    a.push_y[item->vertex] -= pushed.y;
-  }
-  a.push_x[0] += std::exchange(a.push_x[n], 0);
-  a.push_y[0] += std::exchange(a.push_y[n], 0);
 }
 
 /// A wedge and vertices near it: away_from() of dp_kernel.cpp, for a vector of them.

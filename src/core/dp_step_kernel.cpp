@@ -29,7 +29,8 @@ const char* instruction_set_name() {
 }
 
 StepKernel make_kernel(const KickTerms& terms) {
-  return {instruction_set_name(), measure, clear_pushes,        push, push_off_wedges, near_wall_rates,
+  return {instruction_set_name(), measure, keep_near_circles,   keep_near_pairs,
+          clear_pushes,           push,    push_off_wedges,     near_wall_rates,
           kick_version(terms),    power,   drift_version(terms)};
 }
 

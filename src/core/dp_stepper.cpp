@@ -46,7 +46,7 @@ DpStepper::DpStepper(const RunParameters& run, const DpForces& forces)
   }
 }
 
-DpStepper::Edges DpStepper::load(const DropletState& state) {
+void DpStepper::load(const DropletState& state) {
   const auto copy = [this](const double* from, double* to) {
     std::copy_n(from, n_, to);
     to[-1] = to[n_ - 1];
@@ -56,12 +56,26 @@ DpStepper::Edges DpStepper::load(const DropletState& state) {
   copy(state.position.data() + n_, arrays_.y);
   copy(state.velocity.data(), arrays_.vx);
   copy(state.velocity.data() + n_, arrays_.vy);
-  kernel_.clear_pushes(n_, arrays_);  // the lists may name other groups than before
   wedges_.clear();
   for (const Wedge& wedge : forces_->wedges()) wedges_.push_back(kernel::place_in(state.frame, wedge));
   sums_ = kernel_.measure(n_, arrays_);
-  return {.perimeter = sums_.perimeter,
-          .shortest = Eigen::Map<const Eigen::ArrayXd>(arrays_.length, n_).minCoeff()};
+  open_step_ = 0;
+}
+
+DpStepper::Edges DpStepper::edges() const {
+  const Eigen::Map<const Eigen::ArrayXd> lengths(arrays_.length, n_);
+  return {.perimeter = lengths.sum(), .shortest = lengths.minCoeff()};
+}
+
+void DpStepper::look(const Travel& travel) {
+  kernel_.clear_pushes(n_, arrays_);  // the lists may name other groups than before
+  const double unforeseen = 0.1 * forces_->self_contacts().diameter();
+  near_walls_ = forces_->walls().items();
+  near_walls_.resize(kernel_.keep_near_circles(near_walls_.data(), near_walls_.size(),
+                                               travel.absolute + unforeseen, contact(0), arrays_));
+  near_self_ = forces_->self_contacts().items();
+  near_self_.resize(kernel_.keep_near_pairs(near_self_.data(), near_self_.size(),
+                                            2 * travel.relative + unforeseen, contact(0), arrays_));
 }
 
 void DpStepper::store(DropletState& state) const {
@@ -72,32 +86,36 @@ void DpStepper::store(DropletState& state) const {
 }
 
 void DpStepper::advance(DropletState& state, int steps, double time_step, Droplet::Work* work) {
+  if (open_step_ != 0 && open_step_ != time_step) finish(state, work);
   const double h = 0.5 * time_step;
-  const bool measures = work != nullptr;
-  const kernel::KickCoefficients first{
-      .kicks = 0, .h1 = 0, .h2 = h, .weight = 1, .half_step = h, .keeps_kicked = measures};
-  const kernel::KickCoefficients inner{
-      .kicks = 1, .h1 = h, .h2 = h, .weight = 2, .half_step = h, .keeps_kicked = measures};
-  const kernel::KickCoefficients last{
-      .kicks = 1, .h1 = h, .h2 = h, .weight = 1, .half_step = h, .keeps_kicked = true};
-  Droplet::Work power = kick_and_drift(state, first, time_step, measures);
-  for (int step = 1; step <= steps; ++step) {
-    const Droplet::Work next = step < steps ? kick_and_drift(state, inner, time_step, measures)
-                                            : kick_and_drift(state, last, 0, measures);
-    if (measures) {
-      work->dissipated += h * (power.dissipated + next.dissipated);
-      work->spreading += h * (power.spreading + next.spreading);
-    }
-    power = next;
+  for (int step = 0; step < steps; ++step) {
+    const bool ends_step = open_step_ != 0;
+    open_step_ = time_step;
+    kick_and_drift(state,
+                   {.kicks = ends_step ? 1.0 : 0.0,
+                    .h1 = ends_step ? h : 0,
+                    .h2 = h,
+                    .weight = ends_step ? 2.0 : 1.0,
+                    .half_step = h,
+                    .keeps_kicked = work != nullptr},
+                   time_step, work);
   }
   store(state);
 }
 
+void DpStepper::finish(DropletState& state, Droplet::Work* work) {
+  if (open_step_ == 0) return;
+  const double h = 0.5 * open_step_;
+  kick_and_drift(state, {.kicks = 1, .h1 = h, .h2 = h, .weight = 1, .half_step = h, .keeps_kicked = true}, 0,
+                 work);
+  open_step_ = 0;
+  store(state);
+}
+
 /// One force evaluation, the half kicks on its two sides, and the drift to the next one; without a drift only
-/// the first half kick. Returns the power loss between the two half kicks, if it is wanted.
-Droplet::Work DpStepper::kick_and_drift(const DropletState& frame,
-                                        const kernel::KickCoefficients& coefficients, double drift_time,
-                                        bool measures_power) {
+/// the first half kick.
+void DpStepper::kick_and_drift(const DropletState& frame, const kernel::KickCoefficients& coefficients,
+                               double drift_time, Droplet::Work* work) {
   const double impulse = coefficients.half_step / (units::droplet_mass / n_);
   push_off_everything(frame, coefficients, impulse);
   const kernel::Interface at_rest = forces_->interface(sums_.area, sums_.perimeter);
@@ -112,28 +130,35 @@ Droplet::Work DpStepper::kick_and_drift(const DropletState& frame,
                                 .x = impulse * (units::droplet_mass * units::gravity - wetting_spread_[0]),
                                 .y = -impulse * wetting_spread_[1]};
   const kernel::Coupling coupling = kernel_.kick(n_, terms_, interface, force, coefficients, arrays_);
-  const Droplet::Work now = measures_power ? power(interface, coefficients, coupling) : Droplet::Work{};
+  if (work != nullptr) {
+    const Droplet::Work now = power(interface, coefficients, coupling);
+    if (coefficients.kicks != 0) {  // it ends a step
+      work->dissipated += coefficients.h1 * (open_power_.dissipated + now.dissipated);
+      work->spreading += coefficients.h1 * (open_power_.spreading + now.spreading);
+    }
+    open_power_ = now;
+  }
   if (drift_time == 0) {  // w, to which no second half kick was added, is the velocity
     std::swap(arrays_.vx, arrays_.kicked_x);
     std::swap(arrays_.vy, arrays_.kicked_y);
   }
   sums_ = kernel_.drift(n_, terms_, coefficients, coupling, drift_time, arrays_);
-  return now;
+}
+
+kernel::Contact DpStepper::contact(double stiffness) const {
+  return {.stiffness = stiffness,
+          .span = run_.dp.wall_contact == WallContact::edge ? 1.0 : 0.0,
+          .diameter = forces_->self_contacts().diameter()};
 }
 
 void DpStepper::push_off_everything(const DropletState& frame, const kernel::KickCoefficients& coefficients,
                                     double impulse) {
-  const WallContacts& walls = forces_->walls();
   const double stiffness = impulse * forces_->contact_stiffness();
-  const SelfContacts& self = forces_->self_contacts();
   if (!wedges_.empty() || forces_->wets()) kernel_.clear_pushes(n_, arrays_);
-  kernel_.push(n_, walls.items().data(), walls.items().size(), self.items().data(), self.items().size(),
-               {.stiffness = stiffness,
-                .span = run_.dp.wall_contact == WallContact::edge ? 1.0 : 0.0,
-                .diameter = self.diameter()},
-               arrays_);
+  kernel_.push(n_, near_walls_.data(), near_walls_.size(), near_self_.data(), near_self_.size(),
+               contact(stiffness), arrays_);
   if (!wedges_.empty())
-    kernel_.push_off_wedges(n_, wedges_.data(), wedges_.size(), walls.range(), stiffness, arrays_);
+    kernel_.push_off_wedges(n_, wedges_.data(), wedges_.size(), forces_->walls().range(), stiffness, arrays_);
   if (forces_->wets()) {
     DropletState here = frame;
     store(here);

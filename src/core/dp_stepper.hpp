@@ -18,15 +18,22 @@ class DpStepper {
   /// @param forces  its contact lists are used; must outlive this object
   DpStepper(const RunParameters& run, const DpForces& forces);
 
+  /// Takes over a droplet.
+  void load(const DropletState& state);
   struct Edges {
     double perimeter, shortest;  ///< [sigma]
   };
-  /// Takes over a droplet.
-  Edges load(const DropletState& state);
-  /// `steps` steps of `time_step` of the droplet just loaded. The contact lists must hold for the way.
-  /// @param state  that droplet, at the end with its new positions and velocities
-  /// @param work  if not null, what drag and springs did is added to it
+  /// Of the droplet as it is now.
+  Edges edges() const;
+  /// Takes over what may touch on the way to the next look() from the contact lists, which must hold for it.
+  void look(const Travel& travel);
+  /// `steps` steps of `time_step`. The last half kick is left open: positions are those of the steps' end,
+  /// velocities those of half a step before.
+  /// @param state  the droplet that was loaded
+  /// @param work  if not null, what drag and springs did since the last call is added to it
   void advance(DropletState& state, int steps, double time_step, Droplet::Work* work);
+  /// The last half kick.
+  void finish(DropletState& state, Droplet::Work* work);
   const char* instruction_set() const { return kernel_.name; }
 
  private:
@@ -37,13 +44,19 @@ class DpStepper {
   int n_;
   hwy::AlignedFreeUniquePtr<double[]> memory_;
   kernel::StepArrays arrays_;
-  std::vector<kernel::WedgePlace> wedges_;  // in the droplet's frame
-  Eigen::Array2d wetting_spread_{0, 0};     // of wetting, see DpForces::wetting_forces()
+  // What may touch before the next look, and wedges in the droplet's frame.
+  std::vector<WallContacts::Item> near_walls_;
+  std::vector<SelfContacts::Item> near_self_;
+  std::vector<kernel::WedgePlace> wedges_;
+  Eigen::Array2d wetting_spread_{0, 0};  // of wetting, see DpForces::wetting_forces()
   kernel::Sums sums_{};
+  double open_step_ = 0;      // length of the step whose last half kick is to come; 0: none is
+  Droplet::Work open_power_;  // at its beginning
 
   void store(DropletState& state) const;
-  Droplet::Work kick_and_drift(const DropletState& frame, const kernel::KickCoefficients& coefficients,
-                               double drift_time, bool measures_power);
+  kernel::Contact contact(double stiffness) const;
+  void kick_and_drift(const DropletState& frame, const kernel::KickCoefficients& coefficients,
+                      double drift_time, Droplet::Work* work);
   void push_off_everything(const DropletState& frame, const kernel::KickCoefficients& coefficients,
                            double impulse);
   Droplet::Work power(const kernel::InterfaceKick& interface, const kernel::KickCoefficients& coefficients,

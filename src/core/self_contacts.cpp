@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "clog/core/polygon.hpp"
 
@@ -13,20 +14,6 @@ namespace {
 constexpr double contour_exclusion = 3;
 
 }  // namespace
-
-EdgeContact nearest_point(const SelfContacts::Pair& pair, const double* x, const double* y,
-                          int num_vertices) {
-  const int begin = pair.edge;
-  const int end = begin + 1 < num_vertices ? begin + 1 : 0;
-  const double ex = x[end] - x[begin];
-  const double ey = y[end] - y[begin];
-  const double rx = x[pair.vertex] - x[begin];
-  const double ry = y[pair.vertex] - y[begin];
-  const double fraction = std::clamp((rx * ex + ry * ey) / (ex * ex + ey * ey), 0.0, 1.0);
-  const double dx = rx - fraction * ex;
-  const double dy = ry - fraction * ey;
-  return {std::sqrt(dx * dx + dy * dy), fraction, dx, dy};
-}
 
 void SelfContacts::update(const DropletState& state, const Travel& travel) {
   const Eigen::Index n = state.size();
@@ -39,7 +26,7 @@ void SelfContacts::update(const DropletState& state, const Travel& travel) {
   }
   // Thin enough that neighbours along a straight contour stay out of reach, unless the droplet moves very
   // fast.
-  rebuild(state, std::clamp(2 * travel.relative, 0.5 * diameter_, widest_skin));
+  rebuild(state, std::clamp(2 * travel.relative, 0.7 * diameter_, widest_skin));
 }
 
 void SelfContacts::rebuild(const DropletState& state, double skin) {
@@ -85,36 +72,55 @@ void SelfContacts::rebuild(const DropletState& state, double skin) {
     const int steps = std::abs(a - b);
     return std::min(steps, n - steps);
   };
+  const auto is_near = [&](int a, int b) {
+    return (x[a] - x[b]) * (x[a] - x[b]) + (y[a] - y[b]) * (y[a] - y[b]) <= end_reach * end_reach;
+  };
+  const auto add_if_near = [&](const Pair& pair) {
+    const int end = pair.edge + 1 < n ? pair.edge + 1 : 0;
+    if (contour_steps(pair.vertex, pair.edge) >= exclusion && contour_steps(pair.vertex, end) >= exclusion &&
+        nearest_point(pair, x, y, n).distance <= reach)
+      pairs_.push_back(pair);
+  };
   for (int vertex = 0; vertex < n; ++vertex) {
-    const std::size_t first = pairs_.size();
     const int cell = cell_of(vertex);
     for (int row = -1; row <= 1; ++row)
       for (int column = -1; column <= 1; ++column)
         for (int other = head_[cell + row * columns + column]; other >= 0; other = next_[other]) {
-          if (contour_steps(vertex, other) < exclusion) continue;
-          for (const int edge : {other, other > 0 ? other - 1 : n - 1}) {
-            const int end = edge + 1 < n ? edge + 1 : 0;
-            if (contour_steps(vertex, edge) < exclusion || contour_steps(vertex, end) < exclusion) continue;
-            if (nearest_point({vertex, edge}, x, y, n).distance <= reach) pairs_.push_back({vertex, edge});
-          }
+          if (contour_steps(vertex, other) < exclusion || !is_near(vertex, other)) continue;
+          add_if_near({vertex, other});
+          // The edge that ends here is found from its beginning, if that is near.
+          const int before = other > 0 ? other - 1 : n - 1;
+          if (!is_near(vertex, before)) add_if_near({vertex, before});
         }
-    // An edge is found from either end.
-    const auto begin = pairs_.begin() + static_cast<std::ptrdiff_t>(first);
-    std::sort(begin, pairs_.end(), [](const Pair& a, const Pair& b) { return a.edge < b.edge; });
-    pairs_.erase(
-        std::unique(begin, pairs_.end(), [](const Pair& a, const Pair& b) { return a.edge == b.edge; }),
-        pairs_.end());
   }
-  fill_items();
+  fill_items(state);
 }
 
-void SelfContacts::fill_items() {
+void SelfContacts::fill_items(const DropletState& state) {
+  constexpr int group_size = WallContacts::edges_per_group;
+  const int n = static_cast<int>(state.size());
+  const double* x = state.position.data();
+  const double* y = x + n;
   items_.clear();
+  std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
+    return std::pair(a.edge / group_size, a.vertex) < std::pair(b.edge / group_size, b.vertex);
+  });
+  item_of_.assign(2 * static_cast<std::size_t>(n), -1);  // the latest
   for (const Pair& pair : pairs_) {
-    const int group = pair.edge / WallContacts::edges_per_group;
-    if (items_.empty() || items_.back().vertex != pair.vertex || items_.back().group != group)
-      items_.push_back({pair.vertex, group, 0});
-    items_.back().edges |= static_cast<std::uint8_t>(1u << (pair.edge % WallContacts::edges_per_group));
+    const int before = pair.vertex > 0 ? pair.vertex - 1 : n - 1, after = (pair.vertex + 1) % n;
+    const int end = (pair.edge + 1) % n;
+    const bool backwards =
+        (x[after] - x[before]) * (x[end] - x[pair.edge]) + (y[after] - y[before]) * (y[end] - y[pair.edge]) <
+        0;
+    const int edges = pair.edge / group_size * group_size;
+    const int bit = pair.edge - edges;
+    const int vertices = (pair.vertex - (backwards ? group_size - 1 - bit : bit) + n) % n;
+    int& item = item_of_[vertices + (backwards ? n : 0)];
+    if (item < 0 || items_[item].edges != edges) {
+      item = static_cast<int>(items_.size());
+      items_.push_back({edges, vertices, 0, backwards});
+    }
+    items_[item].pairs |= static_cast<std::uint8_t>(1u << bit);
   }
 }
 

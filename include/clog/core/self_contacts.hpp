@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -31,11 +33,14 @@ class SelfContacts {
   const std::vector<Pair>& pairs() const { return pairs_; }
   double diameter() const { return diameter_; }
 
-  /// The same pairs by vertex: the edges of a group of WallContacts::edges_per_group are bits.
+  /// The same pairs for vectors: a group of WallContacts::edges_per_group edges and as many consecutive
+  /// vertices. Strands that face each other run in opposite directions, so the last of these vertices is
+  /// paired with the first edge; where a strand is compressed upon itself it is the first.
   struct Item {
-    int vertex;
-    int group;
-    std::uint8_t edges;
+    int edges;           ///< the first of a group
+    int vertices;        ///< the first; those from N on are the contour's first
+    std::uint8_t pairs;  ///< bit b: edge `edges` + b and the b-th vertex
+    bool backwards;      ///< are vertices counted from the last?
   };
   const std::vector<Item>& items() const { return items_; }
 
@@ -45,10 +50,11 @@ class SelfContacts {
   std::vector<Pair> pairs_;
   std::vector<Item> items_;
   std::vector<int> head_, next_;  // vertices by cell
+  std::vector<int> item_of_;      // by direction and first vertex
 
   double skin_ = 0;  // of the present pairs
   void rebuild(const DropletState& state, double skin);
-  void fill_items();
+  void fill_items(const DropletState& state);
 };
 
 /// Nearest point of an edge to a vertex.
@@ -57,6 +63,18 @@ struct EdgeContact {
   double fraction;  ///< the point's place on the edge, 0 at its first vertex, 1 at the next
   double dx, dy;    ///< from the point to the vertex [sigma]
 };
-EdgeContact nearest_point(const SelfContacts::Pair& pair, const double* x, const double* y, int num_vertices);
+inline EdgeContact nearest_point(const SelfContacts::Pair& pair, const double* x, const double* y,
+                                 int num_vertices) {
+  const int begin = pair.edge;
+  const int end = begin + 1 < num_vertices ? begin + 1 : 0;
+  const double ex = x[end] - x[begin];
+  const double ey = y[end] - y[begin];
+  const double rx = x[pair.vertex] - x[begin];
+  const double ry = y[pair.vertex] - y[begin];
+  const double fraction = std::clamp((rx * ex + ry * ey) / (ex * ex + ey * ey), 0.0, 1.0);
+  const double dx = rx - fraction * ex;
+  const double dy = ry - fraction * ey;
+  return {std::sqrt(dx * dx + dy * dy), fraction, dx, dy};
+}
 
 }  // namespace clog
