@@ -9,6 +9,8 @@
 
 #include <hwy/contrib/math/math-inl.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/dp_step_vectors-inl.hpp"
@@ -36,12 +38,6 @@ HWY_INLINE V to_next_lane(V v) {
 HWY_INLINE M lanes_of(int bits, int first) {
   const std::uint8_t shifted[8] = {static_cast<std::uint8_t>(bits >> first)};
   return hn::LoadMaskBits(D(), shifted);
-}
-
-HWY_INLINE int bits_of(M mask) {
-  std::uint8_t bits[8] = {};
-  hn::StoreMaskBits(D(), mask, bits);
-  return bits[0];
 }
 
 /// `lanes` consecutive edges.
@@ -196,45 +192,40 @@ void push_off_each_other(const SelfContacts::Item* items, std::size_t num_items,
   }
 }
 
-std::size_t keep_near_circles(WallContacts::Item* items, std::size_t num_items, double way,
-                              const Contact& contact, const StepArrays& arrays) {
-  const StepArrays a = arrays;
-  const V span = all(contact.span);
-  std::size_t num_near = 0;
-  for (std::size_t k = 0; k < num_items; ++k) {
-    WallContacts::Item item = items[k];
-    int near = 0;
-    for (int lane = 0; lane < edges_per_group; lane += lanes) {
-      const EdgeVectors edges(item.group * edges_per_group + lane, a);
-      const NearestPoints nearest(edges, all(item.x), all(item.y), span);
-      near |= bits_of(nearest.are_nearer_than(all(item.reach + way))) << lane;
-    }
-    item.edges &= static_cast<std::uint8_t>(near);
-    items[num_near] = item;
-    num_near += item.edges != 0;
-  }
-  return num_near;
+/// Of the listed edges the smallest distance to their points.
+HWY_INLINE double smallest(V distance2, M listed) {
+  return std::sqrt(hn::GetLane(hn::MinOfLanes(D(), hn::IfThenElse(listed, distance2, all(1e300)))));
 }
 
-std::size_t keep_near_pairs(SelfContacts::Item* items, std::size_t num_items, double way,
-                            const Contact& contact, const StepArrays& arrays) {
+void circle_gaps(const WallContacts::Item* items, std::size_t num_items, const Contact& contact,
+                 const StepArrays& arrays, double* gaps) {
   const StepArrays a = arrays;
-  const V reach = all(contact.diameter + way);
-  std::size_t num_near = 0;
+  const V span = all(contact.span);
   for (std::size_t k = 0; k < num_items; ++k) {
-    SelfContacts::Item item = items[k];
-    int near = 0;
+    const WallContacts::Item item = items[k];
+    double distance = 1e150;
     for (int lane = 0; lane < edges_per_group; lane += lanes) {
-      const EdgeVectors edges(item.edges + lane, a);
-      const PairedVertices vertices(item, lane, a);
-      const NearestPoints nearest(edges, vertices.x(), vertices.y(), all(1));
-      near |= bits_of(nearest.are_nearer_than(reach)) << lane;
+      const NearestPoints nearest(EdgeVectors(item.group * edges_per_group + lane, a), all(item.x),
+                                  all(item.y), span);
+      distance = std::min(distance, smallest(nearest.distance2, lanes_of(item.edges, lane)));
     }
-    item.pairs &= static_cast<std::uint8_t>(near);
-    items[num_near] = item;
-    num_near += item.pairs != 0;
+    gaps[k] = distance - item.reach;
   }
-  return num_near;
+}
+
+void pair_gaps(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
+               const StepArrays& arrays, double* gaps) {
+  const StepArrays a = arrays;
+  for (std::size_t k = 0; k < num_items; ++k) {
+    const SelfContacts::Item item = items[k];
+    double distance = 1e150;
+    for (int lane = 0; lane < edges_per_group; lane += lanes) {
+      const PairedVertices vertices(item, lane, a);
+      const NearestPoints nearest(EdgeVectors(item.edges + lane, a), vertices.x(), vertices.y(), all(1));
+      distance = std::min(distance, smallest(nearest.distance2, lanes_of(item.pairs, lane)));
+    }
+    gaps[k] = distance - contact.diameter;
+  }
 }
 
 void push(int n, const WallContacts::Item* walls, std::size_t num_walls, const SelfContacts::Item* self,

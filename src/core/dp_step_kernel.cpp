@@ -29,9 +29,8 @@ const char* instruction_set_name() {
 }
 
 StepKernel make_kernel(const KickTerms& terms) {
-  return {instruction_set_name(), measure, keep_near_circles,   keep_near_pairs,
-          clear_pushes,           push,    push_off_wedges,     near_wall_rates,
-          kick_version(terms),    power,   drift_version(terms)};
+  return {instruction_set_name(), measure,         circle_gaps,         pair_gaps, clear_pushes,        push,
+          push_off_wedges,        near_wall_rates, kick_version(terms), power,     drift_version(terms)};
 }
 
 }  // namespace clog::kernel::HWY_NAMESPACE

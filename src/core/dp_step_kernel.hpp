@@ -104,13 +104,11 @@ struct StepKernel {
   const char* name;  ///< of the instruction set
   /// Edges and sums over them.
   Sums (*measure)(int n, const StepArrays& arrays);
-  /// Moves to the front what may touch before somebody looks again, each as good as the old, and returns how
-  /// many these are: circles that are `way` [sigma] out of reach of no edge, and pairs of vertices and edges.
-  /// Edges must be those of the positions.
-  std::size_t (*keep_near_circles)(WallContacts::Item* items, std::size_t num_items, double way,
-                                   const Contact& contact, const StepArrays& arrays);
-  std::size_t (*keep_near_pairs)(SelfContacts::Item* items, std::size_t num_items, double way,
-                                 const Contact& contact, const StepArrays& arrays);
+  /// How far every item's nearest edge is from contact; negative where it is in contact [sigma].
+  void (*circle_gaps)(const WallContacts::Item* items, std::size_t num_items, const Contact& contact,
+                      const StepArrays& arrays, double* gaps);
+  void (*pair_gaps)(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
+                    const StepArrays& arrays, double* gaps);
   /// Then contacts, on the groups that the lists name. `clear` empties all groups.
   void (*clear_pushes)(int n, const StepArrays& arrays);
   void (*push)(int n, const WallContacts::Item* walls, std::size_t num_walls, const SelfContacts::Item* self,

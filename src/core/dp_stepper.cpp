@@ -22,6 +22,14 @@ kernel::KickTerms terms_of(const RunParameters& run) {
           .area_rate = on_area ? far_rate : 0};
 }
 
+template <class Item>
+void keep_near(const std::vector<Item>& items, const std::vector<double>& gaps, double way,
+               std::vector<Item>& near) {
+  near.clear();
+  for (std::size_t k = 0; k < items.size(); ++k)
+    if (gaps[k] <= way) near.push_back(items[k]);
+}
+
 }  // namespace
 
 DpStepper::DpStepper(const RunParameters& run, const DpForces& forces)
@@ -44,6 +52,8 @@ DpStepper::DpStepper(const RunParameters& run, const DpForces& forces)
     *array = next;
     next += stride;
   }
+  // Edges of the last group that do not exist are divided by as well.
+  std::fill_n(arrays_.length, stride - line, 1.0);
 }
 
 void DpStepper::load(const DropletState& state) {
@@ -69,13 +79,21 @@ DpStepper::Edges DpStepper::edges() const {
 
 void DpStepper::look(const Travel& travel) {
   kernel_.clear_pushes(n_, arrays_);  // the lists may name other groups than before
-  const double unforeseen = 0.1 * forces_->self_contacts().diameter();
-  near_walls_ = forces_->walls().items();
-  near_walls_.resize(kernel_.keep_near_circles(near_walls_.data(), near_walls_.size(),
-                                               travel.absolute + unforeseen, contact(0), arrays_));
-  near_self_ = forces_->self_contacts().items();
-  near_self_.resize(kernel_.keep_near_pairs(near_self_.data(), near_self_.size(),
-                                            2 * travel.relative + unforeseen, contact(0), arrays_));
+  const auto& walls = forces_->walls().items();
+  const auto& self = forces_->self_contacts().items();
+  wall_gaps_.resize(walls.size());
+  self_gaps_.resize(self.size());
+  kernel_.circle_gaps(walls.data(), walls.size(), contact(0), arrays_, wall_gaps_.data());
+  kernel_.pair_gaps(self.data(), self.size(), contact(0), arrays_, self_gaps_.data());
+  // A contact speeds what is in it up by at most half its depth per step, and for a few steps: `travel` knows
+  // nothing of that.
+  double deepest = 0;
+  for (const double gap : wall_gaps_) deepest = std::max(deepest, -gap);
+  for (const double gap : self_gaps_) deepest = std::max(deepest, -gap);
+  constexpr double thrown = 4;
+  const double unforeseen = 0.1 * forces_->self_contacts().diameter() + thrown * deepest;
+  keep_near(walls, wall_gaps_, travel.absolute + unforeseen, near_walls_);
+  keep_near(self, self_gaps_, 2 * (travel.relative + unforeseen), near_self_);
 }
 
 void DpStepper::store(DropletState& state) const {

@@ -47,6 +47,7 @@ class DpStepper {
   // What may touch before the next look, and wedges in the droplet's frame.
   std::vector<WallContacts::Item> near_walls_;
   std::vector<SelfContacts::Item> near_self_;
+  std::vector<double> wall_gaps_, self_gaps_;  // of the lists' items at the last look
   std::vector<kernel::WedgePlace> wedges_;
   Eigen::Array2d wetting_spread_{0, 0};  // of wetting, see DpForces::wetting_forces()
   kernel::Sums sums_{};

@@ -96,6 +96,29 @@ void wrapped_polygon(benchmark::State& state) {
 }
 BENCHMARK(wrapped_polygon)->Unit(benchmark::kMillisecond);
 
+/// As in the figures: the elastic interface, the automatic step, and gaps that the droplet wraps its way
+/// through.
+void elastic_polygon(benchmark::State& state) {
+  RunParameters run;
+  run.dp.vertices = 128;
+  run.dp.line_tension = 0.01 * static_cast<double>(state.range(0));
+  run.dp.perimeter_spring = PerimeterSpring::rest;
+  run.dp.perimeter_stiffness = 0.1 * run.dp.line_tension;
+  run.dp.gravity = Gravity::vertex;
+  run.obstacles.gap = 0.4;
+  run.obstacles.box = 60;
+  run.max_time = 1e9;
+  run.clog_detection = ClogDetection::threshold;
+  run.clog_energy = 1e-300;
+  advance(state, resolve(run));
+}
+BENCHMARK(elastic_polygon)
+    ->ArgName("line_tension_percent")
+    ->Arg(2)
+    ->Arg(10)
+    ->Arg(30)
+    ->Unit(benchmark::kMillisecond);
+
 /// The way up to a channel and through it, as clogrun follows it: with the account of what drag takes.
 void polygon_in_channel(benchmark::State& state) {
   RunParameters run = flowing_droplet(256, 0.01 * static_cast<double>(state.range(0)));

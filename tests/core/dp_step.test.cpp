@@ -137,6 +137,42 @@ TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
   }
 }
 
+TEST_P(Step, MeetsContactsThatBeginBetweenTwoLooks) {
+  // A neck that closes within 32 steps and opens again, of which some vertex is the first and some edge the
+  // last.
+  for (const int vertices : {64, 97, 101, 256}) {
+    RunParameters run;
+    run.dp.vertices = vertices;
+    run.dp.line_tension = 0.3;
+    run.time_step = 1e-3;
+    GetParam().change(run);
+    run = resolve(run);
+    const double diameter = units::regular_edge_length(vertices);
+    const double size = std::sqrt(units::rest_area / polygon_shape(dumbbell(vertices, diameter)).area);
+    DropletState initial = state_of(renumbered(
+        shaken(size * dumbbell(vertices, 1.03 * diameter / size), 0.002 * diameter), vertices / 4 + 1));
+    initial.velocity.tail(vertices) =
+        -30 * diameter * initial.y().sign() * (-(initial.x() / 0.2).square()).exp();
+    const ObstacleArray walls(20, {{-1.5, 0, 0.15}});
+    ReadableDroplet readable(run, walls, initial);
+    double deepest = 0;
+    for (int step = 0; step < 40; ++step) {
+      readable.step();
+      deepest = std::max(deepest, DpDroplet(run, walls, readable.state()).potential_energy().self_contact);
+    }
+    ASSERT_GT(deepest, 0);
+    for (const std::string& set : instruction_sets()) {
+      use_instruction_set(set);
+      DpDroplet droplet(run, walls, initial);
+      ASSERT_EQ(droplet.potential_energy().self_contact, 0);
+      droplet.advance(40);
+      ASSERT_EQ(droplet.num_integrated_steps(), 40) << "the reference has no sub-steps";
+      EXPECT_LT((droplet.state().position - readable.state().position).abs().maxCoeff(), 1e-12)
+          << set << ", " << vertices;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Interfaces, Step,
     testing::Values(StepCase{"robust", [](RunParameters&) {}},

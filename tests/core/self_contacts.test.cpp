@@ -64,5 +64,35 @@ TEST(SelfContacts, ListsEveryVertexAndEdgeThatTouchWhileTheShapeMoves) {
   EXPECT_GT(num_touching, 100);
 }
 
+TEST(SelfContacts, ItemsAreThePairs) {
+  constexpr int group = WallContacts::edges_per_group;
+  for (const int n : {64, 101, 256})
+    for (const int first : {0, n / 4 + 1}) {
+      SelfContacts contacts(units::regular_edge_length(n));
+      // One half is compressed upon itself, so that a strand touches itself along its own direction as well.
+      Eigen::ArrayXd position = test::dumbbell(n, 0.03);
+      position.tail(n) *= (position.head(n) > 0).select(Eigen::ArrayXd::Constant(n, 0.05), 1.0);
+      const Eigen::ArrayXd narrow = (position.head(n) > 0).select(0.2 * position.head(n), position.head(n));
+      position.head(n) = narrow;
+      contacts.update(test::state_of(test::renumbered(position, first)), {});
+      std::multiset<std::pair<int, int>> pairs, of_items;
+      for (const auto& [vertex, edge] : contacts.pairs()) pairs.insert({vertex, edge});
+      bool forwards = false, backwards = false;
+      int last_edges = 0;
+      for (const SelfContacts::Item& item : contacts.items()) {
+        EXPECT_EQ(item.edges % group, 0);
+        EXPECT_GE(item.edges, last_edges) << "a group's items follow each other";
+        last_edges = item.edges;
+        (item.backwards ? backwards : forwards) = true;
+        for (int b = 0; b < group; ++b)
+          if (item.pairs >> b & 1)
+            of_items.insert({(item.vertices + (item.backwards ? group - 1 - b : b)) % n, item.edges + b});
+      }
+      EXPECT_EQ(of_items, pairs);
+      EXPECT_TRUE(forwards && backwards) << n;
+      EXPECT_LT(contacts.items().size(), contacts.pairs().size());
+    }
+}
+
 }  // namespace
 }  // namespace clog

@@ -71,6 +71,17 @@ inline Eigen::ArrayXd dumbbell(int num_vertices, double neck) {
   return position;
 }
 
+/// The same contour with its numbers begun at another vertex.
+inline Eigen::ArrayXd renumbered(const Eigen::ArrayXd& position, int first) {
+  const Eigen::Index n = position.size() / 2;
+  Eigen::ArrayXd result(position.size());
+  for (Eigen::Index i = 0; i < n; ++i) {
+    result[i] = position[(i + first) % n];
+    result[n + i] = position[n + (i + first) % n];
+  }
+  return result;
+}
+
 /// Largest difference between the force and the central difference of the energy.
 inline double force_error(DpForces& forces, DropletState state) {
   constexpr double h = 1e-6;
