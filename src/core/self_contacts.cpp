@@ -26,7 +26,7 @@ void SelfContacts::update(const DropletState& state, const Travel& travel) {
   }
   // Thin enough that neighbours along a straight contour stay out of reach, unless the droplet moves very
   // fast.
-  rebuild(state, std::clamp(2 * travel.relative, 0.7 * diameter_, widest_skin));
+  rebuild(state, std::clamp(2 * travel.relative, 0.5 * diameter_, widest_skin));
 }
 
 void SelfContacts::rebuild(const DropletState& state, double skin) {
