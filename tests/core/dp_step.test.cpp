@@ -85,22 +85,31 @@ struct StepCase {
 class Step : public testing::TestWithParam<StepCase> {
  protected:
   void TearDown() override { use_instruction_set("auto"); }
+
+  static RunParameters parameters(int vertices) {
+    RunParameters run;
+    run.dp.vertices = vertices;
+    run.dp.line_tension = 0.3;
+    run.time_step = 1e-3;
+    GetParam().change(run);
+    return resolve(run);
+  }
+  /// Of about a droplet's area.
+  static Eigen::ArrayXd full_size_dumbbell(int vertices, double film) {
+    const double thin = units::regular_edge_length(vertices);
+    const double size = std::sqrt(units::rest_area / polygon_shape(dumbbell(vertices, thin)).area);
+    return size * dumbbell(vertices, film / size);
+  }
 };
 
 TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
   // A droplet with a neck so thin that it touches itself, uneven vertices, an obstacle on the neck and one at
   // its end, and a wedge on the neck and at the other end.
   for (const int vertices : {64, 101, 256}) {
-    RunParameters run;
-    run.dp.vertices = vertices;
-    run.dp.line_tension = 0.3;
-    run.time_step = 1e-3;
-    GetParam().change(run);
-    run = resolve(run);
+    const RunParameters run = parameters(vertices);
     const double diameter = units::regular_edge_length(vertices);
-    const double size = std::sqrt(units::rest_area / polygon_shape(dumbbell(vertices, diameter)).area);
     const double film = 0.98 * diameter;
-    DropletState initial = state_of(shaken(size * dumbbell(vertices, film / size), 0.002 * film));
+    DropletState initial = state_of(shaken(full_size_dumbbell(vertices, film), 0.002 * film));
     initial.velocity = shaken(Eigen::ArrayXd::Zero(2 * vertices), 0.03, 7);
     const double end = initial.x().maxCoeff();
     // A flank of one wedge touches a vertex, and the tip of the other.
@@ -141,16 +150,10 @@ TEST_P(Step, MeetsContactsThatBeginBetweenTwoLooks) {
   // A neck that closes within 32 steps and opens again, of which some vertex is the first and some edge the
   // last.
   for (const int vertices : {64, 97, 101, 256}) {
-    RunParameters run;
-    run.dp.vertices = vertices;
-    run.dp.line_tension = 0.3;
-    run.time_step = 1e-3;
-    GetParam().change(run);
-    run = resolve(run);
+    const RunParameters run = parameters(vertices);
     const double diameter = units::regular_edge_length(vertices);
-    const double size = std::sqrt(units::rest_area / polygon_shape(dumbbell(vertices, diameter)).area);
     DropletState initial = state_of(renumbered(
-        shaken(size * dumbbell(vertices, 1.03 * diameter / size), 0.002 * diameter), vertices / 4 + 1));
+        shaken(full_size_dumbbell(vertices, 1.03 * diameter), 0.002 * diameter), vertices / 4 + 1));
     initial.velocity.tail(vertices) =
         -30 * diameter * initial.y().sign() * (-(initial.x() / 0.2).square()).exp();
     const ObstacleArray walls(20, {{-1.5, 0, 0.15}});
