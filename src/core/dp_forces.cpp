@@ -26,13 +26,14 @@ DpForces::DpForces(const RunParameters& run, const ObstacleArray& obstacles)
       vertex_diameter_(units::regular_edge_length(run.dp.vertices)),
       contact_stiffness_(clog::contact_stiffness(run.wall_stiffness.value(), vertex_diameter_)),
       weight_(units::droplet_mass * units::gravity),
-      walls_(obstacles, vertex_diameter_ / 2,
+      near_wall_cutoff_(run.drag.near_wall_cutoff),
+      walls_(obstacles, dp_.contact_range.value(),
              dp_.wall_contact == WallContact::edge ? WallContacts::Keep::touched_by_edge
                                                    : WallContacts::Keep::touched_by_vertex),
-      nearest_walls_(obstacles, vertex_diameter_ / 2, WallContacts::Keep::nearest_to_vertex),
-      adhesive_walls_(obstacles, (0.5 + wetting_width) * vertex_diameter_,
+      nearest_walls_(obstacles, dp_.contact_range.value(), WallContacts::Keep::nearest_to_vertex),
+      adhesive_walls_(obstacles, dp_.contact_range.value() + wetting_width * vertex_diameter_,
                       WallContacts::Keep::touched_by_vertex),
-      self_(vertex_diameter_),
+      self_(dp_.self_contact_range, vertex_diameter_),
       edge_x_(dp_.vertices),
       edge_y_(dp_.vertices),
       edge_length_(dp_.vertices),
@@ -47,6 +48,7 @@ DpForces::DpForces(const RunParameters& run, const ObstacleArray& obstacles)
 void DpForces::set_rest_area(double area) {
   rest_area_ = area;
   rest_edge_ = units::regular_edge_length(dp_.vertices, area);
+  self_.set_rest_edge(rest_edge_);
 }
 
 void DpForces::update_contacts(const DropletState& state, const Travel& travel) {
@@ -142,7 +144,7 @@ void DpForces::measure_wall_distance(const DropletState& state) {
         distance);
   for (const Wedge& wedge : obstacles_->wedges())
     kernel::shrink_to_wedge_distance(n, x, y, kernel::place_in(state.frame, wedge), distance);
-  wall_distance_ = wall_distance_.max(vertex_diameter_ / 2);
+  wall_distance_ = wall_distance_.max(near_wall_cutoff_);
 }
 
 /// The tension changes from Gamma, far from a wall, to that of the wetted wall where contact begins: a smooth
@@ -220,8 +222,8 @@ void DpForces::add_self_contact(const DropletState& state, Eigen::ArrayXd& force
   double* fy = fx + n;
   for (const SelfContacts::Pair& pair : self_.pairs()) {
     const EdgeContact contact = nearest_point(pair, x, y, n);
-    if (contact.distance >= self_.diameter() || contact.distance == 0) continue;
-    const double push = contact_stiffness_ * (self_.diameter() - contact.distance) / contact.distance;
+    if (contact.distance >= self_.range() || contact.distance == 0) continue;
+    const double push = contact_stiffness_ * (self_.range() - contact.distance) / contact.distance;
     const double px = push * contact.dx;
     const double py = push * contact.dy;
     const int end = pair.edge + 1 < n ? pair.edge + 1 : 0;
@@ -283,7 +285,7 @@ PotentialEnergy DpForces::energy(const DropletState& state) const {
   });
   if (dp_.self_contact == SelfContact::on)
     for (const SelfContacts::Pair& pair : self_.pairs()) {
-      const double overlap = std::max(0.0, self_.diameter() - nearest_point(pair, x, y, n).distance);
+      const double overlap = std::max(0.0, self_.range() - nearest_point(pair, x, y, n).distance);
       energy.self_contact += 0.5 * contact_stiffness_ * overlap * overlap;
     }
   return energy;

@@ -172,7 +172,7 @@ class PairedVertices {
 /// Edges and vertices push each other off.
 void push_off_each_other(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
                          const StepArrays& a) {
-  const V reach = all(contact.diameter), stiffness = all(contact.stiffness);
+  const V reach = all(contact.self_range), stiffness = all(contact.stiffness);
   const SelfContacts::Item* const end = items + num_items;
   for (const SelfContacts::Item *begin = items, *next = items; begin != end; begin = next) {
     while (next != end && next->edges == begin->edges) ++next;
@@ -224,7 +224,7 @@ void pair_gaps(const SelfContacts::Item* items, std::size_t num_items, const Con
       const NearestPoints nearest(EdgeVectors(item.edges + lane, a), vertices.x(), vertices.y(), all(1));
       distance = std::min(distance, smallest(nearest.distance2, lanes_of(item.pairs, lane)));
     }
-    gaps[k] = distance - contact.diameter;
+    gaps[k] = distance - contact.self_range;
   }
 }
 

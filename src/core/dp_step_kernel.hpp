@@ -81,7 +81,7 @@ struct Power {
 struct Contact {
   double stiffness;  ///< k_c as a kick
   double span;       ///< of walls; 1: edges, 0: their first vertices alone
-  double diameter;   ///< of the self-contact [sigma]
+  double self_range;  ///< distance below which the interface repels itself [sigma]
 };
 /// What may be nearest to the vertices.
 struct NearWalls {

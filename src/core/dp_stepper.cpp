@@ -91,7 +91,7 @@ void DpStepper::look(const Travel& travel) {
   for (const double gap : wall_gaps_) deepest = std::max(deepest, -gap);
   for (const double gap : self_gaps_) deepest = std::max(deepest, -gap);
   constexpr double thrown = 4;
-  const double unforeseen = 0.1 * forces_->self_contacts().diameter() + thrown * deepest;
+  const double unforeseen = 0.1 * forces_->vertex_diameter() + thrown * deepest;
   keep_near(walls, wall_gaps_, travel.absolute + unforeseen, near_walls_);
   keep_near(self, self_gaps_, 2 * (travel.relative + unforeseen), near_self_);
 }
@@ -166,7 +166,7 @@ void DpStepper::kick_and_drift(const DropletState& frame, const kernel::KickCoef
 kernel::Contact DpStepper::contact(double stiffness) const {
   return {.stiffness = stiffness,
           .span = run_.dp.wall_contact == WallContact::edge ? 1.0 : 0.0,
-          .diameter = forces_->self_contacts().diameter()};
+          .self_range = forces_->self_contacts().range()};
 }
 
 void DpStepper::push_off_everything(const DropletState& frame, const kernel::KickCoefficients& coefficients,
@@ -199,7 +199,7 @@ void DpStepper::push_off_everything(const DropletState& frame, const kernel::Kic
                            .radius = nearest.largest_radius(),
                            .wedges = wedges_.data(),
                            .num_wedges = wedges_.size()},
-                          {.shortest = forces_->contact_range(),
+                          {.shortest = run_.drag.near_wall_cutoff,
                            .relative = run_.drag.relative,
                            .near_wall = run_.drag.near_wall,
                            .exponent = run_.drag.near_wall_exponent,

@@ -172,8 +172,7 @@ RunResult DropletRun::result() const {
   ClogMechanism mechanism = ClogMechanism::none;
   if (status_ == RunStatus::clogged && run_.model == Model::sp) mechanism = ClogMechanism::squeezed;
   if (status_ == RunStatus::clogged && run_.model == Model::dp) {
-    const double contact_range = units::regular_edge_length(run_.dp.vertices) / 2;
-    geometry = clog_geometry(last.state(), *obstacles_, contact_range);
+    geometry = clog_geometry(last.state(), *obstacles_, run_.dp.contact_range.value());
     mechanism = geometry.mechanism();
   }
   return {.status = status_,

@@ -67,9 +67,9 @@ void validate_obstacles(const ObstacleParameters& obstacles, int vertices, Model
               "; the array is periodic");
   if (model == Model::dp) {
     const double vertex_diameter = units::regular_edge_length(vertices);
-    require(
-        obstacles.gap > vertex_diameter, "obstacle-gap", obstacles.gap,
-        "not wider than one vertex, " + text(vertex_diameter) + " sigma) widen the gap or use more vertices");
+    require(obstacles.gap > vertex_diameter, "obstacle-gap", obstacles.gap,
+            "not wider than an edge is long, " + text(vertex_diameter) +
+                " sigma: nothing of the passage would be resolved) widen the gap or use more vertices");
   }
 }
 
@@ -149,6 +149,13 @@ void resolve_dp(RunParameters& run) {
   DpParameters& dp = run.dp;
   require_not_negative("line-tension", dp.line_tension);
   require(dp.vertices >= 16 && dp.vertices <= 4096, "vertices", dp.vertices, "must lie in 16..4096)");
+  if (!dp.contact_range) dp.contact_range = half_vertex_diameter(dp);
+  require_not_negative("contact-range", *dp.contact_range);
+  require(*dp.contact_range <= 0.1, "contact-range", *dp.contact_range,
+          "walls would push from afar, and gaps be narrower by twice as much) use 0, the surface, to 0.1");
+  require_positive("self-contact-range", dp.self_contact_range);
+  require(dp.self_contact_range <= 0.1, "self-contact-range", dp.self_contact_range,
+          "no film could be thinner, and the droplet could not be folded) use at most 0.1");
   require_not_negative("perimeter-stiffness-ratio", dp.perimeter_stiffness_ratio);
   if (!dp.perimeter_stiffness) dp.perimeter_stiffness = automatic_perimeter_stiffness(run);
   require_not_negative("perimeter-stiffness", *dp.perimeter_stiffness);
@@ -157,6 +164,7 @@ void resolve_dp(RunParameters& run) {
   require(
       dp.wall_tension >= 0.1 && dp.wall_tension <= 1, "wall-tension", dp.wall_tension,
       "minus the cosine of the contact angle; with less the interface on a wall would buckle) use 0.1..1");
+
 
   if (dp.perimeter_spring == PerimeterSpring::along && dp.gravity == Gravity::vertex)
     throw Error(
@@ -213,6 +221,8 @@ void resolve_sp(RunParameters& run) {
 
 }  // namespace
 
+double half_vertex_diameter(const DpParameters& dp) { return units::regular_edge_length(dp.vertices) / 2; }
+
 double automatic_perimeter_stiffness(const RunParameters& run) {
   switch (run.dp.perimeter_spring) {
     case PerimeterSpring::rest:
@@ -226,7 +236,7 @@ double automatic_perimeter_stiffness(const RunParameters& run) {
 }
 
 double expected_pressure(const RunParameters& run) {
-  const double bend = run.obstacles.smallest_diameter() / 2 + units::regular_edge_length(run.dp.vertices) / 2;
+  const double bend = run.obstacles.smallest_diameter() / 2 + run.dp.contact_range.value();
   return run.dp.line_tension * (2 / units::droplet_diameter + 1 / bend) +
          units::gravity * units::droplet_diameter;
 }
@@ -264,6 +274,9 @@ RunParameters resolve(RunParameters run) {
           "the droplet would hang in the drag of its surroundings) use at most 1000");
   require(run.drag.near_wall_exponent >= 0 && run.drag.near_wall_exponent <= 4, "near-wall-exponent",
           run.drag.near_wall_exponent, "must lie in 0..4) the published exponent is 4/3");
+  require_positive("near-wall-cutoff", run.drag.near_wall_cutoff);
+  require(run.drag.near_wall_cutoff <= 1, "near-wall-cutoff", run.drag.near_wall_cutoff,
+          "drag would hardly depend on the distance) use at most 1, a droplet diameter");
   require(run.drag.relative >= 0 && run.drag.relative <= 1000, "relative-drag", run.drag.relative,
           "must lie in 0..1000) 1 is the published model");
   if (run.model == Model::dp)

@@ -62,10 +62,10 @@ FireOptions fire_options(const RunParameters& run, double perimeter) {
 
 DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles) {
   const int n = run.dp.vertices;
-  const double vertex_diameter = units::regular_edge_length(n);
   const Eigen::Array2d place = nearest_void(obstacles);
-  const double room = clearance(obstacles, place[0], place[1], 2 * radius) - vertex_diameter;
-  const double smallest_radius = 4 * vertex_diameter / (2 * std::numbers::pi);
+  // A hundredth less, so that nothing touches.
+  const double room = 0.99 * (clearance(obstacles, place[0], place[1], 2 * radius) - *run.dp.contact_range);
+  const double smallest_radius = 4 * run.dp.self_contact_range / (2 * std::numbers::pi);
   if (room < smallest_radius)
     refuse_release("no void near the centre of the box", "more vertices or a wider obstacle-gap");
 

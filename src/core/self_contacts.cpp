@@ -10,10 +10,16 @@
 namespace clog {
 namespace {
 
-/// Vertices closer than this many diameters along the contour do not repel each other.
+/// Vertices closer than this many ranges along a contour at rest do not repel each other.
 constexpr double contour_exclusion = 3;
 
 }  // namespace
+
+void SelfContacts::set_rest_edge(double length) {
+  rest_edge_ = length;
+  exclusion_ = std::max(1, static_cast<int>(std::ceil(contour_exclusion * range_ / rest_edge_)));
+  invalidate();
+}
 
 void SelfContacts::update(const DropletState& state, const Travel& travel) {
   const Eigen::Index n = state.size();
@@ -24,9 +30,10 @@ void SelfContacts::update(const DropletState& state, const Travel& travel) {
                                  .maxCoeff();
     if (std::sqrt(farthest2) + travel.relative < skin_) return;
   }
-  // Thin enough that neighbours along a straight contour stay out of reach, unless the droplet moves very
-  // fast.
-  rebuild(state, std::clamp(2 * travel.relative, 0.5 * diameter_, widest_skin));
+  // Thin enough that neighbours along a straight contour at rest stay out of reach, unless the droplet moves
+  // very fast.
+  const double usual_skin = (exclusion_ * rest_edge_ - range_) / 4;
+  rebuild(state, std::clamp(2 * travel.relative, usual_skin, widest_skin));
 }
 
 void SelfContacts::rebuild(const DropletState& state, double skin) {
@@ -46,10 +53,8 @@ void SelfContacts::rebuild(const DropletState& state, double skin) {
   double longest2 = 0;
   for (int i = 0, j = n - 1; i < n; j = i++)
     longest2 = std::max(longest2, (x[i] - x[j]) * (x[i] - x[j]) + (y[i] - y[j]) * (y[i] - y[j]));
-  const double mean_edge = polygon_shape(state.position).perimeter / n;
-  const double reach = diameter_ + 2 * skin_;
+  const double reach = range_ + 2 * skin_;
   const double end_reach = reach + 0.5 * std::sqrt(longest2);
-  const int exclusion = std::max(1, static_cast<int>(std::ceil(contour_exclusion * diameter_ / mean_edge)));
 
   const double left = state.x().minCoeff();
   const double bottom = state.y().minCoeff();
@@ -77,7 +82,7 @@ void SelfContacts::rebuild(const DropletState& state, double skin) {
   };
   const auto add_if_near = [&](const Pair& pair) {
     const int end = pair.edge + 1 < n ? pair.edge + 1 : 0;
-    if (contour_steps(pair.vertex, pair.edge) >= exclusion && contour_steps(pair.vertex, end) >= exclusion &&
+    if (contour_steps(pair.vertex, pair.edge) >= exclusion_ && contour_steps(pair.vertex, end) >= exclusion_ &&
         nearest_point(pair, x, y, n).distance <= reach)
       pairs_.push_back(pair);
   };
@@ -86,7 +91,7 @@ void SelfContacts::rebuild(const DropletState& state, double skin) {
     for (int row = -1; row <= 1; ++row)
       for (int column = -1; column <= 1; ++column)
         for (int other = head_[cell + row * columns + column]; other >= 0; other = next_[other]) {
-          if (contour_steps(vertex, other) < exclusion || !is_near(vertex, other)) continue;
+          if (contour_steps(vertex, other) < exclusion_ || !is_near(vertex, other)) continue;
           add_if_near({vertex, other});
           // The edge that ends here is found from its beginning, if that is near.
           const int before = other > 0 ? other - 1 : n - 1;

@@ -17,24 +17,22 @@ namespace {
 /// Channels and walls have no periodic images: the box is only where their coordinates live.
 constexpr double open_box = 256;
 
+/// Distance from a free droplet's centre at which a wall begins to push it.
+double reach(const RunParameters& run, const Eigen::ArrayXd& droplet) {
+  if (run.model == Model::sp) return units::droplet_diameter / 2;
+  return droplet.head(droplet.size() / 2).maxCoeff() + run.dp.contact_range.value();
+}
+
 /// In a lattice all voids are alike, so where in one a droplet starts is up to the seed (lattice_obstacles):
 /// if it touches nothing at the box's centre it starts right there, as if there were no obstacles.
 bool starts_free(const RunParameters& run, const ObstacleArray& obstacles) {
   if (run.obstacles.layout != ObstacleLayout::lattice) return false;
-  const double contact_range = run.model == Model::dp ? units::regular_edge_length(run.dp.vertices) : 0.0;
   const double centre = obstacles.box() / 2;
-  return clearance(obstacles, centre, centre, 2 * units::droplet_diameter) >
-         units::droplet_diameter / 2 + contact_range;
+  return clearance(obstacles, centre, centre, 2 * units::droplet_diameter) > reach(run, free_droplet(run));
 }
 
 double vertex_diameter(const RunParameters& run) {
   return run.model == Model::dp ? units::regular_edge_length(run.dp.vertices) : 0;
-}
-
-/// Distance from a free droplet's centre at which a wall begins to push it.
-double reach(const RunParameters& run, const Eigen::ArrayXd& droplet) {
-  if (run.model == Model::sp) return units::droplet_diameter / 2;
-  return droplet.head(droplet.size() / 2).maxCoeff() + vertex_diameter(run) / 2;
 }
 
 /// A free droplet at rest with its centre at the given place of the open box.

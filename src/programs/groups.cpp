@@ -143,6 +143,7 @@ std::vector<Field> parameter_fields(const sweep::RunRow& row) {
           {"wall_stiffness", value_of(row.wall_stiffness)},
           {"near_wall_drag", value_of(row.near_wall_drag)},
           {"near_wall_exponent", value_of(row.near_wall_exponent)},
+          {"near_wall_cutoff", value_of(row.near_wall_cutoff)},
           {"relative_drag", value_of(row.relative_drag)},
           {"terminal_speed", value_of(row.terminal_speed)},
           {"vertices", value_of(row.vertices)},
@@ -154,8 +155,10 @@ std::vector<Field> parameter_fields(const sweep::RunRow& row) {
           {"perimeter_spring", value_of(row.perimeter_spring)},
           {"perimeter_stiffness", value_of(row.perimeter_stiffness)},
           {"wall_contact", value_of(row.wall_contact)},
+          {"contact_range", value_of(row.contact_range)},
           {"wall_tension", value_of(row.wall_tension)},
           {"self_contact", value_of(row.self_contact)},
+          {"self_contact_range", value_of(row.self_contact_range)},
           {"gravity", value_of(row.gravity)},
           {"clog_energy", value_of(row.clog_energy)},
           {"clog_detection", value_of(row.clog_detection)}};

@@ -73,6 +73,7 @@ std::vector<Column> columns() {
   CLOG_COLUMN(terminal_speed, "V_t [sqrt(sigma g)]");
   CLOG_COLUMN(near_wall_drag, "b_0/b_inf");
   CLOG_COLUMN(near_wall_exponent, "alpha of the near-wall drag; NaN for sp");
+  CLOG_COLUMN(near_wall_cutoff, "distances of the near-wall drag count as no less [sigma]; NaN for sp");
   CLOG_COLUMN(relative_drag, "c, drag of motion relative to the centre of mass over b_inf");
   CLOG_COLUMN(area_stiffness, "K_a [g rho/sigma]; NaN for sp");
   CLOG_COLUMN(preset, "name of the set of interface keys that was used, or custom");
@@ -80,8 +81,10 @@ std::vector<Column> columns() {
               "springs pull edges to their rest length, to the mean length, or along the interface only");
   CLOG_COLUMN(perimeter_stiffness, "K_l [g rho sigma]; NaN for sp");
   CLOG_COLUMN(wall_contact, "a wall pushes edges or vertices");
+  CLOG_COLUMN(contact_range, "distance from a wall at which contact begins [sigma]; NaN for sp");
   CLOG_COLUMN(wall_tension, "tension at walls over Gamma, -cos of the contact angle; NaN for sp");
   CLOG_COLUMN(self_contact, "does the interface repel itself");
+  CLOG_COLUMN(self_contact_range, "distance below which the interface repels itself [sigma]; NaN for sp");
   CLOG_COLUMN(gravity, "the weight acts on the vertices or on the area");
   CLOG_COLUMN(clog_energy, "clogged when E_k/E_t stays below this");
   CLOG_COLUMN(clog_detection,

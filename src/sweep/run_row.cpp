@@ -73,13 +73,16 @@ RunRow describe(const RunParameters& run) {
   row.near_wall_drag = run.drag.near_wall;
   row.area_stiffness = polygon ? *run.dp.area_stiffness : not_applicable;
   row.near_wall_exponent = polygon ? run.drag.near_wall_exponent : not_applicable;
+  row.near_wall_cutoff = polygon ? run.drag.near_wall_cutoff : not_applicable;
   row.relative_drag = run.drag.relative;
   row.preset = polygon ? preset_name(run) : "none";
   row.perimeter_spring = polygon ? name(run.dp.perimeter_spring) : "none";
   row.wall_contact = !polygon ? "none" : run.dp.wall_contact == WallContact::edge ? "edge" : "vertex";
+  row.contact_range = polygon ? run.dp.contact_range.value() : not_applicable;
   row.wall_tension = polygon ? run.dp.wall_tension : not_applicable;
   row.perimeter_stiffness = polygon ? run.dp.perimeter_stiffness.value() : not_applicable;
   row.self_contact = !polygon ? "none" : run.dp.self_contact == SelfContact::on ? "on" : "off";
+  row.self_contact_range = polygon ? run.dp.self_contact_range : not_applicable;
   row.gravity = !polygon ? "none" : run.dp.gravity == Gravity::vertex ? "vertex" : "area";
   row.clog_energy = run.clog_energy;
   row.instruction_set = polygon ? instruction_set() : "none";

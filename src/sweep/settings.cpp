@@ -151,6 +151,13 @@ std::vector<Key> make_keys() {
        "alpha, of the near-wall drag's power of sigma/d",
        true,
        [](RunParameters& run, const std::string& value) { run.drag.near_wall_exponent = to_number(value); }},
+      {"near-wall-cutoff",
+       number,
+       {},
+       "0.00614",
+       "d of the near-wall drag counts as no less [sigma]",
+       true,
+       [](RunParameters& run, const std::string& value) { run.drag.near_wall_cutoff = to_number(value); }},
       {"relative-drag",
        number,
        {},
@@ -161,7 +168,7 @@ std::vector<Key> make_keys() {
       {"vertices",
        integer,
        {},
-       "256",
+       "128",
        "N_v of the polygon",
        true,
        [](RunParameters& run, const std::string& value) { run.dp.vertices = in_range<int>(value); }},
@@ -219,6 +226,17 @@ std::vector<Key> make_keys() {
        [](RunParameters& run, const std::string& value) {
          run.dp.wall_contact = value == "edge" ? WallContact::edge : WallContact::vertex;
        }},
+      {"contact-range",
+       number,
+       {"half-vertex"},
+       "0",
+       "distance from a wall's surface at which contact begins [sigma]; half-vertex: half a vertex diameter, as "
+       "published",
+       true,
+       [](RunParameters& run, const std::string& value) {
+         run.dp.contact_range =
+             value == "half-vertex" ? std::nullopt : std::optional<double>(to_number(value));
+       }},
       {"wall-tension",
        number,
        {},
@@ -235,6 +253,13 @@ std::vector<Key> make_keys() {
        [](RunParameters& run, const std::string& value) {
          run.dp.self_contact = value == "on" ? SelfContact::on : SelfContact::off;
        }},
+      {"self-contact-range",
+       number,
+       {},
+       "0.01227",
+       "distance below which the interface repels itself [sigma]",
+       true,
+       [](RunParameters& run, const std::string& value) { run.dp.self_contact_range = to_number(value); }},
       {"gravity",
        word,
        {"area", "vertex"},
@@ -277,6 +302,7 @@ const std::vector<Preset>& presets() {
         {"perimeter-stiffness", "auto"},
         {"perimeter-stiffness-ratio", "0.001"},
         {"wall-contact", "edge"},
+        {"contact-range", "0"},
         {"self-contact", "on"},
         {"gravity", "area"},
         {"area-stiffness", "auto"},
@@ -286,6 +312,7 @@ const std::vector<Preset>& presets() {
         {"perimeter-stiffness", "auto"},
         {"perimeter-stiffness-ratio", "0.001"},
         {"wall-contact", "edge"},
+        {"contact-range", "0"},
         {"self-contact", "on"},
         {"gravity", "vertex"},
         {"area-stiffness", "auto"},
@@ -295,6 +322,7 @@ const std::vector<Preset>& presets() {
         {"perimeter-stiffness", "auto"},
         {"perimeter-stiffness-ratio", "0.1"},
         {"wall-contact", "edge"},
+        {"contact-range", "0"},
         {"self-contact", "on"},
         {"gravity", "vertex"},
         {"area-stiffness", "auto"},
@@ -304,6 +332,7 @@ const std::vector<Preset>& presets() {
         {"perimeter-stiffness", "auto"},
         {"perimeter-stiffness-ratio", "0.001"},
         {"wall-contact", "vertex"},
+        {"contact-range", "half-vertex"},
         {"self-contact", "off"},
         {"gravity", "vertex"},
         {"area-stiffness", "1e4"},
@@ -343,11 +372,12 @@ std::string preset_name(const RunParameters& run) {
     RunParameters other = run;
     other.dp.perimeter_stiffness.reset();
     for (const auto& [name, text] : preset.texts) find_key(name).apply(other, text);
+    if (!other.dp.contact_range) other.dp.contact_range = half_vertex_diameter(other.dp);
     if (!other.dp.perimeter_stiffness) other.dp.perimeter_stiffness = automatic_perimeter_stiffness(other);
     if (other.dp.perimeter_spring == run.dp.perimeter_spring &&
         other.dp.perimeter_stiffness == run.dp.perimeter_stiffness &&
         other.dp.wall_contact == run.dp.wall_contact && other.dp.self_contact == run.dp.self_contact &&
-        other.dp.gravity == run.dp.gravity)
+        other.dp.gravity == run.dp.gravity && other.dp.contact_range == run.dp.contact_range)
       return preset.name;
   }
   return "custom";

@@ -28,7 +28,8 @@ TEST(NearestPoint, OfTheEdgeThatClosesTheContour) {
 
 TEST(SelfContacts, AConvexDropletHasNone) {
   const DropletState state = test::state_of(regular_polygon(256, units::rest_area));
-  SelfContacts contacts(units::regular_edge_length(256));
+  const double edge = units::regular_edge_length(256);
+  SelfContacts contacts(edge, edge);
   contacts.update(state, {});
   EXPECT_TRUE(contacts.pairs().empty());
 }
@@ -36,7 +37,7 @@ TEST(SelfContacts, AConvexDropletHasNone) {
 TEST(SelfContacts, ListsEveryVertexAndEdgeThatTouchWhileTheShapeMoves) {
   const int n = 256;
   const double diameter = units::regular_edge_length(n);
-  SelfContacts contacts(diameter);
+  SelfContacts contacts(diameter, diameter);
   DropletState state = test::state_of(test::dumbbell(n, 0.03));
   ASSERT_GT(polygon_shape(state.position).perimeter / n, diameter);
   state.velocity.tail(n) = -0.05 * state.y();  // the neck closes
@@ -44,9 +45,7 @@ TEST(SelfContacts, ListsEveryVertexAndEdgeThatTouchWhileTheShapeMoves) {
   for (int step = 0; step < 300; ++step) {
     state.position += 0.1 * state.velocity;
     contacts.update(state, state.possible_travel(0.1));
-    const double mean_edge =
-        polygon_shape(state.position).perimeter / n;  // it shrinks, so older lists hold more
-    const int exclusion = std::max(1, static_cast<int>(std::ceil(3 * diameter / mean_edge)));
+    const int exclusion = contacts.exclusion();
     std::set<std::pair<int, int>> listed;
     for (const auto& [vertex, edge] : contacts.pairs()) listed.insert({vertex, edge});
     for (int vertex = 0; vertex < n; ++vertex)
@@ -68,7 +67,8 @@ TEST(SelfContacts, ItemsAreThePairs) {
   constexpr int group = WallContacts::edges_per_group;
   for (const int n : {64, 101, 256})
     for (const int first : {0, n / 4 + 1}) {
-      SelfContacts contacts(units::regular_edge_length(n));
+      const double edge = units::regular_edge_length(n);
+      SelfContacts contacts(edge, edge);
       // One half is compressed upon itself, so that a strand touches itself along its own direction as well.
       Eigen::ArrayXd position = test::dumbbell(n, 0.03);
       position.tail(n) *= (position.head(n) > 0).select(Eigen::ArrayXd::Constant(n, 0.05), 1.0);

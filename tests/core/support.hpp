@@ -25,6 +25,9 @@ inline RunParameters bare_parameters(int vertices = 64) {
   run.dp.gravity = Gravity::vertex;
   const double l0 = units::regular_edge_length(vertices);
   run.wall_stiffness = wall_stiffness(1000, l0);
+  // The published ranges: tests are to see that they enter.
+  run.dp.contact_range = l0 / 2;
+  run.dp.self_contact_range = l0;
   run.obstacles.box = 20;
   return run;
 }

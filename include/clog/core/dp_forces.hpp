@@ -37,13 +37,13 @@ class DpForces {
 
   /// Area and perimeter at the last evaluate().
   const PolygonShape& shape() const { return shape_; }
-  /// Distance of each vertex to the nearest obstacle at the last evaluate(), not below half a vertex diameter
-  /// [sigma]; empty without near-wall drag.
+  /// Distance of each vertex to the nearest obstacle at the last evaluate(), not below the near-wall drag's
+  /// cutoff [sigma]; empty without near-wall drag.
   const Eigen::ArrayXd& wall_distance() const { return wall_distance_; }
   /// Deepest overlap of the interface with a wall's contact range [sigma]: of its edges or of its vertices,
   /// as the contact counts them.
   double deepest_overlap(const DropletState& state) const;
-  /// Distance from an obstacle's surface at which contact begins, half a vertex diameter [sigma].
+  /// Distance from an obstacle's surface at which contact begins [sigma].
   double contact_range() const { return walls_.range(); }
 
   double vertex_diameter() const { return vertex_diameter_; }
@@ -86,6 +86,7 @@ class DpForces {
   double rest_area_;
   double rest_edge_;
   double weight_;
+  double near_wall_cutoff_;
   WallContacts walls_;
   WallContacts nearest_walls_;   // kept only with near-wall drag
   WallContacts adhesive_walls_;  // kept only where walls are wetted

@@ -7,7 +7,7 @@ namespace clog {
 
 /// To be raised whenever the same parameters begin to give other results: runs of different versions do not
 /// belong in one table.
-inline constexpr int model_version = 3;
+inline constexpr int model_version = 4;
 
 enum class Model { dp, sp };
 /// Springs of the edges: to the rest length l0 (the paper), to the current mean edge length, or `along` the
@@ -26,6 +26,11 @@ enum class ObstacleLayout { random, lattice };
 /// that, proof that a stable equilibrium is at hand (equilibrium.hpp).
 enum class ClogDetection { threshold, certified };
 
+/// Lengths that were half a vertex diameter and a vertex diameter of 256 vertices, the published number
+/// [sigma].
+inline constexpr double published_contact_range = 0.00614;
+inline constexpr double published_vertex_diameter = 0.01227;
+
 /// The tension changes to that of a wetted wall over this many vertex diameters. Over one, the contact angle
 /// is wrong however many vertices there are, and droplets of 128 are up to 5 % too tall; over two to four the
 /// shapes agree.
@@ -39,12 +44,18 @@ struct DpParameters {
   std::optional<double> perimeter_stiffness;  ///< K_l [g rho sigma]; empty: automatic
   double perimeter_stiffness_ratio = 1e-3;    ///< K_l/Gamma of springs to the rest length
   WallContact wall_contact = WallContact::edge;
+  /// Distance from a wall's surface at which contact begins [sigma]; empty: half a vertex diameter, as
+  /// published, which makes every gap narrower by a vertex diameter.
+  std::optional<double> contact_range = 0;
   /// Tension of the interface where it touches a wall, over Gamma: (gamma_so - gamma_sw)/gamma_ow, which is
   /// -cos of the contact angle (Young). 1: a film of water everywhere, as in the paper's figures.
   double wall_tension = 1;
   SelfContact self_contact = SelfContact::on;
+  /// Distance below which the interface repels itself: the thickness of a film between two parts of it
+  /// [sigma].
+  double self_contact_range = published_vertex_diameter;
   Gravity gravity = Gravity::area;
-  int vertices = 256;  ///< N_v
+  int vertices = 128;  ///< N_v
 };
 
 /// Periodic array of circular obstacles, Cheng et al., "Geometry".
@@ -68,6 +79,7 @@ struct DragParameters {
   double terminal_speed = 0.03;         ///< V_t [sqrt(sigma g)]; b_inf = M g / V_t
   double near_wall = 0;                 ///< b_0/b_inf; the soft disk has no near-wall drag
   double near_wall_exponent = 4.0 / 3;  ///< alpha; 4/3 is calibrated in Appendix A of Cheng et al.
+  double near_wall_cutoff = published_contact_range;  ///< d counts as no less [sigma]
   double relative = 1;  ///< c, drag of motion relative to the centre of mass over b_inf; dp only
 };
 
@@ -89,6 +101,9 @@ struct RunParameters {
 /// then validates.
 /// @throws Error naming the field, its value, the reason and a remedy
 RunParameters resolve(RunParameters parameters);
+
+/// The published range of contact [sigma].
+double half_vertex_diameter(const DpParameters& dp);
 
 /// K_l where none is given [g rho sigma]: a fraction of Gamma for springs to the rest length; 1 for those to
 /// the mean length; 0.003/V_t for those along the interface, which even out vertices at a rate of (2 pi)^2

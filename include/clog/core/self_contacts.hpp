@@ -16,7 +16,9 @@ namespace clog {
 /// Contact is between vertices and edges, so it holds when edges are longer than the vertex diameter. Every
 /// edge within reach pushes by itself, with its own nearest point: then energy and force are continuous
 /// wherever the vertex goes, also in a concave corner, where it is as near to two edges. Edges close along
-/// the contour do not count as contact, or every vertex would touch its neighbours.
+/// the contour do not count as contact, or every vertex would touch its neighbours: those fewer vertices away
+/// than make up three ranges of a contour at rest. That number does not depend on how the contour is
+/// stretched, or forces would depend on when the pairs were made.
 class SelfContacts {
  public:
   struct Pair {
@@ -24,14 +26,20 @@ class SelfContacts {
     int edge;  ///< edge e joins vertices e and e + 1 (mod N)
   };
 
-  /// @param diameter  distance below which the interface repels itself [sigma]
-  explicit SelfContacts(double diameter) : diameter_(diameter) {}
+  /// @param range  distance below which the interface repels itself [sigma]
+  /// @param rest_edge  length of an edge of the droplet at rest [sigma]
+  SelfContacts(double range, double rest_edge) : range_(range) { set_rest_edge(rest_edge); }
+
+  /// For a droplet that grows.
+  void set_rest_edge(double length);
 
   /// Renews the pairs when the shape may change too much on the way to the next update.
   void update(const DropletState& state, const Travel& travel);
   void invalidate() { reference_.resize(0); }
   const std::vector<Pair>& pairs() const { return pairs_; }
-  double diameter() const { return diameter_; }
+  double range() const { return range_; }
+  /// Vertices fewer numbers apart than this do not repel each other's edges.
+  int exclusion() const { return exclusion_; }
 
   /// The same pairs for vectors: a group of WallContacts::edges_per_group edges and as many consecutive
   /// vertices. Strands that face each other run in opposite directions, so the last of these vertices is
@@ -45,7 +53,9 @@ class SelfContacts {
   const std::vector<Item>& items() const { return items_; }
 
  private:
-  double diameter_;
+  double range_;
+  double rest_edge_ = 0;
+  int exclusion_ = 1;
   Eigen::ArrayXd reference_;  // positions relative to their mean when the pairs were made
   std::vector<Pair> pairs_;
   std::vector<Item> items_;

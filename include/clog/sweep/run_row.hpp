@@ -53,14 +53,17 @@ struct RunRow {
   double terminal_speed = 0;
   double near_wall_drag = 0;
   double near_wall_exponent = 0;
+  double near_wall_cutoff = not_known;  ///< NaN for sp
   double relative_drag = 1;
   double area_stiffness = 0;  ///< NaN for sp
   FixedText<16> preset;       ///< the one that the interface's columns agree with, or "custom"
   FixedText<8> perimeter_spring;
   double perimeter_stiffness = 0;  ///< NaN for sp
   FixedText<8> wall_contact;
+  double contact_range = not_known;  ///< NaN for sp
   double wall_tension = 1;  ///< NaN for sp
   FixedText<8> self_contact;
+  double self_contact_range = not_known;  ///< NaN for sp
   FixedText<8> gravity;
   double clog_energy = 0;
   FixedText<16> clog_detection;
