@@ -3,17 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
-// GCC compiles the function once per listed instruction set and picks one at load time. The sanitizers cannot
-// follow that indirection, and other compilers spell it differently: there, one version is enough.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define CLOG_MULTIVERSION __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define CLOG_MULTIVERSION
-#endif
+#include "vector_targets.hpp"
 
-namespace clog::kernel {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/dp_kernel.cpp"
+#include <hwy/foreach_target.h>
+// The loops are plain; Highway compiles them for each of its targets.
+#include <hwy/highway.h>
 
-CLOG_MULTIVERSION
+HWY_BEFORE_NAMESPACE();
+namespace clog::kernel::HWY_NAMESPACE {
+
 Sums measure_edges(int n, const double* __restrict x, const double* __restrict y, EdgeArrays edges) {
   double* __restrict ex = edges.x;
   double* __restrict ey = edges.y;
@@ -44,7 +44,6 @@ Sums measure_edges(int n, const double* __restrict x, const double* __restrict y
 // d(a X) = surface integral of (x - X) times the outward displacement: each edge's (x - X) changes linearly
 // along it, and a vertex takes the part that its shape function weighs, (2 q_i + q_j)/6 of the edge's outward
 // normal.
-CLOG_MULTIVERSION
 void measure_centroid_gradient(int n, const double* __restrict x, const double* __restrict y,
                                EdgeArrays edges, const Sums& sums, CentroidGradient gradient) {
   const double* __restrict ex = edges.x;
@@ -72,7 +71,6 @@ void measure_centroid_gradient(int n, const double* __restrict x, const double* 
   vertex(n - 1, n - 2, 0);
 }
 
-CLOG_MULTIVERSION
 void add_body_force(int n, double force_x, double force_y, CentroidGradient gradient, double* __restrict fx,
                     double* __restrict fy) {
   const double* __restrict xx = gradient.xx;
@@ -86,7 +84,6 @@ void add_body_force(int n, double force_x, double force_y, CentroidGradient grad
   }
 }
 
-CLOG_MULTIVERSION
 void interface_forces(int n, const Interface& interface, EdgeArrays edges, double* __restrict pull,
                       double* __restrict fx, double* __restrict fy) {
   const double* __restrict ex = edges.x;
@@ -116,7 +113,6 @@ void interface_forces(int n, const Interface& interface, EdgeArrays edges, doubl
   for (int i = 1; i < n; ++i) vertex(i, i - 1);
 }
 
-CLOG_MULTIVERSION
 void add_wall_forces(int n, const double* __restrict x, const double* __restrict y, EdgeArrays edges,
                      WallSlot slot, double range, double stiffness, double* __restrict end_x,
                      double* __restrict end_y, double* __restrict fx, double* __restrict fy) {
@@ -151,7 +147,6 @@ void add_wall_forces(int n, const double* __restrict x, const double* __restrict
   }
 }
 
-CLOG_MULTIVERSION
 void add_vertex_wall_forces(int n, const double* __restrict x, const double* __restrict y, WallSlot slot,
                             double range, double stiffness, double* __restrict fx, double* __restrict fy) {
 #pragma omp simd
@@ -188,7 +183,6 @@ inline AwayFromWedge away_from(const WedgePlace& wedge, double x, double y) {
 
 }  // namespace
 
-CLOG_MULTIVERSION
 void add_wedge_forces(int n, const double* __restrict x, const double* __restrict y, const WedgePlace& wedge,
                       double range, double stiffness, double* __restrict fx, double* __restrict fy) {
 #pragma omp simd
@@ -200,14 +194,12 @@ void add_wedge_forces(int n, const double* __restrict x, const double* __restric
   }
 }
 
-CLOG_MULTIVERSION
 void shrink_to_wedge_distance(int n, const double* __restrict x, const double* __restrict y,
                               const WedgePlace& wedge, double* __restrict distance) {
 #pragma omp simd
   for (int i = 0; i < n; ++i) distance[i] = std::min(distance[i], away_from(wedge, x[i], y[i]).distance);
 }
 
-CLOG_MULTIVERSION
 void shrink_to_wall_distance(int n, const double* __restrict x, const double* __restrict y, WallSlot slot,
                              double* __restrict distance) {
 #pragma omp simd
@@ -218,4 +210,63 @@ void shrink_to_wall_distance(int n, const double* __restrict x, const double* __
   }
 }
 
+}  // namespace clog::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace clog::kernel {
+
+HWY_EXPORT(measure_edges);
+Sums measure_edges(int n, const double* x, const double* y, EdgeArrays edges) {
+  return HWY_DYNAMIC_DISPATCH(measure_edges)(n, x, y, edges);
+}
+
+HWY_EXPORT(measure_centroid_gradient);
+void measure_centroid_gradient(int n, const double* x, const double* y, EdgeArrays edges, const Sums& sums,
+                               CentroidGradient gradient) {
+  HWY_DYNAMIC_DISPATCH(measure_centroid_gradient)(n, x, y, edges, sums, gradient);
+}
+
+HWY_EXPORT(add_body_force);
+void add_body_force(int n, double force_x, double force_y, CentroidGradient gradient, double* fx,
+                    double* fy) {
+  HWY_DYNAMIC_DISPATCH(add_body_force)(n, force_x, force_y, gradient, fx, fy);
+}
+
+HWY_EXPORT(interface_forces);
+void interface_forces(int n, const Interface& interface, EdgeArrays edges, double* pull, double* fx,
+                      double* fy) {
+  HWY_DYNAMIC_DISPATCH(interface_forces)(n, interface, edges, pull, fx, fy);
+}
+
+HWY_EXPORT(add_wall_forces);
+void add_wall_forces(int n, const double* x, const double* y, EdgeArrays edges, WallSlot slot, double range,
+                     double stiffness, double* end_x, double* end_y, double* fx, double* fy) {
+  HWY_DYNAMIC_DISPATCH(add_wall_forces)(n, x, y, edges, slot, range, stiffness, end_x, end_y, fx, fy);
+}
+
+HWY_EXPORT(add_vertex_wall_forces);
+void add_vertex_wall_forces(int n, const double* x, const double* y, WallSlot slot, double range,
+                            double stiffness, double* fx, double* fy) {
+  HWY_DYNAMIC_DISPATCH(add_vertex_wall_forces)(n, x, y, slot, range, stiffness, fx, fy);
+}
+
+HWY_EXPORT(add_wedge_forces);
+void add_wedge_forces(int n, const double* x, const double* y, const WedgePlace& wedge, double range,
+                      double stiffness, double* fx, double* fy) {
+  HWY_DYNAMIC_DISPATCH(add_wedge_forces)(n, x, y, wedge, range, stiffness, fx, fy);
+}
+
+HWY_EXPORT(shrink_to_wedge_distance);
+void shrink_to_wedge_distance(int n, const double* x, const double* y, const WedgePlace& wedge,
+                              double* distance) {
+  HWY_DYNAMIC_DISPATCH(shrink_to_wedge_distance)(n, x, y, wedge, distance);
+}
+
+HWY_EXPORT(shrink_to_wall_distance);
+void shrink_to_wall_distance(int n, const double* x, const double* y, WallSlot slot, double* distance) {
+  HWY_DYNAMIC_DISPATCH(shrink_to_wall_distance)(n, x, y, slot, distance);
+}
+
 }  // namespace clog::kernel
+#endif

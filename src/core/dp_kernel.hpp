@@ -4,8 +4,8 @@
 #include "clog/core/wedge.hpp"
 
 /// The loops over vertices that a DP step consists of. Plain arrays of length n (one entry per vertex or
-/// edge), no branch, no allocation; each is compiled for several instruction sets and chosen when the program
-/// starts. Edge i joins vertices i and i + 1, the last one closes the contour.
+/// edge), no branch, no allocation. Each is compiled for several instruction sets, and use_instruction_set()
+/// chooses. Edge i joins vertices i and i + 1, the last one closes the contour.
 namespace clog::kernel {
 
 struct EdgeArrays {

@@ -101,7 +101,6 @@ struct NearWallDrag {
 
 /// One instruction set's versions of the passes.
 struct StepKernel {
-  const char* name;  ///< of the instruction set
   /// Edges and sums over them.
   Sums (*measure)(int n, const StepArrays& arrays);
   /// How far every item's nearest edge is from contact; negative where it is in contact [sigma].

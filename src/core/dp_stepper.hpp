@@ -34,7 +34,6 @@ class DpStepper {
   void advance(DropletState& state, int steps, double time_step, Droplet::Work* work);
   /// The last half kick.
   void finish(DropletState& state, Droplet::Work* work);
-  const char* instruction_set() const { return kernel_.name; }
 
  private:
   RunParameters run_;

@@ -16,17 +16,19 @@
 #include "clog/core/error.hpp"
 #include "clog/core/lattice.hpp"
 #include "clog/core/obstacle_array.hpp"
+#include "vector_targets.hpp"
 
-namespace clog {
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/poisson_disk.cpp"
+#include <hwy/foreach_target.h>
+// The code is plain; Highway compiles it for each of its targets.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace clog::HWY_NAMESPACE {
 namespace {
 
-// As in dp_kernel.cpp; whatever such a function calls must be inlined to be compiled alike. This file is
-// compiled without fused multiply-adds: the same array on every machine.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define CLOG_MULTIVERSION __attribute__((target_clones("arch=x86-64-v3", "default")))
-#else
-#define CLOG_MULTIVERSION
-#endif
+// This file is compiled without fused multiply-adds: the same array with every instruction set.
 
 /// Places are kept in single precision, relative to a cell; this much more distance makes up for the
 /// rounding.
@@ -150,7 +152,7 @@ class SequentialAddition {
   }
 
   /// Adds points until there are `target` of them or no room is left.
-  [[gnu::flatten]] CLOG_MULTIVERSION void fill(std::size_t target) {
+  [[gnu::flatten]] void fill(std::size_t target) {
     for (const double darts_per_cell : first_rounds) {
       for (int row = 0; row < cells_per_side_; ++row)
         throw_darts(cells_per_side_, darts_per_cell, [&](int column) { return whole(cell_at(row, column)); });
@@ -419,6 +421,8 @@ class SequentialAddition {
   }
 };
 
+}  // namespace
+
 /// At most `target` discs; what was needed to find them is given back.
 std::vector<Obstacle> add_circles(const ObstacleParameters& parameters, std::size_t target,
                                   std::uint32_t seed) {
@@ -429,14 +433,20 @@ std::vector<Obstacle> add_circles(const ObstacleParameters& parameters, std::siz
   return addition.circles(smallest / 2);
 }
 
-}  // namespace
+}  // namespace clog::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace clog {
+
+HWY_EXPORT(add_circles);
 
 ObstacleArray sample_obstacles(const ObstacleParameters& parameters, std::uint32_t seed) {
   if (parameters.layout == ObstacleLayout::lattice) return lattice_obstacles(parameters, seed);
   std::size_t target = SIZE_MAX;
   if (parameters.density)
     target = static_cast<std::size_t>(std::llround(*parameters.density * parameters.box * parameters.box));
-  std::vector<Obstacle> obstacles = add_circles(parameters, target, seed);
+  std::vector<Obstacle> obstacles = HWY_DYNAMIC_DISPATCH(add_circles)(parameters, target, seed);
   if (parameters.density && obstacles.size() < target) {
     std::ostringstream message;
     message << "invalid obstacle-density=" << *parameters.density << " (no more than "
@@ -451,3 +461,4 @@ ObstacleArray sample_obstacles(const ObstacleParameters& parameters, std::uint32
 }
 
 }  // namespace clog
+#endif

@@ -8,8 +8,11 @@
 #include <cstdint>
 #include <numbers>
 #include <random>
+#include <string>
+#include <utility>
 
 #include "clog/core/error.hpp"
+#include "clog/core/instruction_set.hpp"
 
 namespace clog {
 namespace {
@@ -122,8 +125,8 @@ std::uint64_t digest(const ObstacleArray& array) {
 }
 
 TEST(SampleObstacles, GivesDiscsOfOneSizeThatNeverChange) {
-  // Made by the sampler that lets discs arrive square by square, the same with AVX2 and without. Renew only
-  // with a change that alters the course of runs.
+  // Made by the sampler that lets discs arrive square by square. Renew only with a change that alters the
+  // course of runs.
   EXPECT_EQ(digest(sample_obstacles({.gap = 0.4, .density = {}, .box = 30}, 4)), 0xea87e7a8c4585524u);
   EXPECT_EQ(digest(sample_obstacles({.gap = 0.2, .density = 0.35, .box = 50}, 1)), 0x10fc226cc1015f64u);
   EXPECT_EQ(digest(sample_obstacles({.gap = 1.1, .density = {}, .box = 17.3}, 11)), 0x9241ec7695805bf0u);
@@ -253,6 +256,17 @@ TEST(SampleObstacles, MixesLikeDiscsThatArriveOneByOne) {
 TEST(SampleObstacles, GivesTheSameMixtureForTheSameSeed) {
   EXPECT_EQ(digest(sample_obstacles(mixture(0.5, 20), 7)), digest(sample_obstacles(mixture(0.5, 20), 7)));
   EXPECT_NE(digest(sample_obstacles(mixture(0.5, 20), 7)), digest(sample_obstacles(mixture(0.5, 20), 8)));
+}
+
+TEST(SampleObstacles, DoesNotDependOnTheInstructionSet) {
+  const auto digests_with = [](const std::string& set) {
+    use_instruction_set(set);
+    const std::pair both{digest(sample_obstacles(mixture(0, 50), 3)),
+                         digest(sample_obstacles(mixture(0.5, 20), 7))};
+    use_instruction_set("auto");
+    return both;
+  };
+  for (const std::string& set : instruction_sets()) EXPECT_EQ(digests_with(set), digests_with("auto")) << set;
 }
 
 TEST(SampleObstacles, SaysWhatFitsOfAMixture) {

@@ -5,12 +5,13 @@
 
 namespace clog {
 
-/// The instruction sets that the polygon's step was compiled for and this processor has, the widest first:
-/// of avx512, avx2, baseline. (On processors other than x86 the names are those of the Highway library.)
+/// The instruction sets that all kernels were compiled for and this processor has, the widest first: of
+/// avx512, avx2, baseline. (On processors other than x86 the names are those of the Highway library.)
 std::vector<std::string> instruction_sets();
-/// The one that droplets made from now on use. Results of two sets differ by round-off.
+/// The one that is used for droplets made from now on and for their release. Results of two sets differ by
+/// round-off; those of one are the same on every processor that has it.
 std::string instruction_set();
-/// Pins it; `auto` goes back to the widest. To be called before threads are made.
+/// Pins it; `auto` goes back to the widest. To be called before droplets and threads are made.
 /// @throws Error if this processor has no such set
 void use_instruction_set(const std::string& name);
 
