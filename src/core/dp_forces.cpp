@@ -16,8 +16,8 @@ kernel::WedgePlace kernel::place_in(const LocalFrame& frame, const Wedge& wedge)
           .radius = wedge.radius,
           .axis_x = wedge.axis[0],
           .axis_y = wedge.axis[1],
-          .cos = std::cos(wedge.half_angle),
-          .sin = std::sin(wedge.half_angle)};
+          .cos = wedge.half_angle.cos,
+          .sin = wedge.half_angle.sin};
 }
 
 DpForces::DpForces(const RunParameters& run, const ObstacleArray& obstacles)

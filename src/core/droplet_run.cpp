@@ -25,8 +25,8 @@ constexpr double relaxation_times_before_a_clog = 10;
 /// V_t/g at its speed, farther than it may be from it.
 double first_search(double terminal_speed) {
   constexpr double slow = 1e-4;
-  const double coasting = std::pow(farthest_rest * units::gravity / (terminal_speed * terminal_speed), 2);
-  return std::min(slow, coasting);
+  const double coasting = farthest_rest * units::gravity / (terminal_speed * terminal_speed);  // over V_t
+  return std::min(slow, coasting * coasting);
 }
 /// After a search in vain the next one waits until E_k/E_t has fallen by so much again,
 constexpr double fall_between_searches = 0.1;

@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "clog/core/portable_math.hpp"
 #include "clog/core/units.hpp"
 
 namespace clog {
@@ -21,7 +22,7 @@ constexpr double box_rounding = 1e-9;  // relative
 constexpr double free_radius = 0.55 * units::droplet_diameter;
 
 CommensurateLattice lattice(double spacing, int p, int q) {
-  return {p, q, spacing * std::hypot(p, q), std::atan2(q, p) / degree};
+  return {p, q, spacing * std::hypot(p, q), portable::atan2(q, p) / degree};
 }
 
 /// A place in the unit cell [-1/2, 1/2]^2, in spacings: uniform where a droplet is free of the obstacle at
@@ -52,7 +53,7 @@ std::optional<CommensurateLattice> nearest_lattice(double spacing, double angle,
   std::optional<CommensurateLattice> nearest;
   const double longest = largest_box * (1 + box_rounding);
   for (int p = 1; p * spacing <= longest; ++p) {
-    const double wanted = p * std::tan(angle * degree);
+    const double wanted = p * portable::tan(angle * degree);
     for (const double q : {std::floor(wanted), std::ceil(wanted)}) {
       const CommensurateLattice candidate = lattice(spacing, p, static_cast<int>(q));
       if (candidate.box < smallest_box * (1 - box_rounding) || candidate.box > longest) continue;
@@ -67,13 +68,16 @@ std::optional<CommensurateLattice> nearest_lattice(double spacing, double angle,
 ObstacleArray lattice_obstacles(const ObstacleParameters& parameters, std::uint32_t seed) {
   const double angle = parameters.lattice_angle * degree;
   const double spacing = parameters.diameter + parameters.gap;
-  const long long p = std::llround(parameters.box / spacing * std::cos(angle));
-  const long long q = std::llround(parameters.box / spacing * std::sin(angle));
+  const long long p = std::llround(parameters.box / spacing * portable::cos(angle));
+  const long long q = std::llround(parameters.box / spacing * portable::sin(angle));
   const long long num_points = p * p + q * q;
+  const double length = std::sqrt(static_cast<double>(num_points));
+  const double cosine = static_cast<double>(p) / length;
+  const double sine = static_cast<double>(q) / length;
   const CellPlace start = free_place(parameters, seed);
   const double centre = parameters.box / 2;
-  const double shift_x = centre - spacing * (start.along * std::cos(angle) - start.across * std::sin(angle));
-  const double shift_y = centre - spacing * (start.along * std::sin(angle) + start.across * std::cos(angle));
+  const double shift_x = centre - spacing * (start.along * cosine - start.across * sine);
+  const double shift_y = centre - spacing * (start.along * sine + start.across * cosine);
 
   // In units of box/num_points all points have integer coordinates: what lies in the box is found exactly.
   const double unit = parameters.box / static_cast<double>(num_points);

@@ -8,6 +8,7 @@
 
 #include "clog/core/error.hpp"
 #include "clog/core/lattice.hpp"
+#include "clog/core/portable_math.hpp"
 #include "clog/core/stability.hpp"
 #include "clog/core/units.hpp"
 
@@ -128,7 +129,7 @@ double soft_disk_frequency(const RunParameters& run) {
 }
 
 double rounded_down(double value) {
-  const double scale = std::pow(10, 1 - std::floor(std::log10(value)));
+  const double scale = portable::pow(10, 1 - std::floor(portable::log10(value)));
   return std::floor(value * scale * (1 + 1e-12)) / scale;
 }
 

@@ -1,6 +1,5 @@
 #include <Eigen/Core>
 #include <algorithm>
-#include <boost/random/exponential_distribution.hpp>
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/uniform_int_distribution.hpp>
 #include <cmath>
@@ -16,6 +15,7 @@
 #include "clog/core/error.hpp"
 #include "clog/core/lattice.hpp"
 #include "clog/core/obstacle_array.hpp"
+#include "portable_exponential.hpp"
 #include "vector_targets.hpp"
 
 #undef HWY_TARGET_INCLUDE

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <vector>
 
+#include "clog/core/portable_math.hpp"
+
 namespace clog {
 namespace {
 
@@ -45,11 +47,11 @@ PolygonShape polygon_shape(const Eigen::ArrayXd& position) {
 
 Eigen::ArrayXd regular_polygon(int num_vertices, double area) {
   const double angle = 2 * std::numbers::pi / num_vertices;
-  const double circumradius = std::sqrt(2 * area / (num_vertices * std::sin(angle)));
+  const double circumradius = std::sqrt(2 * area / (num_vertices * portable::sin(angle)));
   Eigen::ArrayXd position(2 * num_vertices);
   for (int i = 0; i < num_vertices; ++i) {
-    position[i] = circumradius * std::cos(i * angle);
-    position[num_vertices + i] = circumradius * std::sin(i * angle);
+    position[i] = circumradius * portable::cos(i * angle);
+    position[num_vertices + i] = circumradius * portable::sin(i * angle);
   }
   return position;
 }

@@ -10,6 +10,7 @@
 #include "clog/core/error.hpp"
 #include "clog/core/fire.hpp"
 #include "clog/core/polygon.hpp"
+#include "clog/core/portable_math.hpp"
 #include "clog/core/sp_droplet.hpp"
 #include "clog/core/stability.hpp"
 #include "clog/core/units.hpp"
@@ -28,7 +29,7 @@ Eigen::Array2d nearest_void(const ObstacleArray& obstacles) {
     bool climbed = false;
     for (int direction = 0; direction < 8; ++direction) {
       const double angle = direction * std::numbers::pi / 4;
-      const Eigen::Array2d trial = place + step * Eigen::Array2d(std::cos(angle), std::sin(angle));
+      const Eigen::Array2d trial = place + step * Eigen::Array2d(portable::cos(angle), portable::sin(angle));
       const double trial_room = clearance(obstacles, trial[0], trial[1], enough);
       if (trial_room > room) {
         room = trial_room;
@@ -69,7 +70,7 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
   if (room < smallest_radius)
     refuse_release("no void near the centre of the box", "more vertices or a wider obstacle-gap");
 
-  double area = units::rest_area * std::min(1.0, std::pow(room / radius, 2));
+  double area = units::rest_area * std::min(1.0, room * room / (radius * radius));
   DropletState state;
   state.frame = frame_around(place, obstacles.box());
   state.position = regular_polygon(n, area);

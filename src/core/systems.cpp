@@ -8,6 +8,7 @@
 
 #include "clog/core/error.hpp"
 #include "clog/core/polygon.hpp"
+#include "clog/core/portable_math.hpp"
 #include "clog/core/release.hpp"
 #include "clog/core/units.hpp"
 
@@ -65,8 +66,8 @@ double last_free_start(const ChannelParameters& channel, double reach) {
   if (channel.wedge_angle == 0) return everywhere;
   const double angle = channel.wedge_angle * std::numbers::pi / 180;
   const double last =
-      ((channel.orifice / 2 + channel.tip_radius) * std::cos(angle) - channel.tip_radius - reach) /
-      std::sin(angle);
+      ((channel.orifice / 2 + channel.tip_radius) * portable::cos(angle) - channel.tip_radius - reach) /
+      portable::sin(angle);
   return last > 0 ? everywhere : last;
 }
 

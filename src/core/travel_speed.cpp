@@ -30,7 +30,10 @@ std::vector<double> means_of_pieces(std::span<const double> values, std::size_t 
 double squared_error_of_mean(std::span<const double> values) {
   double mean = 0, sum = 0;  // from the first value on
   for (const double value : values) mean += (value - values.front()) / static_cast<double>(values.size());
-  for (const double value : values) sum += std::pow(value - values.front() - mean, 2);
+  for (const double value : values) {
+    const double deviation = value - values.front() - mean;
+    sum += deviation * deviation;
+  }
   const double n = static_cast<double>(values.size());
   return sum / (n * (n - 1));
 }
@@ -43,13 +46,13 @@ std::optional<std::size_t> transient_length(std::span<const double> values) {
   // White's statistic is the sum of squares over n^2; quadratic in the batches, of which there are 200 at
   // most.
   const std::size_t last = batches.size() / 2;
-  const double negligible = std::pow(negligible_error * mean_of(std::span(batches).subspan(last)), 2);
+  const double negligible = negligible_error * mean_of(std::span(batches).subspan(last));
   std::size_t best = 0;
   double smallest = std::numeric_limits<double>::infinity();
   for (std::size_t begin = 0; begin <= last; ++begin) {
     const std::span rest = std::span(batches).subspan(begin);
     const double n = static_cast<double>(rest.size());
-    const double statistic = std::max(squared_error_of_mean(rest) * (n - 1) / n, negligible);
+    const double statistic = std::max(squared_error_of_mean(rest) * (n - 1) / n, negligible * negligible);
     if (statistic >= smallest) continue;
     smallest = statistic;
     best = begin;
@@ -66,7 +69,8 @@ double blocked_error(std::span<const double> values) {
   for (std::size_t block = 1; 2 * block <= values.size(); block *= 2) {
     const double squared_error = squared_error_of_mean(means_of_pieces(values, block));
     const double growth = squared_error / unblocked;
-    if (std::pow(static_cast<double>(block), 3) > 2 * n * growth * growth) return std::sqrt(squared_error);
+    const auto length = static_cast<double>(block);
+    if (length * length * length > 2 * n * growth * growth) return std::sqrt(squared_error);
   }
   return TravelSpeed::unknown;
 }

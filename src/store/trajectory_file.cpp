@@ -70,8 +70,8 @@ void write_obstacles(hid_t file, const std::vector<Obstacle>& obstacles) {
 void write_wedges(hid_t file, const std::vector<Wedge>& wedges) {
   std::vector<double> values;
   for (const Wedge& wedge : wedges)
-    values.insert(values.end(),
-                  {wedge.tip[0], wedge.tip[1], wedge.axis[0], wedge.axis[1], wedge.half_angle, wedge.radius});
+    values.insert(values.end(), {wedge.tip[0], wedge.tip[1], wedge.axis[0], wedge.axis[1],
+                                 wedge.half_angle.radians, wedge.radius});
   write_attribute(write_dataset(file, "wedges", H5T_NATIVE_DOUBLE, {wedges.size(), 6}, values.data()),
                   "meaning",
                   "walls: x, y of the tip [sigma], x, y of the unit vector into the wall, half angle [rad], "

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "clog/core/error.hpp"
+#include "clog/core/portable_math.hpp"
 
 namespace clog::sweep {
 namespace {
@@ -58,7 +59,8 @@ std::vector<std::string> expand_spaced(std::string_view item, ValueKind kind) {
   std::vector<std::string> values;
   for (long long i = 0; i < count; ++i) {
     const double fraction = count > 1 ? static_cast<double>(i) / static_cast<double>(count - 1) : 0.0;
-    double value = logarithmic ? first * std::pow(last / first, fraction) : std::lerp(first, last, fraction);
+    double value =
+        logarithmic ? first * portable::pow(last / first, fraction) : std::lerp(first, last, fraction);
     if (i == count - 1 && count > 1) value = last;
     // Twelve digits are what a person would write for such a value, and spare the file 0.30000000000000004.
     if (i > 0 && i < count - 1) {

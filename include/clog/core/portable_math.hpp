@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cmath>
+
+/// Functions whose last bit does not depend on the processor. Of its functions of doubles glibc has versions
+/// with and without fused multiply-adds and takes what the processor can do; in one result of some thousand
+/// their last bits differ. Of each function of long doubles it has one version. (Square roots, std::hypot and
+/// rounding are the same everywhere as they are.) They are slow: nothing for loops over vertices.
+///
+/// sin, cos and tan are plain arithmetic. The others are instructions of the x87, which another maker's
+/// processor may round differently in the 64th bit; next to never does that reach the 53 of a double. Use
+/// them for what is rounded or compared afterwards.
+namespace clog::portable {
+
+using Wide = long double;
+
+inline double sin(double x) { return static_cast<double>(std::sin(Wide(x))); }
+inline double cos(double x) { return static_cast<double>(std::cos(Wide(x))); }
+inline double tan(double x) { return static_cast<double>(std::tan(Wide(x))); }
+inline double atan2(double y, double x) { return static_cast<double>(std::atan2(Wide(y), Wide(x))); }
+inline double exp(double x) { return static_cast<double>(std::exp(Wide(x))); }
+inline double log10(double x) { return static_cast<double>(std::log10(Wide(x))); }
+inline double pow(double x, double y) { return static_cast<double>(std::pow(Wide(x), Wide(y))); }
+
+}  // namespace clog::portable
