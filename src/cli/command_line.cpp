@@ -35,8 +35,7 @@ CommandLine::CommandLine(std::string program, std::string usage, SweepKeys sweep
   if (sweep_keys == SweepKeys::none) return;
   own_.add_options()("config", po::value<std::string>(), "file with lines `key = value`")(
       "instruction-set", po::value<std::string>(),
-      "of the processor, for the polygon's step: avx512, avx2, baseline (the widest there is). Results "
-      "differ by "
+      "of the processor, for the polygon: avx512, avx2, baseline (the widest there is). Results differ by "
       "round-off");
   for (const sweep::Key& key : sweep::keys())
     keys_.add_options()(key.name.c_str(), po::value<std::string>(),
