@@ -4,6 +4,8 @@
 add_library(clog_flags INTERFACE)
 target_compile_features(clog_flags INTERFACE cxx_std_20)
 target_include_directories(clog_flags INTERFACE "${PROJECT_SOURCE_DIR}/include")
+# Eigen would add up products of matrices in an order that fits the processor's caches.
+target_compile_definitions(clog_flags INTERFACE EIGEN_NO_CPUID)
 target_compile_options(clog_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
   # The namespace has the name of a C library function (complex logarithm) that g++ treats as built in.

@@ -1,22 +1,36 @@
-"""No compiled file of ours has indirect functions, of which the processor chooses one when a program starts: which
-instructions decide the bits of a row is for --instruction-set to say.
+"""No compiled file of ours has indirect functions, of which the processor chooses one when a program starts, and none asks
+the processor what it is: what decides the bits of a row is for --instruction-set to say.
 
-    one_selector.py READELF FILE...     (archives and programs)
+    one_selector.py READELF OBJDUMP FILE...     (archives and programs)
 """
 
+import re
 import subprocess
 import sys
 
 
-def indirect_functions(readelf, path):
-    listing = subprocess.run([readelf, "-W", "--syms", path], check=True, capture_output=True, text=True).stdout
-    for line in listing.splitlines():
+def output(*command):
+    return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+def indirect_functions(path):
+    for line in output(readelf, "-W", "--syms", path).splitlines():
         match line.split():
             case [_, _, _, "IFUNC", _, _, section, name] if section != "UND":
                 yield name
 
 
-readelf, *paths = sys.argv[1:]
-found = sorted({f"{path}: {name}" for path in paths for name in indirect_functions(readelf, path)})
-print("\n".join(found) or "no indirect functions")
+def functions_that_ask(path):
+    for line in output(objdump, "-d", "--no-show-raw-insn", path).splitlines():
+        if label := re.fullmatch(r"[0-9a-f]+ <(.+)>:", line):
+            name = label.group(1)
+        elif line.endswith("\tcpuid"):
+            yield name
+
+
+readelf, objdump, *paths = sys.argv[1:]
+found = sorted({f"{path}: {what} {name}" for path in paths
+                for what, names in (("indirect", indirect_functions(path)), ("cpuid in", functions_that_ask(path)))
+                for name in names})
+print("\n".join(found) or "one selector")
 sys.exit(bool(found))
