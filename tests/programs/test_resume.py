@@ -14,7 +14,7 @@ import unittest
 
 import h5py
 import numpy as np
-from support import BIN, ROOT, SLOW, STEPS_PER_SNAPSHOT, SWEEP, ProgramTest, SweepTest, table
+from support import BIN, BLOCKED, ROOT, SLOW, STEPS_PER_SNAPSHOT, SWEEP, ProgramTest, SweepTest, table
 
 FEW = [word.replace("1..6", "1") for word in SWEEP]
 
@@ -277,8 +277,7 @@ class Resumed(SweepTest):
         self.refuse("clogsweep", *SWEEP, words=["cannot open s.h5"])
 
     def test_a_failed_run_is_tried_again_up_to_a_limit(self):
-        blocked = ["vertices=64", "box=13", "max-time=5", "obstacle-diameter=6", "obstacle-gap=0.06",
-                   "obstacle-density=0.0237", "seeds=51..70", "--output", "s.h5"]
+        blocked = [*BLOCKED, "seeds=51..70", "--output", "s.h5"]
         self.succeed("clogsweep", *blocked, "--attempts=3", ranks=2)
         rows = table(self.folder / "s.h5")
         self.assertEqual(len(rows), 20)
