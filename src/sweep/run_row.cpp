@@ -2,9 +2,9 @@
 
 #include <cstddef>
 #include <limits>
-#include <numbers>
 
 #include "clog/core/instruction_set.hpp"
+#include "clog/core/jamming.hpp"
 #include "clog/sweep/settings.hpp"
 
 namespace clog::sweep {
@@ -21,15 +21,6 @@ const char* name(PerimeterSpring spring) {
   }
   return "unknown";
 }
-
-}  // namespace
-
-double saturated_density(double diameter, double gap) {
-  constexpr double jamming_coverage = 0.547069;
-  return jamming_coverage / (std::numbers::pi / 4 * (diameter + gap) * (diameter + gap));
-}
-
-namespace {
 
 /// Obstacles per sigma^2; NaN for a saturated mixture, whose jamming limit is not known beforehand.
 double density_of(const ObstacleParameters& obstacles) {

@@ -95,11 +95,6 @@ struct RunRow {
   FixedText<256> message;
 };
 
-/// Density of a saturated array [1/sigma^2]: discs of diameter + gap cover 0.547069 of the plane at the
-/// jamming limit of random sequential addition (Feder 1980; value of Wang, Int. J. Mod. Phys. C 5, 707
-/// (1994)).
-double saturated_density(double diameter, double gap);
-
 /// What was run, seed included, as bytes: equal for equal runs, whatever their place in a sweep.
 std::string identity(const RunRow& row);
 
