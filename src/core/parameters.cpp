@@ -7,6 +7,7 @@
 #include <string>
 
 #include "clog/core/error.hpp"
+#include "clog/core/jamming.hpp"
 #include "clog/core/lattice.hpp"
 #include "clog/core/portable_math.hpp"
 #include "clog/core/stability.hpp"
@@ -30,11 +31,16 @@ void require_not_negative(const char* key, double value) {
   require(std::isfinite(value) && value >= 0, key, value, "must be zero or positive, and finite)");
 }
 
-std::string text(double value) {
+std::string text(double value, int digits = 3) {
   std::ostringstream out;
-  out.precision(3);
+  out.precision(digits);
   out << value;
   return out.str();
+}
+
+double rounded_down(double value, int digits = 2) {
+  const double scale = portable::pow(10, digits - 1 - std::floor(portable::log10(value)));
+  return std::floor(value * scale * (1 + 1e-12)) / scale;
 }
 
 constexpr double smallest_box = 5 * units::droplet_diameter;
@@ -74,11 +80,23 @@ void validate_obstacles(const ObstacleParameters& obstacles, int vertices, Model
   }
 }
 
+/// Whether a density comes out must not depend on the seed: a sweep would find out row by row.
+void validate_density(const ObstacleParameters& obstacles) {
+  if (!obstacles.density) return;
+  const double largest = largest_density(obstacles);
+  // The value in the message, rounded, may be the least bit larger.
+  require(*obstacles.density <= (1 + 1e-9) * largest, "obstacle-density", *obstacles.density,
+          "more than every seed finds room for, with obstacle-gap=" + text(obstacles.gap) +
+              " and box=" + text(obstacles.box) + ") use at most " + text(rounded_down(largest, 4), 4) +
+              ", or saturated: as many as fit");
+}
+
 /// Replaces box and angle of a lattice by those of the nearest one that is periodic.
 void resolve_layout(ObstacleParameters& obstacles) {
   const double angle = obstacles.lattice_angle;
   if (obstacles.layout == ObstacleLayout::random) {
     require(angle == 0, "lattice-angle", angle, "a random array has no rows) add obstacle-layout=lattice");
+    validate_density(obstacles);
     return;
   }
   if (obstacles.density)
@@ -126,11 +144,6 @@ double largest_step_with_automatic_contact(const DpParameters& dp) {
 /// Of a soft disk on one obstacle [1/t0].
 double soft_disk_frequency(const RunParameters& run) {
   return std::sqrt(contact_stiffness(*run.wall_stiffness, units::droplet_diameter) / units::droplet_mass);
-}
-
-double rounded_down(double value) {
-  const double scale = portable::pow(10, 1 - std::floor(portable::log10(value)));
-  return std::floor(value * scale * (1 + 1e-12)) / scale;
 }
 
 void resolve_time_step(RunParameters& run) {

@@ -36,6 +36,8 @@ Setup read_setup(cli::CommandLine& line) {
   // Of few obstacles the gap may be wider than a sampled array of this box could have.
   const double widest = draft.obstacles.box / 2 - draft.obstacles.diameter;
   line.settings().set("obstacle-gap", sweep::shortest(std::min(array->smallest_gap(), widest)));
+  // The config's density may be more than a sampled array of that gap could have.
+  line.settings().set("obstacle-density", "saturated");
   return {single_run(line.settings()), array};
 }
 

@@ -69,6 +69,10 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"obstacle-gap=0.01 (not wider than one vertex", [](auto& run) { run.obstacles.gap = 0.01; }},
         Refusal{"obstacle-diameter=0", [](auto& run) { run.obstacles.diameter = 0; }},
         Refusal{"obstacle-density=-1", [](auto& run) { run.obstacles.density = -1; }},
+        Refusal{"obstacle-density=2.8 (more than every seed finds room for, with obstacle-gap=0.2 and "
+                "box=500) use at most 2.779, or saturated",
+                [](auto& run) { run.obstacles.density = 2.8; }},
+        Refusal{"obstacle-density=1e+300 (more than", [](auto& run) { run.obstacles.density = 1e300; }},
         Refusal{"obstacle-diameter-spread=1 (diameters are uniform",
                 [](auto& run) { run.obstacles.diameter_spread = 1; }},
         Refusal{"obstacle-diameter-spread=-0.1", [](auto& run) { run.obstacles.diameter_spread = -0.1; }},

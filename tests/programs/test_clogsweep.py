@@ -358,11 +358,21 @@ class Refusals(ProgramTest):
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertEqual(done.stderr.count("invalid line-tension=-1"), 1)
 
-    def test_an_impossible_density_fails_every_row_with_the_reason(self):
-        self.succeed("clogsweep", *QUICK, "obstacle-density=9", "seeds=1..2", "--output", "s.h5")
-        rows = table(self.folder / "s.h5")
-        self.assertTrue((rows.status == "failed").all())
-        self.assertIn("obstacle-density=9", rows.message[0])
+    def test_a_density_that_not_every_seed_reaches_is_refused_with_the_largest(self):
+        # The second of each pair is four digits' last one above the largest.
+        for geometry, too_large in [([], ["9", "2.623"]), (["obstacle-diameter-spread=0.5"], ["6", "3.766"])]:
+            largest = f"{float(too_large[1]) - 0.001:.3f}"
+            for density in too_large:
+                sweep = [*QUICK, *geometry, f"obstacle-density=1,{density}", "seeds=1..3"]
+                for program, arguments in [("clogsweep", sweep), ("clogsweep", [*sweep, "--dry-run"]),
+                                           ("clogrun", ["array", *QUICK, *geometry, f"obstacle-density={density}"])]:
+                    self.refuse(program, *arguments, "--output", "s.h5",
+                                words=[f"invalid obstacle-density={density} ", f"use at most {largest}, or saturated"])
+            self.succeed("clogsweep", *QUICK, *geometry, f"obstacle-density={largest}", "seeds=1..20", "--output", "s.h5")
+            self.assertNotIn("failed", set(table(self.folder / "s.h5").status))
+            self.succeed("clogrun", "array", *QUICK, *geometry, f"obstacle-density={largest}", "--output", "r.h5")
+            for name in ("s.h5", "r.h5"):
+                (self.folder / name).unlink()
 
 
 if __name__ == "__main__":

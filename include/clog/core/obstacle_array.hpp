@@ -89,7 +89,7 @@ class ObstacleArray {
 /// obstacles; without, goes on until not even one of the smallest fits ("saturated", the jamming limit: discs
 /// of diameter + gap cover 0.547 of the plane, Feder, J. Theor. Biol. 87, 237 (1980)). Voids are tracked on a
 /// flat quadtree as in Ebeida et al., Comput. Graph. Forum 31, 785 (2012).
-/// @throws Error if the density exceeds what fits
+/// @throws Error if the density exceeds what fits; resolve() lets only densities pass that every seed reaches
 ObstacleArray sample_obstacles(const ObstacleParameters& parameters, std::uint32_t seed);
 
 }  // namespace clog
