@@ -138,12 +138,17 @@ ClogGeometry clog_geometry(const Eigen::ArrayXd& position, std::span<const Obsta
   return geometry;
 }
 
-ClogGeometry clog_geometry(const DropletState& state, const ObstacleArray& array, double contact_range) {
+ClogGeometry clog_geometry(const DropletState& state, const ObstacleArray& array, const DpParameters& dp) {
+  const double contact_range = dp.contact_range.value();
+  const Eigen::ArrayXd interface =
+      dp.wall_contact == WallContact::edge ? refined(state.position) : state.position;
+  const Eigen::Index n = interface.size() / 2;
   std::vector<Obstacle> obstacles;
-  array.gather({state.frame.origin[0], state.frame.origin[1], state.x().minCoeff(), state.x().maxCoeff(),
-                state.y().minCoeff(), state.y().maxCoeff(), contact_range},
+  array.gather({state.frame.origin[0], state.frame.origin[1], interface.head(n).minCoeff(),
+                interface.head(n).maxCoeff(), interface.tail(n).minCoeff(), interface.tail(n).maxCoeff(),
+                contact_range},
                obstacles);
-  return clog_geometry(state.position, obstacles, contact_range);
+  return clog_geometry(interface, obstacles, contact_range);
 }
 
 ClogMechanism ClogGeometry::mechanism() const {

@@ -39,8 +39,7 @@ DpForces::DpForces(const RunParameters& run, const ObstacleArray& obstacles)
       edge_length_(dp_.vertices),
       pull_(dp_.vertices),
       centroid_gradient_(Eigen::ArrayXd::Zero(4 * dp_.vertices)),
-      end_x_(dp_.vertices),
-      end_y_(dp_.vertices),
+      refined_edges_(8 * dp_.vertices),
       wall_distance_(run.drag.near_wall > 0 ? dp_.vertices : 0) {
   set_rest_area(units::rest_area);
 }
@@ -119,14 +118,17 @@ void DpForces::add_walls(const DropletState& state, Eigen::ArrayXd& force) {
   const double* y = x + n;
   double* fx = force.data();
   double* fy = fx + n;
+  const bool meets_edges = dp_.wall_contact == WallContact::edge;
+  const kernel::RefinedEdges edges = kernel::refined_edges(n, refined_edges_.data());
+  if (meets_edges) kernel::refine_edges(n, x, y, edges);
   for (int s = 0; s < walls_.num_slots(); ++s) {
     const kernel::WallSlot slot{walls_.slot_x(s), walls_.slot_y(s), walls_.slot_radius(s)};
-    if (dp_.wall_contact == WallContact::edge)
-      kernel::add_wall_forces(n, x, y, {edge_x_.data(), edge_y_.data(), edge_length_.data()}, slot,
-                              walls_.range(), contact_stiffness_, end_x_.data(), end_y_.data(), fx, fy);
+    if (meets_edges)
+      kernel::push_off_walls(n, x, y, edges, slot, walls_.range(), contact_stiffness_);
     else
       kernel::add_vertex_wall_forces(n, x, y, slot, walls_.range(), contact_stiffness_, fx, fy);
   }
+  if (meets_edges) kernel::hand_out_pushes(n, edges, fx, fy);
   for (const Wedge& wedge : obstacles_->wedges())
     kernel::add_wedge_forces(n, x, y, kernel::place_in(state.frame, wedge), walls_.range(),
                              contact_stiffness_, fx, fy);
@@ -240,12 +242,18 @@ template <class Visit>
 void DpForces::visit_overlaps(const DropletState& state, Visit visit) const {
   const int n = dp_.vertices;
   const auto vertex = [&](int i) { return Eigen::Array2d(state.position[i], state.position[n + i]); };
+  const Eigen::ArrayXd fine = refined(state.position);
+  const auto point = [&](int i) { return Eigen::Array2d(fine[i % (2 * n)], fine[2 * n + i % (2 * n)]); };
   for (int s = 0; s < walls_.num_slots(); ++s)
     for (int i = 0; i < n; ++i) {
-      const int end = dp_.wall_contact == WallContact::vertex ? i : i + 1 < n ? i + 1 : 0;
       const Eigen::Array2d centre{walls_.slot_x(s)[i], walls_.slot_y(s)[i]};
-      const double distance = distance_to_segment(centre, vertex(i), vertex(end)) - walls_.slot_radius(s)[i];
-      visit(walls_.range() - distance);
+      const double reach = walls_.range() + walls_.slot_radius(s)[i];
+      if (dp_.wall_contact == WallContact::vertex) {
+        visit(reach - (vertex(i) - centre).matrix().norm());
+        continue;
+      }
+      visit(reach - distance_to_segment(centre, point(2 * i), point(2 * i + 1)));
+      visit(reach - distance_to_segment(centre, point(2 * i + 1), point(2 * i + 2)));
     }
   for (const Wedge& wedge : obstacles_->wedges()) {
     const kernel::WedgePlace place = kernel::place_in(state.frame, wedge);

@@ -113,38 +113,96 @@ void interface_forces(int n, const Interface& interface, EdgeArrays edges, doubl
   for (int i = 1; i < n; ++i) vertex(i, i - 1);
 }
 
-void add_wall_forces(int n, const double* __restrict x, const double* __restrict y, EdgeArrays edges,
-                     WallSlot slot, double range, double stiffness, double* __restrict end_x,
-                     double* __restrict end_y, double* __restrict fx, double* __restrict fy) {
-  const double* __restrict ex = edges.x;
-  const double* __restrict ey = edges.y;
-  const double* __restrict length = edges.length;
+void refine_edges(int n, const double* __restrict x, const double* __restrict y, RefinedEdges edges) {
+  double* __restrict middle_x = edges.middle_x;
+  double* __restrict middle_y = edges.middle_y;
+  const auto edge = [&](int i, int before, int next, int after) {
+    middle_x[i] = refined_near * (x[i] + x[next]) + refined_far * (x[before] + x[after]);
+    middle_y[i] = refined_near * (y[i] + y[next]) + refined_far * (y[before] + y[after]);
+  };
+  edge(0, n - 1, 1, 2);
 #pragma omp simd
-  for (int i = 0; i < n; ++i) {
-    const double to_x = slot.x[i] - x[i];
-    const double to_y = slot.y[i] - y[i];
-    const double along = (to_x * ex[i] + to_y * ey[i]) / (length[i] * length[i]);
-    const double not_before =
-        along > 0 ? along : 0.0;  // std::clamp would keep the loop from being vectorised
-    const double fraction = not_before < 1 ? not_before : 1.0;
-    const double dx = fraction * ex[i] - to_x;
-    const double dy = fraction * ey[i] - to_y;
-    const double r =
-        std::sqrt(dx * dx + dy * dy) + 1e-300;  // a point on the very centre gets no direction, but no NaN
-    const double overlap = std::max(0.0, range + slot.radius[i] - r);
-    const double push = stiffness * overlap / r;
-    end_x[i] = fraction * push * dx;
-    end_y[i] = fraction * push * dy;
-    fx[i] += (1 - fraction) * push * dx;
-    fy[i] += (1 - fraction) * push * dy;
-  }
-  fx[0] += end_x[n - 1];
-  fy[0] += end_y[n - 1];
+  for (int i = 1; i < n - 2; ++i) edge(i, i - 1, i + 1, i + 2);
+  edge(n - 2, n - 3, n - 1, 0);
+  edge(n - 1, n - 2, 0, 1);
+  std::fill_n(edges.begin_push_x, n, 0.0);
+  std::fill_n(edges.begin_push_y, n, 0.0);
+  std::fill_n(edges.middle_push_x, n, 0.0);
+  std::fill_n(edges.middle_push_y, n, 0.0);
+  std::fill_n(edges.end_push_x, n, 0.0);
+  std::fill_n(edges.end_push_y, n, 0.0);
+}
+
+namespace {
+
+/// Push on half an edge by a circle; `fraction` of it is the end's.
+struct HalfPush {
+  double x, y, fraction;
+};
+inline HalfPush push_half(double begin_x, double begin_y, double end_x, double end_y, double circle_x,
+                          double circle_y, double reach, double stiffness) {
+  const double ex = end_x - begin_x;
+  const double ey = end_y - begin_y;
+  const double to_x = circle_x - begin_x;
+  const double to_y = circle_y - begin_y;
+  const double along = (to_x * ex + to_y * ey) / std::max(ex * ex + ey * ey, 1e-200);
+  const double not_before = along > 0 ? along : 0.0;  // std::clamp would keep loops from being vectorised
+  const double fraction = not_before < 1 ? not_before : 1.0;
+  const double dx = fraction * ex - to_x;
+  const double dy = fraction * ey - to_y;
+  const double r = std::sqrt(dx * dx + dy * dy) + 1e-300;  // a point on the very centre gets no NaN
+  const double push = stiffness * std::max(0.0, reach - r) / r;
+  return {push * dx, push * dy, fraction};
+}
+
+}  // namespace
+
+void push_off_walls(int n, const double* __restrict x, const double* __restrict y, RefinedEdges edges,
+                    WallSlot slot, double range, double stiffness) {
+  const double* __restrict middle_x = edges.middle_x;
+  const double* __restrict middle_y = edges.middle_y;
+  double* __restrict begin_push_x = edges.begin_push_x;
+  double* __restrict begin_push_y = edges.begin_push_y;
+  double* __restrict middle_push_x = edges.middle_push_x;
+  double* __restrict middle_push_y = edges.middle_push_y;
+  double* __restrict end_push_x = edges.end_push_x;
+  double* __restrict end_push_y = edges.end_push_y;
+  const auto edge = [&](int i, int next) {
+    const double reach = range + slot.radius[i];
+    const HalfPush first =
+        push_half(x[i], y[i], middle_x[i], middle_y[i], slot.x[i], slot.y[i], reach, stiffness);
+    const HalfPush second =
+        push_half(middle_x[i], middle_y[i], x[next], y[next], slot.x[i], slot.y[i], reach, stiffness);
+    begin_push_x[i] += (1 - first.fraction) * first.x;
+    begin_push_y[i] += (1 - first.fraction) * first.y;
+    middle_push_x[i] += first.fraction * first.x + (1 - second.fraction) * second.x;
+    middle_push_y[i] += first.fraction * first.y + (1 - second.fraction) * second.y;
+    end_push_x[i] += second.fraction * second.x;
+    end_push_y[i] += second.fraction * second.y;
+  };
 #pragma omp simd
-  for (int i = 1; i < n; ++i) {
-    fx[i] += end_x[i - 1];
-    fy[i] += end_y[i - 1];
-  }
+  for (int i = 0; i < n - 1; ++i) edge(i, i + 1);
+  edge(n - 1, 0);
+}
+
+void hand_out_pushes(int n, RefinedEdges edges, double* __restrict fx, double* __restrict fy) {
+  const double* __restrict begin_x = edges.begin_push_x;
+  const double* __restrict begin_y = edges.begin_push_y;
+  const double* __restrict middle_x = edges.middle_push_x;
+  const double* __restrict middle_y = edges.middle_push_y;
+  const double* __restrict end_x = edges.end_push_x;
+  const double* __restrict end_y = edges.end_push_y;
+  const auto vertex = [&](int i, int second_before, int before, int next) {
+    fx[i] += begin_x[i] + end_x[before] + refined_near * (middle_x[i] + middle_x[before]) +
+             refined_far * (middle_x[next] + middle_x[second_before]);
+    fy[i] += begin_y[i] + end_y[before] + refined_near * (middle_y[i] + middle_y[before]) +
+             refined_far * (middle_y[next] + middle_y[second_before]);
+  };
+  vertex(0, n - 2, n - 1, 1);
+  vertex(1, n - 1, 0, 2);
+#pragma omp simd
+  for (int i = 2; i < n - 1; ++i) vertex(i, i - 2, i - 1, i + 1);
+  vertex(n - 1, n - 3, n - 2, 0);
 }
 
 void add_vertex_wall_forces(int n, const double* __restrict x, const double* __restrict y, WallSlot slot,
@@ -239,10 +297,20 @@ void interface_forces(int n, const Interface& interface, EdgeArrays edges, doubl
   HWY_DYNAMIC_DISPATCH(interface_forces)(n, interface, edges, pull, fx, fy);
 }
 
-HWY_EXPORT(add_wall_forces);
-void add_wall_forces(int n, const double* x, const double* y, EdgeArrays edges, WallSlot slot, double range,
-                     double stiffness, double* end_x, double* end_y, double* fx, double* fy) {
-  HWY_DYNAMIC_DISPATCH(add_wall_forces)(n, x, y, edges, slot, range, stiffness, end_x, end_y, fx, fy);
+HWY_EXPORT(refine_edges);
+void refine_edges(int n, const double* x, const double* y, RefinedEdges edges) {
+  HWY_DYNAMIC_DISPATCH(refine_edges)(n, x, y, edges);
+}
+
+HWY_EXPORT(push_off_walls);
+void push_off_walls(int n, const double* x, const double* y, RefinedEdges edges, WallSlot slot, double range,
+                    double stiffness) {
+  HWY_DYNAMIC_DISPATCH(push_off_walls)(n, x, y, edges, slot, range, stiffness);
+}
+
+HWY_EXPORT(hand_out_pushes);
+void hand_out_pushes(int n, RefinedEdges edges, double* fx, double* fy) {
+  HWY_DYNAMIC_DISPATCH(hand_out_pushes)(n, edges, fx, fy);
 }
 
 HWY_EXPORT(add_vertex_wall_forces);

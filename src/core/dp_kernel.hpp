@@ -1,6 +1,7 @@
 #pragma once
 
 #include "clog/core/droplet_state.hpp"
+#include "clog/core/polygon.hpp"
 #include "clog/core/wedge.hpp"
 
 /// The loops over vertices that a DP step consists of. Plain arrays of length n (one entry per vertex or
@@ -56,11 +57,28 @@ struct WallSlot {
   const double* y;
   const double* radius;
 };
-/// Adds k_c (range - d) away from the wall where d < range, d the distance of an edge's nearest point to the
-/// slot's circle; the edge's two vertices share the push as the point divides it. `end_x`, `end_y` are
-/// scratch of length n.
-void add_wall_forces(int n, const double* x, const double* y, EdgeArrays edges, WallSlot slot, double range,
-                     double stiffness, double* end_x, double* end_y, double* fx, double* fy);
+/// Middles of the edges, and the pushes that walls give their beginnings, middles and ends. Arrays of length
+/// n.
+struct RefinedEdges {
+  double* middle_x;
+  double* middle_y;
+  double *begin_push_x, *begin_push_y;
+  double *middle_push_x, *middle_push_y;
+  double *end_push_x, *end_push_y;
+};
+inline RefinedEdges refined_edges(int n, double* eight_arrays) {
+  const auto array = [=](int k) { return eight_arrays + k * n; };
+  return {array(0), array(1), array(2), array(3), array(4), array(5), array(6), array(7)};
+}
+/// Finds the middles, and clears the pushes.
+void refine_edges(int n, const double* x, const double* y, RefinedEdges edges);
+/// Adds k_c (range - d) away from the wall where d < range, d the distance of the nearest point of half an
+/// edge to the slot's circle; the half's two ends share the push as the point divides it.
+void push_off_walls(int n, const double* x, const double* y, RefinedEdges edges, WallSlot slot, double range,
+                    double stiffness);
+/// Adds the pushes to the forces on the vertices: a middle's goes to the four vertices that decide where it
+/// is.
+void hand_out_pushes(int n, RefinedEdges edges, double* fx, double* fy);
 /// The same with the vertices alone: the published contact.
 void add_vertex_wall_forces(int n, const double* x, const double* y, WallSlot slot, double range,
                             double stiffness, double* fx, double* fy);

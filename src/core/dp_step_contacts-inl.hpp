@@ -13,6 +13,7 @@
 #include <cmath>
 #include <utility>
 
+#include "clog/core/polygon.hpp"
 #include "core/dp_step_vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -37,8 +38,8 @@ HWY_INLINE V to_next_lane(V v) {
 
 /// Every lane to the one before; 0 to the last.
 HWY_INLINE V to_previous_lane(V v) {
-  alignas(64) constexpr std::int64_t after[8] = {lanes > 1 ? 1 : 0, lanes > 2 ? 2 : 1, 3, lanes > 4 ? 4 : 3,
-                                                 5,                 6,                 7, 7};
+  alignas(64) constexpr std::int64_t after[8] = {
+      lanes > 1 ? 1 : 0, lanes > 2 ? 2 : 1, 3, lanes > 4 ? 4 : 3, 5, 6, 7, 7};
   return hn::IfThenElseZero(hn::FirstN(D(), lanes - 1),
                             hn::TableLookupLanes(v, hn::SetTableIndices(D(), after)));
 }
@@ -125,7 +126,8 @@ struct RefinedEdges {
 
  private:
   static HWY_INLINE V middle(V begin, V end, V before, V after) {
-    return hn::MulAdd(all(refined_near), hn::Add(begin, end), hn::Mul(all(refined_far), hn::Add(before, after)));
+    return hn::MulAdd(all(refined_near), hn::Add(begin, end),
+                      hn::Mul(all(refined_far), hn::Add(before, after)));
   }
 };
 

@@ -92,7 +92,7 @@ void DpStepper::look(const Travel& travel) {
   for (const double gap : self_gaps_) deepest = std::max(deepest, -gap);
   constexpr double thrown = 4;
   const double unforeseen = 0.1 * forces_->vertex_diameter() + thrown * deepest;
-  keep_near(walls, wall_gaps_, travel.absolute + unforeseen, near_walls_);
+  keep_near(walls, wall_gaps_, refined_sway * (travel.absolute + unforeseen), near_walls_);
   keep_near(self, self_gaps_, 2 * (travel.relative + unforeseen), near_self_);
 }
 

@@ -172,7 +172,7 @@ RunResult DropletRun::result() const {
   ClogMechanism mechanism = ClogMechanism::none;
   if (status_ == RunStatus::clogged && run_.model == Model::sp) mechanism = ClogMechanism::squeezed;
   if (status_ == RunStatus::clogged && run_.model == Model::dp) {
-    geometry = clog_geometry(last.state(), *obstacles_, run_.dp.contact_range.value());
+    geometry = clog_geometry(last.state(), *obstacles_, run_.dp);
     mechanism = geometry.mechanism();
   }
   return {.status = status_,

@@ -162,7 +162,6 @@ void resolve_time_step(RunParameters& run) {
 void resolve_dp(RunParameters& run) {
   DpParameters& dp = run.dp;
   require_not_negative("line-tension", dp.line_tension);
-  require(dp.vertices >= 16 && dp.vertices <= 4096, "vertices", dp.vertices, "must lie in 16..4096)");
   if (!dp.contact_range) dp.contact_range = half_vertex_diameter(dp);
   require_not_negative("contact-range", *dp.contact_range);
   require(*dp.contact_range <= 0.1, "contact-range", *dp.contact_range,
@@ -178,7 +177,6 @@ void resolve_dp(RunParameters& run) {
   require(
       dp.wall_tension >= 0.1 && dp.wall_tension <= 1, "wall-tension", dp.wall_tension,
       "minus the cosine of the contact angle; with less the interface on a wall would buckle) use 0.1..1");
-
 
   if (dp.perimeter_spring == PerimeterSpring::along && dp.gravity == Gravity::vertex)
     throw Error(
@@ -264,7 +262,7 @@ double automatic_area_stiffness(const RunParameters& run) {
 double automatic_time_step(const RunParameters& run) {
   const double drag = 0.1 * run.drag.terminal_speed / units::gravity;
   if (run.model == Model::sp) return rounded_down(std::min(drag, 0.1 / soft_disk_frequency(run)));
-  constexpr double depth = 0.04;  // of an obstacle in the contact range, over the vertex diameter
+  constexpr double depth = 0.02;  // of an obstacle in the contact range, over the vertex diameter
   const double vertex_mass = units::droplet_mass / run.dp.vertices;
   if (run.wall_stiffness)
     return rounded_down(
@@ -272,7 +270,7 @@ double automatic_time_step(const RunParameters& run) {
                            largest_stable_step(stiff_modes_of_circle(run.dp, *run.wall_stiffness))));
   const double stable = std::sqrt(auto_step_margin) * largest_step_with_automatic_contact(run.dp);
   const double stiff_contact =
-      std::sqrt(depth * auto_contact_omega_dt2 / 2 * vertex_mass / expected_pressure(run));
+      std::sqrt(depth * auto_contact_omega_dt2 * vertex_mass / expected_pressure(run));
   return rounded_down(std::min({drag, stable, stiff_contact}));
 }
 
@@ -293,11 +291,15 @@ RunParameters resolve(RunParameters run) {
           "drag would hardly depend on the distance) use at most 1, a droplet diameter");
   require(run.drag.relative >= 0 && run.drag.relative <= 1000, "relative-drag", run.drag.relative,
           "must lie in 0..1000) 1 is the published model");
+  const int vertices = run.dp.vertices;
+  if (run.model == Model::dp)
+    require(vertices >= 16 && vertices <= 4096, "vertices", vertices, "must lie in 16..4096)");
+  // First, as automatic values follow from the obstacles.
+  validate_obstacles(run.obstacles, vertices, run.model);
   if (run.model == Model::dp)
     resolve_dp(run);
   else
     resolve_sp(run);
-  validate_obstacles(run.obstacles, run.dp.vertices, run.model);
   resolve_layout(run.obstacles);
   return run;
 }

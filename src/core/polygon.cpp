@@ -56,6 +56,20 @@ Eigen::ArrayXd regular_polygon(int num_vertices, double area) {
   return position;
 }
 
+Eigen::ArrayXd refined(const Eigen::ArrayXd& position) {
+  const Eigen::Index n = position.size() / 2;
+  Eigen::ArrayXd fine(4 * n);
+  for (const Eigen::Index axis : {0, 1}) {
+    const auto coarse = position.segment(axis * n, n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      fine[2 * (axis * n + i)] = coarse[i];
+      fine[2 * (axis * n + i) + 1] = refined_near * (coarse[i] + coarse[(i + 1) % n]) +
+                                     refined_far * (coarse[(i + n - 1) % n] + coarse[(i + 2) % n]);
+    }
+  }
+  return fine;
+}
+
 bool encloses(const Eigen::ArrayXd& position, double x, double y) {
   const Eigen::Index n = position.size() / 2;
   const auto px = position.head(n);

@@ -82,8 +82,8 @@ void SelfContacts::rebuild(const DropletState& state, double skin) {
   };
   const auto add_if_near = [&](const Pair& pair) {
     const int end = pair.edge + 1 < n ? pair.edge + 1 : 0;
-    if (contour_steps(pair.vertex, pair.edge) >= exclusion_ && contour_steps(pair.vertex, end) >= exclusion_ &&
-        nearest_point(pair, x, y, n).distance <= reach)
+    if (contour_steps(pair.vertex, pair.edge) >= exclusion_ &&
+        contour_steps(pair.vertex, end) >= exclusion_ && nearest_point(pair, x, y, n).distance <= reach)
       pairs_.push_back(pair);
   };
   for (int vertex = 0; vertex < n; ++vertex) {

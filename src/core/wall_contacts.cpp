@@ -24,18 +24,28 @@ void WallContacts::update(const DropletState& state, const Travel& travel) {
     const Eigen::Index n = state.size();
     const Eigen::ArrayXd moved = state.position - reference_;
     const double farthest2 = (moved.head(n).square() + moved.tail(n).square()).maxCoeff();
-    if (std::sqrt(farthest2) + travel.absolute < skin_) return;
+    const double sway = keep_ == Keep::touched_by_edge ? refined_sway : 1;
+    if (sway * (std::sqrt(farthest2) + travel.absolute) < skin_) return;
   }
   // A fast droplet needs more than the usual skin even to reach the next update.
   const double usual_skin = keep_ == Keep::nearest_to_vertex ? nearest_skin : touching_skin;
-  rebuild(state, std::clamp(2 * travel.absolute, usual_skin, widest_skin));
+  rebuild(state, std::clamp(2 * refined_sway * travel.absolute, usual_skin, widest_skin));
 }
 
 void WallContacts::gather_nearby(const DropletState& state) {
   const auto x = state.x();
   const auto y = state.y();
-  ObstacleArray::Window window{state.frame.origin[0], state.frame.origin[1], x.minCoeff(),  x.maxCoeff(),
-                               y.minCoeff(),          y.maxCoeff(),          range_ + skin_};
+  // Middles of edges stick out of the vertices' bounds by an eighth of an edge at most.
+  double longest2 = 0;
+  for (Eigen::Index i = 0, j = x.size() - 1; i < x.size(); j = i++)
+    longest2 = std::max(longest2, (x[i] - x[j]) * (x[i] - x[j]) + (y[i] - y[j]) * (y[i] - y[j]));
+  ObstacleArray::Window window{state.frame.origin[0],
+                               state.frame.origin[1],
+                               x.minCoeff(),
+                               x.maxCoeff(),
+                               y.minCoeff(),
+                               y.maxCoeff(),
+                               range_ + skin_ + std::sqrt(longest2) / 8};
   nearby_.clear();
   array_->gather(window, nearby_);
   // A wedge's flanks touch vertices first, but its tip can come between two of them.
@@ -71,17 +81,23 @@ void WallContacts::rebuild(const DropletState& state, double skin) {
   items_.clear();
   if (!reference_.allFinite()) return;  // a droplet that has diverged; the run will see it at its next check
   gather_nearby(state);
-  const auto x = state.x();
-  const auto y = state.y();
-
+  const Eigen::ArrayXd fine = refined(state.position);
+  const auto half = [&](Eigen::Index i) {
+    return Eigen::Array2d(fine[i % (2 * num_points_)], fine[2 * num_points_ + i % (2 * num_points_)]);
+  };
+  const auto distance_from = [&](const Obstacle& obstacle, Eigen::Index i) {
+    const Eigen::Array2d centre{obstacle.x, obstacle.y};
+    if (keep_ != Keep::touched_by_edge) return (centre - half(2 * i)).matrix().norm() - obstacle.radius;
+    return std::min(distance_to_segment(centre, half(2 * i), half(2 * i + 1)),
+                    distance_to_segment(centre, half(2 * i + 1), half(2 * i + 2))) -
+           obstacle.radius;
+  };
   candidates_.resize(num_points_);
   std::vector<double> distance(nearby_.size());
   for (Eigen::Index i = 0; i < num_points_; ++i) {
-    const Eigen::Index next = keep_ == Keep::touched_by_edge ? (i + 1) % num_points_ : i;
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < nearby_.size(); ++k) {
-      distance[k] = distance_to_segment({nearby_[k].x, nearby_[k].y}, {x[i], y[i]}, {x[next], y[next]}) -
-                    nearby_[k].radius;
+      distance[k] = distance_from(nearby_[k], i);
       nearest = std::min(nearest, distance[k]);
     }
     // An obstacle is in contact later only if it is within range + skin now; it is the nearest later only if

@@ -230,7 +230,8 @@ std::vector<Key> make_keys() {
        number,
        {"half-vertex"},
        "0",
-       "distance from a wall's surface at which contact begins [sigma]; half-vertex: half a vertex diameter, as "
+       "distance from a wall's surface at which contact begins [sigma]; half-vertex: half a vertex diameter, "
+       "as "
        "published",
        true,
        [](RunParameters& run, const std::string& value) {

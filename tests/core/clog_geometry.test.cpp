@@ -172,6 +172,9 @@ TEST(ClogGeometry, WeighsSupportByTheForceAgainstTheFlow) {
 TEST(ClogGeometry, IsTheSameWhereverTheDropletIs) {
   const Scene scene = horseshoe_with_lobes_in_gaps();
   const ClogGeometry expected = scene.geometry();
+  DpParameters as_it_is;  // the polygon's own edges
+  as_it_is.wall_contact = WallContact::vertex;
+  as_it_is.contact_range = range;
   // Across both borders of the box, too.
   for (const Eigen::Array2d& place :
        {Eigen::Array2d(10, 10), Eigen::Array2d(19.9, 10), Eigen::Array2d(0.05, 19.95)}) {
@@ -180,7 +183,7 @@ TEST(ClogGeometry, IsTheSameWhereverTheDropletIs) {
     const ObstacleArray array(20, moved);
     DropletState state = test::state_of(scene.position);
     state.frame.origin = place;
-    const ClogGeometry found = clog_geometry(state, array, range);
+    const ClogGeometry found = clog_geometry(state, array, as_it_is);
     expect_counts(found, expected.num_wrapped, expected.num_gaps, expected.num_arcs);
     EXPECT_NEAR(found.wrapped_support, expected.wrapped_support, 1e-9);
   }

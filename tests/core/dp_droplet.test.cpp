@@ -148,7 +148,7 @@ TEST(DpDroplet, RelativeDragDampsChangesOfShapeOnly) {
 TEST(DpDroplet, BalancesItsEnergyToSecondOrder) {
   // E_k + U + what the drag took stays what it was, through a collision with an obstacle, for every kind of
   // drag, on dry and on wetted walls.
-  const ObstacleArray wall(20, {{0.8, 0.05, 0.15}});
+  const ObstacleArray wall(20, {{0.775, 0.05, 0.15}});
   for (const Gravity gravity : {Gravity::vertex, Gravity::area})
     for (const auto& [near_wall, wall_tension] : {std::pair{0.0, 1.0}, {0.05, 1.0}, {0.0, 0.5}}) {
       const auto imbalance = [&, near_wall = near_wall, wall_tension = wall_tension](double dt) {

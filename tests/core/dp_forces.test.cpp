@@ -194,6 +194,7 @@ TEST_P(ContactLists, MissNothingWhileTheDropletMoves) {
   state.velocity.tail(64).setConstant(0.03);
   Eigen::ArrayXd force(128);
   const double range = forces.contact_range();
+  const double cutoff = run.drag.near_wall_cutoff;
   const double stiffness = contact_stiffness(*run.wall_stiffness, 2 * range);
   for (int step = 0; step < 2000; ++step) {
     // An update every other step: what is checked in between relies on the skin.
@@ -211,21 +212,35 @@ TEST_P(ContactLists, MissNothingWhileTheDropletMoves) {
         const Eigen::Array2d centre(obstacle.x + 12.5 * (image % 3 - 1), obstacle.y + 12.5 * (image / 3 - 1));
         for (int i = 0; i < 64; ++i) {
           const int next = (i + 1) % 64;
-          const Eigen::Array2d begin = state.frame.origin + Eigen::Array2d(state.x()[i], state.y()[i]);
-          const Eigen::Array2d end = state.frame.origin + Eigen::Array2d(state.x()[next], state.y()[next]);
+          const auto vertex = [&](int k) {
+            return Eigen::Array2d(state.frame.origin + Eigen::Array2d(state.x()[k], state.y()[k]));
+          };
+          const Eigen::Array2d begin = vertex(i), end = vertex(next);
           nearest[i] = std::min(nearest[i], (begin - centre).matrix().norm() - obstacle.radius);
-          const double distance = distance_to_segment(centre, begin, end) - obstacle.radius;
-          if (distance >= range) continue;
-          const Eigen::Array2d edge = end - begin;
-          const double fraction = std::clamp((edge * (centre - begin)).sum() / edge.square().sum(), 0.0, 1.0);
-          const Eigen::Array2d away = begin + fraction * edge - centre;
-          const Eigen::Array2d push = stiffness * (range - distance) * away / away.matrix().norm();
-          expected.row(i) += (1 - fraction) * push.transpose();
-          expected.row(next) += fraction * push.transpose();
+          // Each half of the refined edge pushes by itself; the middle hands its push to four vertices.
+          const int before = (i + 63) % 64, after = (i + 2) % 64;
+          const Eigen::Array2d middle =
+              (9 * (vertex(i) + vertex(next)) - vertex(before) - vertex(after)) / 16;
+          const auto push = [&](const Eigen::Array2d& from, const Eigen::Array2d& to) {
+            const double distance = distance_to_segment(centre, from, to) - obstacle.radius;
+            const Eigen::Array2d half = to - from;
+            const double fraction =
+                std::clamp((half * (centre - from)).sum() / half.square().sum(), 0.0, 1.0);
+            const Eigen::Array2d away = from + fraction * half - centre;
+            const Eigen::Array2d whole =
+                stiffness * std::max(0.0, range - distance) * away / away.matrix().norm();
+            return std::pair<Eigen::Array2d, Eigen::Array2d>((1 - fraction) * whole, fraction * whole);
+          };
+          const auto [on_begin, on_middle] = push(begin, middle);
+          const auto [also_on_middle, on_end] = push(middle, end);
+          expected.row(i) += (on_begin + 9.0 / 16 * (on_middle + also_on_middle)).transpose();
+          expected.row(next) += (on_end + 9.0 / 16 * (on_middle + also_on_middle)).transpose();
+          expected.row(before) -= ((on_middle + also_on_middle) / 16).transpose();
+          expected.row(after) -= ((on_middle + also_on_middle) / 16).transpose();
         }
       }
     for (int i = 0; i < 64; ++i) {
-      EXPECT_NEAR(forces.wall_distance()[i], std::max(nearest[i], range), 1e-12);
+      EXPECT_NEAR(forces.wall_distance()[i], std::max(nearest[i], cutoff), 1e-12);
       EXPECT_NEAR(force[i], expected(i, 0), 1e-9 + 1e-10 * std::abs(expected(i, 0)));
       EXPECT_NEAR(force[64 + i], expected(i, 1), 1e-9 + 1e-10 * std::abs(expected(i, 1)));
     }

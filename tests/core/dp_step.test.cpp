@@ -91,6 +91,9 @@ class Step : public testing::TestWithParam<StepCase> {
     run.dp.vertices = vertices;
     run.dp.line_tension = 0.3;
     run.time_step = 1e-3;
+    // The published ranges: contacts are as large as the films and edges that the tests make.
+    run.dp.contact_range = units::regular_edge_length(vertices) / 2;
+    run.dp.self_contact_range = units::regular_edge_length(vertices);
     GetParam().change(run);
     return resolve(run);
   }

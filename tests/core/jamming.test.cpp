@@ -77,8 +77,8 @@ TEST(LargestDensity, LiesEightToTenStandardDeviationsBelowTheMean) {
 
 TEST(LargestDensity, ComesCloseToTheJammingLimitInALargeBox) {
   const double jammed = saturated_density(0.3, 0.2);
-  EXPECT_GT(largest_density({.gap = 0.2, .diameter = 0.3, .box = 500}), 0.997 * jammed);
-  EXPECT_LT(largest_density({.gap = 0.2, .diameter = 0.3, .box = 5000}), jammed);
+  EXPECT_GT(largest_density({.gap = 0.2, .diameter = 0.3, .density = {}, .box = 500}), 0.997 * jammed);
+  EXPECT_LT(largest_density({.gap = 0.2, .diameter = 0.3, .density = {}, .box = 5000}), jammed);
 }
 
 }  // namespace

@@ -44,9 +44,11 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"time-step=0", [](auto& run) { run.time_step = 0; }},
         Refusal{"time-step=0.01 (contact, area, tension and spring modes",
                 [](auto& run) { run.time_step = 0.01; }},
-        Refusal{
-            "omega*dt = 416, wall-stiffness=1e+04) try 2.1",
-            [](auto& run) { run.wall_stiffness = 1e4, run.time_step = 1e-3, run.dp.area_stiffness = 1e4; }},
+        Refusal{"omega*dt = 416, wall-stiffness=1e+04) try 2.1",
+                [](auto& run) {
+                  run.dp.vertices = 256, run.wall_stiffness = 1e4, run.time_step = 1e-3,
+                  run.dp.area_stiffness = 1e4;
+                }},
         Refusal{"time-step=0.1 (does not resolve the drag", [](auto& run) { run.time_step = 0.1; }},
         Refusal{"max-time=-1", [](auto& run) { run.max_time = -1; }},
         Refusal{"max-time=0.0001 (shorter", [](auto& run) { run.max_time = 1e-4; }},
@@ -55,6 +57,11 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"near-wall-drag=-1", [](auto& run) { run.drag.near_wall = -1; }},
         Refusal{"near-wall-exponent=-1", [](auto& run) { run.drag.near_wall_exponent = -1; }},
         Refusal{"relative-drag=-1", [](auto& run) { run.drag.relative = -1; }},
+        Refusal{"near-wall-cutoff=0", [](auto& run) { run.drag.near_wall_cutoff = 0; }},
+        Refusal{"contact-range=-0.01", [](auto& run) { run.dp.contact_range = -0.01; }},
+        Refusal{"contact-range=0.2 (walls would push from afar",
+                [](auto& run) { run.dp.contact_range = 0.2; }},
+        Refusal{"self-contact-range=0", [](auto& run) { run.dp.self_contact_range = 0; }},
         Refusal{"wall-tension=-1", [](auto& run) { run.dp.wall_tension = -1; }},
         Refusal{"perimeter-stiffness-ratio=-1", [](auto& run) { run.dp.perimeter_stiffness_ratio = -1; }},
         Refusal{"perimeter-spring=along contradicts gravity=vertex",
@@ -66,7 +73,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"vertices=8", [](auto& run) { run.dp.vertices = 8; }},
         Refusal{"perimeter-stiffness=-1", [](auto& run) { run.dp.perimeter_stiffness = -1; }},
         Refusal{"wall-stiffness=1e-09 (too soft", [](auto& run) { run.wall_stiffness = 1e-9; }},
-        Refusal{"obstacle-gap=0.01 (not wider than one vertex", [](auto& run) { run.obstacles.gap = 0.01; }},
+        Refusal{"obstacle-gap=0.01 (not wider than an edge is long",
+                [](auto& run) { run.obstacles.gap = 0.01; }},
         Refusal{"obstacle-diameter=0", [](auto& run) { run.obstacles.diameter = 0; }},
         Refusal{"obstacle-density=-1", [](auto& run) { run.obstacles.density = -1; }},
         Refusal{"obstacle-density=2.8 (more than every seed finds room for, with obstacle-gap=0.2 and "
@@ -115,8 +123,9 @@ std::string refusal(const RunParameters& run) {
 TEST(Resolve, FillsInTheStiffestStableContact) {
   RunParameters run;
   run.time_step = 1e-3;
-  const double k = contact_stiffness(*resolve(run).wall_stiffness, units::regular_edge_length(256));
-  EXPECT_NEAR(k * 1e-6 / (units::droplet_mass / 256), 0.25, 1e-12);
+  const double k =
+      contact_stiffness(*resolve(run).wall_stiffness, units::regular_edge_length(run.dp.vertices));
+  EXPECT_NEAR(k * 1e-6 / (units::droplet_mass / run.dp.vertices), 0.25, 1e-12);
 }
 
 TEST(Resolve, FillsInTheLargestStepThatHolds) {
@@ -221,6 +230,7 @@ TEST(Resolve, TakesTheBoxThatItProposesForALattice) {
 
 TEST(Resolve, TakesTheSpreadThatItProposes) {
   RunParameters run;
+  run.dp.vertices = 256;
   run.obstacles.gap = 0.02;
   run.obstacles.diameter_spread = 0.9;
   const std::string message = refusal(run);

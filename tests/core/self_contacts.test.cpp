@@ -28,8 +28,8 @@ TEST(NearestPoint, OfTheEdgeThatClosesTheContour) {
 
 TEST(SelfContacts, AConvexDropletHasNone) {
   const DropletState state = test::state_of(regular_polygon(256, units::rest_area));
-  const double edge = units::regular_edge_length(256);
-  SelfContacts contacts(edge, edge);
+  const double rest_edge = units::regular_edge_length(256);
+  SelfContacts contacts(rest_edge, rest_edge);
   contacts.update(state, {});
   EXPECT_TRUE(contacts.pairs().empty());
 }
@@ -67,8 +67,8 @@ TEST(SelfContacts, ItemsAreThePairs) {
   constexpr int group = WallContacts::edges_per_group;
   for (const int n : {64, 101, 256})
     for (const int first : {0, n / 4 + 1}) {
-      const double edge = units::regular_edge_length(n);
-      SelfContacts contacts(edge, edge);
+      const double rest_edge = units::regular_edge_length(n);
+      SelfContacts contacts(rest_edge, rest_edge);
       // One half is compressed upon itself, so that a strand touches itself along its own direction as well.
       Eigen::ArrayXd position = test::dumbbell(n, 0.03);
       position.tail(n) *= (position.head(n) > 0).select(Eigen::ArrayXd::Constant(n, 0.05), 1.0);

@@ -6,6 +6,7 @@
 
 #include "clog/core/droplet_state.hpp"
 #include "clog/core/obstacle_array.hpp"
+#include "clog/core/parameters.hpp"
 
 namespace clog {
 
@@ -31,7 +32,9 @@ struct ClogGeometry {
 ClogGeometry clog_geometry(const Eigen::ArrayXd& position, std::span<const Obstacle> obstacles,
                            double contact_range);
 /// Of a droplet in a periodic array.
-ClogGeometry clog_geometry(const DropletState& state, const ObstacleArray& array, double contact_range);
+/// Of the interface that walls meet.
+/// @param dp  resolved
+ClogGeometry clog_geometry(const DropletState& state, const ObstacleArray& array, const DpParameters& dp);
 
 const char* name(ClogMechanism mechanism);
 

@@ -92,7 +92,7 @@ class DpForces {
   WallContacts adhesive_walls_;  // kept only where walls are wetted
   SelfContacts self_;
   PolygonShape shape_;
-  Eigen::ArrayXd edge_x_, edge_y_, edge_length_, pull_, centroid_gradient_, end_x_, end_y_;
+  Eigen::ArrayXd edge_x_, edge_y_, edge_length_, pull_, centroid_gradient_, refined_edges_;
   Eigen::ArrayXd wall_distance_;
 
   /// A wall near a vertex, for wetting: how far the tension has changed to that of the wall, its derivative
@@ -106,7 +106,7 @@ class DpForces {
   double extra_tension() const { return (dp_.wall_tension - 1) * dp_.line_tension; }
   void add_walls(const DropletState& state, Eigen::ArrayXd& force);
   void measure_wall_distance(const DropletState& state);
-  /// Calls visit(overlap) for every edge (vertex) and slot or wedge [sigma]; negative where they do not
+  /// Calls visit(overlap) for every half edge (vertex) and slot or wedge [sigma]; negative where they do not
   /// touch.
   template <class Visit>
   void visit_overlaps(const DropletState& state, Visit visit) const;

@@ -123,7 +123,7 @@ double automatic_area_stiffness(const RunParameters& run);
 /// Time step where none is given [t0], K_a and K_l are. It resolves the drag's relaxation time ten times. For
 /// a polygon every stiff mode of a circle stays within auto_step_margin of its bound (stability.hpp), and an
 /// automatic contact, whose stiffness goes with the step, is so stiff that the expected pressure pushes an
-/// obstacle into its range by a twenty-fifth of a vertex diameter; for a soft disk the step resolves its
+/// obstacle into the interface by a fiftieth of a vertex diameter; for a soft disk the step resolves its
 /// contact's period sixty times. Rounded down to two digits.
 double automatic_time_step(const RunParameters& run);
 

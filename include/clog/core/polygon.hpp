@@ -4,6 +4,16 @@
 
 namespace clog {
 
+/// The interface that walls meet is the polygon refined once by the four-point rule (Dubuc 1986; Dyn, Gregory
+/// and Levin 1987): the middle of an edge is that of the cubic through its two vertices and their two
+/// neighbours. A chord is off the curve that its ends lie on by l^2/8 times the curvature, half of a refined
+/// edge by a quarter of that. The middle is near (q_i + q_(i+1)) + far (q_(i-1) + q_(i+2)).
+inline constexpr double refined_near = 9.0 / 16;
+inline constexpr double refined_far = -1.0 / 16;
+
+/// How far a middle may move where no vertex moves by more than 1.
+inline constexpr double refined_sway = 2 * (refined_near - refined_far);
+
 /// Shape of a closed polygon given as one array, all x then all y, counter-clockwise.
 struct PolygonShape {
   double area = 0;       ///< signed, positive for counter-clockwise [sigma^2]
@@ -18,6 +28,9 @@ PolygonShape polygon_shape(const Eigen::ArrayXd& position);
 /// Regular polygon of the given area around the origin, first vertex on +x, counter-clockwise: 2N
 /// coordinates.
 Eigen::ArrayXd regular_polygon(int num_vertices, double area);
+
+/// The polygon of vertices and middles in turn, 4N coordinates.
+Eigen::ArrayXd refined(const Eigen::ArrayXd& position);
 
 /// Does the polygon enclose the point? Even-odd rule.
 bool encloses(const Eigen::ArrayXd& position, double x, double y);
