@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "clog/core/portable_math.hpp"
+
 namespace clog {
 namespace {
 
@@ -16,7 +18,7 @@ struct Spacings {
 /// Mean density of saturated arrays. Measured from widest/smallest = 1 to 5, in boxes of 10 widest spacings
 /// and more (in smaller ones it is the same); the fit lies below what was measured, by up to 0.5 %.
 double mean_density(const Spacings& spacings) {
-  const double x = std::log(spacings.widest / spacings.smallest);
+  const double x = portable::log(spacings.widest / spacings.smallest);
   return saturated_density(spacings.smallest, 0) / (1 + x * (0.59 + x * (0.1 - x * 0.032)));
 }
 

@@ -161,7 +161,8 @@ std::vector<Field> parameter_fields(const sweep::RunRow& row) {
           {"self_contact_range", value_of(row.self_contact_range)},
           {"gravity", value_of(row.gravity)},
           {"clog_energy", value_of(row.clog_energy)},
-          {"clog_detection", value_of(row.clog_detection)}};
+          {"clog_detection", value_of(row.clog_detection)},
+          {"model_version", value_of(row.model_version)}};
 }
 
 std::vector<Field> result_fields(const Group& group) {

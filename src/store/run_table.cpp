@@ -117,7 +117,8 @@ std::vector<Column> columns() {
   CLOG_COLUMN(steps, "integrated steps");
   CLOG_COLUMN(wall_seconds, "time spent on the run [s]");
   CLOG_COLUMN(rank, "MPI rank that did the run");
-  CLOG_COLUMN(instruction_set, "instruction set of the polygon's step, or none; mixed: it went on under another one");
+  CLOG_COLUMN(instruction_set,
+              "instruction set of the polygon's step, or none; mixed: it went on under another one");
   CLOG_COLUMN(host, "host of that rank");
   CLOG_COLUMN(attempt, "1 for the first try");
   CLOG_COLUMN(message, "why the run failed");
@@ -172,8 +173,9 @@ void publish_sweep(const std::string& path, std::span<const RunRow> rows, const 
 
 namespace {
 
-/// Columns were added in 3: those of the clog's mechanism and of the speed's error.
-constexpr std::array<std::string_view, 2> readable_versions = {"2", format_version};
+/// Columns were added in 3, those of the clog's mechanism and of the speed's error, and in 4, the ranges of
+/// contact and the near-wall drag's cutoff.
+constexpr std::array<std::string_view, 3> readable_versions = {"2", "3", format_version};
 
 bool is_readable(std::string_view version) {
   return std::find(readable_versions.begin(), readable_versions.end(), version) != readable_versions.end();

@@ -56,10 +56,10 @@ class Run(ProgramTest):
         travelled = centroid_x(polygons[-1]) - centroid_x(polygons[0])
         self.assertAlmostEqual(travelled, samples["distance"][-1], places=10)
         self.assertGreater(len(obstacles), 5)
-        # No vertex is deeper in an obstacle than a vertex diameter.
+        # Contact lets vertices into obstacles by some hundredths of an edge, which is 0.05 long.
         for x, y in polygons.transpose(0, 2, 1).reshape(-1, 2):
             gaps = np.hypot(obstacles[:, 0] - x, obstacles[:, 1] - y) - obstacles[:, 2] / 2
-            self.assertGreater(gaps.min(), 0)
+            self.assertGreater(gaps.min(), -0.002)
 
     def test_file_names_may_hold_an_equals_sign_and_intervals_be_huge(self):
         self.succeed("clogrun", "array", *QUICK, "--sample-interval", "1e12", "--output", "box=20.h5")

@@ -13,23 +13,21 @@
 namespace clog::soundness {
 namespace {
 
-/// Smallest distance of an edge from an obstacle's surface, at most `limit`; negative if it cuts the obstacle
-/// [sigma].
-double nearest_wall(const DropletState& state, const ObstacleArray& obstacles, double limit) {
+/// How deep an obstacle's surface lies in the interface, 0 if none does [sigma].
+double deepest_wall(const DropletState& state, const ObstacleArray& obstacles) {
+  const Eigen::ArrayXd interface = refined(state.position);
+  const Eigen::Index n = interface.size() / 2;
+  const auto x = interface.head(n), y = interface.tail(n);
   std::vector<Obstacle> near;
-  obstacles.gather({state.frame.origin[0], state.frame.origin[1], state.x().minCoeff(), state.x().maxCoeff(),
-                    state.y().minCoeff(), state.y().maxCoeff(), limit},
+  obstacles.gather({state.frame.origin[0], state.frame.origin[1], x.minCoeff(), x.maxCoeff(), y.minCoeff(),
+                    y.maxCoeff(), 0},
                    near);
-  const Eigen::Index n = state.size();
-  double nearest = limit;
-  for (Eigen::Index i = 0, j = n - 1; i < n; j = i++) {
-    const Eigen::Array2d begin{state.x()[j], state.y()[j]};
-    const Eigen::Array2d end{state.x()[i], state.y()[i]};
+  double deepest = 0;
+  for (Eigen::Index i = 0, j = n - 1; i < n; j = i++)
     for (const Obstacle& obstacle : near)
-      nearest =
-          std::min(nearest, distance_to_segment({obstacle.x, obstacle.y}, begin, end) - obstacle.radius);
-  }
-  return nearest;
+      deepest = std::max(deepest, obstacle.radius - distance_to_segment({obstacle.x, obstacle.y},
+                                                                        {x[j], y[j]}, {x[i], y[i]}));
+  return deepest;
 }
 
 double edge_ratio(const DropletState& state) {
@@ -58,18 +56,17 @@ void Findings::keep_worst(const Findings& other) {
 }
 
 bool is_sound(const Findings& findings) {
-  return findings.crossings == 0 && findings.enclosed == 0 && findings.overlap <= cutting_overlap &&
+  return findings.crossings == 0 && findings.enclosed == 0 && findings.overlap <= deepest_overlap &&
          findings.area_error <= largest_area_error;
 }
 
 Findings look_at(const DropletState& state, const ObstacleArray& obstacles) {
   const double vertex_diameter = units::regular_edge_length(static_cast<int>(state.size()));
-  const double contact_range = vertex_diameter / 2;
   const PolygonShape shape = polygon_shape(state.position);
   Findings findings;
   findings.crossings = num_self_crossings(state.position);
   findings.enclosed = num_enclosed(state, obstacles);
-  findings.overlap = (contact_range - nearest_wall(state, obstacles, contact_range)) / vertex_diameter;
+  findings.overlap = deepest_wall(state, obstacles) / vertex_diameter;
   findings.area_error = std::abs(shape.area / units::rest_area - 1);
   findings.edge_ratio = edge_ratio(state);
   findings.perimeter = shape.perimeter / (std::numbers::pi * units::droplet_diameter);

@@ -9,7 +9,7 @@ namespace clog::soundness {
 struct Findings {
   int crossings = 0;      ///< see num_self_crossings()
   int enclosed = 0;       ///< obstacles whose centre lies inside the droplet
-  double overlap = 0;     ///< deepest reach of an obstacle into an edge's contact range [vertex diameters]
+  double overlap = 0;     ///< depth of an obstacle's surface in the interface [vertex diameters]
   double area_error = 0;  ///< |area/rest area - 1|
   double edge_ratio = 1;  ///< longest over shortest edge
   double perimeter = 0;   ///< in units of the circle's
@@ -19,16 +19,17 @@ struct Findings {
   void keep_worst(const Findings& other);
 };
 
-/// Contact begins half a vertex diameter off an obstacle's surface, so that at this overlap [vertex
-/// diameters] an edge begins to cut the obstacle.
-inline constexpr double cutting_overlap = 0.5;
+/// Contact is soft: the interface may come nearer to an obstacle's centre than its radius by this much
+/// [vertex diameters].
+inline constexpr double deepest_overlap = 0.25;
 /// The area may not be wrong by more than this.
 inline constexpr double largest_area_error = 0.05;
 
 bool is_sound(const Findings& findings);
 
-/// Looks at every edge and every obstacle near the droplet, without the contact lists of the forces: an
-/// obstacle that those have missed is seen. Leaves `substeps` alone.
+/// Looks at every edge of the refined interface, which walls meet (see refined()), and every obstacle near
+/// the droplet, without the contact lists of the forces: an obstacle that those have missed is seen. Leaves
+/// `substeps` alone.
 Findings look_at(const DropletState& state, const ObstacleArray& obstacles);
 
 }  // namespace clog::soundness

@@ -39,11 +39,11 @@ Findings with_obstacle_at(double distance) {
 }
 
 TEST(Findings, SeeHowDeepAnObstacleReaches) {
-  EXPECT_EQ(with_obstacle_at(0.6).overlap, 0);
-  EXPECT_NEAR(with_obstacle_at(0.4).overlap, 0.1, 1e-2);
-  EXPECT_TRUE(is_sound(with_obstacle_at(0.05)));
-  EXPECT_FALSE(is_sound(with_obstacle_at(-0.05)));
-  EXPECT_NEAR(with_obstacle_at(-0.5).overlap, 1, 1e-2);
+  EXPECT_EQ(with_obstacle_at(0.1).overlap, 0);
+  EXPECT_NEAR(with_obstacle_at(-0.1).overlap, 0.1, 1e-2);
+  EXPECT_TRUE(is_sound(with_obstacle_at(-0.2)));
+  EXPECT_FALSE(is_sound(with_obstacle_at(-0.3)));
+  EXPECT_NEAR(with_obstacle_at(-1).overlap, 1, 1e-2);
 }
 
 TEST(Findings, SeeAnObstacleInsideThatTouchesNothing) {

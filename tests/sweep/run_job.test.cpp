@@ -43,6 +43,7 @@ TEST(RunJob, TurnsAnImpossibleReleaseIntoAFailedRow) {
   settings.set("obstacle-diameter", "3");
   settings.set("obstacle-gap", "0.06");
   settings.set("vertices", "64");
+  settings.set("self-contact-range", "0.1");
   settings.set("box", "13");
   settings.set("seeds", "51..70");
   const Plan plan(settings);

@@ -19,6 +19,7 @@ inline double cos(double x) { return static_cast<double>(std::cos(Wide(x))); }
 inline double tan(double x) { return static_cast<double>(std::tan(Wide(x))); }
 inline double atan2(double y, double x) { return static_cast<double>(std::atan2(Wide(y), Wide(x))); }
 inline double exp(double x) { return static_cast<double>(std::exp(Wide(x))); }
+inline double log(double x) { return static_cast<double>(std::log(Wide(x))); }
 inline double log10(double x) { return static_cast<double>(std::log10(Wide(x))); }
 inline double pow(double x, double y) { return static_cast<double>(std::pow(Wide(x), Wide(y))); }
 
