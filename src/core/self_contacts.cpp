@@ -5,12 +5,11 @@
 #include <limits>
 #include <utility>
 
-#include "clog/core/polygon.hpp"
 
 namespace clog {
 namespace {
 
-/// Vertices closer than this many ranges along a contour at rest do not repel each other.
+/// Vertices closer than this many ranges along the contour do not repel each other.
 constexpr double contour_exclusion = 3;
 
 }  // namespace
@@ -19,6 +18,14 @@ void SelfContacts::set_rest_edge(double length) {
   rest_edge_ = length;
   exclusion_ = std::max(1, static_cast<int>(std::ceil(contour_exclusion * range_ / rest_edge_)));
   invalidate();
+}
+
+bool SelfContacts::are_neighbours(int a, int b) const {
+  const int n = static_cast<int>(along_.size()) - 1;
+  const int steps = std::abs(a - b);
+  if (std::min(steps, n - steps) >= exclusion_) return false;
+  const double way = std::abs(along_[a] - along_[b]);
+  return std::min(way, along_.back() - way) < contour_exclusion * range_;
 }
 
 void SelfContacts::update(const DropletState& state, const Travel& travel) {
@@ -50,11 +57,16 @@ void SelfContacts::rebuild(const DropletState& state, double skin) {
   if (!reference_.allFinite()) return;  // a droplet that has diverged; the run will see it at its next check
 
   // The nearest point of an edge within reach lies within half an edge of one of its ends.
-  double longest2 = 0;
-  for (int i = 0, j = n - 1; i < n; j = i++)
-    longest2 = std::max(longest2, (x[i] - x[j]) * (x[i] - x[j]) + (y[i] - y[j]) * (y[i] - y[j]));
+  double longest = 0;
+  along_.assign(1, 0);
+  for (int i = 0; i < n; ++i) {
+    const int end = i + 1 < n ? i + 1 : 0;
+    const double length = std::sqrt((x[end] - x[i]) * (x[end] - x[i]) + (y[end] - y[i]) * (y[end] - y[i]));
+    longest = std::max(longest, length);
+    along_.push_back(along_.back() + length);
+  }
   const double reach = range_ + 2 * skin_;
-  const double end_reach = reach + 0.5 * std::sqrt(longest2);
+  const double end_reach = reach + 0.5 * longest;
 
   const double left = state.x().minCoeff();
   const double bottom = state.y().minCoeff();
@@ -73,17 +85,13 @@ void SelfContacts::rebuild(const DropletState& state, double skin) {
     head = i;
   }
 
-  const auto contour_steps = [n](int a, int b) {
-    const int steps = std::abs(a - b);
-    return std::min(steps, n - steps);
-  };
   const auto is_near = [&](int a, int b) {
     return (x[a] - x[b]) * (x[a] - x[b]) + (y[a] - y[b]) * (y[a] - y[b]) <= end_reach * end_reach;
   };
   const auto add_if_near = [&](const Pair& pair) {
     const int end = pair.edge + 1 < n ? pair.edge + 1 : 0;
-    if (contour_steps(pair.vertex, pair.edge) >= exclusion_ &&
-        contour_steps(pair.vertex, end) >= exclusion_ && nearest_point(pair, x, y, n).distance <= reach)
+    if (!are_neighbours(pair.vertex, pair.edge) && !are_neighbours(pair.vertex, end) &&
+        nearest_point(pair, x, y, n).distance <= reach)
       pairs_.push_back(pair);
   };
   for (int vertex = 0; vertex < n; ++vertex) {
@@ -91,7 +99,7 @@ void SelfContacts::rebuild(const DropletState& state, double skin) {
     for (int row = -1; row <= 1; ++row)
       for (int column = -1; column <= 1; ++column)
         for (int other = head_[cell + row * columns + column]; other >= 0; other = next_[other]) {
-          if (contour_steps(vertex, other) < exclusion_ || !is_near(vertex, other)) continue;
+          if (are_neighbours(vertex, other) || !is_near(vertex, other)) continue;
           add_if_near({vertex, other});
           // The edge that ends here is found from its beginning, if that is near.
           const int before = other > 0 ? other - 1 : n - 1;

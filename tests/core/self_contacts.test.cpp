@@ -45,13 +45,12 @@ TEST(SelfContacts, ListsEveryVertexAndEdgeThatTouchWhileTheShapeMoves) {
   for (int step = 0; step < 300; ++step) {
     state.position += 0.1 * state.velocity;
     contacts.update(state, state.possible_travel(0.1));
-    const int exclusion = contacts.exclusion();
     std::set<std::pair<int, int>> listed;
     for (const auto& [vertex, edge] : contacts.pairs()) listed.insert({vertex, edge});
     for (int vertex = 0; vertex < n; ++vertex)
       for (int edge = 0; edge < n; ++edge) {
-        const auto steps = [n](int a, int b) { return std::min(std::abs(a - b), n - std::abs(a - b)); };
-        if (steps(vertex, edge) < exclusion || steps(vertex, (edge + 1) % n) < exclusion) continue;
+        if (contacts.are_neighbours(vertex, edge) || contacts.are_neighbours(vertex, (edge + 1) % n))
+          continue;
         if (nearest_point({vertex, edge}, state.position.data(), state.position.data() + n, n).distance >=
             diameter)
           continue;
@@ -61,6 +60,27 @@ TEST(SelfContacts, ListsEveryVertexAndEdgeThatTouchWhileTheShapeMoves) {
       }
   }
   EXPECT_GT(num_touching, 100);
+}
+
+/// How many vertices on one side of a circle's first count as its neighbours.
+int neighbours_of_first(double stretch) {
+  const int n = 128;
+  const double range = 0.0125, rest_edge = 0.025;
+  SelfContacts contacts(range, rest_edge);
+  contacts.update(test::state_of(regular_polygon(n, units::rest_area * stretch * stretch)), {});
+  int count = 0;
+  while (contacts.are_neighbours(0, count + 1)) ++count;
+  EXPECT_EQ(contacts.exclusion(), 2);
+  return count;
+}
+
+TEST(SelfContacts, LeavesOutThreeRangesOfTheContour) {
+  // Three ranges are 1.5 edges at rest: the next vertex is left out, the one behind it is not, however much
+  // the contour is compressed; of a stretched contour none.
+  EXPECT_EQ(neighbours_of_first(1), 1);
+  EXPECT_EQ(neighbours_of_first(0.2), 1);
+  EXPECT_EQ(neighbours_of_first(1.4), 1);
+  EXPECT_EQ(neighbours_of_first(1.6), 0);
 }
 
 TEST(SelfContacts, ItemsAreThePairs) {

@@ -365,7 +365,7 @@ cli::CommandLine parse(int argc, char** argv) {
   sweep::Settings& settings = line.settings();
   settings.set("line-tension", "0.01,0.02,0.05,0.1,0.3,1,3,10");
   settings.set("obstacle-gap", "0.2,0.35,0.5,1");
-  settings.set("obstacle-density", "saturated,0.4");
+  settings.set("obstacle-density", "saturated,0.35");
   settings.set("seeds", "1..4");
   settings.set("max-time", "2000");
   settings.set("box", "100");

@@ -16,9 +16,11 @@ namespace clog {
 /// Contact is between vertices and edges, so it holds when edges are longer than the vertex diameter. Every
 /// edge within reach pushes by itself, with its own nearest point: then energy and force are continuous
 /// wherever the vertex goes, also in a concave corner, where it is as near to two edges. Edges close along
-/// the contour do not count as contact, or every vertex would touch its neighbours: those fewer vertices away
-/// than make up three ranges of a contour at rest. That number does not depend on how the contour is
-/// stretched, or forces would depend on when the pairs were made.
+/// the contour do not count as contact, or every vertex would touch its neighbours: those less than three
+/// ranges away along the contour as it is, and fewer vertices than make up three ranges of it at rest. Of a
+/// compressed contour the number decides. It is fixed, or what holds vertices off each other there would
+/// depend on when the pairs were made. Of a stretched one the length decides, or long edges could cross in a
+/// sharp fold.
 class SelfContacts {
  public:
   struct Pair {
@@ -38,8 +40,10 @@ class SelfContacts {
   void invalidate() { reference_.resize(0); }
   const std::vector<Pair>& pairs() const { return pairs_; }
   double range() const { return range_; }
-  /// Vertices fewer numbers apart than this do not repel each other's edges.
+  /// How many vertices make up three ranges at rest.
   int exclusion() const { return exclusion_; }
+  /// Are these vertices so close along the contour that they do not count as contact?
+  bool are_neighbours(int a, int b) const;
 
   /// The same pairs for vectors: a group of WallContacts::edges_per_group edges and as many consecutive
   /// vertices. Strands that face each other run in opposite directions, so the last of these vertices is
@@ -59,6 +63,7 @@ class SelfContacts {
   Eigen::ArrayXd reference_;  // positions relative to their mean when the pairs were made
   std::vector<Pair> pairs_;
   std::vector<Item> items_;
+  std::vector<double> along_;     // the contour, from vertex 0; behind the last its whole length
   std::vector<int> head_, next_;  // vertices by cell
   std::vector<int> item_of_;      // by direction and first vertex
 
