@@ -31,8 +31,14 @@ def curve_style(index):
     return {"color": colour, "marker": MARKERS[index % len(MARKERS)]}
 
 
+def held_by_mesh(group):
+    """Does clogfit say that the length hangs on the number of vertices?"""
+    return "held_by_mesh" in (group["doubts"] or "").split()
+
+
 def draw_lengths(axes, places, groups, index, label):
-    """Clogging lengths with clogfit's intervals; an open triangle is a lower bound, where no run clogged."""
+    """Clogging lengths with clogfit's intervals. An open marker is a length that hangs on the number of vertices, an
+    open triangle a lower bound, where no run clogged."""
     order = sorted(range(len(groups)), key=lambda i: places[i])
     places, groups = [places[i] for i in order], [groups[i] for i in order]
     # Not a number where no run clogged: the line is broken there, and goes on dotted.
@@ -44,6 +50,11 @@ def draw_lengths(axes, places, groups, index, label):
     axes.errorbar(
         places, lengths, yerr=bars, **curve_style(index), markersize=5, linewidth=1, elinewidth=1, capsize=2.5,
         label=label,
+    )
+    doubtful = [(x, y) for x, y, group in zip(places, lengths, groups) if held_by_mesh(group)]
+    axes.plot(
+        [x for x, _ in doubtful], [y for _, y in doubtful], **curve_style(index), markerfacecolor="white", markersize=5,
+        linestyle="none", zorder=3,
     )
     if any(group["clogs"] == 0 for group in groups):
         through = [group["clogging_length_lower"] if group["clogs"] == 0 else group["clogging_length"] for group in groups]

@@ -18,12 +18,22 @@ Value value_of(const sweep::FixedText<N>& text) {
   return std::string(text.view());
 }
 
+/// Are so many clogs wrapped or hybrid that what holds those decides the length?
+bool hangs_on_mesh(const Group& group) {
+  int hanging = 0;
+  for (const Group::Cause& cause : group.causes)
+    if (cause.mechanism == ClogMechanism::wrapped || cause.mechanism == ClogMechanism::hybrid)
+      hanging += cause.clogging.num_clogs;
+  return hanging > 0 && 5 * hanging >= group.clogging.num_clogs;
+}
+
 std::vector<Doubt> doubts_about(const Group& group) {
   constexpr int few = 5;
   std::vector<Doubt> doubts;
   if (group.clogging.num_clogs < few) doubts.push_back(Doubt::few_clogs);
   if (group.num_flowing > 0) doubts.push_back(Doubt::censored_by_time);
   if (group.num_interrupted > 0 || group.num_failed > 0) doubts.push_back(Doubt::incomplete);
+  if (hangs_on_mesh(group)) doubts.push_back(Doubt::held_by_mesh);
   return doubts;
 }
 

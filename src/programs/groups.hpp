@@ -23,6 +23,7 @@ enum class Doubt {
                      ///< more
   censored_by_time,  ///< runs ended by max-time, slow ones nearer than fast ones
   incomplete,        ///< runs are under way, interrupted or failed
+  held_by_mesh,      ///< a fifth of the clogs or more are wrapped or hybrid; the polygon's corners hold those
 };
 /// One letter each for tables, a word for files, a sentence for readers.
 struct DoubtText {
@@ -39,7 +40,10 @@ inline constexpr DoubtText doubt_texts[] = {
     {Doubt::censored_by_time, 't', "censored_by_time",
      "runs ended by max-time: right if slow droplets are as likely to clog as fast ones"},
     {Doubt::incomplete, 'i', "incomplete",
-     "runs are under way or interrupted (they count as not clogged so far) or have failed (left out)"}};
+     "runs are under way or interrupted (they count as not clogged so far) or have failed (left out)"},
+    {Doubt::held_by_mesh, 'm', "held_by_mesh",
+     "a fifth of the clogs or more hang over obstacles: how far such droplets get depends on the number of "
+     "vertices"}};
 const DoubtText& text_of(Doubt doubt);
 
 /// The runs of a sweep that differ in their seed only, and what they say together.

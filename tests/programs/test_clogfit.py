@@ -109,6 +109,8 @@ class Fit(ProgramTest):
         mechanisms = [b"wrapped"] * 2 + [b"squeezed"] * 4 + [b"hybrid"] + [b"none"] * 3
         self.change(distance=np.arange(1.0, 11), status=[b"clogged"] * 8 + [b"flowing"] * 2, mechanism=mechanisms)
         group, = self.fit()["groups"]
+        self.assertIn("held_by_mesh", group["doubts"])
+        self.assertIn("m: a fifth of the clogs", self.succeed("clogfit", "sweep.h5").stdout)
         kinds = ("wrapped", "squeezed", "hybrid", "other")
         self.assertEqual([group[kind] for kind in kinds], [2, 4, 1, 1])
         lengths = [group[f"clogging_length_{kind}"] for kind in kinds]
@@ -120,6 +122,7 @@ class Fit(ProgramTest):
         self.change(mechanism=[b"squeezed"] * 8 + [b"none"] * 2)
         group, = self.fit()["groups"]
         self.assertEqual((group["wrapped"], group["clogging_length_wrapped"]), (0, None))
+        self.assertNotIn("held_by_mesh", group["doubts"])
         self.assertGreater(group["clogging_length_wrapped_lower"], 0)
         self.assertNotIn("w/s/h", self.succeed("clogfit", "sweep.h5").stdout)
 
