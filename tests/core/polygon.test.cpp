@@ -68,6 +68,35 @@ TEST(Polygon, TheCentroidsVelocityIsItsRateOfChange) {
   EXPECT_NEAR(rate[1], change[1], 1e-8);
 }
 
+TEST(Refined, HasTheVerticesAndTheMiddlesOfCubics) {
+  // y = x^3 - x on vertices whose x are a unit apart: the cubic through four of them is the curve itself.
+  Eigen::ArrayXd position(2 * 16);
+  for (int i = 0; i < 16; ++i) {
+    position[i] = i;
+    position[16 + i] = i * i * i - i;
+  }
+  const Eigen::ArrayXd fine = refined(position);
+  ASSERT_EQ(fine.size(), 4 * 16);
+  for (int i = 0; i < 16; ++i) {
+    EXPECT_EQ(fine[2 * i], position[i]);
+    EXPECT_EQ(fine[32 + 2 * i], position[16 + i]);
+  }
+  for (int i = 1; i < 14; ++i) {
+    const double x = i + 0.5;
+    EXPECT_NEAR(fine[2 * i + 1], x, 1e-12);
+    EXPECT_NEAR(fine[32 + 2 * i + 1], x * x * x - x, 1e-9);
+  }
+}
+
+TEST(Refined, IsOnACircleToFourthOrder) {
+  const auto error = [](int n) {
+    const Eigen::ArrayXd polygon = regular_polygon(n, units::rest_area), fine = refined(polygon);
+    const double radius = std::hypot(polygon[0], polygon[n]);
+    return std::abs(std::hypot(fine[1], fine[2 * n + 1]) - radius);
+  };
+  EXPECT_NEAR(std::log2(error(32) / error(64)), 4, 0.05);
+}
+
 TEST(DistanceToSegment, IsThatOfTheNearestPoint) {
   EXPECT_DOUBLE_EQ(distance_to_segment({1, 2}, {0, 0}, {3, 0}), 2);
   EXPECT_DOUBLE_EQ(distance_to_segment({-3, 4}, {0, 0}, {3, 0}), 5);
