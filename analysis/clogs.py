@@ -19,6 +19,7 @@ import tempfile
 import h5py
 import numpy as np
 import style
+import trajectory
 from matplotlib.patches import Circle
 from style import plt
 
@@ -40,7 +41,7 @@ def mechanism(row):
 
 
 def run_again(clogrun, config, row, folder):
-    """The polygon (2 x N) at the end and the obstacles (n x 3: x, y, diameter) around it."""
+    """The interface that walls meet (2 x N) at the end and the obstacles (n x 3: x, y, diameter) around it."""
     output = pathlib.Path(folder) / f"{row['task']}.h5"
     keys = [f"{name.replace('_', '-')}={row[name]!r}" for name in LISTS if name != "seed"] + [f"seeds={row['seed']}"]
     if row["obstacle_filling"] == b"density":
@@ -53,7 +54,7 @@ def run_again(clogrun, config, row, folder):
         check=True, capture_output=True, text=True,
     )
     with h5py.File(output, "r") as file:
-        return file["polygons"][-1], file["obstacles"][:]
+        return trajectory.refined(file["polygons"][-1], row), file["obstacles"][:]
 
 
 def distances(polygon, obstacle):
@@ -78,7 +79,8 @@ def hull(points):
 
 
 def draw(axes, row, polygon, obstacles):
-    touching = np.sqrt(np.pi / 4 * 4 * np.tan(np.pi / row["vertices"]) / row["vertices"])  # one vertex diameter
+    # The run's last moment is a little before the equilibrium that its row describes.
+    touching = trajectory.contact_range(row) + 2e-4
     low, high = polygon.min(axis=1) - 0.3, polygon.max(axis=1) + 0.3
     axes.fill(*polygon, facecolor="#E69F00", edgecolor="black", linewidth=0.6, alpha=0.7)
     axes.plot(*np.vstack([hull(polygon.T), hull(polygon.T)[:1]]).T, color="0.4", linewidth=0.6, linestyle="--")
@@ -87,7 +89,9 @@ def draw(axes, row, polygon, obstacles):
         axes.add_patch(Circle(obstacle[:2], obstacle[2] / 2, color="#0072B2" if len(touches) else "0.85"))
         for edge in touches:
             axes.plot(*polygon[:, [edge, (edge + 1) % polygon.shape[1]]], color="#D00000", linewidth=1.8)
-    axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), aspect="equal")
+    # Panels of one shape: titles over flat ones would leave the sheet.
+    centre, half = (low + high) / 2, (high - low).max() / 2
+    axes.set(xlim=(centre[0] - half, centre[0] + half), ylim=(centre[1] - half, centre[1] + half), aspect="equal")
     axes.set_title(
         rf"{mechanism(row)} ({row['wrapped_support']:.2f}; {row['num_wrapped']}, {row['num_gaps']}, {row['num_arcs']})"
         "\n" rf"{row['task']}: $\Gamma = {row['line_tension']:g}$, $w_\mathrm{{ob}} = {row['obstacle_gap']:g}$", fontsize=8,
@@ -138,6 +142,7 @@ def main():
     across = min(6, len(rows))
     down = -(-len(rows) // across)
     figure, axes = plt.subplots(down, across, figsize=(2.6 * across, 3 * down), layout="constrained", squeeze=False)
+    figure.get_layout_engine().set(h_pad=0.1)  # or the titles of the first row leave the sheet
     for place in axes.flat:
         place.axis("off")
     for place, row, shape in zip(axes.flat, rows, shapes):

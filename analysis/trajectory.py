@@ -13,7 +13,8 @@ from matplotlib.patches import Circle, Polygon
 
 @dataclasses.dataclass
 class Trajectory:
-    """Shapes as in src/store/README.md; without --polygon-interval there are no frames, obstacles and wedges."""
+    """Shapes as in src/store/README.md; without --polygon-interval there are no frames, obstacles and wedges. The polygons
+    are those that walls meet, see refined()."""
 
     path: pathlib.Path
     table: np.ndarray
@@ -33,6 +34,27 @@ class Trajectory:
         return int(np.argmin(np.abs(at_frames - value)))
 
 
+def refined(polygons, row):
+    """Polygons with the middles of their edges, by the four-point rule (src/core/README.md): walls meet these. Those of
+    runs in which walls meet vertices alone, or the chords of older versions, stay as they are.
+
+    @param polygons  (..., 2, N_v) [sigma]
+    @return (..., 2, 2 N_v)
+    """
+    if row["wall_contact"] != b"edge" or row["model_version"] < 4 or polygons.size == 0:
+        return polygons
+    before, after = np.roll(polygons, 1, axis=-1), np.roll(polygons, -1, axis=-1)
+    middles = (9 * (polygons + after) - before - np.roll(polygons, -2, axis=-1)) / 16
+    return np.stack([polygons, middles], axis=-1).reshape(*polygons.shape[:-1], -1)
+
+
+def contact_range(row):
+    """Distance from a wall at which contact begins [sigma]; half a vertex diameter before it was stored."""
+    if "contact_range" in row.dtype.names:
+        return row["contact_range"]
+    return np.sqrt(np.pi * np.tan(np.pi / row["vertices"]) / row["vertices"]) / 2
+
+
 def read(path, needs_frames=True):
     """@throws ValueError with one line if it is not a trajectory (with frames)"""
     try:
@@ -42,7 +64,9 @@ def read(path, needs_frames=True):
                                           ("obstacles", (0, 3)), ("wedges", (0, 6))]]
             attributes = {name: value.decode() if isinstance(value, bytes) else str(value)
                           for name, value in file.attrs.items()}
-            trajectory = Trajectory(pathlib.Path(path), file["trajectory"][:], file["runs"][0], attributes, *frames)
+            row = file["runs"][0]
+            frames[0] = refined(frames[0], row)
+            trajectory = Trajectory(pathlib.Path(path), file["trajectory"][:], row, attributes, *frames)
     except (OSError, KeyError, ValueError) as error:
         raise ValueError(f"cannot read {path} ({error}); give the output of clogrun with --polygon-interval") from error
     if needs_frames and len(trajectory.times) == 0:
