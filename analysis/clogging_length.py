@@ -104,9 +104,9 @@ def draw(groups, abscissa, confidence):
     presets = {group["preset"] for group in groups if group["model"] == "dp"}
     note = (f"interface: {presets.pop()}; " if len(presets) == 1 else "") + f"bars: {100 * confidence:g} % confidence"
     if any(style.held_by_mesh(group) for group in groups):
-        note += "\nopen markers: droplets that hang over obstacles, whose length depends on the number of vertices"
+        note += "\nopen markers: droplets hang over obstacles, and lengths depend on the number of vertices"
     if any(group["clogs"] == 0 for group in groups):
-        note += ", open triangles: lower bound, no run clogged, dotted: through bounds"
+        note += "\nopen triangles: lower bound, no run clogged, dotted: through bounds"
     style.caption(axes, f"{caption(groups)}\n{note}")
     return figure
 

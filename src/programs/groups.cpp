@@ -24,7 +24,7 @@ bool hangs_on_mesh(const Group& group) {
   for (const Group::Cause& cause : group.causes)
     if (cause.mechanism == ClogMechanism::wrapped || cause.mechanism == ClogMechanism::hybrid)
       hanging += cause.clogging.num_clogs;
-  return hanging > 0 && 5 * hanging >= group.clogging.num_clogs;
+  return hanging > 0 && 3 * hanging >= group.clogging.num_clogs;
 }
 
 std::vector<Doubt> doubts_about(const Group& group) {

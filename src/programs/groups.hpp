@@ -23,7 +23,7 @@ enum class Doubt {
                      ///< more
   censored_by_time,  ///< runs ended by max-time, slow ones nearer than fast ones
   incomplete,        ///< runs are under way, interrupted or failed
-  held_by_mesh,      ///< a fifth of the clogs or more are wrapped or hybrid; the polygon's corners hold those
+  held_by_mesh,      ///< a third of the clogs or more are wrapped or hybrid; the polygon's corners hold those
 };
 /// One letter each for tables, a word for files, a sentence for readers.
 struct DoubtText {
@@ -42,7 +42,7 @@ inline constexpr DoubtText doubt_texts[] = {
     {Doubt::incomplete, 'i', "incomplete",
      "runs are under way or interrupted (they count as not clogged so far) or have failed (left out)"},
     {Doubt::held_by_mesh, 'm', "held_by_mesh",
-     "a fifth of the clogs or more hang over obstacles: how far such droplets get depends on the number of "
+     "a third of the clogs or more hang over obstacles: how far such droplets get depends on the number of "
      "vertices"}};
 const DoubtText& text_of(Doubt doubt);
 

@@ -110,7 +110,7 @@ class Fit(ProgramTest):
         self.change(distance=np.arange(1.0, 11), status=[b"clogged"] * 8 + [b"flowing"] * 2, mechanism=mechanisms)
         group, = self.fit()["groups"]
         self.assertIn("held_by_mesh", group["doubts"])
-        self.assertIn("m: a fifth of the clogs", self.succeed("clogfit", "sweep.h5").stdout)
+        self.assertIn("m: a third of the clogs", self.succeed("clogfit", "sweep.h5").stdout)
         kinds = ("wrapped", "squeezed", "hybrid", "other")
         self.assertEqual([group[kind] for kind in kinds], [2, 4, 1, 1])
         lengths = [group[f"clogging_length_{kind}"] for kind in kinds]
