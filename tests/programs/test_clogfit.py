@@ -126,16 +126,35 @@ class Fit(ProgramTest):
         self.assertGreater(group["clogging_length_wrapped_lower"], 0)
         self.assertNotIn("w/s/h", self.succeed("clogfit", "sweep.h5").stdout)
 
+    def without(self, columns, version):
+        """Makes the sweep's file one of an older format."""
+        with h5py.File(self.folder / "sweep.h5", "r+") as file:
+            table = file["runs"][:]
+            del file["runs"]
+            kept = [(name, table.dtype[name]) for name in table.dtype.names if name not in columns]
+            file["runs"] = table[[name for name, _ in kept]].astype(kept)
+            file.attrs["format_version"] = np.bytes_(version)
+
+    def test_files_of_format_version_3_can_be_read(self):
+        self.sweep("max-time=60", "line-tension=2", "seeds=1..3")
+        before, = self.fit()["groups"]
+        self.change(model_version=3)
+        self.without(["contact_range", "self_contact_range", "near_wall_cutoff"], "3")
+        group, = self.fit()["groups"]
+        self.assertEqual(group["clogging_length"], before["clogging_length"])
+        self.assertEqual((group["contact_range"], group["model_version"]), (None, 3))
+
+    def test_runs_of_different_model_versions_are_fitted_apart(self):
+        self.sweep("max-time=60", "line-tension=2", "seeds=1..4")
+        self.change(model_version=[3, 3, 4, 4])
+        self.assertEqual([(group["model_version"], group["runs"]) for group in self.fit()["groups"]], [(3, 2), (4, 2)])
+        self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, r"model_version +runs")
+
     def test_files_of_format_version_2_can_be_read(self):
         rows = self.sweep("max-time=60", "line-tension=2", "seeds=1..3")
         new = ["mean_speed_error", "transient", "travel_time", "mechanism", "wrapped_support", "num_wrapped", "num_gaps", "num_arcs"]
         before, = self.fit()["groups"]
-        with h5py.File(self.folder / "sweep.h5", "r+") as file:
-            table = file["runs"][:]
-            del file["runs"]
-            file["runs"] = table[[name for name in table.dtype.names if name not in new]].astype(
-                [(name, table.dtype[name]) for name in table.dtype.names if name not in new])
-            file.attrs["format_version"] = np.bytes_("2")
+        self.without(new, "2")
         group, = self.fit()["groups"]
         self.assertEqual((group["runs"], group["clogs"]), (3, int((rows.status == "clogged").sum())))
         self.assertEqual(group["clogging_length"], before["clogging_length"])
