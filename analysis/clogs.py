@@ -4,9 +4,9 @@
     clogsweep --output sweep.h5 line-tension=0.2,0.3,1 seeds=1..10
     analysis/clogs.py sweep.h5 --output clogs
 
-Runs the clogged rows again (clogrun; an outline is in no table). The flow goes to the right. Touched obstacles are
-dark, arcs of contact red, the droplet's convex hull dashed; titles give the columns mechanism, wrapped_support,
-num_wrapped, num_gaps, num_arcs.
+Runs the clogged rows again until they rest (clogrun; an outline is in no table). The flow goes to the right. Touched
+obstacles are dark, arcs of contact red, the droplet's convex hull dashed; titles give the columns mechanism,
+wrapped_support, num_wrapped, num_gaps, num_arcs.
 """
 
 import argparse
@@ -41,16 +41,17 @@ def mechanism(row):
 
 
 def run_again(clogrun, config, row, folder):
-    """The interface that walls meet (2 x N) at the end and the obstacles (n x 3: x, y, diameter) around it."""
+    """The interface that walls meet (2 x N) at rest and the obstacles (n x 3: x, y, diameter) around it."""
     output = pathlib.Path(folder) / f"{row['task']}.h5"
     keys = [f"{name.replace('_', '-')}={row[name]!r}" for name in LISTS if name != "seed"] + [f"seeds={row['seed']}"]
     if row["obstacle_filling"] == b"density":
         keys.append(f"obstacle-density={row['obstacle_density']!r}")
     if row["obstacle_filling"] == b"lattice":
         keys.append(f"lattice-angle={row['lattice_angle']!r}")
+    # A certified row describes an equilibrium that the run ends before; by the threshold it ends in it.
     subprocess.run(
         [clogrun, "array", "--config", config, "--output", output, "--instruction-set", row["instruction_set"].decode(),
-         "--polygon-interval", "1e9", "--sample-interval", "1e9", *keys],
+         "--polygon-interval", "1e9", "--sample-interval", "1e9", *keys, "clog-detection=threshold"],
         check=True, capture_output=True, text=True,
     )
     with h5py.File(output, "r") as file:
@@ -63,6 +64,11 @@ def distances(polygon, obstacle):
     to_centre = obstacle[:2, None] - begin
     along = np.clip((to_centre * way).sum(axis=0) / (way**2).sum(axis=0), 0, 1)
     return np.hypot(*(to_centre - along * way)) - obstacle[2] / 2
+
+
+def overlaps(row, polygon, obstacles):
+    """How deep every obstacle (rows) is in the contact of every edge (columns) [sigma]; above 0 they touch."""
+    return trajectory.contact_range(row) - np.array([distances(polygon, obstacle) for obstacle in obstacles])
 
 
 def hull(points):
@@ -79,13 +85,11 @@ def hull(points):
 
 
 def draw(axes, row, polygon, obstacles):
-    # The run's last moment is a little before the equilibrium that its row describes.
-    touching = trajectory.contact_range(row) + 2e-4
     low, high = polygon.min(axis=1) - 0.3, polygon.max(axis=1) + 0.3
     axes.fill(*polygon, facecolor="#E69F00", edgecolor="black", linewidth=0.6, alpha=0.7)
     axes.plot(*np.vstack([hull(polygon.T), hull(polygon.T)[:1]]).T, color="0.4", linewidth=0.6, linestyle="--")
-    for obstacle in obstacles:
-        touches = np.flatnonzero(distances(polygon, obstacle) < touching)
+    for obstacle, depths in zip(obstacles, overlaps(row, polygon, obstacles)):
+        touches = np.flatnonzero(depths > 0)
         axes.add_patch(Circle(obstacle[:2], obstacle[2] / 2, color="#0072B2" if len(touches) else "0.85"))
         for edge in touches:
             axes.plot(*polygon[:, [edge, (edge + 1) % polygon.shape[1]]], color="#D00000", linewidth=1.8)

@@ -3,7 +3,7 @@
 
     clogfit report sweep.h5 --output report.html      # is analysis/report.py
 
-Every number comes from clogfit. Example clogs are run once more by clogrun, to the same bits, in a temporary folder.
+Every number comes from clogfit. Example clogs are run once more by clogrun, until they rest, in a temporary folder.
 """
 
 import argparse

@@ -20,6 +20,9 @@ from matplotlib import pyplot  # noqa: F401, see run_script
 
 from support import BIN, QUICK, ROOT, ProgramTest, table
 
+sys.path.insert(1, str(ROOT / "analysis"))
+import clogs
+
 # A few seconds for all of them: coarse droplets, short ways.
 TINY = {
     "clogging": ["vertices=32", "line-tension=0.3,3", "obstacle-gap=0.2,0.4"],
@@ -221,6 +224,27 @@ class Pictures(Analysis):
         self.draw("clogs.py", "s.h5", "--clogrun", BIN / "clogrun", "--output", "clogs", "--most", 2)
         self.assert_picture("clogs")
         self.refuse_analysis("clogs.py", "s.h5", "--clogrun", BIN / "clogrun", "--output", "clogs", "--tasks", "0,77", words=["77"])
+
+    def test_edges_marked_as_touching_are_those_that_the_program_counts(self):
+        # Uneven edges, whose chords touch elsewhere than the interface; contact at the surface and off it.
+        for name, points_per_vertex, keys in [
+            ("surface", 2, ["preset=elastic", "vertices=32", "line-tension=0.3,1"]),
+            ("off", 2, ["contact-range=half-vertex", "vertices=32", "line-tension=1"]),
+            ("vertices", 1, ["wall-contact=vertex", "contact-range=half-vertex", "vertices=64", "line-tension=1"]),
+        ]:
+            self.succeed("clogsweep", *keys, "box=20", "max-time=500", "seeds=1..4", "--output", f"{name}.h5")
+            rows, config = clogs.read_clogs(self.folder / f"{name}.h5")
+            self.assertGreater(len(rows), 0)
+            self.write("sweep.cfg", config)
+            for row in rows:
+                with self.subTest(contact=name, task=row["task"]):
+                    interface, obstacles = clogs.run_again(BIN / "clogrun", self.folder / "sweep.cfg", row, self.folder)
+                    (self.folder / f"{row['task']}.h5").unlink()
+                    self.assertEqual(interface.shape[1], points_per_vertex * row["vertices"])
+                    depths = clogs.overlaps(row, interface, obstacles)
+                    touched = np.where(depths.max(axis=0) > 0, depths.argmax(axis=0), -1)
+                    arcs = np.count_nonzero((touched >= 0) & (touched != np.roll(touched, 1)))
+                    self.assertEqual(arcs, row["num_arcs"])
 
     def test_foreign_files_get_one_line(self):
         self.write("fit.json", json.dumps({"groups": "none"}))
