@@ -7,7 +7,7 @@
 
 The flow goes to the right. In a picture the last outline is filled; earlier ones are thin, evenly spaced along the way,
 coloured by time. A film is DROPLET.mp4 if ffmpeg is there, DROPLET.gif if Pillow is, and numbered pictures in the folder
-DROPLET-frames with --pictures. In it the way of the centre is a line, and the droplet has the colour of its vertices' speed or,
+DROPLET-frames with --pictures. In it the way of the centre is a line, and the droplet has the colour of its interface's speed or,
 with --colour mechanism, of how it ended.
 """
 
@@ -83,7 +83,7 @@ class Film:
         self._outline = LineCollection([], cmap="viridis", linewidth=2, zorder=4)
         self._speeds = None
         if colour == "speed":
-            self._speeds = trajectory.vertex_speeds(run) / run.row["terminal_speed"]
+            self._speeds = trajectory.interface_speeds(run) / run.row["terminal_speed"]
             # A few fast moments would leave the rest dark.
             self._outline.set_norm(matplotlib.colors.Normalize(0, max(1e-3, np.percentile(self._speeds, 98))))
             self.figure.colorbar(self._outline, ax=axes, label="speed of the interface $/v_t$", fraction=0.03, pad=0.01)

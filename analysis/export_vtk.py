@@ -6,8 +6,9 @@
     paraview run.pvd
 
 Makes RUN.pvd, which names every frame with its time, the frames in the folder RUN-vtk, and RUN-obstacles.vtp, to be opened beside it:
-discs and walls (of diameter 0), cut off five diameters from the droplet's way. All are VTK's XML PolyData, as text. Frames have the
-vertices' speed, and, as field data, the columns of the trajectory at that time. Units are those of src/store/README.md.
+discs and walls (of diameter 0), cut off five diameters from the droplet's way. All are VTK's XML PolyData, as text. An outline
+is the interface that walls meet, vertices and middles of edges in turn. Frames have its points' speed, and, as field data, the columns of
+the trajectory at that time. Units are those of src/store/README.md.
 """
 
 import argparse
@@ -84,7 +85,7 @@ def export(run, output):
     """@return the .pvd file"""
     folder = output.with_name(output.name + "-vtk")
     folder.mkdir(parents=True, exist_ok=True)
-    speeds = trajectory.vertex_speeds(run)
+    speeds = trajectory.interface_speeds(run)
     columns = run.table.dtype.names
     names = []
     for frame, (polygon, time) in enumerate(zip(run.polygons, run.times)):
@@ -92,7 +93,7 @@ def export(run, output):
         fields = {name: value for name, value in fields.items() if math.isfinite(value)}
         fields["TimeValue"] = float(time)
         names.append(f"{folder.name}/droplet-{frame:05d}.vtp")
-        write(polydata([polygon.T], {"vertex_speed": speeds[frame]}, field_data=fields), output.parent / names[-1])
+        write(polydata([polygon.T], {"point_speed": speeds[frame]}, field_data=fields), output.parent / names[-1])
     write(surroundings(run), output.with_name(output.name + "-obstacles.vtp"))
     pvd = output.with_name(output.name + ".pvd")
     write(collection(names, run.times), pvd)

@@ -115,8 +115,8 @@ def along_the_way(polygons, number):
     return np.unique(np.append(chosen, len(polygons) - 1))
 
 
-def vertex_speeds(trajectory):
-    """Speed of every vertex in every frame, by differences between frames [sqrt(sigma g)]."""
+def interface_speeds(trajectory):
+    """Speed of every point of the interface in every frame, by differences between frames [sqrt(sigma g)]."""
     if len(trajectory.times) < 2:
         return np.zeros((len(trajectory.times), trajectory.polygons.shape[2]))
     velocity = np.gradient(trajectory.polygons, trajectory.times, axis=0)

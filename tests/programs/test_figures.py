@@ -289,7 +289,7 @@ class Pictures(Analysis):
         self.assertEqual(int(piece.get("NumberOfPoints")), len(points))
         self.assertEqual(self.numbers(last, "offsets").tolist(), [len(points)])
         self.assertEqual(self.numbers(last, "connectivity").tolist(), list(range(len(points))))
-        self.assertEqual(len(self.numbers(last, "vertex_speed")), len(points))
+        self.assertEqual(len(self.numbers(last, "point_speed")), len(points))
         discs = xml.parse(self.folder / "run-obstacles.vtp")
         np.testing.assert_array_equal(self.numbers(discs, "diameter"), obstacles[:, 2])
 
