@@ -99,7 +99,7 @@ def draw(groups, abscissa, confidence):
     axes.set_xlabel(style.AXES[abscissa])
     axes.set_ylabel(style.AXES["length"])
     style.grid(axes)
-    if axes.get_legend_handles_labels()[1] != [""]:
+    if axes.get_legend_handles_labels()[1] not in ([], [""]):
         axes.legend(frameon=False)
     presets = {group["preset"] for group in groups if group["model"] == "dp"}
     note = (f"interface: {presets.pop()}; " if len(presets) == 1 else "") + f"bars: {100 * confidence:g} % confidence"
