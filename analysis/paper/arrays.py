@@ -81,7 +81,7 @@ def curves(shop, config, abscissa, parameter, quantity):
     return Plate(drawing, data)
 
 
-@figure("6c", "clogging length against line tension for four smallest gaps (deformable polygon)", ["clogging"], "10 min")
+@figure("6c", "clogging length against line tension for four smallest gaps (deformable polygon)", ["clogging"], "40 min")
 def lengths_of_polygons(shop):
     return curves(shop, "clogging", "line_tension", "obstacle_gap", "length")
 
