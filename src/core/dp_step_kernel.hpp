@@ -79,8 +79,8 @@ struct Power {
   double spread_x, spread_y;  ///< sum F_i
 };
 struct Contact {
-  double stiffness;  ///< k_c as a kick
-  double span;       ///< of walls; 1: edges, 0: their first vertices alone
+  double stiffness;   ///< k_c as a kick
+  double span;        ///< of walls; 1: edges, 0: their first vertices alone
   double self_range;  ///< distance below which the interface repels itself [sigma]
 };
 /// What may be nearest to the vertices.

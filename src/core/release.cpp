@@ -68,7 +68,8 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
   const double room = 0.99 * (clearance(obstacles, place[0], place[1], 2 * radius) - *run.dp.contact_range);
   const double smallest_radius = 4 * run.dp.self_contact_range / (2 * std::numbers::pi);
   if (room < smallest_radius)
-    refuse_release("no void near the centre of the box", "a wider obstacle-gap or a smaller self-contact-range");
+    refuse_release("no void near the centre of the box",
+                   "a wider obstacle-gap or a smaller self-contact-range");
 
   double area = units::rest_area * std::min(1.0, room * room / (radius * radius));
   DropletState state;

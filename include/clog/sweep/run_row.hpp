@@ -61,7 +61,7 @@ struct RunRow {
   double perimeter_stiffness = 0;  ///< NaN for sp
   FixedText<8> wall_contact;
   double contact_range = not_known;  ///< NaN for sp
-  double wall_tension = 1;  ///< NaN for sp
+  double wall_tension = 1;           ///< NaN for sp
   FixedText<8> self_contact;
   double self_contact_range = not_known;  ///< NaN for sp
   FixedText<8> gravity;
