@@ -66,11 +66,9 @@ struct NearestPoints {
   V dx, dy;  ///< from the points given
   V distance2;
 
-  /// @param span  1: edges count, 0: their first vertices alone
-  HWY_INLINE NearestPoints(const EdgeVectors& edges, V x, V y, V span) {
+  HWY_INLINE NearestPoints(const EdgeVectors& edges, V x, V y) {
     const V to_x = hn::Sub(x, edges.x), to_y = hn::Sub(y, edges.y);
-    along = hn::Min(hn::Max(hn::MulAdd(to_x, edges.tx, hn::Mul(to_y, edges.ty)), all(0)),
-                    hn::Mul(edges.length, span));
+    along = hn::Min(hn::Max(hn::MulAdd(to_x, edges.tx, hn::Mul(to_y, edges.ty)), all(0)), edges.length);
     dx = hn::MulSub(along, edges.tx, to_x);
     dy = hn::MulSub(along, edges.ty, to_y);
     distance2 = hn::MulAdd(dx, dx, hn::Mul(dy, dy));
@@ -115,10 +113,10 @@ class EdgePushes {
   }
 };
 
-/// `lanes` consecutive edges of the refined contour (see refined_middle()), two halves for each.
-struct RefinedEdges {
+/// `lanes` consecutive edges of the refined contour (see refined()), two halves for each.
+struct RefinedEdgeVectors {
   V x, y, middle_x, middle_y, next_x, next_y;
-  HWY_INLINE RefinedEdges(int i, const StepArrays& a)
+  HWY_INLINE RefinedEdgeVectors(int i, const StepArrays& a)
       : x(load(a.x + i)), y(load(a.y + i)), next_x(load_at(a.x + i + 1)), next_y(load_at(a.y + i + 1)) {
     middle_x = middle(x, next_x, load_at(a.x + i - 1), load_at(a.x + i + 2));
     middle_y = middle(y, next_y, load_at(a.y + i - 1), load_at(a.y + i + 2));
@@ -161,7 +159,7 @@ struct NearestOnHalves {
 /// Both halves of edges and a circle.
 struct HalvesAtCircle {
   NearestOnHalves first, second;
-  HWY_INLINE HalvesAtCircle(const RefinedEdges& e, V x, V y, V span)
+  HWY_INLINE HalvesAtCircle(const RefinedEdgeVectors& e, V x, V y, V span)
       : first(e.x, e.y, e.middle_x, e.middle_y, x, y, span),
         second(e.middle_x, e.middle_y, e.next_x, e.next_y, x, y, span) {}
 };
@@ -187,7 +185,7 @@ void push_off_circles(const WallContacts::Item* items, std::size_t num_items, co
     const V reach = all(item->reach), reach_of_second = all(contact.span * item->reach);
     for (int lane = 0; lane < edges_per_group; lane += lanes) {
       const int i = item->group * edges_per_group + lane;
-      const HalvesAtCircle halves(RefinedEdges(i, a), all(item->x), all(item->y), span);
+      const HalvesAtCircle halves(RefinedEdgeVectors(i, a), all(item->x), all(item->y), span);
       const M listed = lanes_of(item->edges, lane);
       const M first_touches = hn::And(halves.first.are_nearer_than(reach), listed);
       const M second_touches = hn::And(halves.second.are_nearer_than(reach_of_second), listed);
@@ -264,7 +262,7 @@ void push_off_each_other(const SelfContacts::Item* items, std::size_t num_items,
       EdgePushes pushes;
       for (const SelfContacts::Item* item = begin; item != next; ++item) {
         const PairedVertices vertices(*item, lane, a);
-        const NearestPoints nearest(edges, vertices.x(), vertices.y(), all(1));
+        const NearestPoints nearest(edges, vertices.x(), vertices.y());
         const M touch = hn::And(nearest.are_nearer_than(reach), lanes_of(item->pairs, lane));
         if (hn::AllFalse(D(), touch)) continue;
         vertices.push_back(pushes.add(nearest, touch, reach, stiffness), a);
@@ -287,7 +285,7 @@ void circle_gaps(const WallContacts::Item* items, std::size_t num_items, const C
     const WallContacts::Item item = items[k];
     double distance = 1e150;
     for (int lane = 0; lane < edges_per_group; lane += lanes) {
-      const RefinedEdges edges(item.group * edges_per_group + lane, a);
+      const RefinedEdgeVectors edges(item.group * edges_per_group + lane, a);
       const HalvesAtCircle halves(edges, all(item.x), all(item.y), span);
       const V nearest = contact.span > 0 ? hn::Min(halves.first.distance2, halves.second.distance2)
                                          : halves.first.distance2;
@@ -305,7 +303,7 @@ void pair_gaps(const SelfContacts::Item* items, std::size_t num_items, const Con
     double distance = 1e150;
     for (int lane = 0; lane < edges_per_group; lane += lanes) {
       const PairedVertices vertices(item, lane, a);
-      const NearestPoints nearest(EdgeVectors(item.edges + lane, a), vertices.x(), vertices.y(), all(1));
+      const NearestPoints nearest(EdgeVectors(item.edges + lane, a), vertices.x(), vertices.y());
       distance = std::min(distance, smallest(nearest.distance2, lanes_of(item.pairs, lane)));
     }
     gaps[k] = distance - contact.self_range;
