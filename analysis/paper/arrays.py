@@ -81,37 +81,37 @@ def curves(shop, config, abscissa, parameter, quantity):
     return Plate(drawing, data)
 
 
-@figure("6c", "clogging length against line tension for four smallest gaps (deformable polygon)", ["clogging"], "40 min")
+@figure("6c", "clogging length against line tension for four smallest gaps (deformable polygon)", ["clogging"], "20 min")
 def lengths_of_polygons(shop):
     return curves(shop, "clogging", "line_tension", "obstacle_gap", "length")
 
 
-@figure("7a", "clogging length against wall stiffness for four smallest gaps (soft disk)", ["clogging-sp"], "20 s")
+@figure("7a", "clogging length against wall stiffness for four smallest gaps (soft disk)", ["clogging-sp"], "10 s")
 def lengths_of_disks(shop):
     return curves(shop, "clogging-sp", "wall_stiffness", "obstacle_gap", "length")
 
 
-@figure("8a", "mean speed against line tension for four wide gaps (deformable polygon)", ["speed"], "2 min")
+@figure("8a", "mean speed against line tension for four wide gaps (deformable polygon)", ["speed"], "1 min")
 def speeds_of_polygons(shop):
     return curves(shop, "speed", "line_tension", "obstacle_gap", "speed")
 
 
-@figure("8b", "mean speed against line tension for three obstacle diameters", ["speed-diameter"], "2 min")
+@figure("8b", "mean speed against line tension for three obstacle diameters", ["speed-diameter"], "1 min")
 def speeds_by_diameter(shop):
     return curves(shop, "speed-diameter", "line_tension", "obstacle_diameter", "speed")
 
 
-@figure("8ca", "the speeds of 8a against the capillary number", ["speed"], "2 min, shared with 8a")
+@figure("8ca", "the speeds of 8a against the capillary number", ["speed"], "1 min, shared with 8a")
 def speeds_by_capillary_number(shop):
     return curves(shop, "speed", "capillary_number", "obstacle_gap", "speed")
 
 
-@figure("9a", "mean speed against wall stiffness for four wide gaps (soft disk)", ["speed-sp"], "10 s")
+@figure("9a", "mean speed against wall stiffness for four wide gaps (soft disk)", ["speed-sp"], "5 s")
 def speeds_of_disks(shop):
     return curves(shop, "speed-sp", "wall_stiffness", "obstacle_gap", "speed")
 
 
-@figure("E", "mean speed against line tension for three near-wall drags", ["near-wall-drag"], "3 min")
+@figure("E", "mean speed against line tension for three near-wall drags", ["near-wall-drag"], "1 min")
 def speeds_by_drag(shop):
     return curves(shop, "near-wall-drag", "line_tension", "near_wall_drag", "speed")
 
@@ -166,7 +166,7 @@ def speeds_over_sag(shop):
     return over_sag(shop, ["speed", "speed-sp"], 1.1, "speed")
 
 
-@figure("7b", "what the sag is: a soft disk and a polygon on a wall, before and after gravity sets in", [], "5 s")
+@figure("7b", "what the sag is: a soft disk and a polygon on a wall, before and after gravity sets in", [], "1 s")
 def sag_picture(shop):
     line_tension, stiffness = 0.3, 1.0
     polygon = shop.run("sag", "sag", "trajectory", {"line-tension": line_tension}, ["--polygon-interval", 2])
@@ -292,7 +292,7 @@ def two_ways(shop):
 
 # Single runs and P(r)
 
-@figure("C1", "kinetic energy of a droplet that clogs and of one that flows", ["trajectory"], "20 s")
+@figure("C1", "kinetic energy of a droplet that clogs and of one that flows", ["trajectory"], "2 s")
 def kinetic_energy(shop):
     drawing, axes = plt.subplots(figsize=(7.2, 4.8), layout="constrained")
     data = []
@@ -317,7 +317,7 @@ def kinetic_energy(shop):
     return Plate(drawing, data)
 
 
-@figure("C2", "probability P(r) of not having clogged, with its error band and the exponential law", ["survival"], "1 min")
+@figure("C2", "probability P(r) of not having clogged, with its error band and the exponential law", ["survival"], "10 s")
 def survival(shop):
     group = shop.sweep("survival")[0]
     steps = group["survival"]
@@ -347,7 +347,7 @@ def survival(shop):
                  + [{"clogging_length": length, "clogging_length_lower": lower, "clogging_length_upper": upper}])
 
 
-@figure("D", "displacement against time for five line tensions, smallest gap 1.1", ["trajectory"], "1 min")
+@figure("D", "displacement against time for five line tensions, smallest gap 1.1", ["trajectory"], "3 s")
 def displacement(shop):
     drawing, axes = plt.subplots(figsize=(6.8, 5.0), layout="constrained")
     data = []

@@ -73,7 +73,7 @@ def narrow(shop):
     return in_channel(shop, "channel-0.4", 0.4, 0.16, 0.064, 0.08)
 
 
-@figure("1", "geometry: a droplet in a narrow channel, and one among obstacles with its trajectory", ["channel", "trajectory"], "20 s")
+@figure("1", "geometry: a droplet in a narrow channel, and one among obstacles with its trajectory", ["channel", "trajectory"], "1 s")
 def geometry(shop):
     channel = narrow(shop)
     array = shop.run("geometry", "array", "trajectory", {"line-tension": 0.3, "obstacle-gap": 1.0, "max-time": 300.0},
@@ -110,7 +110,7 @@ def geometry(shop):
     return Plate(drawing, data)
 
 
-@figure("2", "a droplet squeezes through an orifice of 0.4 diameters: outlines, shape parameter, speed", ["channel"], "20 s")
+@figure("2", "a droplet squeezes through an orifice of 0.4 diameters: outlines, shape parameter, speed", ["channel"], "1 s")
 def squeezing(shop):
     run = narrow(shop)
     drawing = plt.figure(figsize=(9.6, 6.2), layout="constrained")
@@ -137,7 +137,7 @@ def squeezing(shop):
     return Plate(drawing, profile_rows(run, "w=0.4"))
 
 
-@figure("3", "shape and speed through orifices of 0.9 and 0.7 diameters", ["channel"], "1 min")
+@figure("3", "shape and speed through orifices of 0.9 and 0.7 diameters", ["channel"], "3 s")
 def two_orifices(shop):
     drawing, panels = plt.subplots(2, 2, figsize=(9.0, 6.8), layout="constrained", sharex=True)
     data = []
@@ -170,7 +170,7 @@ def two_orifices(shop):
     return Plate(drawing, data)
 
 
-@figure("4", "speed behind an orifice, which overshoots the terminal speed, for three line tensions", ["channel"], "2 min")
+@figure("4", "speed behind an orifice, which overshoots the terminal speed, for three line tensions", ["channel"], "3 s")
 def overshoot(shop):
     drawing, panels = plt.subplots(1, 2, figsize=(9.6, 4.6), layout="constrained")
     data = []
@@ -188,7 +188,7 @@ def overshoot(shop):
     return Plate(drawing, data)
 
 
-@figure("A1", "near-wall drag: speed between parallel walls against the distance from them, and its exponent", ["channel"], "10 s")
+@figure("A1", "near-wall drag: speed between parallel walls against the distance from them, and its exponent", ["channel"], "3 s")
 def near_wall_drag(shop):
     distances = [0.03, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2]
     speeds, data = [], []
@@ -221,7 +221,7 @@ def near_wall_drag(shop):
     return Plate(drawing, data)
 
 
-@figure("B1", "speed through an orifice of 0.7 diameters for different numbers of vertices", ["channel"], "3 min")
+@figure("B1", "speed through an orifice of 0.7 diameters for different numbers of vertices", ["channel"], "4 s")
 def vertices(shop):
     # Up to so many times the config's number of vertices: the finest run takes most of the time.
     line_tension, most = (1.08, 4) if shop.size == "full" else (0.83, 2)
@@ -244,7 +244,7 @@ def vertices(shop):
     return Plate(drawing, data)
 
 
-@figure("B2", "deviation of the speed profile as the perimeter's springs stiffen", ["channel"], "2 min")
+@figure("B2", "deviation of the speed profile as the perimeter's springs stiffen", ["channel"], "15 s")
 def perimeter_springs(shop):
     drawing, axes = plt.subplots(figsize=(6.4, 4.8), layout="constrained")
     ratios = [1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0]
