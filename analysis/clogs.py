@@ -16,8 +16,8 @@ import subprocess
 import sys
 import tempfile
 
-import h5py
 import numpy as np
+import stored
 import style
 import trajectory
 from matplotlib.patches import Circle
@@ -29,8 +29,8 @@ LISTS = ["line_tension", "obstacle_gap", "near_wall_drag", "seed"]
 
 
 def read_clogs(path):
-    with h5py.File(path, "r") as file:
-        rows, config = file["runs"][:], file.attrs["config"].decode()
+    with stored.opened(path) as file:
+        rows, config = file["runs"][:], stored.attributes(file)["config"]
     return [row for row in rows if row["status"] == b"clogged" and row["model"] == b"dp"], config
 
 
@@ -54,7 +54,7 @@ def run_again(clogrun, config, row, folder):
          "--polygon-interval", "1e9", "--sample-interval", "1e9", *keys, "clog-detection=threshold"],
         check=True, capture_output=True, text=True,
     )
-    with h5py.File(output, "r") as file:
+    with stored.opened(output) as file:
         return trajectory.refined(file["polygons"][-1], row), file["obstacles"][:]
 
 

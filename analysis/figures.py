@@ -17,6 +17,7 @@ import pathlib
 import subprocess
 import sys
 
+import stored
 import style
 from paper import arrays, channels  # noqa: F401, they fill the catalogue
 from paper.plate import CATALOGUE
@@ -96,7 +97,7 @@ def body():
 def main():
     try:
         return body()
-    except UserError as error:
+    except (UserError, stored.Damaged) as error:
         print(f"figures.py: {error}", file=sys.stderr)
         return 2
     except ProgramFailed as error:

@@ -19,9 +19,8 @@ import tempfile
 
 import clogging_length
 import clogs
-import h5py
 import numpy as np
-import pandas
+import stored
 import style
 from paper.workshop import ProgramFailed, UserError, programs_in, run_program
 from style import plt
@@ -170,9 +169,9 @@ def body():
     fit = json.loads(run_program(programs / "clogfit", arguments.sweep, "--format", "json"))
     if not any(group["runs"] > 0 for group in fit["groups"]):
         raise UserError(f"{arguments.sweep} holds no finished runs")
-    rows = pandas.read_hdf(arguments.sweep, "runs")
-    with h5py.File(arguments.sweep, "r") as file:
-        about = {key: value.decode() if isinstance(value, bytes) else str(value) for key, value in file.attrs.items()}
+    rows = stored.read_table(arguments.sweep)
+    with stored.opened(arguments.sweep) as file:
+        about = stored.attributes(file)
     pictures = example_pictures(examples(clogs.read_clogs(arguments.sweep)[0], arguments.examples), about["config"], programs)
     try:
         arguments.output.write_text(page(arguments.sweep, fit, rows, about, pictures))
@@ -185,7 +184,7 @@ def body():
 def main():
     try:
         return body()
-    except UserError as error:
+    except (UserError, stored.Damaged) as error:
         print(f"report.py: {error}", file=sys.stderr)
         return 2
     except ProgramFailed as error:

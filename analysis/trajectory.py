@@ -4,8 +4,8 @@ import dataclasses
 import math
 import pathlib
 
-import h5py
 import numpy as np
+import stored
 import style
 from matplotlib.collections import PatchCollection
 from matplotlib.patches import Circle, Polygon
@@ -58,15 +58,16 @@ def contact_range(row):
 def read(path, needs_frames=True):
     """@throws ValueError with one line if it is not a trajectory (with frames)"""
     try:
-        with h5py.File(path, "r") as file:
+        with stored.opened(path) as file:
             frames = [file[name][:] if name in file else np.empty(shape)
                       for name, shape in [("polygons", (0, 2, 0)), ("polygon_times", (0,)),
                                           ("obstacles", (0, 3)), ("wedges", (0, 6))]]
-            attributes = {name: value.decode() if isinstance(value, bytes) else str(value)
-                          for name, value in file.attrs.items()}
+            attributes = stored.attributes(file)
             row = file["runs"][0]
             frames[0] = refined(frames[0], row)
             trajectory = Trajectory(pathlib.Path(path), file["trajectory"][:], row, attributes, *frames)
+    except stored.Damaged:
+        raise
     except (OSError, KeyError, ValueError) as error:
         raise ValueError(f"cannot read {path} ({error}); give the output of clogrun with --polygon-interval") from error
     if needs_frames and len(trajectory.times) == 0:

@@ -10,7 +10,7 @@ import shlex
 import subprocess
 import tempfile
 
-import h5py
+import stored
 import trajectory
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -156,14 +156,11 @@ class Workshop:
 
     def rows(self, name):
         """The table of a sweep that sweep() has run."""
-        import pandas  # slow to load, and seldom needed
-
-        return pandas.read_hdf(self.sweep_file(name), "runs")
+        return stored.read_table(self.sweep_file(name))
 
     def _note_sweep(self, name):
-        with h5py.File(self.sweep_file(name), "r") as file:
-            about = {key: file.attrs[key].decode() for key in ("command_line", "version", "git_hash", "start_time")}
-            rows = file["runs"][:]
+        with stored.opened(self.sweep_file(name)) as file:
+            about, rows = stored.attributes(file), file["runs"][:]
         seeds = sorted(set(rows["seed"].tolist()))
         finished = sum(status not in (b"running", b"interrupted") for status in rows["status"])
         self._sources.append(

@@ -14,6 +14,7 @@
 #include "clogfit_deviation.hpp"
 #include "clogfit_drag.hpp"
 #include "group_table.hpp"
+#include "sweep_input.hpp"
 
 namespace {
 
@@ -55,7 +56,7 @@ int body(int argc, char** argv) {
   if (confidence >= 1)
     throw Error("invalid --confidence=" + line.get("confidence") + " (must lie between 0 and 1)");
 
-  const store::SweepFile sweep = store::read_sweep(line.get("file"));
+  const store::SweepFile sweep = read_with_caution(line.get("file"));
   if (sweep.rows.empty()) throw Error(line.get("file") + " has no runs yet; let the sweep finish some first");
   const std::vector<Group> groups = group_runs(sweep.rows, confidence);
   std::cout << (format == "csv"    ? to_csv(groups)

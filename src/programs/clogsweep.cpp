@@ -43,6 +43,7 @@ given values, on all MPI ranks, and gathers the results in one HDF5 table.
   clogsweep --config sweep.cfg --dry-run
   clogsweep status sweep.h5         how far it is: lambda, <v_g>, time left; also while it runs
   clogsweep verify sweep.h5         is the file whole?
+  clogsweep salvage sweep.h5 --output whole.h5     what is whole of a damaged one
   clogsweep replay sweep.h5 TASK    one run once more: the same bits?
   mpirun -np 4 clogsweep doctor     will a sweep started like this go well here?
 
@@ -278,7 +279,7 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, parallel::IsolatedJo
 int main(int argc, char** argv) {
   // What needs no ranks.
   const std::map<std::string_view, int (*)(int, const char* const*)> reports = {
-      {"status", clogsweep_status}, {"verify", clogsweep_verify}, {"replay", clogsweep_replay}};
+      {"status", clogsweep_status}, {"verify", clogsweep_verify}, {"replay", clogsweep_replay}, {"salvage", clogsweep_salvage}};
   if (const auto report = argc > 1 ? reports.find(argv[1]) : reports.end(); report != reports.end())
     return cli::run_program(std::string(program) + ' ' + argv[1], [&] { return report->second(argc, argv); });
   cli::catch_stop_signals();  // one that comes before the sweep begins stops it then

@@ -79,7 +79,8 @@ SweepLedger::SweepLedger(std::string path, const sweep::Plan& plan, const sweep:
   std::unordered_map<std::string, Entry> known;
   std::unordered_set<std::string> with_results;
   if (std::filesystem::exists(path_)) {
-    store::SweepFile file = store::read_sweep(path_);
+    const store::SweepFile file = store::read_sweep(path_);
+    caution_ = store::caution(path_, file);
     take_over(file, settings);
     for (const sweep::RunRow& row : file.rows) {
       known[sweep::identity(row)] = {row, {}};
@@ -117,8 +118,6 @@ void SweepLedger::take_over(const store::SweepFile& file, const sweep::Settings&
     throw Error("cannot continue with " + path_ + " (it holds runs with other settings: " + differing + ")" +
                 remedy);
   store::Provenance all = file.provenance;
-  for (const char* name : {"kind", "format_version"})
-    std::erase_if(all, [&](const auto& attribute) { return attribute.first == name; });
   for (const char* name : {"config", "stopping_rule", "num_wanted"}) {
     std::erase_if(all, [&](const auto& attribute) { return attribute.first == name; });
     if (const std::string text = attribute(provenance_, name); !text.empty()) all.emplace_back(name, text);

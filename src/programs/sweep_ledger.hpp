@@ -40,6 +40,9 @@ class SweepLedger {
   /// Records of the journal that were damaged: their runs are a few seconds behind, or begin anew.
   std::int64_t num_unreadable() const { return journal_.num_unreadable(); }
 
+  /// What could not be checked of the file that it goes on with; empty if all was.
+  const std::string& caution() const { return caution_; }
+
   parallel::Start start(std::int64_t task, int rank);
   void report(const parallel::Report& report);
   /// Of a run that has begun.
@@ -71,6 +74,7 @@ class SweepLedger {
     sweep::FixedText<16> instruction_set;  // of the snapshot that it goes on from; empty if it begins anew
   };
   std::unordered_map<std::int64_t, Past> past_;
+  std::string caution_;
   bool is_published_ = false;
   Clock::time_point last_publication_;
   Clock::duration publication_time_{0};

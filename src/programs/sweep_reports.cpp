@@ -24,6 +24,7 @@
 #include "clog/sweep/run_job.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "group_table.hpp"
+#include "sweep_input.hpp"
 #include "time_left.hpp"
 
 namespace clog {
@@ -69,8 +70,7 @@ struct Status {
   std::int64_t num_over() const { return count("clogged") + count("flowing") + count("failed"); }
 };
 
-Status status_of(const std::string& path, double confidence) {
-  const store::SweepFile file = store::read_sweep(path);
+Status status_of(const std::string& path, const store::SweepFile& file, double confidence) {
   Status status;
   const std::int64_t planned = plan_of(file).size();
   status.num_runs = planned;
@@ -224,11 +224,12 @@ would give too short ones, since runs that clog early finish first.
   if (confidence >= 1)
     throw Error("invalid --confidence=" + line.get("confidence") + " (must lie between 0 and 1)");
   cli::catch_stop_signals();
-  while (true) {
-    const Status status = status_of(line.get("file"), confidence);
+  const std::string path = line.get("file");
+  for (bool is_first = true;; is_first = false) {
+    const Status status =
+        status_of(path, is_first ? read_with_caution(path) : store::read_sweep(path), confidence);
     if (line.has("watch") && format == "text") std::cout << "\x1b[H\x1b[2J";  // clear the screen
-    std::cout << (format == "json" ? to_json(status, confidence)
-                                   : to_text(line.get("file"), status, confidence))
+    std::cout << (format == "json" ? to_json(status, confidence) : to_text(path, status, confidence))
               << std::flush;
     if (!line.has("watch") || !status.is_alive) return cli::exit_success;
     for (int i = 0; i < 20; ++i) {
@@ -246,14 +247,15 @@ int clogsweep_verify(int argc, const char* const* argv) {
 
 The same for the journal beside it, which is there while the sweep is not complete.
 
-Exit code 0: every row can be read and makes sense, none is there twice, no record of the journal is damaged. 1: this
-is not so. 2: the file or its journal cannot be read.
+Exit code 0: every bit is as it was written, every row makes sense, none is there twice, no record of the journal is
+damaged. 1: this is not so; `clogsweep salvage` keeps what is whole. 2: the file or its journal cannot be read.
 )");
   if (!parse(line, argc, argv)) return cli::exit_success;
-  const store::SweepFile file = store::read_sweep(line.get("file"));
-  const std::int64_t planned = plan_of(file).size();
+  const store::Examination found = store::examine_sweep(line.get("file"));
+  const store::SweepFile& file = found.whole;
+  for (const std::string& damage : found.damage) std::cout << damage << '\n';
+  auto num_faults = static_cast<std::int64_t>(found.damage.size());
   std::unordered_map<std::string, std::int64_t> seen;
-  std::int64_t num_faults = 0;
   for (const RunRow& row : file.rows) {
     std::string fault = fault_of(row);
     const auto [first, is_new] = seen.emplace(sweep::identity(row), row.task);
@@ -262,8 +264,12 @@ is not so. 2: the file or its journal cannot be read.
     ++num_faults;
     std::cout << "task " << row.task << ": " << fault << '\n';
   }
-  std::cout << line.get("file") << ": " << file.rows.size() << " rows of " << planned << " runs, "
-            << (num_faults == 0 ? "all whole" : std::to_string(num_faults) + " faulty") << '\n';
+  std::cout << line.get("file") << ": " << file.rows.size() << " whole rows";
+  if (num_faults == 0) std::cout << " of " << plan_of(file).size() << " runs, all in order";
+  if (num_faults > 0) std::cout << ", " << num_faults << (num_faults == 1 ? " fault" : " faults");
+  std::cout << '\n';
+  if (const std::string words = store::caution(line.get("file"), file); !words.empty())
+    std::cout << words << '\n';
   const std::string journal = store::journal_path(line.get("file"));
   if (const auto contents = store::Journal::look(journal)) {
     std::cout << journal << ": " << to_text(*contents, store::Journal::is_open(journal)) << '\n';
@@ -285,7 +291,7 @@ that went on under another set than it began with cannot be repeated.
   line.add_positional("task", 1);
   if (!parse(line, argc, argv)) return cli::exit_success;
   if (!line.has("task")) throw Error("missing task; try clogsweep replay " + line.get("file") + " 0");
-  const store::SweepFile file = store::read_sweep(line.get("file"));
+  const store::SweepFile file = read_with_caution(line.get("file"));
   const RunRow& row = row_of_task(file, line.get("task"));
   if (row.status.view() == "running" || row.status.view() == "interrupted")
     throw Error("task " + line.get("task") + " is not over; let the sweep go on first");

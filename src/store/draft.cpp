@@ -15,44 +15,11 @@
 
 #include "clog/core/error.hpp"
 #include "clog/store/run_table.hpp"
+#include "file_io.hpp"
 
 namespace clog::store {
 
 namespace fs = std::filesystem;
-
-void check(bool succeeded, const std::string& what, const std::string& path) {
-  if (succeeded) return;
-  const std::string reason = errno != 0 ? std::string(" (") + std::strerror(errno) + ")" : "";
-  throw Error("cannot " + what + " " + path + reason + "; check the disk and the permissions");
-}
-
-std::string follow_links(const std::string& path) {
-  constexpr int longest_chain = 40;  // as in the kernel
-  fs::path target = path;
-  std::error_code none;
-  for (int links = 0; fs::is_symlink(target, none); ++links) {
-    errno = ELOOP;
-    check(links < longest_chain, "follow the link", path);
-    target = target.parent_path() / fs::read_symlink(target, none);
-  }
-  return target.string();
-}
-
-bool is_at(int descriptor, const std::string& path) {
-  struct stat ours {
-  }, there{};
-  return fstat(descriptor, &ours) == 0 && stat(path.c_str(), &there) == 0 && ours.st_ino == there.st_ino &&
-         ours.st_dev == there.st_dev;
-}
-
-bool sync_folder_of(const std::string& path) {
-  const fs::path folder = fs::path(path).parent_path();
-  const int descriptor = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return errno == EACCES;                     // one that may be written to but not read
-  const bool synced = fsync(descriptor) == 0 || errno == EINVAL;  // some file systems cannot
-  close(descriptor);
-  return synced;
-}
 
 namespace {
 
@@ -100,6 +67,11 @@ Draft::Draft(const std::string& path, std::string_view mark) : path_(follow_link
 Draft::~Draft() {
   if (!name_.empty()) unlink(name_.c_str());
   if (descriptor_ >= 0) close(descriptor_);
+}
+
+void Draft::write(std::span<const std::byte> bytes) {
+  write_at(descriptor_, bytes, size_, path_);
+  size_ += bytes.size();
 }
 
 void Draft::unlock() { flock(descriptor_, LOCK_UN); }

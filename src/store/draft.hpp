@@ -1,30 +1,22 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
 /// Files that come to be as a whole: made under a name of their own, brought to the disk, then renamed.
 namespace clog::store {
 
-/// @throws Error naming the file, and the system's reason if there is one
-void check(bool succeeded, const std::string& what, const std::string& path);
-
-/// Where a symbolic link leads in the end, whether there is a file or not; other paths come back as they are.
-std::string follow_links(const std::string& path);
-
-/// Is this still the file that the path leads to? Somebody may have replaced or removed it meanwhile.
-bool is_at(int descriptor, const std::string& path);
-
-/// Brings to the disk what a file in this folder is called. Returns whether that succeeded.
-bool sync_folder_of(const std::string& path);
-
 /// Removes the drafts of this path that killed processes left behind.
 /// @param mark  with which the content of every draft of this kind begins
 void remove_stale_drafts(const std::string& path, std::string_view mark);
 
 /// A file that is not yet complete, beside the path that it is for (links followed), under a name that nobody
-/// has. It is locked as long as it is open, or until unlock(); one that is not, and begins as ours do, was left behind by a
-/// process that was killed, and is removed by the next that makes one. Other files of such a name stay.
+/// has. It is locked as long as it is open, or until unlock(); one that is not, and begins as ours do, was
+/// left behind by a process that was killed, and is removed by the next that makes one. Other files of such a
+/// name stay.
 class Draft {
  public:
   /// @param mark  see remove_stale_drafts(); to be written first
@@ -36,6 +28,9 @@ class Draft {
 
   const std::string& name() const { return name_; }
   int descriptor() const { return descriptor_; }
+
+  /// Appends to what it holds. @throws Error
+  void write(std::span<const std::byte> bytes);
 
   /// To be called before it is published, if others are to read it from then on: HDF5 locks the files that it
   /// reads, and fails where somebody else has.
@@ -51,6 +46,7 @@ class Draft {
   std::string path_;
   std::string name_;  ///< empty once it is published
   int descriptor_ = -1;
+  std::uint64_t size_ = 0;
 };
 
 }  // namespace clog::store

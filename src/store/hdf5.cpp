@@ -1,25 +1,33 @@
 #include "hdf5.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <span>
 #include <string_view>
 #include <vector>
 
 #include "clog/core/error.hpp"
 #include "clog/store/run_table.hpp"
 #include "draft.hpp"
+#include "file_io.hpp"
+#include "seal.hpp"
 
 namespace clog::store {
 
 void prepare_library() {
-  // The library's own clean-up at exit crashes after a write that failed; what we open, we close.
-  H5dont_atexit();
-  setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  static const bool is_prepared = [] {
+    H5dont_atexit();  // before anything else: asking for the version begins it, too
+    setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);
+    return true;
+  }();
+  if (is_prepared) H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // of this thread
 }
 
 namespace {
@@ -40,18 +48,32 @@ void refuse_unwritable(const std::string& path) {
 
 namespace {
 
-/// Makes a file in the earliest format in place of the draft, and has it filled.
-void write_draft(const Draft& draft, const std::string& path, const std::function<void(hid_t file)>& fill) {
+/// The bytes of a file of the earliest format. It is filled in memory, so that the library never meets a disk
+/// that is full, which it does not always survive.
+std::vector<std::byte> file_image(const std::string& path, const std::function<void(hid_t file)>& fill) {
   prepare_library();
+  constexpr std::size_t growth = std::size_t{1} << 20;
   const PropertyList access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18);
+  H5Pset_fapl_core(access, growth, false);
   errno = 0;
-  const File file(H5Fcreate(draft.name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access));
+  const File file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access));
   check(file.valid(), "create", path);
-  check(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "write", path);  // the mark comes first
   fill(file);
-  errno = 0;
   check(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "write", path);
+  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
+  check(size > 0, "write", path);
+  std::vector<std::byte> image(static_cast<std::size_t>(size));
+  check(H5Fget_file_image(file, image.data(), image.size()) == size, "write", path);
+  return image;
+}
+
+void write_draft(Draft& draft, const std::string& path, const std::function<void(hid_t file)>& fill) {
+  const std::vector<std::byte> image = file_image(path, fill);
+  const std::string seal = seal_of(image);
+  draft.write(image);
+  draft.write(std::as_bytes(std::span(seal)));
+  draft.unlock();
 }
 
 }  // namespace
@@ -60,26 +82,50 @@ void create_whole(const std::string& path, const std::function<void(hid_t file)>
   refuse_existing(path);
   Draft draft(path, hdf5_mark);
   write_draft(draft, path, fill);
-  draft.unlock();
   draft.publish_new();
 }
 
 void replace_whole(const std::string& path, const std::function<void(hid_t file)>& fill) {
   Draft draft(path, hdf5_mark);
   write_draft(draft, path, fill);
-  draft.unlock();
   draft.publish();
 }
 
-File open_file(const std::string& path, unsigned flags) {
+std::vector<std::byte> read_file(const std::string& path) {
+  // Opening something else than a file, a pipe for instance, could wait for ever.
+  const int descriptor = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0 && errno == ENOENT)
+    throw Error("cannot read " + path + " (no such file); check the name");
+  if (descriptor < 0) throw Error("cannot read " + path + " (" + std::strerror(errno) + ")");
+  try {
+    struct stat status {};
+    check(fstat(descriptor, &status) == 0, "read", path);
+    if (!S_ISREG(status.st_mode))
+      throw Error("cannot read " + path + " (not a regular file); give a file written by clogsweep");
+    std::vector<std::byte> bytes(static_cast<std::size_t>(status.st_size));
+    read_at(descriptor, bytes, 0, path);
+    close(descriptor);
+    return bytes;
+  } catch (...) {
+    close(descriptor);
+    throw;
+  }
+}
+
+File open_image(std::vector<std::byte>& image, const std::string& path) {
   prepare_library();
-  if (!std::filesystem::exists(path)) throw Error("cannot read " + path + " (no such file); check the name");
-  if (access(path.c_str(), R_OK) != 0) throw Error("cannot read " + path + " (" + std::strerror(errno) + ")");
-  if (H5Fis_hdf5(path.c_str()) <= 0)
+  if (std::memcmp(image.data(), hdf5_mark.data(), std::min(image.size(), hdf5_mark.size())) != 0 ||
+      image.size() < hdf5_mark.size())
     throw Error("cannot read " + path + " (not an HDF5 file); give a file written by clogsweep");
-  errno = 0;
-  File file(H5Fopen(path.c_str(), flags, H5P_DEFAULT));
-  check(file.valid(), "open", path);
+  const PropertyList access(H5Pcreate(H5P_FILE_ACCESS));
+  H5Pset_fapl_core(access, image.size(), false);
+  H5Pset_file_image(access, image.data(), image.size());
+  constexpr const char* no_file = "/dev/null/image";  // the library wants a name that nothing has
+  File file(H5Fopen(no_file, H5F_ACC_RDONLY, access));
+  if (!file.valid())
+    throw Error("cannot read " + path +
+                " (damaged: it is cut off, or its beginning is not as it was written); take a copy, or "
+                "begin anew");
   return file;
 }
 
@@ -99,10 +145,16 @@ void write_attribute(hid_t object, const std::string& name, const std::string& t
 }
 
 std::string read_attribute(hid_t object, const std::string& name) {
+  constexpr std::size_t longest = 65536;  // an object's header holds no more
   if (H5Aexists(object, name.c_str()) <= 0) return {};
   const Attribute attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT));
+  if (!attribute.valid()) return {};
   const Type type(H5Aget_type(attribute));
-  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0) return {};
+  const Space space(H5Aget_space(attribute));
+  const bool is_text = type.valid() && H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 &&
+                       H5Tget_size(type) <= longest && space.valid() &&
+                       H5Sget_simple_extent_npoints(space) == 1;
+  if (!is_text) return {};
   std::vector<char> text(H5Tget_size(type));
   if (H5Aread(attribute, type, text.data()) < 0) return {};
   return {text.data(), strnlen(text.data(), text.size())};

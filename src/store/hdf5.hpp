@@ -2,9 +2,11 @@
 
 #include <hdf5.h>
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <utility>
+#include <vector>
 
 /// Thin ownership of HDF5 identifiers; only src/store includes this.
 namespace clog::store {
@@ -36,22 +38,27 @@ using Type = Handle<H5Tclose>;
 using Attribute = Handle<H5Aclose>;
 using PropertyList = Handle<H5Pclose>;
 
-/// Must come before the first use of the library: no error stack on the screen (we print one line of our
-/// own), and no file locks (a reader that has the file open must not make a row fail to be written; the
-/// library's locks also fail on many cluster file systems).
+/// Must come before the first use of the library: no clean-up of its own at exit, which crashes after a write
+/// that failed; no error stack on the screen (we print one line of our own); and no file locks (a reader that
+/// has the file open must not make a row fail to be written; they also fail on many cluster file systems).
 void prepare_library();
 
-/// Creates a file in the earliest format as a draft, has it filled and publishes it: the path never holds
-/// half a file. @throws Error if the path exists or cannot be written
+/// Has a file of the earliest format filled in memory, writes it as a draft with a seal at its end and
+/// publishes it: the path never holds half a file. @throws Error if the path exists or cannot be written
 void create_whole(const std::string& path, const std::function<void(hid_t file)>& fill);
 /// The same, replacing a file that is there. One process at a time.
 void replace_whole(const std::string& path, const std::function<void(hid_t file)>& fill);
-/// @throws Error that says what is wrong with the path
-File open_file(const std::string& path, unsigned flags);
+
+/// All that a regular file holds. @throws Error that says what is wrong with the path
+std::vector<std::byte> read_file(const std::string& path);
+/// Opens the bytes of a file for reading, so that what was checked is what is read. They are copied.
+/// @throws Error naming the path if they are no HDF5 file
+File open_image(std::vector<std::byte>& image, const std::string& path);
+
 /// Fixed-length, zero-padded text; the length is at least 1.
 Type text_type(std::size_t length);
 void write_attribute(hid_t object, const std::string& name, const std::string& text);
-/// Empty if there is none.
+/// Text of the file's size at most; empty if there is none.
 std::string read_attribute(hid_t object, const std::string& name);
 
 }  // namespace clog::store

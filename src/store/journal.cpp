@@ -6,14 +6,15 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <boost/crc.hpp>
 #include <cerrno>
 #include <cstring>
 #include <string_view>
 #include <utility>
 
+#include "check_sum.hpp"
 #include "clog/core/error.hpp"
 #include "draft.hpp"
+#include "file_io.hpp"
 
 namespace clog::store {
 namespace {
@@ -32,38 +33,14 @@ struct RecordHeader {
 constexpr std::string_view journal_mark = "clogsweep jrnl";  // of every version
 constexpr std::uint32_t record_magic = 0x636c6f67;
 
-std::uint32_t check_sum(std::span<const std::byte> payload) {
-  boost::crc_32_type crc;
-  crc.process_bytes(payload.data(), payload.size());
-  return crc.checksum();
-}
-
 template <class T>
 std::span<const std::byte> bytes_of(const T& value) {
   return std::as_bytes(std::span(&value, 1));
 }
 
-/// Whole or not at all.
-void write_all(int descriptor, std::span<const std::byte> bytes, std::uint64_t place,
-               const std::string& path) {
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t written =
-        pwrite(descriptor, bytes.data() + done, bytes.size() - done, static_cast<off_t>(place + done));
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) {
-      const int reason = written < 0 ? errno : ENOSPC;
-      const bool is_cut = ftruncate(descriptor, static_cast<off_t>(place)) == 0;
-      errno = is_cut ? reason : errno;
-      check(false, "write", path);
-    }
-    done += static_cast<std::size_t>(written);
-  }
-}
-
 void write_header(int descriptor, const std::string& path) {
   const FileHeader header;
-  write_all(descriptor, bytes_of(header), 0, path);
+  write_at(descriptor, bytes_of(header), 0, path);
 }
 
 /// Writes a record at a place of the file; returns where the next one goes.
@@ -75,7 +52,7 @@ std::uint64_t write_record(int descriptor, const sweep::RunRow& row, std::span<c
   std::ranges::copy(snapshot, payload + sizeof row);
   const RecordHeader header{sizeof row + snapshot.size(), check_sum({payload, record.end()}), record_magic};
   std::ranges::copy(bytes_of(header), record.begin());
-  write_all(descriptor, record, place, path);
+  write_at(descriptor, record, place, path);
   return place + record.size();
 }
 

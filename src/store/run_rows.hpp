@@ -5,11 +5,14 @@
 #include <span>
 #include <string>
 
+#include "clog/store/run_table.hpp"
 #include "clog/sweep/run_row.hpp"
 
 namespace clog::store {
 
-/// Makes the dataset /runs with these rows in an open file. @throws Error naming the path that it is to have
-void write_rows(hid_t file, std::span<const sweep::RunRow> rows, const std::string& path);
+/// Makes the dataset /runs with these rows in an open file, and the root attributes: kind, format version,
+/// provenance, and the checksums of all of them. @throws Error naming the path that it is to have
+void write_runs(hid_t file, const std::string& kind, std::span<const sweep::RunRow> rows,
+                const Provenance& provenance, const std::string& path);
 
 }  // namespace clog::store

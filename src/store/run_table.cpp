@@ -2,230 +2,346 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
+#include <charconv>
+#include <cinttypes>
 #include <cstddef>
-#include <cstring>
+#include <cstdint>
+#include <cstdio>
+#include <optional>
 #include <span>
+#include <sstream>
 #include <string_view>
-#include <type_traits>
 
+#include "check_sum.hpp"
 #include "clog/core/error.hpp"
-#include "draft.hpp"
+#include "file_io.hpp"
 #include "hdf5.hpp"
+#include "rehearsal.hpp"
+#include "row_layout.hpp"
 #include "run_rows.hpp"
+#include "seal.hpp"
 
 namespace clog::store {
 namespace {
 
-using sweep::FixedText;
 using sweep::RunRow;
 
 constexpr const char* table_name = "runs";
+constexpr const char* sums_name = "row_checksums";
 constexpr const char* file_kind = "clogsweep sweep";
 constexpr hsize_t rows_per_chunk = 64;
+constexpr std::size_t rows_per_block = 1024;  // that are copied at once
 
-template <class T>
-struct IsFixedText : std::false_type {};
-template <std::size_t N>
-struct IsFixedText<FixedText<N>> : std::true_type {};
+using CheckSums = std::vector<std::uint32_t>;  // of the rows
 
-template <class T>
-Type hdf5_type() {
-  if constexpr (std::is_same_v<T, double>)
-    return Type(H5Tcopy(H5T_NATIVE_DOUBLE));
-  else if constexpr (std::is_same_v<T, std::int64_t>)
-    return Type(H5Tcopy(H5T_NATIVE_INT64));
-  else {
-    static_assert(IsFixedText<T>::value);
-    return text_type(sizeof(T));
-  }
+std::uint32_t joint_check_sum(const CheckSums& sums) { return check_sum(std::as_bytes(std::span(sums))); }
+
+/// Calls with the number of the first row of each block and how many rows it has.
+template <class Visit>
+void for_each_block(std::size_t num_rows, Visit visit) {
+  for (std::size_t first = 0; first < num_rows; first += rows_per_block)
+    visit(first, std::min(rows_per_block, num_rows - first));
 }
 
-/// One column: how it is called in the file, what it means, where it is in a row.
-struct Column {
-  const char* name;
-  const char* meaning;
-  std::size_t offset;
-  Type type;
-};
-
-std::vector<Column> columns() {
-  std::vector<Column> all;
-#define CLOG_COLUMN(field, meaning) \
-  all.push_back({#field, meaning, offsetof(RunRow, field), hdf5_type<decltype(RunRow::field)>()})
-  CLOG_COLUMN(task, "number of the task in its sweep");
-  CLOG_COLUMN(model, "dp: deformable polygon, sp: soft disk");
-  CLOG_COLUMN(line_tension, "Gamma [g rho sigma^2]; NaN for sp");
-  CLOG_COLUMN(wall_stiffness, "E_w [g rho sigma^3]");
-  CLOG_COLUMN(obstacle_gap, "w_ob, smallest distance between obstacle surfaces [sigma]");
-  CLOG_COLUMN(obstacle_diameter, "sigma_ob [sigma]");
-  CLOG_COLUMN(obstacle_diameter_spread, "diameters arrive uniform in sigma_ob (1 -+ spread)");
-  CLOG_COLUMN(
-      obstacle_density,
-      "obstacles per sigma^2; for a saturated array the jamming limit 0.6966/(w_ob+sigma_ob)^2, NaN for "
-      "a saturated mixture");
-  CLOG_COLUMN(obstacle_filling, "saturated, or filled to a given density; lattice; file");
-  CLOG_COLUMN(lattice_angle, "of the lattice's rows from +x to +y [degrees]; NaN unless a lattice");
-  CLOG_COLUMN(box, "period of the obstacle array [sigma]");
-  CLOG_COLUMN(seed, "seed of obstacle array and release");
-  CLOG_COLUMN(vertices, "N_v of the polygon; 1 for sp");
-  CLOG_COLUMN(time_step, "[t0]");
-  CLOG_COLUMN(max_time, "time at which a run that did not clog ends [t0]");
-  CLOG_COLUMN(terminal_speed, "V_t [sqrt(sigma g)]");
-  CLOG_COLUMN(near_wall_drag, "b_0/b_inf");
-  CLOG_COLUMN(near_wall_exponent, "alpha of the near-wall drag; NaN for sp");
-  CLOG_COLUMN(near_wall_cutoff, "distances of the near-wall drag count as no less [sigma]; NaN for sp");
-  CLOG_COLUMN(relative_drag, "c, drag of motion relative to the centre of mass over b_inf");
-  CLOG_COLUMN(area_stiffness, "K_a [g rho/sigma]; NaN for sp");
-  CLOG_COLUMN(preset, "name of the set of interface keys that was used, or custom");
-  CLOG_COLUMN(perimeter_spring,
-              "springs pull edges to their rest length, to the mean length, or along the interface only");
-  CLOG_COLUMN(perimeter_stiffness, "K_l [g rho sigma]; NaN for sp");
-  CLOG_COLUMN(wall_contact, "a wall pushes edges or vertices");
-  CLOG_COLUMN(contact_range, "distance from a wall at which contact begins [sigma]; NaN for sp");
-  CLOG_COLUMN(wall_tension, "tension at walls over Gamma, -cos of the contact angle; NaN for sp");
-  CLOG_COLUMN(self_contact, "does the interface repel itself");
-  CLOG_COLUMN(self_contact_range, "distance below which the interface repels itself [sigma]; NaN for sp");
-  CLOG_COLUMN(gravity, "the weight acts on the vertices or on the area");
-  CLOG_COLUMN(clog_energy, "clogged when E_k/E_t stays below this");
-  CLOG_COLUMN(clog_detection,
-              "certified: also by a proved equilibrium at hand; threshold: by clog_energy only");
-  CLOG_COLUMN(model_version, "runs of different versions differ though their parameters agree");
-  CLOG_COLUMN(status,
-              "clogged; flowing: max_time reached; running, interrupted: so far; failed: see message");
-  CLOG_COLUMN(clogged_by, "certified (distance and shape_parameter are those at rest), threshold; none");
-  CLOG_COLUMN(distance, "displacement of the centre of mass along the flow since release [sigma]");
-  CLOG_COLUMN(lateral_displacement, "displacement across the flow [sigma]");
-  CLOG_COLUMN(time, "time since release [t0]");
-  CLOG_COLUMN(
-      mean_speed,
-      "way over time after the transient and before the arrest [sqrt(sigma g)]; NaN if it moved less than "
-      "half a diameter in that time, or the transient was not over in half the run");
-  CLOG_COLUMN(mean_speed_error,
-              "standard error of mean_speed from its course in this run; NaN for too short a run");
-  CLOG_COLUMN(transient, "time at which the transient ends [t0]");
-  CLOG_COLUMN(travel_time, "time that mean_speed is taken over [t0]");
-  CLOG_COLUMN(kinetic_energy_ratio, "E_k/E_t at the end; E_t: kinetic energy at terminal speed");
-  CLOG_COLUMN(shape_parameter, "A = perimeter^2/(4 pi area) at the end; 1 for a circle");
-  CLOG_COLUMN(mechanism,
-              "wrapped around obstacles, squeezed in gaps, hybrid; none unless clogged, empty: not known");
-  CLOG_COLUMN(
-      wrapped_support,
-      "part of the support against the flow that wrapped obstacles give; NaN unless a clogged polygon");
-  CLOG_COLUMN(num_wrapped, "touched obstacles that the clogged polygon hangs over; -1: not known");
-  CLOG_COLUMN(num_gaps, "gaps between supporting obstacles that it looks into; -1: not known");
-  CLOG_COLUMN(num_arcs, "arcs of contact; -1: not known");
-  CLOG_COLUMN(steps, "integrated steps");
-  CLOG_COLUMN(wall_seconds, "time spent on the run [s]");
-  CLOG_COLUMN(rank, "MPI rank that did the run");
-  CLOG_COLUMN(instruction_set,
-              "instruction set of the polygon's step, or none; mixed: it went on under another one");
-  CLOG_COLUMN(host, "host of that rank");
-  CLOG_COLUMN(attempt, "1 for the first try");
-  CLOG_COLUMN(message, "why the run failed");
-#undef CLOG_COLUMN
-  return all;
+/// Rows of the table that are to be read or written at once.
+Space select_rows(hid_t table, std::size_t first, std::size_t number) {
+  Space space(H5Dget_space(table));
+  const hsize_t start = first, count = number;
+  H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count, nullptr);
+  return space;
+}
+Space space_of(std::size_t number) {
+  const hsize_t count = number;
+  return Space(H5Screate_simple(1, &count, nullptr));
 }
 
-/// The compound type of a row in memory, with its gaps.
-Type memory_type(const std::vector<Column>& all) {
-  Type type(H5Tcreate(H5T_COMPOUND, sizeof(RunRow)));
-  for (const Column& column : all) H5Tinsert(type, column.name, column.offset, column.type);
-  return type;
+/// A dataset that may be longer one day, for readers who append. They notice damage by its own checksum, too.
+Dataset make_dataset(hid_t file, const char* name, hid_t type, std::size_t num_rows) {
+  const hsize_t size = num_rows;
+  const hsize_t unlimited = H5S_UNLIMITED;
+  const Space space(H5Screate_simple(1, &size, &unlimited));
+  const PropertyList properties(H5Pcreate(H5P_DATASET_CREATE));
+  H5Pset_chunk(properties, 1, &rows_per_chunk);
+  H5Pset_fletcher32(properties);
+  return Dataset(H5Dcreate2(file, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT));
 }
 
-Type disk_type(const std::vector<Column>& all) {
-  Type type(H5Tcopy(memory_type(all)));
-  H5Tpack(type);
-  return type;
+CheckSums write_table(hid_t file, std::span<const RunRow> rows, const std::string& path) {
+  const RowLayout layout = RowLayout::present();
+  const Dataset table = make_dataset(file, table_name, layout.type(), rows.size());
+  check(table.valid(), "create the table of runs in", path);
+  layout.describe(table);
+  CheckSums sums;
+  std::vector<std::byte> packed(std::min(rows_per_block, rows.size()) * layout.size());
+  for_each_block(rows.size(), [&](std::size_t first, std::size_t number) {
+    for (std::size_t i = 0; i < number; ++i) {
+      const std::span row(packed.data() + i * layout.size(), layout.size());
+      layout.pack(rows[first + i], row.data());
+      sums.push_back(check_sum(row));
+    }
+    check(H5Dwrite(table, layout.type(), space_of(number), select_rows(table, first, number), H5P_DEFAULT,
+                   packed.data()) >= 0,
+          "write", path);
+  });
+  return sums;
 }
+
+void write_check_sums(hid_t file, const CheckSums& sums, const std::string& path) {
+  const Dataset dataset = make_dataset(file, sums_name, H5T_NATIVE_UINT32, sums.size());
+  check(dataset.valid(), "create the rows' checksums in", path);
+  write_attribute(dataset, "meaning", "CRC-32, as of zlib, of the bytes of each row of /runs");
+  if (!sums.empty())
+    check(H5Dwrite(dataset, H5T_NATIVE_UINT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, sums.data()) >= 0, "write",
+          path);
+}
+
+/// The attribute that has a line for every other one, and for the table: checksum and name.
+constexpr const char* list_name = "checksums";
+
+std::string line_of(std::uint32_t sum, const std::string& name) {
+  char digits[16];
+  std::snprintf(digits, sizeof digits, "%08" PRIx32 " ", sum);
+  return digits + name + '\n';
+}
+
+std::string name_of_rows(std::size_t num_rows) { return std::to_string(num_rows) + " rows"; }
 
 }  // namespace
 
-void write_rows(hid_t file, std::span<const RunRow> rows, const std::string& path) {
-  const std::vector<Column> all = columns();
-  const hsize_t size = rows.size();
-  const hsize_t unlimited = H5S_UNLIMITED;
-  const Space space(H5Screate_simple(1, &size, &unlimited));
-  const PropertyList layout(H5Pcreate(H5P_DATASET_CREATE));
-  H5Pset_chunk(layout, 1, &rows_per_chunk);
-  const Dataset table(H5Dcreate2(file, table_name, disk_type(all), space, H5P_DEFAULT, layout, H5P_DEFAULT));
-  check(table.valid(), "create the table of runs in", path);
-  for (const Column& column : all) write_attribute(table, column.name, column.meaning);
-  if (!rows.empty())
-    check(H5Dwrite(table, memory_type(all), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) >= 0, "write", path);
-  check(H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0, "write", path);
+void write_runs(hid_t file, const std::string& kind, std::span<const RunRow> rows,
+                const Provenance& provenance, const std::string& path) {
+  const CheckSums sums = write_table(file, rows, path);
+  write_check_sums(file, sums, path);
+  std::string lines = line_of(joint_check_sum(sums), name_of_rows(rows.size()));
+  const auto write = [&](const std::string& name, const std::string& text) {
+    write_attribute(file, name, text);
+    lines += line_of(check_sum(text), name);
+  };
+  write("kind", kind);
+  write("format_version", format_version);
+  for (const auto& [name, text] : provenance) write(name, text);
+  write_attribute(file, list_name, lines);
 }
 
 std::string library_version() {
+  prepare_library();
   unsigned major = 0, minor = 0, release = 0;
   H5get_libversion(&major, &minor, &release);
   return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(release);
 }
 
 void publish_sweep(const std::string& path, std::span<const RunRow> rows, const Provenance& provenance) {
-  replace_whole(path, [&](hid_t file) {
-    write_rows(file, rows, path);
-    write_attribute(file, "kind", file_kind);
-    write_attribute(file, "format_version", format_version);
-    for (const auto& [name, text] : provenance) write_attribute(file, name, text);
-  });
+  replace_whole(path, [&](hid_t file) { write_runs(file, file_kind, rows, provenance, path); });
 }
 
 namespace {
 
 /// Columns were added in 3, those of the clog's mechanism and of the speed's error, and in 4, the ranges of
-/// contact and the near-wall drag's cutoff.
-constexpr std::array<std::string_view, 3> readable_versions = {"2", "3", format_version};
+/// contact and the near-wall drag's cutoff; checksums in 5.
+constexpr std::array<std::string_view, 4> readable_versions = {"2", "3", "4", format_version};
 
-bool is_readable(std::string_view version) {
-  return std::find(readable_versions.begin(), readable_versions.end(), version) != readable_versions.end();
-}
-
-/// Columns that the table does not have keep the values of a new row.
-void read_columns(hid_t table, std::vector<RunRow>& rows, const std::string& path) {
-  if (rows.empty()) return;
-  const Type stored(H5Dget_type(table));
-  std::vector<Column> known, missing;
-  for (Column& column : columns())
-    (H5Tget_member_index(stored, column.name) >= 0 ? known : missing).push_back(std::move(column));
-  check(H5Dread(table, memory_type(known), H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) >= 0,
-        "read the table of", path);
-  const RunRow unknown;
-  for (RunRow& row : rows)
-    for (const Column& column : missing)
-      std::memcpy(reinterpret_cast<char*>(&row) + column.offset,
-                  reinterpret_cast<const char*>(&unknown) + column.offset, H5Tget_size(column.type));
-}
-
-}  // namespace
-
-SweepFile read_sweep(const std::string& path) {
-  const File file = open_file(path, H5F_ACC_RDONLY);
+/// Of an open file that is one of our sweeps. @throws Error if it is not
+std::string version_of(hid_t file, const std::string& path) {
   if (read_attribute(file, "kind") != file_kind || H5Lexists(file, table_name, H5P_DEFAULT) <= 0)
     throw Error("cannot read " + path +
                 " (an HDF5 file, but not one of clogsweep's tables of runs); give a file written "
                 "by clogsweep --output");
-  if (const std::string version = read_attribute(file, "format_version"); !is_readable(version))
+  std::string version = read_attribute(file, "format_version");
+  if (std::ranges::find(readable_versions, version) == readable_versions.end())
     throw Error("cannot read " + path + " (format version " + version + ", this program reads " +
                 std::string(readable_versions.front()) + " to " + format_version +
                 "); use the program that wrote it");
+  return version;
+}
 
-  const Dataset table(H5Dopen2(file, table_name, H5P_DEFAULT));
-  check(table.valid(), "read the table of", path);
-  const Space space(H5Dget_space(table));
-  SweepFile sweep;
-  sweep.rows.resize(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
-  read_columns(table, sweep.rows, path);
+[[noreturn]] void refuse_table(const std::string& path, const std::string& what) {
+  throw Error("cannot read " + path + " (damaged: " + what + "); take a copy, or begin anew");
+}
+
+/// How long a dataset is; a size that cannot be is not believed.
+std::size_t size_of(hid_t dataset, std::size_t bytes_each, const std::string& path) {
+  const Space space(H5Dget_space(dataset));
+  hsize_t size = 0;
+  if (H5Sget_simple_extent_ndims(space) != 1 || H5Sget_simple_extent_dims(space, &size, nullptr) != 1)
+    refuse_table(path, "its table has another shape than it was given");
+  constexpr hsize_t most_compressed = 1100;  // h5repack's zlib does not exceed 1032
+  if (size / most_compressed > H5Dget_storage_size(dataset) / bytes_each)
+    refuse_table(path, "its table cannot hold " + std::to_string(size) + " rows");
+  return size;
+}
+
+/// Checksums of ours say which rows are damaged, so the library is to give all it has.
+PropertyList without_library_check() {
+  PropertyList properties(H5Pcreate(H5P_DATASET_XFER));
+  H5Pset_edc_check(properties, H5Z_DISABLE_EDC);
+  return properties;
+}
+
+/// Rows as they lie in the file.
+std::vector<std::byte> packed_rows(hid_t table, const RowLayout& layout, std::size_t num_rows,
+                                   const std::string& path) {
+  const PropertyList unchecked = without_library_check();
+  std::vector<std::byte> packed(num_rows * layout.size());
+  for_each_block(num_rows, [&](std::size_t first, std::size_t number) {
+    if (H5Dread(table, layout.type(), space_of(number), select_rows(table, first, number), unchecked,
+                packed.data() + first * layout.size()) < 0)
+      refuse_table(path, "rows from " + std::to_string(first) + " on cannot be read");
+  });
+  return packed;
+}
+
+/// Lines of the attribute with checksums, by name. A line that is none has no place in it.
+std::vector<std::pair<std::string, std::uint32_t>> check_sums_of(hid_t file) {
+  std::vector<std::pair<std::string, std::uint32_t>> all;
+  std::istringstream lines(read_attribute(file, list_name));
+  constexpr std::size_t num_digits = 8;
+  for (std::string line; std::getline(lines, line);) {
+    std::uint32_t sum = 0;
+    const char* end = line.data() + std::min(num_digits, line.size());
+    if (std::from_chars(line.data(), end, sum, 16).ptr == end && line.size() > num_digits + 1)
+      all.emplace_back(line.substr(num_digits + 1), sum);
+  }
+  return all;
+}
+
+/// Attributes of a file without checksums: every text.
+Provenance all_attributes(hid_t file, const std::string& path) {
+  Provenance all;
   H5O_info_t root;
   check(H5Oget_info2(file, &root, H5O_INFO_NUM_ATTRS) >= 0, "read the attributes of", path);
   for (hsize_t i = 0; i < root.num_attrs; ++i) {
     const Attribute attribute(
         H5Aopen_by_idx(file, ".", H5_INDEX_NAME, H5_ITER_INC, i, H5P_DEFAULT, H5P_DEFAULT));
     char name[256];
-    H5Aget_name(attribute, sizeof name, name);
-    sweep.provenance.emplace_back(name, read_attribute(file, name));
+    if (attribute.valid() && H5Aget_name(attribute, sizeof name, name) >= 0)
+      all.emplace_back(name, read_attribute(file, name));
   }
-  return sweep;
+  return all;
+}
+
+CheckSums read_check_sums(hid_t file, std::size_t num_rows, const std::string& path) {
+  const Dataset dataset(H5Lexists(file, sums_name, H5P_DEFAULT) > 0 ? H5Dopen2(file, sums_name, H5P_DEFAULT)
+                                                                    : hid_t{-1});
+  if (!dataset.valid()) refuse_table(path, "the rows' checksums are gone");
+  const Type type(H5Dget_type(dataset));
+  if (H5Tequal(type, H5T_NATIVE_UINT32) <= 0 || size_of(dataset, sizeof(std::uint32_t), path) != num_rows)
+    refuse_table(path, "the rows' checksums are not those of its " + std::to_string(num_rows) + " rows");
+  CheckSums sums(num_rows);
+  if (num_rows > 0 &&
+      H5Dread(dataset, H5T_NATIVE_UINT32, H5S_ALL, H5S_ALL, without_library_check(), sums.data()) < 0)
+    refuse_table(path, "the rows' checksums cannot be read");
+  return sums;
+}
+
+/// Rows of an open file, as they lie there.
+struct PackedTable {
+  RowLayout layout;
+  std::vector<std::byte> bytes;
+  std::size_t num_rows;
+
+  std::span<const std::byte> row(std::size_t i) const {
+    return std::span(bytes).subspan(i * layout.size(), layout.size());
+  }
+};
+PackedTable read_table(hid_t file, RowLayout::Columns expected, const std::string& path) {
+  const Dataset table(H5Dopen2(file, table_name, H5P_DEFAULT));
+  if (!table.valid()) refuse_table(path, "its table cannot be opened");
+  std::optional<RowLayout> layout = RowLayout::of(Type(H5Dget_type(table)), expected);
+  if (!layout) refuse_table(path, "its columns are not those that were written");
+  const std::size_t num_rows = size_of(table, layout->size(), path);
+  std::vector<std::byte> bytes = packed_rows(table, *layout, num_rows, path);
+  return {std::move(*layout), std::move(bytes), num_rows};
+}
+
+/// Rows that are as they were written go to the whole, the others to the damage.
+void compare_rows(const PackedTable& table, const CheckSums& sums, Examination& found) {
+  for (std::size_t i = 0; i < table.num_rows; ++i) {
+    const RunRow row = table.layout.unpack(table.row(i).data());
+    if (check_sum(table.row(i)) == sums[i])
+      found.whole.rows.push_back(row);
+    else
+      found.damage.push_back("row " + std::to_string(i) + " (task " + std::to_string(row.task) +
+                             ") is not as it was written");
+  }
+}
+
+/// The same for attributes, and for the rows' checksums as a whole.
+void compare_attributes(hid_t file, const CheckSums& sums, Examination& found) {
+  const std::pair rows_line(name_of_rows(sums.size()), joint_check_sum(sums));
+  bool has_rows_line = false;
+  for (const auto& line : check_sums_of(file)) {
+    const auto& [name, sum] = line;
+    has_rows_line = has_rows_line || line == rows_line;
+    if (line == rows_line) continue;
+    std::string text = read_attribute(file, name);
+    if (check_sum(text) == sum)
+      found.whole.provenance.emplace_back(name, std::move(text));
+    else
+      found.damage.push_back("its attribute " + name + " is not as it was written");
+  }
+  if (!has_rows_line)
+    found.damage.emplace_back("its table is not the one that was written: rows are missing, or exchanged");
+}
+
+Checked extent_of_check(bool has_sums, Seal seal) {
+  if (!has_sums) return Checked::nothing;
+  return seal == Seal::missing ? Checked::rows_and_settings : Checked::everything;
+}
+
+Examination examine(std::vector<std::byte>& image, Seal seal, const std::string& path) {
+  const File file = open_image(image, path);
+  const bool has_sums = version_of(file, path) == format_version;
+  const PackedTable table =
+      read_table(file, has_sums ? RowLayout::Columns::all : RowLayout::Columns::some, path);
+  Examination found;
+  found.whole.checked = extent_of_check(has_sums, seal);
+  if (has_sums) {
+    const CheckSums sums = read_check_sums(file, table.num_rows, path);
+    compare_rows(table, sums, found);
+    compare_attributes(file, sums, found);
+  } else {
+    for (std::size_t i = 0; i < table.num_rows; ++i)
+      found.whole.rows.push_back(table.layout.unpack(table.row(i).data()));
+    found.whole.provenance = all_attributes(file, path);
+  }
+  for (const char* ours : {"kind", "format_version"})
+    std::erase_if(found.whole.provenance, [&](const auto& attribute) { return attribute.first == ours; });
+  if (seal == Seal::broken && found.damage.empty())
+    found.damage.emplace_back(
+        "some bytes are not those that were written, though all rows and attributes are");
+  return found;
+}
+
+}  // namespace
+
+Examination examine_sweep(const std::string& path) {
+  std::vector<std::byte> image = read_file(path);
+  const Seal seal = look_at_seal(image);
+  if (seal != Seal::whole) rehearse(path, [&] { examine(image, seal, path); });
+  return examine(image, seal, path);
+}
+
+SweepFile read_sweep(const std::string& path) {
+  Examination found = examine_sweep(path);
+  if (found.damage.empty()) return std::move(found.whole);
+  const std::size_t num_others = found.damage.size() - 1;
+  throw Error("cannot trust " + path + " (damaged: " + found.damage.front() +
+              (num_others > 0 ? ", and " + std::to_string(num_others) + " more" : "") +
+              "); `clogsweep verify` names all, `clogsweep salvage` keeps what is whole");
+}
+
+std::string caution(const std::string& path, const SweepFile& file) {
+  switch (file.checked) {
+    case Checked::everything:
+      return "";
+    case Checked::rows_and_settings:
+      return path +
+             " was copied or changed by another program; its rows and settings are as clogsweep wrote them";
+    case Checked::nothing:
+      return path + " is of an older format without checksums: damage to it may go unnoticed";
+  }
+  return "";
 }
 
 }  // namespace clog::store

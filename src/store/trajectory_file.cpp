@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "draft.hpp"
+#include "file_io.hpp"
 #include "hdf5.hpp"
 #include "run_rows.hpp"
 
@@ -86,10 +86,7 @@ void write_trajectory(const std::string& path, const Trajectory& trajectory) {
     if (!trajectory.polygons.empty()) write_polygons(file, trajectory.polygons);
     if (!trajectory.obstacles.empty()) write_obstacles(file, trajectory.obstacles);
     if (!trajectory.wedges.empty()) write_wedges(file, trajectory.wedges);
-    write_rows(file, {&trajectory.row, 1}, path);
-    write_attribute(file, "kind", "clogsweep trajectory");
-    write_attribute(file, "format_version", format_version);
-    for (const auto& [name, text] : trajectory.provenance) write_attribute(file, name, text);
+    write_runs(file, "clogsweep trajectory", {&trajectory.row, 1}, trajectory.provenance, path);
   });
 }
 

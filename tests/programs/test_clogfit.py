@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 import pandas
 
+import stored_rows
 from support import BIN, SMALL, ProgramTest
 
 
@@ -60,11 +61,7 @@ class Fit(ProgramTest):
 
     def change(self, **columns):
         """Puts other results into the rows of the sweep file."""
-        with h5py.File(self.folder / "sweep.h5", "r+") as file:
-            rows = file["runs"][:]
-            for name, values in columns.items():
-                rows[name] = values
-            file["runs"][:] = rows
+        stored_rows.change_columns(self.folder / "sweep.h5", **columns)
 
     def fit(self, *arguments):
         return json.loads(self.succeed("clogfit", "sweep.h5", "--format", "json", *arguments).stdout)
@@ -126,20 +123,11 @@ class Fit(ProgramTest):
         self.assertGreater(group["clogging_length_wrapped_lower"], 0)
         self.assertNotIn("w/s/h", self.succeed("clogfit", "sweep.h5").stdout)
 
-    def without(self, columns, version):
-        """Makes the sweep's file one of an older format."""
-        with h5py.File(self.folder / "sweep.h5", "r+") as file:
-            table = file["runs"][:]
-            del file["runs"]
-            kept = [(name, table.dtype[name]) for name in table.dtype.names if name not in columns]
-            file["runs"] = table[[name for name, _ in kept]].astype(kept)
-            file.attrs["format_version"] = np.bytes_(version)
-
     def test_files_of_format_version_3_can_be_read(self):
         self.sweep("max-time=60", "line-tension=2", "seeds=1..3")
         before, = self.fit()["groups"]
         self.change(model_version=3)
-        self.without(["contact_range", "self_contact_range", "near_wall_cutoff"], "3")
+        stored_rows.make_older(self.folder / "sweep.h5", "3", ["contact_range", "self_contact_range", "near_wall_cutoff"])
         group, = self.fit()["groups"]
         self.assertEqual(group["clogging_length"], before["clogging_length"])
         self.assertEqual((group["contact_range"], group["model_version"]), (None, 3))
@@ -151,12 +139,12 @@ class Fit(ProgramTest):
         self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, r"model_version +runs")
 
     def test_files_of_format_version_2_can_be_read(self):
-        rows = self.sweep("max-time=60", "line-tension=2", "seeds=1..3")
+        table = self.sweep("max-time=60", "line-tension=2", "seeds=1..3")
         new = ["mean_speed_error", "transient", "travel_time", "mechanism", "wrapped_support", "num_wrapped", "num_gaps", "num_arcs"]
         before, = self.fit()["groups"]
-        self.without(new, "2")
+        stored_rows.make_older(self.folder / "sweep.h5", "2", new)
         group, = self.fit()["groups"]
-        self.assertEqual((group["runs"], group["clogs"]), (3, int((rows.status == "clogged").sum())))
+        self.assertEqual((group["runs"], group["clogs"]), (3, int((table.status == "clogged").sum())))
         self.assertEqual(group["clogging_length"], before["clogging_length"])
         for name in ("wrapped", "clogging_length_squeezed", "mean_speed_ratio"):
             self.assertIsNone(group[name])

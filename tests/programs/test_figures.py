@@ -18,6 +18,7 @@ import tables  # noqa: F401, see run_script
 from matplotlib import image
 from matplotlib import pyplot  # noqa: F401, see run_script
 
+import stored_rows
 from support import BIN, QUICK, ROOT, ProgramTest, table
 
 sys.path.insert(1, str(ROOT / "analysis"))
@@ -128,14 +129,18 @@ class Figures(Analysis):
         self.refuse_analysis("figures.py", "6c", "--output", ".", "--programs", BIN, *SET, "--set", "clogging:box=30", words=["box"])
         self.make_report(file)
 
-    def draw_clogs(self, sweep):
-        """So short a sweep wraps no droplet: one of its clogs is said to be one."""
-        with h5py.File(sweep, "r+") as file:
-            rows = file["runs"][:]
+    def call_wrapped(self, sweep, number):
+        """One clog of the sweep is said to be wrapped, the others to be squeezed."""
+        def edit(rows):
             clogged = np.flatnonzero(rows["status"] == b"clogged")
             rows["mechanism"][clogged] = b"squeezed"
-            rows["mechanism"][clogged[-1]] = b"wrapped"
-            file["runs"][:] = rows
+            rows["mechanism"][clogged[number]] = b"wrapped"
+
+        stored_rows.change(sweep, edit)
+
+    def draw_clogs(self, sweep):
+        """So short a sweep wraps no droplet: one of its clogs is said to be one."""
+        self.call_wrapped(sweep, -1)
         before = table(sweep)
         # Once more: nothing runs again.
         self.figures("5", "6a", "6b")
@@ -144,14 +149,11 @@ class Figures(Analysis):
             self.assert_picture(f"{self.PLACE}/figure-{name}")
         wrapped, squeezed = self.drawn("6a")[0], self.drawn("6b")[0]
         self.assertEqual([wrapped["mechanism"], squeezed["mechanism"]], ["wrapped", "squeezed"])
-        self.assertEqual(float(wrapped["distance"]), rows["distance"][clogged[-1]])
+        self.assertEqual(float(wrapped["distance"]), before.distance[before.status == "clogged"].iloc[-1])
         with h5py.File(sweep.parent.parent / "runs" / "clog-wrapped.h5") as file:
             self.assertEqual(file["runs"]["distance"][0], float(wrapped["distance"]), "the same run, bit for bit")
         # What is drawn from files alone is not labelled as another droplet.
-        with h5py.File(sweep, "r+") as file:
-            rows["mechanism"][clogged] = b"squeezed"
-            rows["mechanism"][clogged[0]] = b"wrapped"
-            file["runs"][:] = rows
+        self.call_wrapped(sweep, 0)
         self.refuse_analysis("figures.py", "6a", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["another run"])
 
     def make_report(self, sweep):

@@ -10,7 +10,7 @@
 namespace clog::store {
 
 /// Version of the file format; see src/store/README.md.
-inline constexpr const char* format_version = "4";
+inline constexpr const char* format_version = "5";
 
 /// Name and text of the attributes at the file's root: where its numbers come from.
 using Provenance = std::vector<std::pair<std::string, std::string>>;
@@ -29,12 +29,30 @@ void refuse_unwritable(const std::string& path);
 void publish_sweep(const std::string& path, std::span<const sweep::RunRow> rows,
                    const Provenance& provenance);
 
+/// What of a file has been compared with a checksum.
+enum class Checked {
+  everything,         ///< every bit of it
+  rows_and_settings,  ///< each row and each attribute: another program copied or changed the file
+  nothing,            ///< a version before 5 wrote it, when there were no checksums
+};
+
 struct SweepFile {
   std::vector<sweep::RunRow> rows;
   Provenance provenance;
+  Checked checked = Checked::everything;
 };
-/// Files of format version 2, too: columns that they do not have get the values for "not known".
-/// @throws Error if the file is missing, not HDF5, or not ours
+/// Files of format version 2 and later: columns that they do not have get the values for "not known".
+/// @throws Error if the file is missing, not HDF5, not ours, or damaged in any way
 SweepFile read_sweep(const std::string& path);
+/// What a reader of this file should be told; empty if all of it was checked.
+std::string caution(const std::string& path, const SweepFile& file);
+
+/// A file that may be damaged: the rows and attributes that are as they were written, and what is not.
+struct Examination {
+  SweepFile whole;
+  std::vector<std::string> damage;  ///< a sentence each
+};
+/// @throws Error if the file is missing, not ours, or so damaged that nothing can be read
+Examination examine_sweep(const std::string& path);
 
 }  // namespace clog::store

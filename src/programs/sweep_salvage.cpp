@@ -1,0 +1,41 @@
+#include <iostream>
+#include <string>
+
+#include "clog/cli/command_line.hpp"
+#include "clog/cli/program.hpp"
+#include "clog/core/error.hpp"
+#include "clog/store/run_table.hpp"
+#include "sweep_reports.hpp"
+
+namespace clog {
+namespace {
+
+constexpr const char* usage = R"(clogsweep salvage keeps what is whole of a damaged sweep file, in a new one.
+
+  clogsweep salvage sweep.h5 --output whole.h5
+
+Rows and attributes that are not as they were written are left out and named. The sweep's own command, with --output
+whole.h5, then computes the missing runs again.
+)";
+
+}  // namespace
+
+int clogsweep_salvage(int argc, const char* const* argv) {
+  namespace po = boost::program_options;
+  cli::CommandLine line("clogsweep salvage", usage, cli::CommandLine::SweepKeys::none);
+  line.add_options()("file", po::value<std::string>(), "sweep file")("output", po::value<std::string>(),
+                                                                     "HDF5 file to make");
+  line.add_positional("file", 1);
+  line.parse(argc - 1, argv + 1);
+  if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return cli::exit_success;
+  if (!line.has("file")) throw Error("missing sweep file; try clogsweep salvage sweep.h5 --output whole.h5");
+  const std::string output = line.require("output");
+  store::refuse_existing(output);
+  const store::Examination found = store::examine_sweep(line.get("file"));
+  for (const std::string& damage : found.damage) std::cout << damage << '\n';
+  store::publish_sweep(output, found.whole.rows, found.whole.provenance);
+  std::cout << output << ": " << found.whole.rows.size() << " rows that are whole" << std::endl;
+  return cli::exit_success;
+}
+
+}  // namespace clog

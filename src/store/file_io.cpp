@@ -1,0 +1,79 @@
+#include "file_io.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "clog/core/error.hpp"
+
+namespace clog::store {
+
+namespace fs = std::filesystem;
+
+void check(bool succeeded, const std::string& what, const std::string& path) {
+  if (succeeded) return;
+  const std::string reason = errno != 0 ? std::string(" (") + std::strerror(errno) + ")" : "";
+  throw Error("cannot " + what + " " + path + reason + "; check the disk and the permissions");
+}
+
+std::string follow_links(const std::string& path) {
+  constexpr int longest_chain = 40;  // as in the kernel
+  fs::path target = path;
+  std::error_code none;
+  for (int links = 0; fs::is_symlink(target, none); ++links) {
+    errno = ELOOP;
+    check(links < longest_chain, "follow the link", path);
+    target = target.parent_path() / fs::read_symlink(target, none);
+  }
+  return target.string();
+}
+
+bool is_at(int descriptor, const std::string& path) {
+  struct stat ours {
+  }, there{};
+  return fstat(descriptor, &ours) == 0 && stat(path.c_str(), &there) == 0 && ours.st_ino == there.st_ino &&
+         ours.st_dev == there.st_dev;
+}
+
+bool sync_folder_of(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  const int descriptor = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return errno == EACCES;                     // one that may be written to but not read
+  const bool synced = fsync(descriptor) == 0 || errno == EINVAL;  // some file systems cannot
+  close(descriptor);
+  return synced;
+}
+
+void read_at(int descriptor, std::span<std::byte> bytes, std::uint64_t place, const std::string& path) {
+  while (!bytes.empty()) {
+    const ssize_t got = pread(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(place));
+    if (got < 0 && errno == EINTR) continue;
+    if (got == 0) errno = EIO;  // somebody has shortened it meanwhile
+    check(got > 0, "read", path);
+    bytes = bytes.subspan(static_cast<std::size_t>(got));
+    place += static_cast<std::uint64_t>(got);
+  }
+}
+
+void write_at(int descriptor, std::span<const std::byte> bytes, std::uint64_t place,
+              const std::string& path) {
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t written =
+        pwrite(descriptor, bytes.data() + done, bytes.size() - done, static_cast<off_t>(place + done));
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) {
+      const int reason = written < 0 ? errno : ENOSPC;
+      const bool is_cut = ftruncate(descriptor, static_cast<off_t>(place)) == 0;
+      errno = is_cut ? reason : errno;
+      check(false, "write", path);
+    }
+    done += static_cast<std::size_t>(written);
+  }
+}
+
+}  // namespace clog::store

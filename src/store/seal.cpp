@@ -1,0 +1,33 @@
+#include "seal.hpp"
+
+#include <cinttypes>
+#include <cstdint>
+#include <cstdio>
+#include <string_view>
+
+#include "check_sum.hpp"
+
+namespace clog::store {
+namespace {
+
+constexpr std::string_view seal_mark = "\nclogsweep seal 1: crc32 ";
+constexpr std::size_t seal_size = 64;
+
+}  // namespace
+
+std::string seal_of(std::span<const std::byte> content) {
+  char text[seal_size + 1];
+  const int written = std::snprintf(text, sizeof text, "%s%08" PRIx32 " of %020" PRIu64 " bytes\n",
+                                    seal_mark.data(), check_sum(content), std::uint64_t{content.size()});
+  return {text, static_cast<std::size_t>(written)};
+}
+
+Seal look_at_seal(std::span<const std::byte> file) {
+  if (file.size() < seal_size) return Seal::missing;
+  const std::span content = file.first(file.size() - seal_size);
+  const std::string_view end(reinterpret_cast<const char*>(file.data()) + content.size(), seal_size);
+  if (!end.starts_with(seal_mark)) return Seal::missing;
+  return end == seal_of(content) ? Seal::whole : Seal::broken;
+}
+
+}  // namespace clog::store

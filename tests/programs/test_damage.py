@@ -1,0 +1,128 @@
+"""Files that are not as they were written: who reads them notices, and what is whole can be kept."""
+
+import os
+import resource
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import unittest
+
+import h5py
+import pandas
+import stored_rows
+from support import BIN, QUICK, ROOT, ProgramTest, table
+
+sys.path.insert(0, str(ROOT / "analysis"))
+import stored  # noqa: E402
+
+SETTINGS = [*QUICK, "line-tension=0.5,2", "seeds=1..3", "--output", "s.h5"]
+READERS = [("clogsweep", "status", "s.h5"), ("clogsweep", "replay", "s.h5", 0), ("clogfit", "s.h5"), ("clogsweep", *SETTINGS)]
+
+
+class Damage(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.succeed("clogsweep", *SETTINGS)
+        self.file = self.folder / "s.h5"
+        self.rows = table(self.file)
+
+    def multiply_a_distance(self):
+        """As a single flipped bit of the exponent does: a clogged row 16 times as far."""
+        content = self.file.read_bytes()
+        self.file.write_bytes(content.replace(struct.pack("<d", self.rows.distance[1]), struct.pack("<d", 16 * self.rows.distance[1])))
+        self.assertNotEqual(self.file.read_bytes(), content)
+
+    def test_every_reader_notices_a_changed_number(self):
+        self.multiply_a_distance()
+        before = self.snapshot()
+        for name, *arguments in READERS:
+            with self.subTest(program=name, arguments=arguments):
+                done = self.run_program(name, *arguments)
+                self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+                self.assertIn("row 1 (task 1) is not as it was written", done.stderr)
+                self.assertEqual(done.stdout, "")
+        self.assertEqual({name: content for name, content in self.snapshot().items() if not name.endswith(".journal")}, before)
+        verified = self.run_program("clogsweep", "verify", "s.h5")
+        self.assertEqual(verified.returncode, 1)
+        self.assertIn("row 1 (task 1) is not as it was written\ns.h5: 5 whole rows, 1 fault\n", verified.stdout)
+        with self.assertRaises(stored.Damaged):
+            stored.read_rows(self.file)
+        # Readers who know nothing of it: HDF5's own checksum of the table's chunks.
+        with self.assertRaises(OSError), h5py.File(self.file) as file:
+            file["runs"][:]
+        with self.assertRaises(Exception):
+            pandas.read_hdf(self.file, "runs")
+
+    def test_what_is_whole_is_salvaged_and_the_sweep_goes_on(self):
+        shutil.copy(self.file, self.folder / "undamaged.h5")
+        self.multiply_a_distance()
+        self.refuse("clogsweep", "salvage", "s.h5", "--output", "s.h5", words=["will not overwrite s.h5"])
+        done = self.succeed("clogsweep", "salvage", "s.h5", "--output", "whole.h5")
+        self.assertIn("row 1 (task 1)", done.stdout)
+        self.assertEqual(len(table(self.folder / "whole.h5")), 5)
+        self.succeed("clogsweep", *SETTINGS[:-1], "whole.h5")
+        for name in ("whole.h5", "undamaged.h5"):
+            self.succeed("clogsweep", "verify", name)
+        again, before = (table(self.folder / name).drop(columns=["wall_seconds", "rank", "host"])
+                         for name in ("whole.h5", "undamaged.h5"))
+        pandas.testing.assert_frame_equal(again, before, check_exact=True)
+
+    def test_copies_of_other_programs_are_read_with_a_word(self):
+        with h5py.File(self.file) as file, h5py.File(self.folder / "copy.h5", "w") as copy:
+            file.copy("runs", copy)
+            file.copy("row_checksums", copy)
+            copy.attrs.update(file.attrs)
+            rows = file["runs"][:]
+            copy.create_dataset("packed", data=rows, compression="gzip", chunks=(4,))
+            copy["packed"].attrs.update(file["runs"].attrs)
+            del copy["runs"]
+            copy.move("packed", "runs")
+        for name, *arguments in [("clogsweep", "status", "copy.h5"), ("clogfit", "copy.h5")]:
+            self.assertIn("copied or changed by another program", self.succeed(name, *arguments).stderr)
+        self.assertIn("copied or changed by another program", self.succeed("clogsweep", "verify", "copy.h5").stdout)
+        self.assertEqual(stored.read_rows(self.folder / "copy.h5").tobytes(), rows.tobytes())
+        with h5py.File(self.folder / "copy.h5", "r+") as copy:
+            rows["distance"][2] *= 16
+            copy["runs"][:] = rows
+        with self.assertRaises(stored.Damaged):
+            stored.read_rows(self.folder / "copy.h5")
+        done = self.run_program("clogfit", "copy.h5")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("row 2 (task 2)", done.stderr)
+
+    def test_old_files_are_read_with_a_word(self):
+        stored_rows.make_older(self.file, "4")
+        for name, *arguments in [("clogsweep", "status", "s.h5"), ("clogfit", "s.h5"), ("clogsweep", *SETTINGS)]:
+            self.assertIn("older format without checksums", self.succeed(name, *arguments).stderr)
+        self.assertEqual(stored.is_sealed(self.file), True, "the sweep has written it anew")
+
+    def test_a_row_that_reaches_beyond_itself_is_not_read(self):
+        """Foreign memory was shown as a value: the offset of a member in the table's description."""
+        stored_rows.make_older(self.file, "4")
+        content = bytearray(self.file.read_bytes())
+        name = content.index(b"kinetic_energy_ratio\0")
+        offset = name + 24  # names are padded to eight bytes; the member's offset follows
+        self.assertLess(struct.unpack_from("<I", content, offset)[0], 2000)
+        struct.pack_into("<I", content, offset, 60000)
+        self.file.write_bytes(content)
+        for name, *arguments in [*READERS, ("clogsweep", "verify", "s.h5")]:
+            done = self.run_program(name, *arguments)
+            self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+            self.assertIn("damaged", done.stderr)
+
+    def test_a_full_disk_ends_with_exit_code_2(self):
+        def limit():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
+
+        for name, *arguments in [("clogsweep", *SETTINGS[:-1], "new.h5"), ("clogrun", "array", *QUICK, "seeds=1", "--output", "run.h5")]:
+            done = subprocess.run([BIN / name, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True, preexec_fn=limit,
+                                  env={**os.environ, "OMPI_MCA_ess_singleton_isolated": "1"})  # no daemon that meets the limit, too
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn("File too large", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
