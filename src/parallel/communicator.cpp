@@ -10,6 +10,9 @@
 namespace clog::parallel {
 
 Communicator::Communicator(int& argc, char**& argv) {
+  // A rank that no launcher has started begins a daemon otherwise, which looks for ssh and takes the rank
+  // with it when it is killed. Under mpirun this says nothing.
+  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   MPI_Init(&argc, &argv);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &size_);
