@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "clog/core/error.hpp"
+#include "clog/store/regular_file.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/settings.hpp"
 
@@ -65,7 +66,7 @@ std::string differing_keys(const sweep::Settings& there, const sweep::Settings& 
 
 SweepLedger::SweepLedger(std::string path, const sweep::Plan& plan, const sweep::Settings& settings,
                          store::Provenance provenance, std::int64_t num_wanted, std::int64_t attempts)
-    : path_(std::move(path)),
+    : path_(store::require_regular(std::move(path))),
       plan_(plan),
       provenance_(std::move(provenance)),
       attempts_(attempts),

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "clog/core/error.hpp"
+#include "clog/store/regular_file.hpp"
 #include "clog/store/run_table.hpp"
 #include "draft.hpp"
 #include "file_io.hpp"
@@ -92,16 +93,13 @@ void replace_whole(const std::string& path, const std::function<void(hid_t file)
 }
 
 std::vector<std::byte> read_file(const std::string& path) {
-  // Opening something else than a file, a pipe for instance, could wait for ever.
-  const int descriptor = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  const int descriptor = open(require_regular(path).c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0 && errno == ENOENT)
     throw Error("cannot read " + path + " (no such file); check the name");
   if (descriptor < 0) throw Error("cannot read " + path + " (" + std::strerror(errno) + ")");
   try {
     struct stat status {};
     check(fstat(descriptor, &status) == 0, "read", path);
-    if (!S_ISREG(status.st_mode))
-      throw Error("cannot read " + path + " (not a regular file); give a file written by clogsweep");
     std::vector<std::byte> bytes(static_cast<std::size_t>(status.st_size));
     read_at(descriptor, bytes, 0, path);
     close(descriptor);

@@ -13,6 +13,7 @@
 
 #include "check_sum.hpp"
 #include "clog/core/error.hpp"
+#include "clog/store/regular_file.hpp"
 #include "draft.hpp"
 #include "file_io.hpp"
 
@@ -123,7 +124,7 @@ Journal::Contents parse(std::span<const std::byte> bytes) {
 std::string journal_path(const std::string& table) { return follow_links(table) + ".journal"; }
 
 std::optional<Journal::Contents> Journal::look(const std::string& path) {
-  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int descriptor = open(require_regular(path).c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0 && errno == ENOENT) return std::nullopt;
   check(descriptor >= 0, "read", path);
   std::vector<std::byte> bytes;
@@ -138,7 +139,7 @@ std::optional<Journal::Contents> Journal::look(const std::string& path) {
   return parse(bytes);
 }
 
-Journal::Journal(std::string path) : path_(follow_links(path)) {
+Journal::Journal(std::string path) : path_(require_regular(follow_links(path))) {
   try {
     open_and_lock();
     remove_stale_drafts(path_, journal_mark);
@@ -181,7 +182,7 @@ void Journal::open_and_lock() {
 }
 
 bool Journal::is_open(const std::string& path) {
-  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int descriptor = open(require_regular(path).c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) return false;
   const bool is_taken = flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
   close(descriptor);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -234,6 +235,13 @@ TEST_F(JournalTest, CanBeRemoved) {
   add_entries(journal, 0, 1);
   journal.remove();
   EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(JournalTest, IsARegularFile) {
+  ASSERT_EQ(mkfifo(path().c_str(), 0600), 0);
+  EXPECT_THROW(Journal journal(path()), Error);
+  EXPECT_THROW(Journal::look(path()), Error);
+  EXPECT_THROW(Journal::is_open(path()), Error);
 }
 
 TEST_F(JournalTest, KeepsWholeRecordsWhenTheDiskIsFull) {
