@@ -189,11 +189,23 @@ bool Journal::is_open(const std::string& path) {
   return is_taken;
 }
 
+void Journal::check_place() const {
+  if (is_at(descriptor_, path_)) return;
+  throw Error("cannot go on with " + path_ +
+              " (it was removed or replaced while the sweep was running, and another may have begun there); "
+              "when no other "
+              "sweep is writing to it, the same command goes on");
+}
+
 void Journal::add(const sweep::RunRow& row, std::span<const std::byte> snapshot) {
+  check_place();
   contents_.num_bytes = write_record(descriptor_, row, snapshot, contents_.num_bytes, path_);
 }
 
-void Journal::flush() { check(fdatasync(descriptor_) == 0, "write", path_); }
+void Journal::flush() {
+  check_place();
+  check(fdatasync(descriptor_) == 0, "write", path_);
+}
 
 bool Journal::is_to_be_rewritten() const {
   constexpr std::uint64_t small = 64'000'000;
@@ -201,6 +213,7 @@ bool Journal::is_to_be_rewritten() const {
 }
 
 void Journal::rewrite(std::span<const Entry* const> entries) {
+  check_place();
   Draft draft(path_, journal_mark);
   // A draft is locked where that is possible; here it must be, before it has its name.
   check(flock(draft.descriptor(), LOCK_EX | LOCK_NB) == 0, "lock", path_);
@@ -214,7 +227,7 @@ void Journal::rewrite(std::span<const Entry* const> entries) {
 }
 
 void Journal::remove() {
-  unlink(path_.c_str());
+  if (is_at(descriptor_, path_)) unlink(path_.c_str());
   sync_folder_of(path_);  // one that came back after a power cut would say nothing that is not in the table
   close(std::exchange(descriptor_, -1));
 }

@@ -103,6 +103,20 @@ class Resumed(SweepTest):
         self.assertIn("stopped by a signal; the same command goes on", error)
         self.assertLessEqual(set(table(self.folder / "s.h5").status), {"interrupted"})
 
+    def test_a_sweep_whose_journal_is_removed_leaves_the_table_to_the_next(self):
+        self.succeed("clogsweep", *SWEEP[:-1], "whole.h5", ranks=2)
+        for ranks in (1, 2):
+            first = self.start(*SWEEP, ranks=ranks)
+            self.wait_for(lambda: (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any())
+            (self.folder / "s.h5.journal").unlink()
+            self.succeed("clogsweep", *SWEEP)
+            _, error = first.communicate(timeout=60)
+            self.assertEqual(first.returncode, 2, error)
+            self.assertIn("s.h5.journal (it was removed or replaced while the sweep was running", error)
+            self.check_equal("s.h5", "whole.h5")
+            self.assertFalse((self.folder / "s.h5.journal").exists())
+            (self.folder / "s.h5").unlink()
+
     def test_max_hours_stops_it(self):
         done = self.run_program("clogsweep", *SWEEP, "--max-hours=0.0002")
         self.assertEqual(done.returncode, 75, done.stderr)

@@ -237,6 +237,20 @@ TEST_F(JournalTest, CanBeRemoved) {
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
+TEST_F(JournalTest, StopsWhenItsFileIsNoLongerInTheFolder) {
+  Journal first(path());
+  fs::remove(path());
+  {
+    Journal second(path());
+    EXPECT_THROW(add_entries(first, 0, 1), Error);
+    EXPECT_THROW(first.flush(), Error);
+    EXPECT_THROW(first.rewrite({}), Error);
+    add_entries(second, 0, 2);
+    first.remove();
+  }
+  expect_entries(Journal(path()).take_entries(), 2);
+}
+
 TEST_F(JournalTest, IsARegularFile) {
   ASSERT_EQ(mkfifo(path().c_str(), 0600), 0);
   EXPECT_THROW(Journal journal(path()), Error);

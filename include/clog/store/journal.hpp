@@ -19,7 +19,9 @@ std::string journal_path(const std::string& table);
 /// one after the other in a file beside the table. What add() returned from survives the death of the
 /// process, what flush() returned from that of the machine. When the file is opened again, a torn record at
 /// the end is dropped, and one that is damaged costs no other. While a journal is open nobody else can open
-/// it; the lock dies with its process. A journal without records is removed when it is closed.
+/// it; the lock dies with its process. A file that somebody has removed or replaced meanwhile locks nobody
+/// out any more: then nothing is written, neither here nor over what another has made. A journal without
+/// records is removed when it is closed.
 class Journal {
  public:
   struct Entry {
@@ -47,7 +49,8 @@ class Journal {
   /// What the file held when it was opened, oldest first.
   std::vector<Entry> take_entries() { return std::move(contents_.entries); }
   std::int64_t num_unreadable() const { return contents_.num_unreadable; }
-  /// @throws Error if the disk is full
+  /// @throws Error if the disk is full, or the file is no longer the one at the path; so do flush() and
+  /// rewrite()
   void add(const sweep::RunRow& row, std::span<const std::byte> snapshot);
   void flush();
   std::uint64_t num_bytes() const { return contents_.num_bytes; }
@@ -55,7 +58,7 @@ class Journal {
   bool is_to_be_rewritten() const;
   /// Replaces the file by one that holds these entries only.
   void rewrite(std::span<const Entry* const> entries);
-  /// Removes the file; nothing may be added afterwards.
+  /// Removes the file, unless it is no longer the one at the path; nothing may be added afterwards.
   void remove();
 
  private:
@@ -65,6 +68,7 @@ class Journal {
   std::uint64_t num_rewritten_bytes_ = 0;
 
   void open_and_lock();
+  void check_place() const;
   void close_file();
 };
 
