@@ -73,7 +73,7 @@ class Resumed(SweepTest):
 
     def test_a_signal_stops_and_the_same_command_goes_on(self):
         self.succeed("clogsweep", *SLOW[:-1], "whole.h5", ranks=2)
-        for signal_number in (signal.SIGUSR1, signal.SIGINT):
+        for signal_number in (signal.SIGUSR1, signal.SIGINT, signal.SIGTERM):
             process = self.start(*SLOW)
             self.wait_for(lambda: (self.folder / "s.h5").exists() and
                           (table(self.folder / "s.h5").query("status == 'running'").steps > STEPS_PER_SNAPSHOT).any())
@@ -84,6 +84,8 @@ class Resumed(SweepTest):
                 self.assertEqual(process.returncode, 75, error)
                 rows = table(self.folder / "s.h5")
                 self.assertGreater((rows.status == "interrupted").sum(), 0)
+            else:
+                self.assertEqual(process.returncode, 1, error)
         done = self.succeed("clogsweep", *SLOW, ranks=2)
         self.assertIn("go on where they were", done.stderr)
         self.check_equal("s.h5", "whole.h5")
