@@ -3,6 +3,8 @@
 #include <cstdio>
 #include <ctime>
 
+#include "clog/cli/printable.hpp"
+
 namespace clog {
 namespace {
 
@@ -38,7 +40,7 @@ std::string where(const sweep::RunRow& row) {
 
 }  // namespace
 
-void SweepLog::say(const std::string& text) { progress_.say(time_of_day() + ' ' + text); }
+void SweepLog::say(const std::string& text) { progress_.say(time_of_day() + ' ' + cli::printable(text)); }
 
 void SweepLog::started(const sweep::RunRow& row, From from) {
   if (level_ < Level::verbose) return;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "clog/cli/command_line.hpp"
+#include "clog/cli/printable.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/core/error.hpp"
 #include "clog/core/instruction_set.hpp"
@@ -97,10 +98,10 @@ Status status_of(const std::string& path, const store::SweepFile& file, double c
 
 std::string to_text(const std::string& path, const Status& status, double confidence) {
   const auto number = [](std::int64_t value) { return std::to_string(value); };
-  std::string text = path + ": " + number(status.num_over()) + " of " + number(status.num_runs) +
-                     " runs over, " + number(status.count("clogged")) + " clogged, " +
-                     number(status.count("flowing")) + " flowing, " + number(status.count("failed")) +
-                     " failed";
+  std::string text = cli::printable(path) + ": " + number(status.num_over()) + " of " +
+                     number(status.num_runs) + " runs over, " + number(status.count("clogged")) +
+                     " clogged, " + number(status.count("flowing")) + " flowing, " +
+                     number(status.count("failed")) + " failed";
   if (const std::int64_t under_way = status.count("running") + status.count("interrupted"); under_way > 0)
     text += "; " + number(under_way) + (status.is_alive ? " running" : " interrupted");
   char hours[64];
@@ -262,17 +263,18 @@ damaged. 1: this is not so; `clogsweep salvage` keeps what is whole. 2: the file
     if (fault.empty() && !is_new) fault = "the same run as task " + std::to_string(first->second);
     if (fault.empty()) continue;
     ++num_faults;
-    std::cout << "task " << row.task << ": " << fault << '\n';
+    std::cout << "task " << row.task << ": " << cli::printable(fault) << '\n';
   }
-  std::cout << line.get("file") << ": " << file.rows.size() << " whole rows";
+  std::cout << cli::printable(line.get("file")) << ": " << file.rows.size() << " whole rows";
   if (num_faults == 0) std::cout << " of " << plan_of(file).size() << " runs, all in order";
   if (num_faults > 0) std::cout << ", " << num_faults << (num_faults == 1 ? " fault" : " faults");
   std::cout << '\n';
   if (const std::string words = store::caution(line.get("file"), file); !words.empty())
-    std::cout << words << '\n';
+    std::cout << cli::printable(words) << '\n';
   const std::string journal = store::journal_path(line.get("file"));
   if (const auto contents = store::Journal::look(journal)) {
-    std::cout << journal << ": " << to_text(*contents, store::Journal::is_open(journal)) << '\n';
+    std::cout << cli::printable(journal) << ": " << to_text(*contents, store::Journal::is_open(journal))
+              << '\n';
     num_faults += contents->num_unreadable;
   }
   return num_faults == 0 ? cli::exit_success : cli::exit_internal_fault;
