@@ -1,13 +1,19 @@
 #include "clog/cli/program.hpp"
 
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <exception>
 #include <iostream>
 #include <new>
 
 #include "clog/cli/build_info.hpp"
+#include "clog/cli/printable.hpp"
 #include "clog/core/error.hpp"
 
 namespace clog::cli {
@@ -26,22 +32,47 @@ std::string utc_now() {
   return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts)};
 }
 
+/// Has everybody left who could read the output?
+bool is_reader_gone() {
+  pollfd state{STDOUT_FILENO, POLLOUT, 0};
+  return poll(&state, 1, 0) == 1 && (state.revents & (POLLERR | POLLHUP)) != 0;
+}
+
 }  // namespace
+
+void prepare_streams() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(descriptor, F_GETFD) < 0 && open("/dev/null", O_RDWR) != descriptor)
+      std::_Exit(exit_user_fault);  // there may be nowhere to say why
+  std::signal(SIGPIPE, SIG_IGN);
+  std::cout.exceptions(std::ios_base::badbit);
+  std::cerr.tie(nullptr);  // what is wrong is told, whether the output can be written or not
+}
+
+void say(const std::string& line) { std::cerr << printable(line) << std::endl; }
+
+void flush_output() {
+  std::cout.flush();
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw std::ios_base::failure("cannot print");
+}
 
 int run_program(const std::string& program, const std::function<int()>& body) {
   try {
     const int exit_code = body();
-    std::cout.flush();
-    if (!std::cout || std::fflush(stdout) != 0) throw Error("cannot write the output; the disk may be full");
+    flush_output();
     return exit_code;
   } catch (const Error& error) {
-    std::cerr << program << ": " << error.what() << std::endl;
+    say(program + ": " + error.what());
+    return exit_user_fault;
+  } catch (const std::ios_base::failure&) {  // of std::cout
+    if (is_reader_gone()) return exit_reader_gone;
+    say(program + ": cannot write the output; the disk may be full");
     return exit_user_fault;
   } catch (const std::bad_alloc&) {
-    std::cerr << program << ": out of memory; a smaller box or more memory per rank helps" << std::endl;
+    say(program + ": out of memory; a smaller box or more memory per rank helps");
     return exit_user_fault;
   } catch (const std::exception& error) {
-    std::cerr << program << ": internal fault: " << error.what() << "; please report it" << std::endl;
+    say(program + ": internal fault: " + error.what() + "; please report it");
     return exit_internal_fault;
   }
 }

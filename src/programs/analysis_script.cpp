@@ -4,9 +4,9 @@
 
 #include <cerrno>
 #include <cstring>
-#include <iostream>
 #include <system_error>
 
+#include "clog/cli/program.hpp"
 #include "clog/core/error.hpp"
 
 namespace clog {
@@ -21,7 +21,7 @@ std::filesystem::path find_analysis_script(const std::string& name) {
 }
 
 void become_script(const std::filesystem::path& script, std::vector<std::string> arguments) {
-  std::cout.flush();
+  cli::flush_output();
   arguments.insert(arguments.begin(), script.string());
   std::vector<char*> words;
   for (std::string& argument : arguments) words.push_back(argument.data());

@@ -77,6 +77,7 @@ int report(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace clog;
+  cli::prepare_streams();
   if (argc > 1 && std::string_view(argv[1]) == "calibrate")
     return cli::run_program("clogfit calibrate", [&] { return clogfit_calibrate(argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "deviation")

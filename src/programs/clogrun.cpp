@@ -88,5 +88,6 @@ int body(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  clog::cli::prepare_streams();
   return clog::cli::run_program(program, [&] { return body(argc, argv); });
 }

@@ -54,14 +54,14 @@ int clogrun_sag(cli::CommandLine& line) {
     std::printf("%s,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%s\n", row.model.view().data(), row.line_tension,
                 row.wall_stiffness, sag.centre, sag.top, result.shape_parameter, result.time,
                 result.status == RunStatus::clogged ? "at_rest" : name(result.status));
-    std::fflush(stdout);
+    cli::flush_output();
     if (result.status == RunStatus::failed) throw Error(result.message);
     if (line.has("output")) store::write_trajectory(line.get("output"), watched.trajectory(row, line));
     if (result.status == RunStatus::interrupted) return cli::exit_incomplete;
     all_at_rest &= result.status == RunStatus::clogged;
   }
   if (all_at_rest) return cli::exit_success;
-  std::cerr << "clogrun: not every droplet has come to rest; give a longer max-time\n";
+  cli::say("clogrun: not every droplet has come to rest; give a longer max-time");
   return cli::exit_incomplete;
 }
 

@@ -201,7 +201,7 @@ std::optional<int> prepare(const cli::CommandLine& line) {
   if (line.has("print-config")) print_config(line.settings(), plan);
   if (line.has("dry-run")) {
     print_tasks(plan);
-    std::cout.flush();
+    cli::flush_output();
     if (cli::stop_signalled()) return cli::exit_incomplete;
     print_cost(plan);
   }
@@ -277,6 +277,7 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, parallel::IsolatedJo
 }  // namespace
 
 int main(int argc, char** argv) {
+  cli::prepare_streams();
   // What needs no ranks.
   const std::map<std::string_view, int (*)(int, const char* const*)> reports = {
       {"status", clogsweep_status}, {"verify", clogsweep_verify}, {"replay", clogsweep_replay}, {"salvage", clogsweep_salvage}};
@@ -295,8 +296,8 @@ int main(int argc, char** argv) {
     return sweep_on_all_ranks(ranks, *isolated, argc, argv);
   } catch (const std::exception& error) {
     // Once the sweep runs, ranks wait for each other: a fault of one must end all.
-    std::cerr << program << ": rank " << ranks.rank() << " on " << parallel::Communicator::host_name() << ": "
-              << error.what() << std::endl;
+    cli::say(std::string(program) + ": rank " + std::to_string(ranks.rank()) + " on " +
+             parallel::Communicator::host_name() + ": " + error.what());
     if (ranks.size() > 1)
       ranks.abort(dynamic_cast<const Error*>(&error) ? cli::exit_user_fault : cli::exit_internal_fault);
     return dynamic_cast<const Error*>(&error) ? cli::exit_user_fault : cli::exit_internal_fault;

@@ -16,6 +16,7 @@
 #include <set>
 
 #include "clog/cli/command_line.hpp"
+#include "clog/cli/printable.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/core/error.hpp"
 #include "rank_facts.hpp"
@@ -23,6 +24,7 @@
 namespace clog {
 namespace {
 
+constexpr const char* program = "clogsweep doctor";
 constexpr const char* usage =
     R"(clogsweep doctor looks for what spoils sweeps on this machine, and says what helps.
 
@@ -184,6 +186,17 @@ std::vector<Finding> examine(const std::vector<RankFacts>& ranks, const std::str
   return all;
 }
 
+/// Returns the exit code.
+int print(const std::vector<Finding>& findings) {
+  bool is_well = true;
+  for (const Finding& finding : findings) {
+    std::cout << (finding.remedy.empty() ? "ok    " : "MEND  ") << cli::printable(finding.what) << '\n';
+    if (!finding.remedy.empty()) std::cout << "      " << finding.remedy << '\n';
+    is_well = is_well && finding.remedy.empty();
+  }
+  return is_well ? cli::exit_success : cli::exit_internal_fault;
+}
+
 }  // namespace
 
 void refuse_to_be_alone(int num_ranks) {
@@ -196,11 +209,11 @@ void refuse_to_be_alone(int num_ranks) {
 int clogsweep_doctor(const parallel::Communicator& ranks, int argc, const char* const* argv) {
   namespace po = boost::program_options;
   // Rank 0 reads the command line; the others wait for its word.
-  cli::CommandLine line("clogsweep doctor", usage, cli::CommandLine::SweepKeys::none);
+  cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::none);
   bool is_answered = false;
   int exit_code = cli::exit_success;
   if (ranks.rank() == 0)
-    exit_code = cli::run_program("clogsweep doctor", [&] {
+    exit_code = cli::run_program(program, [&] {
       line.add_options()("output", po::value<std::string>()->default_value("sweep.h5"),
                          "where the sweep will write");
       line.parse(argc - 1, argv + 1);
@@ -216,14 +229,7 @@ int clogsweep_doctor(const parallel::Communicator& ranks, int argc, const char* 
   if (ranks.rank() != 0) return cli::exit_success;
   std::vector<RankFacts> facts;
   for (const std::string& text : texts) facts.push_back(rank_facts_from(text));
-  bool is_well = true;
-  for (const Finding& finding : examine(facts, line.get("output"))) {
-    std::cout << (finding.remedy.empty() ? "ok    " : "MEND  ") << finding.what << '\n';
-    if (!finding.remedy.empty()) std::cout << "      " << finding.remedy << '\n';
-    is_well = is_well && finding.remedy.empty();
-  }
-  std::cout.flush();
-  return is_well ? cli::exit_success : cli::exit_internal_fault;
+  return cli::run_program(program, [&] { return print(examine(facts, line.get("output"))); });
 }
 
 }  // namespace clog

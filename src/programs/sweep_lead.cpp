@@ -28,17 +28,16 @@ void announce(const std::string& output, const SweepLedger& ledger, bool may_gro
   const auto num_left = static_cast<std::int64_t>(ledger.tasks_left().size());
   if (!ledger.caution().empty()) std::cerr << ledger.caution() << std::endl;
   if (num_left < num_runs)
-    std::cerr << output << " has " << num_runs - num_left << " of " << num_runs << " runs"
-              << (num_left == 0 && !may_grow ? "; there is nothing left to do" : "") << std::endl;
+    cli::say(output + " has " + std::to_string(num_runs - num_left) + " of " + std::to_string(num_runs) +
+             " runs" + (num_left == 0 && !may_grow ? "; there is nothing left to do" : ""));
   if (ledger.num_unreadable() > 0)
-    std::cerr << store::journal_path(output) << ": " << ledger.num_unreadable()
-              << (ledger.num_unreadable() == 1 ? " record is" : " records are")
-              << " damaged; what was in there is computed again" << std::endl;
-  if (ledger.num_resumed() > 0) std::cerr << ledger.num_resumed() << " go on where they were" << std::endl;
+    cli::say(store::journal_path(output) + ": " + std::to_string(ledger.num_unreadable()) +
+             (ledger.num_unreadable() == 1 ? " record is" : " records are") +
+             " damaged; what was in there is computed again");
+  if (ledger.num_resumed() > 0) cli::say(std::to_string(ledger.num_resumed()) + " go on where they were");
   if (num_left > 0)
-    std::cerr << num_left << " runs on " << num_ranks
-              << (num_ranks == 1 ? " computing rank" : " computing ranks") << ", results go to " << output
-              << std::endl;
+    cli::say(std::to_string(num_left) + " runs on " + std::to_string(num_ranks) +
+             (num_ranks == 1 ? " computing rank" : " computing ranks") + ", results go to " + output);
 }
 
 SweepProgress::Screen screen(SweepLog::Level level) {
@@ -164,15 +163,14 @@ int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, 
   }
   lead.finish();
   if (is_complete && rule && options.log != SweepLog::Level::quiet)
-    std::cerr << rule->num_reached() << " of " << rule->num_groups()
-              << " parameter sets have reached --until-precision" << std::endl;
+    cli::say(std::to_string(rule->num_reached()) + " of " + std::to_string(rule->num_groups()) +
+             " parameter sets have reached --until-precision");
   if (is_complete) return cli::exit_success;
   const bool no_rank_left = end == parallel::SweepEnd::no_rank_left;
-  std::cerr << "clogsweep: "
-            << (no_rank_left ? std::string("every rank was set aside, see above; look after these machines")
-                             : std::string("stopped by ") + lead.reason_to_stop())
-            << "; the same command goes on. Finished rows and the distances so far are in " << options.output
-            << std::endl;
+  cli::say("clogsweep: " +
+           (no_rank_left ? std::string("every rank was set aside, see above; look after these machines")
+                         : std::string("stopped by ") + lead.reason_to_stop()) +
+           "; the same command goes on. Finished rows and the distances so far are in " + options.output);
   return no_rank_left ? cli::exit_internal_fault : cli::exit_incomplete;
 }
 

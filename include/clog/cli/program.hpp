@@ -14,8 +14,23 @@ inline constexpr int exit_internal_fault = 1;
 inline constexpr int exit_user_fault = 2;
 /// Stopped before the end; the same command makes sense again.
 inline constexpr int exit_incomplete = 75;
+/// The reader of the output went away before its end: what a shell shows for programs that SIGPIPE has ended.
+inline constexpr int exit_reader_gone = 141;
 
-/// Runs a program's body; an Error becomes one line on the error stream and exit code 2.
+/// What every program does first. Descriptors 0 to 2 that are closed are opened on /dev/null: files and
+/// sockets would get their numbers otherwise, and with them what is printed. A reader that goes away does not
+/// end the program (SIGPIPE is ignored); what is printed to std::cout from then on throws, and run_program()
+/// knows what it means.
+void prepare_streams();
+
+/// Prints a line on the error stream, control characters escaped.
+void say(const std::string& line);
+
+/// Hands everything printed so far to the system. @throws std::ios_base::failure if it cannot be written
+void flush_output();
+
+/// Runs a program's body; an Error, or output that cannot be written, becomes one line on the error stream
+/// and exit code 2.
 int run_program(const std::string& program, const std::function<int()>& body);
 
 using NamedTexts = std::vector<std::pair<std::string, std::string>>;

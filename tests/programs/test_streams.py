@@ -1,0 +1,140 @@
+"""Streams that are closed, full or not read, files that are none, and what messages show of odd names."""
+
+import os
+import signal
+import socket
+import subprocess
+import unittest
+
+from support import BIN, MPIRUN, QUICK, SLOW, SweepTest, table
+
+SMALL_SWEEP = [*QUICK, "seeds=1..3", "--verbose", "--output", "s.h5"]
+# Everything that prints and ends.
+REPORTS = [["clogsweep", "--help"], ["clogsweep", "--version"], ["clogsweep", "--print-config"], ["clogsweep", *QUICK, "--dry-run"],
+           ["clogsweep", "doctor"], ["clogsweep", "doctor", "--help"], ["clogsweep", "status", "done.h5"],
+           ["clogsweep", "verify", "done.h5"], ["clogsweep", "replay", "done.h5", "0"],
+           ["clogrun", "--help"], ["clogrun", "sag", "vertices=32", "max-time=1"],
+           ["clogrun", "array", *QUICK, "--output", "run.h5"],
+           ["clogfit", "--help"], ["clogfit", "done.h5"], ["clogfit", "done.h5", "--format", "json"],
+           ["clogfit", "drag", "speeds.csv"]]
+SPEEDS = "d [sigma], v [v_t]\n0.01,0.05\n0.02,0.12\n0.05,0.3\n0.1,0.5\n0.2,0.7\n"
+
+
+class Streams(SweepTest):
+    def redirect(self, redirection, name, *arguments, ranks=None):
+        command = [*([str(MPIRUN), str(ranks)] if ranks else []), str(BIN / name), *arguments]
+        return subprocess.run(["bash", "-c", f'"$@" {redirection}', "bash", *command], cwd=self.folder, capture_output=True,
+                              text=True, timeout=300)
+
+    def prepare_reports(self):
+        self.succeed("clogsweep", *QUICK, "seeds=1..3", "--output", "done.h5")
+        self.write("speeds.csv", SPEEDS)
+
+    def check_complete(self):
+        self.assertIn("3 rows of 3 runs, all whole", self.succeed("clogsweep", "verify", "s.h5").stdout)
+        self.assertFalse((self.folder / "s.h5.journal").exists())
+        (self.folder / "s.h5").unlink()
+
+    def test_a_closed_stream_is_a_wish_for_silence(self):
+        for redirection in (">&-", "2>&-", "<&-", "<&- >&- 2>&-"):
+            for ranks in (None, 2):
+                with self.subTest(redirection, ranks=ranks):
+                    done = self.redirect(redirection, "clogsweep", *SMALL_SWEEP, ranks=ranks)
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                    self.assertEqual(done.stdout, "")
+                    self.check_complete()
+        self.prepare_reports()
+        for report in REPORTS:
+            with self.subTest(report):
+                ends = []
+                for redirection in ("", ">&-"):
+                    done = self.redirect(redirection, *report)
+                    ends.append((done.returncode, done.stderr))
+                    (self.folder / "run.h5").unlink(missing_ok=True)
+                self.assertEqual(*ends)
+
+    def test_output_that_cannot_be_written_is_an_error(self):
+        self.prepare_reports()
+        for report in REPORTS:
+            with self.subTest(report):
+                done = self.redirect(">/dev/full", *report)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn("cannot write the output", done.stderr)
+                self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+                (self.folder / "run.h5").unlink(missing_ok=True)
+
+    def without_reader(self, stream, name, *arguments):
+        """Runs it with a pipe that nobody reads any more as the given stream."""
+        reader, writer = os.pipe()
+        os.close(reader)
+        streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, stream: writer}
+        with subprocess.Popen([str(BIN / name), *arguments], cwd=self.folder, text=True, **streams) as process:
+            os.close(writer)
+            output = process.communicate(timeout=300)
+        return process.returncode, *(text or "" for text in output)
+
+    def test_a_sweep_goes_on_without_a_reader(self):
+        self.assertEqual(self.without_reader("stderr", "clogsweep", *SMALL_SWEEP), (0, "", ""))
+        self.check_complete()
+
+    def test_a_report_without_a_reader_ends_quietly(self):
+        self.prepare_reports()
+        for report in [*REPORTS, ["clogsweep", "line-tension=lin(0.1,1,10)", "seeds=1..1000000", "--dry-run"]]:
+            with self.subTest(report):
+                self.assertEqual(self.without_reader("stdout", *report), (141, "", ""))
+                (self.folder / "run.h5").unlink(missing_ok=True)
+
+    def test_messages_show_control_characters(self):
+        self.refuse("clogsweep", "--größe\x1b[31m\nx", words=["unknown option --größe\\x1b[31m\\nx"])
+        self.refuse("clogsweep", "--config", "a\r\x07b", words=["a\\r\\x07b"])
+        self.write("s.cfg", "\x1b]0;title\x07 = 3\n")
+        self.refuse("clogsweep", "--config", "s.cfg", words=["\\x1b]0;title\\x07"])
+        name = "\x1b[2J.h5"
+        told = self.succeed("clogsweep", *SMALL_SWEEP[:-1], name).stderr
+        told += self.succeed("clogsweep", "status", name).stdout + self.succeed("clogsweep", "verify", name).stdout
+        self.assertNotIn("\x1b", told)
+        self.assertEqual(told.count("\\x1b[2J.h5"), 3)
+
+
+class Files(SweepTest):
+    def make_others(self):
+        """What is no regular file, by name."""
+        os.mkdir(self.folder / "folder")
+        os.mkfifo(self.folder / "pipe")
+        with socket.socket(socket.AF_UNIX) as address:
+            address.bind(str(self.folder / "socket"))
+        return ["folder", "socket", "/dev/zero", "pipe"]
+
+    def test_only_regular_files_are_tables(self):
+        for name in self.make_others():
+            for command in (["clogsweep", *QUICK, "--output", name], ["clogsweep", "status", name],
+                            ["clogsweep", "verify", name], ["clogsweep", "replay", name, "0"], ["clogfit", name],
+                            ["clogfit", "report", name, "--output", "report.html"]):
+                with self.subTest(command):
+                    self.refuse(*command, words=[name, "not a regular file"])
+            self.refuse("clogrun", "array", *QUICK, "--output", name, words=["will not overwrite " + name])
+
+    def test_only_regular_files_are_journals(self):
+        self.succeed("clogsweep", *SMALL_SWEEP)
+        os.mkfifo(self.folder / "s.h5.journal")
+        for command in (["clogsweep", *SMALL_SWEEP], ["clogsweep", "status", "s.h5"]):
+            self.refuse(*command, words=["s.h5.journal", "not a regular file"])
+
+
+class Alone(SweepTest):
+    """One rank that no launcher has started."""
+
+    def test_it_needs_neither_environment_nor_daemon(self):
+        process = subprocess.Popen([str(BIN / "clogsweep"), *SLOW], cwd=self.folder, env={}, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(lambda: process.poll() is None and process.kill())
+        self.wait_for(lambda: (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any()
+                      or process.poll() is not None)
+        names = subprocess.run(["ps", "-o", "comm=", "--ppid", str(process.pid)], capture_output=True, text=True).stdout
+        process.send_signal(signal.SIGTERM)
+        _, error = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 75, error)
+        self.assertEqual(set(names.split()), {"clogsweep"})
+
+
+if __name__ == "__main__":
+    unittest.main()
