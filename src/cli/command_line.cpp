@@ -1,11 +1,10 @@
 #include "clog/cli/command_line.hpp"
 
-#include <filesystem>
-#include <fstream>
 #include <set>
 #include <sstream>
 #include <utility>
 
+#include "clog/cli/text_file.hpp"
 #include "clog/core/error.hpp"
 #include "clog/core/instruction_set.hpp"
 
@@ -94,9 +93,7 @@ void CommandLine::refuse_unknown(const std::string& word) const {
 }
 
 void CommandLine::read_config(const std::string& path) {
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path))
-    throw Error("cannot read the config file " + path + " (no such file, or not readable)");
+  std::istringstream file(read_text(path));
   try {
     const po::parsed_options parsed = po::parse_config_file(file, keys_, true);
     std::set<std::string> seen;

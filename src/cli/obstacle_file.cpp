@@ -1,10 +1,10 @@
 #include "clog/cli/obstacle_file.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 #include <sstream>
 
+#include "clog/cli/text_file.hpp"
 #include "clog/core/error.hpp"
 #include "clog/sweep/value_list.hpp"
 
@@ -41,9 +41,7 @@ struct Lines {
 };
 
 Lines read_lines(const std::string& path, const ObstacleFileRules& rules) {
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path))
-    throw Error("cannot read " + path + " (no such file, or not readable)");
+  std::istringstream file(read_text(path));
   Lines lines;
   int line_number = 0;
   for (std::string line; std::getline(file, line);) {

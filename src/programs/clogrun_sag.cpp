@@ -1,5 +1,4 @@
 #include <cstdio>
-#include <iostream>
 #include <string>
 
 #include "clog/cli/program.hpp"

@@ -1,12 +1,11 @@
 #include "profile_file.hpp"
 
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <optional>
 #include <sstream>
 #include <vector>
 
+#include "clog/cli/text_file.hpp"
 #include "clog/core/error.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "laboratory.hpp"
@@ -88,9 +87,7 @@ class Columns {
 template <typename Add>
 void read_lines(const std::string& path, const std::string& length_name, const ProfileScales& scales,
                 Add add) {
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path))
-    throw Error("cannot read " + path + " (no such file, or not readable)");
+  std::istringstream file(cli::read_text(path));
   std::optional<Columns> columns;
   int line_number = 0;
   for (std::string line; std::getline(file, line);) {

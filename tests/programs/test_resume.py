@@ -96,14 +96,13 @@ class Resumed(SweepTest):
     def test_a_signal_while_it_starts_stops_it_too(self):
         os.mkfifo(self.folder / "s.cfg")  # rank 0 waits for its config
         process = self.start(*SWEEP, "--config", "s.cfg")
-        with open(self.folder / "s.cfg", "w") as config:
+        with open(self.folder / "s.cfg", "w"):
             for rank in self.ranks_of(process):
                 os.kill(rank, signal.SIGUSR1)
-            config.write("time-step = 1e-3\n")
-        _, error = process.communicate(timeout=60)
+            _, error = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 75, error)
-        self.assertIn("stopped by a signal; the same command goes on", error)
-        self.assertLessEqual(set(table(self.folder / "s.h5").status), {"interrupted"})
+        self.assertIn("stopped by a signal while reading s.cfg", error)
+        self.assertFalse((self.folder / "s.h5").exists())
 
     def test_a_sweep_whose_journal_is_removed_leaves_the_table_to_the_next(self):
         self.succeed("clogsweep", *SWEEP[:-1], "whole.h5", ranks=2)

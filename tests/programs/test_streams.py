@@ -120,6 +120,32 @@ class Files(SweepTest):
         for command in (["clogsweep", *SMALL_SWEEP], ["clogsweep", "status", "s.h5"]):
             self.refuse(*command, words=["s.h5.journal", "not a regular file"])
 
+    def test_a_text_is_a_file_or_a_pipe(self):
+        *others, _ = self.make_others()
+        for name in others:
+            for command in (["clogsweep", "--config", name], ["clogrun", "array", *QUICK, "--obstacles", name, "--output", "r.h5"],
+                            ["clogfit", "calibrate", name, "--orifice=0.7"], ["clogfit", "deviation", name, name],
+                            ["clogfit", "drag", name]):
+                with self.subTest(command):
+                    self.refuse(*command, words=["cannot read " + name])
+        for ranks in (None, 2):
+            command = [*([str(MPIRUN), str(ranks)] if ranks else []), str(BIN / "clogsweep"), "--config", "/dev/stdin", "--dry-run"]
+            done = subprocess.run(command, input="seeds = 1..7\n", cwd=self.folder, capture_output=True, text=True, timeout=120)
+            self.assertIn("# 7 tasks", done.stdout, done.stderr)
+
+    def test_a_signal_ends_the_waiting_for_a_pipe(self):
+        os.mkfifo(self.folder / "pipe")
+        for arguments, exit_code in ((["clogsweep", "--config", "pipe"], 75),
+                                     (["clogrun", "sag", "--config", "pipe"], -signal.SIGTERM),
+                                     (["clogfit", "drag", "pipe"], -signal.SIGTERM)):
+            with self.subTest(arguments):
+                process = subprocess.Popen([str(BIN / arguments[0]), *arguments[1:]], cwd=self.folder, stderr=subprocess.PIPE)
+                writer = os.open(self.folder / "pipe", os.O_WRONLY)  # returns when the program has opened its end
+                process.terminate()
+                process.communicate(timeout=60)
+                os.close(writer)
+                self.assertEqual(process.returncode, exit_code)
+
 
 class Alone(SweepTest):
     """One rank that no launcher has started."""

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,12 @@ inline constexpr int exit_user_fault = 2;
 inline constexpr int exit_incomplete = 75;
 /// The reader of the output went away before its end: what a shell shows for programs that SIGPIPE has ended.
 inline constexpr int exit_reader_gone = 141;
+
+/// A signal ended what the program was waiting for; it leaves with exit_incomplete.
+class Stopped : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 /// What every program does first. Descriptors 0 to 2 that are closed are opened on /dev/null: files and
 /// sockets would get their numbers otherwise, and with them what is printed. A reader that goes away does not

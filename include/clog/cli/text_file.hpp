@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+
+namespace clog::cli {
+
+/// The whole text of a file, or of a pipe (`/dev/stdin`, `<(command)`), which is read to its end.
+/// @throws Error if it is something else, or cannot be read; Stopped if a signal comes meanwhile
+std::string read_text(const std::string& path);
+
+}  // namespace clog::cli
