@@ -26,7 +26,7 @@ const std::string over = "over";
 void announce(const std::string& output, const SweepLedger& ledger, bool may_grow, int num_ranks) {
   const std::int64_t num_runs = ledger.num_wanted();
   const auto num_left = static_cast<std::int64_t>(ledger.tasks_left().size());
-  if (!ledger.caution().empty()) std::cerr << ledger.caution() << std::endl;
+  if (!ledger.caution().empty()) cli::say(ledger.caution());
   if (num_left < num_runs)
     cli::say(output + " has " + std::to_string(num_runs - num_left) + " of " + std::to_string(num_runs) +
              " runs" + (num_left == 0 && !may_grow ? "; there is nothing left to do" : ""));

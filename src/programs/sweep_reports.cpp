@@ -265,10 +265,11 @@ damaged. 1: this is not so; `clogsweep salvage` keeps what is whole. 2: the file
     ++num_faults;
     std::cout << "task " << row.task << ": " << cli::printable(fault) << '\n';
   }
-  std::cout << cli::printable(line.get("file")) << ": " << file.rows.size() << " whole rows";
-  if (num_faults == 0) std::cout << " of " << plan_of(file).size() << " runs, all in order";
-  if (num_faults > 0) std::cout << ", " << num_faults << (num_faults == 1 ? " fault" : " faults");
-  std::cout << '\n';
+  std::cout << cli::printable(line.get("file")) << ": " << file.rows.size();
+  if (num_faults == 0)
+    std::cout << " rows of " << plan_of(file).size() << " runs, all whole\n";
+  else
+    std::cout << " whole rows, " << num_faults << (num_faults == 1 ? " fault\n" : " faults\n");
   if (const std::string words = store::caution(line.get("file"), file); !words.empty())
     std::cout << cli::printable(words) << '\n';
   const std::string journal = store::journal_path(line.get("file"));

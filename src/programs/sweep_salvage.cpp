@@ -2,6 +2,7 @@
 #include <string>
 
 #include "clog/cli/command_line.hpp"
+#include "clog/cli/printable.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/core/error.hpp"
 #include "clog/store/run_table.hpp"
@@ -32,9 +33,9 @@ int clogsweep_salvage(int argc, const char* const* argv) {
   const std::string output = line.require("output");
   store::refuse_existing(output);
   const store::Examination found = store::examine_sweep(line.get("file"));
-  for (const std::string& damage : found.damage) std::cout << damage << '\n';
+  for (const std::string& damage : found.damage) std::cout << cli::printable(damage) << '\n';
   store::publish_sweep(output, found.whole.rows, found.whole.provenance);
-  std::cout << output << ": " << found.whole.rows.size() << " rows that are whole" << std::endl;
+  std::cout << cli::printable(output) << ": " << found.whole.rows.size() << " rows that are whole\n";
   return cli::exit_success;
 }
 
