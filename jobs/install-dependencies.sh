@@ -4,7 +4,8 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build git                          # to build
   libopenmpi-dev openmpi-bin                         # MPI
-  libhdf5-dev libeigen3-dev libhwy-dev               # the table of runs; arrays; vector instructions
+  libhdf5-dev zlib1g-dev                             # the table of runs, its checksums
+  libeigen3-dev libhwy-dev                           # arrays; vector instructions
   libboost-dev libboost-program-options-dev          # random numbers and statistics; command line
   nlohmann-json3-dev libnlopt-cxx-dev                # JSON; the optimiser of clogfit calibrate
   libgtest-dev libbenchmark-dev                      # tests and benchmarks

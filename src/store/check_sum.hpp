@@ -1,6 +1,7 @@
 #pragma once
 
-#include <boost/crc.hpp>
+#include <zlib.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,9 +11,8 @@ namespace clog::store {
 
 /// CRC-32 as of zlib: no flip of a bit, nor of several within 32 that follow each other, leaves it as it was.
 inline std::uint32_t check_sum(std::span<const std::byte> bytes) {
-  boost::crc_32_type crc;
-  crc.process_bytes(bytes.data(), bytes.size());
-  return crc.checksum();
+  const auto* begin = reinterpret_cast<const Bytef*>(bytes.data());
+  return static_cast<std::uint32_t>(crc32_z(0, begin, bytes.size()));
 }
 inline std::uint32_t check_sum(std::string_view text) { return check_sum(std::as_bytes(std::span(text))); }
 
