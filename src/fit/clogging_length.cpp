@@ -21,6 +21,9 @@ Interval chi_squared_interval(double total_distance, double degrees_of_freedom, 
   return {2 * total_distance / quantile(complement(chi2, tail)), 2 * total_distance / quantile(chi2, tail)};
 }
 
+/// Pushed back on release counts as not moved; what is not a number stays so.
+double way(const Observation& run) { return run.distance < 0 ? 0 : run.distance; }
+
 /// In units of the estimate, u = lambda/(S/d), the likelihood falls by 2d (log u + 1/u - 1).
 Interval profile_interval(const CloggingLength& fit, double confidence) {
   const double allowed =
@@ -38,13 +41,24 @@ Interval profile_interval(const CloggingLength& fit, double confidence) {
 
 }  // namespace
 
+bool all_finite(std::span<const Observation> runs) {
+  return std::all_of(runs.begin(), runs.end(),
+                     [](const Observation& run) { return std::isfinite(run.distance); });
+}
+
 CloggingLength fit_clogging_length(std::span<const Observation> runs, double confidence) {
   if (!(confidence > 0 && confidence < 1)) throw std::invalid_argument("confidence must lie between 0 and 1");
   CloggingLength fit;
   fit.num_runs = static_cast<int>(runs.size());
   for (const Observation& run : runs) {
-    fit.total_distance += std::max(0.0, run.distance);
+    fit.total_distance += way(run);
     fit.num_clogs += run.clogged;
+  }
+  if (!std::isfinite(fit.total_distance)) {
+    constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+    fit.total_distance = fit.length = undefined;
+    fit.interval = fit.profile = {undefined, undefined};
+    return fit;
   }
   if (fit.num_clogs == 0) {
     fit.length = std::numeric_limits<double>::quiet_NaN();
@@ -68,13 +82,14 @@ double relative_half_width(std::int64_t num_clogs, double confidence) {
 }
 
 double least_squares_length(std::span<const Observation> runs) {
-  std::vector<double> clogs;
+  constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+  if (!all_finite(runs)) return undefined;
   double longest = 0;
-  for (const Observation& run : runs) {
-    longest = std::max(longest, run.distance);
-    if (run.clogged) clogs.push_back(std::max(0.0, run.distance));
-  }
-  if (clogs.size() < 2 || !(longest > 0)) return std::numeric_limits<double>::quiet_NaN();
+  for (const Observation& run : runs) longest = std::max(longest, run.distance);
+  std::vector<double> clogs;  // from here on lengths are in units of the longest way: nothing overflows
+  for (const Observation& run : runs)
+    if (run.clogged) clogs.push_back(way(run) / longest);
+  if (clogs.size() < 2 || !(longest > 0)) return undefined;
   std::sort(clogs.begin(), clogs.end());
   const auto squares = [&](double log_length) {
     double sum = 0;
@@ -85,9 +100,9 @@ double least_squares_length(std::span<const Observation> runs) {
     return sum;
   };
   // No fit is longer than a straight line to one clog in so many runs, nor much shorter than the first clog.
-  const double first = std::max(clogs.front(), 1e-6 * longest);
+  const double first = std::max(clogs.front(), 1e-6);
   const double low = std::log(first / (10 * std::log(static_cast<double>(runs.size()) + 2)));
-  const double high = std::log(10 * longest * static_cast<double>(runs.size()));
+  const double high = std::log(10 * static_cast<double>(runs.size()));
   // The sum may have a local minimum or two: begin from a grid's best.
   constexpr int num_points = 200;
   const double spacing = (high - low) / num_points;
@@ -95,7 +110,10 @@ double least_squares_length(std::span<const Observation> runs) {
   for (int i = 1; i <= num_points; ++i)
     if (const double point = low + i * spacing; squares(point) < squares(best)) best = point;
   constexpr int bits = std::numeric_limits<double>::digits / 2;
-  return std::exp(tools::brent_find_minima(squares, best - spacing, best + spacing, bits).first);
+  std::uintmax_t most_steps = 200;
+  const auto minimum = tools::brent_find_minima(squares, best - spacing, best + spacing, bits, most_steps);
+  const double length = longest * std::exp(minimum.first);
+  return std::isfinite(length) ? length : undefined;
 }
 
 }  // namespace clog::fit

@@ -32,7 +32,7 @@ MeanSpeed fit_speed_ratio(std::span<const Travel> runs) {
   }
   constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
   MeanSpeed fit{.num_runs = static_cast<int>(valid.size()), .mean = undefined, .standard_error = undefined};
-  if (valid.empty()) return fit;
+  if (valid.empty() || !std::isfinite(distance) || !std::isfinite(time)) return fit;
   fit.mean = distance / time;
   if (valid.size() == 1) return fit;
   Eigen::ArrayXd without(static_cast<Eigen::Index>(valid.size()));

@@ -13,7 +13,7 @@ Migration fit_migration(std::span<const Displacement> runs) {
     along += run.along;
     across += run.across;
   }
-  if (!(along > 0)) return {undefined, undefined};
+  if (!(along > 0) || std::isinf(along)) return {undefined, undefined};
   const double slope = across / along;
   if (runs.size() < 2) return {slope, undefined};
   double scatter = 0;

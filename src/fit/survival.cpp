@@ -7,12 +7,27 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace clog::fit {
 namespace {
 
 /// Of the mean distance; shorter ones count as that in the test, for Weibull's law knows no zero.
 constexpr double shortest_share = 1e-3;
+
+/// The interval of a falling function's root, [high/2, high] or further down; nothing if there is no root.
+template <class Function>
+std::optional<std::pair<double, double>> bracket(const Function& falling) {
+  constexpr int most_doublings = 200;  // 2^200 is beyond any ratio of two different doubles' logarithms
+  double high = 1;
+  for (int i = 0; falling(high) > 0; ++i, high *= 2)
+    if (i == most_doublings) return std::nullopt;
+  double low = high / 2;
+  for (int i = 0; falling(low) < 0; ++i, low /= 2)
+    if (i == most_doublings) return std::nullopt;
+  return std::pair(low, high);
+}
 
 /// Sums over runs with x = r/(longest r), so that no power overflows.
 struct PowerSums {
@@ -27,6 +42,35 @@ PowerSums power_sums(const std::vector<double>& log_x, double shape) {
     sums.power_log += power * log;
   }
   return sums;
+}
+
+/// The ways of all runs for the test: x = r/(longest r), no shorter than a share of their mean.
+struct LogWays {
+  double longest = 0;         ///< [sigma]
+  std::vector<double> log_x;  ///< of every run
+  double total = 0;           ///< sum of all x
+  double clog_logs = 0;       ///< sum of log x over clogs
+  bool clogs_differ = false;  ///< is there more than one distance with clogs?
+};
+/// Empty where no run has moved, or a distance is not finite.
+LogWays log_ways(std::span<const Observation> runs) {
+  LogWays ways;
+  for (const Observation& run : runs) ways.longest = std::max(ways.longest, run.distance);
+  if (!(ways.longest > 0) || !all_finite(runs)) return ways;
+  double sum = 0;
+  for (const Observation& run : runs) sum += std::max(0.0, run.distance / ways.longest);
+  const double shortest = shortest_share * sum / static_cast<double>(runs.size());
+  std::optional<double> some_clog;
+  for (const Observation& run : runs) {
+    const double x = std::max(run.distance / ways.longest, shortest);
+    ways.log_x.push_back(std::log(x));
+    ways.total += x;
+    if (!run.clogged) continue;
+    ways.clog_logs += ways.log_x.back();
+    ways.clogs_differ = ways.clogs_differ || (some_clog && *some_clog != ways.log_x.back());
+    some_clog = ways.log_x.back();
+  }
+  return ways;
 }
 
 }  // namespace
@@ -60,54 +104,32 @@ std::vector<SurvivalStep> survival_curve(std::span<const Observation> runs) {
 
 WeibullTest test_exponentiality(std::span<const Observation> runs) {
   WeibullTest test;
-  double longest = 0;
-  double sum = 0;
-  for (const Observation& run : runs) {
-    longest = std::max(longest, run.distance);
-    sum += std::max(0.0, run.distance);
-  }
-  const double shortest = shortest_share * sum / static_cast<double>(runs.size());
-  std::vector<double> log_x;
-  double clog_logs = 0;
-  double total = 0;
-  bool clogs_differ = false;
-  double some_clog = 0;
-  for (const Observation& run : runs) {
-    if (!(longest > 0)) break;
-    const double distance = std::max(run.distance, shortest);
-    log_x.push_back(std::log(distance / longest));
-    total += distance;
-    if (!run.clogged) continue;
-    clogs_differ = clogs_differ || (test.num_clogs > 0 && distance != some_clog);
-    some_clog = distance;
-    ++test.num_clogs;
-    clog_logs += log_x.back();
-  }
   constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-  if (!clogs_differ) {
-    test.shape = test.scale = test.exponential_likelihood = test.weibull_likelihood = undefined;
-    test.likelihood_ratio = test.p_value = undefined;
-    return test;
-  }
+  test.shape = test.scale = test.exponential_likelihood = test.weibull_likelihood = undefined;
+  test.likelihood_ratio = test.p_value = undefined;
+  test.num_clogs = static_cast<int>(
+      std::count_if(runs.begin(), runs.end(), [](const Observation& run) { return run.clogged; }));
+  const LogWays ways = log_ways(runs);
+  if (!ways.clogs_differ) return test;
+
   const auto d = static_cast<double>(test.num_clogs);
   // The derivative of the profile likelihood in the shape: falls from +infinity to a negative number.
   const auto score = [&](double shape) {
-    const PowerSums sums = power_sums(log_x, shape);
-    return 1 / shape + clog_logs / d - sums.power_log / sums.power;
+    const PowerSums sums = power_sums(ways.log_x, shape);
+    return 1 / shape + ways.clog_logs / d - sums.power_log / sums.power;
   };
-  double high = 1;
-  while (score(high) > 0) high *= 2;
-  double low = high / 2;
-  while (score(low) < 0) low /= 2;
+  const auto shapes = bracket(score);
+  if (!shapes) return test;
   std::uintmax_t most_steps = 200;
   const auto root = boost::math::tools::toms748_solve(
-      score, low, high, boost::math::tools::eps_tolerance<double>(), most_steps);
+      score, shapes->first, shapes->second, boost::math::tools::eps_tolerance<double>(), most_steps);
   test.shape = (root.first + root.second) / 2;
-  const double scale_power = power_sums(log_x, test.shape).power / d;  // (scale/longest)^shape
-  test.scale = longest * std::pow(scale_power, 1 / test.shape);
-  test.exponential_likelihood = -d * std::log(total / d) - d;
-  test.weibull_likelihood = d * (std::log(test.shape) - std::log(scale_power) - std::log(longest)) +
-                            (test.shape - 1) * clog_logs - d;
+  const double scale_power = power_sums(ways.log_x, test.shape).power / d;  // (scale/longest)^shape
+  test.scale = ways.longest * std::pow(scale_power, 1 / test.shape);
+  const double log_longest = std::log(ways.longest);
+  test.exponential_likelihood = -d * (std::log(ways.total / d) + log_longest) - d;
+  test.weibull_likelihood = d * (std::log(test.shape) - std::log(scale_power) - log_longest) +
+                            (test.shape - 1) * ways.clog_logs - d;
   test.likelihood_ratio = std::max(0.0, 2 * (test.weibull_likelihood - test.exponential_likelihood));
   test.p_value = cdf(complement(boost::math::chi_squared(1), test.likelihood_ratio));
   return test;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "absurd.hpp"
 #include "leukaemia.hpp"
 
 namespace clog::fit {
@@ -60,6 +61,22 @@ TEST(CloggingLength, SurvivesEmptyAndDegenerateData) {
   EXPECT_EQ(nothing.interval.lower, 0);
   const std::vector<Observation> pushed_back{{-0.01, true}, {0.0, true}};
   EXPECT_EQ(fit_clogging_length(pushed_back).length, 0);
+}
+
+TEST(CloggingLength, OfAbsurdDistancesIsALengthOrNotKnown) {
+  for (const std::vector<Observation>& runs : absurd_runs())
+    EXPECT_TRUE(is_length_or_unknown(fit_clogging_length(runs).length)) << runs.front().distance;
+}
+
+TEST(CloggingLength, OfADistanceThatIsNotANumberIsNotKnown) {
+  for (const double distance : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    const std::vector<Observation> runs{{3, true}, {distance, false}};
+    const CloggingLength fit = fit_clogging_length(runs);
+    EXPECT_EQ(fit.num_clogs, 1);
+    for (const double number :
+         {fit.length, fit.total_distance, fit.interval.lower, fit.interval.upper, fit.profile.lower})
+      EXPECT_TRUE(std::isnan(number));
+  }
 }
 
 TEST(CloggingLength, IntervalsCoverTheTruthAsOftenAsTheyClaim) {
@@ -118,6 +135,19 @@ TEST(LeastSquaresLength, MatchesAnotherOptimiser) {
   EXPECT_NEAR(least_squares_length(leukaemia_placebo), 9.2510204, 1e-4);
   EXPECT_NEAR(least_squares_length(leukaemia_treated), 42.134053, 1e-3);
   EXPECT_TRUE(std::isnan(least_squares_length(std::vector<Observation>{{3, true}, {5, false}})));
+}
+
+TEST(LeastSquaresLength, OfAbsurdDistancesIsALengthOrNotKnown) {
+  // Whoever minimises a sum that is not a number does so for ever.
+  for (const std::vector<Observation>& runs : absurd_runs())
+    EXPECT_TRUE(is_length_or_unknown(least_squares_length(runs))) << runs.front().distance;
+}
+
+TEST(LeastSquaresLength, HasNoUnit) {
+  // Multiplication by powers of two is exact.
+  std::vector<Observation> scaled(std::begin(leukaemia_treated), std::end(leukaemia_treated));
+  for (Observation& run : scaled) run.distance *= 0x1p-900;
+  EXPECT_EQ(least_squares_length(scaled), least_squares_length(leukaemia_treated) * 0x1p-900);
 }
 
 TEST(LeastSquaresLength, IsBiasedWhereTheFitIsNot) {

@@ -88,5 +88,11 @@ TEST(SpeedRatio, ScattersAsItsErrorSays) {
   EXPECT_NEAR(static_cast<double>(covered) / samples, 0.95, 0.015);
 }
 
+TEST(SpeedRatio, OfSumsThatAreNotFiniteIsNotKnown) {
+  const std::vector<Travel> long_ways{{1e308, 1}, {1e308, 1}}, long_times{{1, 1e308}, {1, 1e308}};
+  EXPECT_TRUE(std::isnan(fit_speed_ratio(long_ways).mean));
+  EXPECT_TRUE(std::isnan(fit_speed_ratio(long_times).mean));
+}
+
 }  // namespace
 }  // namespace clog::fit

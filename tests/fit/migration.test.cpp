@@ -46,5 +46,10 @@ TEST(Migration, IsUndefinedWithoutDistance) {
   EXPECT_TRUE(std::isnan(one.standard_error));
 }
 
+TEST(Migration, OfASumThatIsNotFiniteIsNotKnown) {
+  const std::vector<Displacement> runs{{1e308, 1}, {1e308, 1}};
+  EXPECT_TRUE(std::isnan(fit_migration(runs).slope));
+}
+
 }  // namespace
 }  // namespace clog::fit

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "absurd.hpp"
 #include "leukaemia.hpp"
 
 namespace clog::fit {
@@ -90,6 +91,25 @@ TEST(Exponentiality, SeesClogsAtRelease) {
   EXPECT_EQ(test.num_clogs, 30);
   EXPECT_LT(test.shape, 0.6);
   EXPECT_LT(test.p_value, 1e-4);
+}
+
+TEST(Exponentiality, OfAbsurdDistancesIsTestedOrNotKnown) {
+  for (const std::vector<Observation>& runs : absurd_runs()) {
+    const WeibullTest test = test_exponentiality(runs);
+    EXPECT_TRUE(is_length_or_unknown(test.shape)) << runs.front().distance;
+    EXPECT_TRUE(std::isnan(test.p_value) || (test.p_value >= 0 && test.p_value <= 1));
+  }
+}
+
+TEST(SurvivalCurve, OfAbsurdDistancesFallsFromOneToZero) {
+  for (const std::vector<Observation>& runs : absurd_runs()) {
+    double before = 1;
+    for (const SurvivalStep& step : survival_curve(runs)) {
+      EXPECT_GE(step.probability, 0);
+      EXPECT_LT(step.probability, before);
+      before = step.probability;
+    }
+  }
 }
 
 TEST(Exponentiality, SurvivesDegenerateData) {

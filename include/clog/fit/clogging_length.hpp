@@ -12,6 +12,9 @@ struct Observation {
   bool clogged;
 };
 
+/// What follows from a distance that is not is not known, and NaN.
+bool all_finite(std::span<const Observation> runs);
+
 struct Interval {
   double lower;
   double upper;
@@ -42,7 +45,8 @@ struct CloggingLength {
 /// `profile` holds all lambda with 2 (l(S/d) - l(lambda)) below chi-squared's quantile for one degree of
 /// freedom, l(lambda) = -d log lambda - S/lambda.
 ///
-/// Distances below zero (a droplet pushed back on release) count as zero.
+/// Distances below zero (a droplet pushed back on release) count as zero. All lengths are NaN where the sum
+/// of the distances is not finite.
 /// @throws std::invalid_argument unless 0 < confidence < 1
 CloggingLength fit_clogging_length(std::span<const Observation> runs, double confidence = 0.95);
 
@@ -52,7 +56,7 @@ double relative_half_width(std::int64_t num_clogs, double confidence = 0.95);
 
 /// Least squares of exp(-r/lambda) on P(r) = 1 - N_clog(r)/N at every clog, as published (Cheng et al.,
 /// appendix C) [sigma]. Biased: it takes a censored run for one that would have gone on for ever, and weighs
-/// points as if they were independent. NaN for fewer than two clogs.
+/// points as if they were independent. NaN for fewer than two clogs, and for distances that are not finite.
 double least_squares_length(std::span<const Observation> runs);
 
 }  // namespace clog::fit

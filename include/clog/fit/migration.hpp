@@ -12,7 +12,7 @@ struct Displacement {
 
 /// Lateral displacement per distance travelled, the tangent of the migration angle.
 struct Migration {
-  double slope = 0;           ///< NaN for no distance
+  double slope = 0;           ///< NaN for no distance, and for one that is not finite
   double standard_error = 0;  ///< from the scatter between runs; NaN for fewer than two
 };
 

@@ -27,8 +27,8 @@ std::vector<SurvivalStep> survival_curve(std::span<const Observation> runs);
 /// 11 % have p < 0.05.
 struct WeibullTest {
   int num_clogs = 0;
-  double shape = 0;                   ///< NaN for fewer than two clogs at different distances
-  double scale = 0;                   ///< [sigma]
+  double shape = 0;  ///< NaN for fewer than two clogs at different distances, or infinite ones
+  double scale = 0;  ///< [sigma]
   double exponential_likelihood = 0;  ///< log, maximal
   double weibull_likelihood = 0;      ///< log, maximal
   double likelihood_ratio = 0;        ///< twice the difference, chi-squared with one degree of freedom
