@@ -19,20 +19,31 @@ using Clock = std::chrono::steady_clock;
 
 std::string number(double value) { return sweep::shortest(value); }
 
+void print_task(const sweep::Plan& plan, std::int64_t task) {
+  const sweep::RunRow row = sweep::describe(plan.task(task));
+  std::cout << task << ' ' << row.model.view() << ' ' << number(row.line_tension) << ' '
+            << number(row.wall_stiffness) << ' ' << number(row.obstacle_gap) << ' '
+            << number(row.obstacle_diameter) << ' '
+            << (row.obstacle_filling.view() == "saturated" ? "saturated" : number(row.obstacle_density))
+            << ' ' << number(row.near_wall_drag) << ' ' << number(row.terminal_speed) << ' ' << row.vertices
+            << ' ' << number(row.time_step) << ' ' << number(row.max_time) << ' ' << row.seed << '\n';
+}
+
 }  // namespace
 
 void print_tasks(const sweep::Plan& plan) {
+  constexpr std::int64_t most_lines = 1000;
+  constexpr std::int64_t lines_at_an_end = 20;
+  const std::int64_t num_skipped = plan.size() > most_lines ? plan.size() - 2 * lines_at_an_end : 0;
   std::cout << "# task model line_tension wall_stiffness obstacle_gap obstacle_diameter obstacle_density "
                "near_wall_drag "
                "terminal_speed vertices time_step max_time seed\n";
-  for (std::int64_t i = 0; i < plan.size() && !cli::stop_signalled(); ++i) {
-    const sweep::RunRow row = sweep::describe(plan.task(i));
-    std::cout << i << ' ' << row.model.view() << ' ' << number(row.line_tension) << ' '
-              << number(row.wall_stiffness) << ' ' << number(row.obstacle_gap) << ' '
-              << number(row.obstacle_diameter) << ' '
-              << (row.obstacle_filling.view() == "saturated" ? "saturated" : number(row.obstacle_density))
-              << ' ' << number(row.near_wall_drag) << ' ' << number(row.terminal_speed) << ' ' << row.vertices
-              << ' ' << number(row.time_step) << ' ' << number(row.max_time) << ' ' << row.seed << '\n';
+  for (std::int64_t task = 0; task < plan.size() && !cli::stop_signalled(); ++task) {
+    if (num_skipped > 0 && task == lines_at_an_end) {
+      std::cout << "# ... " << num_skipped << " more ...\n";
+      task += num_skipped;
+    }
+    print_task(plan, task);
   }
   if (cli::stop_signalled()) return;
   const std::int64_t seeds = plan.size() / plan.num_groups();

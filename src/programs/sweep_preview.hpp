@@ -7,7 +7,7 @@ namespace clog {
 
 /// What a sweep would do, on the standard output.
 
-/// Every task, and their number.
+/// The tasks, and their number; of more than a thousand the first and the last.
 void print_tasks(const sweep::Plan& plan);
 /// How long the sweep takes at most, from a short piece of the first and the last parameter set: what a step
 /// costs per vertex there, times the steps of all runs if none of them ends before max-time.

@@ -107,6 +107,19 @@ class Sweep(ProgramTest):
         self.assertRegex(lines[-1], "^# at most [0-9.e+-]+ core-hours on this machine")
         self.assertEqual(self.snapshot(), {})
 
+    def test_a_dry_run_of_many_tasks_shows_the_first_and_the_last(self):
+        for seeds, num_tasks in [("1..500", 1000), ("1..501", 1002), ("1..1000000", 2_000_000)]:
+            with self.subTest(tasks=num_tasks):
+                told = self.succeed("clogsweep", *SMALL, "line-tension=2,3", f"seeds={seeds}", "--dry-run").stdout
+                tasks = [int(line.split()[0]) for line in told.splitlines() if line[0].isdigit()]
+                self.assertIn(f"# {num_tasks} tasks: 2 parameter sets, {num_tasks // 2} seeds each", told)
+                if num_tasks == 1000:
+                    self.assertEqual(tasks, list(range(1000)))
+                    self.assertNotIn("more", told)
+                else:
+                    self.assertEqual(tasks, [*range(20), *range(num_tasks - 20, num_tasks)])
+                    self.assertIn(f"# ... {num_tasks - 40} more ...", told)
+
     def test_a_dry_run_foresees_the_core_hours_of_every_step(self):
         done = self.succeed("clogsweep", *SMALL, "obstacle-gap=1.2,1.3", "max-time=1000", "seeds=1..10", "time-step=1e-3", "--dry-run")
         words = done.stdout.splitlines()[-1].split()
