@@ -12,18 +12,13 @@
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/settings.hpp"
 
+#include "stored_sweep.hpp"
 namespace clog {
 namespace {
 
 /// A sweep may grow along these. In all others a file and a sweep that goes on with it have values in common.
 const std::set<std::string> axes = {"line-tension",     "wall-stiffness", "obstacle-gap",
                                     "obstacle-density", "near-wall-drag", "seeds"};
-
-std::string attribute(const store::Provenance& provenance, const std::string& name) {
-  const auto found = std::find_if(provenance.begin(), provenance.end(),
-                                  [&](const auto& attribute) { return attribute.first == name; });
-  return found == provenance.end() ? "" : found->second;
-}
 
 void set_attribute(store::Provenance& provenance, const std::string& name, const std::string& text) {
   std::erase_if(provenance, [&](const auto& attribute) { return attribute.first == name; });
@@ -113,8 +108,7 @@ void SweepLedger::take_over(const store::SweepFile& file, const sweep::Settings&
       throw Error("cannot continue with " + path_ + " (its runs are of model version " +
                   std::to_string(row.model_version) + ", this program's is " + std::to_string(model_version) +
                   ": the same parameters would give other results)" + remedy);
-  const std::string differing =
-      differing_keys(sweep::Settings::from_config(attribute(file.provenance, "config")), settings);
+  const std::string differing = differing_keys(stored_settings(path_, file.provenance), settings);
   if (!differing.empty())
     throw Error("cannot continue with " + path_ + " (it holds runs with other settings: " + differing + ")" +
                 remedy);

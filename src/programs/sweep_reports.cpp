@@ -25,6 +25,7 @@
 #include "clog/sweep/run_job.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "group_table.hpp"
+#include "stored_sweep.hpp"
 #include "sweep_input.hpp"
 #include "time_left.hpp"
 
@@ -33,12 +34,6 @@ namespace {
 
 namespace po = boost::program_options;
 using sweep::RunRow;
-
-sweep::Plan plan_of(const store::SweepFile& file) {
-  for (const auto& [name, text] : file.provenance)
-    if (name == "config") return sweep::Plan(sweep::Settings::from_config(text));
-  throw Error("the file does not say what its sweep was; give a file written by clogsweep --output");
-}
 
 cli::CommandLine command(const char* name, const char* usage) {
   cli::CommandLine line(std::string("clogsweep ") + name, usage, cli::CommandLine::SweepKeys::none);
@@ -73,16 +68,13 @@ struct Status {
 
 Status status_of(const std::string& path, const store::SweepFile& file, double confidence) {
   Status status;
-  const std::int64_t planned = plan_of(file).size();
-  status.num_runs = planned;
-  for (const auto& [name, text] : file.provenance) {
-    if (name == "stopping_rule") status.stopping_rule = text;
-    if (name == "num_wanted") status.num_runs = sweep::to_integer(text);
-  }
+  const sweep::Plan plan = stored_plan(path, file.provenance);
+  status.num_runs = stored_num_wanted(path, file.provenance, plan);
+  status.stopping_rule = attribute(file.provenance, "stopping_rule");
   status.is_alive = store::Journal::is_open(store::journal_path(path));
   std::vector<double> finished, running;
   for (const RunRow& row : file.rows) {
-    if (row.task >= planned) ++status.num_runs;  // of an earlier config
+    if (row.task >= plan.size()) ++status.num_runs;  // of an earlier config
     ++status.by_status[std::string(row.status.view())];
     status.core_hours += row.wall_seconds / 3600;
     const bool is_over = row.status.view() != "running" && row.status.view() != "interrupted";
@@ -267,7 +259,7 @@ damaged. 1: this is not so; `clogsweep salvage` keeps what is whole. 2: the file
   }
   std::cout << cli::printable(line.get("file")) << ": " << file.rows.size();
   if (num_faults == 0)
-    std::cout << " rows of " << plan_of(file).size() << " runs, all whole\n";
+    std::cout << " rows of " << stored_plan(line.get("file"), file.provenance).size() << " runs, all whole\n";
   else
     std::cout << " whole rows, " << num_faults << (num_faults == 1 ? " fault\n" : " faults\n");
   if (const std::string words = store::caution(line.get("file"), file); !words.empty())
@@ -303,7 +295,7 @@ that went on under another set than it began with cannot be repeated.
         "cannot replay task " + line.get("task") +
         " bit for bit (it was interrupted and went on under another instruction set, it is not known at "
         "which step); --instruction-set pins one for all sessions of a sweep");
-  const sweep::Plan plan = plan_of(file);
+  const sweep::Plan plan = stored_plan(line.get("file"), file.provenance);
   const std::int64_t task = task_in_plan(plan, row);
   if (row.model.view() == "dp") use_instruction_set(std::string(row.instruction_set.view()));
   sweep::RunJob job(plan, task);

@@ -391,9 +391,12 @@ Settings::Settings() {
 Settings Settings::from_config(const std::string& text) {
   Settings settings;
   std::istringstream in(text);
-  for (std::string line; std::getline(in, line);)
-    if (const auto equals = line.find(" = "); equals != std::string::npos && line[0] != '#')
-      settings.set(line.substr(0, equals), line.substr(equals + 3));
+  for (std::string line; std::getline(in, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    const auto equals = line.find(" = ");
+    if (equals == std::string::npos) throw Error("'" + line.substr(0, 60) + "' is not key = value");
+    settings.set(line.substr(0, equals), line.substr(equals + 3));
+  }
   return settings;
 }
 

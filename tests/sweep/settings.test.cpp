@@ -91,5 +91,10 @@ TEST(PresetName, IsFoundFromTheValuesUsed) {
   }
 }
 
+TEST(Settings, RefuseAConfigWithALineThatIsNone) {
+  EXPECT_THROW(Settings::from_config("line-tension - 3\n"), Error);
+  EXPECT_EQ(Settings::from_config("\n# a comment\nline-tension = 3\n").text("line-tension"), "3");
+}
+
 }  // namespace
 }  // namespace clog::sweep
