@@ -48,6 +48,9 @@ bool has_result(const sweep::RunRow& row) {
 }
 
 std::string differing_keys(const sweep::Settings& there, const sweep::Settings& here) {
+/// A run of which nothing is left but what it is and what it has cost so far.
+void begin_anew(sweep::RunRow& row) { sweep::record({.status = RunStatus::interrupted}, row); }
+
   std::string all;
   for (const sweep::Key& key : sweep::keys())
     if (!axes.contains(key.name) && key.name != "preset" &&
@@ -219,12 +222,7 @@ void SweepLedger::report(const parallel::Report& report) {
 
 void SweepLedger::withdraw_failure(std::int64_t task) {
   Entry& entry = runs_.at(task);
-  const std::int64_t attempt = entry.row.attempt;
-  const double seconds = entry.row.wall_seconds;
-  entry.row = new_row(task);  // what a bad rank made of it is no distance so far
-  entry.row.attempt = attempt;
-  entry.row.wall_seconds = seconds;
-  entry.row.status = "interrupted";
+  begin_anew(entry.row);  // what a bad rank made of it is no distance so far
   journal_.add(entry.row, entry.snapshot);
   is_published_ = false;
 }
@@ -244,8 +242,18 @@ void SweepLedger::tick() {
 void SweepLedger::publish() {
   std::vector<sweep::RunRow> rows;
   rows.reserve(runs_.size() + other_runs_.size());
-  for (const auto& [task, entry] : runs_) rows.push_back(entry.row);
-  for (const Entry& entry : other_runs_) rows.push_back(entry.row);
+/// As readers see it: a run that will be tried again has not failed yet, and where it failed is no distance
+/// so far.
+sweep::RunRow SweepLedger::published(const sweep::RunRow& row) const {
+  if (row.status.view() != "failed" || is_over(row)) return row;
+  sweep::RunRow next = row;
+  begin_anew(next);
+  ++next.attempt;
+  return next;
+}
+
+  for (const auto& [task, entry] : runs_) rows.push_back(published(entry.row));
+  for (const Entry& entry : other_runs_) rows.push_back(published(entry.row));
   journal_.flush();
   store::publish_sweep(path_, rows, provenance_);
   is_published_ = true;

@@ -86,5 +86,6 @@ class SweepLedger {
   void publish();
   void shorten_journal();
 };
+  sweep::RunRow published(const sweep::RunRow& row) const;
 
 }  // namespace clog

@@ -38,8 +38,14 @@ class LedgerTest : public testing::Test {
   static parallel::Report report(const SweepLedger& ledger, std::int64_t task, const char* status,
                                  double distance, std::vector<std::byte> snapshot = {}) {
     parallel::Report report{ledger.row(task), std::move(snapshot)};
-    report.row.status = status;
-    report.row.distance = distance;
+    sweep::RunRow& row = report.row;
+    row.status = status;
+    row.distance = distance;
+    row.steps = 1'000'000;
+    row.time = static_cast<double>(row.steps) * row.time_step;
+    row.shape_parameter = 1.2;
+    if (row.status.view() == "clogged") row.clogged_by = "certified";
+    if (row.status.view() == "failed") row.message = "diverged";
     return report;
   }
   const std::vector<std::byte> snapshot_{10, std::byte{7}};
@@ -65,7 +71,6 @@ TEST_F(LedgerTest, TakesNoDistanceFromAnAttemptThatDoesNotCount) {
   SweepLedger ledger = open();
   ledger.start(0, 1);
   parallel::Report failed = report(ledger, 0, "failed", std::nan(""));
-  failed.row.message = "diverged";
   failed.row.wall_seconds = 3;
   ledger.report(failed);
   ledger.withdraw_failure(0);
@@ -84,6 +89,51 @@ TEST_F(LedgerTest, KeepsAFailureThatCounts) {
   }
   EXPECT_EQ(open().tasks_left(), std::vector<std::int64_t>{0});
   EXPECT_EQ(open(2).tasks_left(), (std::vector<std::int64_t>{0, 1}));
+}
+
+TEST_F(LedgerTest, ShowsAFailureToReadersOnceItsAttemptsAreUsedUp) {
+  SweepLedger ledger = open(2);
+  const auto shown = [&] {
+    ledger.finish();
+    return store::read_sweep(path()).rows.at(0);
+  };
+  ledger.start(0, 0);
+  ledger.report(report(ledger, 0, "failed", std::nan("")));
+  EXPECT_EQ(shown().status.view(), "interrupted");
+  EXPECT_EQ(shown().attempt, 2);
+  EXPECT_EQ(shown().message.view(), "");
+  EXPECT_EQ(shown().distance, 0);
+  ledger.start(0, 0);
+  EXPECT_EQ(shown().status.view(), "running");
+  ledger.report(report(ledger, 0, "failed", std::nan("")));
+  EXPECT_EQ(shown().status.view(), "failed");
+  EXPECT_EQ(shown().attempt, 2);
+  EXPECT_EQ(shown().message.view(), "diverged");
+}
+
+TEST_F(LedgerTest, CountsAnAttemptThatFailedThoughReadersDoNotSeeIt) {
+  {
+    SweepLedger ledger = open(2);
+    ledger.start(0, 0);
+    ledger.report(report(ledger, 0, "failed", 0));
+    ledger.finish();
+  }
+  EXPECT_EQ(open(2).start(0, 0).attempt, 2);
+  std::filesystem::remove(store::journal_path(path()));
+  EXPECT_EQ(open(2).start(0, 0).attempt, 2);
+}
+
+TEST_F(LedgerTest, NamesTheFileWhoseConfigItCannotRead) {
+  open().finish();
+  store::publish_sweep(path(), {}, {{"config", "line-tension = many\n"}});
+  try {
+    open();
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("cannot read " + path() + " (its attribute config: invalid"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 TEST_F(LedgerTest, KeepsAResultOfTheTableWhateverTheJournalLacks) {
