@@ -14,10 +14,6 @@
 namespace clog {
 namespace {
 
-/// Beyond this the integration has broken down: free fall without drag over a whole box stays below it.
-constexpr double diverged_energy_ratio = 1e8;
-/// Compressibility and line tension keep a droplet far within these.
-constexpr double diverged_area_error = 0.5;  // relative
 /// A droplet just released is slow; it cannot be told from a clogged one before it had the time to fall.
 constexpr double relaxation_times_before_a_clog = 10;
 

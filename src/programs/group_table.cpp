@@ -169,6 +169,7 @@ std::string to_text(const std::vector<Group>& groups, double confidence) {
       std::any_of(groups.begin(), groups.end(), [](const Group& group) { return !group.doubts.empty(); });
   if (with_doubts) lines[0].push_back("note");
   int num_failed = 0;
+  int num_damaged = 0;
   int num_interrupted = 0;
   for (const Group& group : groups) {
     std::vector<std::string>& line = lines.emplace_back();
@@ -178,6 +179,7 @@ std::string to_text(const std::vector<Group>& groups, double confidence) {
     for (std::string& cell : result_cells(group, optional)) line.push_back(std::move(cell));
     if (with_doubts) line.push_back(letters(group.doubts));
     num_failed += group.num_failed;
+    num_damaged += group.num_damaged;
     num_interrupted += group.num_interrupted;
   }
   text += "\n\n" + aligned(lines) + legend(groups);
@@ -186,6 +188,8 @@ std::string to_text(const std::vector<Group>& groups, double confidence) {
     text += "   " + std::to_string(num_interrupted) + " runs are under way or interrupted\n";
   if (num_failed > 0)
     text += "   " + std::to_string(num_failed) + " failed; their column `message` says why\n";
+  if (num_damaged > 0)
+    text += "   " + std::to_string(num_damaged) + " damaged; clogsweep verify names them\n";
   return text;
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "clog/core/units.hpp"
+#include "clog/sweep/row_check.hpp"
 
 namespace clog {
 namespace {
@@ -33,6 +34,7 @@ std::vector<Doubt> doubts_about(const Group& group) {
   if (group.clogging.num_clogs < few) doubts.push_back(Doubt::few_clogs);
   if (group.num_flowing > 0) doubts.push_back(Doubt::censored_by_time);
   if (group.num_interrupted > 0 || group.num_failed > 0) doubts.push_back(Doubt::incomplete);
+  if (group.num_damaged > 0) doubts.push_back(Doubt::damaged);
   if (hangs_on_mesh(group)) doubts.push_back(Doubt::held_by_mesh);
   return doubts;
 }
@@ -116,8 +118,11 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
     std::vector<fit::Displacement> displacements;
     std::vector<const sweep::RunRow*> valid;
     for (const sweep::RunRow* run : runs) {
-      group.num_failed += run->status.view() == "failed";
-      if (run->status.view() == "failed") continue;
+      const bool is_damaged = !sweep::fault_of(*run).empty();
+      const bool is_failed = !is_damaged && run->status.view() == "failed";
+      group.num_damaged += is_damaged;
+      group.num_failed += is_failed;
+      if (is_damaged || is_failed) continue;
       group.num_flowing += run->status.view() == "flowing";
       group.num_interrupted += run->status.view() == "interrupted" || run->status.view() == "running";
       observations.push_back({run->distance, run->status.view() == "clogged"});
@@ -185,6 +190,7 @@ std::vector<Field> result_fields(const Group& group) {
       {"flowing", value_of(group.num_flowing)},
       {"interrupted", value_of(group.num_interrupted)},
       {"failed", value_of(group.num_failed)},
+      {"damaged", value_of(group.num_damaged)},
       {"total_distance", value_of(group.clogging.total_distance)},
       {"clogging_length", value_of(group.clogging.length)},
       {"clogging_length_lower", value_of(group.clogging.interval.lower)},

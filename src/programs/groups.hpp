@@ -23,6 +23,7 @@ enum class Doubt {
                      ///< more
   censored_by_time,  ///< runs ended by max-time, slow ones nearer than fast ones
   incomplete,        ///< runs are under way, interrupted or failed
+  damaged,           ///< rows hold what cannot be (sweep::fault_of)
   held_by_mesh,      ///< a third of the clogs or more are wrapped or hybrid; the polygon's corners hold those
 };
 /// One letter each for tables, a word for files, a sentence for readers.
@@ -41,6 +42,8 @@ inline constexpr DoubtText doubt_texts[] = {
      "runs ended by max-time: right if slow droplets are as likely to clog as fast ones"},
     {Doubt::incomplete, 'i', "incomplete",
      "runs are under way or interrupted (they count as not clogged so far) or have failed (left out)"},
+    {Doubt::damaged, 'd', "damaged",
+     "rows hold what cannot be (left out; clogsweep verify names them): the file is damaged"},
     {Doubt::held_by_mesh, 'm', "held_by_mesh",
      "a third of the clogs or more hang over obstacles: how far such droplets get depends on the number of "
      "vertices"}};
@@ -64,7 +67,8 @@ struct Group {
   fit::Migration migration;
   int num_flowing = 0;
   int num_interrupted = 0;
-  int num_failed = 0;  ///< left out of all fits
+  int num_failed = 0;   ///< left out of all fits
+  int num_damaged = 0;  ///< likewise
   std::vector<Doubt> doubts;
 };
 

@@ -30,6 +30,10 @@ void announce(const std::string& output, const SweepLedger& ledger, bool may_gro
   if (num_left < num_runs)
     cli::say(output + " has " + std::to_string(num_runs - num_left) + " of " + std::to_string(num_runs) +
              " runs" + (num_left == 0 && !may_grow ? "; there is nothing left to do" : ""));
+  if (ledger.num_faulty() > 0)
+    cli::say(output + ": " + std::to_string(ledger.num_faulty()) +
+             (ledger.num_faulty() == 1 ? " row holds" : " rows hold") +
+             " what cannot be; what the sweep has of these runs is computed again");
   if (ledger.num_unreadable() > 0)
     cli::say(store::journal_path(output) + ": " + std::to_string(ledger.num_unreadable()) +
              (ledger.num_unreadable() == 1 ? " record is" : " records are") +

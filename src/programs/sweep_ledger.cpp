@@ -9,10 +9,11 @@
 
 #include "clog/core/error.hpp"
 #include "clog/store/regular_file.hpp"
+#include "clog/sweep/row_check.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/settings.hpp"
-
 #include "stored_sweep.hpp"
+
 namespace clog {
 namespace {
 
@@ -47,10 +48,10 @@ bool has_result(const sweep::RunRow& row) {
   return row.status.view() == "clogged" || row.status.view() == "flowing";
 }
 
-std::string differing_keys(const sweep::Settings& there, const sweep::Settings& here) {
 /// A run of which nothing is left but what it is and what it has cost so far.
 void begin_anew(sweep::RunRow& row) { sweep::record({.status = RunStatus::interrupted}, row); }
 
+std::string differing_keys(const sweep::Settings& there, const sweep::Settings& here) {
   std::string all;
   for (const sweep::Key& key : sweep::keys())
     if (!axes.contains(key.name) && key.name != "preset" &&
@@ -97,6 +98,8 @@ SweepLedger::SweepLedger(std::string path, const sweep::Plan& plan, const sweep:
     // A run that has its result in the table is not over in the journal if its last record there was lost.
     if (has_result(entry.row) || !with_results.contains(run)) known[std::move(run)] = std::move(entry);
   }
+  num_faulty_ = static_cast<std::int64_t>(
+      std::erase_if(known, [](const auto& run) { return !sweep::fault_of(run.second.row).empty(); }));
   set_attribute(provenance_, "sessions", latest_lines(attribute(provenance_, "sessions") + session));
   find_tasks(std::move(known));
   publish();
@@ -239,9 +242,6 @@ void SweepLedger::tick() {
   publication_time_ = last_publication_ - begin;
 }
 
-void SweepLedger::publish() {
-  std::vector<sweep::RunRow> rows;
-  rows.reserve(runs_.size() + other_runs_.size());
 /// As readers see it: a run that will be tried again has not failed yet, and where it failed is no distance
 /// so far.
 sweep::RunRow SweepLedger::published(const sweep::RunRow& row) const {
@@ -252,6 +252,9 @@ sweep::RunRow SweepLedger::published(const sweep::RunRow& row) const {
   return next;
 }
 
+void SweepLedger::publish() {
+  std::vector<sweep::RunRow> rows;
+  rows.reserve(runs_.size() + other_runs_.size());
   for (const auto& [task, entry] : runs_) rows.push_back(published(entry.row));
   for (const Entry& entry : other_runs_) rows.push_back(published(entry.row));
   journal_.flush();

@@ -37,6 +37,8 @@ class SweepLedger {
   const std::vector<std::int64_t>& tasks_left() const { return tasks_left_; }
   /// Of those, how many have a snapshot to go on from.
   std::int64_t num_resumed() const;
+  /// Runs whose row held what cannot be: they are computed again.
+  std::int64_t num_faulty() const { return num_faulty_; }
   /// Records of the journal that were damaged: their runs are a few seconds behind, or begin anew.
   std::int64_t num_unreadable() const { return journal_.num_unreadable(); }
 
@@ -67,6 +69,7 @@ class SweepLedger {
   std::map<std::int64_t, Entry> runs_;  // by task; those that have begun
   std::vector<Entry> other_runs_;       // in the file, but not of this plan
   std::int64_t num_wanted_;
+  std::int64_t num_faulty_ = 0;
   std::vector<std::int64_t> tasks_left_;
   /// What is known of a task from earlier sessions or attempts.
   struct Past {
@@ -83,9 +86,9 @@ class SweepLedger {
   sweep::RunRow new_row(std::int64_t task) const;
   void take_over(const store::SweepFile& file, const sweep::Settings& settings);
   void find_tasks(std::unordered_map<std::string, Entry> known);
+  sweep::RunRow published(const sweep::RunRow& row) const;
   void publish();
   void shorten_journal();
 };
-  sweep::RunRow published(const sweep::RunRow& row) const;
 
 }  // namespace clog

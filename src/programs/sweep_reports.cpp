@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <string>
 #include <thread>
 #include <unordered_map>
@@ -22,6 +20,7 @@
 #include "clog/store/journal.hpp"
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/plan.hpp"
+#include "clog/sweep/row_check.hpp"
 #include "clog/sweep/run_job.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "group_table.hpp"
@@ -127,18 +126,6 @@ std::string to_json(const Status& status, double confidence) {
                       ? nlohmann::ordered_json::array()
                       : nlohmann::ordered_json::parse(to_json(status.groups, confidence)).at("groups");
   return all.dump(2) + '\n';
-}
-
-/// What is wrong with a row; empty if nothing is.
-std::string fault_of(const RunRow& row) {
-  static const std::set<std::string_view> known = {"clogged", "flowing", "failed", "running", "interrupted"};
-  if (!known.contains(row.status.view())) return "unknown status '" + std::string(row.status.view()) + "'";
-  if (row.status.view() == "failed") return row.message.view().empty() ? "failed without a reason" : "";
-  if (!std::isfinite(row.distance) || !std::isfinite(row.time) || !std::isfinite(row.shape_parameter))
-    return "a result that is not a number";
-  if (row.time < 0 || row.time > row.max_time + row.time_step || row.steps < 0 || row.wall_seconds < 0)
-    return "a time out of its range";
-  return "";
 }
 
 std::string to_text(const store::Journal::Contents& journal, bool is_alive) {
@@ -250,7 +237,7 @@ damaged. 1: this is not so; `clogsweep salvage` keeps what is whole. 2: the file
   auto num_faults = static_cast<std::int64_t>(found.damage.size());
   std::unordered_map<std::string, std::int64_t> seen;
   for (const RunRow& row : file.rows) {
-    std::string fault = fault_of(row);
+    std::string fault = sweep::fault_of(row);
     const auto [first, is_new] = seen.emplace(sweep::identity(row), row.task);
     if (fault.empty() && !is_new) fault = "the same run as task " + std::to_string(first->second);
     if (fault.empty()) continue;

@@ -1,8 +1,12 @@
 #include "clog/sweep/run_row.hpp"
 
+#include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <limits>
+#include <utility>
 
+#include "clog/core/error.hpp"
 #include "clog/core/instruction_set.hpp"
 #include "clog/core/jamming.hpp"
 #include "clog/sweep/settings.hpp"
@@ -22,15 +26,68 @@ const char* name(PerimeterSpring spring) {
   return "unknown";
 }
 
-/// Obstacles per sigma^2; NaN for a saturated mixture, whose jamming limit is not known beforehand.
+const char* name(Model model) { return model == Model::dp ? "dp" : "sp"; }
+const char* name(WallContact contact) { return contact == WallContact::edge ? "edge" : "vertex"; }
+const char* name(SelfContact contact) { return contact == SelfContact::on ? "on" : "off"; }
+const char* name(Gravity gravity) { return gravity == Gravity::vertex ? "vertex" : "area"; }
+
+/// The one of `all` that is called so.
+template <class Enum, std::size_t N>
+Enum meant_by(const FixedText<N>& word, const char* column, std::initializer_list<Enum> all) {
+  for (const Enum one : all)
+    if (word.view() == name(one)) return one;
+  throw Error(std::string("unknown ") + column + "='" + std::string(word.view()) + "'");
+}
+
+template <class Integer>
+Integer in_range(std::int64_t value, const char* column) {
+  if (std::in_range<Integer>(value)) return static_cast<Integer>(value);
+  throw Error(std::string(column) + '=' + std::to_string(value) + " is out of range");
+}
+
+void take_if_known(double value, double& parameter) {
+  if (!std::isnan(value)) parameter = value;
+}
+
+ObstacleParameters obstacles_of(const RunRow& row) {
+  ObstacleParameters obstacles{.gap = row.obstacle_gap,
+                               .diameter = row.obstacle_diameter,
+                               .diameter_spread = row.obstacle_diameter_spread,
+                               .density = {},
+                               .box = row.box};
+  if (row.obstacle_filling.view() == "density") obstacles.density = row.obstacle_density;
+  if (row.obstacle_filling.view() == "lattice") {
+    obstacles.layout = ObstacleLayout::lattice;
+    obstacles.lattice_angle = row.lattice_angle;
+  }
+  return obstacles;
+}
+
+DpParameters polygon_of(const RunRow& row) {
+  DpParameters dp{
+      .line_tension = row.line_tension,
+      .area_stiffness = row.area_stiffness,
+      .perimeter_spring = meant_by(row.perimeter_spring, "perimeter_spring",
+                                   {PerimeterSpring::rest, PerimeterSpring::mean, PerimeterSpring::along}),
+      .perimeter_stiffness = row.perimeter_stiffness,
+      .wall_contact = meant_by(row.wall_contact, "wall_contact", {WallContact::edge, WallContact::vertex}),
+      .wall_tension = row.wall_tension,
+      .self_contact = meant_by(row.self_contact, "self_contact", {SelfContact::on, SelfContact::off}),
+      .gravity = meant_by(row.gravity, "gravity", {Gravity::vertex, Gravity::area}),
+      .vertices = in_range<int>(row.vertices, "vertices")};
+  take_if_known(row.contact_range, *dp.contact_range);
+  take_if_known(row.self_contact_range, dp.self_contact_range);
+  return dp;
+}
+
+}  // namespace
+
 double density_of(const ObstacleParameters& obstacles) {
   if (obstacles.layout == ObstacleLayout::lattice)
     return 1 / ((obstacles.diameter + obstacles.gap) * (obstacles.diameter + obstacles.gap));
   if (!obstacles.density && obstacles.diameter_spread > 0) return std::numeric_limits<double>::quiet_NaN();
   return obstacles.density.value_or(saturated_density(obstacles.diameter, obstacles.gap));
 }
-
-}  // namespace
 
 std::string identity(const RunRow& row) {
   // Columns of eight bytes and multiples of them: there are no gaps.
@@ -44,7 +101,7 @@ RunRow describe(const RunParameters& run) {
   const bool polygon = run.model == Model::dp;
   const ObstacleParameters& obstacles = run.obstacles;
   RunRow row;
-  row.model = polygon ? "dp" : "sp";
+  row.model = name(run.model);
   row.line_tension = polygon ? run.dp.line_tension : not_applicable;
   row.wall_stiffness = run.wall_stiffness.value();
   row.obstacle_gap = obstacles.gap;
@@ -68,18 +125,39 @@ RunRow describe(const RunParameters& run) {
   row.relative_drag = run.drag.relative;
   row.preset = polygon ? preset_name(run) : "none";
   row.perimeter_spring = polygon ? name(run.dp.perimeter_spring) : "none";
-  row.wall_contact = !polygon ? "none" : run.dp.wall_contact == WallContact::edge ? "edge" : "vertex";
+  row.wall_contact = polygon ? name(run.dp.wall_contact) : "none";
   row.contact_range = polygon ? run.dp.contact_range.value() : not_applicable;
   row.wall_tension = polygon ? run.dp.wall_tension : not_applicable;
   row.perimeter_stiffness = polygon ? run.dp.perimeter_stiffness.value() : not_applicable;
-  row.self_contact = !polygon ? "none" : run.dp.self_contact == SelfContact::on ? "on" : "off";
+  row.self_contact = polygon ? name(run.dp.self_contact) : "none";
   row.self_contact_range = polygon ? run.dp.self_contact_range : not_applicable;
-  row.gravity = !polygon ? "none" : run.dp.gravity == Gravity::vertex ? "vertex" : "area";
+  row.gravity = polygon ? name(run.dp.gravity) : "none";
   row.clog_energy = run.clog_energy;
   row.instruction_set = polygon ? instruction_set() : "none";
   row.clog_detection = clog::name(run.clog_detection);
   row.model_version = model_version;
   return row;
+}
+
+RunParameters parameters_of(const RunRow& row) {
+  RunParameters run;
+  run.model = meant_by(row.model, "model", {Model::dp, Model::sp});
+  run.wall_stiffness = row.wall_stiffness;
+  run.obstacles = obstacles_of(row);
+  run.drag.terminal_speed = row.terminal_speed;
+  run.drag.near_wall = row.near_wall_drag;
+  run.drag.relative = row.relative_drag;
+  run.time_step = row.time_step;
+  run.max_time = row.max_time;
+  run.clog_energy = row.clog_energy;
+  run.clog_detection =
+      meant_by(row.clog_detection, "clog_detection", {ClogDetection::certified, ClogDetection::threshold});
+  run.seed = in_range<std::uint32_t>(row.seed, "seed");
+  if (run.model == Model::sp) return run;
+  run.dp = polygon_of(row);
+  run.drag.near_wall_exponent = row.near_wall_exponent;
+  take_if_known(row.near_wall_cutoff, run.drag.near_wall_cutoff);
+  return run;
 }
 
 void record(const RunResult& result, RunRow& row) {

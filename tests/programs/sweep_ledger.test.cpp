@@ -123,6 +123,27 @@ TEST_F(LedgerTest, CountsAnAttemptThatFailedThoughReadersDoNotSeeIt) {
   EXPECT_EQ(open(2).start(0, 0).attempt, 2);
 }
 
+TEST_F(LedgerTest, ComputesARunAgainWhoseRowHoldsWhatCannotBe) {
+  {
+    SweepLedger ledger = open();
+    for (const std::int64_t task : {0, 1}) {
+      ledger.start(task, 0);
+      ledger.report(report(ledger, task, "clogged", 2));
+    }
+    ledger.finish();
+  }
+  store::SweepFile file = store::read_sweep(path());
+  file.rows[1].distance = 1e308;
+  std::erase_if(file.provenance, [](const auto& attribute) {
+    return attribute.first == "kind" || attribute.first == "format_version";
+  });
+  store::publish_sweep(path(), file.rows, file.provenance);
+  SweepLedger ledger = open();
+  EXPECT_EQ(ledger.num_faulty(), 1);
+  EXPECT_EQ(ledger.tasks_left(), std::vector<std::int64_t>{1});
+  EXPECT_EQ(store::read_sweep(path()).rows.size(), 1u);
+}
+
 TEST_F(LedgerTest, NamesTheFileWhoseConfigItCannotRead) {
   open().finish();
   store::publish_sweep(path(), {}, {{"config", "line-tension = many\n"}});

@@ -12,6 +12,9 @@ import pandas
 import stored_rows
 from support import BIN, SMALL, ProgramTest
 
+# Such droplets might get a hundred diameters far: rows of theirs can be given any distance up to that.
+FAR = ["max-time=1", "terminal-speed=100"]
+
 
 class Profiles(ProgramTest):
     """clogfit drag and clogfit deviation, from CSV files."""
@@ -60,7 +63,11 @@ class Fit(ProgramTest):
         return pandas.read_hdf(self.folder / "sweep.h5", "runs")
 
     def change(self, **columns):
-        """Puts other results into the rows of the sweep file."""
+        """Puts other results into the rows of the sweep file. What goes with a status goes along."""
+        if "status" in columns:
+            status = np.array(columns["status"])
+            columns.setdefault("clogged_by", np.where(status == b"clogged", b"certified", b"none"))
+            columns.setdefault("message", np.where(status == b"failed", b"made to fail", b""))
         stored_rows.change_columns(self.folder / "sweep.h5", **columns)
 
     def fit(self, *arguments):
@@ -68,7 +75,7 @@ class Fit(ProgramTest):
 
     def test_it_gives_the_reference_answer(self):
         # Sum of 359 over 21 runs with 9 ends: the classic leukaemia trial.
-        self.sweep("seeds=1..21", "max-time=1")
+        self.sweep("seeds=1..21", *FAR)
         times = [6, 6, 6, 6, 7, 9, 10, 10, 11, 13, 16, 17, 19, 20, 22, 23, 25, 32, 32, 34, 35]
         clogged = [1, 1, 1, 0, 1, 0, 1, 0, 0, 1, 1, 0, 0, 0, 1, 1, 0, 0, 0, 0, 0]
         self.change(distance=times, status=[b"clogged" if c else b"flowing" for c in clogged])
@@ -86,7 +93,7 @@ class Fit(ProgramTest):
         self.assertAlmostEqual(at_10["standard_error"], 0.09634965, places=8)
 
     def test_it_says_what_spoils_a_length(self):
-        self.sweep("seeds=1..24", "max-time=1")
+        self.sweep("seeds=1..24", *FAR)
         self.change(distance=[5.0] * 12 + [5.1] * 12, status=[b"clogged"] * 24)  # anything but exponential
         fit = self.fit()
         group, = fit["groups"]
@@ -102,7 +109,7 @@ class Fit(ProgramTest):
         self.assertIn("f: fewer than 5 clogs", self.succeed("clogfit", "sweep.h5").stdout)
 
     def test_each_mechanism_has_a_length_of_its_own(self):
-        self.sweep("seeds=1..10", "max-time=1")
+        self.sweep("seeds=1..10", *FAR)
         mechanisms = [b"wrapped"] * 2 + [b"squeezed"] * 4 + [b"hybrid"] + [b"none"] * 3
         self.change(distance=np.arange(1.0, 11), status=[b"clogged"] * 8 + [b"flowing"] * 2, mechanism=mechanisms)
         group, = self.fit()["groups"]
@@ -173,7 +180,7 @@ class Fit(ProgramTest):
                 self.assertAlmostEqual(group["mean_speed_ratio"], ratio, places=12)
 
     def test_interrupted_runs_are_censored_and_failed_ones_left_out(self):
-        self.sweep("seeds=1..4", "max-time=1")
+        self.sweep("seeds=1..4", *FAR)
         self.change(distance=[1, 2, 3, 100], status=[b"clogged", b"flowing", b"interrupted", b"failed"])
         group, = self.fit()["groups"]
         self.assertEqual(group["clogging_length"], 6)
@@ -182,8 +189,26 @@ class Fit(ProgramTest):
         self.assertIn("1 runs are under way or interrupted", text)
         self.assertIn("1 failed", text)
 
+    def test_rows_that_hold_what_cannot_be_are_left_out_with_a_doubt(self):
+        self.sweep("seeds=1..8", *FAR)
+        distance = np.array([1.0, 2, 3, 4, 5, 6, 7, 8])
+        self.change(distance=distance, status=[b"clogged"] * 8)
+        self.assertNotIn("damaged", self.fit()["groups"][0]["doubts"] or "")
+        for absurd in (1e308, -1e300, np.nan, np.inf):
+            with self.subTest(distance=absurd):
+                distance[7] = absurd
+                self.change(distance=distance)
+                fit = self.fit()
+                group, = fit["groups"]
+                self.assertEqual((group["runs"], group["damaged"], group["clogging_length"]), (7, 1, 4))
+                self.assertEqual(group["doubts"], "damaged")
+                text = self.succeed("clogfit", "sweep.h5").stdout
+                self.assertIn("d: " + fit["doubts"]["damaged"], text)
+                self.assertIn("1 damaged", text)
+                self.assertIn("1 damaged", self.succeed("clogsweep", "status", "sweep.h5").stdout)
+
     def test_nothing_clogged_is_a_lower_bound(self):
-        self.sweep("seeds=1..3", "max-time=1")
+        self.sweep("seeds=1..3", *FAR)
         self.change(distance=[10, 20, 30], status=[b"flowing"] * 3, mean_speed=np.nan)
         self.assertIn("> 20.03", self.succeed("clogfit", "sweep.h5").stdout)  # 60/log(20)
         self.assertIn("> 26.06", self.succeed("clogfit", "sweep.h5", "--confidence", 0.9).stdout)  # 60/log(10)

@@ -7,6 +7,7 @@ import json
 import os
 import random
 import re
+import shutil
 import signal
 import subprocess
 import time
@@ -14,7 +15,7 @@ import unittest
 
 import numpy as np
 import stored_rows
-from support import BIN, BLOCKED, ROOT, SLOW, STEPS_PER_SNAPSHOT, SWEEP, ProgramTest, SweepTest, table
+from support import BIN, BLOCKED, QUICK, ROOT, SLOW, STEPS_PER_SNAPSHOT, SWEEP, ProgramTest, SweepTest, table
 
 FEW = [word.replace("1..6", "1") for word in SWEEP]
 
@@ -273,6 +274,34 @@ class Resumed(SweepTest):
         self.assertFalse(rows.duplicated(["line_tension", "seed"]).any())
         kept = before.merge(rows, on=["line_tension", "seed", "distance", "wall_seconds"])
         self.assertEqual(len(kept), 4)
+
+    def test_a_row_that_holds_what_cannot_be_is_named_and_computed_again(self):
+        keys = [*QUICK, "line-tension=2", "seeds=1..4", "--output", "s.h5"]
+        self.succeed("clogsweep", *keys)
+        shutil.copy(self.folder / "s.h5", self.folder / "whole.h5")
+        with h5py.File(self.folder / "s.h5", "r+") as file:
+            rows = file["runs"][:]
+            rows["distance"][2] = 1e308
+            file["runs"][:] = rows
+        done = self.run_program("clogsweep", "verify", "s.h5")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("task 2: distance=1e+308", done.stdout)
+        self.assertIn("1 faulty", done.stdout)
+        done = self.succeed("clogsweep", *keys)
+        self.assertIn("s.h5: 1 row holds what cannot be", done.stderr)
+        self.assertIn("s.h5 has 3 of 4 runs", done.stderr)
+        self.assertIn("all whole", self.succeed("clogsweep", "verify", "s.h5").stdout)
+        self.check_equal("s.h5", "whole.h5")
+
+    def test_a_config_that_cannot_be_read_is_said_to_be_the_file_s(self):
+        keys = [*QUICK, "seeds=1", "--output", "s.h5"]
+        self.succeed("clogsweep", *keys)
+        for text in ("line-tension = many", "line-tensinn = 1", "line-tension - 1", ""):
+            with h5py.File(self.folder / "s.h5", "r+") as file:
+                file.attrs["config"] = np.bytes_(text)
+            for command in [["status", "s.h5"], ["verify", "s.h5"], ["replay", "s.h5", 0], keys]:
+                with self.subTest(text=text, command=command[0]):
+                    self.refuse("clogsweep", *command, words=["cannot read s.h5 (its attribute config: "])
 
     def test_other_physics_is_refused_by_name(self):
         self.succeed("clogsweep", "vertices=64", "box=20", "max-time=20", "seeds=1", "--output", "s.h5")

@@ -18,6 +18,12 @@ namespace clog {
 
 enum class RunStatus { running, clogged, flowing, passed, interrupted, failed };
 
+/// E_k/E_t beyond which the integration has broken down: free fall without drag over a whole box stays below
+/// it.
+inline constexpr double diverged_energy_ratio = 1e8;
+/// Relative error of the area, likewise: compressibility and line tension keep a droplet far within it.
+inline constexpr double diverged_area_error = 0.5;
+
 /// What one run found out.
 struct RunResult {
   RunStatus status = RunStatus::running;

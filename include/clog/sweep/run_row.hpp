@@ -98,8 +98,13 @@ struct RunRow {
 /// What was run, seed included, as bytes: equal for equal runs, whatever their place in a sweep.
 std::string identity(const RunRow& row);
 
+/// Obstacles per sigma^2; NaN for a saturated mixture, whose jamming limit is not known beforehand.
+double density_of(const ObstacleParameters& obstacles);
 /// The columns that say what was run.
 RunRow describe(const RunParameters& resolved);
+/// The way back. Columns that are not known leave their parameter at its default.
+/// @throws Error if one holds a word that is unknown, or a number that is out of its parameter's range
+RunParameters parameters_of(const RunRow& row);
 /// Fills the columns that say what came out.
 void record(const RunResult& result, RunRow& row);
 
