@@ -8,14 +8,17 @@ Every number comes from clogfit; nothing is fitted here. Bars are its confidence
 is a lower bound where no run clogged.
 """
 
-import argparse
 import json
 import math
 import pathlib
 import sys
 
-import style
-from style import plt
+import command_line
+from command_line import UserError
+
+with command_line.needs_modules():
+    import style
+    from style import plt
 
 # What a sweep may vary beside the abscissa: name in the file, symbol.
 CURVE_PARAMETERS = [
@@ -111,13 +114,8 @@ def draw(groups, abscissa, confidence):
     return figure
 
 
-def refuse(reason):
-    print(f"clogging_length.py: {reason}", file=sys.stderr)
-    return 2
-
-
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def body():
+    parser = command_line.Parser(__doc__)
     parser.add_argument("fit", type=pathlib.Path, help="output of clogfit --format json")
     parser.add_argument("--output", type=pathlib.Path, required=True, help="name without ending; .png and .pdf are made")
     arguments = parser.parse_args()
@@ -125,13 +123,13 @@ def main():
         fit = json.loads(arguments.fit.read_text())
         groups = [group for group in fit["groups"] if group["runs"] > 0]
     except (OSError, ValueError, KeyError, TypeError) as error:
-        return refuse(f"cannot read {arguments.fit} ({error}); give the output of clogfit --format json")
+        raise UserError(f"cannot read {arguments.fit} ({error}); give the output of clogfit --format json")
     if not groups:
-        return refuse(f"{arguments.fit} holds no finished runs")
+        raise UserError(f"{arguments.fit} holds no finished runs")
     abscissa = "line_tension" if groups[0]["model"] == "dp" else "wall_stiffness"
     style.save(draw(groups, abscissa, fit["confidence"]), arguments.output)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(command_line.run(body))

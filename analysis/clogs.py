@@ -9,19 +9,22 @@ obstacles are dark, arcs of contact red, the droplet's convex hull dashed; title
 wrapped_support, num_wrapped, num_gaps, num_arcs.
 """
 
-import argparse
 import concurrent.futures
 import pathlib
 import subprocess
 import sys
 import tempfile
 
-import numpy as np
-import stored
-import style
-import trajectory
-from matplotlib.patches import Circle
-from style import plt
+import command_line
+from command_line import UserError
+
+with command_line.needs_modules():
+    import numpy as np
+    import stored
+    import style
+    import trajectory
+    from matplotlib.patches import Circle
+    from style import plt
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 # Keys that a sweep takes as lists: each row has its own value.
@@ -102,18 +105,13 @@ def draw(axes, row, polygon, obstacles):
     )
 
 
-def refuse(reason):
-    print(f"clogs.py: {reason}", file=sys.stderr)
-    return 2
-
-
 def numbers(words):
     """Type of an option; argparse names it in its error."""
     return {int(word) for word in words.split(",")}
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def body():
+    parser = command_line.Parser(__doc__)
     parser.add_argument("sweep", type=pathlib.Path, help="file of clogsweep --output")
     parser.add_argument("--output", type=pathlib.Path, required=True, help="name without ending; .png and .pdf are made")
     parser.add_argument("--clogrun", default=ROOT / "build/release/bin/clogrun", help="the program (%(default)s)")
@@ -128,21 +126,21 @@ def main():
         if arguments.tasks:
             missing = arguments.tasks - {row["task"] for row in rows}
             if missing:
-                return refuse(f"--tasks: {', '.join(map(str, sorted(missing)))} of {arguments.sweep} are no such clogged polygons")
+                raise UserError(f"--tasks: {', '.join(map(str, sorted(missing)))} of {arguments.sweep} are no such clogged polygons")
             rows = [row for row in rows if row["task"] in arguments.tasks]
         else:
             rows = rows[: arguments.most]
     except (OSError, KeyError, ValueError) as error:
-        return refuse(f"cannot read {arguments.sweep} ({error}); give the output of clogsweep")
+        raise UserError(f"cannot read {arguments.sweep} ({error}); give the output of clogsweep")
     if not rows:
-        return refuse(f"{arguments.sweep} holds no such clogged polygon")
+        raise UserError(f"{arguments.sweep} holds no such clogged polygon")
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         config_file = pathlib.Path(folder) / "sweep.cfg"
         config_file.write_text(config)
         try:
             shapes = list(pool.map(lambda row: run_again(arguments.clogrun, config_file, row, folder), rows))
         except (OSError, subprocess.CalledProcessError) as error:
-            return refuse(f"cannot run clogrun ({getattr(error, 'stderr', '') or error})".rstrip())
+            raise UserError(f"cannot run clogrun ({getattr(error, 'stderr', '') or error})".rstrip())
     across = min(6, len(rows))
     down = -(-len(rows) // across)
     figure, axes = plt.subplots(down, across, figsize=(2.6 * across, 3 * down), layout="constrained", squeeze=False)
@@ -156,4 +154,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(command_line.run(body))

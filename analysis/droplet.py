@@ -11,18 +11,21 @@ DROPLET-frames with --pictures. In it the way of the centre is a line, and the d
 with --colour mechanism, of how it ended.
 """
 
-import argparse
 import pathlib
 import shutil
 import sys
 
-import matplotlib
-import numpy as np
-import style
-import trajectory
-from matplotlib import animation
-from matplotlib.collections import LineCollection
-from style import plt
+import command_line
+from command_line import UserError
+
+with command_line.needs_modules():
+    import matplotlib
+    import numpy as np
+    import style
+    import trajectory
+    from matplotlib import animation
+    from matplotlib.collections import LineCollection
+    from style import plt
 
 MECHANISM_COLOURS = {"wrapped": style.COLOURS[0], "squeezed": style.COLOURS[1], "hybrid": style.COLOURS[2]}
 
@@ -128,8 +131,8 @@ def write_frames(film, num_frames, folder):
     return folder
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def body():
+    parser = command_line.Parser(__doc__)
     parser.add_argument("run", type=pathlib.Path, help="output of clogrun with --polygon-interval")
     parser.add_argument("--output", type=pathlib.Path, required=True, help="name without ending; .png and .pdf are made")
     parser.add_argument("--outlines", type=int, default=12, help="how many moments to show in a picture (12)")
@@ -138,15 +141,14 @@ def main():
     parser.add_argument("--colour", choices=["speed", "mechanism"], default="speed", help="of the droplet in a film (speed)")
     parser.add_argument("--rate", type=int, default=20, help="frames of a film a second (20)")
     arguments = parser.parse_args()
+    if arguments.rate < 1 or arguments.outlines < 1:
+        raise UserError("--rate and --outlines must be positive")
+    if not arguments.output.parent.is_dir():
+        raise UserError(f"no folder {arguments.output.parent}; make it first")
     try:
         run = trajectory.read(arguments.run)
-        if arguments.rate < 1 or arguments.outlines < 1:
-            raise ValueError("--rate and --outlines must be positive")
-        if not arguments.output.parent.is_dir():
-            raise ValueError(f"no folder {arguments.output.parent}; make it first")
     except ValueError as error:
-        print(f"droplet.py: {error}", file=sys.stderr)
-        return 2
+        raise UserError(error) from error
     if not arguments.film and not arguments.pictures:
         style.save(draw(run, arguments.outlines), arguments.output)
         return 0
@@ -159,4 +161,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(command_line.run(body))

@@ -11,15 +11,18 @@ is the interface that walls meet, vertices and middles of edges in turn. Frames 
 the trajectory at that time. Units are those of src/store/README.md.
 """
 
-import argparse
 import math
 import os
 import pathlib
 import sys
 import xml.etree.ElementTree as xml
 
-import numpy as np
-import trajectory
+import command_line
+from command_line import UserError
+
+with command_line.needs_modules():
+    import numpy as np
+    import trajectory
 
 
 def data_array(parent, name, values, components=1):
@@ -100,18 +103,17 @@ def export(run, output):
     return pvd
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def body():
+    parser = command_line.Parser(__doc__)
     parser.add_argument("run", type=pathlib.Path, help="output of clogrun with --polygon-interval")
     parser.add_argument("--output", type=pathlib.Path, required=True, help="name without ending")
     arguments = parser.parse_args()
     try:
         print(export(trajectory.read(arguments.run), arguments.output))
-    except (ValueError, OSError) as error:
-        print(f"export_vtk.py: {error}", file=sys.stderr)
-        return 2
+    except ValueError as error:
+        raise UserError(error) from error
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(command_line.run(body))

@@ -9,7 +9,6 @@ The same command goes on with an interrupted sweep, and never repeats finished r
 Beside FOLDER/SIZE/figure-NAME.png are the same as .pdf, the numbers drawn as .csv, and where they came from as .txt.
 """
 
-import argparse
 import csv
 import datetime
 import os
@@ -17,11 +16,14 @@ import pathlib
 import subprocess
 import sys
 
-import stored
-import style
-from paper import arrays, channels  # noqa: F401, they fill the catalogue
-from paper.plate import CATALOGUE
-from paper.workshop import INTERRUPTED, ROOT, Override, ProgramFailed, UserError, Workshop, measured, programs_in
+import command_line
+from command_line import UserError
+
+with command_line.needs_modules():
+    import style
+    from paper import arrays, channels  # noqa: F401, they fill the catalogue
+    from paper.plate import CATALOGUE
+    from paper.workshop import ROOT, Override, Workshop, measured, programs_in
 
 ORDER = ["1", "2", "3", "4", "5", "6a", "6b", "6c", "7a", "7b", "7c", "8a", "8b", "8ca", "9a", "9b", "A1", "B1", "B2", "C1", "C2", "D", "E"]
 
@@ -54,7 +56,7 @@ def write(plate, entry, shop, command):
 
 
 def parse():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line.Parser(__doc__)
     parser.add_argument("names", nargs="+", metavar="NAME", help="of figures, or list, or all")
     parser.add_argument("--size", choices=["reduced", "full"], default="reduced", help="reduced: minutes on two cores; full: as published")
     parser.add_argument("--ranks", type=int, default=2, help="MPI ranks of the sweeps (2)")
@@ -94,16 +96,5 @@ def body():
     return 0
 
 
-def main():
-    try:
-        return body()
-    except (UserError, stored.Damaged) as error:
-        print(f"figures.py: {error}", file=sys.stderr)
-        return 2
-    except ProgramFailed as error:
-        print(f"figures.py: {error}", file=sys.stderr)
-        return error.exit_code if error.exit_code in (2, INTERRUPTED) else 1
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(command_line.run(body))

@@ -6,7 +6,6 @@
 Every number comes from clogfit. Example clogs are run once more by clogrun, until they rest, in a temporary folder.
 """
 
-import argparse
 import base64
 import html
 import io
@@ -17,13 +16,17 @@ import subprocess
 import sys
 import tempfile
 
-import clogging_length
-import clogs
-import numpy as np
-import stored
-import style
-from paper.workshop import ProgramFailed, UserError, programs_in, run_program
-from style import plt
+import command_line
+from command_line import UserError
+
+with command_line.needs_modules():
+    import clogging_length
+    import clogs
+    import numpy as np
+    import stored
+    import style
+    from paper.workshop import programs_in, run_program
+    from style import plt
 
 STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
@@ -159,16 +162,17 @@ def page(path, fit, rows, about, pictures):
 
 
 def body():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line.Parser(__doc__)
     parser.add_argument("sweep", type=pathlib.Path, help="output of clogsweep")
     parser.add_argument("--output", type=pathlib.Path, required=True, help="HTML file to write")
-    parser.add_argument("--examples", type=int, default=4, help="clogs to show (4); 0 runs nothing")
+    parser.add_argument("--examples", type=command_line.not_negative, default=4, help="clogs to show (4); 0 runs nothing")
     parser.add_argument("--programs", type=pathlib.Path, help="folder of clogrun and clogfit (build/release/bin)")
     arguments = parser.parse_args()
+    command_line.refuse_unwritable(arguments.output)
     programs = programs_in(arguments.programs)
     fit = json.loads(run_program(programs / "clogfit", arguments.sweep, "--format", "json"))
     if not any(group["runs"] > 0 for group in fit["groups"]):
-        raise UserError(f"{arguments.sweep} holds no finished runs")
+        raise UserError(f"{arguments.sweep} holds no finished runs; let the sweep finish some first")
     rows = stored.read_table(arguments.sweep)
     with stored.opened(arguments.sweep) as file:
         about = stored.attributes(file)
@@ -176,21 +180,10 @@ def body():
     try:
         arguments.output.write_text(page(arguments.sweep, fit, rows, about, pictures))
     except OSError as error:
-        raise UserError(f"cannot write {arguments.output} ({error.strerror})") from error
+        raise UserError(f"cannot write {arguments.output} ({error.strerror}); give another --output") from error
     print(arguments.output)
     return 0
 
 
-def main():
-    try:
-        return body()
-    except (UserError, stored.Damaged) as error:
-        print(f"report.py: {error}", file=sys.stderr)
-        return 2
-    except ProgramFailed as error:
-        print(f"report.py: {error}", file=sys.stderr)
-        return error.exit_code
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(command_line.run(body))

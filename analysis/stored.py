@@ -6,13 +6,14 @@ import sys
 import zlib
 
 import h5py
+from command_line import UserError
 
 SEAL = re.compile(rb"\nclogsweep seal 1: crc32 ([0-9a-f]{8}) of ([0-9]{20}) bytes\n")
 SEAL_SIZE = 64
 OLD_VERSIONS = ("2", "3", "4")  # had no checksums
 
 
-class Damaged(ValueError):
+class Damaged(UserError):
     """A file that is not as it was written; the message is one line and names the file."""
 
 
@@ -53,7 +54,7 @@ def opened(path):
             try:
                 check_rows(path, file)
             except (KeyError, ValueError, OSError) as error:
-                raise Damaged(str(error) if isinstance(error, Damaged) else f"cannot trust {path} (damaged: {error})") from error
+                raise Damaged(f"cannot trust {path} (damaged: {error}); see clogsweep verify") from error
         yield file
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import style
 import trajectory
 from paper.plate import Plate, figure, interface_of
-from paper.workshop import UserError
+from command_line import UserError
 from style import plt
 
 SYMBOLS = {"obstacle_gap": r"w_\mathrm{ob}/\sigma", "obstacle_diameter": r"\sigma_\mathrm{ob}/\sigma",

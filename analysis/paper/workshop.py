@@ -12,22 +12,10 @@ import tempfile
 
 import stored
 import trajectory
+from command_line import ProgramFailed, UserError
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CONFIGS = ROOT / "jobs" / "figures"
-INTERRUPTED = 75
-
-
-class UserError(Exception):
-    """What the user can mend: one line, exit code 2."""
-
-
-class ProgramFailed(Exception):
-    """A program of ours said why and left with this exit code."""
-
-    def __init__(self, message, exit_code):
-        super().__init__(message)
-        self.exit_code = exit_code
 
 
 def reason(text):

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <system_error>
 
@@ -20,8 +21,10 @@ std::filesystem::path find_analysis_script(const std::string& name) {
   return script;
 }
 
-void become_script(const std::filesystem::path& script, std::vector<std::string> arguments) {
+void become_script(const std::string& name, const std::filesystem::path& script,
+                   std::vector<std::string> arguments) {
   cli::flush_output();
+  setenv("CLOG_CALLED_AS", name.c_str(), 1);
   arguments.insert(arguments.begin(), script.string());
   std::vector<char*> words;
   for (std::string& argument : arguments) words.push_back(argument.data());

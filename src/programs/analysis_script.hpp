@@ -10,8 +10,10 @@ namespace clog {
 std::filesystem::path find_analysis_script(const std::string& name);
 
 /// The program goes on as this script; its exit code is the script's.
+/// @param name  under which the script speaks of itself
 /// @throws Error  if the script cannot be run
-[[noreturn]] void become_script(const std::filesystem::path& script, std::vector<std::string> arguments);
+[[noreturn]] void become_script(const std::string& name, const std::filesystem::path& script,
+                                std::vector<std::string> arguments);
 
 /// The folder this program is in.
 std::filesystem::path own_folder();

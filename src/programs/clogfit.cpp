@@ -70,7 +70,7 @@ int report(int argc, char** argv) {
   // The user's own --programs comes later and has the last word.
   std::vector<std::string> arguments = {"--programs", own_folder()};
   arguments.insert(arguments.end(), argv + 2, argv + argc);
-  become_script(find_analysis_script("report.py"), arguments);
+  become_script("clogfit report", find_analysis_script("report.py"), arguments);
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ int follow(cli::CommandLine& line, const std::string& system) {
   const std::filesystem::path script = find_analysis_script("droplet.py");
   const int exit_code = run(line);
   if (exit_code != cli::exit_success) return exit_code;
-  become_script(script, {line.get("output"), "--output=" + film.string(), "--film"});
+  become_script("clogrun", script, {line.get("output"), "--output=" + film.string(), "--film"});
 }
 
 int body(int argc, char** argv) {

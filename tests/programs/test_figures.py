@@ -257,6 +257,35 @@ class Pictures(Analysis):
                 programs = ["--programs", BIN] if script == "report.py" else []
                 self.refuse_analysis(script, file, "--output", "x", *programs, words=["run.h5" if programs else "cannot read"])
 
+    def test_mistakes_get_one_line_from_every_script(self):
+        self.succeed("clogsweep", *QUICK, "line-tension=2", "seeds=1..2", "--output", "s.h5")
+        self.write("text.h5", "not a table")
+        (self.folder / "folder").mkdir()
+        for arguments, words in [
+            (["missing.h5", "--output", "page.html"], ["missing.h5", "no such file"]),
+            (["text.h5", "--output", "page.html"], ["text.h5", "not an HDF5 file"]),
+            (["s.h5"], ["--output", "--help"]),
+            (["s.h5", "--output", "nowhere/page.html"], ["no folder nowhere"]),
+            (["s.h5", "--output", "folder"], ["is a folder"]),
+            (["s.h5", "--output", "/dev/full"], ["/dev/full", "No space left"]),
+            (["s.h5", "--output", "page.html", "--colour", "red"], ["--colour red", "--help"]),
+            (["s.h5", "--output", "page.html", "--examples", "-1"], ["--examples", "-1"]),
+            (["s.h5", "--output", "page.html", "--programs", "folder"], ["no clogsweep in folder"]),
+        ]:
+            with self.subTest(arguments=arguments):
+                self.refuse("clogfit", "report", *arguments, words=["clogfit report: ", *words])
+        for script in ("clogging_length.py", "clogs.py", "droplet.py", "export_vtk.py", "figures.py"):
+            with self.subTest(script=script):
+                self.refuse_analysis(script, "s.h5", "--colours", words=[f"{script}: ", "--help"])
+
+    def test_a_machine_without_matplotlib_is_told_what_it_lacks(self):
+        self.write("matplotlib.py", "raise ImportError('No module named matplotlib')")
+        environment = os.environ | {"PYTHONPATH": str(self.folder)}
+        done = subprocess.run([str(BIN / "clogfit"), "report", "s.h5", "--output", "page.html"], cwd=self.folder,
+                              env=environment, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, r"^clogfit report: .*matplotlib.*; it needs Debian's python3 .*\n$")
+
     def numbers(self, parent, name):
         element, = parent.findall(f".//DataArray[@Name='{name}']")
         return np.array(element.text.split(), dtype=float)

@@ -1,0 +1,84 @@
+"""How every script here is called, and how it says what went wrong: one line, exit code 2, as the programs do.
+
+Modules that a machine may lack are loaded in the block of needs_modules().
+"""
+
+import argparse
+import contextlib
+import os
+import pathlib
+import sys
+
+USER_FAULT = 2
+INTERRUPTED = 75
+
+
+class UserError(Exception):
+    """What the user can mend: one line, exit code 2."""
+
+
+class ProgramFailed(Exception):
+    """A program of ours said why and left with this exit code."""
+
+    def __init__(self, message, exit_code):
+        super().__init__(message)
+        self.exit_code = exit_code
+
+
+def name():
+    """Of the script in its messages. Whoever calls it under another one, as clogfit report does, wants that."""
+    return os.environ.get("CLOG_CALLED_AS") or pathlib.Path(sys.argv[0]).name
+
+
+class Parser(argparse.ArgumentParser):
+    """Options of a script. @param about  its docstring"""
+
+    def __init__(self, about):
+        super().__init__(prog=name(), description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
+
+    def error(self, message):
+        raise UserError(f"{message}; {name()} --help lists the options")
+
+
+def not_negative(word):
+    """Type of an option."""
+    number = int(word)
+    if number < 0:
+        raise argparse.ArgumentTypeError(f"invalid value: {word} (must be 0 or more)")
+    return number
+
+
+def refuse_unwritable(path):
+    """To be asked before minutes of work, of a file to be made."""
+    if not path.parent.is_dir():
+        raise UserError(f"cannot write {path} (no folder {path.parent}); make it first")
+    if path.is_dir():
+        raise UserError(f"cannot write {path} (it is a folder); give the name of a file")
+    if not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise UserError(f"cannot write {path} (permission denied); give another --output")
+
+
+@contextlib.contextmanager
+def needs_modules():
+    try:
+        yield
+    except ImportError as error:
+        sys.exit(_refuse(f"cannot start ({error}); it needs Debian's python3 with h5py, pandas, tables and matplotlib"))
+
+
+def _refuse(reason):
+    print(f"{name()}: {' '.join(str(reason).split())}", file=sys.stderr)
+    return USER_FAULT
+
+
+def run(body):
+    """@param body  what the script does, returns its exit code. @return the exit code"""
+    try:
+        return body()
+    except UserError as error:
+        return _refuse(error)
+    except OSError as error:
+        return _refuse(f"cannot use {error.filename or 'a file'} ({error.strerror or error}); look at its name and permissions")
+    except ProgramFailed as error:
+        _refuse(str(error).removeprefix(f"{name().split()[0]}: "))  # clogfit report: clogfit: ...
+        return error.exit_code if error.exit_code in (USER_FAULT, INTERRUPTED) else 1
