@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <tuple>
+
 #include "clog/core/dp_droplet.hpp"
 #include "clog/core/error.hpp"
 #include "clog/core/sp_droplet.hpp"
@@ -41,6 +44,26 @@ TEST(Release, NeverEnclosesAnObstacleAndStartsAtRest) {
       EXPECT_LT(DpDroplet(run, obstacles, state).deepest_overlap(), 0.6 * forces.vertex_diameter())
           << "seed " << seed;
     }
+}
+
+TEST(Release, ComesToRestWhereSpringsKeepTheInterfaceSliding) {
+  // Of the first three the springs it grows with, of the others its own.
+  for (const auto& [vertices, line_tension, seed] :
+       {std::tuple{64, 0.1, 141u}, {64, 0.05, 113u}, {64, 0.05, 141u}, {32, 0.1, 76u}, {32, 0.05, 303u}}) {
+    SCOPED_TRACE(std::to_string(vertices) + " vertices, seed " + std::to_string(seed));
+    RunParameters run = in_small_box(line_tension, 0.2);
+    run.dp.vertices = vertices;
+    run = resolve(run);
+    const ObstacleArray obstacles = sample_obstacles(run.obstacles, seed);
+    const DropletState state = release_droplet(run, obstacles);
+    EXPECT_EQ(num_enclosed(state, obstacles), 0);
+    DpForces forces(run, obstacles);
+    forces.set_weight(0);
+    forces.update_contacts(state, {});
+    Eigen::ArrayXd force(2 * vertices);
+    forces.evaluate(state, force);
+    EXPECT_LE(force.abs().maxCoeff(), 1.01 * release_sliding_tolerance * units::droplet_mass / vertices);
+  }
 }
 
 TEST(Release, StartsAsARegularPolygonWhereThereIsRoom) {

@@ -24,5 +24,9 @@ int num_enclosed(const DropletState& state, const ObstacleArray& obstacles);
 /// Largest force component, without weight and springs, that a droplet may be released with: relative to the
 /// weight of one vertex (DP), to its own weight (SP).
 inline constexpr double release_force_tolerance = 1e-4;
+/// The same for an interface that springs along it, which have no energy, keep sliding for ever: it goes
+/// round a cycle of 1e-3 sigma, and no force has been seen to exceed 0.01; the droplet as a whole stays where
+/// it is.
+inline constexpr double release_sliding_tolerance = 0.02;
 
 }  // namespace clog
