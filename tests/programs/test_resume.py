@@ -260,7 +260,7 @@ class Resumed(SweepTest):
         self.assertIn("the file has no task 9", self.run_program("clogsweep", "replay", "s.h5", 9).stderr)
         verified = self.run_program("clogsweep", "verify", "s.h5")
         self.assertEqual(verified.returncode, 1)
-        self.assertIn("task 3: a time out of its range", verified.stdout)
+        self.assertIn("task 3: time=-1 is not between 0 and max_time=20", verified.stdout)
 
     def test_a_sweep_can_grow(self):
         small = ["vertices=64", "box=20", "max-time=20", "--output", "s.h5"]
