@@ -66,8 +66,6 @@ def read(path, needs_frames=True):
             row = file["runs"][0]
             frames[0] = refined(frames[0], row)
             trajectory = Trajectory(pathlib.Path(path), file["trajectory"][:], row, attributes, *frames)
-    except stored.Damaged:
-        raise
     except (OSError, KeyError, ValueError) as error:
         raise ValueError(f"cannot read {path} ({error}); give the output of clogrun with --polygon-interval") from error
     if needs_frames and len(trajectory.times) == 0:
