@@ -49,7 +49,11 @@ bool has_result(const sweep::RunRow& row) {
 }
 
 /// A run of which nothing is left but what it is and what it has cost so far.
-void begin_anew(sweep::RunRow& row) { sweep::record({.status = RunStatus::interrupted}, row); }
+void begin_anew(sweep::RunRow& row) {
+  RunResult nothing;
+  nothing.status = RunStatus::interrupted;
+  sweep::record(nothing, row);
+}
 
 std::string differing_keys(const sweep::Settings& there, const sweep::Settings& here) {
   std::string all;

@@ -233,7 +233,9 @@ damaged. 1: this is not so; `clogsweep salvage` keeps what is whole. 2: the file
   if (!parse(line, argc, argv)) return cli::exit_success;
   const store::Examination found = store::examine_sweep(line.get("file"));
   const store::SweepFile& file = found.whole;
-  for (const std::string& damage : found.damage) std::cout << damage << '\n';
+  std::int64_t num_planned = 0;  // not asked for where the file is damaged
+  if (found.damage.empty()) num_planned = stored_plan(line.get("file"), file.provenance).size();
+  for (const std::string& damage : found.damage) std::cout << cli::printable(damage) << '\n';
   auto num_faults = static_cast<std::int64_t>(found.damage.size());
   std::unordered_map<std::string, std::int64_t> seen;
   for (const RunRow& row : file.rows) {
@@ -246,7 +248,7 @@ damaged. 1: this is not so; `clogsweep salvage` keeps what is whole. 2: the file
   }
   std::cout << cli::printable(line.get("file")) << ": " << file.rows.size();
   if (num_faults == 0)
-    std::cout << " rows of " << stored_plan(line.get("file"), file.provenance).size() << " runs, all whole\n";
+    std::cout << " rows of " << num_planned << " runs, all whole\n";
   else
     std::cout << " whole rows, " << num_faults << (num_faults == 1 ? " fault\n" : " faults\n");
   if (const std::string words = store::caution(line.get("file"), file); !words.empty())

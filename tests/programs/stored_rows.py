@@ -6,17 +6,34 @@ import h5py
 import numpy as np
 
 
-def change(path, edit):
-    """@param edit  called with the rows, to be changed in place. What clogsweep wrote behind the file's end goes."""
+def edited(path, edit):
+    """@param edit  called with the open file; its checksums and the seal behind its end are then made to agree with it"""
+    content = path.read_bytes()
+    path.write_bytes(content[:content.rindex(b"\nclogsweep seal")])
     with h5py.File(path, "r+") as file:
+        edit(file)
+        names = [line.split(" ", 1)[1] for line in file.attrs["checksums"].decode().splitlines()[1:]]
+        rows = file["runs"][:]
+        sums = np.array([zlib.crc32(row.tobytes()) for row in rows], dtype=np.uint32)
+        file["row_checksums"][:] = sums
+        lines = [(zlib.crc32(sums.tobytes()), f"{len(rows)} rows"), *((zlib.crc32(file.attrs[name]), name) for name in names)]
+        file.attrs["checksums"] = np.bytes_("".join(f"{digits:08x} {name}\n" for digits, name in lines))
+    content = path.read_bytes()
+    path.write_bytes(content + b"\nclogsweep seal 1: crc32 %08x of %020d bytes\n" % (zlib.crc32(content), len(content)))
+
+
+def change(path, edit):
+    """@param edit  called with the rows, to be changed in place"""
+    def edit_rows(file):
         rows = file["runs"][:]
         edit(rows)
-        sums = np.array([zlib.crc32(row.tobytes()) for row in rows], dtype=np.uint32)
-        file["runs"][:], file["row_checksums"][:] = rows, sums
-        lines = file.attrs["checksums"].decode().splitlines()
-        lines[0] = f"{zlib.crc32(sums.tobytes()):08x} {len(rows)} rows"
-        file.attrs["checksums"] = np.bytes_("\n".join(lines) + "\n")
-    return rows
+        file["runs"][:] = rows
+
+    edited(path, edit_rows)
+
+
+def change_attribute(path, name, text):
+    edited(path, lambda file: file.attrs.__setitem__(name, np.bytes_(text)))
 
 
 def change_columns(path, **columns):
@@ -24,7 +41,7 @@ def change_columns(path, **columns):
         for name, values in columns.items():
             rows[name] = values
 
-    return change(path, edit)
+    change(path, edit)
 
 
 def make_older(path, version, without=()):

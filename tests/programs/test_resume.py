@@ -279,14 +279,11 @@ class Resumed(SweepTest):
         keys = [*QUICK, "line-tension=2", "seeds=1..4", "--output", "s.h5"]
         self.succeed("clogsweep", *keys)
         shutil.copy(self.folder / "s.h5", self.folder / "whole.h5")
-        with h5py.File(self.folder / "s.h5", "r+") as file:
-            rows = file["runs"][:]
-            rows["distance"][2] = 1e308
-            file["runs"][:] = rows
+        stored_rows.change(self.folder / "s.h5", lambda rows: rows["distance"].__setitem__(2, 1e308))
         done = self.run_program("clogsweep", "verify", "s.h5")
         self.assertEqual(done.returncode, 1)
         self.assertIn("task 2: distance=1e+308", done.stdout)
-        self.assertIn("1 faulty", done.stdout)
+        self.assertIn("4 whole rows, 1 fault", done.stdout)
         done = self.succeed("clogsweep", *keys)
         self.assertIn("s.h5: 1 row holds what cannot be", done.stderr)
         self.assertIn("s.h5 has 3 of 4 runs", done.stderr)
@@ -297,8 +294,7 @@ class Resumed(SweepTest):
         keys = [*QUICK, "seeds=1", "--output", "s.h5"]
         self.succeed("clogsweep", *keys)
         for text in ("line-tension = many", "line-tensinn = 1", "line-tension - 1", ""):
-            with h5py.File(self.folder / "s.h5", "r+") as file:
-                file.attrs["config"] = np.bytes_(text)
+            stored_rows.change_attribute(self.folder / "s.h5", "config", text)
             for command in [["status", "s.h5"], ["verify", "s.h5"], ["replay", "s.h5", 0], keys]:
                 with self.subTest(text=text, command=command[0]):
                     self.refuse("clogsweep", *command, words=["cannot read s.h5 (its attribute config: "])
