@@ -56,7 +56,8 @@ INSTANTIATE_TEST_SUITE_P(
                     std::pair{"lin(1,2)", "three arguments"}, std::pair{"lin(1,2,3", "parenthesis"},
                     std::pair{"lin(1,2,3)", "not integers"}, std::pair{"log(0,2,3)", "positive"},
                     std::pair{"lin(1,2,0)", "no values"}, std::pair{"1..9999999", "million"},
-                    std::pair{"-9223372036854775807..9223372036854775807", "million"}));
+                    std::pair{"-9223372036854775807..9223372036854775807", "million"},
+                    std::pair{"1..600000,600001..1200000,1200001..1800000", "million values in all"}));
 
 TEST(ToNumber, RefusesWhatIsNotFinite) {
   EXPECT_THROW(to_number("nan"), Error);
