@@ -17,6 +17,9 @@ if(CLOG_SANITIZE)
   target_compile_options(clog_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(clog_flags INTERFACE -fsanitize=address,undefined)
 endif()
+if(CLOG_FUZZ)
+  target_compile_options(clog_flags INTERFACE -fsanitize=fuzzer-no-link)  # main is libFuzzer's in its targets only
+endif()
 
 # clog_layer(<name> SOURCES <files...> USES <public dependencies...> USES_PRIVATE <private dependencies...>)
 function(clog_layer name)

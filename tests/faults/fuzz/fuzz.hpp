@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+#include <string>
+
+#include "clog/core/error.hpp"
+
+/// What libFuzzer calls with every input.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+
+namespace clog {
+
+inline std::string text_of(const std::uint8_t* data, std::size_t size) {
+  return {reinterpret_cast<const char*>(data), size};
+}
+
+/// Input may be refused; everything else that goes wrong is a finding.
+template <typename Read>
+void may_be_refused(Read read) {
+  try {
+    read();
+  } catch (const Error&) {
+    // A refusal is the answer to most inputs.
+  }
+}
+
+/// What must hold of every input that is not refused.
+inline void require(bool holds) {
+  if (!holds) std::abort();
+}
+
+}  // namespace clog

@@ -1,0 +1,20 @@
+/// Lists of values, as on the command line. The first byte chooses the kind.
+
+#include "clog/sweep/value_list.hpp"
+
+#include <vector>
+
+#include "fuzz.hpp"
+
+using namespace clog;
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0) return 0;
+  const auto kind = static_cast<sweep::ValueKind>(data[0] % 3);
+  const std::vector<std::string> words = {"auto", "dp"};
+  may_be_refused([&] {
+    for (const std::string& value : sweep::expand_list(text_of(data + 1, size - 1), kind, words))
+      require(sweep::expand_list(value, kind, words) == std::vector{value});  // a single value stays as it is
+  });
+  return 0;
+}
