@@ -66,6 +66,11 @@ class ProgramTest(unittest.TestCase):
         return name
 
 
+def children_of(pid):
+    found = subprocess.run(["pgrep", "-P", str(pid)], capture_output=True, text=True)
+    return [int(child) for child in found.stdout.split()]
+
+
 def table(path):
     return pandas.read_hdf(path, "runs")
 
@@ -91,8 +96,7 @@ class SweepTest(ProgramTest):
         process.stderr.close()
 
     def ranks_of(self, process):
-        children = subprocess.run(["pgrep", "-P", str(process.pid)], capture_output=True, text=True)
-        return [int(pid) for pid in children.stdout.split()]
+        return children_of(process.pid)
 
     def wait_for(self, condition, seconds=60):
         deadline = time.time() + seconds
