@@ -1,0 +1,81 @@
+"""Processes of a sweep on two ranks get signals at random moments; then the same command goes on until it is complete."""
+
+import signal
+import subprocess
+import time
+
+from processes import are_gone, descend, kill, send
+from programs import WALL_SECONDS, command, limit_time, run
+from samples import FILE, check_complete, finished_rows, stored_rows
+from support import SMALL
+
+# A task may meet many kills before it is over, and has not failed for that.
+SWEEP = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=2000", "seeds=1..2", "--attempts=1000",
+         "--report-seconds=0.1", "--output", FILE]
+RANKS = 2
+GENERATIONS = ["mpirun", "a rank", "a helper", "a computing process"]
+SIGNALS = [signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGSTOP]
+# With what a sweep ends whose mpirun got this signal and nothing else: README.md. On SIGINT the code is mpirun's own.
+CODES_OF_MPIRUN = {signal.SIGTERM: {0, 75}, signal.SIGSTOP: {0}}
+PATIENCE = 5  # seconds for processes that have lost others, before they are killed as a batch system would
+
+
+class Faults:
+    def __init__(self, folder):
+        begin = time.monotonic()
+        subprocess.run(command("clogsweep", *SWEEP, ranks=RANKS), cwd=folder, check=True, stderr=subprocess.DEVNULL)
+        self.duration = time.monotonic() - begin
+        self.rows = stored_rows(folder / FILE)
+
+    def try_one(self, case):
+        finished = {}
+        for _ in range(case.chance.randint(1, 4)):
+            self.disturb(case)
+            later = finished_rows(case)
+            case.expect(all(later.get(task) == row for task, row in finished.items()), "a finished row was lost")
+            finished = later
+        outcome = run(case, "clogsweep", *SWEEP, ranks=RANKS)
+        case.expect(outcome.code == 0, f"clogsweep: does not go on, exit code {outcome.code}")
+        check_complete(case, case.folder / FILE, self.rows)
+
+    def disturb(self, case):
+        """Starts the sweep, or goes on with it, and sends signals to one or two of its processes."""
+        process = subprocess.Popen(command("clogsweep", *SWEEP, ranks=RANKS), cwd=case.folder, preexec_fn=limit_time,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+        time.sleep(case.chance.uniform(0, self.duration))
+        generations = descend(process.pid)
+        sent = [self.send_one(case, generations) for _ in range(case.chance.randint(1, 2))]
+        generations += descend(process.pid)  # what it has begun since then
+        pids = {pid for generation in generations for pid in generation}
+        self.wait(case, process, sent)
+        kill(pid for generation in descend(process.pid) for pid in generation)
+        process.wait()
+        case.expect(are_gone(pids), "processes are left after mpirun has ended")
+        kill(pids)
+
+    @staticmethod
+    def send_one(case, generations):
+        """A signal to a process of any generation. @return whom it went to, and the signal"""
+        generation = case.chance.randrange(len(generations))
+        victim = case.chance.choice(generations[generation])
+        number = case.chance.choice(SIGNALS)
+        who = GENERATIONS[min(generation, len(GENERATIONS) - 1)]
+        case.note(f"{number.name} to {who}")
+        send(victim, number)
+        if number == signal.SIGSTOP:
+            time.sleep(case.chance.uniform(0, 0.5))
+            send(victim, signal.SIGCONT)
+        return who, number
+
+    @staticmethod
+    def wait(case, process, sent):
+        """Who was not killed ends by himself, with the code that the README names."""
+        is_killed = any(number == signal.SIGKILL for _, number in sent)
+        try:
+            code = process.wait(timeout=PATIENCE if is_killed else WALL_SECONDS)
+        except subprocess.TimeoutExpired:
+            case.expect(is_killed, f"a sweep goes on for {WALL_SECONDS} s after {sent}")
+            return
+        if len(sent) == 1 and sent[0][0] == "mpirun":
+            number = sent[0][1]
+            case.expect(code in CODES_OF_MPIRUN.get(number, {code}), f"mpirun: exit code {code} after {number.name}")

@@ -1,0 +1,71 @@
+"""What describes the rows of a sweep's file is damaged, or the journal of one that was stopped."""
+
+import shutil
+import subprocess
+
+from damage import harm
+from programs import command, run
+from samples import FILE, REPORTS, check_complete, check_readers, check_resumed, rows_place, samples, stored_rows
+from support import SMALL
+
+JOURNAL = FILE + ".journal"
+STOPPED = [*SMALL, "obstacle-gap=0.4", "line-tension=0.05,0.5", "max-time=1500", "seeds=1", "--output", FILE]
+
+
+class Stopped:
+    """A sweep that was stopped while one of its runs had a snapshot, and the table that it comes to."""
+
+    def __init__(self, folder):
+        self.folder = folder / "stopped"
+        while not self.has_snapshot():
+            shutil.rmtree(self.folder, ignore_errors=True)
+            self.folder.mkdir()
+            self.sweep("--max-hours=1e-4")
+        self.files = {name: (self.folder / name).read_bytes() for name in (FILE, JOURNAL)}
+        self.sweep()
+        self.rows = stored_rows(self.folder / FILE)
+
+    def sweep(self, *more):
+        subprocess.run(command("clogsweep", *STOPPED, *more), cwd=self.folder, stderr=subprocess.DEVNULL)
+
+    def has_snapshot(self):
+        journal = self.folder / JOURNAL
+        return journal.exists() and journal.stat().st_size > 4096
+
+
+class Faults:
+    def __init__(self, folder):
+        self.samples = samples(folder)
+        self.places = {sample.name: self.outside_the_rows(sample) for sample in self.samples}
+        self.stopped = Stopped(folder)
+
+    @staticmethod
+    def outside_the_rows(sample):
+        begin, _, _, end = rows_place(sample.path)
+        return [*range(begin), *range(end, len(sample.content))]
+
+    def try_one(self, case):
+        case.chance.choice([self.harm_a_table, self.harm_a_table, self.harm_a_journal])(case)
+
+    def harm_a_table(self, case):
+        sample = case.chance.choice(self.samples)
+        way, content = harm(case.chance, sample.content, self.places[sample.name])
+        case.note(f"{sample.name}: {way}")
+        (case.folder / FILE).write_bytes(content)
+        check_readers(case, sample)
+        check_resumed(case, sample.sweep, sample.rows)
+
+    def harm_a_journal(self, case):
+        journal = self.stopped.files[JOURNAL]
+        way, content = harm(case.chance, journal, range(len(journal)))
+        case.note(f"journal: {way}")
+        (case.folder / FILE).write_bytes(self.stopped.files[FILE])
+        (case.folder / JOURNAL).write_bytes(content)
+        for report in REPORTS:
+            run(case, *report)
+        outcome = run(case, "clogsweep", *STOPPED, exit_codes={0, 2})
+        if outcome.code == 2:
+            case.expect((case.folder / JOURNAL).read_bytes() == content, "clogsweep: refuses a journal, but changes it")
+            (case.folder / JOURNAL).unlink()  # as it asks for
+            case.expect(run(case, "clogsweep", *STOPPED).code == 0, "clogsweep: does not go on without the journal")
+        check_complete(case, case.folder / FILE, self.stopped.rows)

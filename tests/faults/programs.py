@@ -1,0 +1,102 @@
+"""Runs programs under limits, and says what no program may do whatever was done to it."""
+
+import dataclasses
+import os
+import resource
+import shlex
+import signal
+import subprocess
+
+from processes import descend, kill
+from support import BIN, MPIRUN
+
+EXIT_CODES = {0, 1, 2, 75}  # README.md
+READER_GONE = 141  # of a program whose output nobody reads any more
+SUBCOMMANDS = {"status", "verify", "replay", "doctor", "array", "channel", "sag", "calibrate", "deviation", "drag", "report"}
+# A program that computes or spins is ended by the first limit, on a busy machine as on an idle one. The other is for
+# those that wait for what never comes: so long that no load makes a program of a second last so long.
+CPU_SECONDS = 20
+WALL_SECONDS = 300
+# What a program says that met a fault of its own.
+SIGNS_OF_FAULTS = {
+    b"Traceback (most recent call last)": "a traceback",
+    b"internal fault": "an internal fault",
+    b"ERROR: AddressSanitizer": "the address sanitizer's report",
+    b"runtime error:": "the undefined-behaviour sanitizer's report",
+}
+
+
+@dataclasses.dataclass
+class Outcome:
+    name: str
+    code: int | None  # None: it did not end
+    output: bytes
+    error: bytes
+
+
+def command(name, *arguments, ranks=None):
+    launcher = [] if ranks is None else [str(MPIRUN), str(ranks)]
+    return [*launcher, str(BIN / name), *arguments]
+
+
+def limit_time():
+    resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS + 5))
+
+
+def run(case, name, *arguments, prepare=None, ranks=None, exit_codes=EXIT_CODES, **streams):
+    """Runs one of the programs in the case's folder, notes what it must not do, and returns its outcome.
+
+    @param prepare  called in the new process before the program begins
+    @param streams  stdin, stdout, stderr as subprocess has them; nothing, and pipes that are read
+    """
+    def begin():
+        limit_time()
+        if prepare:
+            prepare()
+
+    streams = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **streams}
+    process = subprocess.Popen(command(name, *arguments, ranks=ranks), cwd=case.folder, preexec_fn=begin,
+                               start_new_session=True, **streams)
+    try:
+        output, error = process.communicate(timeout=WALL_SECONDS)
+        code = process.returncode
+    except subprocess.TimeoutExpired:
+        kill([pid for generation in descend(process.pid) for pid in generation])
+        output, error = process.communicate()
+        code = None
+    outcome = Outcome(title(name, arguments), code, output or b"", error or b"")
+    case.findings += wrongs(outcome, exit_codes)
+    return outcome
+
+
+def title(name, arguments):
+    """clogsweep status, clogfit: a program with the subcommand, by which findings are counted."""
+    first = os.fsdecode(arguments[0]) if arguments else ""
+    return f"{name} {first}" if first in SUBCOMMANDS else name
+
+
+def wrongs(outcome, exit_codes=EXIT_CODES):
+    """What no program may do."""
+    if outcome.code is None:
+        yield f"{outcome.name}: did not end within {WALL_SECONDS} s"
+    elif outcome.code in (-signal.SIGXCPU, -signal.SIGKILL):
+        yield f"{outcome.name}: did not end within {CPU_SECONDS} s of processor time"
+    elif outcome.code < 0:
+        yield f"{outcome.name}: died of {signal.Signals(-outcome.code).name}"
+    elif outcome.code not in exit_codes:
+        yield f"{outcome.name}: exit code {outcome.code}"
+    for sign, words in SIGNS_OF_FAULTS.items():
+        if sign in outcome.error:
+            yield f"{outcome.name}: {words}"
+
+
+def quoted(arguments):
+    """As bash understands it, without characters that a terminal would obey."""
+    return " ".join(quoted_word(os.fsencode(word)) for word in arguments)
+
+
+def quoted_word(word):
+    text = word.decode("latin-1")
+    if text.isascii() and text.isprintable():
+        return shlex.quote(text)
+    return "$'" + "".join(c if c.isascii() and c.isprintable() and c not in "'\\" else f"\\x{ord(c):02x}" for c in text) + "'"

@@ -1,0 +1,181 @@
+"""Small sweeps to be harmed, and what is said of them while they are whole."""
+
+import multiprocessing
+import resource
+import subprocess
+
+import h5py
+import sweep_file
+from programs import CPU_SECONDS, command, run
+from support import BLOCKED, QUICK, TIMING
+
+FILE = "s.h5"
+SWEEPS = {
+    "polygons": [*QUICK, "obstacle-gap=0.4", "line-tension=0.05,0.5,1", "seeds=1..2"],
+    "failures": [*BLOCKED, "seeds=63..64"],
+    "disks": ["model=sp", "wall-stiffness=1", "box=20", "max-time=60", "obstacle-gap=0.4,1.2", "seeds=1..2"],
+}
+REPORTS = [("clogsweep", "verify", FILE), ("clogsweep", "status", FILE, "--format", "json"),
+           ("clogfit", FILE, "--format", "json")]
+CIRCUMSTANCES = [*TIMING, "attempt"]
+ENDINGS = (b"clogged", b"flowing")
+
+
+def in_child(function, *arguments):
+    """The value of a function that may crash or spin. @return None and why not if there is no value"""
+    def work(connection):
+        resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS))
+        try:
+            connection.send((function(*arguments), None))
+        except (OSError, ValueError) as error:
+            connection.send((None, f"refused: {error}"))
+        except Exception as error:
+            connection.send((None, f"{type(error).__name__}: {error}"))
+
+    fork = multiprocessing.get_context("fork")
+    receiver, sender = fork.Pipe(duplex=False)
+    process = fork.Process(target=work, args=(sender,))
+    process.start()
+    sender.close()
+    try:
+        answer = receiver.recv()
+    except EOFError:
+        answer = None
+    process.join()
+    return answer or (None, f"died, exit code {process.exitcode}")
+
+
+def stored_rows(path):
+    """Of every task the bytes of its columns, as h5py finds them."""
+    with h5py.File(path, "r") as file:
+        rows = file["runs"][()]
+    return {int(row["task"]): {name: row[name].tobytes() for name in rows.dtype.names} for row in rows}
+
+
+def stored_texts(path):
+    """The attributes of the file and of its table."""
+    with h5py.File(path, "r") as file:
+        return {f"{place} {name}": bytes(value) for place, item in (("file", file), ("runs", file["runs"]))
+                for name, value in item.attrs.items()}
+
+
+def read_with_python(path):
+    """What our own reader for Python gives, as text with every digit."""
+    return sweep_file.read_rows(path).to_csv()
+
+
+def results(rows):
+    """Rows without what a second computation of the same run may change, or another try of it."""
+    return {task: {name: value for name, value in row.items() if name not in CIRCUMSTANCES} for task, row in rows.items()}
+
+
+def finished_rows(case):
+    """The results of the runs that are over; nothing if there is no table yet."""
+    path = case.folder / FILE
+    if not path.exists():
+        return {}
+    rows, why = in_child(stored_rows, path)
+    case.expect(rows is not None, f"a table is left that cannot be read: {why}")
+    return {task: row for task, row in results(rows or {}).items() if row["status"].rstrip(b"\0") in ENDINGS}
+
+
+def differing(some, others):
+    """Names of the columns in which rows of two tables differ, and what is in one of them only."""
+    names = {name for task in some.keys() & others.keys() for name in some[task].keys() | others[task].keys()
+             if some[task].get(name) != others[task].get(name)}
+    return sorted(names | {f"task {task}" for task in some.keys() ^ others.keys()})
+
+
+class Sample:
+    """A finished sweep, with what every reader says of it."""
+
+    def __init__(self, name, folder):
+        self.name = name
+        self.sweep = [*SWEEPS[name], "--output", FILE]
+        self.folder = folder / name
+        self.folder.mkdir()
+        subprocess.run(command("clogsweep", *self.sweep, "--quiet"), cwd=self.folder, check=True,
+                       stderr=subprocess.DEVNULL)
+        self.content = self.path.read_bytes()
+        self.rows = stored_rows(self.path)
+        self.texts = stored_texts(self.path)
+        self.table = read_with_python(self.path)
+        self.reports = [subprocess.run(command(*report), cwd=self.folder, check=True, capture_output=True).stdout
+                        for report in REPORTS]
+
+    @property
+    def path(self):
+        return self.folder / FILE
+
+
+def samples(folder):
+    return [Sample(name, folder) for name in SWEEPS]
+
+
+def check_readers(case, sample):
+    """Nobody who reads the case's file says anything else than of the whole one, unless he says that it is damaged."""
+    path = case.folder / FILE
+    before = path.read_bytes()
+    outcomes = [run(case, *report) for report in REPORTS]
+    for outcome, told in zip(outcomes, sample.reports):
+        case.expect(outcome.code != 0 or outcome.output == told,
+                    f"{outcome.name}: other numbers than of the whole file, exit code 0")
+    table, why = in_child(read_with_python, path)
+    case.expect(table is None or table == sample.table, "read_rows: other numbers than of the whole file")
+    case.expect(table is not None or why.startswith("refused"), f"read_rows: {str(why).split(':')[0]}")
+    if outcomes[0].code == 0:
+        check_called_whole(case, sample, path)
+    case.expect(path.read_bytes() == before, "a reader changed the file")
+
+
+def check_called_whole(case, sample, path):
+    """A file of which verify says that it is whole is as it was, to everybody's eyes."""
+    rows, why = in_child(stored_rows, path)
+    texts, why_no_texts = in_child(stored_texts, path)
+    if rows is None or texts is None:
+        case.findings.append("clogsweep verify: calls a file whole that h5py cannot read")
+        case.note(why or why_no_texts)
+        return
+    changed = differing(rows, sample.rows)
+    changed += [name for name in texts.keys() | sample.texts.keys() if texts.get(name) != sample.texts.get(name)]
+    case.expect(not changed, "clogsweep verify: calls a changed file whole")
+    if changed:
+        case.note(f"changed: {', '.join(changed)}")
+
+
+def check_resumed(case, sweep, rows):
+    """The command that made the file makes it whole again, or refuses and leaves it alone.
+
+    @param rows  of the undisturbed sweep
+    """
+    path = case.folder / FILE
+    before = path.read_bytes()
+    outcome = run(case, "clogsweep", *sweep, exit_codes={0, 2})
+    if outcome.code == 2:
+        case.expect(path.read_bytes() == before, "clogsweep: refuses to go on, but has changed the file")
+    if outcome.code == 0:
+        check_complete(case, path, rows)
+
+
+def check_complete(case, path, rows):
+    """@param rows  of the undisturbed sweep"""
+    found, why = in_child(stored_rows, path)
+    if found is None:
+        case.findings.append("the finished table cannot be read")
+        case.note(why)
+        return
+    changed = differing(results(found), results(rows))
+    case.expect(not changed, "the finished table differs from the undisturbed one")
+    if changed:
+        case.note(f"changed: {', '.join(changed)}")
+
+
+def rows_place(path):
+    """Where the first row begins, how many bytes one has, and the place of each column in it; and the end of the rows."""
+    with h5py.File(path, "r") as file:
+        table = file["runs"]
+        begin = table.id.get_chunk_info(0).byte_offset if table.chunks else table.id.get_offset()
+        size = table.dtype.itemsize
+        columns = {name: (table.dtype.fields[name][1], table.dtype[name].itemsize) for name in table.dtype.names}
+        room = table.chunks[0] if table.chunks else len(table)
+        return begin, size, columns, begin + room * size
