@@ -73,8 +73,8 @@ def report(case, options, number):
     print(f"{options.kind} {number}: {'; '.join(case.done)}")
     for finding in case.findings:
         print(f"    {finding}")
-    print(f"    repeat: tests/faults/faults.py {options.kind} --seed {options.seed} --case {number} --bin {options.bin}",
-          flush=True)
+    print(f"    repeat: tests/faults/faults.py {options.kind} --seed {options.seed} --case {number} "
+          f"--bin {options.bin}", flush=True)
 
 
 def main():

@@ -12,7 +12,8 @@ from support import BIN, MPIRUN
 
 EXIT_CODES = {0, 1, 2, 75}  # README.md
 READER_GONE = 141  # of a program whose output nobody reads any more
-SUBCOMMANDS = {"status", "verify", "replay", "doctor", "array", "channel", "sag", "calibrate", "deviation", "drag", "report"}
+SUBCOMMANDS = {"status", "verify", "replay", "doctor", "array", "channel", "sag", "calibrate", "deviation", "drag",
+               "report"}
 # A program that computes or spins is ended by the first limit, on a busy machine as on an idle one. The other is for
 # those that wait for what never comes: so long that no load makes a program of a second last so long.
 CPU_SECONDS = 20
@@ -32,6 +33,11 @@ class Outcome:
     code: int | None  # None: it did not end
     output: bytes
     error: bytes
+
+    @property
+    def is_over(self):
+        """It came to an end of its own."""
+        return self.code is not None and self.code >= 0
 
 
 def command(name, *arguments, ranks=None):
@@ -97,6 +103,10 @@ def quoted(arguments):
 
 def quoted_word(word):
     text = word.decode("latin-1")
-    if text.isascii() and text.isprintable():
+    if all(map(is_plain, text)):
         return shlex.quote(text)
-    return "$'" + "".join(c if c.isascii() and c.isprintable() and c not in "'\\" else f"\\x{ord(c):02x}" for c in text) + "'"
+    return "$'" + "".join(c if is_plain(c) and c not in "'\\" else f"\\x{ord(c):02x}" for c in text) + "'"
+
+
+def is_plain(character):
+    return character.isascii() and character.isprintable()

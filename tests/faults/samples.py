@@ -17,7 +17,6 @@ SWEEPS = {
 }
 REPORTS = [("clogsweep", "verify", FILE), ("clogsweep", "status", FILE, "--format", "json"),
            ("clogfit", FILE, "--format", "json")]
-CIRCUMSTANCES = [*TIMING, "attempt"]
 ENDINGS = (b"clogged", b"flowing")
 
 
@@ -64,9 +63,9 @@ def read_with_python(path):
     return sweep_file.read_rows(path).to_csv()
 
 
-def results(rows):
-    """Rows without what a second computation of the same run may change, or another try of it."""
-    return {task: {name: value for name, value in row.items() if name not in CIRCUMSTANCES} for task, row in rows.items()}
+def results(rows, ignored=TIMING):
+    """Rows without the columns that a second computation of the same run may change."""
+    return {task: {name: value for name, value in row.items() if name not in ignored} for task, row in rows.items()}
 
 
 def finished_rows(case):
@@ -157,21 +156,21 @@ def check_resumed(case, sweep, rows):
         check_complete(case, path, rows)
 
 
-def check_complete(case, path, rows):
+def check_complete(case, path, rows, ignored=TIMING):
     """@param rows  of the undisturbed sweep"""
     found, why = in_child(stored_rows, path)
     if found is None:
         case.findings.append("the finished table cannot be read")
         case.note(why)
         return
-    changed = differing(results(found), results(rows))
+    changed = differing(results(found, ignored), results(rows, ignored))
     case.expect(not changed, "the finished table differs from the undisturbed one")
     if changed:
         case.note(f"changed: {', '.join(changed)}")
 
 
 def rows_place(path):
-    """Where the first row begins, how many bytes one has, and the place of each column in it; and the end of the rows."""
+    """Where the rows begin, how many bytes one has, place and size of each column in it, and where the rows end."""
     with h5py.File(path, "r") as file:
         table = file["runs"]
         begin = table.id.get_chunk_info(0).byte_offset if table.chunks else table.id.get_offset()

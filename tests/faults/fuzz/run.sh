@@ -1,28 +1,23 @@
 #!/usr/bin/env bash
 # tests/faults/fuzz/run.sh SECONDS [TARGET...]: every fuzz target, or those named, for so long, each from the same seed.
-# What they find is written to build/fuzz/findings, inputs of new coverage to build/fuzz/corpus. Exit code 1: found something.
+# What they find is written to build/fuzz/findings, inputs of new coverage to build/fuzz/corpus. Exit code 1: a finding.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 seconds=${1:?usage: run.sh SECONDS [TARGET...]}
 shift
 seeds=tests/faults/fuzz/corpus
-if [ $# -eq 0 ]; then
-  read -ra targets <<< "$(ls "$seeds" | tr '\n' ' ')"
-else
-  targets=("$@")
-fi
+if [ $# -eq 0 ]; then set -- $(ls "$seeds"); fi
 
 code=0
-for target in "${targets[@]}"; do
+for target in "$@"; do
   echo "== $target"
   mkdir -p "build/fuzz/corpus/$target" build/fuzz/findings
-  # HDF5 keeps memory of what it could not read; every other leak shows in the other targets.
   leaks=1
-  if [ "$target" = sweep_file ]; then leaks=0; fi
+  if [ "$target" = sweep_file ]; then leaks=0; fi  # HDF5 keeps memory of what it could not read
   log=build/fuzz/findings/$target.log
-  "build/fuzz/bin/fuzz_$target" -seed=1 -max_total_time="$seconds" -timeout=20 -rss_limit_mb=2048 -detect_leaks=$leaks \
-    -dict=tests/faults/fuzz/words.dict -print_final_stats=1 -artifact_prefix="build/fuzz/findings/$target-" \
-    "build/fuzz/corpus/$target" "$seeds/$target" > "$log" 2>&1 || { code=1; grep -aE "ERROR|SUMMARY|runtime error|Test unit" "$log"; }
-  grep -aE "number_of_executed_units|average_exec_per_sec|peak_rss" "$log" || true
+  ASAN_OPTIONS=detect_leaks=$leaks "build/fuzz/bin/fuzz_$target" -seed=1 -max_total_time="$seconds" -timeout=20 \
+    -rss_limit_mb=2048 -dict=tests/faults/fuzz/words.dict -print_final_stats=1 \
+    -artifact_prefix="build/fuzz/findings/$target-" "build/fuzz/corpus/$target" "$seeds/$target" > "$log" 2>&1 || code=1
+  grep -aE "ERROR|SUMMARY|runtime error|Test unit|number_of_executed_units|average_exec_per_sec|peak_rss" "$log"
 done
 exit $code
