@@ -130,7 +130,8 @@ std::string shortest(double value) {
 
 double to_number(std::string_view text) {
   double value = 0;
-  const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+  const bool has_plus = text.starts_with('+') && !text.starts_with("+-");  // which from_chars does not know
+  const char* begin = text.data() + (has_plus ? 1 : 0);
   const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
     refuse(text, "is not a finite number");

@@ -66,6 +66,12 @@ TEST(ToNumber, RefusesWhatIsNotFinite) {
   EXPECT_THROW(to_number(""), Error);
 }
 
+TEST(ToNumber, TakesOneSignOnly) {
+  EXPECT_EQ(to_number("+2"), 2);
+  EXPECT_EQ(to_number("-2"), -2);
+  for (const char* text : {"+-2", "++2", "-+2", "--2"}) EXPECT_THROW(to_number(text), Error) << text;
+}
+
 TEST(Shortest, ReadsBackExactly) {
   for (const double value : {0.1, 1.0 / 3, 1e-17, 2e5, 0.02887829511489174})
     EXPECT_EQ(to_number(shortest(value)), value);
