@@ -77,10 +77,12 @@ class Faults:
                 *case.chance.choice([[], ["--config", "s.cfg"]]), case.chance.choice(["--dry-run", "--print-config"])]
 
     def report(self, case):
-        words = case.chance.choice([["clogsweep", name] for name in ("status", "verify", "replay")] + [["clogfit"]])
+        names = ("status", "verify", "replay", "salvage")
+        words = case.chance.choice([["clogfit"], *(["clogsweep", name] for name in names)])
         options = self.options.get(tuple(words), {})
         options = {name: value for name, value in options.items() if name != "watch"}
-        more = [case.chance.choice(["0", "1", *NUMBERS])] if words[-1] == "replay" else []
+        task = case.chance.choice(["0", "1", *NUMBERS])
+        more = {"replay": [task], "salvage": ["--output", "w.h5"]}.get(words[-1], [])
         return [*words, self.file_name(case), *more, *self.some_options(case, options)]
 
     def droplet(self, case):

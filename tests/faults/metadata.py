@@ -5,7 +5,8 @@ import subprocess
 
 from damage import harm
 from programs import command, run
-from samples import FILE, REPORTS, check_complete, check_readers, check_resumed, rows_place, samples, stored_rows
+from samples import (FILE, REPORTS, VERIFY, check_complete, check_readers, check_resumed, rows_place, samples,
+                     stored_rows)
 from support import SMALL
 
 JOURNAL = FILE + ".journal"
@@ -61,7 +62,7 @@ class Faults:
         case.note(f"journal: {way}")
         (case.folder / FILE).write_bytes(self.stopped.files[FILE])
         (case.folder / JOURNAL).write_bytes(content)
-        for report in REPORTS:
+        for report in (VERIFY, *REPORTS):
             run(case, *report)
         outcome = run(case, "clogsweep", *STOPPED, exit_codes={0, 2})
         if outcome.code == 2:

@@ -12,8 +12,8 @@ from support import BIN, MPIRUN
 
 EXIT_CODES = {0, 1, 2, 75}  # README.md
 READER_GONE = 141  # of a program whose output nobody reads any more
-SUBCOMMANDS = {"status", "verify", "replay", "doctor", "array", "channel", "sag", "calibrate", "deviation", "drag",
-               "report"}
+SUBCOMMANDS = {"status", "verify", "replay", "salvage", "doctor", "array", "channel", "sag", "calibrate", "deviation",
+               "drag", "report"}
 # A program that computes or spins is ended by the first limit, on a busy machine as on an idle one. The other is for
 # those that wait for what never comes: so long that no load makes a program of a second last so long.
 CPU_SECONDS = 20

@@ -5,18 +5,20 @@ import resource
 import subprocess
 
 import h5py
-import sweep_file
+import stored
+from command_line import UserError
 from programs import CPU_SECONDS, command, run
 from support import BLOCKED, QUICK, TIMING
 
 FILE = "s.h5"
+SALVAGED = "salvaged.h5"
 SWEEPS = {
     "polygons": [*QUICK, "obstacle-gap=0.4", "line-tension=0.05,0.5,1", "seeds=1..2"],
     "failures": [*BLOCKED, "seeds=63..64"],
     "disks": ["model=sp", "wall-stiffness=1", "box=20", "max-time=60", "obstacle-gap=0.4,1.2", "seeds=1..2"],
 }
-REPORTS = [("clogsweep", "verify", FILE), ("clogsweep", "status", FILE, "--format", "json"),
-           ("clogfit", FILE, "--format", "json")]
+VERIFY = ("clogsweep", "verify", FILE)
+REPORTS = [("clogsweep", "status", FILE, "--format", "json"), ("clogfit", FILE, "--format", "json")]
 ENDINGS = (b"clogged", b"flowing")
 
 
@@ -26,7 +28,7 @@ def in_child(function, *arguments):
         resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS))
         try:
             connection.send((function(*arguments), None))
-        except (OSError, ValueError) as error:
+        except (OSError, UserError) as error:
             connection.send((None, f"refused: {error}"))
         except Exception as error:
             connection.send((None, f"{type(error).__name__}: {error}"))
@@ -60,7 +62,7 @@ def stored_texts(path):
 
 def read_with_python(path):
     """What our own reader for Python gives, as text with every digit."""
-    return sweep_file.read_rows(path).to_csv()
+    return stored.read_table(path).to_csv()
 
 
 def results(rows, ignored=TIMING):
@@ -115,16 +117,28 @@ def check_readers(case, sample):
     """Nobody who reads the case's file says anything else than of the whole one, unless he says that it is damaged."""
     path = case.folder / FILE
     before = path.read_bytes()
-    outcomes = [run(case, *report) for report in REPORTS]
-    for outcome, told in zip(outcomes, sample.reports):
+    for report, told in zip(REPORTS, sample.reports):
+        outcome = run(case, *report)
         case.expect(outcome.code != 0 or outcome.output == told,
                     f"{outcome.name}: other numbers than of the whole file, exit code 0")
     table, why = in_child(read_with_python, path)
-    case.expect(table is None or table == sample.table, "read_rows: other numbers than of the whole file")
-    case.expect(table is not None or why.startswith("refused"), f"read_rows: {str(why).split(':')[0]}")
-    if outcomes[0].code == 0:
+    case.expect(table is None or table == sample.table, "read_table: other numbers than of the whole file")
+    case.expect(table is not None or why.startswith("refused"), f"read_table: {str(why).split(':')[0]}")
+    if run(case, *VERIFY).code == 0:
         check_called_whole(case, sample, path)
+    check_salvaged(case, sample)
     case.expect(path.read_bytes() == before, "a reader changed the file")
+
+
+def check_salvaged(case, sample):
+    """What is called whole of a damaged file is as it was."""
+    outcome = run(case, "clogsweep", "salvage", FILE, "--output", SALVAGED)
+    if outcome.code != 0:
+        return
+    rows, why = in_child(stored_rows, case.folder / SALVAGED)
+    case.expect(rows is not None, f"{outcome.name}: makes a file that cannot be read: {why}")
+    case.expect(all(sample.rows.get(task) == row for task, row in (rows or {}).items()),
+                f"{outcome.name}: calls a changed row whole")
 
 
 def check_called_whole(case, sample, path):
