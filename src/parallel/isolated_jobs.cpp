@@ -28,7 +28,7 @@ using Clock = std::chrono::steady_clock;
 
 enum Kind : std::int64_t {
   describe_jobs = 1,  // rank -> helper: the description
-  process_began,      // helper -> rank: its pid
+  process_began,      // helper -> rank: its pid, once nobody else has its socket; -1 if it never began
   process_ended,      // helper -> rank: an Ending
   begin,              // rank -> process: a task's number and the snapshot to begin at
   report,             // rank -> process: how far is it (empty); and the answer: a row and its snapshot
@@ -38,6 +38,8 @@ enum Kind : std::int64_t {
 
 /// How long a rank waits for a process that should answer at once: a stopped one never does.
 constexpr std::chrono::milliseconds patience{2000};
+/// The same for the start of a process, which takes long where memory is scarce.
+constexpr std::chrono::milliseconds patience_for_start{20'000};
 
 /// How a process came to its end.
 struct Ending {
@@ -117,8 +119,8 @@ void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj")
     }
     Ending ending{process < 0 ? errno : 0};
     socket.close();
+    rank.send(process_began, 0, to_bytes(process, {}));
     if (process > 0) {
-      rank.send(process_began, 0, to_bytes(process, {}));
       // It stays a zombie until the rank wants the next: the rank may kill it, and no other of its number.
       siginfo_t end{};
       while (waitid(P_PID, process, &end, WEXITED | WNOWAIT) < 0 && errno == EINTR) continue;
@@ -153,13 +155,8 @@ class IsolatedJobs::Processes {
       if (!process_.receive()) bury();
     ++last_job_;
     if (!have_helper()) return last_job_;
-    if (!process_.is_open()) {
-      auto [mine, theirs] = Socket::pair();
-      mine.limit_halts(patience);
-      helper_.send_socket(theirs);
-      process_ = std::move(mine);
-    }
-    process_.send(begin, last_job_, to_bytes(task, snapshot));
+    if (!process_.is_open()) start_process();
+    if (process_.is_open()) process_.send(begin, last_job_, to_bytes(task, snapshot));
     return last_job_;
   }
 
@@ -169,14 +166,11 @@ class IsolatedJobs::Processes {
   /// should know, has died or is stopped, and is given up.
   std::optional<Ending> bury() {
     process_.close();
-    while (helper_.wait(patience)) {
-      const auto message = helper_.receive();
-      if (!message) break;
-      if (message->kind == process_ended) return from_bytes<Ending>(message->bytes).first;
-      kill(from_bytes<pid_t>(message->bytes).first, SIGKILL);
-    }
-    kill(helper_pid_, SIGKILL);
-    helper_.close();
+    if (process_id_ > 0)
+      kill(process_id_, SIGKILL);  // no other has its number until the helper starts the next
+    if (helper_.wait(patience))
+      if (const auto message = helper_.receive()) return from_bytes<Ending>(message->bytes).first;
+    give_up_helper();
     return std::nullopt;
   }
 
@@ -184,7 +178,25 @@ class IsolatedJobs::Processes {
   Socket helper_;
   pid_t helper_pid_;
   Socket process_;
+  pid_t process_id_ = -1;
   std::int64_t last_job_ = 0;
+
+  /// From the helper's word on the process alone has the other end of its socket, so that its death is
+  /// noticed.
+  void start_process() {
+    auto [mine, theirs] = Socket::pair();
+    mine.limit_halts(patience);
+    helper_.send_socket(theirs);
+    const auto began = helper_.wait(patience_for_start) ? helper_.receive() : std::nullopt;
+    if (!began) return give_up_helper();
+    process_id_ = from_bytes<pid_t>(began->bytes).first;
+    process_ = std::move(mine);
+  }
+
+  void give_up_helper() {
+    kill(helper_pid_, SIGKILL);
+    helper_.close();
+  }
 };
 
 class IsolatedJobs::IsolatedJob final : public Job {
