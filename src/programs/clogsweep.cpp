@@ -279,7 +279,10 @@ int main(int argc, char** argv) {
   cli::prepare_streams();
   // What needs no ranks.
   const std::map<std::string_view, int (*)(int, const char* const*)> reports = {
-      {"status", clogsweep_status}, {"verify", clogsweep_verify}, {"replay", clogsweep_replay}, {"salvage", clogsweep_salvage}};
+      {"status", clogsweep_status},
+      {"verify", clogsweep_verify},
+      {"replay", clogsweep_replay},
+      {"salvage", clogsweep_salvage}};
   if (const auto report = argc > 1 ? reports.find(argv[1]) : reports.end(); report != reports.end())
     return cli::run_program(std::string(program) + ' ' + argv[1], [&] { return report->second(argc, argv); });
   cli::catch_stop_signals();  // one that comes before the sweep begins stops it then
