@@ -1,7 +1,10 @@
 /// clogrun: one droplet, watched closely.
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "analysis_script.hpp"
 #include "channel_options.hpp"
@@ -35,6 +38,9 @@ cli::CommandLine parse(int argc, char** argv) {
       "sample-interval", text()->default_value("1"), "time between samples [t0]")(
       "polygon-interval", text(), "also write the polygon this often [t0]")(
       "frames", text(), "also make a film of the polygons with this name: .mp4 with ffmpeg, .gif otherwise")(
+      "most-frames", text(),
+      "film: this many frames at most; a longer one is thinned, or shows the end (600)")(
+      "dry-run", "print the config and how long the run takes at most, run nothing")(
       "obstacles", text(), "array: CSV file x,y[,diameter] to use; the droplet starts near (box/2, box/2)")(
       "write-obstacles", text(), "array: write the obstacles as a CSV file")(
       "start", text(), "channel: h at release [sigma] (-10)")("end", text(),
@@ -65,14 +71,27 @@ std::filesystem::path film_name(const cli::CommandLine& line) {
   return has_ending ? std::filesystem::path(name).replace_extension() : name;
 }
 
+/// How droplet.py is to draw the film. @throws Error  where none could be written
+std::vector<std::string> film_options(const cli::CommandLine& line) {
+  std::vector<std::string> options = {line.require("output"), "--output=" + film_name(line).string(),
+                                      "--film"};
+  if (line.has("most-frames"))
+    options.push_back("--most-frames=" +
+                      std::to_string(std::llround(std::max(1.0, line.get_positive("most-frames")))));
+  return options;
+}
+
 int follow(cli::CommandLine& line, const std::string& system) {
   const auto run = system == "array" ? clogrun_array : clogrun_channel;
-  if (!line.has("frames")) return run(line);
-  const std::filesystem::path film = film_name(line);
+  if (!line.has("frames")) {
+    refuse_options(line, system + " without --frames", {"most-frames"});
+    return run(line);
+  }
+  const std::vector<std::string> options = film_options(line);
   const std::filesystem::path script = find_analysis_script("droplet.py");
   const int exit_code = run(line);
-  if (exit_code != cli::exit_success) return exit_code;
-  become_script("clogrun", script, {line.get("output"), "--output=" + film.string(), "--film"});
+  if (exit_code != cli::exit_success || line.has("dry-run")) return exit_code;
+  become_script("clogrun", script, options);
 }
 
 int body(int argc, char** argv) {

@@ -59,6 +59,7 @@ int clogrun_array(cli::CommandLine& line) {
   WatchedRun watched(setup.own_obstacles ? run_in_array(setup.parameters, setup.own_obstacles)
                                          : run_in_array(setup.parameters),
                      intervals);
+  if (line.has("dry-run")) return print_preview(line.settings().to_config(false), watched.measure_cost());
   if (line.has("write-obstacles"))
     cli::write_obstacles(line.get("write-obstacles"), watched.run().obstacles().obstacles());
   cli::catch_stop_signals();

@@ -20,6 +20,7 @@ int clogrun_channel(cli::CommandLine& line) {
   store::refuse_unwritable(output);
 
   WatchedRun watched(std::move(run), intervals);
+  if (line.has("dry-run")) return print_preview(line.settings().to_config(false), watched.measure_cost());
   watched.add_column(
       "h", "distance of the centre of mass from the orifice, positive downstream [sigma]",
       [start = channel.start](const DropletRun& now) { return start + now.displacement()[0]; });

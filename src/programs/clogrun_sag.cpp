@@ -30,15 +30,24 @@ Sag sag_of(const DropletRun& run, const Eigen::ArrayXd& before) {
   return {.centre = run.displacement_of(centroid(state))[0], .top = top};
 }
 
+int preview(const cli::CommandLine& line, const sweep::Plan& plan, WatchedRun::Intervals intervals) {
+  MostCost cost;
+  for (std::int64_t task = 0; task < plan.size(); ++task)
+    cost += WatchedRun(run_onto_wall(plan.task(task)), intervals).measure_cost();
+  return print_preview(line.settings().to_config(false), cost);
+}
+
 }  // namespace
 
 int clogrun_sag(cli::CommandLine& line) {
   refuse_options(line, "sag", array_options);
-  refuse_options(line, "sag", {"orifice", "wedge-angle", "tip-radius", "start", "end", "frames"});
+  refuse_options(line, "sag",
+                 {"orifice", "wedge-angle", "tip-radius", "start", "end", "frames", "most-frames"});
   const sweep::Plan plan(line.settings());
   if (line.has("output")) single_run(line.settings());
   const auto intervals = WatchedRun::intervals(line, *plan.task(0).time_step);
   if (line.has("output")) store::refuse_unwritable(line.get("output"));
+  if (line.has("dry-run")) return preview(line, plan, intervals);
 
   cli::catch_stop_signals();
   std::printf("model,line_tension,wall_stiffness,sag,top_sag,shape_parameter,time,status\n");

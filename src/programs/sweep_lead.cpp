@@ -1,7 +1,5 @@
 #include "sweep_lead.hpp"
 
-#include <unistd.h>
-
 #include <chrono>
 #include <cstdint>
 #include <iostream>
@@ -46,7 +44,7 @@ void announce(const std::string& output, const SweepLedger& ledger, bool may_gro
 
 SweepProgress::Screen screen(SweepLog::Level level) {
   if (level == SweepLog::Level::quiet) return SweepProgress::Screen::none;
-  return isatty(STDERR_FILENO) ? SweepProgress::Screen::terminal : SweepProgress::Screen::plain;
+  return StatusLine::standard_error();
 }
 
 /// Joins what the scheduler tells and asks with what is kept and what is told to the user.

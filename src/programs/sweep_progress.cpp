@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <ostream>
 #include <vector>
 
+#include "duration.hpp"
 #include "time_left.hpp"
 
 namespace clog {
@@ -17,7 +17,7 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 }  // namespace
 
 SweepProgress::SweepProgress(std::ostream& out, Screen screen, int num_computing_ranks)
-    : out_(out), screen_(screen), num_ranks_(num_computing_ranks) {}
+    : status_(out, screen), num_ranks_(num_computing_ranks) {}
 
 void SweepProgress::started(std::int64_t task) { running_[task] = Clock::now(); }
 
@@ -33,32 +33,13 @@ void SweepProgress::not_ended(const sweep::RunRow& failed) {
   --num_ended_;
 }
 
-void SweepProgress::say(const std::string& text) {
-  if (screen_ != Screen::terminal) {
-    out_ << text << std::endl;
-    return;
-  }
-  out_ << '\r' << text << "\x1b[K\n";
-  print(line());
-}
-
 void SweepProgress::tick() {
-  const double interval = screen_ == Screen::terminal ? 0.2 : 10;
-  if (seconds_since(last_print_) >= interval) print(line());
+  if (status_.is_due()) status_.renew(line());
 }
 
 void SweepProgress::finish() {
-  print(line());
-  if (screen_ == Screen::terminal) out_ << std::endl;
-}
-
-void SweepProgress::print(const std::string& text) {
-  last_print_ = Clock::now();
-  if (screen_ == Screen::none) return;
-  if (screen_ == Screen::terminal)
-    out_ << '\r' << text << "\x1b[K" << std::flush;  // to the left edge; then clear what an older line left
-  else
-    out_ << text << std::endl;
+  status_.renew(line());
+  status_.keep();
 }
 
 std::string SweepProgress::line() const {

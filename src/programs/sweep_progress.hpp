@@ -7,6 +7,7 @@
 #include <string>
 
 #include "clog/sweep/run_row.hpp"
+#include "status_line.hpp"
 
 namespace clog {
 
@@ -14,7 +15,7 @@ namespace clog {
 /// elsewhere.
 class SweepProgress {
  public:
-  enum class Screen { terminal, plain, none };
+  using Screen = StatusLine::Screen;
 
   SweepProgress(std::ostream& out, Screen screen, int num_computing_ranks);
 
@@ -28,7 +29,7 @@ class SweepProgress {
   /// One that ended as failed is to be done again.
   void not_ended(const sweep::RunRow& failed);
   /// Prints a line that stays, whatever the screen.
-  void say(const std::string& text);
+  void say(const std::string& text) { status_.say(text); }
   /// Prints if it is time to.
   void tick();
   void finish();
@@ -36,12 +37,10 @@ class SweepProgress {
  private:
   using Clock = std::chrono::steady_clock;
 
-  std::ostream& out_;
-  Screen screen_;
+  StatusLine status_;
   std::int64_t num_tasks_ = 0;
   int num_ranks_;
   Clock::time_point begin_ = Clock::now();
-  Clock::time_point last_print_ = begin_;
   std::map<std::int64_t, Clock::time_point> running_;
   std::map<std::string, std::int64_t, std::less<>> ended_by_status_;
   std::int64_t num_ended_ = 0;
@@ -49,7 +48,6 @@ class SweepProgress {
 
   std::string line() const;
   std::string time_left() const;
-  void print(const std::string& text);
 };
 
 }  // namespace clog

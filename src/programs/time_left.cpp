@@ -1,24 +1,11 @@
 #include "time_left.hpp"
 
-#include <cstdio>
 #include <vector>
 
 #include "clog/fit/clogging_length.hpp"
+#include "duration.hpp"
 
 namespace clog {
-
-std::string readable_duration(double seconds) {
-  char text[32];
-  if (seconds < 90)
-    std::snprintf(text, sizeof text, "%.0f s", seconds);
-  else if (seconds < 90 * 60)
-    std::snprintf(text, sizeof text, "%.0f min", seconds / 60);
-  else if (seconds < 48 * 3600)
-    std::snprintf(text, sizeof text, "%.1f h", seconds / 3600);
-  else
-    std::snprintf(text, sizeof text, "%.1f days", seconds / 86400);
-  return text;
-}
 
 std::string TimeLeft::text() const {
   return is_known ? readable_duration(shortest) + " to " + readable_duration(longest) + " left"

@@ -6,9 +6,6 @@
 
 namespace clog {
 
-/// A duration in the unit that suits it.
-std::string readable_duration(double seconds);
-
 /// How long a sweep still takes, as a range [s].
 struct TimeLeft {
   bool is_known = false;

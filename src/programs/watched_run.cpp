@@ -11,15 +11,19 @@
 #include "clog/core/error.hpp"
 #include "clog/core/units.hpp"
 #include "clog/sweep/plan.hpp"
+#include "run_progress.hpp"
 
 namespace clog {
 namespace {
 
-/// Obstacles, periodic images included, within a diameter of the polygons. Tips of wedges are none.
+/// What a film shows around a droplet [sigma].
+constexpr double surroundings = 5 * units::droplet_diameter;
+
+/// Obstacles, periodic images included, in the surroundings of the polygons. Tips of wedges are none.
 std::vector<Obstacle> obstacles_along(const std::vector<store::PolygonFrame>& frames,
                                       const ObstacleArray& array) {
   constexpr double inf = std::numeric_limits<double>::infinity();
-  ObstacleArray::Window window{0, 0, inf, -inf, inf, -inf, units::droplet_diameter};
+  ObstacleArray::Window window{0, 0, inf, -inf, inf, -inf, surroundings};
   for (const store::PolygonFrame& frame : frames) {
     const std::size_t n = frame.position.size() / 2;
     for (std::size_t i = 0; i < n; ++i) {
@@ -103,6 +107,7 @@ void WatchedRun::take_polygon() {
 
 void WatchedRun::follow() {
   const auto begin = std::chrono::steady_clock::now();
+  RunProgress progress;
   bool over = false;
   for (std::int64_t checks = 0;; ++checks) {
     if (checks % intervals_.samples == 0 || over) take_sample();
@@ -110,8 +115,32 @@ void WatchedRun::follow() {
     interrupted_ = !over && cli::stop_signalled();
     if (over || interrupted_) break;
     over = run_.advance(1);
+    progress.tick(run_);
   }
+  progress.finish();
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+MostCost WatchedRun::measure_cost() {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto elapsed = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  while (elapsed() < 0.5 && !run_.advance(8)) continue;
+  const double max_time = run_.parameters().max_time;
+  const double steps = max_time / *run_.parameters().time_step;
+  const auto rows = [&](std::int64_t interval) {
+    return interval > 0 ? 1 + std::ceil(steps / static_cast<double>(DropletRun::steps_per_check * interval))
+                        : 0;
+  };
+  const double polygons = rows(intervals_.polygons);
+  return {
+      .time = max_time,
+      .steps = steps,
+      .seconds = elapsed() / run_.time() * max_time,
+      .samples = rows(intervals_.samples),
+      .polygons = polygons,
+      .polygon_bytes = polygons * static_cast<double>(2 * sizeof(double) * run_.droplet().state().size())};
 }
 
 RunResult WatchedRun::result() const {
@@ -159,7 +188,7 @@ sweep::RunRow without_array(sweep::RunRow row, const char* place) {
   return row;
 }
 
-void refuse_options(const cli::CommandLine& line, const char* system,
+void refuse_options(const cli::CommandLine& line, const std::string& system,
                     std::initializer_list<const char*> options) {
   for (const char* option : options)
     if (line.has(option))

@@ -10,6 +10,7 @@
 #include "clog/cli/command_line.hpp"
 #include "clog/core/droplet_run.hpp"
 #include "clog/store/trajectory_file.hpp"
+#include "run_preview.hpp"
 
 namespace clog {
 
@@ -32,6 +33,8 @@ class WatchedRun {
     columns_.push_back({{std::move(name), std::move(meaning), {}}, value});
   }
   void follow();
+  /// Advances the run by a short piece, to see what a step costs. The run is good for nothing else then.
+  MostCost measure_cost();
 
   const DropletRun& run() const { return run_; }
   /// Of the run; `interrupted` if a signal ended it.
@@ -80,7 +83,7 @@ inline constexpr std::initializer_list<const char*> array_options = {"obstacle-g
 sweep::RunRow without_array(sweep::RunRow row, const char* place);
 
 /// @throws Error if one of these options was given, which have no meaning for the system
-void refuse_options(const cli::CommandLine& line, const char* system,
+void refuse_options(const cli::CommandLine& line, const std::string& system,
                     std::initializer_list<const char*> options);
 
 }  // namespace clog
