@@ -1,3 +1,5 @@
+import os
+import pty
 import re
 import signal
 import subprocess
@@ -8,7 +10,7 @@ import h5py
 import numpy as np
 import pandas
 
-from support import BIN, QUICK, ProgramTest
+from support import BIN, QUICK, SMALL, ProgramTest
 
 
 def centroid_x(polygon):
@@ -161,6 +163,43 @@ class Run(ProgramTest):
         self.assertEqual(process.returncode, 75)
         self.assertTrue(re.match("interrupted after r = ", output), output)
         self.assertGreater(len(pandas.read_hdf(self.folder / "run.h5", "trajectory")), 10)
+
+    def test_a_terminal_is_told_how_far_it_is(self):
+        master, slave = pty.openpty()
+        self.addCleanup(os.close, master)
+        process = subprocess.Popen(
+            [str(BIN / "clogrun"), "array", *SMALL, "obstacle-gap=1.2", "max-time=1e8", "--sample-interval", "1e4", "--output", "run.h5"],
+            cwd=self.folder, stdout=subprocess.DEVNULL, stderr=slave)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        os.close(slave)
+        told = b""
+        while told.count(b" left") < 2:
+            told += os.read(master, 1000)
+        self.assertRegex(told.decode(), r"^\rr = \S+ sigma, t = \S+ of at most 1e\+08 t0, .+ so far, at most .+ left\x1b\[K\rr = ")
+        process.send_signal(signal.SIGINT)
+        while not told.endswith(b"\r\x1b[K"):
+            told += os.read(master, 1000)
+        self.assertEqual(process.wait(), 75)
+
+    def test_a_dry_run_prints_the_config_and_what_it_takes_at_most(self):
+        keys = [*SMALL, "line-tension=0.3", "max-time=100", "--polygon-interval", 5]
+        told = self.succeed("clogrun", "array", *keys, "--dry-run", "--output", "run.h5").stdout
+        self.assertEqual(self.snapshot(), {})
+        self.assertIn("at most 100 t0 in ", told)
+        self.assertIn("on this machine", told)
+        samples, polygons = map(int, re.search(r"# at most (\d+) samples and (\d+) polygons", told).groups())
+        # It is a config, and that of the run.
+        self.write("told.cfg", told)
+        self.succeed("clogrun", "array", "--config", "told.cfg", "--polygon-interval", 5, "--output", "run.h5")
+        with h5py.File(self.folder / "run.h5") as file:
+            self.assertEqual(file["runs"]["line_tension"][0], 0.3)
+            self.assertEqual(file["runs"]["max_time"][0], 100)
+            self.assertLessEqual(len(file["polygons"]), polygons)
+            self.assertLessEqual(len(file["trajectory"]), samples + 1)
+        for system in (["channel", "--output", "c.h5"], ["sag", "line-tension=0.1,0.3"]):
+            told = self.succeed("clogrun", *system, "vertices=64", "max-time=50", "--dry-run").stdout
+            self.assertIn("at most 50 t0" if system[0] == "channel" else "at most 100 t0", told)
 
     def test_mistakes_get_one_line_and_exit_code_2(self):
         self.write("words.csv", "x,y\n1,2\n3,four\n")
