@@ -9,6 +9,7 @@ import stored
 import style
 from matplotlib.collections import PatchCollection
 from matplotlib.patches import Circle, Polygon
+from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
 
 @dataclasses.dataclass
@@ -96,8 +97,56 @@ def draw_surroundings(axes, trajectory, origin=(0.0, 0.0)):
     shift = np.asarray(origin)
     circles = [Circle((x - shift[0], y - shift[1]), diameter / 2) for x, y, diameter in trajectory.obstacles]
     axes.add_collection(PatchCollection(circles, facecolor=style.OBSTACLE, edgecolor="none"))
+    draw_walls(axes, trajectory, shift)
+
+
+def draw_walls(axes, trajectory, shift=0.0):
     for wedge in trajectory.wedges:
         axes.add_patch(Polygon(wedge_outline(wedge) - shift, facecolor=style.OBSTACLE, edgecolor="none"))
+
+
+def draw_guides(axes):
+    """A bar as long as a droplet is wide, and the direction of the flow. Both stay in their corners when axes are moved."""
+    bar = AnchoredSizeBar(axes.transData, 1.0, r"$\sigma$", "lower left", pad=0.2, borderpad=0.3, sep=2, label_top=True)
+    bar.patch.set(edgecolor="none", alpha=0.7)
+    bar.set_zorder(6)
+    axes.add_artist(bar)
+    axes.annotate("", (0.17, 0.95), (0.02, 0.95), xycoords="axes fraction", zorder=6,
+                  arrowprops={"arrowstyle": "-|>", "linewidth": 1.5, "color": "black"})
+    axes.text(0.03, 0.925, "flow", transform=axes.transAxes, va="top", fontsize=9, zorder=6)
+
+
+def described(trajectory):
+    """What was run, without what came out."""
+    row = trajectory.row
+    words = [rf"$\Gamma = {row['line_tension']:g}$" if trajectory.word("model") == "dp" else rf"$E_w = {row['wall_stiffness']:g}$"]
+    if np.isfinite(row["obstacle_gap"]):
+        words.append(rf"smallest gap ${row['obstacle_gap']:.3g}\,\sigma$")
+        words.append(f"seed {row['seed']}")
+    return ", ".join(words)
+
+
+def mechanism(trajectory):
+    """Empty if it is not known."""
+    return trajectory.word("mechanism") if "mechanism" in trajectory.row.dtype.names else ""
+
+
+def verdict(trajectory):
+    """How the run ended."""
+    ends = {"wrapped": "clogged by wrapping", "squeezed": "clogged by squeezing", "hybrid": "clogged by wrapping and squeezing"}
+    status = trajectory.word("status")
+    end = ends.get(mechanism(trajectory), status) if status == "clogged" else {"flowing": "still flowing"}.get(status, status)
+    return rf"{end} after $r = {trajectory.row['distance']:.2f}\,\sigma$"
+
+
+def centroids(polygons):
+    """Of the enclosed areas. @param polygons  frames x 2 x N. @return frames x 2"""
+    reference = polygons[:, :, :1]  # near to the polygon: no digits are lost far from the origin
+    x, y = np.moveaxis(polygons - reference, 1, 0)
+    next_x, next_y = np.roll(x, -1, axis=-1), np.roll(y, -1, axis=-1)
+    cross = x * next_y - next_x * y
+    moments = np.stack([((x + next_x) * cross).sum(axis=-1), ((y + next_y) * cross).sum(axis=-1)], axis=-1)
+    return reference[:, :, 0] + moments / (3 * cross.sum(axis=-1, keepdims=True))
 
 
 def frame_limits(axes, low, high):
