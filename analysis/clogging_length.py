@@ -4,8 +4,8 @@
     clogfit sweep.h5 --format json > fit.json
     analysis/clogging_length.py fit.json --output clogging-length
 
-Every number comes from clogfit; nothing is fitted here. Bars are its confidence intervals; a triangle pointing up
-is a lower bound where no run clogged.
+Every number comes from clogfit; nothing is fitted here. Bars are its confidence intervals; markers show by what most
+droplets clogged; a triangle pointing up is a lower bound where no run clogged.
 """
 
 import json
@@ -102,8 +102,7 @@ def draw(groups, abscissa, confidence):
     axes.set_xlabel(style.AXES[abscissa])
     axes.set_ylabel(style.AXES["length"])
     style.grid(axes)
-    if axes.get_legend_handles_labels()[1] not in ([], [""]):
-        axes.legend(frameon=False)
+    style.legend(axes, groups)
     presets = {group["preset"] for group in groups if group["model"] == "dp"}
     note = (f"interface: {presets.pop()}; " if len(presets) == 1 else "") + f"bars: {100 * confidence:g} % confidence"
     if any(style.held_by_mesh(group) for group in groups):

@@ -6,10 +6,13 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from matplotlib.lines import Line2D
 
 # Okabe and Ito's palette, safe for colour-blind readers; a marker of its own for every curve besides.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
 MARKERS = ["o", "s", "D", "v", "P", "X", "*"]
+MECHANISM_COLOURS = {"wrapped": COLOURS[0], "squeezed": COLOURS[1], "hybrid": COLOURS[2], "other": COLOURS[3]}
+MECHANISM_MARKERS = {"wrapped": "o", "squeezed": "s", "hybrid": "D", "other": "X"}
 OBSTACLE = "0.72"
 DROPLET = "#D55E00"
 
@@ -36,9 +39,24 @@ def held_by_mesh(group):
     return "held_by_mesh" in (group["doubts"] or "").split()
 
 
+def main_mechanism(group):
+    """What holds most of the clogs of a group."""
+    return max(MECHANISM_MARKERS, key=lambda name: group[name])
+
+
+def legend(axes, groups=()):
+    """Of the curves if they have names, and of the markers that draw_lengths() gave these groups."""
+    curves = [(handle, label) for handle, label in zip(*axes.get_legend_handles_labels()) if label]
+    names = {main_mechanism(group) for group in groups if group["clogs"] > 0}
+    markers = [(Line2D([], [], color="0.4", marker=marker, linestyle="none"), f"most clogs {name}" if name != "other" else "other clogs")
+               for name, marker in MECHANISM_MARKERS.items() if name in names]
+    if curves or markers:
+        axes.legend(*zip(*curves, *markers), frameon=False)
+
+
 def draw_lengths(axes, places, groups, index, label):
-    """Clogging lengths with clogfit's intervals. An open marker is a length that hangs on the number of vertices, an
-    open triangle a lower bound, where no run clogged."""
+    """Clogging lengths with clogfit's intervals. The marker is that of what holds most of the clogs; an open one is a
+    length that hangs on the number of vertices, an open triangle a lower bound, where no run clogged."""
     order = sorted(range(len(groups)), key=lambda i: places[i])
     places, groups = [places[i] for i in order], [groups[i] for i in order]
     # Not a number where no run clogged: the line is broken there, and goes on dotted.
@@ -47,22 +65,18 @@ def draw_lengths(axes, places, groups, index, label):
         [math.nan if group["clogs"] == 0 else abs(group["clogging_length"] - group[end]) for group in groups]
         for end in ("clogging_length_lower", "clogging_length_upper")
     ]
-    axes.errorbar(
-        places, lengths, yerr=bars, **curve_style(index), markersize=5, linewidth=1, elinewidth=1, capsize=2.5,
-        label=label,
-    )
-    doubtful = [(x, y) for x, y, group in zip(places, lengths, groups) if held_by_mesh(group)]
-    axes.plot(
-        [x for x, _ in doubtful], [y for _, y in doubtful], **curve_style(index), markerfacecolor="white", markersize=5,
-        linestyle="none", zorder=3,
-    )
+    colour = curve_style(index)["color"]
+    axes.errorbar(places, lengths, yerr=bars, color=colour, linewidth=1, elinewidth=1, capsize=2.5, label=label)
+    for x, y, group in zip(places, lengths, groups):
+        face = "white" if held_by_mesh(group) else colour
+        axes.plot(x, y, color=colour, marker=MECHANISM_MARKERS[main_mechanism(group)], markerfacecolor=face, markersize=5.5, zorder=3)
     if any(group["clogs"] == 0 for group in groups):
         through = [group["clogging_length_lower"] if group["clogs"] == 0 else group["clogging_length"] for group in groups]
-        axes.plot(places, through, color=curve_style(index)["color"], linewidth=0.8, linestyle=":", zorder=1)
+        axes.plot(places, through, color=colour, linewidth=0.8, linestyle=":", zorder=1)
     bounds = [(x, group["clogging_length_lower"]) for x, group in zip(places, groups) if group["clogs"] == 0]
     axes.plot(
         [x for x, _ in bounds], [length for _, length in bounds],
-        color=curve_style(index)["color"], marker="^", markerfacecolor="white", markersize=8, linestyle="none",
+        color=colour, marker="^", markerfacecolor="white", markersize=8, linestyle="none",
     )
 
 

@@ -75,7 +75,7 @@ def curves(shop, config, abscissa, parameter, quantity):
     axes.set_xlabel(style.AXES[abscissa])
     axes.set_ylabel(style.AXES[quantity])
     style.grid(axes)
-    axes.legend(frameon=False)
+    style.legend(axes, groups if quantity == "length" else ())
     note = length_note(groups) if quantity == "length" else "bars: standard error"
     style.caption(axes, f"{describe(groups, [parameter])}\n{note}")
     return Plate(drawing, data)
