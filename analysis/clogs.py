@@ -5,8 +5,8 @@
     analysis/clogs.py sweep.h5 --output clogs
 
 Runs the clogged rows again until they rest (clogrun; an outline is in no table). The flow goes to the right. Touched
-obstacles are dark, arcs of contact red, the droplet's convex hull dashed; titles give the columns mechanism,
-wrapped_support, num_wrapped, num_gaps, num_arcs.
+obstacles are dark, arcs of contact red, the droplet's convex hull dashed. Titles say by what and how far away it clogged, how many obstacles
+it wraps and which part of its support they bear, and how many gaps and contacts it has.
 """
 
 import concurrent.futures
@@ -20,10 +20,12 @@ from command_line import UserError
 
 with command_line.needs_modules():
     import numpy as np
+    import rounded
     import stored
     import style
     import trajectory
     from matplotlib.patches import Circle
+    from paper.workshop import reason
     from style import plt
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
@@ -87,22 +89,32 @@ def hull(points):
     return np.array(chain(ordered) + chain(ordered[::-1]))
 
 
+def title(row):
+    """What clogged and how, in words."""
+    def count(number, name):
+        return f"{number} {name}" if number == 1 else f"{number} {name}s"
+    wrapped = f"{row['num_wrapped']} wrapped (bears {100 * row['wrapped_support']:.0f} %)" if row["num_wrapped"] > 0 else "none wrapped"
+    return (rf"{mechanism(row)} after $r = {rounded.plain(row['distance'])}\,\sigma$" "\n"
+            rf"$\Gamma = {row['line_tension']:g}$, smallest gap ${row['obstacle_gap']:g}\,\sigma$, seed {row['seed']}" "\n"
+            f"{wrapped}, {count(row['num_gaps'], 'gap')}, {count(row['num_arcs'], 'contact')}")
+
+
 def draw(axes, row, polygon, obstacles):
-    low, high = polygon.min(axis=1) - 0.3, polygon.max(axis=1) + 0.3
-    axes.fill(*polygon, facecolor="#E69F00", edgecolor="black", linewidth=0.6, alpha=0.7)
-    axes.plot(*np.vstack([hull(polygon.T), hull(polygon.T)[:1]]).T, color="0.4", linewidth=0.6, linestyle="--")
+    """In coordinates from the droplet's middle. Panels of one shape: titles over flat ones would leave the sheet."""
+    low, high = polygon.min(axis=1), polygon.max(axis=1)
+    middle, half = (low + high) / 2, (high - low).max() / 2 + 0.3
+    interface = polygon - middle[:, None]
+    axes.fill(*interface, facecolor="#E69F00", edgecolor="black", linewidth=0.6, alpha=0.7)
+    axes.plot(*np.vstack([hull(interface.T), hull(interface.T)[:1]]).T, color="0.4", linewidth=0.6, linestyle="--")
     for obstacle, depths in zip(obstacles, overlaps(row, polygon, obstacles)):
         touches = np.flatnonzero(depths > 0)
-        axes.add_patch(Circle(obstacle[:2], obstacle[2] / 2, color="#0072B2" if len(touches) else "0.85"))
+        axes.add_patch(Circle(obstacle[:2] - middle, obstacle[2] / 2, color="#0072B2" if len(touches) else "0.85"))
         for edge in touches:
-            axes.plot(*polygon[:, [edge, (edge + 1) % polygon.shape[1]]], color="#D00000", linewidth=1.8)
-    # Panels of one shape: titles over flat ones would leave the sheet.
-    centre, half = (low + high) / 2, (high - low).max() / 2
-    axes.set(xlim=(centre[0] - half, centre[0] + half), ylim=(centre[1] - half, centre[1] + half), aspect="equal")
-    axes.set_title(
-        rf"{mechanism(row)} ({row['wrapped_support']:.2f}; {row['num_wrapped']}, {row['num_gaps']}, {row['num_arcs']})"
-        "\n" rf"{row['task']}: $\Gamma = {row['line_tension']:g}$, $w_\mathrm{{ob}} = {row['obstacle_gap']:g}$", fontsize=8,
-    )
+            axes.plot(*interface[:, [edge, (edge + 1) % interface.shape[1]]], color="#D00000", linewidth=1.8)
+    trajectory.frame_limits(axes, (-half, -1.2 * half), (half, 1.2 * half))  # with room for the guides
+    axes.locator_params(nbins=5)
+    trajectory.draw_guides(axes)
+    axes.set_title(title(row), fontsize=8)
 
 
 def numbers(words):
@@ -139,11 +151,13 @@ def body():
         config_file.write_text(config)
         try:
             shapes = list(pool.map(lambda row: run_again(arguments.clogrun, config_file, row, folder), rows))
-        except (OSError, subprocess.CalledProcessError) as error:
-            raise UserError(f"cannot run clogrun ({getattr(error, 'stderr', '') or error})".rstrip())
+        except subprocess.CalledProcessError as error:
+            raise UserError(f"cannot run clogrun ({reason(error.stderr)})") from error
+        except OSError as error:
+            raise UserError(f"cannot run clogrun ({error})") from error
     across = min(6, len(rows))
     down = -(-len(rows) // across)
-    figure, axes = plt.subplots(down, across, figsize=(2.6 * across, 3 * down), layout="constrained", squeeze=False)
+    figure, axes = plt.subplots(down, across, figsize=(2.8 * across, 3.9 * down), layout="constrained", squeeze=False)
     figure.get_layout_engine().set(h_pad=0.1)  # or the titles of the first row leave the sheet
     for place in axes.flat:
         place.axis("off")

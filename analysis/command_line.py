@@ -5,9 +5,11 @@ Modules that a machine may lack are loaded in the block of needs_modules().
 
 import argparse
 import contextlib
+import logging
 import os
 import pathlib
 import sys
+import warnings
 
 USER_FAULT = 2
 INTERRUPTED = 75
@@ -58,8 +60,16 @@ def refuse_unwritable(path):
         raise UserError(f"cannot write {path} (permission denied); give another --output")
 
 
+def quieten_libraries():
+    """What matplotlib, pandas or PyTables warn their own users of is nothing that ours can mend; python -W shows it."""
+    if not sys.warnoptions:
+        warnings.simplefilter("ignore")
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
+
+
 @contextlib.contextmanager
 def needs_modules():
+    quieten_libraries()
     try:
         yield
     except ImportError as error:

@@ -10,7 +10,6 @@ import base64
 import html
 import io
 import json
-import math
 import pathlib
 import subprocess
 import sys
@@ -23,27 +22,25 @@ with command_line.needs_modules():
     import clogging_length
     import clogs
     import numpy as np
+    import rounded
     import stored
     import style
-    from paper.workshop import programs_in, run_program
+    from paper.workshop import programs_in, reason, run_program
     from style import plt
 
+SYMBOLS = {"line_tension": r"\Gamma", "wall_stiffness": "E_w"}
 STYLE = """
-body { font: 15px/1.5 system-ui, sans-serif; max-width: 62rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
+body { font: 15px/1.5 system-ui, sans-serif; max-width: 72rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
 h1 { font-size: 1.5rem; margin-bottom: 0; } h2 { font-size: 1.15rem; margin-top: 2rem; }
 p.about { color: #555; margin-top: .2rem; }
 table { border-collapse: collapse; font-size: .85rem; font-variant-numeric: tabular-nums; }
 .scroll { overflow-x: auto; }
 th, td { padding: .2rem .5rem; text-align: right; border-bottom: 1px solid #ddd; white-space: nowrap; }
-th { border-bottom: 2px solid #888; font-weight: 600; }
+th { border-bottom: 2px solid #888; font-weight: 600; white-space: normal; vertical-align: bottom; }
 .doubt { color: #9a3b00; } td.doubt { white-space: normal; min-width: 9rem; text-align: left; } .pictures { display: flex; flex-wrap: wrap; gap: 1rem; } .pictures img { max-width: 30rem; width: 100%; }
 figure { margin: 0; flex: 1 1 26rem; } figcaption { color: #555; font-size: .9rem; }
 pre { background: #f5f5f5; padding: .7rem; overflow-x: auto; font-size: .85rem; }
 """
-
-
-def number(value):
-    return "-" if value is None or (isinstance(value, float) and not math.isfinite(value)) else f"{value:.4g}"
 
 
 def picture(figure, caption):
@@ -63,9 +60,47 @@ def speeds(groups, abscissa):
     axes.set_xlabel(style.AXES[abscissa])
     axes.set_ylabel(style.AXES["speed"])
     style.grid(axes)
-    if axes.get_legend_handles_labels()[1] not in ([], [""]):
-        axes.legend(frameon=False)
+    style.legend(axes)
     style.caption(axes, f"{clogging_length.caption(groups)}\nbars: standard error")
+    return figure
+
+
+def survival(label, groups, abscissa):
+    """P(r) of the groups of one curve, each with the exponential of its length."""
+    figure, axes = plt.subplots(figsize=(6.4, 4.8), layout="constrained")
+    for group, colour in zip(groups, plt.get_cmap("viridis")(np.linspace(0, 0.9, len(groups)))):
+        if not group["survival"]:
+            continue
+        r = group["clogging_length"] * np.logspace(-2, 1, 100)
+        axes.plot(r, np.exp(-r / group["clogging_length"]), color=colour, linewidth=0.8, linestyle="--")
+        distances = [min(r[0], group["survival"][0]["distance"]), *(step["distance"] for step in group["survival"])]
+        axes.step(distances, [1.0, *(step["probability"] for step in group["survival"])], where="post", color=colour, linewidth=1.5,
+                  label=f"${SYMBOLS[abscissa]} = {group[abscissa]:g}$")
+    axes.set_xscale("log")
+    axes.set_ylim(0, 1.02)
+    axes.set_xlabel(r"displacement along the flow $r/\sigma$")
+    axes.set_ylabel("probability $P(r)$ of not having clogged")
+    style.grid(axes)
+    axes.legend(frameon=False, fontsize=8, ncols=1 + len(groups) // 8)
+    style.caption(axes, f"{label}\nsteps: runs; dashed: exponential of the same length")
+    return figure
+
+
+def causes(label, groups, abscissa):
+    """What became of the runs of one curve, as shares."""
+    figure, axes = plt.subplots(figsize=(6.4, 4.8), layout="constrained")
+    places, base = np.arange(len(groups)), np.zeros(len(groups))
+    shares = {f"clogged, {name}": (colour, [group[name] / group["runs"] for group in groups])
+              for name, colour in style.MECHANISM_COLOURS.items()}
+    shares["not clogged"] = ("0.88", [1 - group["clogs"] / group["runs"] for group in groups])
+    for name, (colour, share) in shares.items():
+        if any(share):
+            axes.bar(places, share, bottom=base, color=colour, width=0.8, label=name)
+        base += share
+    axes.set_xticks(places, [f"{group[abscissa]:g}" for group in groups], rotation=0 if len(groups) <= 10 else 90)
+    axes.set_xlabel(style.AXES[abscissa])
+    axes.set_ylabel("share of the runs")
+    axes.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=5, fontsize=8, title=label, title_fontsize=8)
     return figure
 
 
@@ -76,17 +111,22 @@ def varying(groups, abscissa):
     return [*names, abscissa]
 
 
-def table(groups, abscissa):
+def length(group):
+    """The clogging length with its interval, or its lower bound."""
+    ends = [group[f"clogging_length_{end}"] for end in ("lower", "upper")]
+    return rounded.with_interval(group["clogging_length"], *ends) if group["clogs"] > 0 else f"&gt; {rounded.plain(ends[0])}"
+
+
+def table(groups, abscissa, confidence):
     names = varying(groups, abscissa)
-    titles = [*names, "runs", "clogs", "&lambda;/&sigma;", "95 %", "&lang;v<sub>g</sub>&rang;/v<sub>t</sub>", "+-", "Ca", "doubts"]
+    titles = [*names, "runs", "clogs", ", ".join(style.MECHANISM_COLOURS), f"&lambda;/&sigma; ({100 * confidence:g} %)",
+              "&lang;v<sub>g</sub>&rang;/v<sub>t</sub>", "Ca", "doubts"]
     lines = ["<tr>" + "".join(f"<th>{title.replace('_', ' ')}</th>" for title in titles) + "</tr>"]
     for group in groups:
-        bounded = group["clogs"] > 0
-        cells = [*(number(group[name]) for name in names), str(group["runs"]), str(group["clogs"]),
-                 number(group["clogging_length"]) if bounded else f"&gt; {number(group['clogging_length_lower'])}",
-                 f"{number(group['clogging_length_lower'])} .. {number(group['clogging_length_upper'])}" if bounded else "-",
-                 number(group["mean_speed"]), number(group["mean_speed_error"]), number(group["capillary_number"])]
-        doubts = (group["doubts"] or "").replace("_", " ")
+        cells = [*("-" if group[name] is None else f"{group[name]:g}" for name in names), group["runs"], group["clogs"],
+                 ", ".join(str(group[name]) for name in style.MECHANISM_COLOURS), length(group),
+                 rounded.with_error(group["mean_speed"], group["mean_speed_error"]), rounded.plain(group["capillary_number"])]
+        doubts = ", ".join((group["doubts"] or "").split()).replace("_", " ")
         lines.append("<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + f'<td class="doubt">{html.escape(doubts)}</td></tr>')
     return '<div class="scroll"><table>' + "\n".join(lines) + "</table></div>"
 
@@ -129,33 +169,44 @@ def example_pictures(shown, config, programs):
             try:
                 polygon, obstacles = clogs.run_again(programs / "clogrun", settings, row, folder)
             except subprocess.CalledProcessError as error:
-                raise UserError(f"cannot run task {row['task']} again ({error.stderr.strip()}); --examples 0 does without") from error
+                raise UserError(f"cannot run task {row['task']} again ({reason(error.stderr)}); --examples 0 does without") from error
             figure, axes = plt.subplots(figsize=(4.6, 4.6), layout="constrained")
             clogs.draw(axes, row, polygon, obstacles)
-            pictures.append(picture(figure, f"task {row['task']}: {clogs.mechanism(row)}, seed {row['seed']}, clogged after {row['distance']:.3g} "
-                                    "diameters; flow to the right; touched obstacles blue, contact red, convex hull dashed"))
+            axes.set_xlabel(r"$x/\sigma$ from the droplet's middle")
+            axes.set_ylabel(r"$y/\sigma$")
+            pictures.append(picture(figure, f"task {row['task']}: {clogs.mechanism(row)}; touched obstacles blue, contact red, convex hull dashed"))
     return '<div class="pictures">' + "\n".join(pictures) + "</div>" if pictures else "<p>No polygon has clogged.</p>"
 
 
-def page(path, fit, rows, about, pictures):
+def progress_of(status, rows):
+    """@param status  of clogsweep status; @param rows  the tasks that have begun"""
+    counts = ", ".join(f"{count} {name}" for name, count in rows.status.value_counts().items())
+    return f"{status['over']} of {status['runs']} runs are over ({counts})"
+
+
+def page(path, fit, status, rows, about, pictures):
     groups = [group for group in fit["groups"] if group["runs"] > 0]
     abscissa = "line_tension" if groups[0]["model"] == "dp" else "wall_stiffness"
-    finished = int((~rows.status.isin(["running", "interrupted"])).sum())
     curves = picture(clogging_length.draw(groups, abscissa, fit["confidence"]), "clogging length")
     if any(group["mean_speed"] is not None for group in groups):
         curves += picture(speeds(groups, abscissa), "mean speed over terminal speed")
-    counts = rows.status.value_counts().to_dict()
+    families = list(clogging_length.curves(groups, abscissa))
+    survivals = "".join(picture(survival(label, members, abscissa), "P(r), to the last clog") for label, members in families
+                        if any(group["survival"] for group in members))
+    ends = "".join(picture(causes(label, members, abscissa), "clogs by mechanism") for label, members in families)
     provenance = "\n".join([f"{key}: {about[key]}" for key in ("command_line", "version", "git_hash", "compiler", "mpi_version", "hdf5_version", "start_time", "num_ranks")
                             if key in about])
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{html.escape(path.name)}</title><style>{STYLE}</style></head><body>
 <h1>Sweep {html.escape(path.name)}</h1>
-<p class="about">{finished} of {len(rows)} runs finished ({html.escape(", ".join(f"{count} {status}" for status, count in counts.items()))}), {len(groups)} points.
+<p class="about">{html.escape(progress_of(status, rows))}, {len(groups)} points.
 &lambda; is the way after which 1/e of the droplets have not clogged, in droplet diameters; v<sub>t</sub> is the speed of a free droplet.</p>
 <h2>Curves</h2><div class="pictures">{curves}</div>
+<h2>How far droplets get</h2><div class="pictures">{survivals}</div>
+<h2>What becomes of them</h2><div class="pictures">{ends}</div>
 <h2>What may spoil these numbers</h2>{doubts(groups, fit["doubts"], rows)}
 <h2>Example clogs</h2>{pictures}
-<h2>Table</h2>{table(groups, abscissa)}
+<h2>Table</h2>{table(groups, abscissa, fit["confidence"])}
 <h2>Where they come from</h2><pre>{html.escape(provenance)}</pre><details><summary>All settings</summary><pre>{html.escape(about.get("config", ""))}</pre></details>
 </body></html>
 """
@@ -171,6 +222,7 @@ def body():
     command_line.refuse_unwritable(arguments.output)
     programs = programs_in(arguments.programs)
     fit = json.loads(run_program(programs / "clogfit", arguments.sweep, "--format", "json"))
+    status = json.loads(run_program(programs / "clogsweep", "status", arguments.sweep, "--format", "json"))
     if not any(group["runs"] > 0 for group in fit["groups"]):
         raise UserError(f"{arguments.sweep} holds no finished runs; let the sweep finish some first")
     rows = stored.read_table(arguments.sweep)
@@ -178,7 +230,7 @@ def body():
         about = stored.attributes(file)
     pictures = example_pictures(examples(clogs.read_clogs(arguments.sweep)[0], arguments.examples), about["config"], programs)
     try:
-        arguments.output.write_text(page(arguments.sweep, fit, rows, about, pictures))
+        arguments.output.write_text(page(arguments.sweep, fit, status, rows, about, pictures))
     except OSError as error:
         raise UserError(f"cannot write {arguments.output} ({error.strerror}); give another --output") from error
     print(arguments.output)

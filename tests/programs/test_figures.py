@@ -19,10 +19,14 @@ from matplotlib import image
 from matplotlib import pyplot  # noqa: F401, see run_script
 
 import stored_rows
-from support import BIN, QUICK, ROOT, ProgramTest, table
+from support import BIN, QUICK, ROOT, SMALL, ProgramTest, table
 
 sys.path.insert(1, str(ROOT / "analysis"))
 import clogs
+import film
+import rounded
+import style
+import trajectory
 
 # A few seconds for all of them: coarse droplets, short ways.
 TINY = {
@@ -162,7 +166,9 @@ class Figures(Analysis):
         self.assertNotRegex(page, r"(src|href)=\"(?!data:)", "nothing from elsewhere")
         fit = json.loads(self.succeed("clogfit", sweep, "--format", "json").stdout)
         for group in fit["groups"]:
-            self.assertIn(f"<td>{group['mean_speed']:.4g}</td>" if group["mean_speed"] else "<td>-</td>", page)
+            self.assertIn(f"<td>{rounded.with_error(group['mean_speed'], group['mean_speed_error'])}</td>", page)
+        for heading in ("How far droplets get", "What becomes of them"):
+            self.assertIn(heading, page)
         self.assertIn("few clogs", page)
         self.assertIn(html.escape(fit["doubts"]["few_clogs"]), page)
         self.assertGreaterEqual(page.count("<img"), 3)
@@ -220,6 +226,49 @@ class Pictures(Analysis):
             self.write("fit.json", self.succeed("clogfit", f"{name}.h5", "--format", "json").stdout)
             self.draw("clogging_length.py", "fit.json", "--output", name)
             self.assert_picture(name)
+
+    def test_numbers_have_the_figures_that_their_interval_allows(self):
+        for numbers, text in [((223.1, 101.8, 584.8), "223 (102 to 585)"), ((0.1731, 0.1013, 0.3609), "0.173 (0.101 to 0.361)"),
+                              ((1906, 407.7, 17660), "1910 (408 to 17700)"), ((25.93, 22.52, 29.98), "25.9 (22.5 to 30.0)"),
+                              ((1234.5, 1232.1, 1237.2), "1234.5 (1232.1 to 1237.2)")]:
+            self.assertEqual(rounded.with_interval(*numbers), text)
+        for numbers, text in [((0.3786, 0.01244), "0.379 ± 0.012"), ((0.4451, 0.003992), "0.4451 ± 0.0040"), ((0.5, None), "0.500"),
+                              ((None, None), "-"), ((123.4, 17.2), "123 ± 17")]:
+            self.assertEqual(rounded.with_error(*numbers), text)
+        self.assertEqual([rounded.plain(value) for value in (0, 9.999, 1e-9, 2.5e7)], ["0.00", "10.0", "1.00e-09", "2.50e+07"])
+
+    def group(self, clogs, **columns):
+        names = ("", "_lower", "_upper")
+        lengths = {f"clogging_length{name}": length for name, length in zip(names, (2.0, 1.0, 4.0))}
+        return {"clogs": sum(clogs), "doubts": None, **dict(zip(style.MECHANISM_MARKERS, clogs)), **lengths, **columns}
+
+    def test_markers_show_by_what_droplets_clog_and_open_ones_a_doubt(self):
+        axes = pyplot.figure().subplots()
+        groups = [self.group((4, 1, 0, 0), doubts="few_clogs held_by_mesh"), self.group((1, 4, 0, 0)), self.group((0, 1, 3, 0)), self.group((0, 0, 0, 0))]
+        style.draw_lengths(axes, [1, 2, 3, 4], groups, 0, "")
+        drawn = {line.get_xdata()[0]: (line.get_marker(), line.get_markerfacecolor() == "white") for line in axes.lines
+                 if len(line.get_xdata()) == 1 and np.isfinite(line.get_ydata()[0])}
+        self.assertEqual(drawn, {1: ("o", True), 2: ("s", False), 3: ("D", False), 4: ("^", True)})
+        style.legend(axes, groups)
+        self.assertEqual([text.get_text() for text in axes.get_legend().get_texts()], ["most clogs wrapped", "most clogs squeezed", "most clogs hybrid"])
+        pyplot.close("all")
+
+    def test_warnings_of_libraries_stay_away_from_the_terminal(self):
+        lines = "import command_line\nwith command_line.needs_modules():\n    import warnings\n    warnings.warn('of a library')"
+        for switches, expected in [([], ""), (["-W", "default"], "of a library")]:
+            done = subprocess.run([sys.executable, *switches, "-c", lines], cwd=ROOT / "analysis", capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(expected, done.stderr)
+            self.assertEqual(bool(done.stderr), bool(expected))
+
+    def test_a_report_counts_the_runs_that_are_still_to_come(self):
+        keys = [*QUICK, "line-tension=0.3,1", "--output", "s.h5"]
+        self.succeed("clogsweep", *keys, "seeds=1..2")
+        self.assertEqual(self.run_program("clogsweep", *keys, "seeds=1..20", "--max-hours=1e-9").returncode, 75)
+        status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
+        self.succeed("clogfit", "report", "s.h5", "--output", "report.html", "--examples", 0)
+        self.assertEqual(status["runs"], 40)
+        self.assertIn(f"{status['over']} of 40 runs are over", (self.folder / "report.html").read_text())
 
     def test_clogs_are_drawn_from_a_sweep(self):
         self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1..2", "--output", "s.h5")
@@ -285,6 +334,54 @@ class Pictures(Analysis):
                               env=environment, capture_output=True, text=True)
         self.assertEqual(done.returncode, 2)
         self.assertRegex(done.stderr, r"^clogfit report: .*matplotlib.*; it needs Debian's python3 .*\n$")
+
+    def film_of(self, *keys, most=600, **options):
+        """@return run, chosen frames, film"""
+        self.succeed("clogrun", "array", *SMALL, *keys, "--output", "filmed.h5")
+        run = trajectory.read(self.folder / "filmed.h5")
+        frames = film.chosen_frames(run, most)
+        return run, frames, film.Film(run, frames, **{"colour": "speed", "rate": 20} | options)
+
+    def test_the_camera_follows_the_droplet_and_the_verdict_comes_last(self):
+        run, frames, moving = self.film_of("preset=elastic", "line-tension=0.3", "obstacle-gap=0.3", "max-time=400", "--polygon-interval", 10)
+        self.assertEqual(frames.tolist(), list(range(len(run.times))))
+        axes = moving.figure.axes[0]
+        verdict = trajectory.verdict(run)
+        shown = []
+        for index, frame in enumerate(frames):
+            moving.show(index)
+            low, high = np.array([axes.get_xlim(), axes.get_ylim()]).T
+            self.assertTrue((run.polygons[frame].min(axis=1) > low).all() and (run.polygons[frame].max(axis=1) < high).all())
+            self.assertGreater(1, (high - low).max() / 10, "the droplet can be seen")
+            # Obstacles are known wherever the camera looks.
+            self.assertLess(run.obstacles[:, 0].min(), low[0] + 0.5)
+            self.assertGreater(run.obstacles[:, 0].max(), high[0] - 0.5)
+            shown.append([text.get_text() for text in axes.texts if text.get_visible()])
+        self.assertTrue(all(verdict not in texts for texts in shown[:-1]))
+        self.assertIn(verdict, shown[-1])
+        pyplot.close("all")
+
+    def test_a_film_has_so_many_frames_at_most(self):
+        run, frames, _ = self.film_of("obstacle-gap=1.2", "max-time=2000", "--polygon-interval", 1, most=100)
+        self.assertGreater(len(run.times), 1000)
+        self.assertEqual(frames[-1], len(run.times) - 1)
+        self.assertLessEqual(len(frames), 100)
+        # It moves too far for every tenth frame to do: the end is shown, in steps that the eye can follow.
+        self.assertGreater(frames[0], 0)
+        steps = np.abs(np.diff(trajectory.centroids(run.polygons)[frames], axis=0)).sum(axis=1)
+        self.assertLess(steps.max(), 2 * film.LONGEST_STEP)
+        self.assertEqual(len(film.chosen_frames(run, 10**6)), len(run.times))
+        for most in (1, 2):
+            self.assertEqual(len(film.chosen_frames(run, most)), most)
+        pyplot.close("all")
+
+    def test_a_film_is_capped_by_an_option(self):
+        self.refuse("clogrun", "array", *QUICK, "--most-frames", 3, "--output", "run.h5", words=["--most-frames", "--frames"])
+        filmed = [*QUICK, "--polygon-interval", 5, "--frames", "film", "--output", "run.h5"]
+        self.refuse("clogrun", "array", *filmed, "--most-frames=few", words=["--most-frames=few"])
+        self.succeed("clogrun", "array", *filmed, "--most-frames", 3)
+        self.draw("droplet.py", "run.h5", "--output", "run", "--pictures", "--most-frames", 3)
+        self.assertEqual(len(list((self.folder / "run-frames").iterdir())), 3)
 
     def numbers(self, parent, name):
         element, = parent.findall(f".//DataArray[@Name='{name}']")
