@@ -31,11 +31,15 @@ def chosen_frames(run, most):
     return np.arange(count - 1, -1, -step)[:most][::-1]
 
 
+def around(values, width):
+    """Of every value its neighbours, `width` on either side. @return one row each"""
+    return np.lib.stride_tricks.sliding_window_view(np.pad(values, width, mode="edge"), 2 * width + 1)
+
+
 def smoothed(values, width):
-    """Moving average along the first axis with weights that rise and fall. @param width  in frames"""
+    """Moving average with weights that rise and fall. @param width  in frames"""
     weights = np.hanning(2 * width + 3)[1:-1]
-    padded = np.pad(values, [(width, width)] + [(0, 0)] * (values.ndim - 1), mode="edge")
-    return np.apply_along_axis(np.convolve, 0, padded, weights / weights.sum(), "valid")
+    return around(values, width) @ (weights / weights.sum())
 
 
 class Camera:
@@ -48,8 +52,9 @@ class Camera:
         low, high = polygons.min(axis=2), polygons.max(axis=2)
         length, height = (high - low).T
         half_height = np.maximum(self.HALF_HEIGHT, 0.75 * np.maximum(length / ASPECT, height))
-        self._middle = smoothed((low + high) / 2, frames_of_a_turn)
-        self._half_height = smoothed(half_height, frames_of_a_turn)
+        self._middle = np.stack([smoothed(middle, frames_of_a_turn) for middle in ((low + high) / 2).T], axis=1)
+        # Of the largest nearby, so that the average is nowhere too small.
+        self._half_height = smoothed(around(half_height, frames_of_a_turn).max(axis=1), frames_of_a_turn)
 
     def corners(self, frame):
         half = self._half_height[frame] * np.array([ASPECT, 1.0])
@@ -70,7 +75,9 @@ class Film:
         self._camera = Camera(run.polygons[frames], rate)
         self._centres = trajectory.centroids(run.polygons)
         self.figure = plt.figure(figsize=SIZE, dpi=DPI)
-        self._axes = self.figure.add_axes(PLACE, xticks=[], yticks=[])
+        self._axes = self.figure.add_axes(PLACE)
+        self._axes.xaxis.set_visible(False)
+        self._axes.yaxis.set_visible(False)
         self.figure.text(0.01, 0.965, trajectory.described(run), va="center", fontsize=11)
         self._draw_surroundings()
         self._draw_droplet(colour)

@@ -23,7 +23,7 @@ constexpr const char* usage = R"(clogrun follows one droplet and writes what hap
   clogrun array --output run.h5 line-tension=0.3 obstacle-gap=0.35 seeds=7
   clogrun array --output run.h5 --obstacles mine.csv box=60 --polygon-interval 1
   clogrun channel --output run.h5 --orifice 0.7 line-tension=1.08 near-wall-drag=0.07 terminal-speed=0.032
-  clogrun array --output run.h5 line-tension=0.3 --polygon-interval 5 --frames film
+  clogrun array --output run.h5 line-tension=0.3 max-time=3000 --polygon-interval 5 --frames film
   clogrun sag line-tension=0.1,0.3,1          prints how far the droplet sinks onto a flat wall
 
 In an array, the same keys and seed as a row of a sweep give that row's run, bit for bit.
@@ -90,6 +90,9 @@ int follow(cli::CommandLine& line, const std::string& system) {
   const std::vector<std::string> options = film_options(line);
   const std::filesystem::path script = find_analysis_script("droplet.py");
   const int exit_code = run(line);
+  if (exit_code == cli::exit_incomplete)
+    cli::say("clogrun: stopped before its end, so no film is drawn; " + script.string() + " " + options[0] +
+             " " + options[1] + " --film draws what there is");
   if (exit_code != cli::exit_success || line.has("dry-run")) return exit_code;
   become_script("clogrun", script, options);
 }

@@ -1,6 +1,7 @@
 import os
 import pty
 import re
+import select
 import signal
 import subprocess
 import time
@@ -153,15 +154,16 @@ class Run(ProgramTest):
 
     def test_ctrl_c_writes_what_there_is(self):
         process = subprocess.Popen(
-            [str(BIN / "clogrun"), "array", "vertices=64", "box=20", "obstacle-gap=1.2", "--output", "run.h5"],
-            cwd=self.folder, stdout=subprocess.PIPE, text=True,
+            [str(BIN / "clogrun"), "array", "vertices=64", "box=20", "obstacle-gap=1.2", "--polygon-interval", "100", "--frames", "film",
+             "--output", "run.h5"], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         )
         self.addCleanup(process.kill)
         time.sleep(1)
         process.send_signal(signal.SIGINT)
-        output, _ = process.communicate(timeout=60)
+        output, told = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 75)
         self.assertTrue(re.match("interrupted after r = ", output), output)
+        self.assertRegex(told, r"no film is drawn; \S+/droplet.py run.h5 --output=film --film draws what there is\n$")
         self.assertGreater(len(pandas.read_hdf(self.folder / "run.h5", "trajectory")), 10)
 
     def test_a_terminal_is_told_how_far_it_is(self):
@@ -174,12 +176,17 @@ class Run(ProgramTest):
         self.addCleanup(process.kill)
         os.close(slave)
         told = b""
+
+        def read_on():
+            self.assertTrue(select.select([master], [], [], 60)[0], f"nothing more is told after {told}")
+            return os.read(master, 1000)
+
         while told.count(b" left") < 2:
-            told += os.read(master, 1000)
+            told += read_on()
         self.assertRegex(told.decode(), r"^\rr = \S+ sigma, t = \S+ of at most 1e\+08 t0, .+ so far, at most .+ left\x1b\[K\rr = ")
         process.send_signal(signal.SIGINT)
         while not told.endswith(b"\r\x1b[K"):
-            told += os.read(master, 1000)
+            told += read_on()
         self.assertEqual(process.wait(), 75)
 
     def test_a_dry_run_prints_the_config_and_what_it_takes_at_most(self):
