@@ -97,15 +97,26 @@ def side_by_side(index, num_curves):
     return 1.012 ** (index - (num_curves - 1) / 2)
 
 
+def far_apart(values):
+    """Of values on a logarithmic axis those whose labels have room side by side."""
+    values = sorted(set(values))
+    room = 0.09 * math.log(values[-1] / values[0])
+    kept = values[:1]
+    for value in values[1:]:
+        if math.log(value / kept[-1]) >= room:
+            kept.append(value)
+    return kept
+
+
 def logarithmic_abscissa(axes, values=()):
-    """Plain numbers, at the values themselves where they are few and far enough from each other."""
+    """Plain numbers, at the values themselves where they are few or within a decade."""
     axes.set_xscale("log")
     axis = axes.xaxis
-    axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:g}"))
-    values = sorted(set(values))
-    if values and len(values) <= 10 and all(b / a > 1.19 for a, b in zip(values, values[1:])):
-        axis.set_ticks(values, minor=False)
-        axis.set_minor_locator(matplotlib.ticker.NullLocator())
+    axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:.3g}"))
+    if values and (len(set(values)) <= 10 or max(values) < 10 * min(values)):
+        axis.set_ticks(far_apart(values), minor=False)
+        axis.set_ticks(values, minor=True)
+        axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
 
 
 def grid(axes):

@@ -77,7 +77,7 @@ std::vector<std::string> film_options(const cli::CommandLine& line) {
                                       "--film"};
   if (line.has("most-frames"))
     options.push_back("--most-frames=" +
-                      std::to_string(std::llround(std::max(1.0, line.get_positive("most-frames")))));
+                      std::to_string(std::llround(std::clamp(line.get_positive("most-frames"), 1.0, 1e9))));
   return options;
 }
 

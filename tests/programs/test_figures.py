@@ -253,6 +253,20 @@ class Pictures(Analysis):
         self.assertEqual([text.get_text() for text in axes.get_legend().get_texts()], ["most clogs wrapped", "most clogs squeezed", "most clogs hybrid"])
         pyplot.close("all")
 
+    def test_labels_of_an_abscissa_are_plain_numbers_side_by_side(self):
+        for values in ([0.2, 0.25, 0.3, 10], np.linspace(0.2, 0.4, 15), [0.3, 0.31], [0.3], [0.04, 0.045, 0.05, 0.5, 5], np.geomspace(0.01, 10, 30)):
+            figure, axes = pyplot.subplots(figsize=(6.4, 4.8), layout="constrained")
+            axes.plot(values, values)
+            style.logarithmic_abscissa(axes, list(values))
+            figure.canvas.draw()
+            labels = [label for label in axes.get_xticklabels() + axes.get_xticklabels(minor=True) if label.get_text()]
+            low, high = axes.get_xlim()
+            places = sorted((box.x0, box.x1) for label in labels if low <= label.get_position()[0] <= high for box in [label.get_window_extent()])
+            self.assertGreater(len(places), 0)
+            self.assertTrue(all(end < begin for (_, end), (begin, _) in zip(places, places[1:])), f"{values}: {places}")
+            self.assertTrue(all(float(label.get_text()) > 0 for label in labels))
+        pyplot.close("all")
+
     def test_warnings_of_libraries_stay_away_from_the_terminal(self):
         lines = "import command_line\nwith command_line.needs_modules():\n    import warnings\n    warnings.warn('of a library')"
         for switches, expected in [([], ""), (["-W", "default"], "of a library")]:
