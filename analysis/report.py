@@ -174,7 +174,7 @@ def example_pictures(shown, config, programs):
             clogs.draw(axes, row, polygon, obstacles)
             axes.set_xlabel(r"$x/\sigma$ from the droplet's middle")
             axes.set_ylabel(r"$y/\sigma$")
-            pictures.append(picture(figure, f"task {row['task']}: {clogs.mechanism(row)}; touched obstacles blue, contact red, convex hull dashed"))
+            pictures.append(picture(figure, "touched obstacles blue, contact red, convex hull dashed"))
     return '<div class="pictures">' + "\n".join(pictures) + "</div>" if pictures else "<p>No polygon has clogged.</p>"
 
 
