@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/special_functions/erf.hpp>
 #include <boost/math/tools/minima.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <vector>
 
@@ -24,22 +26,35 @@ Interval chi_squared_interval(double total_distance, double degrees_of_freedom, 
 /// Pushed back on release counts as not moved; what is not a number stays so.
 double way(const Observation& run) { return run.distance < 0 ? 0 : run.distance; }
 
-/// In units of the estimate, u = lambda/(S/d), the likelihood falls by 2d (log u + 1/u - 1).
+/// sqrt(2 (x + exp(-x) - 1)) with the sign of x. What is left of the sum at small x is its series.
+double signed_root(double x) {
+  constexpr double small = 1e-3;  // the next term of the series is x^4/360
+  if (std::abs(x) < small) return x * std::sqrt(1 - x / 3 + x * x / 12 - x * x * x / 60);
+  return std::copysign(std::sqrt(2 * (x + std::expm1(-x))), x);
+}
+
+/// In units of the estimate, u = lambda/(S/d), the likelihood falls by 2d (log u + 1/u - 1) = d
+/// signed_root(log u)^2.
 Interval profile_interval(const CloggingLength& fit, double confidence) {
-  const double allowed =
-      quantile(boost::math::chi_squared(1), confidence) / (2 * static_cast<double>(fit.num_clogs));
-  const auto excess = [=](double log_u) { return log_u + std::expm1(-log_u) - allowed; };
-  const auto root = [&](double from, double to) {
+  const double allowed = normal_deviate(confidence) / std::sqrt(static_cast<double>(fit.num_clogs));
+  const auto length_at = [&](double root, double from, double to) {
+    const auto excess = [=](double log_u) { return signed_root(log_u) - root; };
     std::uintmax_t most_steps = 200;
     const auto [low, high] =
         tools::toms748_solve(excess, from, to, tools::eps_tolerance<double>(), most_steps);
     return fit.length * std::exp((low + high) / 2);
   };
-  // exp(-x) - 1 + x exceeds `allowed` at both ends: at 1 + allowed, and where x^2/2 does.
-  return {root(-1.01 * std::sqrt(2 * allowed), 0), root(0, 1 + allowed)};
+  // |signed_root(x)| is more than |x| below zero, less above, and at 1 + y^2/2 more than y.
+  return {length_at(-allowed, -allowed, 0), length_at(allowed, allowed, 1 + allowed * allowed / 2)};
 }
 
 }  // namespace
+
+void require_confidence(double confidence) {
+  if (!(confidence > 0 && confidence < 1)) throw std::invalid_argument("confidence must lie between 0 and 1");
+}
+
+double normal_deviate(double confidence) { return std::numbers::sqrt2 * boost::math::erf_inv(confidence); }
 
 bool all_finite(std::span<const Observation> runs) {
   return std::all_of(runs.begin(), runs.end(),
@@ -47,7 +62,7 @@ bool all_finite(std::span<const Observation> runs) {
 }
 
 CloggingLength fit_clogging_length(std::span<const Observation> runs, double confidence) {
-  if (!(confidence > 0 && confidence < 1)) throw std::invalid_argument("confidence must lie between 0 and 1");
+  require_confidence(confidence);
   CloggingLength fit;
   fit.num_runs = static_cast<int>(runs.size());
   for (const Observation& run : runs) {
@@ -63,7 +78,7 @@ CloggingLength fit_clogging_length(std::span<const Observation> runs, double con
   if (fit.num_clogs == 0) {
     fit.length = std::numeric_limits<double>::quiet_NaN();
     fit.interval = {fit.total_distance / -std::log1p(-confidence), std::numeric_limits<double>::infinity()};
-    fit.profile = {2 * fit.total_distance / quantile(boost::math::chi_squared(1), confidence),
+    fit.profile = {2 * fit.total_distance / std::pow(normal_deviate(confidence), 2),
                    std::numeric_limits<double>::infinity()};
     return fit;
   }

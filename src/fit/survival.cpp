@@ -73,9 +73,19 @@ LogWays log_ways(std::span<const Observation> runs) {
   return ways;
 }
 
+/// P^exp(-+ z s/|log P|), s^2 being the variance of log P, with which log(-log P) has the error s/|log P|.
+Interval log_log_interval(double probability, double log_variance, double confidence) {
+  constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+  if (!(probability > 0)) return {undefined, undefined};
+  const double factor =
+      std::exp(normal_deviate(confidence) * std::sqrt(log_variance) / -std::log(probability));
+  return {std::pow(probability, factor), std::pow(probability, 1 / factor)};
+}
+
 }  // namespace
 
-std::vector<SurvivalStep> survival_curve(std::span<const Observation> runs) {
+std::vector<SurvivalStep> survival_curve(std::span<const Observation> runs, double confidence) {
+  require_confidence(confidence);
   std::vector<Observation> sorted;
   std::copy_if(runs.begin(), runs.end(), std::back_inserter(sorted),
                [](const Observation& run) { return !std::isnan(run.distance); });
@@ -94,8 +104,8 @@ std::vector<SurvivalStep> survival_curve(std::span<const Observation> runs) {
       probability *= 1 - num_clogs / at_risk;
       variance_sum += num_clogs / (at_risk * (at_risk - num_clogs));
       const double error = probability > 0 ? probability * std::sqrt(variance_sum) : 0;
-      steps.push_back(
-          {sorted[begin].distance, static_cast<int>(sorted.size() - begin), num_clogs, probability, error});
+      steps.push_back({sorted[begin].distance, static_cast<int>(sorted.size() - begin), num_clogs,
+                       probability, error, log_log_interval(probability, variance_sum, confidence)});
     }
     begin = end;
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <random>
 #include <utility>
 #include <vector>
@@ -45,6 +46,20 @@ TEST(CloggingLength, OfOneClogByHand) {
   EXPECT_DOUBLE_EQ(fit.length, 8);
   EXPECT_NEAR(fit.interval.lower, 8 / -std::log(0.05), 1e-12);
   EXPECT_NEAR(fit.interval.upper, 8 / -std::log(0.95), 1e-12);
+}
+
+TEST(CloggingLength, HasAnIntervalForAnyConfidence) {
+  // With little confidence it shrinks to lambda exp(-+ z/sqrt(d)), z = confidence sqrt(pi/2).
+  for (const double confidence : {1e-300, 1e-20, 1e-8, 1e-3}) {
+    const CloggingLength fit = fit_clogging_length(leukaemia_treated, confidence);
+    const double width = confidence * std::sqrt(std::numbers::pi / 2 / fit.num_clogs);
+    EXPECT_NEAR(std::log(fit.profile.lower / fit.length), -width, 1e-3 * width + 1e-15) << confidence;
+    EXPECT_NEAR(std::log(fit.profile.upper / fit.length), width, 1e-3 * width + 1e-15) << confidence;
+    EXPECT_LE(fit.interval.lower, fit.interval.upper);
+  }
+  const CloggingLength wide = fit_clogging_length(leukaemia_treated, 1 - 1e-15);
+  EXPECT_LT(wide.profile.lower, wide.length / 4);
+  EXPECT_GT(wide.profile.upper, wide.length * 4);
 }
 
 TEST(CloggingLength, WithoutClogsIsALowerBound) {

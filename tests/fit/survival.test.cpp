@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <random>
+#include <stdexcept>
 #include <vector>
 
 #include "absurd.hpp"
@@ -27,6 +28,30 @@ TEST(SurvivalCurve, OfTheLeukaemiaTrialIsTheReferenceAnswer) {
   EXPECT_NEAR(steps[2].standard_error, 0.09634965, 1e-8);
   EXPECT_EQ(steps[6].distance, 23);
   EXPECT_NEAR(steps[6].probability, 0.44817927, 1e-8);  // by hand: 6/7 16/17 14/15 11/12 10/11 6/7 5/6
+}
+
+TEST(SurvivalCurve, HasTheReferenceAnswersLogLogInterval) {
+  // R's survfit(conf.type = "log-log"); the same is SAS's default.
+  const std::vector<SurvivalStep> steps = survival_curve(leukaemia_treated);
+  EXPECT_NEAR(steps.front().interval.lower, 0.6197, 5e-5);
+  EXPECT_NEAR(steps.front().interval.upper, 0.9516, 5e-5);
+  EXPECT_NEAR(steps.back().interval.lower, 0.1881, 5e-5);
+  EXPECT_NEAR(steps.back().interval.upper, 0.6801, 5e-5);
+  EXPECT_THROW(survival_curve(leukaemia_treated, 1), std::invalid_argument);
+}
+
+TEST(SurvivalCurve, HasIntervalsWithinZeroAndOne) {
+  for (const double confidence : {1e-20, 0.5, 0.95, 1 - 1e-15}) {
+    for (const SurvivalStep& step : survival_curve(leukaemia_placebo, confidence)) {
+      if (step.probability < 1e-12) continue;
+      EXPECT_GE(step.interval.lower, 0);
+      EXPECT_LE(step.interval.lower, step.probability);
+      EXPECT_GE(step.interval.upper, step.probability);
+      EXPECT_LE(step.interval.upper, 1);
+    }
+  }
+  const SurvivalStep last = survival_curve(std::vector<Observation>{{1, true}}).front();
+  EXPECT_TRUE(std::isnan(last.interval.lower) && std::isnan(last.interval.upper));
 }
 
 TEST(SurvivalCurve, OfUncensoredRunsIsTheirShare) {

@@ -20,6 +20,13 @@ struct Interval {
   double upper;
 };
 
+/// @throws std::invalid_argument unless 0 < confidence < 1
+void require_confidence(double confidence);
+
+/// Of a standard normal number a share `confidence` lies between -z and z. z^2 is chi-squared's quantile for
+/// one degree of freedom; it underflows where little confidence is asked for, z does not.
+double normal_deviate(double confidence);
+
 /// Estimate of the clogging length lambda, the mean distance of an exponential law P(r) = exp(-r/lambda)
 /// (Cheng et al. Eq. 13).
 struct CloggingLength {

@@ -14,11 +14,14 @@ struct SurvivalStep {
   int num_clogs;          ///< of them, at this distance
   double probability;     ///< P just beyond
   double standard_error;  ///< Greenwood's
+  Interval interval;      ///< of P; NaN where P is 0
 };
 /// Kaplan and Meier's product-limit estimate (J. Am. Stat. Assoc. 53, 457 (1958)): unbiased whatever the law,
 /// censored runs count as long as they are seen. One step per distance with clogs, in increasing order; at
-/// equal distances clogs come before censorings.
-std::vector<SurvivalStep> survival_curve(std::span<const Observation> runs);
+/// equal distances clogs come before censorings. Intervals are symmetric in log(-log P), so that they stay
+/// within 0 and 1 (Kalbfleisch and Prentice, The Statistical Analysis of Failure Time Data, ch. 1).
+/// @throws std::invalid_argument unless 0 < confidence < 1
+std::vector<SurvivalStep> survival_curve(std::span<const Observation> runs, double confidence = 0.95);
 
 /// Is P(r) an exponential? The likelihood ratio against Weibull's law P(r) = exp(-(r/scale)^shape): with
 /// shape above 1 clogging gets likelier on the way, below 1 it was likelier at the beginning (or runs differ
