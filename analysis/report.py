@@ -125,7 +125,7 @@ def table(groups, abscissa, confidence):
     for group in groups:
         cells = [*("-" if group[name] is None else f"{group[name]:g}" for name in names), group["runs"], group["clogs"],
                  ", ".join(str(group[name]) for name in style.MECHANISM_COLOURS), length(group),
-                 rounded.with_error(group["mean_speed"], group["mean_speed_error"]), rounded.plain(group["capillary_number"])]
+                 rounded.with_error(group["relative_speed"], group["relative_speed_error"]), rounded.plain(group["capillary_number"])]
         doubts = ", ".join((group["doubts"] or "").split()).replace("_", " ")
         lines.append("<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + f'<td class="doubt">{html.escape(doubts)}</td></tr>')
     return '<div class="scroll"><table>' + "\n".join(lines) + "</table></div>"
@@ -188,7 +188,7 @@ def page(path, fit, status, rows, about, pictures):
     groups = [group for group in fit["groups"] if group["runs"] > 0]
     abscissa = "line_tension" if groups[0]["model"] == "dp" else "wall_stiffness"
     curves = picture(clogging_length.draw(groups, abscissa, fit["confidence"]), "clogging length")
-    if any(group["mean_speed"] is not None for group in groups):
+    if any(group["relative_speed"] is not None for group in groups):
         curves += picture(speeds(groups, abscissa), "mean speed over terminal speed")
     families = list(clogging_length.curves(groups, abscissa))
     survivals = "".join(picture(survival(label, members, abscissa), "P(r), to the last clog") for label, members in families

@@ -69,10 +69,20 @@ def read_rows(path):
         return file["runs"][:]
 
 
+def unit(meaning):
+    """What stands in brackets in the meaning of a column; empty for counts, ratios and words."""
+    found = re.search(r"\[(.*?)\]", meaning)
+    return found[1] if found else ""
+
+
 def read_table(path):
-    """The same for pandas, with text as text."""
+    """The same for pandas, with text as text. `attrs` of the table holds the columns' `units` and `meanings`, by name."""
     import pandas  # slow to load, and not needed by all
 
-    rows = read_rows(path)
-    return pandas.DataFrame({name: [text(value) for value in rows[name]] if rows.dtype[name].kind == "S" else rows[name]
-                             for name in rows.dtype.names})
+    with opened(path) as file:
+        rows = file["runs"][:]
+        meanings = {name: text(file["runs"].attrs.get(name, "")) for name in rows.dtype.names}
+    table = pandas.DataFrame({name: [text(value) for value in rows[name]] if rows.dtype[name].kind == "S" else rows[name]
+                              for name in rows.dtype.names})
+    table.attrs = {"units": {name: unit(meaning) for name, meaning in meanings.items()}, "meanings": meanings}
+    return table

@@ -83,8 +83,8 @@ def draw_lengths(axes, places, groups, index, label):
 def draw_speeds(axes, places, groups, index, label):
     """Mean speeds over the terminal speed, with standard errors from the scatter between runs."""
     points = sorted(
-        (place, group["mean_speed"], group["mean_speed_error"] or 0.0)
-        for place, group in zip(places, groups) if group["mean_speed"] is not None
+        (place, group["relative_speed"], group["relative_speed_error"] or 0.0)
+        for place, group in zip(places, groups) if group["relative_speed"] is not None
     )
     axes.errorbar(
         [x for x, _, _ in points], [speed for _, speed, _ in points], yerr=[error for _, _, error in points],

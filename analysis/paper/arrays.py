@@ -39,7 +39,7 @@ def describe(groups, without=()):
 def numbers(groups, label, **more):
     """What is drawn of each group, as clogfit gives it."""
     columns = ["model", "line_tension", "wall_stiffness", "obstacle_gap", "obstacle_diameter", "obstacle_density", "near_wall_drag", "runs", "clogs",
-               "clogging_length", "clogging_length_lower", "clogging_length_upper", "mean_speed", "mean_speed_error", "capillary_number", "doubts"]
+               "clogging_length", "clogging_length_lower", "clogging_length_upper", "relative_speed", "relative_speed_error", "capillary_number", "doubts"]
     return [{"curve": label, **{name: group[name] for name in columns}, **{name: values[i] for name, values in more.items()}}
             for i, group in enumerate(groups)]
 
@@ -317,33 +317,58 @@ def kinetic_energy(shop):
     return Plate(drawing, data)
 
 
+def beyond(steps, distances):
+    """P(r) of the estimate at these distances."""
+    values = np.array([1.0] + [step["probability"] for step in steps])
+    return values[np.searchsorted([step["distance"] for step in steps], distances, side="right")]
+
+
+def draw_survival(axes, group):
+    """The estimate and its band to the longest way, ticks where runs were last seen going. @return  the longest way"""
+    steps, censored = group["survival"], group["censored_distances"]
+    end = max([steps[-1]["distance"], *censored])
+    known = [step for step in steps if step["lower"] is not None]  # not of the last one if no run is left
+    band_end = end if known == steps else steps[-1]["distance"]
+    axes.fill_between([0.0] + [step["distance"] for step in known] + [band_end], *(
+        [1.0] + [step[bound] for step in known] + [known[-1][bound] if known else 1.0] for bound in ("lower", "upper")),
+        step="post", color=style.COLOURS[0], alpha=0.2, linewidth=0, label="95 %, log-log")
+    axes.step([0.0] + [step["distance"] for step in steps] + [end], [1.0] + [step["probability"] for step in steps] + [steps[-1]["probability"]],
+              where="post", color=style.COLOURS[0], linewidth=1.2, label=f"{group['runs']} runs, {group['clogs']} clogs")
+    if censored:
+        axes.plot(censored, beyond(steps, censored), linestyle="none", marker="|", markersize=9, markeredgewidth=1.2, color=style.COLOURS[0],
+                  label=f"last seen going ({len(censored)} runs)")
+    return end
+
+
+def lowest_shown(group, end):
+    """The band, the curve and the exponential to the longest way have room above it, those that have come to zero excepted."""
+    lowest = [step[name] for step in group["survival"] for name in ("lower", "probability") if step[name]]
+    return 0.7 * min(1.0, *lowest, math.exp(-end / group["clogging_length"]))
+
+
 @figure("C2", "probability P(r) of not having clogged, with its error band and the exponential law", ["survival"], "10 s")
 def survival(shop):
     group = shop.sweep("survival")[0]
-    steps = group["survival"]
-    if not steps:
+    if not group["survival"]:
         raise UserError(f"no run has clogged in {shop.sweep_file('survival')}; raise max-time or seeds")
-    r = np.array([0.0] + [step["distance"] for step in steps])
-    p = np.array([1.0] + [step["probability"] for step in steps])
-    band = 1.96 * np.array([0.0] + [step["standard_error"] or 0.0 for step in steps])
     drawing, axes = plt.subplots(figsize=(6.8, 5.0), layout="constrained")
-    axes.fill_between(r, np.clip(p - band, 1e-3, 1), np.clip(p + band, 1e-3, 1), step="post", color=style.COLOURS[0], alpha=0.2,
-                      linewidth=0, label="95 %, Greenwood's errors")
-    axes.step(r, p, where="post", color=style.COLOURS[0], linewidth=1.2, label=f"{group['runs']} runs, {group['clogs']} clogs")
-    length, lower, upper = (group[f"clogging_length{end}"] for end in ("", "_lower", "_upper"))
-    x = np.linspace(0, r[-1] * 1.1, 200)
-    axes.plot(x, np.exp(-x / length), color=style.COLOURS[1], linewidth=1.4,
+    end = draw_survival(axes, group)
+    length, lower, upper = (group[f"clogging_length{bound}"] for bound in ("", "_lower", "_upper"))
+    r = np.linspace(0, end, 200)
+    axes.plot(r, np.exp(-r / length), color=style.COLOURS[1], linewidth=1.4,
               label=rf"$e^{{-r/\lambda}}$, $\lambda = {length:.3g}\sigma$ ({lower:.3g} to {upper:.3g})")
     axes.set_yscale("log")
-    axes.set_ylim(max(2e-3, 0.3 * p[p > 0].min()), 1.3)
-    axes.set_xlim(0, x[-1])
+    axes.set_ylim(lowest_shown(group, end), 1.3)
+    axes.set_xlim(0, 1.02 * end)
     axes.yaxis.set_major_formatter(plt.FuncFormatter(lambda value, _: f"{value:g}"))
     axes.set_xlabel(r"displacement along the flow $r/\sigma$")
     axes.set_ylabel(r"probability of not having clogged $P(r)$")
     style.grid(axes)
     axes.legend(frameon=False)
     style.caption(axes, rf"$\Gamma = {group['line_tension']:g}$, {describe([group])}" f"\nexponential? Weibull shape {group['weibull_shape']:.2f}, p = {group['weibull_p_value']:.2f}")
-    return Plate(drawing, [{"distance": a, "probability": b, "standard_error": c / 1.96} for a, b, c in zip(r, p, band)]
+    names = ["distance", "probability", "standard_error", "lower", "upper"]
+    return Plate(drawing, [{"distance": 0.0, "probability": 1.0}] + [{name: step[name] for name in names} for step in group["survival"]]
+                 + [{"censored_distance": distance} for distance in group["censored_distances"]]
                  + [{"clogging_length": length, "clogging_length_lower": lower, "clogging_length_upper": upper}])
 
 

@@ -21,7 +21,7 @@ MeanSpeed fit_mean_speed(std::span<const double> speeds) {
   return fit;
 }
 
-MeanSpeed fit_speed_ratio(std::span<const Travel> runs) {
+MeanSpeed fit_pooled_speed(std::span<const Travel> runs) {
   std::vector<Travel> valid;
   double distance = 0, time = 0;
   for (const Travel& run : runs) {

@@ -91,18 +91,24 @@ std::vector<std::string> result_cells(const Group& group, OptionalColumns option
   const auto number = [](double value) { return std::isnan(value) ? "-" : rounded(value); };
   // One or two runs that happened to come far enough to have a speed say little of all.
   constexpr int fewest_speeds = 3;
-  const bool has_speed = group.speed.num_runs >= fewest_speeds;
+  const bool has_speed = group.relative_speed.num_runs >= fewest_speeds;
   std::vector<std::string> cells = {
       std::to_string(clogging.num_runs),
       std::to_string(clogging.num_clogs),
       bounded ? number(clogging.length) : "> " + number(clogging.interval.lower),
       bounded ? number(clogging.interval.lower) + " .. " + number(clogging.interval.upper) : "-",
-      has_speed ? number(group.speed.mean) : "-",
-      has_speed ? number(group.speed.standard_error) : "-"};
+      has_speed ? number(group.relative_speed.mean) : "-",
+      has_speed ? number(group.relative_speed.standard_error) : "-"};
   if (optional.mechanisms) cells.insert(cells.begin() + 2, mechanism_counts(group));
   if (optional.migration)
     cells.insert(cells.end(), {number(group.migration.slope), number(group.migration.standard_error)});
   return cells;
+}
+
+std::vector<Field> all_fields(const Group& group) {
+  std::vector<Field> fields = parameter_fields(group.parameters);
+  for (Field& field : result_fields(group)) fields.push_back(std::move(field));
+  return fields;
 }
 
 std::vector<bool> varying_fields(const std::vector<Group>& groups) {
@@ -140,6 +146,16 @@ std::vector<bool> shown_fields(const std::vector<Group>& groups, const std::vect
     }
   }
   return shown;
+}
+
+/// Of the fields of a group that have one, and of what is in its lists.
+nlohmann::ordered_json field_units(const Group& group) {
+  nlohmann::ordered_json all;
+  for (const auto& [name, value] : all_fields(group))
+    if (const std::string_view unit = unit_of(name); !unit.empty()) all[name] = unit;
+  all["survival"] = {{"distance", "sigma"}};
+  all["censored_distances"] = "sigma";
+  return all;
 }
 
 }  // namespace
@@ -196,8 +212,7 @@ std::string to_text(const std::vector<Group>& groups, double confidence) {
 std::string to_csv(const std::vector<Group>& groups) {
   std::ostringstream out;
   for (const Group& group : groups) {
-    std::vector<Field> fields = parameter_fields(group.parameters);
-    for (Field& field : result_fields(group)) fields.push_back(std::move(field));
+    const std::vector<Field> fields = all_fields(group);
     if (&group == &groups.front())
       for (std::size_t i = 0; i < fields.size(); ++i) out << (i > 0 ? "," : "") << fields[i].first;
     out << '\n';
@@ -211,8 +226,7 @@ std::string to_json(const std::vector<Group>& groups, double confidence) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Group& group : groups) {
     nlohmann::ordered_json entry;
-    std::vector<Field> fields = parameter_fields(group.parameters);
-    for (Field& field : result_fields(group)) fields.push_back(std::move(field));
+    const std::vector<Field> fields = all_fields(group);
     for (const auto& [name, value] : fields) {
       if (const auto* count = std::get_if<std::int64_t>(&value))
         entry[name] = *count;
@@ -230,13 +244,18 @@ std::string to_json(const std::vector<Group>& groups, double confidence) {
                                    {"at_risk", step.num_at_risk},
                                    {"clogs", step.num_clogs},
                                    {"probability", step.probability},
-                                   {"standard_error", step.standard_error}});
+                                   {"standard_error", step.standard_error},
+                                   {"lower", step.interval.lower},
+                                   {"upper", step.interval.upper}});
+    entry["censored_distances"] = group.censored_distances;
     list.push_back(std::move(entry));
   }
   nlohmann::ordered_json sentences;
   for (const DoubtText& doubt : doubt_texts) sentences[doubt.word] = doubt.sentence;
-  const nlohmann::ordered_json document = {
-      {"confidence", confidence}, {"doubts", sentences}, {"groups", list}};
+  const nlohmann::ordered_json document = {{"confidence", confidence},
+                                           {"doubts", sentences},
+                                           {"units", field_units(groups.front())},
+                                           {"groups", list}};
   return document.dump(2) + "\n";
 }
 

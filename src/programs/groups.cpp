@@ -56,6 +56,14 @@ void doubt_exponentiality(std::vector<Group>& groups) {
   }
 }
 
+std::vector<double> censored_distances(std::span<const fit::Observation> runs) {
+  std::vector<double> distances;
+  for (const fit::Observation& run : runs)
+    if (!run.clogged) distances.push_back(run.distance);
+  std::sort(distances.begin(), distances.end());
+  return distances;
+}
+
 std::vector<Group::Cause> fit_causes(std::span<const sweep::RunRow* const> runs, double confidence) {
   const auto is_clogged = [](const sweep::RunRow* run) { return run->status.view() == "clogged"; };
   std::vector<Group::Cause> fits;
@@ -95,7 +103,36 @@ void append_causes(const Group& group, std::vector<Field>& fields) {
   }
 }
 
+constexpr std::pair<std::string_view, std::string_view> units_of_fields[] = {
+    {"obstacle_diameter", "sigma"},
+    {"obstacle_gap", "sigma"},
+    {"obstacle_density", "1/sigma^2"},
+    {"lattice_angle", "degrees"},
+    {"line_tension", "g rho sigma^2"},
+    {"wall_stiffness", "g rho sigma^3"},
+    {"near_wall_cutoff", "sigma"},
+    {"terminal_speed", "sqrt(sigma g)"},
+    {"time_step", "t0"},
+    {"max_time", "t0"},
+    {"box", "sigma"},
+    {"area_stiffness", "g rho/sigma"},
+    {"perimeter_stiffness", "g rho sigma"},
+    {"contact_range", "sigma"},
+    {"self_contact_range", "sigma"},
+    {"total_distance", "sigma"},
+    {"relative_speed", "v_t"},
+    {"relative_speed_error", "v_t"},
+    {"relative_speed_pooled", "v_t"},
+    {"relative_speed_pooled_error", "v_t"}};
+
 }  // namespace
+
+std::string_view unit_of(std::string_view field) {
+  if (field.starts_with("clogging_length")) return "sigma";
+  for (const auto& [name, unit] : units_of_fields)
+    if (name == field) return unit;
+  return "";
+}
 
 const DoubtText& text_of(Doubt doubt) {
   return *std::find_if(std::begin(doubt_texts), std::end(doubt_texts),
@@ -134,10 +171,11 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
     group.clogging = fit::fit_clogging_length(observations, confidence);
     group.least_squares_length = fit::least_squares_length(observations);
     group.weibull = fit::test_exponentiality(observations);
-    group.survival = fit::survival_curve(observations);
+    group.survival = fit::survival_curve(observations, confidence);
+    group.censored_distances = censored_distances(observations);
     group.causes = fit_causes(valid, confidence);
-    group.speed = fit::fit_mean_speed(speeds);
-    group.speed_ratio = fit::fit_speed_ratio(travels);
+    group.relative_speed = fit::fit_mean_speed(speeds);
+    group.relative_speed_pooled = fit::fit_pooled_speed(travels);
     group.migration = fit::fit_migration(displacements);
     group.doubts = doubts_about(group);
     groups.push_back(std::move(group));
@@ -200,12 +238,13 @@ std::vector<Field> result_fields(const Group& group) {
       {"clogging_length_least_squares", value_of(group.least_squares_length)},
       {"weibull_shape", value_of(group.weibull.shape)},
       {"weibull_p_value", value_of(group.weibull.p_value)},
-      {"mean_speed", value_of(group.speed.mean)},
-      {"mean_speed_error", value_of(group.speed.standard_error)},
-      {"mean_speed_runs", value_of(group.speed.num_runs)},
-      {"mean_speed_ratio", value_of(group.speed_ratio.mean)},
-      {"mean_speed_ratio_error", value_of(group.speed_ratio.standard_error)},
-      {"capillary_number", value_of(group.speed.mean * units::droplet_mass / group.parameters.line_tension)},
+      {"relative_speed", value_of(group.relative_speed.mean)},
+      {"relative_speed_error", value_of(group.relative_speed.standard_error)},
+      {"relative_speed_runs", value_of(group.relative_speed.num_runs)},
+      {"relative_speed_pooled", value_of(group.relative_speed_pooled.mean)},
+      {"relative_speed_pooled_error", value_of(group.relative_speed_pooled.standard_error)},
+      {"capillary_number",
+       value_of(group.relative_speed.mean * units::droplet_mass / group.parameters.line_tension)},
       {"lateral_slope", value_of(group.migration.slope)},
       {"lateral_slope_error", value_of(group.migration.standard_error)},
       {"doubts", doubts}};

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -56,14 +57,15 @@ struct Group {
   double least_squares_length = 0;  ///< the published way, biased; NaN for fewer than two clogs
   fit::WeibullTest weibull;
   std::vector<fit::SurvivalStep> survival;
+  std::vector<double> censored_distances;  ///< of the runs that did not clog, increasing [sigma]
   /// By mechanism: its clogs, all other runs censored there. Empty if the mechanism of a clog is not known.
   struct Cause {
     ClogMechanism mechanism;
     fit::CloggingLength clogging;
   };
   std::vector<Cause> causes;
-  fit::MeanSpeed speed;        ///< in units of the terminal speed
-  fit::MeanSpeed speed_ratio;  ///< way over time of all runs together, likewise
+  fit::MeanSpeed relative_speed;         ///< v_g/v_t, mean of the runs
+  fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, way over time of all runs together
   fit::Migration migration;
   int num_flowing = 0;
   int num_interrupted = 0;
@@ -86,5 +88,7 @@ using Field = std::pair<const char*, Value>;
 std::vector<Field> parameter_fields(const sweep::RunRow& row);
 /// What came out.
 std::vector<Field> result_fields(const Group& group);
+/// Of a number among them, e.g. "sigma"; empty for one without a unit, counts and words.
+std::string_view unit_of(std::string_view field);
 
 }  // namespace clog

@@ -45,10 +45,10 @@ std::vector<Column> columns() {
   CLOG_COLUMN(obstacle_gap, "w_ob, smallest distance between obstacle surfaces [sigma]");
   CLOG_COLUMN(obstacle_diameter, "sigma_ob [sigma]");
   CLOG_COLUMN(obstacle_diameter_spread, "diameters arrive uniform in sigma_ob (1 -+ spread)");
-  CLOG_COLUMN(
-      obstacle_density,
-      "obstacles per sigma^2; for a saturated array the jamming limit 0.6966/(w_ob+sigma_ob)^2, NaN for "
-      "a saturated mixture");
+  CLOG_COLUMN(obstacle_density,
+              "obstacles per area [1/sigma^2]; for a saturated array the jamming limit "
+              "0.6966/(w_ob+sigma_ob)^2, NaN for "
+              "a saturated mixture");
   CLOG_COLUMN(obstacle_filling, "saturated, or filled to a given density; lattice; file");
   CLOG_COLUMN(lattice_angle, "of the lattice's rows from +x to +y [degrees]; NaN unless a lattice");
   CLOG_COLUMN(box, "period of the obstacle array [sigma]");
@@ -86,8 +86,9 @@ std::vector<Column> columns() {
       mean_speed,
       "way over time after the transient and before the arrest [sqrt(sigma g)]; NaN if it moved less than "
       "half a diameter in that time, or the transient was not over in half the run");
-  CLOG_COLUMN(mean_speed_error,
-              "standard error of mean_speed from its course in this run; NaN for too short a run");
+  CLOG_COLUMN(
+      mean_speed_error,
+      "standard error of mean_speed from its course in this run [sqrt(sigma g)]; NaN for too short a run");
   CLOG_COLUMN(transient, "time at which the transient ends [t0]");
   CLOG_COLUMN(travel_time, "time that mean_speed is taken over [t0]");
   CLOG_COLUMN(kinetic_energy_ratio, "E_k/E_t at the end; E_t: kinetic energy at terminal speed");

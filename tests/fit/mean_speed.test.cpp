@@ -29,23 +29,23 @@ TEST(MeanSpeed, HasNoErrorForOneRunAndNoMeanForNone) {
 }
 
 TEST(SpeedRatio, WeighsRunsByTheirTime) {
-  const MeanSpeed fit = fit_speed_ratio(std::vector<Travel>{{1, 1}, {9, 3}, {NAN, NAN}});
+  const MeanSpeed fit = fit_pooled_speed(std::vector<Travel>{{1, 1}, {9, 3}, {NAN, NAN}});
   EXPECT_EQ(fit.num_runs, 2);
   EXPECT_DOUBLE_EQ(fit.mean, 2.5);
   EXPECT_DOUBLE_EQ(fit.standard_error, 1);  // 3 and 1 without the one or the other
 }
 
 TEST(SpeedRatio, OfEqualTimesIsTheMeanWithItsError) {
-  const MeanSpeed ratio = fit_speed_ratio(std::vector<Travel>{{2, 2}, {4, 2}, {6, 2}, {8, 2}});
+  const MeanSpeed ratio = fit_pooled_speed(std::vector<Travel>{{2, 2}, {4, 2}, {6, 2}, {8, 2}});
   const MeanSpeed mean = fit_mean_speed(std::vector<double>{1, 2, 3, 4});
   EXPECT_DOUBLE_EQ(ratio.mean, mean.mean);
   EXPECT_NEAR(ratio.standard_error, mean.standard_error, 1e-14);
 }
 
 TEST(SpeedRatio, HasNoErrorForOneRunAndNoMeanForNone) {
-  EXPECT_TRUE(std::isnan(fit_speed_ratio(std::vector<Travel>{{1, 2}}).standard_error));
-  EXPECT_DOUBLE_EQ(fit_speed_ratio(std::vector<Travel>{{1, 2}}).mean, 0.5);
-  EXPECT_TRUE(std::isnan(fit_speed_ratio({}).mean));
+  EXPECT_TRUE(std::isnan(fit_pooled_speed(std::vector<Travel>{{1, 2}}).standard_error));
+  EXPECT_DOUBLE_EQ(fit_pooled_speed(std::vector<Travel>{{1, 2}}).mean, 0.5);
+  EXPECT_TRUE(std::isnan(fit_pooled_speed({}).mean));
 }
 
 /// Runs whose times differ tenfold and whose speeds scatter the more the shorter they are.
@@ -64,7 +64,7 @@ std::vector<Travel> scattered_runs(int number, std::mt19937& engine) {
 TEST(SpeedRatio, HasTheLinearisedErrorOfManyRuns) {
   std::mt19937 engine(1);
   const std::vector<Travel> runs = scattered_runs(1000, engine);
-  const MeanSpeed fit = fit_speed_ratio(runs);
+  const MeanSpeed fit = fit_pooled_speed(runs);
   double time = 0, squares = 0;
   for (const Travel& run : runs) {
     time += run.time;
@@ -79,7 +79,7 @@ TEST(SpeedRatio, ScattersAsItsErrorSays) {
   double squares = 0, squared_errors = 0;
   constexpr int samples = 5000;
   for (int i = 0; i < samples; ++i) {
-    const MeanSpeed fit = fit_speed_ratio(scattered_runs(20, engine));
+    const MeanSpeed fit = fit_pooled_speed(scattered_runs(20, engine));
     squares += std::pow(fit.mean - 0.5, 2);
     squared_errors += std::pow(fit.standard_error, 2);
     covered += std::abs(fit.mean - 0.5) < 2.093 * fit.standard_error;  // Student's t, 19 degrees of freedom
@@ -90,8 +90,8 @@ TEST(SpeedRatio, ScattersAsItsErrorSays) {
 
 TEST(SpeedRatio, OfSumsThatAreNotFiniteIsNotKnown) {
   const std::vector<Travel> long_ways{{1e308, 1}, {1e308, 1}}, long_times{{1, 1e308}, {1, 1e308}};
-  EXPECT_TRUE(std::isnan(fit_speed_ratio(long_ways).mean));
-  EXPECT_TRUE(std::isnan(fit_speed_ratio(long_times).mean));
+  EXPECT_TRUE(std::isnan(fit_pooled_speed(long_ways).mean));
+  EXPECT_TRUE(std::isnan(fit_pooled_speed(long_times).mean));
 }
 
 }  // namespace

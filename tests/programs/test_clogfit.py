@@ -3,6 +3,7 @@ import io
 import json
 import math
 import subprocess
+import sys
 import unittest
 
 import h5py
@@ -10,7 +11,10 @@ import numpy as np
 import pandas
 
 import stored_rows
-from support import BIN, SMALL, ProgramTest
+from support import BIN, ROOT, SMALL, ProgramTest
+
+sys.path.insert(0, str(ROOT / "analysis"))
+import stored  # noqa: E402
 
 # Such droplets might get a hundred diameters far: rows of theirs can be given any distance up to that.
 FAR = ["max-time=1", "terminal-speed=100"]
@@ -91,6 +95,32 @@ class Fit(ProgramTest):
         self.assertEqual((at_10["distance"], at_10["at_risk"], at_10["clogs"]), (10, 15, 1))
         self.assertAlmostEqual(at_10["probability"], 0.75294118, places=8)
         self.assertAlmostEqual(at_10["standard_error"], 0.09634965, places=8)
+        first = group["survival"][0]
+        self.assertAlmostEqual(first["lower"], 0.6197, places=4)  # R, survfit(conf.type = "log-log")
+        self.assertAlmostEqual(first["upper"], 0.9516, places=4)
+        self.assertEqual(group["censored_distances"], sorted(time for time, c in zip(times, clogged) if not c))
+        self.assertGreater(self.fit("--confidence", 0.5)["groups"][0]["survival"][0]["lower"], first["lower"])
+        narrow, = self.fit("--confidence", "1e-20")["groups"]
+        self.assertAlmostEqual(narrow["clogging_length_profile_lower"], group["clogging_length"], places=9)
+        self.assertAlmostEqual(narrow["clogging_length_profile_upper"], group["clogging_length"], places=9)
+
+    def test_numbers_have_their_unit_in_json_as_in_the_table(self):
+        self.sweep("seeds=1..2", *FAR)
+        fit = self.fit()
+        in_table = stored.read_table(self.folder / "sweep.h5").attrs
+        self.assertEqual(in_table["units"]["mean_speed"], "sqrt(sigma g)")
+        self.assertEqual(in_table["units"]["mean_speed_error"], "sqrt(sigma g)")
+        self.assertEqual(in_table["units"]["seed"], "")
+        self.assertIn("obstacle surfaces", in_table["meanings"]["obstacle_gap"])
+        group = fit["groups"][0]
+        shared = set(group) & set(in_table["units"])
+        self.assertIn("line_tension", shared)
+        for name in shared:
+            self.assertEqual(fit["units"].get(name, ""), in_table["units"][name], name)
+        self.assertEqual(fit["units"]["relative_speed_pooled_error"], "v_t")
+        self.assertEqual(fit["units"]["clogging_length_wrapped_upper"], "sigma")
+        self.assertLessEqual(set(fit["units"]), set(group))
+        self.assertNotIn("mean_speed", group)  # the table's, in other units
 
     def test_it_says_what_spoils_a_length(self):
         self.sweep("seeds=1..24", *FAR)
@@ -153,7 +183,7 @@ class Fit(ProgramTest):
         group, = self.fit()["groups"]
         self.assertEqual((group["runs"], group["clogs"]), (3, int((table.status == "clogged").sum())))
         self.assertEqual(group["clogging_length"], before["clogging_length"])
-        for name in ("wrapped", "clogging_length_squeezed", "mean_speed_ratio"):
+        for name in ("wrapped", "clogging_length_squeezed", "relative_speed_pooled"):
             self.assertIsNone(group[name])
 
     def test_groups_agree_with_pandas(self):
@@ -174,10 +204,10 @@ class Fit(ProgramTest):
                 self.assertAlmostEqual(group["clogging_length_lower"], total / math.log(20), places=12)
             speeds = (mine.mean_speed / mine.terminal_speed).dropna()
             if len(speeds) > 1:
-                self.assertAlmostEqual(group["mean_speed"], speeds.mean(), places=12)
-                self.assertAlmostEqual(group["mean_speed_error"], speeds.sem(), places=12)
+                self.assertAlmostEqual(group["relative_speed"], speeds.mean(), places=12)
+                self.assertAlmostEqual(group["relative_speed_error"], speeds.sem(), places=12)
                 ratio = (mine.mean_speed / mine.terminal_speed * mine.travel_time).sum() / mine.travel_time.sum()
-                self.assertAlmostEqual(group["mean_speed_ratio"], ratio, places=12)
+                self.assertAlmostEqual(group["relative_speed_pooled"], ratio, places=12)
 
     def test_interrupted_runs_are_censored_and_failed_ones_left_out(self):
         self.sweep("seeds=1..4", *FAR)
@@ -222,7 +252,7 @@ class Fit(ProgramTest):
         groups = self.fit()["groups"]
         self.assertEqual(len(lines), 2)
         for line, group in zip(lines, groups):
-            self.assertEqual(list(line), [name for name in group if name != "survival"])
+            self.assertEqual(list(line), [name for name in group if name not in ("survival", "censored_distances")])
             self.assertEqual(float(line["total_distance"]), group["total_distance"])
 
     def test_lattices_have_a_migration_angle(self):

@@ -27,6 +27,7 @@ import film
 import rounded
 import style
 import trajectory
+from paper import arrays
 
 # A few seconds for all of them: coarse droplets, short ways.
 TINY = {
@@ -86,6 +87,37 @@ class Analysis(ProgramTest):
         self.assertTrue((self.folder / f"{name}.pdf").read_bytes().startswith(b"%PDF"))
 
 
+class Survival(unittest.TestCase):
+    """Figure C2's curve, from numbers as clogfit gives them."""
+
+    STEPS = [{"distance": 2.0, "probability": 0.75, "lower": 0.13, "upper": 0.96}, {"distance": 5.0, "probability": 0.375, "lower": 0.01, "upper": 0.8}]
+
+    def draw(self, steps, censored):
+        drawing, axes = pyplot.subplots()
+        self.addCleanup(pyplot.close, drawing)
+        end = arrays.draw_survival(axes, {"runs": 4, "clogs": len(steps), "survival": steps, "censored_distances": censored})
+        return end, axes
+
+    def test_it_goes_to_the_longest_way_with_a_tick_for_every_run_that_was_still_going(self):
+        end, axes = self.draw(self.STEPS, [3.0, 9.0])
+        curve, ticks = axes.lines
+        self.assertEqual(end, 9)
+        self.assertEqual(curve.get_xydata()[-1].tolist(), [9, 0.375])
+        self.assertEqual(ticks.get_xydata().tolist(), [[3, 0.75], [9, 0.375]])
+        self.assertEqual(axes.collections[0].get_paths()[0].get_extents().extents.tolist(), [0, 0.01, 9, 1])
+
+    def test_its_band_ends_where_no_run_is_left(self):
+        last = {"distance": 7.0, "probability": 0.0, "lower": None, "upper": None}
+        end, axes = self.draw([*self.STEPS, last], [])
+        curve, = axes.lines
+        self.assertEqual((end, curve.get_xydata()[-1].tolist()), (7, [7, 0]))
+        self.assertEqual(axes.collections[0].get_paths()[0].get_extents().extents.tolist(), [0, 0.01, 7, 1])
+
+    def test_all_of_it_has_its_place_on_the_scale(self):
+        lowest = arrays.lowest_shown({"survival": self.STEPS, "clogging_length": 5.0}, 9.0)
+        self.assertLess(lowest, 0.01)
+
+
 class Figures(Analysis):
     PLACE = "reduced"
 
@@ -108,9 +140,9 @@ class Figures(Analysis):
                          sorted([*(group[key] for key in keys), group[quantity]] for group in groups))
 
     def test_curves_show_what_clogfit_says(self):
-        names = {"6c": ("clogging", "clogging_length"), "7a": ("clogging-sp", "clogging_length"), "8a": ("speed", "mean_speed"),
-                 "8b": ("speed-diameter", "mean_speed"), "8ca": ("speed", "capillary_number"), "9a": ("speed-sp", "mean_speed"),
-                 "E": ("near-wall-drag", "mean_speed")}
+        names = {"6c": ("clogging", "clogging_length"), "7a": ("clogging-sp", "clogging_length"), "8a": ("speed", "relative_speed"),
+                 "8b": ("speed-diameter", "relative_speed"), "8ca": ("speed", "capillary_number"), "9a": ("speed-sp", "relative_speed"),
+                 "E": ("near-wall-drag", "relative_speed")}
         done = self.figures(*names, "7c", "9b", "--ranks", 1)
         self.assertNotIn("Warning", done.stderr)
         for name in [*names, "7c", "9b"]:
@@ -166,7 +198,7 @@ class Figures(Analysis):
         self.assertNotRegex(page, r"(src|href)=\"(?!data:)", "nothing from elsewhere")
         fit = json.loads(self.succeed("clogfit", sweep, "--format", "json").stdout)
         for group in fit["groups"]:
-            self.assertIn(f"<td>{rounded.with_error(group['mean_speed'], group['mean_speed_error'])}</td>", page)
+            self.assertIn(f"<td>{rounded.with_error(group['relative_speed'], group['relative_speed_error'])}</td>", page)
         for heading in ("How far droplets get", "What becomes of them"):
             self.assertIn(heading, page)
         self.assertIn("few clogs", page)
@@ -190,8 +222,11 @@ class Figures(Analysis):
         points = self.drawn("2")
         self.assertEqual(float(points[0]["h"]), trajectory["h"][0])
         self.assertTrue(set(float(point["shape_parameter"]) for point in points) <= set(trajectory["shape_parameter"]))
-        steps = self.fit("survival")[0]["survival"]
-        self.assertEqual([float(point["probability"]) for point in self.drawn("C2")[1:1 + len(steps)]], [step["probability"] for step in steps])
+        group, points = self.fit("survival")[0], self.drawn("C2")
+        for name in ("probability", "lower"):
+            drawn = [float(point[name]) if point[name] else None for point in points[1:1 + len(group["survival"])]]
+            self.assertEqual(drawn, [step[name] for step in group["survival"]])
+        self.assertEqual([float(point["censored_distance"]) for point in points if point["censored_distance"]], group["censored_distances"])
         # Drawn from what is there, whatever the settings; else a run with others takes its place.
         file = self.folder / self.PLACE / "runs" / "sag.h5"
         before = file.stat().st_mtime_ns

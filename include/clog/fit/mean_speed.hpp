@@ -23,6 +23,6 @@ struct Travel {
 /// Speed of all runs together, (sum of distances)/(sum of times), which weighs a run by its time. The error
 /// is the jackknife's over runs: sqrt((n - 1)/n sum (R_i - mean)^2), R_i the ratio without run i.
 /// @param runs  one each; those with a NaN are left out. NaN where a sum is not finite
-MeanSpeed fit_speed_ratio(std::span<const Travel> runs);
+MeanSpeed fit_pooled_speed(std::span<const Travel> runs);
 
 }  // namespace clog::fit
