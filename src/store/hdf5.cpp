@@ -5,10 +5,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -36,6 +38,13 @@ namespace {
 constexpr std::string_view hdf5_mark = "\x89HDF\r\n\x1a\n";
 
 }  // namespace
+
+bool looks_like_hdf5(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path)) return false;
+  std::array<char, hdf5_mark.size()> begin{};
+  std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
+  return std::string_view(begin.data(), begin.size()) == hdf5_mark;
+}
 
 void refuse_existing(const std::string& path) {
   if (std::filesystem::exists(path))
@@ -134,6 +143,14 @@ Type text_type(std::size_t length) {
   return type;
 }
 
+std::string member_name(hid_t type, unsigned index) {
+  char* name = H5Tget_member_name(type, index);
+  if (!name) return {};
+  std::string text = name;
+  H5free_memory(name);
+  return text;
+}
+
 void write_attribute(hid_t object, const std::string& name, const std::string& text) {
   const Type type = text_type(text.size());
   const Space space(H5Screate(H5S_SCALAR));
@@ -156,6 +173,20 @@ std::string read_attribute(hid_t object, const std::string& name) {
   std::vector<char> text(H5Tget_size(type));
   if (H5Aread(attribute, type, text.data()) < 0) return {};
   return {text.data(), strnlen(text.data(), text.size())};
+}
+
+std::vector<std::pair<std::string, std::string>> read_attributes(hid_t file, const std::string& path) {
+  std::vector<std::pair<std::string, std::string>> all;
+  H5O_info_t root;
+  check(H5Oget_info2(file, &root, H5O_INFO_NUM_ATTRS) >= 0, "read the attributes of", path);
+  for (hsize_t i = 0; i < root.num_attrs; ++i) {
+    const Attribute attribute(
+        H5Aopen_by_idx(file, ".", H5_INDEX_NAME, H5_ITER_INC, i, H5P_DEFAULT, H5P_DEFAULT));
+    char name[256];
+    if (attribute.valid() && H5Aget_name(attribute, sizeof name, name) >= 0)
+      all.emplace_back(name, read_attribute(file, name));
+  }
+  return all;
 }
 
 }  // namespace clog::store

@@ -113,14 +113,6 @@ std::vector<Column> columns() {
   return all;
 }
 
-std::string member_name(hid_t type, unsigned index) {
-  char* name = H5Tget_member_name(type, index);
-  if (!name) return {};
-  std::string text = name;
-  H5free_memory(name);
-  return text;
-}
-
 /// Those that a stored row has, in its order; none for names that are not ours.
 std::vector<Column> columns_of(hid_t stored) {
   std::vector<Column> all = columns();

@@ -205,21 +205,6 @@ std::vector<std::pair<std::string, std::uint32_t>> check_sums_of(hid_t file) {
   return all;
 }
 
-/// Attributes of a file without checksums: every text.
-Provenance all_attributes(hid_t file, const std::string& path) {
-  Provenance all;
-  H5O_info_t root;
-  check(H5Oget_info2(file, &root, H5O_INFO_NUM_ATTRS) >= 0, "read the attributes of", path);
-  for (hsize_t i = 0; i < root.num_attrs; ++i) {
-    const Attribute attribute(
-        H5Aopen_by_idx(file, ".", H5_INDEX_NAME, H5_ITER_INC, i, H5P_DEFAULT, H5P_DEFAULT));
-    char name[256];
-    if (attribute.valid() && H5Aget_name(attribute, sizeof name, name) >= 0)
-      all.emplace_back(name, read_attribute(file, name));
-  }
-  return all;
-}
-
 CheckSums read_check_sums(hid_t file, std::size_t num_rows, const std::string& path) {
   const Dataset dataset(H5Lexists(file, sums_name, H5P_DEFAULT) > 0 ? H5Dopen2(file, sums_name, H5P_DEFAULT)
                                                                     : hid_t{-1});
@@ -303,7 +288,7 @@ Examination examine(std::vector<std::byte>& image, Seal seal, const std::string&
   } else {
     for (std::size_t i = 0; i < table.num_rows; ++i)
       found.whole.rows.push_back(table.layout.unpack(table.row(i).data()));
-    found.whole.provenance = all_attributes(file, path);
+    found.whole.provenance = read_attributes(file, path);
   }
   for (const char* ours : {"kind", "format_version"})
     std::erase_if(found.whole.provenance, [&](const auto& attribute) { return attribute.first == ours; });
