@@ -226,7 +226,7 @@ class Figures(Analysis):
         for name in ("probability", "lower"):
             drawn = [float(point[name]) if point[name] else None for point in points[1:1 + len(group["survival"])]]
             self.assertEqual(drawn, [step[name] for step in group["survival"]])
-        self.assertEqual([float(point["censored_distance"]) for point in points if point["censored_distance"]], group["censored_distances"])
+        self.assertEqual([float(point["censored_distance"]) for point in points if point.get("censored_distance")], group["censored_distances"])
         # Drawn from what is there, whatever the settings; else a run with others takes its place.
         file = self.folder / self.PLACE / "runs" / "sag.h5"
         before = file.stat().st_mtime_ns
