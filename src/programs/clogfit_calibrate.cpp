@@ -12,8 +12,10 @@
 #include <semaphore>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include "calibration_progress.hpp"
 #include "channel_options.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
@@ -23,6 +25,7 @@
 #include "laboratory.hpp"
 #include "profile_file.hpp"
 #include "single_run.hpp"
+#include "stored_sweep.hpp"
 
 namespace clog {
 namespace {
@@ -34,11 +37,12 @@ droplet that passes a channel most like a measured one: those that minimise Delt
 root-mean-square deviation of the speeds. One file per trial.
 
   clogfit calibrate trial1.csv trial2.csv --orifice 0.7 terminal-speed=0.032
+  clogfit calibrate channel.h5 --orifice 0.7 terminal-speed=0.032
   clogfit calibrate trial*.csv --orifice 0.4 --diameter 3.5mm --speed 7mm/s --angle 28deg
   ... --tension 10mN/m --other "1.98mm 8.5deg"
 
 A profile is a CSV file with the header h [sigma], v [v_t], A or, with --diameter and --speed, in laboratory units such
-as h [mm], v [mm/s], A. With --angle the terminal speed V_t follows from the laboratory's quantities.
+as h [mm], v [mm/s], A; or what clogrun channel has written. With --angle the terminal speed V_t follows from the laboratory's quantities.
 )";
 
 using Text = std::string;
@@ -47,7 +51,8 @@ cli::CommandLine parse(int argc, const char* const* argv) {
   namespace po = boost::program_options;
   cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::accepted);
   const auto text = [] { return po::value<Text>(); };
-  line.add_options()("profiles", po::value<std::vector<Text>>()->composing(), "CSV files, one per trial")(
+  line.add_options()("profiles", po::value<std::vector<Text>>()->composing(),
+                     "CSV files or of clogrun channel, one per trial")(
       "diameter", text(), "of the undeformed droplet, e.g. 3.5mm")("speed", text(),
                                                                    "terminal, far from walls, e.g. 7mm/s")(
       "angle", text(), "of the plates against the horizontal, e.g. 28deg")(
@@ -106,6 +111,20 @@ Laboratory other_laboratory(const cli::CommandLine& line, Laboratory lab) {
   return lab;
 }
 
+/// One of the machine's cores, as long as it lives. Waits until one is free.
+class UseOfCore {
+ public:
+  UseOfCore() { cores().acquire(); }
+  UseOfCore(UseOfCore&&) = delete;
+  ~UseOfCore() { cores().release(); }
+
+ private:
+  static std::counting_semaphore<>& cores() {
+    static std::counting_semaphore<> free(std::max(1u, std::thread::hardware_concurrency()));
+    return free;
+  }
+};
+
 /// The simulated droplet's way past the frames.
 class ChannelSimulation {
  public:
@@ -121,7 +140,9 @@ class ChannelSimulation {
     settings_.set("max-time", sweep::shortest(30 * (channel_.end - channel_.start) / terminal_speed));
   }
 
+  /// From several threads at a time, as many as there are cores.
   fit::Profile operator()(double line_tension, double near_wall_drag) const {
+    const UseOfCore core;
     sweep::Settings settings = settings_;
     settings.set("line-tension", sweep::shortest(line_tension));
     settings.set("near-wall-drag", sweep::shortest(near_wall_drag));
@@ -143,29 +164,32 @@ class ChannelSimulation {
   ChannelParameters channel_;
 };
 
-/// Trials side by side, on as many cores as there are.
+/// Trials side by side.
 std::vector<fit::Calibration> calibrate_all(const std::vector<fit::Profile>& profiles,
                                             const sweep::Settings& settings,
                                             const ChannelParameters& channel) {
-  std::counting_semaphore<> cores(std::max(1u, std::thread::hardware_concurrency()));
+  CalibrationProgress progress(profiles.size());
+  const auto calibrate = [&](std::size_t trial) {
+    const fit::Profile& profile = profiles[trial];
+    fit::Calibration found = fit::calibrate(profile, ChannelSimulation(settings, channel, profile), {},
+                                            [&](double delta) { progress.tried(trial, delta); });
+    progress.ended();
+    return found;
+  };
   std::vector<std::future<fit::Calibration>> running;
-  for (const fit::Profile& profile : profiles)
-    running.push_back(std::async(std::launch::async, [&] {
-      cores.acquire();
-      struct Release {
-        std::counting_semaphore<>& cores;
-        ~Release() { cores.release(); }
-      } release{cores};
-      return fit::calibrate(profile, ChannelSimulation(settings, channel, profile));
-    }));
+  for (std::size_t trial = 0; trial < profiles.size(); ++trial)
+    running.push_back(std::async(std::launch::async, calibrate, trial));
   std::vector<fit::Calibration> found;
   for (auto& trial : running) found.push_back(trial.get());
+  progress.finish();
   return found;
 }
 
 /// What a reader must know before he uses a trial's numbers.
 std::vector<Text> warnings(const fit::Calibration& found) {
   std::vector<Text> all;
+  if (!found.is_converged)
+    all.push_back("the search did not converge: another place may have a smaller Delta_v");
   if (found.is_at_bound) all.push_back("the best is at the end of what was searched, and may lie beyond");
   if (found.num_never_reached > 0)
     all.push_back("no simulated droplet comes to " + std::to_string(found.num_never_reached) +
@@ -174,6 +198,14 @@ std::vector<Text> warnings(const fit::Calibration& found) {
     all.push_back(
         "no errors: the frames do not determine both, or the droplet clogs at a line tension beside this "
         "one");
+  constexpr double near = 1.1;
+  if (found.clogging_tension < near * found.line_tension) {
+    char text[96];
+    std::snprintf(text, sizeof text,
+                  "close to a clog: simulated droplets of Gamma = %.4g and more do not pass",
+                  found.clogging_tension);
+    all.push_back(text);
+  }
   return all;
 }
 
@@ -227,6 +259,8 @@ void print_json(const std::vector<Text>& files, const std::vector<fit::Calibrati
                       {"near_wall_drag_error", number(found[i].near_wall_drag_error)},
                       {"delta_v", found[i].deviation.speed},
                       {"delta_a", number(found[i].deviation.shape)},
+                      {"converged", found[i].is_converged},
+                      {"clogging_tension", number(found[i].clogging_tension)},
                       {"simulations", found[i].num_simulations},
                       {"warnings", warnings(found[i])}});
   nlohmann::ordered_json document = {{"trials", trials},
@@ -239,6 +273,21 @@ void print_json(const std::vector<Text>& files, const std::vector<fit::Calibrati
   if (!std::isnan(lab.interfacial_tension)) document["line_tension_experiment"] = lab.line_tension();
   if (other) document["line_tension_scaled"] = scaled_line_tension(all.line_tension, lab, *other);
   std::cout << document.dump(2) << '\n';
+}
+
+/// @throws Error if a simulated passage was through another channel, or at another speed, than is to be
+/// simulated
+void refuse_other_channel(const Text& file, const store::Provenance& origin, const ChannelParameters& channel,
+                          double terminal_speed) {
+  const auto compare = [&](const Text& option, double stored, double given) {
+    if (stored != given)
+      throw Error(file + " was written with " + option + "=" + sweep::shortest(stored) + ", not " +
+                  sweep::shortest(given) + "; give " + option + "=" + sweep::shortest(stored));
+  };
+  compare("--orifice", sweep::to_number(attribute(origin, "orifice")), channel.orifice);
+  compare("--wedge-angle", sweep::to_number(attribute(origin, "wedge_angle")), channel.wedge_angle);
+  compare("--tip-radius", sweep::to_number(attribute(origin, "tip_radius")), channel.tip_radius);
+  compare("terminal-speed", single_run(stored_settings(file, origin)).drag.terminal_speed, terminal_speed);
 }
 
 }  // namespace
@@ -259,11 +308,16 @@ int clogfit_calibrate(int argc, const char* const* argv) {
   std::optional<Laboratory> other;
   if (line.has("other")) other = other_laboratory(line, lab);
   if (lab.tilt > 0) line.settings().set("terminal-speed", sweep::shortest(lab.reduced_terminal_speed()));
-  std::vector<fit::Profile> profiles;
-  for (const Text& file : files) profiles.push_back(read_profile(file, {lab.diameter, lab.terminal_speed}));
-
-  const std::vector<fit::Calibration> found = calibrate_all(profiles, line.settings(), channel_from(line));
+  const ChannelParameters channel = channel_from(line);
   const double terminal_speed = single_run(line.settings()).drag.terminal_speed;
+  std::vector<fit::Profile> profiles;
+  for (const Text& file : files) {
+    MeasuredProfile measured = read_measured_profile(file, {lab.diameter, lab.terminal_speed});
+    if (!measured.origin.empty()) refuse_other_channel(file, measured.origin, channel, terminal_speed);
+    profiles.push_back(std::move(measured.frames));
+  }
+
+  const std::vector<fit::Calibration> found = calibrate_all(profiles, line.settings(), channel);
   (format == "json" ? print_json : print_text)(files, found, fit::combine(found), lab, terminal_speed, other);
   return cli::exit_success;
 }

@@ -20,8 +20,8 @@ the relative root-mean-square deviations of speed and shape.
 
   clogfit deviation measured.csv simulated1.csv simulated2.csv
 
-All are CSV files with the header h [sigma], v [v_t], A. Simulated frames are in the order of time and interpolated to
-the measured h.
+All are CSV files with the header h [sigma], v [v_t], A, or written by clogrun channel. Simulated frames are in the order
+of time and interpolated to the measured h.
 
 Options:
 )";
@@ -32,14 +32,14 @@ int clogfit_deviation(int argc, const char* const* argv) {
   namespace po = boost::program_options;
   cli::CommandLine line("clogfit deviation", usage, cli::CommandLine::SweepKeys::none);
   line.add_options()("profiles", po::value<std::vector<std::string>>()->composing(),
-                     "CSV files, the measured one first");
+                     "CSV files or of clogrun channel, the measured one first");
   line.add_positional("profiles", -1);
   line.parse(argc - 1, argv + 1);
   if (cli::answer_help_or_version(line, {})) return cli::exit_success;
   const std::vector<std::string> files = line.get_all("profiles");
   if (files.size() < 2) throw Error("missing profiles; try clogfit deviation measured.csv simulated.csv");
 
-  const fit::Profile measured = read_profile(files[0], {});
+  const fit::Profile measured = read_measured_profile(files[0], {}).frames;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (std::size_t i = 1; i < files.size(); ++i) {
     const fit::Deviation found = fit::deviation(measured, read_profile(files[i], {}));

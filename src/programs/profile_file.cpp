@@ -3,10 +3,14 @@
 #include <limits>
 #include <optional>
 #include <sstream>
+#include <stdexcept>
+#include <utility>
 #include <vector>
 
+#include "clog/cli/program.hpp"
 #include "clog/cli/text_file.hpp"
 #include "clog/core/error.hpp"
+#include "clog/store/trajectory_file.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "laboratory.hpp"
 
@@ -104,15 +108,70 @@ void read_lines(const std::string& path, const std::string& length_name, const P
   }
 }
 
-}  // namespace
+store::TrajectoryTable read_passage(const std::string& path) {
+  store::TrajectoryTable table = store::read_trajectory(path);
+  if (!table.is_checked)
+    cli::say(
+        path +
+        " was copied or changed by another program, or is of an older format: damage to it may go unnoticed");
+  return table;
+}
 
-fit::Profile read_profile(const std::string& path, const ProfileScales& scales) {
+/// Every sample of a simulated passage.
+fit::Profile samples(const std::string& path, const store::TrajectoryTable& table) {
+  try {
+    const std::vector<double>& h = table.column("h");
+    const std::vector<double>& speed = table.column("speed_ratio");
+    const std::vector<double>& shape = table.column("shape_parameter");
+    fit::Profile profile;
+    for (std::size_t i = 0; i < h.size(); ++i) profile.push_back({h[i], speed[i], shape[i]});
+    return profile;
+  } catch (const std::out_of_range&) {
+    throw Error("cannot read " + path +
+                " (not a passage through a channel); give a file written by clogrun channel");
+  }
+}
+
+fit::Profile frames_of_camera(const fit::Profile& profile) {
+  constexpr int frames_per_diameter = 20, farthest = 30;
+  fit::Profile frames;
+  for (int i = -farthest; i <= farthest; ++i)
+    if (const auto frame = fit::frame_at(profile, static_cast<double>(i) / frames_per_diameter))
+      frames.push_back(*frame);
+  return frames;
+}
+
+fit::Profile read_csv(const std::string& path, const ProfileScales& scales) {
   fit::Profile profile;
   read_lines(path, "h", scales, [&](const Columns& columns, const std::vector<std::string>& cells) {
     profile.push_back({columns.length(cells), columns.speed(cells), columns.shape(cells)});
   });
-  if (profile.size() < 3) throw Error(path + " holds fewer than three frames");
   return profile;
+}
+
+void require_frames(const std::string& path, const fit::Profile& profile) {
+  if (profile.size() < 3) throw Error(path + " holds fewer than three frames");
+}
+
+}  // namespace
+
+fit::Profile read_profile(const std::string& path, const ProfileScales& scales) {
+  fit::Profile profile =
+      store::looks_like_hdf5(path) ? samples(path, read_passage(path)) : read_csv(path, scales);
+  require_frames(path, profile);
+  return profile;
+}
+
+MeasuredProfile read_measured_profile(const std::string& path, const ProfileScales& scales) {
+  MeasuredProfile measured;
+  if (store::looks_like_hdf5(path)) {
+    store::TrajectoryTable table = read_passage(path);
+    measured = {frames_of_camera(samples(path, table)), std::move(table.provenance)};
+  } else {
+    measured.frames = read_csv(path, scales);
+  }
+  require_frames(path, measured.frames);
+  return measured;
 }
 
 std::vector<fit::NearWallSpeed> read_near_wall_speeds(const std::string& path, const ProfileScales& scales) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -44,7 +45,7 @@ TEST(Deviation, IsTheRootMeanSquareOfRelativeDifferences) {
 
 TEST(Deviation, CountsWhatIsNeverReachedAndLeavesOutUnknownShapes) {
   const Profile stuck{{0, 1, 1}, {1, 0.5, 1.1}};
-  EXPECT_NEAR(deviation({{2, 1, unknown}}, stuck).speed, 10, 1e-12);
+  EXPECT_NEAR(deviation({{2, 1, unknown}}, stuck).speed, 20, 1e-12);  // a diameter is missing
   EXPECT_TRUE(std::isnan(deviation({{0.5, 0.75, unknown}}, stuck).shape));
   EXPECT_TRUE(std::isnan(deviation({{0.5, 1, 1.1}}, {{0, 1, unknown}, {1, 1, unknown}}).shape));
   EXPECT_NEAR(deviation({{0.5, 0.75, unknown}, {0, 1, 1.1}}, stuck).shape, 0.1, 1e-12);
@@ -64,7 +65,9 @@ TEST(Calibrate, RecoversWhatMadeTheProfile) {
       EXPECT_NEAR(found.near_wall_drag, drag, 1e-3) << tension;
       EXPECT_LT(found.deviation.speed, 1e-3);
       EXPECT_LT(found.deviation.shape, 1e-3);
-      EXPECT_LE(found.num_simulations, 250);
+      EXPECT_LE(found.num_simulations, 400);
+      EXPECT_TRUE(found.is_converged);
+      EXPECT_TRUE(std::isnan(found.clogging_tension));
     }
 }
 
@@ -113,6 +116,57 @@ TEST(Calibrate, HasNoErrorsBesideALineTensionAtWhichTheDropletClogs) {
   EXPECT_GT(away.line_tension_error, 0);
 }
 
+/// A droplet whose speed in the neck falls to nothing at the line tension 1, where it clogs, with bumps whose
+/// places depend on how near that is: Delta_v has narrow minima there.
+Profile clogging(double tension, double drag) {
+  Profile profile;
+  for (double h = -1; h < 1; h += 0.004) {
+    if (tension >= 1 && h > -0.1) break;
+    const double neck = std::exp(-25 * h * h);
+    const double bumps = 1 + 0.3 * std::sin(20 * h + 12 * std::log(std::max(1 - tension, 1e-9)));
+    const double slow = (1 - std::min(tension, 1.0)) * bumps / (0.02 + drag);
+    profile.push_back({h, 1 / (1 + drag * (1 - neck)) * (1 - neck) + neck * std::min(slow, 1.0) + 1e-4, 1});
+  }
+  return profile;
+}
+
+TEST(Calibrate, FindsANarrowMinimumBesideAClog) {
+  for (const double tension : {0.91, 0.97, 0.985}) {
+    std::mt19937 engine(5);
+    std::normal_distribution<double> scatter(1, 0.02);
+    Profile frames;
+    const Profile all = clogging(tension, 0.3);
+    for (std::size_t i = 5; i < all.size(); i += 10)
+      frames.push_back({all[i].h, all[i].speed * scatter(engine), 1});
+    const Calibration found = calibrate(frames, clogging);
+    EXPECT_NEAR(found.line_tension, tension, 4 * found.line_tension_error);
+    EXPECT_NEAR(found.near_wall_drag, 0.3, 4 * found.near_wall_drag_error);
+    EXPECT_LT(found.line_tension_error, 0.01);
+    EXPECT_LT(found.deviation.speed, 0.03) << tension;
+    EXPECT_TRUE(found.is_converged);
+    EXPECT_NEAR(found.clogging_tension, 1, 0.005);
+  }
+}
+
+TEST(Calibrate, SaysThatItDidNotConverge) {
+  std::atomic<int> num_calls = 0;  // every simulation comes nearer
+  const Simulation ever_nearer = [&](double tension, double drag) {
+    Profile profile = model(tension, drag);
+    for (Frame& frame : profile) frame.speed *= 1 + std::pow(0.99, ++num_calls / 300.0);
+    return profile;
+  };
+  EXPECT_FALSE(calibrate(measured(1, 0.1, 0, 1), ever_nearer).is_converged);
+}
+
+TEST(Calibrate, TellsOfEverySimulationAndIsTheSameEveryTime) {
+  std::atomic<int> num_told = 0;
+  const Calibration found = calibrate(measured(1, 0.1, 0.02, 1), model, {}, [&](double) { ++num_told; });
+  EXPECT_EQ(found.num_simulations, num_told + 1);  // and the best once more
+  const Calibration again = calibrate(measured(1, 0.1, 0.02, 1), model);
+  EXPECT_EQ(found.line_tension, again.line_tension);
+  EXPECT_EQ(found.num_simulations, again.num_simulations);
+}
+
 TEST(Calibrate, CountsTheFramesThatNoSimulationReaches) {
   const Simulation stuck = [](double tension, double drag) {
     Profile profile = model(tension, drag);
@@ -130,7 +184,7 @@ TEST(Calibrate, RefusesTooFewFrames) {
 }
 
 TEST(Calibrate, PassesOnWhatASimulationThrows) {
-  int num_calls = 0;
+  std::atomic<int> num_calls = 0;
   const Simulation failing = [&](double tension, double drag) {
     if (++num_calls > 50) throw std::runtime_error("a droplet broke");  // after the grid
     return model(tension, drag);

@@ -2,11 +2,15 @@
 
 import json
 import math
+import os
+import pty
+import subprocess
+import threading
 import unittest
 
 import h5py
 import numpy as np
-from support import ProgramTest
+from support import BIN, ProgramTest
 
 LINE_TENSION, NEAR_WALL_DRAG = 0.6, 0.1
 CHANNEL = ["--orifice=0.9", "vertices=64"]
@@ -46,6 +50,81 @@ class Calibrate(ProgramTest):
         tensions = [trial["line_tension"] for trial in found["trials"]]
         self.assertAlmostEqual(found["line_tension"], sum(tensions) / 2)
         self.assertAlmostEqual(found["line_tension_deviation"], abs(tensions[0] - tensions[1]) / math.sqrt(2))
+
+    def test_it_finds_what_made_a_passage_close_to_a_clog(self):
+        # Stiffer by 2 %, this droplet clogs; there Delta_v has narrow minima.
+        line_tension, near_wall_drag = 1.0, 0.07
+        keys = ["--orifice=0.7", "vertices=48", "terminal-speed=0.05"]
+        self.succeed("clogrun", "channel", "--output", "channel.h5", f"line-tension={line_tension}",
+                     f"near-wall-drag={near_wall_drag}", "--start=-2.2", "--end=1.3", *keys)
+        with h5py.File(self.folder / "channel.h5") as file:
+            table = file["trajectory"][:]
+        h = np.linspace(-1.2, 1.2, 49)
+        v = np.interp(h, table["h"], table["speed_ratio"]) * (1 + 0.02 * np.random.default_rng(2).standard_normal(len(h)))
+        self.write("noisy.csv", "\n".join(["h [sigma], v [v_t]", *(f"{a:.5g},{b:.5g}" for a, b in zip(h, v))]))
+        found = self.calibrate_on_a_terminal("noisy.csv", "channel.h5", *keys)
+        noisy, exact = found["trials"]
+        self.assertLess(abs(noisy["line_tension"] - line_tension), 3 * noisy["line_tension_error"])
+        self.assertLess(abs(noisy["near_wall_drag"] - near_wall_drag), 3 * noisy["near_wall_drag_error"])
+        self.assertLess(noisy["line_tension_error"], 0.005)
+        self.assertLess(noisy["delta_v"], 0.03)
+        self.assertAlmostEqual(exact["line_tension"], line_tension, delta=0.002)
+        self.assertAlmostEqual(exact["near_wall_drag"], near_wall_drag, delta=0.001)
+        self.assertLess(exact["delta_v"], 0.005)
+        for trial in (noisy, exact):
+            self.assertTrue(trial["converged"])
+            self.assertLess(trial["clogging_tension"], 1.1)
+            self.assertIn("close to a clog", " ".join(trial["warnings"]))
+
+    def calibrate_on_a_terminal(self, *arguments):
+        """With a terminal for its standard error, on which it tells how far it is."""
+        ours, theirs = pty.openpty()
+        self.addCleanup(os.close, ours)
+        shown = []
+        with subprocess.Popen([BIN / "clogfit", "calibrate", *arguments, "--format=json"], cwd=self.folder, stdout=subprocess.PIPE,
+                              stderr=theirs, text=True) as process:
+            os.close(theirs)
+            reader = threading.Thread(target=lambda: shown.extend(iter(lambda: self.read_some(ours), b"")))
+            reader.start()
+            printed = process.stdout.read()
+            reader.join()
+        text = b"".join(shown).decode()
+        self.assertEqual(process.returncode, 0, text)
+        self.assertRegex(text, r"\r\d+ simulations, 0/2 trials done, Delta_v down to ")
+        return json.loads(printed)
+
+    @staticmethod
+    def read_some(terminal):
+        try:
+            return os.read(terminal, 4096)
+        except OSError:  # nobody writes to it any more
+            return b""
+
+    def test_it_reads_what_clogrun_writes_unless_that_is_another_thing(self):
+        keys = ["vertices=32", "line-tension=0.3", "terminal-speed=0.3"]
+        self.succeed("clogrun", "channel", "--output", "channel.h5", "--orifice=0.9", "--start=-2.5", "--end=1.3", *keys)
+        self.succeed("clogrun", "array", "--output", "array.h5", "box=20", "max-time=1", *keys)
+        self.succeed("clogsweep", "--output", "sweep.h5", "box=20", "max-time=1", "seeds=1", *keys)
+        content = bytearray((self.folder / "channel.h5").read_bytes())
+        content[len(content) // 2] ^= 1
+        (self.folder / "damaged.h5").write_bytes(content)
+        (self.folder / "cut.h5").write_bytes(content[:len(content) // 2])
+        found, = json.loads(self.succeed("clogfit", "deviation", "channel.h5", "channel.h5").stdout)["deviations"]
+        self.assertEqual((found["delta_v"], found["delta_a"]), (0, 0))
+        for arguments, words in [
+            (["channel.h5", "--orifice=0.7", *keys[2:]], ["channel.h5", "--orifice=0.9, not 0.7"]),
+            (["channel.h5", "--orifice=0.9", "terminal-speed=0.03"], ["channel.h5", "terminal-speed=0.3, not 0.03"]),
+            (["array.h5"], ["array.h5", "not a passage"]),
+            (["sweep.h5"], ["sweep.h5", "not a trajectory"]),
+            (["damaged.h5"], ["damaged.h5", "damaged"]),
+            (["cut.h5"], ["cut.h5", "damaged"]),
+        ]:
+            with self.subTest(arguments=arguments):
+                self.refuse("clogfit", "calibrate", *arguments, words=words)
+        with h5py.File(self.folder / "channel.h5", "a") as file:
+            file.attrs["note"] = "changed by hand"  # cuts the seal off
+        done = self.succeed("clogfit", "deviation", "channel.h5", "channel.h5")
+        self.assertIn("may go unnoticed", done.stderr)
 
     def test_mistakes_get_one_line_and_exit_code_2(self):
         self.write("p.csv", "h [mm],v [mm/s]\n-1,1\n0,0.5\n1,1\n")

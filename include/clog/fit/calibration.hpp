@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -14,9 +15,14 @@ struct Frame {
 };
 using Profile = std::vector<Frame>;
 
+/// Where the droplet is at h for the first time, interpolated linearly; nothing if it does not come there.
+/// @param profile  in the order of time
+std::optional<Frame> frame_at(const Profile& profile, double h);
+
 /// Root-mean-square relative deviations of a measured profile from a simulated one (Cheng et al., Delta_v and
 /// Delta_A), the simulation interpolated linearly to each frame's h. A frame at an h that the simulated
-/// droplet never came to counts as a deviation of 10. Delta_A is NaN without shapes.
+/// droplet never came to counts as a deviation of 10, of speed as 10 more for each diameter that is missing.
+/// Delta_A is NaN without shapes.
 struct Deviation {
   double speed;
   double shape;
@@ -33,8 +39,11 @@ struct Calibration {
   double near_wall_drag_error = 0;  ///< likewise; both NaN if the profile does not determine both
   Deviation deviation{};            ///< of the best run
   int num_simulations = 0;
+  bool is_converged = false;  ///< a new search from the best found nothing better
   bool is_at_bound = false;   ///< of the range: the best may lie beyond
   int num_never_reached = 0;  ///< frames at an h that the best run's droplet did not come to
+  double clogging_tension =
+      0;  ///< Gamma from which on droplets do not come to all frames; NaN if all do, or none
 };
 /// Where Delta_v is sought.
 struct CalibrationRange {
@@ -42,14 +51,22 @@ struct CalibrationRange {
   double most_tension = 10;
   double most_drag = 2;
 };
-/// Simulated profile for a line tension and b_0/b_inf.
+/// Simulated profile for a line tension and b_0/b_inf. Called from several threads at a time.
 using Simulation = std::function<Profile(double line_tension, double near_wall_drag)>;
+/// Told of Delta_v after every simulation, from several threads at a time.
+using CalibrationProgress = std::function<void(double delta)>;
 
-/// Minimises Delta_v: a coarse grid, logarithmic in Gamma, then Nelder and Mead's simplex from its best
-/// point. Errors are those of linearised least squares with independent frames of equal relative scatter.
+/// Minimises Delta_v. Near a line tension at which the droplet clogs it has several minima, narrow ones. So
+/// the search begins from the best points of a coarse grid, logarithmic in Gamma; brackets the line tension
+/// at which the droplet clogs, if it does; begins again at distances from there that double; and restarts
+/// from the best of all until that helps no more. Each is Nelder and Mead's simplex. It takes a few hundred
+/// simulations and is the same every time.
+///
+/// Errors are those of linearised least squares with independent frames of equal relative scatter, linearised
+/// over a range like the errors themselves.
 /// @throws std::invalid_argument for fewer than three frames
-Calibration calibrate(const Profile& measured, const Simulation& simulate,
-                      const CalibrationRange& range = {});
+Calibration calibrate(const Profile& measured, const Simulation& simulate, const CalibrationRange& range = {},
+                      const CalibrationProgress& progress = {});
 
 /// Mean and standard deviation over independent trials, as published (Cheng et al., Fig. 2).
 struct Trials {
