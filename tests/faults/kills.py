@@ -16,7 +16,7 @@ RANKS = 2
 GENERATIONS = ["mpirun", "a rank", "a helper", "a computing process"]
 SIGNALS = [signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGSTOP]
 # With what a sweep ends whose mpirun got this signal and nothing else: README.md. On SIGINT the code is mpirun's own.
-CODES_OF_MPIRUN = {signal.SIGTERM: {0, 75}, signal.SIGSTOP: {0}}
+CODES_OF_MPIRUN = {signal.SIGTERM: {0, 1, 75}, signal.SIGSTOP: {0}}
 PATIENCE = 5  # seconds for processes that have lost others, before they are killed as a batch system would
 
 
