@@ -1,5 +1,8 @@
 #include "clog/cli/command_line.hpp"
 
+#include <algorithm>
+#include <filesystem>
+#include <limits>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -19,6 +22,9 @@ bool is_key(const std::string& name) {
   return false;
 }
 
+/// Takes the words for which there is no other place; no name that can be typed as an option.
+constexpr const char* surplus_words = "surplus words";
+
 /// Is this a word like `key=value`?
 bool is_assignment(const std::string& word) {
   const auto equals = word.find('=');
@@ -30,7 +36,7 @@ bool is_assignment(const std::string& word) {
 
 CommandLine::CommandLine(std::string program, std::string usage, SweepKeys sweep_keys)
     : program_(std::move(program)), usage_(std::move(usage)), sweep_keys_(sweep_keys) {
-  own_.add_options()("help", "print this and leave")("version", "print versions and leave");
+  own_.add_options()("help,h", "print this and leave")("version", "print versions and leave");
   if (sweep_keys == SweepKeys::none) return;
   own_.add_options()("config", po::value<std::string>(), "file with lines `key = value`")(
       "instruction-set", po::value<std::string>(),
@@ -51,20 +57,20 @@ void CommandLine::parse(int argc, const char* const* argv) {
     words.push_back((is_setting ? "--" : "") + std::string(argv[i]));
     text_ += std::string(" ") + argv[i];
   }
+  if (!words.empty()) refuse_misspelt_command(words.front());
   po::options_description all;
-  all.add(own_).add(keys_);
+  all.add(own_).add(keys_).add_options()(surplus_words, po::value<std::vector<std::string>>());
+  po::positional_options_description places = positional_;
+  if (places.max_total_count() < std::numeric_limits<unsigned>::max()) places.add(surplus_words, -1);
   try {
     const int style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
-    po::store(po::command_line_parser(words).options(all).positional(positional_).style(style).run(),
-              values_);
+    po::store(po::command_line_parser(words).options(all).positional(places).style(style).run(), values_);
   } catch (const po::unknown_option& error) {
     refuse_unknown(error.get_option_name());
-  } catch (const po::too_many_positional_options_error&) {
-    throw Error("too many words on the command line (options start with --, settings are key=value); see " +
-                program_ + " --help");
   } catch (const po::error& error) {
     throw Error(std::string(error.what()) + "; see " + program_ + " --help");
   }
+  if (has(surplus_words)) refuse_surplus_words();
   if (sweep_keys_ == SweepKeys::none) return;
   if (has("instruction-set")) use_instruction_set(get("instruction-set"));
   if (has("config")) read_config(get("config"));
@@ -79,6 +85,19 @@ bool CommandLine::awaits_value(const std::string& word) const {
     if (option) return option->semantic()->min_tokens() > 0;
   }
   return false;
+}
+
+void CommandLine::refuse_misspelt_command(const std::string& word) const {
+  const bool is_command = std::find(commands_.begin(), commands_.end(), word) != commands_.end();
+  if (is_command || word.starts_with('-') || std::filesystem::exists(word)) return;
+  if (const std::string near = sweep::did_you_mean(word, commands_); !near.empty())
+    throw Error("unknown command '" + word + "'; did you mean " + program_ + " " + near + "?");
+}
+
+void CommandLine::refuse_surplus_words() const {
+  std::string all;
+  for (const std::string& word : get_all(surplus_words)) all += (all.empty() ? "'" : ", '") + word + "'";
+  throw Error("no place for " + all + " (" + surplus_remedy_ + "); see " + program_ + " --help");
 }
 
 void CommandLine::refuse_unknown(const std::string& word) const {
@@ -121,21 +140,19 @@ std::string CommandLine::require(const std::string& option) const {
 }
 
 double CommandLine::get_positive(const std::string& option) const {
-  try {
-    const double value = sweep::to_number(get(option));
-    if (value > 0) return value;
-  } catch (const Error&) {
-    // said below, with the option's name
-  }
+  if (const double value = number(option); value > 0) return value;
   throw Error("invalid --" + option + "=" + get(option) + " (must be a positive number)");
 }
 
 double CommandLine::get_number(const std::string& option, double fallback) const {
-  if (!has(option)) return fallback;
+  return has(option) ? number(option) : fallback;
+}
+
+double CommandLine::number(const std::string& option) const {
   try {
     return sweep::to_number(get(option));
-  } catch (const Error&) {
-    throw Error("invalid --" + option + "=" + get(option) + " (must be a finite number)");
+  } catch (const Error& error) {
+    throw Error("invalid --" + option + "=" + get(option) + " (" + error.what() + ")");
   }
 }
 

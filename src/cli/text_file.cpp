@@ -8,12 +8,16 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <string_view>
 
 #include "clog/cli/program.hpp"
 #include "clog/core/error.hpp"
 
 namespace clog::cli {
 namespace {
+
+/// UTF-8's, with which editors and spreadsheets of Windows begin their files.
+constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
 [[noreturn]] void refuse(const std::string& path, const std::string& reason) {
   throw Error("cannot read " + path + " (" + reason + "); give a text file");
@@ -64,6 +68,7 @@ std::string read_text(const std::string& path) {
   OpenText file(path);
   std::string text;
   while (file.read_some(text)) continue;
+  if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
   return text;
 }
 

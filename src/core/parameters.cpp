@@ -5,6 +5,7 @@
 #include <numbers>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "clog/core/error.hpp"
 #include "clog/core/jamming.hpp"
@@ -43,6 +44,7 @@ double rounded_down(double value, int digits = 2) {
   return std::floor(value * scale * (1 + 1e-12)) / scale;
 }
 
+constexpr double smallest_time_step = 1e-9;  // a droplet needs a million steps to do anything
 constexpr double smallest_box = 5 * units::droplet_diameter;
 
 void validate_obstacles(const ObstacleParameters& obstacles, int vertices, Model model) {
@@ -146,17 +148,66 @@ double soft_disk_frequency(const RunParameters& run) {
   return std::sqrt(contact_stiffness(*run.wall_stiffness, units::droplet_diameter) / units::droplet_mass);
 }
 
+/// A key, and how fast what it stands for would be [1/t0^2].
+struct Rate {
+  const char* key;
+  double value;
+  double squared;
+};
+
+/// Which key asks for the smallest step, by the bounds of automatic_time_step().
+Rate fastest_rate(const RunParameters& run) {
+  const double speed = run.drag.terminal_speed;
+  std::vector<Rate> rates = {{"terminal-speed", speed, 100 / (speed * speed)}};
+  if (run.model == Model::sp) {
+    const double omega = soft_disk_frequency(run);
+    rates.push_back({"wall-stiffness", *run.wall_stiffness, 100 * omega * omega});
+  } else {
+    const DpParameters& dp = run.dp;
+    const StiffModes modes = stiff_modes_of_circle(dp, run.wall_stiffness.value_or(0));
+    rates.push_back({"line-tension", dp.line_tension, modes.tension});
+    rates.push_back({"area-stiffness", *dp.area_stiffness, modes.area});
+    rates.push_back({"perimeter-stiffness", *dp.perimeter_stiffness, modes.spring});
+    rates.push_back({"wall-stiffness", run.wall_stiffness.value_or(0), modes.contact});
+  }
+  return *std::max_element(rates.begin(), rates.end(),
+                           [](const Rate& a, const Rate& b) { return a.squared < b.squared; });
+}
+
+void choose_time_step(RunParameters& run) {
+  run.time_step = automatic_time_step(run);
+  if (*run.time_step >= smallest_time_step) return;
+  const Rate rate = fastest_rate(run);
+  require(false, rate.key, rate.value,
+          "would need a time-step of " + text(*run.time_step) + ") use a value nearer to the usual ones");
+}
+
 void resolve_time_step(RunParameters& run) {
-  if (!run.time_step) run.time_step = automatic_time_step(run);
+  if (!run.time_step) choose_time_step(run);
   const double time_step = *run.time_step;
   require_positive("time-step", time_step);
-  require(time_step >= 1e-9, "time-step", time_step, "smaller than any mode needs) try 1e-3");
-  require(run.max_time >= time_step, "max-time", run.max_time, "shorter than one time-step)");
+  require(time_step >= smallest_time_step, "time-step", time_step, "smaller than any mode needs) try 1e-3");
+  require(run.max_time >= time_step, "max-time", run.max_time,
+          "shorter than one time-step) use at least " + text(time_step));
   require(run.max_time / time_step <= 1e15, "max-time", run.max_time,
           "more than 1e15 steps) use at most " + text(1e15 * time_step));
   require(time_step <= run.drag.terminal_speed, "time-step", time_step,
           "does not resolve the drag's relaxation time, terminal-speed=" + text(run.drag.terminal_speed) +
               ") try " + text(0.1 * run.drag.terminal_speed));
+}
+
+/// The droplet keeps its area under its own line tension.
+void validate_compression(const DpParameters& dp, bool automatic_area) {
+  constexpr double largest = 0.05;
+  const double softest_per_tension = 1 / (units::droplet_diameter / 2) / (largest * units::rest_area);
+  const double softest = dp.line_tension * softest_per_tension;
+  if (automatic_area)
+    require(*dp.area_stiffness >= softest, "line-tension", dp.line_tension,
+            "would compress the droplet by more than 5 %, with the stiffest automatic area-stiffness) use at "
+            "most " +
+                text(rounded_down(*dp.area_stiffness / softest_per_tension)) + ", or give area-stiffness");
+  require(*dp.area_stiffness >= softest, "area-stiffness", *dp.area_stiffness,
+          "the line tension would compress the droplet by more than 5 %) use at least " + text(softest));
 }
 
 void resolve_dp(RunParameters& run) {
@@ -172,8 +223,10 @@ void resolve_dp(RunParameters& run) {
   require_not_negative("perimeter-stiffness-ratio", dp.perimeter_stiffness_ratio);
   if (!dp.perimeter_stiffness) dp.perimeter_stiffness = automatic_perimeter_stiffness(run);
   require_not_negative("perimeter-stiffness", *dp.perimeter_stiffness);
-  if (!dp.area_stiffness) dp.area_stiffness = automatic_area_stiffness(run);
+  const bool automatic_area = !dp.area_stiffness;
+  if (automatic_area) dp.area_stiffness = automatic_area_stiffness(run);
   require_positive("area-stiffness", *dp.area_stiffness);
+  validate_compression(dp, automatic_area);
   require(
       dp.wall_tension >= 0.1 && dp.wall_tension <= 1, "wall-tension", dp.wall_tension,
       "minus the cosine of the contact angle; with less the interface on a wall would buckle) use 0.1..1");
@@ -194,10 +247,6 @@ void resolve_dp(RunParameters& run) {
     const double stiffest = auto_contact_omega_dt2 / 2 * vertex_mass / (time_step * time_step);
     run.wall_stiffness = wall_stiffness(stiffest, vertex_diameter);
   }
-  const double softest_area = dp.line_tension / (units::droplet_diameter / 2) / (0.05 * units::rest_area);
-  require(*dp.area_stiffness >= softest_area, "area-stiffness", *dp.area_stiffness,
-          "the line tension would compress the droplet by more than 5 %) use at least " + text(softest_area));
-
   const StiffModes modes = stiff_modes_of_circle(dp, *run.wall_stiffness);
   const double largest = automatic ? largest_step_with_automatic_contact(dp) : largest_stable_step(modes);
   const double stiffest_omega_dt = std::sqrt(modes.sum()) * time_step;

@@ -22,8 +22,6 @@ the relative root-mean-square deviations of speed and shape.
 
 All are CSV files with the header h [sigma], v [v_t], A, or written by clogrun channel. Simulated frames are in the order
 of time and interpolated to the measured h.
-
-Options:
 )";
 
 }  // namespace

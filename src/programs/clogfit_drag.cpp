@@ -26,8 +26,6 @@ that moves along a wall: a straight line through log(v/(v_t - v)) against log d,
 
 The CSV file has the header d [sigma], v [v_t] or, with --diameter and --speed, laboratory units such as d [mm], v [mm/s];
 d is the distance between wall and droplet surface.
-
-Options:
 )";
 
 double scale(const cli::CommandLine& line, const char* option, const char* units) {

@@ -8,8 +8,9 @@ namespace clog {
 RunParameters single_run(const sweep::Settings& settings) {
   const sweep::Plan plan(settings);
   if (plan.size() != 1)
-    throw Error("these settings mean " + std::to_string(plan.size()) +
-                " runs, one is wanted; give single values, or use clogsweep");
+    throw Error(
+        "these settings mean " + std::to_string(plan.size()) +
+        " runs, one is wanted; give single values, with a point where they have decimals, or use clogsweep");
   return plan.task(0);
 }
 

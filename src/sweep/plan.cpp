@@ -7,6 +7,7 @@
 
 #include "clog/core/error.hpp"
 #include "clog/sweep/run_row.hpp"
+#include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {
 namespace {
@@ -33,6 +34,19 @@ void refuse_contradictions(const Settings& settings) {
                 settings.text("perimeter-stiffness") + " is given as well) leave one of them out");
 }
 
+/// The parameters of a task. A list like 0,3 may have been meant as 0.3: where one of its values is refused,
+/// the message asks.
+RunParameters checked_task(const Plan& plan, std::int64_t index, const Settings& settings) try {
+  return plan.task(index);
+} catch (const Error& error) {
+  const std::string message = error.what();
+  for (const Key& key : keys())
+    if (const std::string meant = with_decimal_point(settings.text(key.name));
+        !meant.empty() && message.starts_with("invalid " + key.name + "="))
+      throw Error(message + "; " + settings.text(key.name) + " are two values: did you mean " + meant + "?");
+  throw;
+}
+
 }  // namespace
 
 Plan::Plan(const Settings& settings) {
@@ -51,7 +65,8 @@ Plan::Plan(const Settings& settings) {
   // it.
   std::unordered_map<std::string, std::int64_t> seen;
   for (std::int64_t index = 0; index < num_groups(); ++index) {
-    const auto [first, is_new] = seen.emplace(identity(describe(task(index))), index);
+    const auto [first, is_new] =
+        seen.emplace(identity(describe(checked_task(*this, index, settings))), index);
     if (!is_new)
       throw Error("the sweep's lists lead to the same run twice (parameter sets " +
                   std::to_string(first->second) + " and " + std::to_string(index) +

@@ -101,10 +101,18 @@ std::vector<std::string> expand_item(std::string_view item, ValueKind kind,
   if (std::find(words.begin(), words.end(), item) != words.end()) return {std::string(item)};
   if (kind == ValueKind::word) refuse(item, "is not one of " + joined(words));
   if (item.starts_with("lin(") || item.starts_with("log(")) return expand_spaced(item, kind);
-  if (const auto dots = item.find(".."); kind == ValueKind::integer && dots != std::string_view::npos)
-    return expand_range(item, dots);
+  if (const auto dots = item.find(".."); dots != std::string_view::npos) {
+    if (kind == ValueKind::integer) return expand_range(item, dots);
+    refuse(item, "is a range of integers, but the key takes any number; give how many, e.g. lin(" +
+                     std::string(item.substr(0, dots)) + "," + std::string(item.substr(dots + 2)) + ",5)");
+  }
   if (kind == ValueKind::integer) return {std::to_string(to_integer(item))};
   return {shortest(to_number(item))};
+}
+
+std::string question_of_comma(std::string_view text) {
+  const std::string meant = with_decimal_point(text);
+  return meant.empty() ? "" : "; did you mean " + meant + "?";
 }
 
 }  // namespace
@@ -128,13 +136,24 @@ std::string shortest(double value) {
   return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
 }
 
+std::string with_decimal_point(std::string_view text) {
+  constexpr std::string_view digits = "0123456789";
+  const auto comma = text.find(',');
+  if (comma == 0 || comma == std::string_view::npos || comma + 1 == text.size()) return "";
+  const std::string_view whole = text.substr(0, comma);
+  const std::string_view fraction = text.substr(comma + 1);
+  if (whole.find_first_not_of(digits) != whole.npos || fraction.find_first_not_of(digits) != fraction.npos)
+    return "";
+  return std::string(whole) + '.' + std::string(fraction);
+}
+
 double to_number(std::string_view text) {
   double value = 0;
   const bool has_plus = text.starts_with('+') && !text.starts_with("+-");  // which from_chars does not know
   const char* begin = text.data() + (has_plus ? 1 : 0);
   const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    refuse(text, "is not a finite number");
+    refuse(text, "is not a finite number" + question_of_comma(text));
   return value;
 }
 

@@ -33,6 +33,11 @@ TEST_F(TextFile, IsReadWhole) {
   EXPECT_EQ(read_text(path("empty.cfg")), "");
 }
 
+TEST_F(TextFile, MayBeginWithAByteOrderMark) {
+  write(path("a.cfg"), "\xef\xbb\xbfseeds = 1");
+  EXPECT_EQ(read_text(path("a.cfg")), "seeds = 1");
+}
+
 TEST_F(TextFile, MayBeAPipe) {
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
   const std::string text(200'000, '#');  // more than the pipe holds

@@ -72,6 +72,27 @@ TEST(ToNumber, TakesOneSignOnly) {
   for (const char* text : {"+-2", "++2", "-+2", "--2"}) EXPECT_THROW(to_number(text), Error) << text;
 }
 
+TEST(ToNumber, AsksAfterADecimalComma) {
+  try {
+    to_number("0,7");
+    FAIL() << "0,7 was taken for a number";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "'0,7' is not a finite number; did you mean 0.7?");
+  }
+  EXPECT_EQ(with_decimal_point("12,50"), "12.50");
+  for (const char* other : {"", ",", "1,", ",5", "1,2,3", "0.1,5", "1..3,5", "a,b"})
+    EXPECT_EQ(with_decimal_point(other), "") << other;
+}
+
+TEST(Lists, OfAnyNumbersHaveNoRanges) {
+  try {
+    expand_list("0.1..0.5", ValueKind::number, {});
+    FAIL() << "a range was taken";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("lin(0.1,0.5,5)"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Shortest, ReadsBackExactly) {
   for (const double value : {0.1, 1.0 / 3, 1e-17, 2e5, 0.02887829511489174})
     EXPECT_EQ(to_number(shortest(value)), value);

@@ -2,6 +2,7 @@
 
 #include <boost/program_options.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "clog/sweep/settings.hpp"
@@ -21,6 +22,10 @@ class CommandLine {
   boost::program_options::options_description_easy_init add_options() { return own_.add_options(); }
   /// Declares what a word without dashes means; at most `most` of them.
   void add_positional(const std::string& option, int most) { positional_.add(option.c_str(), most); }
+  /// Declares what the first word may be instead of a file: a near miss is answered with the command meant.
+  void add_commands(std::vector<std::string> names) { commands_ = std::move(names); }
+  /// Declares what to say of words for which there is no place, e.g. "one sweep file is read at a time".
+  void explain_surplus_words(std::string remedy) { surplus_remedy_ = std::move(remedy); }
 
   /// @throws Error for anything that is not understood
   void parse(int argc, const char* const* argv);
@@ -51,12 +56,17 @@ class CommandLine {
       "Keys of the config file, also as options. Numbers take a list: 0.2,0.3  lin(a,b,n)  log(a,b,n)  "
       "1..50"};
   boost::program_options::positional_options_description positional_;
+  std::vector<std::string> commands_;
+  std::string surplus_remedy_ = "options start with --, settings are key=value";
   boost::program_options::variables_map values_;
   sweep::Settings settings_;
   std::string text_;
 
+  double number(const std::string& option) const;
   /// Is this an option whose value is the next word?
   bool awaits_value(const std::string& word) const;
+  void refuse_misspelt_command(const std::string& word) const;
+  [[noreturn]] void refuse_surplus_words() const;
   [[noreturn]] void refuse_unknown(const std::string& word) const;
   void read_config(const std::string& path);
 };

@@ -24,6 +24,9 @@ double to_number(std::string_view text);
 /// @throws Error if the whole text is not one integer
 long long to_integer(std::string_view text);
 
+/// What a text like `0,3` means to whoever writes a decimal comma, `0.3`; empty for any other text.
+std::string with_decimal_point(std::string_view text);
+
 /// The candidate nearest to a mistyped word, or empty if none is near.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 
