@@ -59,7 +59,7 @@ class Lead {
   /// So many tasks more.
   void expect(std::int64_t num_tasks) {
     num_tasks_ += num_tasks;
-    progress_.expect(num_tasks);
+    progress_.expect(num_tasks, ledger_.num_wanted());
   }
 
   parallel::SweepEvents events() {
@@ -167,6 +167,10 @@ int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, 
   if (is_complete && rule && options.log != SweepLog::Level::quiet)
     cli::say(std::to_string(rule->num_reached()) + " of " + std::to_string(rule->num_groups()) +
              " parameter sets have reached --until-precision");
+  if (const sweep::RunRow* first = is_complete ? ledger.first_if_all_failed() : nullptr) {
+    cli::say("clogsweep: every run has failed, the first one: " + std::string(first->message.view()));
+    return cli::exit_internal_fault;
+  }
   if (is_complete) return cli::exit_success;
   const bool no_rank_left = end == parallel::SweepEnd::no_rank_left;
   cli::say("clogsweep: " +

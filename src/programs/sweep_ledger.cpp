@@ -227,6 +227,12 @@ void SweepLedger::report(const parallel::Report& report) {
   is_published_ = false;
 }
 
+const sweep::RunRow* SweepLedger::first_if_all_failed() const {
+  const auto has_failed = [](const auto& run) { return run.second.row.status.view() == "failed"; };
+  if (runs_.empty() || !std::all_of(runs_.begin(), runs_.end(), has_failed)) return nullptr;
+  return &runs_.begin()->second.row;
+}
+
 void SweepLedger::withdraw_failure(std::int64_t task) {
   Entry& entry = runs_.at(task);
   begin_anew(entry.row);  // what a bad rank made of it is no distance so far

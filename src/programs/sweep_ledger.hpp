@@ -49,6 +49,8 @@ class SweepLedger {
   void report(const parallel::Report& report);
   /// Of a run that has begun.
   const sweep::RunRow& row(std::int64_t task) const { return runs_.at(task).row; }
+  /// The first run if all that have begun have failed, otherwise nullptr.
+  const sweep::RunRow* first_if_all_failed() const;
   /// Of a run that failed: it is to be done again, as the same attempt.
   void withdraw_failure(std::int64_t task);
   bool tries_again(const sweep::RunRow& failed) const { return failed.attempt < attempts_; }

@@ -24,6 +24,7 @@ void SweepProgress::started(std::int64_t task) { running_[task] = Clock::now(); 
 void SweepProgress::ended(const sweep::RunRow& row) {
   running_.erase(row.task);
   ++ended_by_status_[std::string(row.status.view())];
+  if (row.status.view() == "interrupted") return;
   ++num_ended_;
   finished_seconds_ += row.wall_seconds;
 }
@@ -47,9 +48,11 @@ std::string SweepProgress::line() const {
     const auto found = ended_by_status_.find(status);
     return std::to_string(found == ended_by_status_.end() ? 0 : found->second);
   };
-  std::string text = std::to_string(num_ended_) + "/" + std::to_string(num_tasks_) + " done, " +
-                     std::to_string(running_.size()) + " running, " + count("clogged") + " clogged, " +
-                     count("flowing") + " flowing";
+  std::string text =
+      std::to_string(num_before_ + num_ended_) + "/" + std::to_string(num_before_ + num_tasks_) + " done, ";
+  if (num_before_ > 0) text += std::to_string(num_before_) + " of them before; now ";
+  text += std::to_string(running_.size()) + " running, " + count("clogged") + " clogged, " +
+          count("flowing") + " flowing";
   if (count("failed") != "0") text += ", " + count("failed") + " failed";
   if (count("interrupted") != "0") text += ", " + count("interrupted") + " interrupted";
   const double elapsed = seconds_since(begin_);

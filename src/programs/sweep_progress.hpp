@@ -20,7 +20,11 @@ class SweepProgress {
   SweepProgress(std::ostream& out, Screen screen, int num_computing_ranks);
 
   /// So many tasks more.
-  void expect(std::int64_t num_tasks) { num_tasks_ += num_tasks; }
+  /// @param num_wanted  runs of the whole sweep; those that are not expected were done before
+  void expect(std::int64_t num_tasks, std::int64_t num_wanted) {
+    num_tasks_ += num_tasks;
+    num_before_ = num_wanted - num_tasks_;
+  }
 
   void started(std::int64_t task);
   void ended(const sweep::RunRow& row);
@@ -39,11 +43,12 @@ class SweepProgress {
 
   StatusLine status_;
   std::int64_t num_tasks_ = 0;
+  std::int64_t num_before_ = 0;
   int num_ranks_;
   Clock::time_point begin_ = Clock::now();
   std::map<std::int64_t, Clock::time_point> running_;
   std::map<std::string, std::int64_t, std::less<>> ended_by_status_;
-  std::int64_t num_ended_ = 0;
+  std::int64_t num_ended_ = 0;  ///< those interrupted have not
   double finished_seconds_ = 0;
 
   std::string line() const;

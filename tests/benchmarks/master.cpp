@@ -88,7 +88,7 @@ int main(int argc, char** argv) {
   std::optional<SweepLedger> ledger;
   std::ostringstream screen;  // progress goes nowhere, but is made
   SweepProgress progress(screen, SweepProgress::Screen::terminal, num_workers);
-  progress.expect(num_tasks);
+  progress.expect(num_tasks, num_tasks);
   parallel::SweepEvents events;
   if (ranks.rank() == 0) {
     ledger.emplace(path, plan, settings, store::Provenance(), plan.size(), 1);
