@@ -44,8 +44,11 @@ int body(int argc, char** argv) {
   cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::none);
   line.add_options()("file", po::value<std::string>(), "sweep file")(
       "format", po::value<std::string>()->default_value("text"), "text, csv or json")(
-      "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals");
+      "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals")(
+      "all-parameters", "name in the text also what all runs have as by default");
   line.add_positional("file", 1);
+  line.add_commands({"calibrate", "deviation", "drag", "report"});
+  line.explain_surplus_words("one sweep file is read at a time; call clogfit for each");
   line.parse(argc, argv);
   if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return cli::exit_success;
   if (!line.has("file")) throw Error("missing sweep file; try clogfit sweep.h5");
@@ -61,7 +64,9 @@ int body(int argc, char** argv) {
   const std::vector<Group> groups = group_runs(sweep.rows, confidence);
   std::cout << (format == "csv"    ? to_csv(groups)
                 : format == "json" ? to_json(groups, confidence)
-                                   : to_text(groups, confidence));
+                                   : to_text(groups, confidence,
+                                             line.has("all-parameters") ? SharedParameters::all
+                                                                        : SharedParameters::unusual));
   return cli::exit_success;
 }
 

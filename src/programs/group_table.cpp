@@ -9,7 +9,9 @@
 #include <sstream>
 #include <variant>
 
+#include "clog/sweep/settings.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "usual_parameters.hpp"
 
 namespace clog {
 namespace {
@@ -158,21 +160,53 @@ nlohmann::ordered_json field_units(const Group& group) {
   return all;
 }
 
+/// Of parameters that do not differ: are they worth a word?
+std::vector<bool> named_if_shared(const sweep::RunRow& row, SharedParameters shared) {
+  const std::vector<Field> fields = parameter_fields(row);
+  const std::vector<Field> usual =
+      shared == SharedParameters::unusual ? usual_parameters(row) : std::vector<Field>();
+  std::vector<bool> named;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const std::string text = exact(fields[i].second);
+    const std::string_view name = fields[i].first;
+    const bool tells_all =
+        name == "model" || (name == "preset" && text != sweep::find_key("preset").default_text);
+    named.push_back(!text.empty() && text != "none" && (tells_all || usual.empty() || fields[i] != usual[i]));
+  }
+  return named;
+}
+
+/// Words in lines that fit a terminal, each after a space.
+std::string wrapped(const std::vector<std::string>& words) {
+  constexpr std::size_t longest_line = 100;
+  std::string text;
+  std::size_t line_begin = 0;
+  for (const std::string& word : words) {
+    if (text.size() - line_begin + word.size() >= longest_line) {
+      text += "\n ";
+      line_begin = text.size();
+    }
+    text += ' ' + word;
+  }
+  return text;
+}
+
 }  // namespace
 
-std::string to_text(const std::vector<Group>& groups, double confidence) {
+std::string to_text(const std::vector<Group>& groups, double confidence, SharedParameters shared) {
   const std::vector<Field> first = parameter_fields(groups.front().parameters);
   const std::vector<bool> varies = varying_fields(groups);
   const std::vector<bool> shown = shown_fields(groups, varies);
+  const std::vector<bool> is_named = named_if_shared(groups.front().parameters, shared);
   const auto is_shown = [&](std::size_t i) { return shown[i]; };
 
-  std::string text = "all runs:";
+  std::vector<std::string> shared_words;
   std::vector<std::vector<std::string>> lines(1);
   for (std::size_t i = 0; i < first.size(); ++i) {
     if (is_shown(i))
       lines[0].push_back(first[i].first);
-    else if (!varies[i] && !exact(first[i].second).empty() && exact(first[i].second) != "none")
-      text += std::string(" ") + first[i].first + "=" + rounded(first[i].second);
+    else if (!varies[i] && is_named[i])
+      shared_words.push_back(std::string(first[i].first) + "=" + rounded(first[i].second));
   }
   char interval[16];
   std::snprintf(interval, sizeof interval, "%g %%", 100 * confidence);
@@ -198,6 +232,8 @@ std::string to_text(const std::vector<Group>& groups, double confidence) {
     num_damaged += group.num_damaged;
     num_interrupted += group.num_interrupted;
   }
+  std::string text = "all runs:" + wrapped(shared_words);
+  if (shared == SharedParameters::unusual) text += "\n(the rest as by default; --all-parameters names it)";
   text += "\n\n" + aligned(lines) + legend(groups);
   if (optional.mechanisms) text += "w/s/h/o: clogs by wrapping, by squeezing, by both, by neither\n";
   if (num_interrupted > 0)

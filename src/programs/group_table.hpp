@@ -7,8 +7,11 @@
 
 namespace clog {
 
+/// Which of the parameters that all groups share are named above their table.
+enum class SharedParameters { unusual, all };
+
 /// One line per group, with what the groups differ in, for people.
-std::string to_text(const std::vector<Group>& groups, double confidence);
+std::string to_text(const std::vector<Group>& groups, double confidence, SharedParameters shared);
 /// All fields of every group.
 std::string to_csv(const std::vector<Group>& groups);
 /// All fields of every group, and its P(r).

@@ -87,7 +87,8 @@ Status status_of(const std::string& path, const store::SweepFile& file, double c
   return status;
 }
 
-std::string to_text(const std::string& path, const Status& status, double confidence) {
+std::string to_text(const std::string& path, const Status& status, double confidence,
+                    SharedParameters shared) {
   const auto number = [](std::int64_t value) { return std::to_string(value); };
   std::string text = cli::printable(path) + ": " + number(status.num_over()) + " of " +
                      number(status.num_runs) + " runs over, " + number(status.count("clogged")) +
@@ -106,7 +107,7 @@ std::string to_text(const std::string& path, const Status& status, double confid
     text += ", " + status.left.text();
   text += '\n';
   if (!status.stopping_rule.empty()) text += status.stopping_rule + '\n';
-  if (!status.groups.empty()) text += '\n' + to_text(status.groups, confidence);
+  if (!status.groups.empty()) text += '\n' + to_text(status.groups, confidence, shared);
   return text;
 }
 
@@ -195,7 +196,8 @@ would give too short ones, since runs that clog early finish first.
 )");
   line.add_options()("watch", "again every two seconds, until the sweep ends")(
       "format", po::value<std::string>()->default_value("text"), "text or json")(
-      "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals");
+      "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals")(
+      "all-parameters", "name in the text also what all runs have as by default");
   if (!parse(line, argc, argv)) return cli::exit_success;
   const std::string format = line.get("format");
   if (format != "text" && format != "json")
@@ -203,13 +205,15 @@ would give too short ones, since runs that clog early finish first.
   const double confidence = line.get_positive("confidence");
   if (confidence >= 1)
     throw Error("invalid --confidence=" + line.get("confidence") + " (must lie between 0 and 1)");
+  const SharedParameters shared =
+      line.has("all-parameters") ? SharedParameters::all : SharedParameters::unusual;
   cli::catch_stop_signals();
   const std::string path = line.get("file");
   for (bool is_first = true;; is_first = false) {
     const Status status =
         status_of(path, is_first ? read_with_caution(path) : store::read_sweep(path), confidence);
     if (line.has("watch") && format == "text") std::cout << "\x1b[H\x1b[2J";  // clear the screen
-    std::cout << (format == "json" ? to_json(status, confidence) : to_text(path, status, confidence))
+    std::cout << (format == "json" ? to_json(status, confidence) : to_text(path, status, confidence, shared))
               << std::flush;
     if (!line.has("watch") || !status.is_alive) return cli::exit_success;
     for (int i = 0; i < 20; ++i) {
