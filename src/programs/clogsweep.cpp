@@ -67,6 +67,9 @@ void parse(cli::CommandLine& line, int argc, char** argv) {
       "isolate", po::value<std::string>()->default_value("yes"),
       "tasks run in processes of their own, so that a crash costs one task and not the sweep: yes, no")(
       "verbose", "a line for every task that starts or ends")("quiet", "errors only");
+  line.add_commands({"status", "verify", "replay", "salvage", "doctor"});
+  line.explain_surplus_words(
+      "--output names the file of a sweep, and clogsweep status FILE tells how far it is");
   line.parse(argc, argv);
 }
 
@@ -202,9 +205,9 @@ std::optional<int> prepare(const cli::CommandLine& line) {
     print_tasks(plan);
     cli::flush_output();
     if (cli::stop_signalled()) return cli::exit_incomplete;
-    print_cost(plan);
+    return print_cost(plan, lead_options(line).output);
   }
-  if (line.has("print-config") || line.has("dry-run")) return cli::exit_success;
+  if (line.has("print-config")) return cli::exit_success;
   line.require("output");
   return std::nullopt;
 }

@@ -1,16 +1,23 @@
 #include "sweep_preview.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
-#include <set>
+#include <memory>
 #include <string>
+#include <tuple>
+#include <unordered_map>
+#include <vector>
 
 #include "clog/cli/program.hpp"
-#include "clog/core/error.hpp"
-#include "clog/core/systems.hpp"
+#include "clog/sweep/obstacle_arrays.hpp"
+#include "clog/sweep/run_job.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "sweep_cost.hpp"
+#include "sweep_input.hpp"
 
 namespace clog {
 namespace {
@@ -27,6 +34,95 @@ void print_task(const sweep::Plan& plan, std::int64_t task) {
             << (row.obstacle_filling.view() == "saturated" ? "saturated" : number(row.obstacle_density))
             << ' ' << number(row.near_wall_drag) << ' ' << number(row.terminal_speed) << ' ' << row.vertices
             << ' ' << number(row.time_step) << ' ' << number(row.max_time) << ' ' << row.seed << '\n';
+}
+
+double work_per_step(const RunParameters& run) { return run.model == Model::dp ? run.dp.vertices : 1; }
+double longest_work(const RunParameters& run) { return run.max_time / *run.time_step * work_per_step(run); }
+
+/// Runs of a sweep that say what it costs.
+struct Sample {
+  std::vector<RunCost> costs;
+  std::string source;
+  std::string failure;  ///< of the first that could not begin; these are not among the costs
+};
+
+/// Of the last row of a run. @param first  of the same run, when it had just begun
+RunCost cost_of(const sweep::RunRow& row, const sweep::RunRow& first, const RunParameters& run,
+                std::int64_t parameter_set) {
+  return {.parameter_set = parameter_set,
+          .begin_seconds = first.wall_seconds,
+          .seconds = row.wall_seconds - first.wall_seconds,
+          .work = static_cast<double>(row.steps - first.steps) * work_per_step(run),
+          .longest_work = longest_work(run),
+          .is_over = row.status.view() != "running" && row.status.view() != "interrupted"};
+}
+
+constexpr std::size_t fewest_stored_runs = 5;
+
+/// What the sweep's own file knows of its runs; empty if there is none.
+Sample stored_sample(const sweep::Plan& plan, const std::string& path) {
+  Sample sample{{}, "that " + path + " holds", ""};
+  if (path.empty() || !std::filesystem::exists(path)) return sample;
+  std::unordered_map<std::string, sweep::RunRow> rows;
+  for (const sweep::RunRow& row : read_with_caution(path).rows)
+    if (row.steps > 0 && row.wall_seconds > 0) rows.emplace(sweep::identity(row), row);
+  for (std::int64_t task = 0; task < plan.size() && !rows.empty(); ++task) {
+    const RunParameters run = plan.task(task);
+    if (const auto row = rows.extract(sweep::identity(sweep::describe(run))); !row.empty())
+      sample.costs.push_back(cost_of(row.mapped(), {}, run, task % plan.num_groups()));
+  }
+  return sample;
+}
+
+/// Tasks spread over parameter sets and, where these are few, over seeds; those of the same array together.
+std::vector<std::int64_t> tasks_to_try(const sweep::Plan& plan) {
+  constexpr std::int64_t most_tasks = 24;
+  constexpr std::int64_t most_seeds = 4;  // of many parameter sets: arrays may take long to make
+  const std::int64_t num_tasks = std::min(plan.size(), most_tasks);
+  const std::int64_t num_groups = plan.num_groups();
+  std::vector<std::int64_t> tasks;
+  for (std::int64_t i = 0; i < num_tasks; ++i)
+    tasks.push_back(num_groups <= num_tasks
+                        ? i
+                        : i * num_groups / num_tasks +
+                              num_groups * (i % std::min(most_seeds, plan.size() / num_groups)));
+  std::stable_sort(tasks.begin(), tasks.end(), [&](std::int64_t a, std::int64_t b) {
+    const auto array = [&](std::int64_t task) {
+      const RunParameters run = plan.task(task);
+      const ObstacleParameters& obstacles = run.obstacles;
+      return std::tuple(run.seed, obstacles.gap, obstacles.diameter, obstacles.diameter_spread,
+                        obstacles.density, obstacles.box, obstacles.lattice_angle);
+    };
+    return array(a) < array(b);
+  });
+  return tasks;
+}
+
+/// Short pieces of real runs, ten seconds in all.
+Sample tried_sample(const sweep::Plan& plan) {
+  constexpr double all_seconds = 10;
+  constexpr double fewest_seconds = 0.1;  // for a run whose array took all of its share
+  const Clock::time_point begin = Clock::now();
+  const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  const auto arrays = std::make_shared<sweep::ObstacleArrays>();
+  Sample sample{{}, "tried for " + number(all_seconds) + " s in all", ""};
+  const std::vector<std::int64_t> tasks = tasks_to_try(plan);
+  for (std::size_t i = 0; i < tasks.size() && elapsed() < all_seconds && !cli::stop_signalled(); ++i) {
+    const double share = (all_seconds - elapsed()) / static_cast<double>(tasks.size() - i);
+    const double end = elapsed() + share;
+    sweep::RunJob job(plan, tasks[i], {}, arrays);
+    bool is_over = job.advance();
+    const sweep::RunRow first = is_over ? sweep::RunRow() : job.row();
+    const double least_end = elapsed() + fewest_seconds;
+    while (!is_over && elapsed() < std::max(end, least_end) && !cli::stop_signalled())
+      is_over = job.advance();
+    const sweep::RunRow row = job.row();
+    if (row.steps > 0)
+      sample.costs.push_back(cost_of(row, first, plan.task(tasks[i]), tasks[i] % plan.num_groups()));
+    else if (sample.failure.empty())
+      sample.failure = row.message.view();
+  }
+  return sample;
 }
 
 }  // namespace
@@ -52,38 +148,29 @@ void print_tasks(const sweep::Plan& plan) {
             << (seeds == 1 ? " seed" : " seeds") << " each\n";
 }
 
-void print_cost(const sweep::Plan& plan) {
-  const auto vertex_steps = [](const RunParameters& run, double time) {
-    return time / *run.time_step * (run.model == Model::dp ? run.dp.vertices : 1);
-  };
-  double seconds = 0;
-  double work = 0;
-  for (const std::int64_t group : std::set<std::int64_t>{0, plan.num_groups() - 1}) {
-    const RunParameters run = plan.task(group);
-    try {
-      DropletRun droplet = run_in_array(run);
-      const Clock::time_point begin = Clock::now();
-      const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
-      while (elapsed() < 0.5 && !droplet.advance(8)) continue;
-      seconds += elapsed();
-      work += vertex_steps(run, droplet.time());
-    } catch (const Error&) {  // a droplet that cannot be released; its row would say so
-    }
-  }
-  if (work == 0) {
-    std::cout << "# core-hours not known: no droplet could be released\n";
-    return;
+int print_cost(const sweep::Plan& plan, const std::string& output) {
+  Sample sample = stored_sample(plan, output);
+  if (sample.costs.size() < fewest_stored_runs) sample = tried_sample(plan);
+  if (cli::stop_signalled()) return cli::exit_incomplete;
+  if (sample.costs.empty()) {
+    cli::say("clogsweep: none of the runs that were tried can begin, the first one: " + sample.failure);
+    return cli::exit_internal_fault;
   }
   double all_work = 0;
-  for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
-    const RunParameters run = plan.task(group);
-    all_work += vertex_steps(run, run.max_time);
-  }
+  for (std::int64_t group = 0; group < plan.num_groups(); ++group) all_work += longest_work(plan.task(group));
   all_work *= static_cast<double>(plan.size() / plan.num_groups());
-  const double core_hours = seconds / work * all_work / 3600;
+  const SweepCost cost = sweep_cost(sample.costs, all_work, plan.size());
+  const double us_per_step = 1e6 * cost.seconds_per_work * work_per_step(plan.task(0));
+  constexpr double hour = 3600;
   std::printf(
       "# at most %.3g core-hours on this machine, %.3g us per step measured; runs that clog end sooner\n",
-      core_hours, 1e6 * seconds / work * vertex_steps(plan.task(0), *plan.task(0).time_step));
+      cost.bound / hour, us_per_step);
+  const auto num_over =
+      std::count_if(sample.costs.begin(), sample.costs.end(), [](const RunCost& run) { return run.is_over; });
+  std::printf("# expected %.2g core-hours (95 %%: %.2g to %.2g), from %zu runs %s, %td of them over\n",
+              cost.expected / hour, cost.lower / hour, cost.upper / hour, sample.costs.size(),
+              sample.source.c_str(), num_over);
+  return cli::exit_success;
 }
 
 void print_config(const sweep::Settings& settings, const sweep::Plan& plan) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/settings.hpp"
 
@@ -9,9 +11,11 @@ namespace clog {
 
 /// The tasks, and their number; of more than a thousand the first and the last.
 void print_tasks(const sweep::Plan& plan);
-/// How long the sweep takes at most, from a short piece of the first and the last parameter set: what a step
-/// costs per vertex there, times the steps of all runs if none of them ends before max-time.
-void print_cost(const sweep::Plan& plan);
+/// How long the sweep takes at most, if no run ends before max-time, and how long is to be expected
+/// (sweep_cost()): from what `output` holds of its runs, or, where that is little, from short pieces of some.
+/// Returns the exit code: a fault if no run can begin.
+/// @param output  the sweep's file, which need not be there; empty: none is named
+int print_cost(const sweep::Plan& plan, const std::string& output);
 /// Every key with its value, and what stands behind `auto`.
 void print_config(const sweep::Settings& settings, const sweep::Plan& plan);
 

@@ -302,7 +302,7 @@ class Fit(ProgramTest):
             (["sweep.h5", "--format", "xml"], ["--format=xml", "text, csv, json"]),
             (["sweep.h5", "--confidence", "1"], ["--confidence=1"]),
             (["sweep.h5", "--confidence", "high"], ["--confidence=high"]),
-            (["sweep.h5", "line-tension=1"], ["too many words"]),
+            (["sweep.h5", "line-tension=1"], ["no place for 'line-tension=1'"]),
         ]:
             with self.subTest(arguments=arguments):
                 self.refuse("clogfit", *arguments, words=words)

@@ -1,0 +1,124 @@
+#include "sweep_cost.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+namespace clog {
+namespace {
+
+constexpr double seconds_per_work = 1e-6;
+
+RunCost over(double seconds, double longest) {
+  return {.seconds = seconds,
+          .work = seconds / seconds_per_work,
+          .longest_work = longest / seconds_per_work,
+          .is_over = true};
+}
+RunCost under_way(double seconds, double longest) {
+  RunCost run = over(seconds, longest);
+  run.is_over = false;
+  return run;
+}
+SweepCost cost(const std::vector<RunCost>& sample, std::int64_t num_runs) {
+  const double longest = sample.front().longest_work;
+  return sweep_cost(sample, longest * static_cast<double>(num_runs), num_runs);
+}
+
+TEST(SweepCost, OfASampleThatIsTheSweepIsKnown) {
+  const SweepCost all = cost({over(1, 100), over(2, 100), over(3, 100)}, 3);
+  EXPECT_NEAR(all.seconds_per_work, seconds_per_work, 1e-15);
+  EXPECT_NEAR(all.bound, 300, 1e-9);
+  EXPECT_NEAR(all.expected, 6, 1e-9);
+  EXPECT_NEAR(all.lower, 6, 1e-9);
+  EXPECT_NEAR(all.upper, 6, 1e-9);
+}
+
+TEST(SweepCost, OfAKnownSweepIsTheSumThoughItsStepsDifferInCost) {
+  std::vector<RunCost> sample = {over(1, 2), over(2, 2), over(2, 2)};
+  sample[1].work /= 3;
+  EXPECT_NEAR(cost(sample, 3).expected, 5, 1e-9);
+}
+
+TEST(SweepCost, OfRunsThatAreOverIsTheirMeanTimesAll) {
+  const SweepCost all = cost({over(1, 100), over(2, 100), over(3, 100)}, 300);
+  EXPECT_NEAR(all.expected, 600, 1e-9);
+  EXPECT_LT(all.lower, 500);
+  EXPECT_GT(all.upper, 700);
+}
+
+TEST(SweepCost, OfAParameterSetWithoutAnEndMayBeTheBound) {
+  std::vector<RunCost> sample(24, over(0.1, 300));
+  for (std::size_t i = 0; i < sample.size(); i += 4) {
+    sample[i] = under_way(0.4, 300);
+    sample[i].parameter_set = 1;
+  }
+  const SweepCost all = cost(sample, 2400);
+  EXPECT_GT(all.upper, 0.25 * all.bound);
+  EXPECT_GT(all.expected, 600 * 20.0);
+  EXPECT_LT(all.expected, 600 * 100.0);
+  EXPECT_LT(all.lower, 600 * 5.0);
+}
+
+TEST(SweepCost, OfRunsOfWhichNoneEndsIsAnythingUpToTheBound) {
+  const SweepCost all = cost(std::vector<RunCost>(10, under_way(1, 100)), 1000);
+  EXPECT_NEAR(all.bound, 1e5, 1e-6);
+  EXPECT_NEAR(all.upper, all.bound, 1e-6);
+  EXPECT_GT(all.lower, 2000);  // ten seconds without an end
+  EXPECT_GT(all.expected, all.lower);
+  EXPECT_LT(all.expected, all.bound);
+}
+
+TEST(SweepCost, IsTheBoundWhereEveryRunGoesToMaxTime) {
+  const SweepCost all = cost({over(10, 10), over(10, 10)}, 100);
+  EXPECT_NEAR(all.expected, all.bound, 1e-9);
+  EXPECT_NEAR(all.upper, all.bound, 1e-9);
+}
+
+TEST(SweepCost, CountsWhatComesBeforeTheFirstStep) {
+  std::vector<RunCost> sample(3, over(1, 10));
+  for (RunCost& run : sample) run.begin_seconds = 2;
+  const SweepCost all = cost(sample, 100);
+  EXPECT_NEAR(all.bound, 1200, 1e-9);
+  EXPECT_NEAR(all.expected, 300, 1e-9);
+}
+
+TEST(SweepCost, WeighsRunsByWhatTheyMayCost) {
+  // Half of the sweep's runs are ten times as dear: sampled or not, they are in the bound.
+  const std::vector<RunCost> sample = {over(1, 10), over(10, 100)};
+  EXPECT_NEAR(sweep_cost(sample, 110 * 50 / seconds_per_work, 100).expected, 550, 1e-9);
+}
+
+/// How often the interval covers the truth where short and long runs mix, in so many parameter sets.
+double coverage(int num_sets) {
+  // A third of the runs takes 0.1 s on the average, a third 2 s, a third 40 s; each of 24 is followed for 0.4
+  // s.
+  std::mt19937 random(7);
+  int num_covered = 0;
+  constexpr int num_trials = 400;
+  for (int trial = 0; trial < num_trials; ++trial) {
+    std::vector<RunCost> sample;
+    for (int i = 0; i < 24; ++i) {
+      const double mean = i % 3 == 0 ? 0.1 : i % 3 == 1 ? 2 : 40;
+      const double seconds = std::min(100.0, std::exponential_distribution<>(1 / mean)(random));
+      sample.push_back(seconds < 0.4 ? over(seconds, 100) : under_way(0.4, 100));
+      sample.back().parameter_set = i % num_sets;
+    }
+    const SweepCost all = cost(sample, 2400);
+    const double truth = 800 * (0.1 + 2 + 40 * (1 - std::exp(-2.5)));
+    num_covered += all.lower < truth && truth < all.upper;
+  }
+  return num_covered / static_cast<double>(num_trials);
+}
+
+TEST(SweepCost, CoversTheTruthWhereShortAndLongRunsMix) {
+  EXPECT_GT(coverage(1), 0.8);   // mixed in every set
+  EXPECT_GT(coverage(3), 0.9);   // each in a set of its own
+  EXPECT_GT(coverage(24), 0.9);  // sets of which one run is known
+}
+
+}  // namespace
+}  // namespace clog

@@ -1,0 +1,110 @@
+"""What the programs say to commands that were meant otherwise, and what they refuse to do."""
+
+import unittest
+
+from support import BLOCKED, QUICK, ProgramTest
+
+
+class Meant(ProgramTest):
+    """Messages that say what was meant."""
+
+    def test_a_misspelt_command_is_answered_with_the_one_meant(self):
+        for program, words, meant in [("clogsweep", ["stauts", "s.h5"], "clogsweep status"),
+                                      ("clogsweep", ["verfy", "s.h5"], "clogsweep verify"),
+                                      ("clogfit", ["reprot", "s.h5", "--output", "x"], "clogfit report"),
+                                      ("clogfit", ["calibrat", "a.csv"], "clogfit calibrate"),
+                                      ("clogrun", ["aray", "--output", "r.h5"], "clogrun array")]:
+            with self.subTest(program=program, words=words):
+                self.refuse(program, *words, words=[f"unknown command '{words[0]}'; did you mean {meant}?"])
+
+    def test_a_file_of_a_command_s_name_is_a_file(self):
+        self.write("drug", "")
+        self.refuse("clogfit", "drug", words=["cannot read drug"])
+
+    def test_surplus_words_are_told_where_they_belong(self):
+        self.refuse("clogsweep", "s.h5", words=["no place for 's.h5'", "--output", "clogsweep status"])
+        self.refuse("clogfit", "a.h5", "b.h5", "c.h5", words=["'b.h5', 'c.h5'", "one sweep file"])
+
+    def test_h_is_help(self):
+        for program in ("clogsweep", "clogrun", "clogfit"):
+            self.assertEqual(self.succeed(program, "-h").stdout, self.succeed(program, "--help").stdout)
+
+    def test_helps_have_each_heading_once(self):
+        for words in (["clogsweep", "status"], ["clogsweep", "doctor"], ["clogfit", "drag"], ["clogfit", "deviation"],
+                      ["clogfit", "calibrate"], ["clogrun"], ["clogfit"]):
+            told = self.succeed(*words, "--help").stdout
+            self.assertEqual(told.count("\nOptions:\n"), 1, told)
+
+    def test_a_byte_order_mark_is_passed_over(self):
+        self.write("bom.cfg", "\ufeffline-tension = 0.5\n")
+        self.assertIn("line-tension = 0.5\n", self.succeed("clogsweep", "--config", "bom.cfg", "--print-config").stdout)
+        self.write("bom.csv", "\ufeffh [sigma], v [v_t]\n0,1\n1,1\n2,1\n")
+        self.succeed("clogfit", "deviation", "bom.csv", "bom.csv")
+
+    def test_a_decimal_comma_is_asked_after_where_its_values_cannot_be(self):
+        question = "invalid obstacle-gap=0 (must be positive and finite); 0,3 are two values: did you mean 0.3?"
+        self.refuse("clogsweep", "obstacle-gap=0,3", "--output", "s.h5", words=[question])
+        self.refuse("clogrun", "array", "obstacle-gap=0,3", "--output", "s.h5", words=[question])
+        self.refuse("clogrun", "channel", "--orifice", "0,7", "--output", "r.h5", words=["did you mean 0.7?"])
+        self.assertIn("line-tension = 1,3\n", self.succeed("clogsweep", "line-tension=1,3", "--print-config").stdout)
+
+    def test_a_range_of_numbers_is_pointed_to_lin(self):
+        self.refuse("clogsweep", "line-tension=0.1..0.5", "--output", "s.h5", words=["lin(0.1,0.5,5)"])
+
+    def test_what_is_too_stiff_blames_itself(self):
+        for program in (["clogsweep"], ["clogsweep", "--dry-run"], ["clogsweep", "--print-config"], ["clogrun", "array"]):
+            self.refuse(*program, "line-tension=1e300", "seeds=1", "--output", "s.h5", words=["invalid line-tension=1e+300"])
+
+
+class Failing(ProgramTest):
+    def test_a_sweep_whose_every_run_failed_is_no_success(self):
+        for told in ("failed, attempt 2", "nothing left to do"):  # the second time, too
+            done = self.run_program("clogsweep", *BLOCKED, "seeds=64", "--output", "f.h5")
+            self.assertEqual(done.returncode, 1, done.stderr)
+            self.assertIn(told, done.stderr)
+            self.assertIn("clogsweep: every run has failed, the first one: cannot release the droplet", done.stderr.splitlines()[-1])
+        self.succeed("clogsweep", *BLOCKED, "seeds=51,64", "--output", "f.h5")
+
+    def test_quiet_tells_it_too(self):
+        done = self.run_program("clogsweep", *BLOCKED, "seeds=64", "--output", "f.h5", "--quiet", ranks=2)
+        self.assertIn("every run has failed", done.stderr)
+        self.assertNotEqual(done.returncode, 0)
+
+
+class Parameters(ProgramTest):
+    """The line above the table of clogfit and status."""
+
+    def line(self, *settings):
+        self.succeed("clogsweep", *settings, "max-time=1", "box=20", "seeds=1", "--output", "s.h5")
+        told = self.succeed("clogfit", "s.h5").stdout
+        self.assertIn(told.splitlines()[0], self.succeed("clogsweep", "status", "s.h5").stdout)
+        (self.folder / "s.h5").unlink()
+        return told.split("\n(the rest as by default; --all-parameters names it)\n")[0]
+
+    def test_it_names_what_differs_from_the_defaults(self):
+        ours = "max_time=1 box=20"
+        for settings, line in [
+            ([], f"all runs: model=dp {ours}"),
+            (["preset=elastic"], f"all runs: model=dp {ours} preset=elastic"),
+            (["preset=literal"], f"all runs: model=dp {ours} preset=literal"),
+            (["model=sp", "wall-stiffness=1"], f"all runs: model=sp {ours}"),
+            (["obstacle-density=1"], f"all runs: model=dp obstacle_filling=density obstacle_density=1 {ours}"),
+            (["obstacle-layout=lattice"], f"all runs: model=dp obstacle_filling=lattice lattice_angle=0 {ours}"),
+            (["vertices=64", "time-step=2e-3"], f"all runs: model=dp vertices=64 time_step=0.002 {ours}"),
+            (["terminal-speed=0.05"], f"all runs: model=dp terminal_speed=0.05 {ours}"),
+            (["wall-tension=0.9", "area-stiffness=700"], f"all runs: model=dp {ours} area_stiffness=700 wall_tension=0.9"),
+        ]:
+            with self.subTest(settings=settings):
+                self.assertEqual(self.line(*settings), line)
+
+    def test_all_of_them_can_be_had_in_lines_that_fit(self):
+        self.succeed("clogsweep", *QUICK, "seeds=1", "--output", "s.h5")
+        for command in (["clogfit", "s.h5"], ["clogsweep", "status", "s.h5"]):
+            told = self.succeed(*command, "--all-parameters").stdout
+            for word in ("terminal_speed=0.03", "near_wall_cutoff=0.00614", "clog_detection=certified", "model_version="):
+                self.assertIn(word, told)
+            self.assertLessEqual(max(map(len, told.splitlines())), 110, told)
+
+
+if __name__ == "__main__":
+    unittest.main()
