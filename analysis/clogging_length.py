@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """Draws the clogging length against line tension (DP) or wall stiffness (SP), one curve per obstacle array.
 
-    clogfit sweep.h5 --format json > fit.json
-    analysis/clogging_length.py fit.json --output clogging-length
+    analysis/clogging_length.py sweep.h5 --output clogging-length
+    clogfit sweep.h5 --format json | analysis/clogging_length.py /dev/stdin --output clogging-length     # the same
 
-Every number comes from clogfit; nothing is fitted here. Bars are its confidence intervals; markers show by what most
-droplets clogged; a triangle pointing up is a lower bound where no run clogged.
+Every number comes from clogfit, which is asked for a sweep's; nothing is fitted here. Bars are its confidence
+intervals; markers show by what most droplets clogged; a triangle pointing up is a lower bound where no run clogged.
 """
 
 import json
@@ -17,9 +17,11 @@ import command_line
 from command_line import UserError
 
 with command_line.needs_modules():
+    import programs
     import style
     from style import plt
 
+HDF5_BEGINNING = b"\x89HDF\r\n\x1a\n"
 # What a sweep may vary beside the abscissa: name in the file, symbol.
 CURVE_PARAMETERS = [
     ("obstacle_gap", r"w_\mathrm{ob}/\sigma"),
@@ -113,20 +115,34 @@ def draw(groups, abscissa, confidence):
     return figure
 
 
+def read_fit(path, folder):
+    """What clogfit says of a sweep. @param path  of the sweep, or of clogfit's JSON; @param folder  of the programs"""
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise UserError(f"cannot read {path} ({error.strerror}); give a sweep, or the output of clogfit --format json") from error
+    if content.startswith(HDF5_BEGINNING):
+        content = programs.run_program(programs.programs_in(folder) / "clogfit", path, "--format", "json")
+    try:
+        fit = json.loads(content)
+        return fit, [group for group in fit["groups"] if group["runs"] > 0]
+    except (ValueError, KeyError, TypeError) as error:
+        raise UserError(f"cannot read {path} ({error}); give a sweep, or the output of clogfit --format json") from error
+
+
 def body():
     parser = command_line.Parser(__doc__)
-    parser.add_argument("fit", type=pathlib.Path, help="output of clogfit --format json")
+    parser.add_argument("sweep", type=pathlib.Path, help="file of clogsweep --output, or output of clogfit --format json")
     parser.add_argument("--output", type=pathlib.Path, required=True, help="name without ending; .png and .pdf are made")
+    programs.add_option(parser)
     arguments = parser.parse_args()
-    try:
-        fit = json.loads(arguments.fit.read_text())
-        groups = [group for group in fit["groups"] if group["runs"] > 0]
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise UserError(f"cannot read {arguments.fit} ({error}); give the output of clogfit --format json")
+    command_line.refuse_unwritable_picture(arguments.output, arguments.sweep)
+    fit, groups = read_fit(arguments.sweep, arguments.programs)
     if not groups:
-        raise UserError(f"{arguments.fit} holds no finished runs")
+        raise UserError(f"{arguments.sweep} holds no finished runs")
     abscissa = "line_tension" if groups[0]["model"] == "dp" else "wall_stiffness"
     style.save(draw(groups, abscissa, fit["confidence"]), arguments.output)
+    print(f"{arguments.output}.png (and .pdf)")
     return 0
 
 

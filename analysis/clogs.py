@@ -2,7 +2,7 @@
 """Draws the clogged droplets of a sweep on one sheet, with what holds each of them.
 
     clogsweep --output sweep.h5 line-tension=0.2,0.3,1 seeds=1..10
-    analysis/clogs.py sweep.h5 --output clogs
+    analysis/clogs.py sweep.h5                  # sweep-clogs.png, sweep-clogs.pdf
 
 Runs the clogged rows again until they rest (clogrun; an outline is in no table). The flow goes to the right. Touched
 obstacles are dark, arcs of contact red, the droplet's convex hull dashed. Titles say by what and how far away it clogged, how many obstacles
@@ -20,15 +20,14 @@ from command_line import UserError
 
 with command_line.needs_modules():
     import numpy as np
+    import programs
     import rounded
     import stored
     import style
     import trajectory
     from matplotlib.patches import Circle
-    from paper.workshop import reason
     from style import plt
 
-ROOT = pathlib.Path(__file__).resolve().parents[1]
 # Keys that a sweep takes as lists: each row has its own value.
 LISTS = ["line_tension", "obstacle_gap", "near_wall_drag", "seed"]
 
@@ -125,13 +124,16 @@ def numbers(words):
 def body():
     parser = command_line.Parser(__doc__)
     parser.add_argument("sweep", type=pathlib.Path, help="file of clogsweep --output")
-    parser.add_argument("--output", type=pathlib.Path, required=True, help="name without ending; .png and .pdf are made")
-    parser.add_argument("--clogrun", default=ROOT / "build/release/bin/clogrun", help="the program (%(default)s)")
+    parser.add_argument("--output", type=pathlib.Path, help="name without ending; .png and .pdf are made (SWEEP-clogs)")
+    programs.add_option(parser)
     parser.add_argument("--most", type=int, default=30, help="draw so many clogs at most, the first (%(default)s)")
     parser.add_argument("--tasks", type=numbers, help="only these, e.g. 3,17,40")
     parser.add_argument("--mechanism", choices=["wrapped", "squeezed", "hybrid", "other"], help="only these")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time (%(default)s)")
     arguments = parser.parse_args()
+    output = arguments.output or arguments.sweep.with_name(f"{arguments.sweep.stem}-clogs")
+    command_line.refuse_unwritable_picture(output, arguments.sweep)
+    clogrun = programs.programs_in(arguments.programs) / "clogrun"
     try:
         rows, config = read_clogs(arguments.sweep)
         rows = [row for row in rows if arguments.mechanism in (None, mechanism(row))]
@@ -150,9 +152,9 @@ def body():
         config_file = pathlib.Path(folder) / "sweep.cfg"
         config_file.write_text(config)
         try:
-            shapes = list(pool.map(lambda row: run_again(arguments.clogrun, config_file, row, folder), rows))
+            shapes = list(pool.map(lambda row: run_again(clogrun, config_file, row, folder), rows))
         except subprocess.CalledProcessError as error:
-            raise UserError(f"cannot run clogrun ({reason(error.stderr)})") from error
+            raise UserError(f"cannot run clogrun ({programs.reason(error.stderr)})") from error
         except OSError as error:
             raise UserError(f"cannot run clogrun ({error})") from error
     across = min(6, len(rows))
@@ -163,7 +165,8 @@ def body():
         place.axis("off")
     for place, row, shape in zip(axes.flat, rows, shapes):
         draw(place, row, *shape)
-    style.save(figure, arguments.output)
+    style.save(figure, output)
+    print(f"{output}.png (and .pdf)")
     return 0
 
 

@@ -50,14 +50,38 @@ def not_negative(word):
     return number
 
 
-def refuse_unwritable(path):
-    """To be asked before minutes of work, of a file to be made."""
+# How the files begin that scripts here make.
+BEGINNINGS = {"html": b"<!DOCTYPE html>", "png": b"\x89PNG\r\n", "pdf": b"%PDF-", "vtk": b"<?xml", "text": b""}
+
+
+def refuse_unwritable(path, kind, *inputs):
+    """To be asked before minutes of work, of a file to be made. An earlier one of its kind is replaced, nothing else.
+
+    @param kind  of BEGINNINGS; @param inputs  files that the script reads
+    """
     if not path.parent.is_dir():
         raise UserError(f"cannot write {path} (no folder {path.parent}); make it first")
     if path.is_dir():
         raise UserError(f"cannot write {path} (it is a folder); give the name of a file")
     if not os.access(path if path.exists() else path.parent, os.W_OK):
         raise UserError(f"cannot write {path} (permission denied); give another --output")
+    if any(path.exists() and source.exists() and path.samefile(source) for source in inputs):
+        raise UserError(f"will not overwrite {path} (it is what is to be read); give another --output")
+    if path.is_file() and not is_of_kind(path, kind):
+        raise UserError(f"will not overwrite {path} (it is no {kind.upper()} file); give another --output, or remove it first")
+
+
+def is_of_kind(path, kind):
+    """Does it begin like files of this kind, or hold nothing yet?"""
+    with open(path, "rb") as file:
+        beginning = file.read(len(BEGINNINGS[kind]))
+    return not beginning or beginning == BEGINNINGS[kind]
+
+
+def refuse_unwritable_picture(output, *inputs):
+    """Of the two files of style.save(). @param output  path without ending"""
+    for kind in ("png", "pdf"):
+        refuse_unwritable(pathlib.Path(f"{output}.{kind}"), kind, *inputs)
 
 
 def quieten_libraries():

@@ -6,9 +6,10 @@
     analysis/droplet.py run.h5 --output droplet --film --colour speed
 
 The flow goes to the right. In a picture the last outline is filled; earlier ones are thin, evenly spaced along the way,
-coloured by time. A film is DROPLET.mp4 if ffmpeg is there, DROPLET.gif otherwise, and numbered pictures in the folder
-DROPLET-frames with --pictures. The camera follows the droplet, the way of its centre is a line, and r(t) grows in a corner.
-The outline has the colour of its speed; with --colour mechanism the last frame has that of how the droplet clogged.
+coloured by time. A film is DROPLET.mp4 if ffmpeg is there, otherwise DROPLET.gif; a name that ends in .mp4 or .gif decides
+itself, and a film that is there is never replaced. --pictures makes numbered pictures in the folder DROPLET-frames.
+The camera follows the droplet, the way of its centre is a line, and r(t) grows in a corner. The outline has the colour of
+its speed; with --colour mechanism the last frame has that of how the droplet clogged.
 
 A film has --most-frames at most. A longer run is thinned; if the droplet moved more than half its width between frames
 then, the film shows the end of the run alone.
@@ -69,7 +70,7 @@ def draw(run, num_outlines):
 def body():
     parser = command_line.Parser(__doc__)
     parser.add_argument("run", type=pathlib.Path, help="output of clogrun with --polygon-interval")
-    parser.add_argument("--output", type=pathlib.Path, required=True, help="name without ending; .png and .pdf are made")
+    parser.add_argument("--output", type=pathlib.Path, required=True, help="name without ending; .png and .pdf are made, or a film")
     parser.add_argument("--outlines", type=int, default=12, help="how many moments to show in a picture (12)")
     parser.add_argument("--film", action="store_true", help="a film instead: .mp4 (ffmpeg) or .gif")
     parser.add_argument("--pictures", action="store_true", help="numbered pictures in OUTPUT-frames instead")
@@ -81,19 +82,23 @@ def body():
         raise UserError("--rate, --outlines and --most-frames must be positive")
     if not arguments.output.parent.is_dir():
         raise UserError(f"no folder {arguments.output.parent}; make it first")
+    path = film.path_of(arguments.output) if arguments.film else None
+    if not arguments.film and not arguments.pictures:
+        command_line.refuse_unwritable_picture(arguments.output, arguments.run)
     try:
         run = trajectory.read(arguments.run)
     except ValueError as error:
         raise UserError(error) from error
     if not arguments.film and not arguments.pictures:
         style.save(draw(run, arguments.outlines), arguments.output)
+        print(f"{arguments.output}.png (and .pdf)")
         return 0
     frames = film.chosen_frames(run, arguments.most_frames)
     moving = film.Film(run, frames, arguments.colour, arguments.rate)
     if frames[0] > 0:
         print(f"{command_line.name()}: the film begins at t = {run.times[frames[0]]:.4g} t0; --most-frames shows more", file=sys.stderr)
     if arguments.film:
-        print(film.write_film(moving, arguments.output, arguments.rate))
+        print(film.write_film(moving, path, arguments.rate))
     if arguments.pictures:
         print(film.write_pictures(moving, f"{arguments.output}-frames"))
     return 0

@@ -69,6 +69,7 @@ def collection(files, times):
 
 def write(tree, path):
     """Under another name first: whoever looks in sees whole files."""
+    command_line.refuse_unwritable(path, "vtk")
     fresh = path.with_name(path.name + ".new")
     tree.write(fresh, encoding="utf-8", xml_declaration=True)
     os.replace(fresh, path)
@@ -87,6 +88,9 @@ def surroundings(run):
 def export(run, output):
     """@return the .pvd file"""
     folder = output.with_name(output.name + "-vtk")
+    pvd, around = output.with_name(output.name + ".pvd"), output.with_name(output.name + "-obstacles.vtp")
+    for path in (pvd, around):
+        command_line.refuse_unwritable(path, "vtk", run.path)
     folder.mkdir(parents=True, exist_ok=True)
     speeds = trajectory.interface_speeds(run)
     columns = run.table.dtype.names
@@ -97,8 +101,7 @@ def export(run, output):
         fields["TimeValue"] = float(time)
         names.append(f"{folder.name}/droplet-{frame:05d}.vtp")
         write(polydata([polygon.T], {"point_speed": speeds[frame]}, field_data=fields), output.parent / names[-1])
-    write(surroundings(run), output.with_name(output.name + "-obstacles.vtp"))
-    pvd = output.with_name(output.name + ".pvd")
+    write(surroundings(run), around)
     write(collection(names, run.times), pvd)
     return pvd
 

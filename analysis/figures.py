@@ -23,7 +23,9 @@ with command_line.needs_modules():
     import style
     from paper import arrays, channels  # noqa: F401, they fill the catalogue
     from paper.plate import CATALOGUE
-    from paper.workshop import ROOT, Override, Workshop, measured, programs_in
+    import programs
+    from paper.workshop import Override, Workshop, measured
+    from programs import ROOT
 
 ORDER = ["1", "2", "3", "4", "5", "6a", "6b", "6c", "7a", "7b", "7c", "8a", "8b", "8ca", "9a", "9b", "A1", "B1", "B2", "C1", "C2", "D", "E"]
 
@@ -40,8 +42,21 @@ def git_hash():
     return done.stdout.strip() or "unknown"
 
 
+def output_of(name, shop):
+    """Without ending."""
+    return shop.folder / f"figure-{name}"
+
+
+def refuse_unwritable(name, shop):
+    """Before minutes of work, of the four files of write()."""
+    output = output_of(name, shop)
+    command_line.refuse_unwritable_picture(output, *shop.profiles)
+    for ending in ("csv", "txt"):
+        command_line.refuse_unwritable(pathlib.Path(f"{output}.{ending}"), "text", *shop.profiles)
+
+
 def write(plate, entry, shop, command):
-    output = shop.folder / f"figure-{entry.name}"
+    output = output_of(entry.name, shop)
     sources = shop.take_sources()
     about = "\n".join([f"Figure {entry.name}, {shop.size} size: {entry.caption}", f"drawn by {command}",
                        f"git {git_hash()}, {datetime.datetime.now(datetime.timezone.utc):%Y-%m-%dT%H:%M:%SZ}", "from", *sources]) + "\n"
@@ -66,7 +81,7 @@ def parse():
                         help="measured passage h [sigma], v [v_t], A to draw in 2, 3 (twice: w = 0.9, 0.7), 4, or to compare with in B2")
     parser.add_argument("--set", action="append", default=[], metavar="[CONFIG:]KEY=VALUE",
                         help="another value than the config's, e.g. clogging:seeds=1..50; keys that a figure itself varies in single runs stay")
-    parser.add_argument("--programs", type=pathlib.Path, help="folder of clogsweep, clogrun, clogfit (build/release/bin)")
+    programs.add_option(parser)
     return parser.parse_args()
 
 
@@ -82,7 +97,7 @@ def body():
     if arguments.ranks < 1:
         raise UserError(f"invalid --ranks {arguments.ranks} (must be positive) try 2")
     shop = Workshop(size=arguments.size, ranks=arguments.ranks, folder=arguments.output / arguments.size,
-                    programs=programs_in(arguments.programs), overrides=[Override.parse(text) for text in getattr(arguments, "set")],
+                    programs=programs.programs_in(arguments.programs), overrides=[Override.parse(text) for text in getattr(arguments, "set")],
                     profiles=arguments.profile, draw_only=arguments.draw_only)
     for path in arguments.profile:
         measured(path)
@@ -90,6 +105,8 @@ def body():
         shop.folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise UserError(f"cannot make {shop.folder} ({error.strerror}); give another --output") from error
+    for name in names:
+        refuse_unwritable(name, shop)
     command = " ".join([os.path.relpath(sys.argv[0], ROOT), *sys.argv[1:]])
     for name in names:
         write(CATALOGUE[name].draw(shop), CATALOGUE[name], shop, command)

@@ -8,6 +8,7 @@ import numpy as np
 import progress
 import style
 import trajectory
+from command_line import UserError
 from matplotlib import animation
 from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.patches import Circle, Rectangle
@@ -172,11 +173,22 @@ class Film:
             yield len(self) - 1
 
 
-def write_film(film, output, rate):
-    """@return the file written: .mp4 with ffmpeg, .gif otherwise"""
-    if shutil.which("ffmpeg"):
-        return write_mp4(film, f"{output}.mp4", rate)
-    return write_gif(film, f"{output}.gif", rate)
+def path_of(output):
+    """The file that a film goes to: the ending that was asked for, or .mp4 with ffmpeg, .gif otherwise.
+    @throws UserError if it cannot be made, or is there"""
+    has_ffmpeg = shutil.which("ffmpeg") is not None
+    if output.suffix not in (".mp4", ".gif"):
+        output = output.with_name(output.name + (".mp4" if has_ffmpeg else ".gif"))
+    if output.suffix == ".mp4" and not has_ffmpeg:
+        raise UserError(f"cannot write {output} (no ffmpeg); install it, or ask for {output.with_suffix('.gif')}")
+    if output.exists():
+        raise UserError(f"will not overwrite {output} (it exists); give another name, or remove it first")
+    return output
+
+
+def write_film(film, path, rate):
+    """@param path  see path_of(). @return the file written"""
+    return (write_mp4 if path.suffix == ".mp4" else write_gif)(film, path, rate)
 
 
 def write_mp4(film, path, rate):

@@ -22,10 +22,10 @@ with command_line.needs_modules():
     import clogging_length
     import clogs
     import numpy as np
+    import programs
     import rounded
     import stored
     import style
-    from paper.workshop import programs_in, reason, run_program
     from style import plt
 
 SYMBOLS = {"line_tension": r"\Gamma", "wall_stiffness": "E_w"}
@@ -160,16 +160,16 @@ def examples(clogs_of_sweep, count):
     return list({row["task"]: row for row in typical + spread}.values())[:count]
 
 
-def example_pictures(shown, config, programs):
+def example_pictures(shown, config, clogrun):
     pictures = []
     with tempfile.TemporaryDirectory(prefix="clogsweep-report-") as folder:
         settings = pathlib.Path(folder) / "sweep.cfg"
         settings.write_text(config)
         for row in shown:
             try:
-                polygon, obstacles = clogs.run_again(programs / "clogrun", settings, row, folder)
+                polygon, obstacles = clogs.run_again(clogrun, settings, row, folder)
             except subprocess.CalledProcessError as error:
-                raise UserError(f"cannot run task {row['task']} again ({reason(error.stderr)}); --examples 0 does without") from error
+                raise UserError(f"cannot run task {row['task']} again ({programs.reason(error.stderr)}); --examples 0 does without") from error
             figure, axes = plt.subplots(figsize=(4.6, 4.6), layout="constrained")
             clogs.draw(axes, row, polygon, obstacles)
             axes.set_xlabel(r"$x/\sigma$ from the droplet's middle")
@@ -217,18 +217,18 @@ def body():
     parser.add_argument("sweep", type=pathlib.Path, help="output of clogsweep")
     parser.add_argument("--output", type=pathlib.Path, required=True, help="HTML file to write")
     parser.add_argument("--examples", type=command_line.not_negative, default=4, help="clogs to show (4); 0 runs nothing")
-    parser.add_argument("--programs", type=pathlib.Path, help="folder of clogrun and clogfit (build/release/bin)")
+    programs.add_option(parser)
     arguments = parser.parse_args()
-    command_line.refuse_unwritable(arguments.output)
-    programs = programs_in(arguments.programs)
-    fit = json.loads(run_program(programs / "clogfit", arguments.sweep, "--format", "json"))
-    status = json.loads(run_program(programs / "clogsweep", "status", arguments.sweep, "--format", "json"))
+    command_line.refuse_unwritable(arguments.output, "html", arguments.sweep)
+    folder = programs.programs_in(arguments.programs)
+    fit = json.loads(programs.run_program(folder / "clogfit", arguments.sweep, "--format", "json"))
+    status = json.loads(programs.run_program(folder / "clogsweep", "status", arguments.sweep, "--format", "json"))
     if not any(group["runs"] > 0 for group in fit["groups"]):
         raise UserError(f"{arguments.sweep} holds no finished runs; let the sweep finish some first")
     rows = stored.read_table(arguments.sweep)
     with stored.opened(arguments.sweep) as file:
         about = stored.attributes(file)
-    pictures = example_pictures(examples(clogs.read_clogs(arguments.sweep)[0], arguments.examples), about["config"], programs)
+    pictures = example_pictures(examples(clogs.read_clogs(arguments.sweep)[0], arguments.examples), about["config"], folder / "clogrun")
     try:
         arguments.output.write_text(page(arguments.sweep, fit, status, rows, about, pictures))
     except OSError as error:

@@ -7,49 +7,14 @@ import json
 import os
 import pathlib
 import shlex
-import subprocess
 import tempfile
 
 import stored
 import trajectory
-from command_line import ProgramFailed, UserError
+from command_line import UserError
+from programs import ROOT, run_program
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 CONFIGS = ROOT / "jobs" / "figures"
-
-
-def reason(text):
-    """The line in which a program of ours says why it stopped; mpirun talks around it."""
-    lines = [line for line in text.splitlines() if line.strip()]
-    ours = [line for line in lines if line.startswith(("clogsweep", "clogrun", "clogfit"))]
-    return (ours or lines[-1:] or ["no reason given"])[-1]
-
-
-def programs_in(folder=None):
-    """Folder of the built programs. @param folder  given by the user"""
-    for place in [folder] if folder else [ROOT / "build" / "release" / "bin", ROOT / "build" / "laptop" / "bin"]:
-        if (place / "clogsweep").exists():
-            return place.resolve()
-    raise UserError(f"no clogsweep in {place}; build it (cmake --workflow --preset release), or give --programs FOLDER")
-
-
-def run_program(program, *arguments, ranks=1):
-    """@return what it prints"""
-    command = [str(program), *map(str, arguments)]
-    if ranks > 1:
-        settings = shlex.quote(str(ROOT / "jobs" / "mpi-settings.sh"))
-        command = ["bash", "-c", f'. {settings} && exec mpirun -np {ranks} "$@"', "mpirun", *command]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        while True:
-            try:
-                out, error = process.communicate()
-                break
-            except KeyboardInterrupt:
-                # The terminal has told the programs, too: they end in good order and say where they are.
-                continue
-    if process.returncode != 0:
-        raise ProgramFailed(reason(error or out), process.returncode)
-    return out
 
 
 def config_keys(path):

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,10 @@ constexpr const char* usage = R"(clogrun follows one droplet and writes what hap
 In an array, the same keys and seed as a row of a sweep give that row's run, bit for bit.
 )";
 
+bool is_film(const std::filesystem::path& name) {
+  return name.extension() == ".mp4" || name.extension() == ".gif";
+}
+
 cli::CommandLine parse(int argc, char** argv) {
   namespace po = boost::program_options;
   cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::accepted);
@@ -37,7 +42,7 @@ cli::CommandLine parse(int argc, char** argv) {
       "output", text(), "HDF5 file to make")("seed", text(), "short for seeds=N")(
       "sample-interval", text()->default_value("1"), "time between samples [t0]")(
       "polygon-interval", text(), "also write the polygon this often [t0]")(
-      "frames", text(), "also make a film of the polygons with this name: .mp4 with ffmpeg, .gif otherwise")(
+      "frames", text(), "also make a film of the polygons with this name, which may end in .mp4 or .gif")(
       "most-frames", text(),
       "film: this many frames at most; a longer one is thinned, or shows the end (600)")(
       "dry-run", "print the config and how long the run takes at most, run nothing")(
@@ -47,6 +52,7 @@ cli::CommandLine parse(int argc, char** argv) {
                                                               "channel: h at the end [sigma] (3)");
   add_channel_options(line);
   line.add_positional("system", 1);
+  line.add_commands({"array", "channel", "sag"});
   line.settings().set("seeds", "1");
   line.parse(argc, argv);
   if (line.has("seed") && line.has("seeds"))
@@ -55,7 +61,28 @@ cli::CommandLine parse(int argc, char** argv) {
   return line;
 }
 
-/// Name of a film, without ending. @throws Error  where none could be written
+/// Files that the options of this name ask for; of a film without ending all that it may become.
+std::vector<std::filesystem::path> files_of(const cli::CommandLine& line, const std::string& option) {
+  if (!line.has(option)) return {};
+  const std::filesystem::path name = line.get(option);
+  if (option != "frames" || is_film(name)) return {name};
+  return {name.string() + ".mp4", name.string() + ".gif"};
+}
+
+/// Each file is written after the one before: two of one name would be found out when the run is over.
+void refuse_same_files(const cli::CommandLine& line) {
+  std::map<std::filesystem::path, std::string> options;
+  for (const std::string option : {"output", "write-obstacles", "frames"})
+    for (const std::filesystem::path& file : files_of(line, option)) {
+      const auto [first, is_new] =
+          options.emplace(std::filesystem::weakly_canonical(std::filesystem::absolute(file)), option);
+      if (!is_new)
+        throw Error("--" + first->second + " and --" + option + " name the same file, " + file.string() +
+                    "; give two names");
+    }
+}
+
+/// Name of a film, as the script wants it. @throws Error  where none could be written
 std::filesystem::path film_name(const cli::CommandLine& line) {
   const std::filesystem::path name = line.get("frames");
   if (!line.has("polygon-interval"))
@@ -67,8 +94,8 @@ std::filesystem::path film_name(const cli::CommandLine& line) {
   if (name.has_parent_path() && !std::filesystem::is_directory(name.parent_path()))
     throw Error("cannot write " + name.string() + " (no folder " + name.parent_path().string() +
                 "); make it first");
-  const bool has_ending = name.extension() == ".mp4" || name.extension() == ".gif";
-  return has_ending ? std::filesystem::path(name).replace_extension() : name;
+  for (const std::filesystem::path& film : files_of(line, "frames")) store::refuse_unwritable(film);
+  return name;
 }
 
 /// How droplet.py is to draw the film. @throws Error  where none could be written
@@ -100,6 +127,7 @@ int follow(cli::CommandLine& line, const std::string& system) {
 int body(int argc, char** argv) {
   cli::CommandLine line = parse(argc, argv);
   if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return cli::exit_success;
+  refuse_same_files(line);
   const std::string system = line.has("system") ? line.get("system") : "";
   if (system == "array" || system == "channel") return follow(line, system);
   if (system == "sag") return clogrun_sag(line);

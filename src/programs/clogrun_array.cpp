@@ -50,11 +50,7 @@ int clogrun_array(cli::CommandLine& line) {
   const Setup setup = read_setup(line);
   const auto intervals = WatchedRun::intervals(line, *setup.parameters.time_step);
   store::refuse_unwritable(output);
-  if (line.has("write-obstacles")) {
-    store::refuse_unwritable(line.get("write-obstacles"));
-    if (line.get("write-obstacles") == output)
-      throw Error("--output and --write-obstacles name the same file, " + output + "; give two names");
-  }
+  if (line.has("write-obstacles")) store::refuse_unwritable(line.get("write-obstacles"));
 
   WatchedRun watched(setup.own_obstacles ? run_in_array(setup.parameters, setup.own_obstacles)
                                          : run_in_array(setup.parameters),

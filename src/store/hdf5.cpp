@@ -48,7 +48,7 @@ bool looks_like_hdf5(const std::string& path) {
 
 void refuse_existing(const std::string& path) {
   if (std::filesystem::exists(path))
-    throw Error("will not overwrite " + path + " (it exists); give another --output, or remove it first");
+    throw Error("will not overwrite " + path + " (it exists); give another name, or remove it first");
 }
 
 void refuse_unwritable(const std::string& path) {

@@ -9,6 +9,7 @@ import shutil
 import subprocess
 import sys
 import unittest
+import unittest.mock
 import xml.etree.ElementTree as xml
 
 import h5py
@@ -24,6 +25,7 @@ from support import BIN, QUICK, ROOT, SMALL, ProgramTest, table
 sys.path.insert(1, str(ROOT / "analysis"))
 import clogs
 import film
+import programs
 import rounded
 import style
 import trajectory
@@ -321,9 +323,19 @@ class Pictures(Analysis):
 
     def test_clogs_are_drawn_from_a_sweep(self):
         self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1..2", "--output", "s.h5")
-        self.draw("clogs.py", "s.h5", "--clogrun", BIN / "clogrun", "--output", "clogs", "--most", 2)
-        self.assert_picture("clogs")
-        self.refuse_analysis("clogs.py", "s.h5", "--clogrun", BIN / "clogrun", "--output", "clogs", "--tasks", "0,77", words=["77"])
+        told = self.draw("clogs.py", "s.h5", "--programs", BIN, "--most", 2).stdout
+        self.assertEqual(told, "s-clogs.png (and .pdf)\n")
+        self.assert_picture("s-clogs")
+        self.refuse_analysis("clogs.py", "s.h5", "--programs", BIN, "--output", "clogs", "--tasks", "0,77", words=["77"])
+
+    def test_the_clogging_length_comes_from_the_sweep_itself_by_the_programs_of_the_path(self):
+        self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1..2", "--output", "s.h5")
+        self.write("fit.json", self.succeed("clogfit", "s.h5", "--format", "json").stdout)
+        self.draw("clogging_length.py", "fit.json", "--output", "from-fit")
+        with unittest.mock.patch.dict(os.environ, {"PATH": f"{BIN}:{os.environ['PATH']}"}):
+            self.assertEqual(programs.programs_in(), BIN.resolve())
+            self.draw("clogging_length.py", "s.h5", "--output", "from-sweep")
+        self.assertTrue((image.imread(self.folder / "from-fit.png") == image.imread(self.folder / "from-sweep.png")).all())
 
     def test_edges_marked_as_touching_are_those_that_the_program_counts(self):
         # Uneven edges, whose chords touch elsewhere than the interface; contact at the surface and off it.
@@ -352,8 +364,60 @@ class Pictures(Analysis):
         for script, file in [("clogging_length.py", "fit.json"), ("droplet.py", "run.h5"),
                              ("export_vtk.py", "run.h5"), ("clogs.py", "run.h5"), ("report.py", "run.h5")]:
             with self.subTest(script=script, file=file):
-                programs = ["--programs", BIN] if script == "report.py" else []
-                self.refuse_analysis(script, file, "--output", "x", *programs, words=["run.h5" if programs else "cannot read"])
+                where = ["--programs", BIN] if script in ("report.py", "clogs.py") else []
+                self.refuse_analysis(script, file, "--output", "x", *where, words=["run.h5" if script == "report.py" else "cannot read"])
+
+    def test_nothing_is_written_over_what_is_read_or_of_another_kind(self):
+        self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1", "--output", "s.h5")
+        self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 15, "--output", "run.h5")
+        self.write("fit.json", self.succeed("clogfit", "s.h5", "--format", "json").stdout)
+        self.write("profile.csv", "h [sigma], v [v_t]\n0,1\n1,1\n2,1\n")
+        (self.folder / "soft.h5").symlink_to("s.h5")
+        os.link(self.folder / "s.h5", self.folder / "hard.h5")
+        for name in ("own.png", "own2.pdf", "own3.pvd", "own4.mp4", "own4.gif", "page.html"):
+            self.write(name, "of the user")
+        for folder, kept in [("own5", "figure-4.png"), ("own6", "figure-4.txt")]:
+            (self.folder / folder / "reduced").mkdir(parents=True)
+            os.link(self.folder / "profile.csv", self.folder / folder / "reduced" / kept)
+        before = self.snapshot()
+        for script, source, output, words in [
+            ("report.py", "s.h5", "s.h5", ["is what is to be read"]),
+            ("report.py", "s.h5", "soft.h5", ["is what is to be read"]),
+            ("report.py", "s.h5", "hard.h5", ["is what is to be read"]),
+            ("report.py", "soft.h5", "run.h5", ["run.h5", "it is no HTML file"]),
+            ("report.py", "s.h5", "page.html", ["page.html", "it is no HTML file"]),
+            ("clogging_length.py", "fit.json", "own", ["own.png", "it is no PNG file"]),
+            ("clogs.py", "s.h5", "own2", ["own2.pdf", "it is no PDF file"]),
+            ("droplet.py", "run.h5", "own", ["own.png", "it is no PNG file"]),
+            ("export_vtk.py", "run.h5", "own3", ["own3.pvd", "it is no VTK file"]),
+            ("droplet.py", "run.h5", "own4", ["own4.", "it exists", "--film"][:2]),
+            ("droplet.py", "run.h5", "own4.gif", ["own4.gif", "it exists"]),
+        ]:
+            with self.subTest(script=script, output=output):
+                film = ["--film"] if output.startswith("own4") else []
+                where = ["--programs", BIN] if script in ("report.py", "clogs.py") else []
+                self.refuse_analysis(script, source, "--output", output, *film, *where, words=words)
+        self.refuse_analysis("figures.py", "4", "--programs", BIN, "--output", "own5", words=["figure-4.png", "no PNG file"])
+        self.refuse_analysis("figures.py", "4", "--programs", BIN, "--output", "own6", "--profile", "profile.csv",
+                             words=["figure-4.txt", "is what is to be read"])
+        for film in ("own4", "own4.mp4", "own4.gif"):
+            self.refuse("clogrun", "array", *QUICK, "--polygon-interval", 15, "--frames", film, "--output", "r.h5", words=["own4.", "it exists"])
+        after = self.snapshot()
+        self.assertEqual({name: after[name] for name in before}, before)
+        # An earlier page or picture of one's own is replaced.
+        for _ in range(2):
+            self.draw("report.py", "s.h5", "--output", "report.html", "--programs", BIN, "--examples", 0)
+            self.draw("clogging_length.py", "fit.json", "--output", "length")
+            self.draw("export_vtk.py", "run.h5", "--output", "run")
+
+    def test_a_film_has_the_ending_that_was_asked_for(self):
+        self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 30, "--output", "run.h5", "--frames", "film.gif")
+        self.assertEqual((self.folder / "film.gif").read_bytes()[:4], b"GIF8")
+
+    def test_no_two_outputs_of_a_run_are_one_file(self):
+        for options in (["--output", "a.csv", "--write-obstacles", "./a.csv"], ["--output", "film.mp4", "--frames", "film"],
+                        ["--output", "r.h5", "--write-obstacles", "film.gif", "--frames", "./film.gif"]):
+            self.refuse("clogrun", "array", *QUICK, "--polygon-interval", 15, *options, words=["name the same file", "give two names"])
 
     def test_mistakes_get_one_line_from_every_script(self):
         self.succeed("clogsweep", *QUICK, "line-tension=2", "seeds=1..2", "--output", "s.h5")
