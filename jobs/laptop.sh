@@ -20,3 +20,4 @@ echo
 echo
 echo "runs:    $results/sweep.h5"
 echo "picture: $results/clogging-length.png (and .pdf)"
+echo "the programs themselves: export PATH=$PWD/$bin:\$PATH"
