@@ -44,7 +44,7 @@ double rounded_down(double value, int digits = 2) {
   return std::floor(value * scale * (1 + 1e-12)) / scale;
 }
 
-constexpr double smallest_time_step = 1e-9;  // a droplet needs a million steps to do anything
+constexpr double smallest_time_step = 1e-9;  // with less a droplet needs a billion steps to fall by t0
 constexpr double smallest_box = 5 * units::droplet_diameter;
 
 void validate_obstacles(const ObstacleParameters& obstacles, int vertices, Model model) {
