@@ -45,7 +45,9 @@ int body(int argc, char** argv) {
   line.add_options()("file", po::value<std::string>(), "sweep file")(
       "format", po::value<std::string>()->default_value("text"), "text, csv or json")(
       "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals")(
-      "all-parameters", "name in the text also what all runs have as by default");
+      "all-parameters", "name in the text also what all runs have as by default")(
+      "from-distance", po::value<std::string>(),
+      "count lambda from this distance on; runs that ended before are left out [sigma]");
   line.add_positional("file", 1);
   line.add_commands({"calibrate", "deviation", "drag", "report"});
   line.explain_surplus_words("one sweep file is read at a time; call clogfit for each");
@@ -59,9 +61,11 @@ int body(int argc, char** argv) {
   if (confidence >= 1)
     throw Error("invalid --confidence=" + line.get("confidence") + " (must lie between 0 and 1)");
 
+  const double from_distance = line.has("from-distance") ? line.get_positive("from-distance") : 0;
+
   const store::SweepFile sweep = read_with_caution(line.get("file"));
   if (sweep.rows.empty()) throw Error(line.get("file") + " has no runs yet; let the sweep finish some first");
-  const std::vector<Group> groups = group_runs(sweep.rows, confidence);
+  const std::vector<Group> groups = group_runs(sweep.rows, confidence, from_distance);
   std::cout << (format == "csv"    ? to_csv(groups)
                 : format == "json" ? to_json(groups, confidence)
                                    : to_text(groups, confidence,

@@ -58,6 +58,7 @@ int clogrun_array(cli::CommandLine& line) {
   if (line.has("dry-run")) return print_preview(line.settings().to_config(false), watched.measure_cost());
   if (line.has("write-obstacles"))
     cli::write_obstacles(line.get("write-obstacles"), watched.run().obstacles().obstacles());
+  say_what_is_unproven(sweep::Plan(line.settings()));
   cli::catch_stop_signals();
   watched.follow();
 

@@ -27,6 +27,7 @@ int clogrun_channel(cli::CommandLine& line) {
   watched.add_column("speed_ratio", "v_g/v_t", [](const DropletRun& now) {
     return now.droplet().centre_velocity()[0] / now.parameters().drag.terminal_speed;
   });
+  say_what_is_unproven(sweep::Plan(line.settings()));
   cli::catch_stop_signals();
   watched.follow();
   store::Trajectory trajectory =

@@ -205,6 +205,7 @@ std::optional<int> prepare(const cli::CommandLine& line) {
     print_tasks(plan);
     cli::flush_output();
     if (cli::stop_signalled()) return cli::exit_incomplete;
+    print_limits(plan);
     return print_cost(plan, lead_options(line).output);
   }
   if (line.has("print-config")) return cli::exit_success;

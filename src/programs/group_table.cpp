@@ -221,6 +221,7 @@ std::string to_text(const std::vector<Group>& groups, double confidence, SharedP
   int num_failed = 0;
   int num_damaged = 0;
   int num_interrupted = 0;
+  int num_left_out = 0;
   for (const Group& group : groups) {
     std::vector<std::string>& line = lines.emplace_back();
     const std::vector<Field> fields = parameter_fields(group.parameters);
@@ -231,11 +232,15 @@ std::string to_text(const std::vector<Group>& groups, double confidence, SharedP
     num_failed += group.num_failed;
     num_damaged += group.num_damaged;
     num_interrupted += group.num_interrupted;
+    num_left_out += group.num_left_out;
   }
   std::string text = "all runs:" + wrapped(shared_words);
   if (shared == SharedParameters::unusual) text += "\n(the rest as by default; --all-parameters names it)";
   text += "\n\n" + aligned(lines) + legend(groups);
   if (optional.mechanisms) text += "w/s/h/o: clogs by wrapping, by squeezing, by both, by neither\n";
+  if (num_left_out > 0)
+    text +=
+        "   " + std::to_string(num_left_out) + " ended before --from-distance and are left out of lambda\n";
   if (num_interrupted > 0)
     text += "   " + std::to_string(num_interrupted) + " runs are under way or interrupted\n";
   if (num_failed > 0)

@@ -7,6 +7,7 @@
 
 #include "clog/core/units.hpp"
 #include "clog/sweep/row_check.hpp"
+#include "clog/sweep/row_limits.hpp"
 
 namespace clog {
 namespace {
@@ -36,6 +37,10 @@ std::vector<Doubt> doubts_about(const Group& group) {
   if (group.num_interrupted > 0 || group.num_failed > 0) doubts.push_back(Doubt::incomplete);
   if (group.num_damaged > 0) doubts.push_back(Doubt::damaged);
   if (hangs_on_mesh(group)) doubts.push_back(Doubt::held_by_mesh);
+  if (group.num_repeating > 0) doubts.push_back(Doubt::array_repeats);
+  if (group.clogging.length < sweep::obstacle_spacing(group.parameters))
+    doubts.push_back(Doubt::below_spacing);
+  if (!sweep::unproven_parameters(group.parameters).empty()) doubts.push_back(Doubt::not_proved_sound);
   return doubts;
 }
 
@@ -64,19 +69,32 @@ std::vector<double> censored_distances(std::span<const fit::Observation> runs) {
   return distances;
 }
 
-std::vector<Group::Cause> fit_causes(std::span<const sweep::RunRow* const> runs, double confidence) {
-  const auto is_clogged = [](const sweep::RunRow* run) { return run->status.view() == "clogged"; };
-  std::vector<Group::Cause> fits;
-  if (std::any_of(runs.begin(), runs.end(),
-                  [&](const auto* run) { return is_clogged(run) && run->mechanism.view().empty(); }))
-    return fits;
-  for (const ClogMechanism cause : causes) {
+bool is_clogged(const sweep::RunRow& run) { return run.status.view() == "clogged"; }
+
+/// Clogging lengths of runs that are sound and reached the distance from which they count.
+void fit_clogging(Group& group, std::span<const sweep::RunRow* const> runs, double confidence,
+                  double from_distance) {
+  // Observations in which only some of the clogs are such, the other runs being censored where they ended.
+  const auto observe = [&](auto is_end) {
     std::vector<fit::Observation> observations;
     for (const sweep::RunRow* run : runs)
-      observations.push_back({run->distance, is_clogged(run) && run->mechanism.view() == name(cause)});
-    fits.push_back({cause, fit::fit_clogging_length(observations, confidence)});
-  }
-  return fits;
+      observations.push_back({run->distance - from_distance, is_clogged(*run) && is_end(*run)});
+    return observations;
+  };
+  const std::vector<fit::Observation> all = observe([](const sweep::RunRow&) { return true; });
+  group.clogging = fit::fit_clogging_length(all, confidence);
+  group.least_squares_length = fit::least_squares_length(all);
+  group.weibull = fit::test_exponentiality(all);
+  group.survival = fit::survival_curve(all, confidence);
+  group.censored_distances = censored_distances(all);
+  if (std::any_of(runs.begin(), runs.end(),
+                  [](const auto* run) { return is_clogged(*run) && run->mechanism.view().empty(); }))
+    return;
+  for (const ClogMechanism cause : causes)
+    group.causes.push_back({cause, fit::fit_clogging_length(observe([=](const sweep::RunRow& run) {
+                                                              return run.mechanism.view() == name(cause);
+                                                            }),
+                                                            confidence)});
 }
 
 /// Counts by mechanism and their lengths; without values where they are not known.
@@ -139,7 +157,7 @@ const DoubtText& text_of(Doubt doubt) {
                        [=](const DoubtText& text) { return text.doubt == doubt; });
 }
 
-std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence) {
+std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence, double from_distance) {
   std::map<std::vector<Field>, std::vector<const sweep::RunRow*>> members;
   for (const sweep::RunRow& row : rows) {
     std::vector<Field> fields = parameter_fields(row);
@@ -149,11 +167,10 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
   for (const auto& [fields, runs] : members) {
     Group group;
     group.parameters = *runs.front();
-    std::vector<fit::Observation> observations;
+    std::vector<const sweep::RunRow*> counted;
     std::vector<double> speeds;
     std::vector<fit::Travel> travels;
     std::vector<fit::Displacement> displacements;
-    std::vector<const sweep::RunRow*> valid;
     for (const sweep::RunRow* run : runs) {
       const bool is_damaged = !sweep::fault_of(*run).empty();
       const bool is_failed = !is_damaged && run->status.view() == "failed";
@@ -162,18 +179,15 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
       if (is_damaged || is_failed) continue;
       group.num_flowing += run->status.view() == "flowing";
       group.num_interrupted += run->status.view() == "interrupted" || run->status.view() == "running";
-      observations.push_back({run->distance, run->status.view() == "clogged"});
+      group.num_repeating += sweep::has_met_repetition(*run);
+      const bool is_left_out = std::max(run->distance, 0.0) < from_distance;
+      group.num_left_out += is_left_out;
+      if (!is_left_out) counted.push_back(run);
       speeds.push_back(run->mean_speed / run->terminal_speed);
       travels.push_back({run->mean_speed / run->terminal_speed * run->travel_time, run->travel_time});
       displacements.push_back({run->distance, run->lateral_displacement});
-      valid.push_back(run);
     }
-    group.clogging = fit::fit_clogging_length(observations, confidence);
-    group.least_squares_length = fit::least_squares_length(observations);
-    group.weibull = fit::test_exponentiality(observations);
-    group.survival = fit::survival_curve(observations, confidence);
-    group.censored_distances = censored_distances(observations);
-    group.causes = fit_causes(valid, confidence);
+    fit_clogging(group, counted, confidence, from_distance);
     group.relative_speed = fit::fit_mean_speed(speeds);
     group.relative_speed_pooled = fit::fit_pooled_speed(travels);
     group.migration = fit::fit_migration(displacements);
@@ -229,6 +243,8 @@ std::vector<Field> result_fields(const Group& group) {
       {"interrupted", value_of(group.num_interrupted)},
       {"failed", value_of(group.num_failed)},
       {"damaged", value_of(group.num_damaged)},
+      {"left_out", value_of(group.num_left_out)},
+      {"repeating", value_of(group.num_repeating)},
       {"total_distance", value_of(group.clogging.total_distance)},
       {"clogging_length", value_of(group.clogging.length)},
       {"clogging_length_lower", value_of(group.clogging.interval.lower)},

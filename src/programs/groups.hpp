@@ -26,6 +26,9 @@ enum class Doubt {
   incomplete,        ///< runs are under way, interrupted or failed
   damaged,           ///< rows hold what cannot be (sweep::fault_of)
   held_by_mesh,      ///< a third of the clogs or more are wrapped or hybrid; the polygon's corners hold those
+  array_repeats,     ///< runs went farther than the period of their array (sweep::has_met_repetition)
+  below_spacing,     ///< lambda is shorter than one obstacle spacing (sweep::obstacle_spacing)
+  not_proved_sound,  ///< sweep::unproven_parameters
 };
 /// One letter each for tables, a word for files, a sentence for readers.
 struct DoubtText {
@@ -47,7 +50,16 @@ inline constexpr DoubtText doubt_texts[] = {
      "rows hold what cannot be (left out; clogsweep verify names them): the file is damaged"},
     {Doubt::held_by_mesh, 'm', "held_by_mesh",
      "a third of the clogs or more hang over obstacles: how far such droplets get depends on the number of "
-     "vertices"}};
+     "vertices"},
+    {Doubt::array_repeats, 'r', "array_repeats",
+     "runs went farther than the box, where obstacles repeat: a droplet that passes them once passes them "
+     "again"},
+    {Doubt::below_spacing, 'v', "below_spacing",
+     "lambda is below one obstacle spacing (diameter + gap): it says how deep the void of release is, not "
+     "how "
+     "often gaps clog droplets"},
+    {Doubt::not_proved_sound, 'u', "not_proved_sound",
+     "line tension, preset or vertices are outside of what was proved sound (tests/soundness/README.md)"}};
 const DoubtText& text_of(Doubt doubt);
 
 /// The runs of a sweep that differ in their seed only, and what they say together.
@@ -69,8 +81,10 @@ struct Group {
   fit::Migration migration;
   int num_flowing = 0;
   int num_interrupted = 0;
-  int num_failed = 0;   ///< left out of all fits
-  int num_damaged = 0;  ///< likewise
+  int num_failed = 0;     ///< left out of all fits
+  int num_damaged = 0;    ///< likewise
+  int num_left_out = 0;   ///< ended before distances are counted, see group_runs(); likewise
+  int num_repeating = 0;  ///< went farther than their array's period
   std::vector<Doubt> doubts;
 };
 
@@ -79,7 +93,11 @@ inline constexpr ClogMechanism causes[] = {ClogMechanism::wrapped, ClogMechanism
                                            ClogMechanism::hybrid, ClogMechanism::none};
 
 /// Groups rows by everything but the seed, in the order of their parameters.
-std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence);
+/// @param from_distance  clogging lengths count from here on: runs that ended before are left out of them,
+/// the
+///                       others are as long as they went beyond (left truncation) [sigma]
+std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence,
+                              double from_distance = 0);
 
 /// A number, a count or a word; NaN (not applicable) is an empty word, so that values can be compared.
 using Value = std::variant<std::string, double, std::int64_t>;

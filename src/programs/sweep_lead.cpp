@@ -10,6 +10,7 @@
 #include "clog/cli/program.hpp"
 #include "clog/parallel/task_order.hpp"
 #include "clog/store/journal.hpp"
+#include "clog/sweep/row_limits.hpp"
 #include "sweep_progress.hpp"
 
 namespace clog {
@@ -21,7 +22,8 @@ const std::string another_round = "another round";
 const std::string over = "over";
 
 /// @param may_grow  runs may be added later
-void announce(const std::string& output, const SweepLedger& ledger, bool may_grow, int num_ranks) {
+void announce(const std::string& output, const sweep::Plan& plan, const SweepLedger& ledger, bool may_grow,
+              int num_ranks) {
   const std::int64_t num_runs = ledger.num_wanted();
   const auto num_left = static_cast<std::int64_t>(ledger.tasks_left().size());
   if (!ledger.caution().empty()) cli::say(ledger.caution());
@@ -37,6 +39,8 @@ void announce(const std::string& output, const SweepLedger& ledger, bool may_gro
              (ledger.num_unreadable() == 1 ? " record is" : " records are") +
              " damaged; what was in there is computed again");
   if (ledger.num_resumed() > 0) cli::say(std::to_string(ledger.num_resumed()) + " go on where they were");
+  if (const std::string words = sweep::unproven_parameters(plan); num_left > 0 && !words.empty())
+    cli::say(words);
   if (num_left > 0)
     cli::say(std::to_string(num_left) + " runs on " + std::to_string(num_ranks) +
              (num_ranks == 1 ? " computing rank" : " computing ranks") + ", results go to " + output);
@@ -143,7 +147,7 @@ int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, 
   const bool computes = parallel::computes(ranks.size(), options.master_computes);
   const int computing_ranks = ranks.size() - (computes ? 0 : 1);
   if (options.log != SweepLog::Level::quiet)
-    announce(options.output, ledger, rule.has_value(), computing_ranks);
+    announce(options.output, plan, ledger, rule.has_value(), computing_ranks);
   Lead lead(options, ledger, computing_ranks);
   parallel::Schedule schedule(parallel::TaskOrder(0, plan.num_groups()), ranks.size(), computes);
   parallel::SweepEnd end = parallel::SweepEnd::complete;

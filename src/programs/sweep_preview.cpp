@@ -13,6 +13,7 @@
 
 #include "clog/cli/program.hpp"
 #include "clog/sweep/obstacle_arrays.hpp"
+#include "clog/sweep/row_limits.hpp"
 #include "clog/sweep/run_job.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -146,6 +147,11 @@ void print_tasks(const sweep::Plan& plan) {
   std::cout << "# " << plan.size() << " tasks: " << plan.num_groups()
             << (plan.num_groups() == 1 ? " parameter set" : " parameter sets") << ", " << seeds
             << (seeds == 1 ? " seed" : " seeds") << " each\n";
+}
+
+void print_limits(const sweep::Plan& plan) {
+  for (const std::string& words : {sweep::possible_repetition(plan), sweep::unproven_parameters(plan)})
+    if (!words.empty()) std::cout << "# " << words << '\n';
 }
 
 int print_cost(const sweep::Plan& plan, const std::string& output) {

@@ -11,6 +11,8 @@ namespace clog {
 
 /// The tasks, and their number; of more than a thousand the first and the last.
 void print_tasks(const sweep::Plan& plan);
+/// What its results will be worth less for, as far as that is known beforehand; nothing if nothing is.
+void print_limits(const sweep::Plan& plan);
 /// How long the sweep takes at most, if no run ends before max-time, and how long is to be expected
 /// (sweep_cost()): from what `output` holds of its runs, or, where that is little, from short pieces of some.
 /// Returns the exit code: a fault if no run can begin.

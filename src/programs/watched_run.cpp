@@ -10,7 +10,7 @@
 #include "clog/cli/program.hpp"
 #include "clog/core/error.hpp"
 #include "clog/core/units.hpp"
-#include "clog/sweep/plan.hpp"
+#include "clog/sweep/row_limits.hpp"
 #include "run_progress.hpp"
 
 namespace clog {
@@ -178,6 +178,10 @@ int WatchedRun::report() const {
   return result.status == RunStatus::interrupted ? cli::exit_incomplete
          : result.status == RunStatus::failed    ? cli::exit_internal_fault
                                                  : cli::exit_success;
+}
+
+void say_what_is_unproven(const sweep::Plan& plan) {
+  if (const std::string words = sweep::unproven_parameters(plan); !words.empty()) cli::say(words);
 }
 
 sweep::RunRow without_array(sweep::RunRow row, const char* place) {

@@ -10,6 +10,7 @@
 #include "clog/cli/command_line.hpp"
 #include "clog/core/droplet_run.hpp"
 #include "clog/store/trajectory_file.hpp"
+#include "clog/sweep/plan.hpp"
 #include "run_preview.hpp"
 
 namespace clog {
@@ -79,6 +80,8 @@ inline constexpr std::initializer_list<const char*> array_options = {"obstacle-g
                                                                      "box",
                                                                      "obstacles",
                                                                      "write-obstacles"};
+/// On the standard error, what of the runs was not proved sound; nothing if all of it was.
+void say_what_is_unproven(const sweep::Plan& plan);
 /// The row of a run elsewhere: its array columns are NaN, `obstacle_filling` names the place.
 sweep::RunRow without_array(sweep::RunRow row, const char* place);
 

@@ -90,7 +90,7 @@ class Fit(ProgramTest):
         self.assertAlmostEqual(group["clogging_length_upper"], 80.6151318, places=7)
         self.assertAlmostEqual(group["clogging_length_profile_lower"], 22.1273051, places=7)
         self.assertAlmostEqual(group["weibull_shape"], 1.3537345, places=7)
-        self.assertEqual(group["doubts"], "censored_by_time")
+        self.assertEqual(group["doubts"], "censored_by_time array_repeats")
         at_10 = group["survival"][2]
         self.assertEqual((at_10["distance"], at_10["at_risk"], at_10["clogs"]), (10, 15, 1))
         self.assertAlmostEqual(at_10["probability"], 0.75294118, places=8)
@@ -137,6 +137,55 @@ class Fit(ProgramTest):
         self.assertIn("few_clogs", group["doubts"])
         self.assertIn("incomplete", group["doubts"])
         self.assertIn("f: fewer than 5 clogs", self.succeed("clogfit", "sweep.h5").stdout)
+
+    def test_runs_that_went_farther_than_the_box_are_counted_and_doubted(self):
+        self.sweep("seeds=1..6", *FAR)
+        self.change(distance=[1, 5, 20, 19, 3, 2], lateral_displacement=[0, 0, 0, 0, 1, 0], status=[b"clogged"] * 6)
+        group, = self.fit()["groups"]
+        self.assertEqual((group["repeating"], group["doubts"]), (0, None))
+        self.change(distance=[1, 5, 20.1, 30, 3, 2])
+        fit = self.fit()
+        group, = fit["groups"]
+        self.assertEqual((group["repeating"], group["doubts"]), (2, "array_repeats"))
+        self.assertIn("r: " + fit["doubts"]["array_repeats"], self.succeed("clogfit", "sweep.h5").stdout)
+
+    def test_lattices_repeat_without_a_doubt(self):
+        self.sweep("seeds=1..6", *FAR, "obstacle-layout=lattice", "obstacle-gap=1.2")
+        self.change(distance=[10, 50, 20, 30, 40, 60], status=[b"clogged"] * 6)
+        group, = self.fit()["groups"]
+        self.assertEqual((group["repeating"], group["doubts"]), (0, None))
+
+    def test_lengths_below_one_spacing_are_doubted(self):
+        self.sweep("seeds=1..6", *FAR, "obstacle-gap=0.2")  # the spacing is 0.5
+        self.change(distance=[0.1, 0.2, 0.4, 0.6, 0.8, 0.91], status=[b"clogged"] * 6)
+        self.assertIsNone(self.fit()["groups"][0]["doubts"])
+        self.change(distance=[0.1, 0.2, 0.4, 0.6, 0.8, 0.89])
+        fit = self.fit()
+        self.assertEqual(fit["groups"][0]["doubts"], "below_spacing")
+        self.assertIn("v: " + fit["doubts"]["below_spacing"], self.succeed("clogfit", "sweep.h5").stdout)
+
+    def test_what_was_not_proved_sound_is_doubted(self):
+        self.sweep("seeds=1..5", *FAR, "line-tension=1,30")
+        self.change(distance=[1, 2, 3, 4, 5] * 2, status=[b"clogged"] * 10)
+        fit = self.fit()
+        self.assertEqual([group["doubts"] for group in fit["groups"]], [None, "not_proved_sound"])
+        self.assertIn("u: " + fit["doubts"]["not_proved_sound"], self.succeed("clogfit", "sweep.h5").stdout)
+
+    def test_lengths_can_count_from_a_distance_on(self):
+        self.sweep("seeds=1..8", *FAR)
+        mechanisms = [b"squeezed"] * 4 + [b"wrapped"] * 2 + [b"none"] * 2
+        self.change(distance=[0.2, 0.4, 0.5, 1.5, 2.5, 3.5, 0.3, 4.5], mechanism=mechanisms,
+                    status=[b"clogged"] * 6 + [b"flowing"] * 2)
+        group, = self.fit("--from-distance", 0.5)["groups"]
+        self.assertEqual((group["runs"], group["clogs"], group["left_out"]), (5, 4, 3))
+        self.assertEqual((group["clogging_length"], group["total_distance"]), (10 / 4, 10))
+        self.assertEqual((group["squeezed"], group["wrapped"], group["clogging_length_wrapped"]), (2, 2, 5))
+        self.assertEqual([step["distance"] for step in group["survival"]], [0, 1, 2, 3])
+        self.assertIn("3 ended before --from-distance", self.succeed("clogfit", "sweep.h5", "--from-distance=0.5").stdout)
+        group, = self.fit()["groups"]
+        self.assertEqual((group["runs"], group["clogs"], group["left_out"]), (8, 6, 0))
+        group, = self.fit("--from-distance", 100)["groups"]
+        self.assertEqual((group["runs"], group["clogs"], group["left_out"]), (0, 0, 8))
 
     def test_each_mechanism_has_a_length_of_its_own(self):
         self.sweep("seeds=1..10", *FAR)
@@ -303,6 +352,7 @@ class Fit(ProgramTest):
             (["sweep.h5", "--confidence", "1"], ["--confidence=1"]),
             (["sweep.h5", "--confidence", "high"], ["--confidence=high"]),
             (["sweep.h5", "line-tension=1"], ["no place for 'line-tension=1'"]),
+            (["sweep.h5", "--from-distance", "-1"], ["--from-distance=-1"]),
         ]:
             with self.subTest(arguments=arguments):
                 self.refuse("clogfit", *arguments, words=words)

@@ -35,6 +35,15 @@ class Run(ProgramTest):
             else:
                 self.assertEqual(row[column], again[column], column)
 
+    def test_what_was_not_proved_sound_is_said_on_the_standard_error(self):
+        for system in (["array", *SMALL, "--output", "run.h5"], ["channel", "vertices=64", "--start=-1", "--output", "channel.h5"], ["sag", "vertices=64"]):
+            with self.subTest(system=system[0]):
+                keys = ["line-tension=0", "max-time=1"]
+                done = self.run_program("clogrun", *system, *keys)
+                self.assertEqual(done.stderr.splitlines()[0], "not proved sound (tests/soundness/README.md): line-tension=0 "
+                                 "(robust of less than 128 vertices is sound from 0.02 to 10)")
+        self.assertEqual(self.succeed("clogrun", "array", *SMALL, "max-time=1", "--output", "sound.h5").stderr, "")
+
     def test_it_writes_the_trajectory(self):
         done = self.succeed("clogrun", "array", *QUICK, "obstacle-gap=1.2", "--sample-interval", 2, "time-step=1e-3", "--output", "run.h5")
         self.assertRegex(done.stdout.splitlines()[-1], r"^\d+ steps, [\d.]+ s, [\d.]+ ns per vertex-step$")

@@ -104,8 +104,9 @@ class Sweep(ProgramTest):
     def test_a_dry_run_lists_the_tasks_and_runs_none(self):
         done = self.succeed("clogsweep", *QUICK, "line-tension=lin(0.5,1.5,3)", "seeds=1..4", "--dry-run", "--output", "s.h5")
         lines = done.stdout.splitlines()
-        self.assertEqual(len(lines), 1 + 12 + 3)
-        self.assertIn("12 tasks: 3 parameter sets, 4 seeds each", lines[-3])
+        self.assertEqual(len(lines), 1 + 12 + 4)
+        self.assertIn("12 tasks: 3 parameter sets, 4 seeds each", lines[-4])
+        self.assertRegex(lines[-3], "^# droplets of 3 of 3 parameter sets may come farther than their box .* up to 6000, box 500;")
         self.assertRegex(lines[-2], "^# at most [0-9.e+-]+ core-hours on this machine")
         self.assertRegex(lines[-1], self.EXPECTED + r"tried for 10 s in all, \d+ of them over$")
         self.assertEqual(self.snapshot(), {})
@@ -139,6 +140,20 @@ class Sweep(ProgramTest):
                 else:
                     self.assertEqual(tasks, [*range(20), *range(num_tasks - 20, num_tasks)])
                     self.assertIn(f"# ... {num_tasks - 40} more ...", told)
+
+    def test_a_dry_run_within_the_box_and_what_was_proved_has_nothing_to_add(self):
+        told = self.succeed("clogsweep", *QUICK, "--dry-run").stdout
+        self.assertNotIn("box", told)
+        self.assertNotIn("proved", told)
+        self.assertIn("# not proved sound (tests/soundness/README.md): line-tension=30 ", self.succeed("clogsweep", *QUICK, "line-tension=30", "--dry-run").stdout)
+
+    def test_what_was_not_proved_sound_is_said_once_when_the_sweep_starts(self):
+        sweep = [*SMALL, "max-time=1", "line-tension=0.05,30", "seeds=1..3", "--output", "s.h5"]
+        lines = self.succeed("clogsweep", *sweep, ranks=2).stderr.splitlines()
+        self.assertEqual(sum("not proved sound" in line and "line-tension=30 " in line for line in lines), 1, lines)
+        self.assertFalse(any("line-tension=0.05" in line for line in lines), lines)
+        self.assertNotIn("proved", self.succeed("clogsweep", *sweep).stderr, "nothing is left to do")
+        self.assertEqual(self.succeed("clogsweep", *sweep[:-1], "quiet.h5", "--quiet").stderr, "")
 
     def test_help_and_version(self):
         self.assertIn("--line-tension", self.succeed("clogsweep", "--help").stdout)

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "clog/sweep/plan.hpp"
+#include "clog/sweep/run_row.hpp"
+
+namespace clog::sweep {
+
+/// What of a run lies outside of what tests/soundness has looked at and found sound, each with its value and
+/// with what was found: "line-tension=30 (robust is sound from 0.01 to 10)".
+std::vector<std::string> unproven_parameters(const RunRow& row);
+/// One line about all runs of a plan; empty if all are within.
+std::string unproven_parameters(const Plan& plan);
+
+/// The way after which a droplet may meet the same obstacles again [sigma]: the box of an array that stands
+/// for a random one. Infinite for lattices, which repeat by nature, and where there is no array.
+double repetition_length(const RunRow& row);
+/// Has the droplet come so far, along the flow or across?
+bool has_met_repetition(const RunRow& row);
+/// One line that says whether runs of a plan may come so far; empty if none does.
+std::string possible_repetition(const Plan& plan);
+
+/// Distance between the centres of two obstacles as near to each other as they may be, of a mixture the mean
+/// [sigma]. The void in which a droplet is released is about as large.
+double obstacle_spacing(const RunRow& row);
+
+}  // namespace clog::sweep

@@ -1,0 +1,109 @@
+#include "clog/sweep/row_limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+#include <limits>
+#include <string_view>
+
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::sweep {
+namespace {
+
+/// As tests/soundness/README.md has it.
+constexpr double largest_tension = 10;
+constexpr std::int64_t fewest_vertices = 64;
+constexpr std::int64_t most_vertices = 256;
+struct SoundPreset {
+  std::string_view name;
+  double smallest_tension;         ///< with 128 vertices or more
+  double smallest_tension_coarse;  ///< with fewer
+};
+constexpr SoundPreset sound_presets[] = {
+    {"robust", 0.01, 0.02}, {"heavy-interface", 0.05, 0.05}, {"elastic", 0.03, 0.03}};
+
+std::string rounded(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+std::string unproven_tension(const RunRow& row) {
+  const auto* preset = std::find_if(std::begin(sound_presets), std::end(sound_presets),
+                                    [&](const SoundPreset& one) { return one.name == row.preset.view(); });
+  if (preset == std::end(sound_presets))
+    return "preset=" + std::string(row.preset.view()) +
+           (row.preset.view() == "custom" ? " (an interface that was not looked at)"
+                                          : " (droplets cross themselves and obstacles)");
+  constexpr std::int64_t fine = 128;
+  const double smallest = row.vertices >= fine ? preset->smallest_tension : preset->smallest_tension_coarse;
+  if (row.line_tension >= smallest && row.line_tension <= largest_tension) return "";
+  return "line-tension=" + shortest(row.line_tension) + " (" + std::string(preset->name) +
+         (row.vertices >= fine ? "" : " of less than 128 vertices") + " is sound from " + shortest(smallest) +
+         " to " + shortest(largest_tension) + ")";
+}
+
+std::string unproven_vertices(const RunRow& row) {
+  if (row.vertices >= fewest_vertices && row.vertices <= most_vertices) return "";
+  return "vertices=" + std::to_string(row.vertices) + " (" + std::to_string(fewest_vertices) + " to " +
+         std::to_string(most_vertices) + " were looked at)";
+}
+
+}  // namespace
+
+std::vector<std::string> unproven_parameters(const RunRow& row) {
+  std::vector<std::string> all;
+  if (row.model.view() != "dp") return all;
+  for (const std::string& one : {unproven_tension(row), unproven_vertices(row)})
+    if (!one.empty()) all.push_back(one);
+  return all;
+}
+
+std::string unproven_parameters(const Plan& plan) {
+  std::vector<std::string> all;
+  for (std::int64_t group = 0; group < plan.num_groups(); ++group)
+    for (const std::string& one : unproven_parameters(describe(plan.task(group))))
+      if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
+  if (all.empty()) return "";
+  constexpr std::size_t most_named = 4;
+  std::string text = "not proved sound (tests/soundness/README.md): ";
+  for (std::size_t i = 0; i < std::min(all.size(), most_named); ++i) text += (i > 0 ? ", " : "") + all[i];
+  if (all.size() > most_named) text += ", and " + std::to_string(all.size() - most_named) + " more";
+  return text;
+}
+
+double repetition_length(const RunRow& row) {
+  constexpr std::string_view random[] = {"saturated", "density", "file"};
+  const bool is_random =
+      std::find(std::begin(random), std::end(random), row.obstacle_filling.view()) != std::end(random);
+  return is_random ? row.box : std::numeric_limits<double>::infinity();
+}
+
+bool has_met_repetition(const RunRow& row) {
+  return std::max(row.distance, std::abs(row.lateral_displacement)) > repetition_length(row);
+}
+
+std::string possible_repetition(const Plan& plan) {
+  std::int64_t num_groups = 0;
+  double farthest = 0;
+  double shortest_box = std::numeric_limits<double>::infinity();
+  for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
+    const RunRow row = describe(plan.task(group));
+    const double way = row.terminal_speed * row.max_time;
+    if (way <= repetition_length(row)) continue;
+    ++num_groups;
+    farthest = std::max(farthest, way);
+    shortest_box = std::min(shortest_box, repetition_length(row));
+  }
+  if (num_groups == 0) return "";
+  return "droplets of " + std::to_string(num_groups) + " of " + std::to_string(plan.num_groups()) +
+         " parameter sets may come farther than their box and meet the same obstacles again: "
+         "terminal-speed*max-time is up to " +
+         rounded(farthest) + ", box " + rounded(shortest_box) + "; a larger box or a shorter max-time helps";
+}
+
+double obstacle_spacing(const RunRow& row) { return row.obstacle_diameter + row.obstacle_gap; }
+
+}  // namespace clog::sweep

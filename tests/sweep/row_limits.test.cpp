@@ -1,0 +1,98 @@
+#include "clog/sweep/row_limits.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace clog::sweep {
+namespace {
+
+using Keys = std::vector<std::pair<const char*, const char*>>;
+
+Plan plan_of(const Keys& keys) {
+  Settings settings;
+  settings.set("seeds", "1..3");
+  for (const auto& [name, text] : keys) settings.set(name, text);
+  return Plan(settings);
+}
+
+RunRow row_of(const Keys& keys) { return describe(plan_of(keys).task(0)); }
+
+TEST(UnprovenParameters, AreNoneWithinWhatWasFoundSound) {
+  const Keys sound[] = {{},
+                        {{"line-tension", "0.01"}},
+                        {{"line-tension", "10"}, {"vertices", "256"}},
+                        {{"line-tension", "0.02"}, {"vertices", "64"}},
+                        {{"preset", "elastic"}, {"line-tension", "0.03"}},
+                        {{"preset", "heavy-interface"}, {"line-tension", "0.05"}},
+                        {{"model", "sp"}, {"wall-stiffness", "1"}}};
+  for (const Keys& keys : sound) EXPECT_TRUE(unproven_parameters(row_of(keys)).empty());
+}
+
+TEST(UnprovenParameters, AreNamedWithTheirValueBeyondIt) {
+  const std::pair<Keys, const char*> unproven[] = {
+      {{{"line-tension", "0"}}, "line-tension=0 (robust is sound from 0.01 to 10)"},
+      {{{"line-tension", "30"}}, "line-tension=30 (robust is sound from 0.01 to 10)"},
+      {{{"line-tension", "0.01"}, {"vertices", "64"}},
+       "line-tension=0.01 (robust of less than 128 vertices is sound from 0.02 to 10)"},
+      {{{"preset", "elastic"}, {"line-tension", "0.02"}},
+       "line-tension=0.02 (elastic is sound from 0.03 to 10)"},
+      {{{"preset", "heavy-interface"}, {"line-tension", "0.04"}},
+       "line-tension=0.04 (heavy-interface is sound from 0.05 to 10)"},
+      {{{"preset", "literal"}}, "preset=literal (droplets cross themselves and obstacles)"},
+      {{{"self-contact", "off"}}, "preset=custom (an interface that was not looked at)"},
+      {{{"vertices", "32"}}, "vertices=32 (64 to 256 were looked at)"},
+      {{{"vertices", "512"}}, "vertices=512 (64 to 256 were looked at)"}};
+  for (const auto& [keys, words] : unproven)
+    EXPECT_EQ(unproven_parameters(row_of(keys)), std::vector<std::string>{words});
+}
+
+TEST(UnprovenParameters, OfAPlanAreNamedOnceEach) {
+  EXPECT_EQ(unproven_parameters(plan_of({{"line-tension", "0.1,1"}})), "");
+  EXPECT_EQ(unproven_parameters(plan_of({{"line-tension", "0,1,30"}, {"obstacle-gap", "0.2,0.3"}})),
+            "not proved sound (tests/soundness/README.md): line-tension=0 (robust is sound from 0.01 to 10), "
+            "line-tension=30 (robust is sound from 0.01 to 10)");
+  EXPECT_TRUE(
+      unproven_parameters(plan_of({{"line-tension", "11,12,13,14,15,16"}})).ends_with(", and 2 more"));
+}
+
+TEST(Repetition, BeginsWhereADropletHasComeFartherThanTheBox) {
+  RunRow row = row_of({{"box", "20"}});
+  EXPECT_EQ(repetition_length(row), 20);
+  row.distance = 20;
+  EXPECT_FALSE(has_met_repetition(row));
+  row.distance = 20.1;
+  EXPECT_TRUE(has_met_repetition(row));
+  row.distance = 5;
+  row.lateral_displacement = -20.1;
+  EXPECT_TRUE(has_met_repetition(row));
+  for (const char* filling : {"density", "file"}) {
+    row.obstacle_filling = filling;
+    EXPECT_TRUE(has_met_repetition(row)) << filling;
+  }
+  row.obstacle_filling = "channel";
+  EXPECT_FALSE(has_met_repetition(row));
+}
+
+TEST(Repetition, IsTheNatureOfALattice) {
+  RunRow row = row_of({{"obstacle-layout", "lattice"}, {"box", "20"}, {"obstacle-gap", "1.2"}});
+  row.distance = 1000;
+  EXPECT_FALSE(has_met_repetition(row));
+}
+
+TEST(Repetition, IsForeseenFromTheLongestTime) {
+  EXPECT_EQ(possible_repetition(plan_of({{"box", "20"}, {"max-time", "600"}})), "");
+  EXPECT_EQ(possible_repetition(plan_of({{"obstacle-layout", "lattice"}, {"obstacle-gap", "1.2"}})), "");
+  EXPECT_EQ(possible_repetition(plan_of({{"box", "20,500"}, {"max-time", "1e3,1e4"}})),
+            "droplets of 2 of 4 parameter sets may come farther than their box and meet the same obstacles "
+            "again: terminal-speed*max-time is up to 300, box 20; a larger box or a shorter max-time helps");
+}
+
+TEST(ObstacleSpacing, IsFromCentreToCentre) {
+  EXPECT_DOUBLE_EQ(obstacle_spacing(row_of({{"obstacle-gap", "0.4"}, {"obstacle-diameter", "0.5"}})), 0.9);
+}
+
+}  // namespace
+}  // namespace clog::sweep
