@@ -5,7 +5,8 @@
     clogfit sweep.h5 --format json | analysis/clogging_length.py /dev/stdin --output clogging-length     # the same
 
 Every number comes from clogfit, which is asked for a sweep's; nothing is fitted here. Bars are its confidence
-intervals; markers show by what most droplets clogged; a triangle pointing up is a lower bound where no run clogged.
+intervals; markers show by what most droplets clogged; an open marker is a length that clogfit doubts, the picture says
+why; a triangle pointing up is a lower bound where no run clogged.
 """
 
 import json
@@ -107,8 +108,8 @@ def draw(groups, abscissa, confidence):
     style.legend(axes, groups)
     presets = {group["preset"] for group in groups if group["model"] == "dp"}
     note = (f"interface: {presets.pop()}; " if len(presets) == 1 else "") + f"bars: {100 * confidence:g} % confidence"
-    if any(style.held_by_mesh(group) for group in groups):
-        note += "\nopen markers: droplets hang over obstacles, and lengths depend on the number of vertices"
+    for reason in dict.fromkeys(reason for group in groups for reason in style.reasons_for_open_marker(group)):
+        note += f"\nopen markers: {style.OPEN_MARKERS[reason]}"
     if any(group["clogs"] == 0 for group in groups):
         note += "\nopen triangles: lower bound, no run clogged, dotted: through bounds"
     style.caption(axes, f"{caption(groups)}\n{note}")

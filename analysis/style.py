@@ -34,9 +34,17 @@ def curve_style(index):
     return {"color": colour, "marker": MARKERS[index % len(MARKERS)]}
 
 
-def held_by_mesh(group):
-    """Does clogfit say that the length hangs on the number of vertices?"""
-    return "held_by_mesh" in (group["doubts"] or "").split()
+# Doubts of clogfit in a length itself, which more runs would not take away, and what to say of them under a picture.
+OPEN_MARKERS = {
+    "held_by_mesh": "droplets hang over obstacles, and lengths depend on the number of vertices",
+    "array_repeats": "droplets went farther than the box, where obstacles repeat",
+    "below_spacing": "shorter than one obstacle spacing, the depth of the void of release",
+    "not_proved_sound": "outside of what was proved sound",
+}
+
+
+def reasons_for_open_marker(group):
+    return [doubt for doubt in (group["doubts"] or "").split() if doubt in OPEN_MARKERS]
 
 
 def main_mechanism(group):
@@ -56,7 +64,7 @@ def legend(axes, groups=()):
 
 def draw_lengths(axes, places, groups, index, label):
     """Clogging lengths with clogfit's intervals. The marker is that of what holds most of the clogs; an open one is a
-    length that hangs on the number of vertices, an open triangle a lower bound, where no run clogged."""
+    length in doubt (OPEN_MARKERS), an open triangle a lower bound, where no run clogged."""
     order = sorted(range(len(groups)), key=lambda i: places[i])
     places, groups = [places[i] for i in order], [groups[i] for i in order]
     # Not a number where no run clogged: the line is broken there, and goes on dotted.
@@ -68,7 +76,7 @@ def draw_lengths(axes, places, groups, index, label):
     colour = curve_style(index)["color"]
     axes.errorbar(places, lengths, yerr=bars, color=colour, linewidth=1, elinewidth=1, capsize=2.5, label=label)
     for x, y, group in zip(places, lengths, groups):
-        face = "white" if held_by_mesh(group) else colour
+        face = "white" if reasons_for_open_marker(group) else colour
         axes.plot(x, y, color=colour, marker=MECHANISM_MARKERS[main_mechanism(group)], markerfacecolor=face, markersize=5.5, zorder=3)
     if any(group["clogs"] == 0 for group in groups):
         through = [group["clogging_length_lower"] if group["clogs"] == 0 else group["clogging_length"] for group in groups]

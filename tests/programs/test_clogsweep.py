@@ -104,9 +104,8 @@ class Sweep(ProgramTest):
     def test_a_dry_run_lists_the_tasks_and_runs_none(self):
         done = self.succeed("clogsweep", *QUICK, "line-tension=lin(0.5,1.5,3)", "seeds=1..4", "--dry-run", "--output", "s.h5")
         lines = done.stdout.splitlines()
-        self.assertEqual(len(lines), 1 + 12 + 4)
-        self.assertIn("12 tasks: 3 parameter sets, 4 seeds each", lines[-4])
-        self.assertRegex(lines[-3], "^# droplets of 3 of 3 parameter sets may come farther than their box .* up to 6000, box 500;")
+        self.assertEqual(len(lines), 1 + 12 + 3)
+        self.assertIn("12 tasks: 3 parameter sets, 4 seeds each", lines[-3])
         self.assertRegex(lines[-2], "^# at most [0-9.e+-]+ core-hours on this machine")
         self.assertRegex(lines[-1], self.EXPECTED + r"tried for 10 s in all, \d+ of them over$")
         self.assertEqual(self.snapshot(), {})
@@ -145,6 +144,8 @@ class Sweep(ProgramTest):
         told = self.succeed("clogsweep", *QUICK, "--dry-run").stdout
         self.assertNotIn("box", told)
         self.assertNotIn("proved", told)
+        told = self.succeed("clogsweep", *QUICK, "max-time=2000", "--dry-run").stdout
+        self.assertIn("# droplets of 1 of 1 parameter sets may come farther than their box ", told)
         self.assertIn("# not proved sound (tests/soundness/README.md): line-tension=30 ", self.succeed("clogsweep", *QUICK, "line-tension=30", "--dry-run").stdout)
 
     def test_what_was_not_proved_sound_is_said_once_when_the_sweep_starts(self):

@@ -23,6 +23,7 @@ import stored_rows
 from support import BIN, QUICK, ROOT, SMALL, ProgramTest, table
 
 sys.path.insert(1, str(ROOT / "analysis"))
+import clogging_length
 import clogs
 import film
 import programs
@@ -320,6 +321,18 @@ class Pictures(Analysis):
         self.succeed("clogfit", "report", "s.h5", "--output", "report.html", "--examples", 0)
         self.assertEqual(status["runs"], 40)
         self.assertIn(f"{status['over']} of 40 runs are over", (self.folder / "report.html").read_text())
+
+    def test_a_doubtful_length_has_an_open_marker_and_the_reason_beside_it(self):
+        self.succeed("clogsweep", *QUICK, "line-tension=2,30", "seeds=1..3", "--output", "s.h5")
+        groups = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
+        for group, doubts in zip(groups, (["below_spacing"], ["below_spacing", "not_proved_sound"])):
+            self.assertEqual(style.reasons_for_open_marker(group), doubts)
+        groups[0]["doubts"] = "few_clogs"
+        axes = clogging_length.draw(groups, "line_tension", 0.95).axes[0]
+        open_markers, = [line for line in axes.lines if line.get_markerfacecolor() == "white" and line.get_marker() != "^"]
+        self.assertEqual(list(open_markers.get_xdata()), [30])
+        for reason in ("outside of what was proved sound", "shorter than one obstacle spacing"):
+            self.assertIn(f"open markers: {reason}", axes.get_title())
 
     def test_clogs_are_drawn_from_a_sweep(self):
         self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1..2", "--output", "s.h5")
