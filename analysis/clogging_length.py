@@ -35,6 +35,7 @@ CURVE_PARAMETERS = [
     ("vertices", r"N_v"),
     ("max_time", r"T/t_0"),
     ("box", r"L/\sigma"),
+    ("boxes", r"n_\mathrm{box}"),
     ("clog_energy", r"E_k/E_t"),
 ]
 # Their automatic values follow from the others; then they make no curve of their own.

@@ -37,7 +37,7 @@ def curve_style(index):
 # Doubts of clogfit in a length itself, which more runs would not take away, and what to say of them under a picture.
 OPEN_MARKERS = {
     "held_by_mesh": "droplets hang over obstacles, and lengths depend on the number of vertices",
-    "array_repeats": "droplets went farther than the box, where obstacles repeat",
+    "array_repeats": "droplets went farther than the array is long, which repeats",
     "below_spacing": "shorter than one obstacle spacing, the depth of the void of release",
     "not_proved_sound": "outside of what was proved sound",
 }

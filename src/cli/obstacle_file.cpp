@@ -22,16 +22,18 @@ std::vector<std::string> split_line(const std::string& line) {
   return cells;
 }
 
-Obstacle parse_obstacle(const std::vector<std::string>& cells, double default_diameter, double box) {
+Obstacle parse_obstacle(const std::vector<std::string>& cells, double default_diameter,
+                        const Period& period) {
   if (cells.size() < 2 || cells.size() > 3) throw Error("needs x,y or x,y,diameter");
   const double diameter = cells.size() == 3 ? sweep::to_number(cells[2]) : default_diameter;
   const Obstacle obstacle{sweep::to_number(cells[0]), sweep::to_number(cells[1]), diameter / 2};
   if (!(diameter > 0)) throw Error("diameter must be positive");
-  if (diameter >= box)
+  if (diameter >= period.box)
     throw Error("the obstacle meets its own periodic image; diameters are smaller than box=" +
-                sweep::shortest(box));
-  if (obstacle.x < 0 || obstacle.x >= box || obstacle.y < 0 || obstacle.y >= box)
-    throw Error("lies outside the box; coordinates run from 0 to box=" + sweep::shortest(box));
+                sweep::shortest(period.box));
+  if (obstacle.x < 0 || obstacle.x >= period.along() || obstacle.y < 0 || obstacle.y >= period.across())
+    throw Error("lies outside the array; x runs from 0 to boxes*box=" + sweep::shortest(period.along()) +
+                ", y from 0 to box=" + sweep::shortest(period.across()));
   return obstacle;
 }
 
@@ -51,7 +53,7 @@ Lines read_lines(const std::string& path, const ObstacleFileRules& rules) {
     const bool is_header = line_number == 1 && !cells.empty() && cells[0] == "x";
     if (is_blank || is_header || line.starts_with('#')) continue;
     try {
-      lines.obstacles.push_back(parse_obstacle(cells, rules.default_diameter, rules.box));
+      lines.obstacles.push_back(parse_obstacle(cells, rules.default_diameter, rules.period));
       lines.numbers.push_back(line_number);
     } catch (const Error& error) {
       throw Error(path + " line " + std::to_string(line_number) + ": " + error.what());
@@ -96,7 +98,7 @@ void refuse_narrow_gaps(const std::string& path, const Lines& lines, const Obsta
 
 ObstacleArray read_obstacles(const std::string& path, const ObstacleFileRules& rules) {
   const Lines lines = read_lines(path, rules);
-  ObstacleArray array(rules.box, lines.obstacles);
+  ObstacleArray array(rules.period, lines.obstacles);
   refuse_narrow_gaps(path, lines, array, rules.narrowest_gap);
   return array;
 }

@@ -10,7 +10,7 @@
 namespace clog {
 
 kernel::WedgePlace kernel::place_in(const LocalFrame& frame, const Wedge& wedge) {
-  const Eigen::Array2d centre = wedge.centre() - frame.origin - frame.image.cast<double>() * frame.box;
+  const Eigen::Array2d centre = wedge.centre() - frame.origin - frame.image.cast<double>() * frame.period;
   return {.x = centre[0],
           .y = centre[1],
           .radius = wedge.radius,

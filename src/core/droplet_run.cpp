@@ -99,7 +99,9 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
     ByteReader rest = bytes;
     DropletState state;
     state.restore(bytes);
-    if (state.size() != (run.model == Model::dp ? run.dp.vertices : 1) || state.frame.box != obstacles->box())
+    const Period& period = obstacles->period();
+    if (state.size() != (run.model == Model::dp ? run.dp.vertices : 1) ||
+        state.frame.period[0] != period.along() || state.frame.period[1] != period.across())
       throw Error("the snapshot is of another run");
     DropletRun resumed(run, std::move(obstacles), std::move(state), end);
     resumed.droplet_->restore(rest);

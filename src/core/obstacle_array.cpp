@@ -19,13 +19,13 @@ double wrapped(double value, double period) {
   return inside < period ? inside : 0.0;  // a tiny negative value rounds up to the period itself
 }
 
-int cells_per_side(double box) { return std::max(1, static_cast<int>(box / units::droplet_diameter)); }
+int cells_per_box(double box) { return std::max(1, static_cast<int>(box / units::droplet_diameter)); }
 
 }  // namespace
 
-ObstacleArray::ObstacleArray(double box, std::vector<Obstacle> obstacles, std::vector<Wedge> wedges)
-    : cells_per_side_(cells_per_side(box)), wedges_(std::move(wedges)) {
-  binned_.box = box;
+ObstacleArray::ObstacleArray(const Period& period, std::vector<Obstacle> obstacles, std::vector<Wedge> wedges)
+    : cells_per_box_(cells_per_box(period.box)), wedges_(std::move(wedges)) {
+  binned_.period = period;
   for (Obstacle& obstacle : obstacles) {
     if (!(obstacle.radius > 0) || !std::isfinite(obstacle.radius) || !std::isfinite(obstacle.x) ||
         !std::isfinite(obstacle.y)) {
@@ -34,8 +34,8 @@ ObstacleArray::ObstacleArray(double box, std::vector<Obstacle> obstacles, std::v
               << 2 * obstacle.radius << " (must be finite, the diameter positive)";
       throw Error(message.str());
     }
-    obstacle.x = wrapped(obstacle.x, box);
-    obstacle.y = wrapped(obstacle.y, box);
+    obstacle.x = wrapped(obstacle.x, period.along());
+    obstacle.y = wrapped(obstacle.y, period.across());
     binned_.largest_radius = std::max(binned_.largest_radius, obstacle.radius);
   }
   struct Memory {
@@ -51,21 +51,22 @@ ObstacleArray::ObstacleArray(double box, std::vector<Obstacle> obstacles, std::v
 }
 
 ObstacleArray::ObstacleArray(const BinnedObstacles& binned, std::shared_ptr<const void> memory)
-    : binned_(binned), memory_(std::move(memory)), cells_per_side_(cells_per_side(binned.box)) {}
+    : binned_(binned), memory_(std::move(memory)), cells_per_box_(cells_per_box(binned.period.box)) {}
 
-std::size_t ObstacleArray::num_cells(double box) {
-  return static_cast<std::size_t>(cells_per_side(box)) * cells_per_side(box);
+std::size_t ObstacleArray::num_cells(const Period& period) {
+  const std::size_t per_side = cells_per_box(period.box);
+  return period.boxes * per_side * per_side;
 }
 
 std::uint32_t ObstacleArray::cell_of(double x, double y) const {
-  const auto index = [this](double value) {
-    return std::min(static_cast<int>(value / box() * cells_per_side_), cells_per_side_ - 1);
+  const auto index = [this](double value, int num_cells) {
+    return std::min(static_cast<int>(value / period().box * cells_per_box_), num_cells - 1);
   };
-  return static_cast<std::uint32_t>(index(y)) * cells_per_side_ + index(x);
+  return static_cast<std::uint32_t>(index(y, cells_per_box_)) * num_columns() + index(x, num_columns());
 }
 
 std::vector<std::uint32_t> ObstacleArray::bin(std::vector<Obstacle>& obstacles) const {
-  std::vector<std::uint32_t> cell_start(num_cells(box()) + 1, 0);
+  std::vector<std::uint32_t> cell_start(num_cells(period()) + 1, 0);
   std::vector<std::uint32_t> target(obstacles.size());
   for (std::size_t i = 0; i < target.size(); ++i) {
     target[i] = cell_of(obstacles[i].x, obstacles[i].y);
@@ -87,7 +88,7 @@ std::vector<std::uint32_t> ObstacleArray::bin(std::vector<Obstacle>& obstacles) 
 template <class Visit>
 void ObstacleArray::visit_window(const Window& window, Visit visit) const {
   const double reach = window.margin + binned_.largest_radius;
-  const double cells_per_length = cells_per_side_ / box();
+  const double cells_per_length = cells_per_box_ / period().box;
   const auto cell_index = [=](double position) {
     return static_cast<int>(std::floor(position * cells_per_length));
   };
@@ -95,21 +96,21 @@ void ObstacleArray::visit_window(const Window& window, Visit visit) const {
   const int column_last = cell_index(window.origin_x + window.x_max + reach);
   const int row_first = cell_index(window.origin_y + window.y_min - reach);
   const int row_last = cell_index(window.origin_y + window.y_max + reach);
-  const auto image_of = [this](int cell) {
-    return static_cast<int>(std::floor(static_cast<double>(cell) / cells_per_side_));
+  const auto image_of = [](int cell, int num_cells) {
+    return static_cast<int>(std::floor(static_cast<double>(cell) / num_cells));
   };
 
   for (int row = row_first; row <= row_last; ++row) {
-    const int image_y = image_of(row);
+    const int image_y = image_of(row, cells_per_box_);
     for (int column = column_first; column <= column_last; ++column) {
-      const int image_x = image_of(column);
-      const std::size_t cell = static_cast<std::size_t>(row - image_y * cells_per_side_) * cells_per_side_ +
-                               (column - image_x * cells_per_side_);
+      const int image_x = image_of(column, num_columns());
+      const std::size_t cell = static_cast<std::size_t>(row - image_y * cells_per_box_) * num_columns() +
+                               (column - image_x * num_columns());
       for (std::uint32_t k = binned_.cell_start[cell]; k < binned_.cell_start[cell + 1]; ++k) {
-        // Subtract the origin first: within the box this is exact, so forces do not depend on where the
+        // Subtract the origin first: within the period this is exact, so forces do not depend on where the
         // droplet is.
-        const double x = (binned_.obstacles[k].x - window.origin_x) + image_x * box();
-        const double y = (binned_.obstacles[k].y - window.origin_y) + image_y * box();
+        const double x = (binned_.obstacles[k].x - window.origin_x) + image_x * period().along();
+        const double y = (binned_.obstacles[k].y - window.origin_y) + image_y * period().across();
         const double margin = window.margin + binned_.obstacles[k].radius;
         if (x >= window.x_min - margin && x <= window.x_max + margin && y >= window.y_min - margin &&
             y <= window.y_max + margin)
@@ -136,12 +137,12 @@ ObstacleArray::Pair ObstacleArray::closest_pair() const {
       visit_window({origin_x, origin_y, -radius, radius, -radius, radius, margin},
                    [&, r = radius](std::uint32_t second, double x, double y) {
                      const double gap = std::hypot(x, y) - r - binned_.obstacles[second].radius;
-                     const bool is_itself = second == first && std::hypot(x, y) < box() / 2;
+                     const bool is_itself = second == first && std::hypot(x, y) < period().box / 2;
                      if (!is_itself && gap < closest.gap)
                        closest = {binned_.obstacles[first], binned_.obstacles[second], gap};
                    });
     }
-  } while (closest.gap > margin && margin < box());
+  } while (closest.gap > margin && margin < period().box);
   return closest;
 }
 

@@ -56,6 +56,8 @@ void validate_obstacles(const ObstacleParameters& obstacles, int vertices, Model
 
   require(obstacles.box <= 1e5, "box", obstacles.box,
           "no droplet gets as far) use at most 1e5; the array is periodic");
+  require(obstacles.boxes >= 1 && obstacles.boxes <= 1e6, "boxes", obstacles.boxes,
+          "boxes in a row along the flow, after which the array repeats) use 1..1e6");
 
   if (obstacles.density) require_positive("obstacle-density", *obstacles.density);
   const double spread = obstacles.diameter_spread;
@@ -71,8 +73,9 @@ void validate_obstacles(const ObstacleParameters& obstacles, int vertices, Model
   require(widest_spacing <= obstacles.box / 2, "box", obstacles.box,
           "holds no two obstacles of diameter " + text(obstacles.largest_diameter()) + " with gap " +
               text(obstacles.gap) + ") use at least " + text(2 * widest_spacing));
-  require(obstacles.box <= 1e4 * spacing, "box", obstacles.box,
-          "the array would need more than ten gigabytes) use at most " + text(1e4 * spacing) +
+  const double largest_box = 1e4 * spacing / std::sqrt(obstacles.boxes);
+  require(obstacles.box <= largest_box, "box", obstacles.box,
+          "the array would need more than ten gigabytes) use at most " + text(largest_box) +
               "; the array is periodic");
   if (model == Model::dp) {
     const double vertex_diameter = units::regular_edge_length(vertices);
@@ -105,6 +108,8 @@ void resolve_layout(ObstacleParameters& obstacles) {
     require(false, "obstacle-density", *obstacles.density,
             "a lattice has one obstacle per (obstacle-gap + obstacle-diameter)^2) leave it out, or use "
             "obstacle-layout=random");
+  require(obstacles.boxes == 1, "boxes", obstacles.boxes,
+          "a lattice repeats in each of them) leave it out, or use obstacle-layout=random");
   require(obstacles.diameter_spread == 0, "obstacle-diameter-spread", obstacles.diameter_spread,
           "the obstacles of a lattice are alike) leave it out, or use obstacle-layout=random");
   require(std::abs(angle) <= 45, "lattice-angle", angle,

@@ -118,7 +118,7 @@ struct Surroundings {
   }
 };
 
-/// Random sequential addition of discs, surfaces at least a gap apart, in a periodic square.
+/// Random sequential addition of discs, surfaces at least a gap apart, in a period.
 ///
 /// Each arriving disc draws its place and its radius; one that has no room leaves for good. The space it
 /// draws from has three dimensions: the place, and by how much the radius exceeds the smallest one, its
@@ -134,15 +134,16 @@ class SequentialAddition {
  public:
   /// @param distance  between the centres of two of the smallest discs
   /// @param largest_excess  of a radius over the smallest one
-  SequentialAddition(double box, double distance, double largest_excess, std::uint32_t seed)
+  SequentialAddition(const Period& period, double distance, double largest_excess, std::uint32_t seed)
       : distance_(static_cast<float>(distance)),
         distance2_(static_cast<float>(distance * distance * (1 + rounding))),
-        cells_per_side_(static_cast<int>(std::ceil(box * std::numbers::sqrt2 / distance))),
-        cell_size_(box / cells_per_side_),
+        num_rows_(static_cast<int>(std::ceil(period.box * std::numbers::sqrt2 / distance))),
+        num_columns_(period.boxes * num_rows_),
+        cell_size_(period.box / num_rows_),
         margin_(static_cast<int>(std::ceil((distance + 2 * largest_excess) / cell_size_))),
-        row_length_(cells_per_side_ + 2 * margin_),
+        row_length_(num_columns_ + 2 * margin_),
         are_alike_(largest_excess == 0 && cell_size_ > Surroundings::smallest_cell * distance),
-        points_(static_cast<std::size_t>(row_length_) * row_length_, Point{nowhere, nowhere}),
+        points_(static_cast<std::size_t>(num_rows_ + 2 * margin_) * row_length_, Point{nowhere, nowhere}),
         excess_(are_alike_ ? 0 : points_.size(), 0.0F),
         size_(static_cast<float>(cell_size_)),
         range_(static_cast<float>(largest_excess)),
@@ -154,20 +155,20 @@ class SequentialAddition {
   /// Adds points until there are `target` of them or no room is left.
   [[gnu::flatten]] void fill(std::size_t target) {
     for (const double darts_per_cell : first_rounds) {
-      for (int row = 0; row < cells_per_side_; ++row)
-        throw_darts(cells_per_side_, darts_per_cell, [&](int column) { return whole(cell_at(row, column)); });
+      for (int row = 0; row < num_rows_; ++row)
+        throw_darts(num_columns_, darts_per_cell, [&](int column) { return whole(cell_at(row, column)); });
       take_up_darts(target);
     }
-    std::vector<Squares> rows(cells_per_side_);
+    std::vector<Squares> rows(num_rows_);
     bool is_first = true;
     for (std::size_t num_squares = 1; num_points_ < target && num_squares > 0; is_first = false) {
       halve();
       num_squares = 0;
-      for (int row = 0; row < cells_per_side_; ++row) {
+      for (int row = 0; row < num_rows_; ++row) {
         Squares& squares = rows[row];
-        make_space_for_parts(is_first ? cells_per_side_ : squares.size());
+        make_space_for_parts(is_first ? num_columns_ : squares.size());
         if (is_first)
-          for (int column = 0; column < cells_per_side_; ++column) add_parts(whole(cell_at(row, column)));
+          for (int column = 0; column < num_columns_; ++column) add_parts(whole(cell_at(row, column)));
         else
           for (std::size_t i = 0; i < squares.size(); ++i) add_parts(squares[i]);
         squares.assign(std::span(parts_).first(num_parts_), range_ > 0);
@@ -182,8 +183,8 @@ class SequentialAddition {
   std::vector<Obstacle> circles(double smallest_radius) const {
     std::vector<Obstacle> circles;
     circles.reserve(num_points_);
-    for (int row = 0; row < cells_per_side_; ++row)
-      for (int column = 0; column < cells_per_side_; ++column) {
+    for (int row = 0; row < num_rows_; ++row)
+      for (int column = 0; column < num_columns_; ++column) {
         const Cell cell = cell_at(row, column);
         if (is_taken(cell))
           circles.push_back({column * cell_size_ + points_[cell].x, row * cell_size_ + points_[cell].y,
@@ -235,7 +236,8 @@ class SequentialAddition {
 
   float distance_;
   float distance2_;
-  int cells_per_side_;
+  int num_rows_;
+  int num_columns_;
   double cell_size_;
   int margin_;  // how many cells further a point within the largest distance can lie
   int row_length_;
@@ -345,12 +347,11 @@ class SequentialAddition {
   void add_point(const Square& dart) {
     const int row = dart.cell / row_length_ - margin_;
     const int column = dart.cell % row_length_ - margin_;
-    const int n = cells_per_side_;
-    const auto on_grid = [&](int index) { return index >= -margin_ && index < n + margin_; };
-    for (const int image_row : {row - n, row, row + n}) {
-      if (!on_grid(image_row)) continue;
-      for (const int image_column : {column - n, column, column + n}) {
-        if (!on_grid(image_column)) continue;
+    const auto on_grid = [&](int index, int num) { return index >= -margin_ && index < num + margin_; };
+    for (const int image_row : {row - num_rows_, row, row + num_rows_}) {
+      if (!on_grid(image_row, num_rows_)) continue;
+      for (const int image_column : {column - num_columns_, column, column + num_columns_}) {
+        if (!on_grid(image_column, num_columns_)) continue;
         const Cell cell = cell_at(image_row, image_column);
         points_[cell] = {dart.x, dart.y};
         if (!excess_.empty()) excess_[cell] = dart.excess;
@@ -427,7 +428,7 @@ class SequentialAddition {
 std::vector<Obstacle> add_circles(const ObstacleParameters& parameters, std::size_t target,
                                   std::uint32_t seed) {
   const double smallest = parameters.smallest_diameter();
-  SequentialAddition addition(parameters.box, smallest + parameters.gap,
+  SequentialAddition addition(parameters.period(), smallest + parameters.gap,
                               parameters.diameter_spread * parameters.diameter, seed);
   addition.fill(target);
   return addition.circles(smallest / 2);
@@ -445,19 +446,19 @@ ObstacleArray sample_obstacles(const ObstacleParameters& parameters, std::uint32
   if (parameters.layout == ObstacleLayout::lattice) return lattice_obstacles(parameters, seed);
   std::size_t target = SIZE_MAX;
   if (parameters.density)
-    target = static_cast<std::size_t>(std::llround(*parameters.density * parameters.box * parameters.box));
+    target = static_cast<std::size_t>(std::llround(*parameters.density * parameters.period().area()));
   std::vector<Obstacle> obstacles = HWY_DYNAMIC_DISPATCH(add_circles)(parameters, target, seed);
   if (parameters.density && obstacles.size() < target) {
     std::ostringstream message;
     message << "invalid obstacle-density=" << *parameters.density << " (no more than "
-            << static_cast<double>(obstacles.size()) / (parameters.box * parameters.box)
+            << static_cast<double>(obstacles.size()) / parameters.period().area()
             << " obstacles per sigma^2 of diameter " << parameters.smallest_diameter();
     if (parameters.diameter_spread > 0) message << " to " << parameters.largest_diameter();
     message << " fit with gap " << parameters.gap
             << ") use a lower density, a smaller gap, or obstacle-density=saturated";
     throw Error(message.str());
   }
-  return ObstacleArray(parameters.box, std::move(obstacles));
+  return ObstacleArray(parameters.period(), std::move(obstacles));
 }
 
 }  // namespace clog

@@ -20,10 +20,11 @@ namespace {
 
 constexpr double radius = units::droplet_diameter / 2;
 
-/// Climbs from the box centre to the nearest place that is farther from all obstacles than its surroundings.
+/// Climbs from the centre of the period to the nearest place that is farther from all obstacles than its
+/// surroundings.
 Eigen::Array2d nearest_void(const ObstacleArray& obstacles) {
   const double enough = 2 * units::droplet_diameter;
-  Eigen::Array2d place{obstacles.box() / 2, obstacles.box() / 2};
+  Eigen::Array2d place{obstacles.period().along() / 2, obstacles.period().across() / 2};
   double room = clearance(obstacles, place[0], place[1], enough);
   for (double step = 0.1; step > 1e-4 && room < enough;) {
     bool climbed = false;
@@ -43,8 +44,8 @@ Eigen::Array2d nearest_void(const ObstacleArray& obstacles) {
   return place;
 }
 
-LocalFrame frame_around(const Eigen::Array2d& place, double box) {
-  LocalFrame frame{.box = box};
+LocalFrame frame_around(const Eigen::Array2d& place, const Period& period) {
+  LocalFrame frame{.period = {period.along(), period.across()}};
   frame.shift(place.floor());
   return frame;
 }
@@ -73,7 +74,7 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
 
   double area = units::rest_area * std::min(1.0, room * room / (radius * radius));
   DropletState state;
-  state.frame = frame_around(place, obstacles.box());
+  state.frame = frame_around(place, obstacles.period());
   state.position = regular_polygon(n, area);
   state.velocity = Eigen::ArrayXd::Zero(2 * n);
   state.x() += place[0] - state.frame.origin[0];
@@ -142,7 +143,7 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
 DropletState release_sp(const RunParameters& run, const ObstacleArray& obstacles) {
   const Eigen::Array2d place = nearest_void(obstacles);
   DropletState state;
-  state.frame = frame_around(place, obstacles.box());
+  state.frame = frame_around(place, obstacles.period());
   state.position = place - state.frame.origin;
   state.velocity = Eigen::ArrayXd::Zero(2);
   SpForces forces(run, obstacles);

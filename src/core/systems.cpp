@@ -28,7 +28,7 @@ double reach(const RunParameters& run, const Eigen::ArrayXd& droplet) {
 /// if it touches nothing at the box's centre it starts right there, as if there were no obstacles.
 bool starts_free(const RunParameters& run, const ObstacleArray& obstacles) {
   if (run.obstacles.layout != ObstacleLayout::lattice) return false;
-  const double centre = obstacles.box() / 2;
+  const double centre = obstacles.period().box / 2;
   return clearance(obstacles, centre, centre, 2 * units::droplet_diameter) > reach(run, free_droplet(run));
 }
 
@@ -41,7 +41,7 @@ DropletState state_at(Eigen::ArrayXd droplet, const Eigen::Array2d& place) {
   DropletState state;
   state.position = std::move(droplet);
   state.velocity = Eigen::ArrayXd::Zero(state.position.size());
-  state.frame.box = open_box;
+  state.frame.period = {open_box, open_box};
   state.frame.shift(place.floor());
   state.x() += place[0] - state.frame.origin[0];
   state.y() += place[1] - state.frame.origin[1];
@@ -126,7 +126,7 @@ DropletRun run_in_array(const RunParameters& run) {
 
 DropletRun run_in_array(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles) {
   DropletState released = starts_free(run, *obstacles)
-                              ? release_droplet(run, ObstacleArray(obstacles->box(), {}))
+                              ? release_droplet(run, ObstacleArray(obstacles->period(), {}))
                               : release_droplet(run, *obstacles);
   return {run, std::move(obstacles), std::move(released)};
 }

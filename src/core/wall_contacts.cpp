@@ -53,13 +53,13 @@ void WallContacts::gather_nearby(const DropletState& state) {
     for (const Wedge& wedge : array_->wedges())
       if (!wedge.is_flat()) {
         const Eigen::Array2d centre =
-            wedge.centre() - state.frame.origin - state.frame.image.cast<double>() * state.frame.box;
+            wedge.centre() - state.frame.origin - state.frame.image.cast<double>() * state.frame.period;
         nearby_.push_back({centre[0], centre[1], wedge.radius});
       }
   if (keep_ != Keep::nearest_to_vertex) return;
-  // The nearest obstacle may be far away in a sparse array: look as far as a box (a periodic array holds at
-  // least one obstacle there, if it holds any).
-  for (window.margin = 0.5; window.margin < 2 * array_->box(); window.margin *= 2) {
+  // The nearest obstacle may be far away in a sparse array: look as far as a period (a periodic array holds
+  // at least one obstacle there, if it holds any).
+  for (window.margin = 0.5; window.margin < 2 * array_->period().along(); window.margin *= 2) {
     nearby_.clear();
     array_->gather(window, nearby_);
     double worst = 0;

@@ -30,7 +30,7 @@ Setup read_setup(cli::CommandLine& line) {
   const bool polygon = draft.model == Model::dp;
   auto array = std::make_shared<ObstacleArray>(
       cli::read_obstacles(line.get("obstacles"),
-                          {.box = draft.obstacles.box,
+                          {.period = draft.obstacles.period(),
                            .default_diameter = draft.obstacles.diameter,
                            .narrowest_gap = polygon ? units::regular_edge_length(draft.dp.vertices) : 0.0}));
   // Of few obstacles the gap may be wider than a sampled array of this box could have.
@@ -64,9 +64,9 @@ int clogrun_array(cli::CommandLine& line) {
 
   sweep::RunRow row = sweep::describe(setup.parameters);
   if (setup.own_obstacles) {
-    const double box = setup.parameters.obstacles.box;
     row.obstacle_filling = "file";
-    row.obstacle_density = static_cast<double>(setup.own_obstacles->obstacles().size()) / (box * box);
+    row.obstacle_density = static_cast<double>(setup.own_obstacles->obstacles().size()) /
+                           setup.parameters.obstacles.period().area();
   }
   store::write_trajectory(output, watched.trajectory(row, line));
   return watched.report();

@@ -217,6 +217,7 @@ std::vector<Field> parameter_fields(const sweep::RunRow& row) {
           {"time_step", value_of(row.time_step)},
           {"max_time", value_of(row.max_time)},
           {"box", value_of(row.box)},
+          {"boxes", value_of(row.boxes)},
           {"area_stiffness", value_of(row.area_stiffness)},
           {"preset", value_of(row.preset)},
           {"perimeter_spring", value_of(row.perimeter_spring)},

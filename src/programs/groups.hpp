@@ -52,7 +52,7 @@ inline constexpr DoubtText doubt_texts[] = {
      "a third of the clogs or more hang over obstacles: how far such droplets get depends on the number of "
      "vertices"},
     {Doubt::array_repeats, 'r', "array_repeats",
-     "runs went farther than the box, where obstacles repeat: a droplet that passes them once passes them "
+     "runs went farther than boxes times box, where obstacles repeat: what lets a droplet pass once does so "
      "again"},
     {Doubt::below_spacing, 'v', "below_spacing",
      "lambda is below one obstacle spacing (diameter + gap): it says how deep the void of release is, not "

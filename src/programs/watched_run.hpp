@@ -78,6 +78,7 @@ inline constexpr std::initializer_list<const char*> array_options = {"obstacle-g
                                                                      "seeds",
                                                                      "seed",
                                                                      "box",
+                                                                     "boxes",
                                                                      "obstacles",
                                                                      "write-obstacles"};
 /// On the standard error, what of the runs was not proved sound; nothing if all of it was.

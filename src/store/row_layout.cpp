@@ -51,7 +51,8 @@ std::vector<Column> columns() {
               "a saturated mixture");
   CLOG_COLUMN(obstacle_filling, "saturated, or filled to a given density; lattice; file");
   CLOG_COLUMN(lattice_angle, "of the lattice's rows from +x to +y [degrees]; NaN unless a lattice");
-  CLOG_COLUMN(box, "period of the obstacle array [sigma]");
+  CLOG_COLUMN(box, "period of the obstacle array across the flow [sigma]");
+  CLOG_COLUMN(boxes, "period along the flow over that across it");
   CLOG_COLUMN(seed, "seed of obstacle array and release");
   CLOG_COLUMN(vertices, "N_v of the polygon; 1 for sp");
   CLOG_COLUMN(time_step, "[t0]");

@@ -25,7 +25,7 @@ constexpr std::chrono::milliseconds pause{5};
 /// At least as many obstacles as there will be, up to the part of the area that discs leave empty.
 double num_places(const ObstacleParameters& parameters) {
   const double per_side = parameters.box / (parameters.smallest_diameter() + parameters.gap);
-  return per_side * per_side;
+  return parameters.boxes * per_side * per_side;
 }
 
 /// Names the array to processes of this executable. To others, which may make or lay out arrays otherwise, it
@@ -35,8 +35,8 @@ std::optional<std::string> shared_name(const ObstacleParameters& parameters, std
   if (stat("/proc/self/exe", &executable) != 0) return std::nullopt;
   std::ostringstream name;
   name << "clogsweep-" << std::hex << executable.st_ino << '-' << executable.st_mtim.tv_sec << '-'
-       << executable.st_mtim.tv_nsec << '-' << seed << '-' << static_cast<int>(parameters.layout)
-       << std::hexfloat;
+       << executable.st_mtim.tv_nsec << '-' << seed << '-' << static_cast<int>(parameters.layout) << '-'
+       << parameters.boxes << std::hexfloat;
   for (const double value : {parameters.gap, parameters.diameter, parameters.diameter_spread,
                              parameters.density.value_or(-1), parameters.box, parameters.lattice_angle})
     name << ',' << value;
@@ -45,14 +45,14 @@ std::optional<std::string> shared_name(const ObstacleParameters& parameters, std
 
 /// What precedes the obstacles and the starts of the cells.
 struct Header {
-  double box;
+  Period period;
   double largest_radius;
   std::uint64_t num_obstacles;
 };
 
 std::shared_ptr<const SharedMemory> publish(const std::string& name, const ObstacleArray& array) {
   const BinnedObstacles& binned = array.binned();
-  const Header header{binned.box, binned.largest_radius, binned.obstacles.size()};
+  const Header header{binned.period, binned.largest_radius, binned.obstacles.size()};
   return SharedMemory::publish(
       name, std::array{std::as_bytes(std::span(&header, 1)), std::as_bytes(binned.obstacles),
                        std::as_bytes(binned.cell_start)});
@@ -63,10 +63,10 @@ ObstacleArray array_over(std::shared_ptr<const SharedMemory> memory) {
   std::memcpy(&header, memory->bytes().data(), sizeof header);
   const auto* obstacles = reinterpret_cast<const Obstacle*>(memory->bytes().data() + sizeof header);
   const auto* cell_start = reinterpret_cast<const std::uint32_t*>(obstacles + header.num_obstacles);
-  return ObstacleArray({header.box,
+  return ObstacleArray({header.period,
                         header.largest_radius,
                         {obstacles, header.num_obstacles},
-                        {cell_start, ObstacleArray::num_cells(header.box) + 1}},
+                        {cell_start, ObstacleArray::num_cells(header.period) + 1}},
                        std::move(memory));
 }
 

@@ -78,30 +78,30 @@ double repetition_length(const RunRow& row) {
   constexpr std::string_view random[] = {"saturated", "density", "file"};
   const bool is_random =
       std::find(std::begin(random), std::end(random), row.obstacle_filling.view()) != std::end(random);
-  return is_random ? row.box : std::numeric_limits<double>::infinity();
+  return is_random ? row.box * static_cast<double>(row.boxes) : std::numeric_limits<double>::infinity();
 }
 
-bool has_met_repetition(const RunRow& row) {
-  return std::max(row.distance, std::abs(row.lateral_displacement)) > repetition_length(row);
-}
+bool has_met_repetition(const RunRow& row) { return row.distance > repetition_length(row); }
 
 std::string possible_repetition(const Plan& plan) {
   std::int64_t num_groups = 0;
-  double farthest = 0;
-  double shortest_box = std::numeric_limits<double>::infinity();
+  double farthest = 0, shortest_length = 0, most_boxes = 0;  // of the set that lacks most
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
     const RunRow row = describe(plan.task(group));
     const double way = row.terminal_speed * row.max_time;
     if (way <= repetition_length(row)) continue;
     ++num_groups;
-    farthest = std::max(farthest, way);
-    shortest_box = std::min(shortest_box, repetition_length(row));
+    if (way / row.box <= most_boxes) continue;
+    farthest = way;
+    shortest_length = repetition_length(row);
+    most_boxes = way / row.box;
   }
   if (num_groups == 0) return "";
   return "droplets of " + std::to_string(num_groups) + " of " + std::to_string(plan.num_groups()) +
-         " parameter sets may come farther than their box and meet the same obstacles again: "
+         " parameter sets may come farther than their array is long and meet the same obstacles again: "
          "terminal-speed*max-time is up to " +
-         rounded(farthest) + ", box " + rounded(shortest_box) + "; a larger box or a shorter max-time helps";
+         rounded(farthest) + ", boxes*box " + rounded(shortest_length) +
+         "; boxes=" + rounded(std::ceil(most_boxes)) + " is long enough";
 }
 
 double obstacle_spacing(const RunRow& row) { return row.obstacle_diameter + row.obstacle_gap; }

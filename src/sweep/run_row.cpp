@@ -54,7 +54,8 @@ ObstacleParameters obstacles_of(const RunRow& row) {
                                .diameter = row.obstacle_diameter,
                                .diameter_spread = row.obstacle_diameter_spread,
                                .density = {},
-                               .box = row.box};
+                               .box = row.box,
+                               .boxes = in_range<int>(row.boxes, "boxes")};
   if (row.obstacle_filling.view() == "density") obstacles.density = row.obstacle_density;
   if (row.obstacle_filling.view() == "lattice") {
     obstacles.layout = ObstacleLayout::lattice;
@@ -113,6 +114,7 @@ RunRow describe(const RunParameters& run) {
                                                                      : "saturated";
   row.lattice_angle = obstacles.layout == ObstacleLayout::lattice ? obstacles.lattice_angle : not_applicable;
   row.box = obstacles.box;
+  row.boxes = obstacles.boxes;
   row.seed = run.seed;
   row.vertices = polygon ? run.dp.vertices : 1;
   row.time_step = *run.time_step;

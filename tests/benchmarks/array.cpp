@@ -1,5 +1,5 @@
 /// What a saturated obstacle array costs: time, the memory needed while it is built, and what stays.
-///   bench_array [box]
+///   bench_array [box [boxes]]
 
 #include <sys/resource.h>
 
@@ -22,8 +22,11 @@ double peak_mebibytes() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const clog::ObstacleParameters parameters{
-      .gap = 0.2, .diameter = 0.3, .density = {}, .box = argc > 1 ? std::atof(argv[1]) : 500};
+  const clog::ObstacleParameters parameters{.gap = 0.2,
+                                            .diameter = 0.3,
+                                            .density = {},
+                                            .box = argc > 1 ? std::atof(argv[1]) : 500,
+                                            .boxes = argc > 2 ? std::atoi(argv[2]) : 1};
   const double before = peak_mebibytes();
   double first_peak = 0;
   std::size_t num_obstacles = 0;
@@ -36,6 +39,6 @@ int main(int argc, char** argv) {
     if (seed == 1) first_peak = peak_mebibytes() - before;
   }
   std::sort(seconds.begin(), seconds.end());
-  std::printf("box %.0f: %zu obstacles in %.2f s of CPU time, at most %.0f MiB meanwhile\n", parameters.box,
-              num_obstacles, seconds[2], first_peak);
+  std::printf("%d boxes of %.0f: %zu obstacles in %.2f s of CPU time, at most %.0f MiB meanwhile\n",
+              parameters.boxes, parameters.box, num_obstacles, seconds[2], first_peak);
 }

@@ -10,7 +10,7 @@ DropletState points(double x0, double x1, double y) {
   state.position.resize(4);
   state.position << x0, x1, y, y;
   state.velocity = Eigen::ArrayXd::Zero(4);
-  state.frame.box = 10;
+  state.frame.period = {10, 10};
   return state;
 }
 
@@ -33,7 +33,7 @@ TEST(DropletState, LeavesACentredDropletAlone) {
 }
 
 TEST(LocalFrame, CountsBoxesAndKeepsItsOriginInside) {
-  LocalFrame frame{.box = 10};
+  LocalFrame frame{.period = {10, 10}};
   frame.shift({23, -1});
   EXPECT_EQ(frame.origin[0], 3);
   EXPECT_EQ(frame.origin[1], 9);
@@ -41,8 +41,18 @@ TEST(LocalFrame, CountsBoxesAndKeepsItsOriginInside) {
   EXPECT_EQ(frame.image[1], -1);
 }
 
+TEST(LocalFrame, MayBeLongerAlongTheFlow) {
+  LocalFrame frame{.period = {30, 10}};
+  frame.shift({47, 12});
+  EXPECT_EQ(frame.origin[0], 17);
+  EXPECT_EQ(frame.origin[1], 2);
+  const Eigen::Array2d global = frame.global({0.5, 0.25});
+  EXPECT_EQ(global[0], 47.5);
+  EXPECT_EQ(global[1], 12.25);
+}
+
 TEST(LocalFrame, MeasuresDisplacementsAcrossBoxes) {
-  LocalFrame start{.box = 10};
+  LocalFrame start{.period = {10, 10}};
   start.shift({9, 9});
   LocalFrame end = start;
   end.shift({6001, 0});

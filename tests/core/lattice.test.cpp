@@ -156,10 +156,10 @@ TEST(Lattice, LeadsToTheOtherSideInAMirror) {
   const RunParameters run = soft_disk(13);
   const ObstacleArray array = lattice_obstacles(run.obstacles, run.seed);
   std::vector<Obstacle> mirrored(array.obstacles().begin(), array.obstacles().end());
-  for (Obstacle& obstacle : mirrored) obstacle.y = array.box() - obstacle.y;
+  for (Obstacle& obstacle : mirrored) obstacle.y = array.period().box - obstacle.y;
   const RunResult result = result_of(run_in_array(run));
   const RunResult mirror =
-      result_of(run_in_array(run, std::make_shared<ObstacleArray>(array.box(), mirrored)));
+      result_of(run_in_array(run, std::make_shared<ObstacleArray>(array.period().box, mirrored)));
   EXPECT_GT(result.lateral, 10);
   EXPECT_NEAR(mirror.lateral, -result.lateral, 1e-6);
   EXPECT_NEAR(mirror.distance, result.distance, 1e-6);
@@ -167,12 +167,14 @@ TEST(Lattice, LeadsToTheOtherSideInAMirror) {
   // And the mirror image is the lattice of the opposite tilt, up to a shift.
   const ObstacleArray opposite = lattice_obstacles(soft_disk(-13).obstacles, run.seed);
   ASSERT_EQ(opposite.obstacles().size(), mirrored.size());
-  EXPECT_EQ(opposite.box(), array.box());
+  EXPECT_EQ(opposite.period().box, array.period().box);
   const double dx = opposite.obstacles()[0].x - mirrored[0].x;
   const double dy = opposite.obstacles()[0].y - mirrored[0].y;
   for (const Obstacle& obstacle : mirrored) {
     std::vector<Obstacle> near;
-    const auto inside = [&](double value) { return value - array.box() * std::floor(value / array.box()); };
+    const auto inside = [&](double value) {
+      return value - array.period().box * std::floor(value / array.period().box);
+    };
     opposite.gather({inside(obstacle.x + dx), inside(obstacle.y + dy), 0, 0, 0, 0, 0}, near);
     ASSERT_EQ(near.size(), 1u);
     EXPECT_LT(std::hypot(near[0].x, near[0].y), 1e-9);

@@ -22,8 +22,8 @@ double brute_force_gap(const ObstacleArray& array) {
   const auto& all = array.obstacles();
   for (std::size_t i = 0; i < all.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      const double dx = std::remainder(all[i].x - all[j].x, array.box());
-      const double dy = std::remainder(all[i].y - all[j].y, array.box());
+      const double dx = std::remainder(all[i].x - all[j].x, array.period().along());
+      const double dy = std::remainder(all[i].y - all[j].y, array.period().across());
       smallest = std::min(smallest, std::hypot(dx, dy) - all[i].radius - all[j].radius);
     }
   return smallest;
@@ -60,6 +60,42 @@ TEST(SampleObstacles, LeavesNoRoomForOneMoreWhenSaturated) {
     array.gather({uniform(engine), uniform(engine), 0, 0, 0, 0, 0.6}, near);
     EXPECT_TRUE(std::any_of(near.begin(), near.end(),
                             [](const Obstacle& o) { return std::hypot(o.x, o.y) < 0.7001; }));
+  }
+}
+
+/// @param boxes  in a row along the flow, of 10 sigma each
+ObstacleParameters long_array(int boxes, std::optional<double> density = {}) {
+  return {.gap = 0.4, .diameter = 0.3, .density = density, .box = 10, .boxes = boxes};
+}
+
+TEST(SampleObstacles, FillsALongArrayAsASquareOne) {
+  const ObstacleArray array = sample_obstacles(long_array(40), 3);
+  EXPECT_EQ(array.period().along(), 400);
+  EXPECT_EQ(array.period().across(), 10);
+  EXPECT_GE(brute_force_gap(array), 0.4);
+  EXPECT_DOUBLE_EQ(array.smallest_gap(), brute_force_gap(array));
+  // Feder's coverage; the number scatters by 0.2 of the area's root over the spacing, 18 here.
+  const double expected = 0.547069 * 4000 / (std::numbers::pi / 4 * 0.49);
+  EXPECT_NEAR(static_cast<double>(array.obstacles().size()), expected, 5 * 18);
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<double> along(0, 400), across(0, 10);
+  for (int i = 0; i < 20000; ++i) {
+    std::vector<Obstacle> near;
+    array.gather({along(engine), across(engine), 0, 0, 0, 0, 0.6}, near);
+    EXPECT_TRUE(std::any_of(near.begin(), near.end(),
+                            [](const Obstacle& o) { return std::hypot(o.x, o.y) < 0.7001; }));
+  }
+  EXPECT_EQ(sample_obstacles(long_array(40, 0.35), 3).obstacles().size(), 1400u);
+}
+
+TEST(SampleObstacles, DoesNotRepeatItselfWithinALongArray) {
+  const ObstacleArray array = sample_obstacles(long_array(3), 5);
+  std::vector<std::vector<double>> heights(3);
+  for (const Obstacle& obstacle : array.obstacles())
+    heights[static_cast<int>(obstacle.x / 10)].push_back(obstacle.y);
+  for (int box = 0; box < 3; ++box) {
+    EXPECT_GT(heights[box].size(), 90u);
+    EXPECT_NE(heights[box], heights[(box + 1) % 3]);
   }
 }
 
@@ -210,8 +246,8 @@ double close_pairs(const ObstacleArray& array, double widest) {
   const auto& all = array.obstacles();
   for (std::size_t i = 0; i < all.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      const double dx = std::remainder(all[i].x - all[j].x, array.box());
-      const double dy = std::remainder(all[i].y - all[j].y, array.box());
+      const double dx = std::remainder(all[i].x - all[j].x, array.period().box);
+      const double dy = std::remainder(all[i].y - all[j].y, array.period().box);
       num_pairs += std::hypot(dx, dy) - all[i].radius - all[j].radius <= widest;
     }
   return num_pairs / static_cast<double>(all.size());
@@ -280,18 +316,23 @@ TEST(SampleObstacles, SaysWhatFitsOfAMixture) {
   }
 }
 
-TEST(ObstacleArray, GathersWhatBruteForceFinds) {
-  const double box = 12.5;
-  const ObstacleArray array = sample_obstacles({.gap = 0.4, .diameter = 0.3, .density = {}, .box = box}, 2);
-  const ObstacleArray::Window window{11, 0.5, -0.6, 2.7, -1.1, 0.9, 0.4};
+class Gathering : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Boxes, Gathering, testing::Values(1, 3));
+
+TEST_P(Gathering, FindsWhatBruteForceFinds) {
+  const ObstacleArray array =
+      sample_obstacles({.gap = 0.4, .diameter = 0.3, .density = {}, .box = 12.5, .boxes = GetParam()}, 2);
+  const Period& period = array.period();
+  // Across the far end of the period and the near side of it.
+  const ObstacleArray::Window window{period.along() - 1.5, 0.5, -0.6, 2.7, -1.1, 0.9, 0.4};
   std::vector<Obstacle> found;
   array.gather(window, found);
   std::size_t expected = 0;
   for (const Obstacle& o : array.obstacles())
     for (int i = -2; i <= 2; ++i)
       for (int j = -2; j <= 2; ++j) {
-        const double x = o.x - window.origin_x + i * box;
-        const double y = o.y - window.origin_y + j * box;
+        const double x = o.x - window.origin_x + i * period.along();
+        const double y = o.y - window.origin_y + j * period.across();
         const double margin = window.margin + o.radius;
         expected += x >= -0.6 - margin && x <= 2.7 + margin && y >= -1.1 - margin && y <= 0.9 + margin;
       }

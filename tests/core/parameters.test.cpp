@@ -50,6 +50,11 @@ INSTANTIATE_TEST_SUITE_P(
                   run.dp.area_stiffness = 1e4;
                 }},
         Refusal{"time-step=0.1 (does not resolve the drag", [](auto& run) { run.time_step = 0.1; }},
+        Refusal{"boxes=0", [](auto& run) { run.obstacles.boxes = 0; }},
+        Refusal{"boxes=2 (a lattice",
+                [](auto& run) { run.obstacles.layout = ObstacleLayout::lattice, run.obstacles.boxes = 2; }},
+        Refusal{"box=500 (the array would need more than ten gigabytes) use at most 50;",
+                [](auto& run) { run.obstacles.boxes = 10000; }},
         Refusal{"max-time=-1", [](auto& run) { run.max_time = -1; }},
         Refusal{"max-time=0.0001 (shorter", [](auto& run) { run.max_time = 1e-4; }},
         Refusal{"clog-energy=0.1", [](auto& run) { run.clog_energy = 0.1; }},

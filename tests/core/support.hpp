@@ -38,7 +38,7 @@ inline DropletState state_of(const Eigen::ArrayXd& position, double box = 20) {
   DropletState state;
   state.position = position;
   state.velocity = Eigen::ArrayXd::Zero(position.size());
-  state.frame.box = box;
+  state.frame.period = {box, box};
   return state;
 }
 

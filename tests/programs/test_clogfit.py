@@ -140,7 +140,7 @@ class Fit(ProgramTest):
 
     def test_runs_that_went_farther_than_the_box_are_counted_and_doubted(self):
         self.sweep("seeds=1..6", *FAR)
-        self.change(distance=[1, 5, 20, 19, 3, 2], lateral_displacement=[0, 0, 0, 0, 1, 0], status=[b"clogged"] * 6)
+        self.change(distance=[1, 5, 20, 19, 3, 2], status=[b"clogged"] * 6)
         group, = self.fit()["groups"]
         self.assertEqual((group["repeating"], group["doubts"]), (0, None))
         self.change(distance=[1, 5, 20.1, 30, 3, 2])
@@ -148,6 +148,11 @@ class Fit(ProgramTest):
         group, = fit["groups"]
         self.assertEqual((group["repeating"], group["doubts"]), (2, "array_repeats"))
         self.assertIn("r: " + fit["doubts"]["array_repeats"], self.succeed("clogfit", "sweep.h5").stdout)
+
+    def test_a_long_array_repeats_later(self):
+        self.sweep("seeds=1..6", *FAR, "boxes=1,3")
+        self.change(distance=np.repeat([1, 5, 20.1, 30, 3, 61], 2), status=[b"clogged"] * 12)
+        self.assertEqual([(group["boxes"], group["repeating"]) for group in self.fit()["groups"]], [(1, 3), (3, 1)])
 
     def test_lattices_repeat_without_a_doubt(self):
         self.sweep("seeds=1..6", *FAR, "obstacle-layout=lattice", "obstacle-gap=1.2")
@@ -213,8 +218,9 @@ class Fit(ProgramTest):
         self.sweep("max-time=60", "line-tension=2", "seeds=1..3")
         before, = self.fit()["groups"]
         self.change(model_version=3)
-        stored_rows.make_older(self.folder / "sweep.h5", "3", ["contact_range", "self_contact_range", "near_wall_cutoff"])
+        stored_rows.make_older(self.folder / "sweep.h5", "3", ["contact_range", "self_contact_range", "near_wall_cutoff", "boxes"])
         group, = self.fit()["groups"]
+        self.assertEqual(group["boxes"], 1)
         self.assertEqual(group["clogging_length"], before["clogging_length"])
         self.assertEqual((group["contact_range"], group["model_version"]), (None, 3))
 
@@ -226,7 +232,7 @@ class Fit(ProgramTest):
 
     def test_files_of_format_version_2_can_be_read(self):
         table = self.sweep("max-time=60", "line-tension=2", "seeds=1..3")
-        new = ["mean_speed_error", "transient", "travel_time", "mechanism", "wrapped_support", "num_wrapped", "num_gaps", "num_arcs"]
+        new = ["mean_speed_error", "transient", "travel_time", "mechanism", "wrapped_support", "num_wrapped", "num_gaps", "num_arcs", "boxes"]
         before, = self.fit()["groups"]
         stored_rows.make_older(self.folder / "sweep.h5", "2", new)
         group, = self.fit()["groups"]

@@ -35,6 +35,27 @@ class Run(ProgramTest):
             else:
                 self.assertEqual(row[column], again[column], column)
 
+    def test_a_droplet_in_a_long_array_does_not_meet_the_same_obstacles_again(self):
+        for boxes, repeats in ((1, True), (4, False)):
+            self.succeed("clogrun", "array", "vertices=64", "box=8", f"boxes={boxes}", "obstacle-density=0.3", "line-tension=0.3", "max-time=600",
+                         "--polygon-interval=20", "--seed=2", "--output", f"{boxes}.h5")
+            with h5py.File(self.folder / f"{boxes}.h5") as file:
+                met = file["obstacles"][:, :2].round(6).tolist()
+            one_box_before_the_last = [[round(x + 8, 6), y] for x, y in met if x + 8 < max(x for x, _ in met)]
+            self.assertGreater(len(one_box_before_the_last), 5)
+            self.assertEqual([place in met for place in one_box_before_the_last], [repeats] * len(one_box_before_the_last))
+
+    def test_a_long_array_can_be_written_and_used_again(self):
+        keys = ["vertices=64", "box=8", "boxes=3", "max-time=20"]
+        self.succeed("clogrun", "array", *keys, "--write-obstacles", "array.csv", "--output", "own.h5")
+        places = pandas.read_csv(self.folder / "array.csv")
+        self.assertGreater(places.x.max(), 23)
+        self.assertLess(places.y.max(), 8)
+        self.succeed("clogrun", "array", *keys, "--obstacles", "array.csv", "--output", "again.h5")
+        own, again = (pandas.read_hdf(self.folder / name, "runs").iloc[0] for name in ("own.h5", "again.h5"))
+        self.assertAlmostEqual(own.distance, again.distance, places=9)
+        self.assertAlmostEqual(again.obstacle_density, len(places) / (24 * 8), places=12)
+
     def test_what_was_not_proved_sound_is_said_on_the_standard_error(self):
         for system in (["array", *SMALL, "--output", "run.h5"], ["channel", "vertices=64", "--start=-1", "--output", "channel.h5"], ["sag", "vertices=64"]):
             with self.subTest(system=system[0]):
@@ -252,7 +273,7 @@ class Run(ProgramTest):
             (["array", "--polygon-interval=often", *out], ["--polygon-interval=often"]),
             (["array", "--obstacles", "missing.csv", *out], ["missing.csv"]),
             (["array", "--obstacles", "words.csv", *out], ["words.csv line 3", "four"]),
-            (["array", "--obstacles", "outside.csv", *out], ["outside.csv line 1", "outside the box"]),
+            (["array", "--obstacles", "outside.csv", *out], ["outside.csv line 1", "outside the array"]),
             (["array", "--obstacles", "overlap.csv", *out], ["overlap.csv lines 1 and 2", "overlap, by 0.3 sigma"]),
             (["array", "--obstacles", "across.csv", *out], ["across.csv lines 1 and 2", "overlap"]),
             (["array", "--obstacles", "twice.csv", *out], ["twice.csv lines 4 and 6", "overlap, by 0.3 sigma"]),

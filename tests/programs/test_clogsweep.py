@@ -145,7 +145,7 @@ class Sweep(ProgramTest):
         self.assertNotIn("box", told)
         self.assertNotIn("proved", told)
         told = self.succeed("clogsweep", *QUICK, "max-time=2000", "--dry-run").stdout
-        self.assertIn("# droplets of 1 of 1 parameter sets may come farther than their box ", told)
+        self.assertIn("# droplets of 1 of 1 parameter sets may come farther than their array is long ", told)
         self.assertIn("# not proved sound (tests/soundness/README.md): line-tension=30 ", self.succeed("clogsweep", *QUICK, "line-tension=30", "--dry-run").stdout)
 
     def test_what_was_not_proved_sound_is_said_once_when_the_sweep_starts(self):

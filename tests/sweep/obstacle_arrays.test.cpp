@@ -41,7 +41,7 @@ ObstacleParameters lattice() {
 }
 
 void expect_identical(const ObstacleArray& one, const ObstacleArray& other) {
-  EXPECT_EQ(one.box(), other.box());
+  EXPECT_EQ(one.period(), other.period());
   EXPECT_EQ(one.binned().largest_radius, other.binned().largest_radius);
   EXPECT_TRUE(std::ranges::equal(one.obstacles(), other.obstacles()));
   EXPECT_TRUE(std::ranges::equal(one.binned().cell_start, other.binned().cell_start));

@@ -65,15 +65,22 @@ TEST(Repetition, BeginsWhereADropletHasComeFartherThanTheBox) {
   EXPECT_FALSE(has_met_repetition(row));
   row.distance = 20.1;
   EXPECT_TRUE(has_met_repetition(row));
-  row.distance = 5;
-  row.lateral_displacement = -20.1;
-  EXPECT_TRUE(has_met_repetition(row));
   for (const char* filling : {"density", "file"}) {
     row.obstacle_filling = filling;
     EXPECT_TRUE(has_met_repetition(row)) << filling;
   }
   row.obstacle_filling = "channel";
   EXPECT_FALSE(has_met_repetition(row));
+}
+
+TEST(Repetition, BeginsAfterAllBoxes) {
+  RunRow row = row_of({{"box", "20"}, {"boxes", "3"}});
+  EXPECT_EQ(repetition_length(row), 60);
+  row.distance = 59;
+  row.lateral_displacement = 30;
+  EXPECT_FALSE(has_met_repetition(row));
+  row.distance = 61;
+  EXPECT_TRUE(has_met_repetition(row));
 }
 
 TEST(Repetition, IsTheNatureOfALattice) {
@@ -86,8 +93,9 @@ TEST(Repetition, IsForeseenFromTheLongestTime) {
   EXPECT_EQ(possible_repetition(plan_of({{"box", "20"}, {"max-time", "600"}})), "");
   EXPECT_EQ(possible_repetition(plan_of({{"obstacle-layout", "lattice"}, {"obstacle-gap", "1.2"}})), "");
   EXPECT_EQ(possible_repetition(plan_of({{"box", "20,500"}, {"max-time", "1e3,1e4"}})),
-            "droplets of 2 of 4 parameter sets may come farther than their box and meet the same obstacles "
-            "again: terminal-speed*max-time is up to 300, box 20; a larger box or a shorter max-time helps");
+            "droplets of 2 of 4 parameter sets may come farther than their array is long and meet the same "
+            "obstacles "
+            "again: terminal-speed*max-time is up to 300, boxes*box 20; boxes=15 is long enough");
 }
 
 TEST(ObstacleSpacing, IsFromCentreToCentre) {

@@ -10,7 +10,7 @@ namespace clog::cli {
 
 /// How the lines of an obstacle file are to be understood.
 struct ObstacleFileRules {
-  double box;               ///< centres must lie in [0, box) [sigma]
+  Period period;            ///< in which all centres must lie
   double default_diameter;  ///< for lines without one [sigma]
   double narrowest_gap;     ///< gaps between surfaces must be wider [sigma]
 };

@@ -9,30 +9,30 @@
 
 namespace clog {
 
-/// Where a droplet's local coordinates sit in the periodic plane: global = image * box + origin + local.
-/// The origin stays inside the box and follows the droplet in whole units, so coordinates stay of order one
-/// however far the droplet travels, and a droplet one box further on feels bit-identical forces.
+/// Where a droplet's local coordinates sit in the periodic plane: global = image * period + origin + local.
+/// The origin stays inside the first period and follows the droplet in whole units, so coordinates stay of
+/// order one however far the droplet travels, and a droplet one period further on feels bit-identical forces.
 struct LocalFrame {
-  double box = 0;                                ///< period [sigma]
-  Eigen::Array2d origin{0, 0};                   ///< in [0, box) [sigma]
-  Eigen::Array<std::int64_t, 2, 1> image{0, 0};  ///< whole boxes
+  Eigen::Array2d period{0, 0};                   ///< along and across the flow [sigma]
+  Eigen::Array2d origin{0, 0};                   ///< in the first period [sigma]
+  Eigen::Array<std::int64_t, 2, 1> image{0, 0};  ///< whole periods
 
   Eigen::Array2d global(const Eigen::Array2d& local) const {
-    return image.cast<double>() * box + origin + local;
+    return image.cast<double>() * period + origin + local;
   }
-  /// Displacement from a place of another frame of the same box, without forming large coordinates.
+  /// Displacement from a place of another frame of the same period, without forming large coordinates.
   Eigen::Array2d displacement(const Eigen::Array2d& local, const LocalFrame& from,
                               const Eigen::Array2d& from_local) const {
-    return (image - from.image).cast<double>() * box + (origin - from.origin) + (local - from_local);
+    return (image - from.image).cast<double>() * period + (origin - from.origin) + (local - from_local);
   }
   void save(ByteWriter& bytes) const {
-    bytes.put(box);
+    bytes.put(period);
     bytes.put(origin);
     bytes.put(image[0]);
     bytes.put(image[1]);
   }
   void restore(ByteReader& bytes) {
-    bytes.get(box);
+    bytes.get(period);
     bytes.get(origin);
     bytes.get(image[0]);
     bytes.get(image[1]);
@@ -41,8 +41,8 @@ struct LocalFrame {
   void shift(const Eigen::Array2d& step) {
     origin += step;
     for (int axis = 0; axis < 2; ++axis) {
-      while (origin[axis] >= box) origin[axis] -= box, ++image[axis];
-      while (origin[axis] < 0) origin[axis] += box, --image[axis];
+      while (origin[axis] >= period[axis]) origin[axis] -= period[axis], ++image[axis];
+      while (origin[axis] < 0) origin[axis] += period[axis], --image[axis];
     }
   }
 };

@@ -58,18 +58,35 @@ struct DpParameters {
   int vertices = 128;  ///< N_v
 };
 
+/// The rectangle after which an array repeats: square boxes in a row along the flow.
+struct Period {
+  double box = 0;  ///< [sigma]
+  int boxes = 1;
+
+  Period() = default;
+  // A single box is a period; nothing is lost in the conversion.
+  Period(double edge, int number = 1) : box(edge), boxes(number) {}
+
+  double along() const { return boxes * box; }
+  double across() const { return box; }
+  double area() const { return along() * across(); }
+  bool operator==(const Period&) const = default;
+};
+
 /// Periodic array of circular obstacles, Cheng et al., "Geometry".
 struct ObstacleParameters {
   double gap = 0.2;               ///< w_ob, smallest surface-to-surface distance [sigma]
   double diameter = 0.3;          ///< sigma_ob, of a mixture the mean of the arriving ones [sigma]
   double diameter_spread = 0;     ///< diameters are uniform in diameter (1 -+ spread)
   std::optional<double> density;  ///< obstacles per sigma^2; empty: saturated, or given by the lattice
-  double box = 500;               ///< period L in both directions [sigma]
+  double box = 500;               ///< period L across the flow [sigma]
+  int boxes = 1;                  ///< period along the flow over that across it
   ObstacleLayout layout = ObstacleLayout::random;
   double lattice_angle = 0;  ///< of the lattice's rows from +x to +y [degrees]
 
   double smallest_diameter() const { return diameter * (1 - diameter_spread); }
   double largest_diameter() const { return diameter * (1 + diameter_spread); }
+  Period period() const { return {box, boxes}; }
   bool operator==(const ObstacleParameters&) const = default;
 };
 

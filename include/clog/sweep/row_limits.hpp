@@ -14,10 +14,11 @@ std::vector<std::string> unproven_parameters(const RunRow& row);
 /// One line about all runs of a plan; empty if all are within.
 std::string unproven_parameters(const Plan& plan);
 
-/// The way after which a droplet may meet the same obstacles again [sigma]: the box of an array that stands
-/// for a random one. Infinite for lattices, which repeat by nature, and where there is no array.
+/// The way after which a droplet may meet the same obstacles again [sigma]: the length of an array that
+/// stands for a random one. Across the flow nothing comes again before. Infinite for lattices, which repeat
+/// by nature, and where there is no array.
 double repetition_length(const RunRow& row);
-/// Has the droplet come so far, along the flow or across?
+/// Has the droplet come so far?
 bool has_met_repetition(const RunRow& row);
 /// One line that says whether runs of a plan may come so far; empty if none does.
 std::string possible_repetition(const Plan& plan);

@@ -46,6 +46,7 @@ struct RunRow {
   FixedText<16> obstacle_filling;    ///< "saturated", "density" or "lattice"
   double lattice_angle = not_known;  ///< NaN unless a lattice
   double box = 0;
+  std::int64_t boxes = 1;  ///< as many as files of older versions have
   std::int64_t seed = 0;
   std::int64_t vertices = 0;  ///< 1 for sp
   double time_step = 0;

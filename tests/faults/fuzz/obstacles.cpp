@@ -13,7 +13,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   may_be_refused([&] {
     const double box = 10;
     const ObstacleArray array =
-        cli::read_obstacles(file.path(), {.box = box, .default_diameter = 0.3, .narrowest_gap = 0.02});
+        cli::read_obstacles(file.path(), {.period = box, .default_diameter = 0.3, .narrowest_gap = 0.02});
     require(array.closest_pair().gap > 0);
   });
   return 0;
