@@ -108,11 +108,7 @@ def draw(groups, abscissa, confidence):
     style.grid(axes)
     style.legend(axes, groups)
     presets = {group["preset"] for group in groups if group["model"] == "dp"}
-    note = (f"interface: {presets.pop()}; " if len(presets) == 1 else "") + f"bars: {100 * confidence:g} % confidence"
-    for reason in dict.fromkeys(reason for group in groups for reason in style.reasons_for_open_marker(group)):
-        note += f"\nopen markers: {style.OPEN_MARKERS[reason]}"
-    if any(group["clogs"] == 0 for group in groups):
-        note += "\nopen triangles: lower bound, no run clogged, dotted: through bounds"
+    note = (f"interface: {presets.pop()}; " if len(presets) == 1 else "") + style.length_note(groups, confidence)
     style.caption(axes, f"{caption(groups)}\n{note}")
     return figure
 

@@ -47,6 +47,16 @@ def reasons_for_open_marker(group):
     return [doubt for doubt in (group["doubts"] or "").split() if doubt in OPEN_MARKERS]
 
 
+def length_note(groups, confidence):
+    """What bars, open markers and triangles of draw_lengths() mean, as far as they are there."""
+    note = f"bars: {100 * confidence:g} % confidence"
+    for reason in dict.fromkeys(reason for group in groups for reason in reasons_for_open_marker(group)):
+        note += f"\nopen markers: {OPEN_MARKERS[reason]}"
+    if any(group["clogs"] == 0 for group in groups):
+        note += "\nopen triangles: lower bound, no run clogged, dotted: through bounds"
+    return note
+
+
 def main_mechanism(group):
     """What holds most of the clogs of a group."""
     return max(MECHANISM_MARKERS, key=lambda name: group[name])

@@ -49,13 +49,6 @@ def by(groups, name):
     return [(value, [group for group in groups if group[name] == value]) for value in sorted({group[name] for group in groups})]
 
 
-def length_note(groups):
-    note = "bars: 95 % confidence"
-    if any(group["clogs"] == 0 for group in groups):
-        note += "; open triangles: lower bound, no run clogged; dotted: through bounds"
-    return note
-
-
 def curves(shop, config, abscissa, parameter, quantity):
     """One curve for each value of a parameter. @param quantity  "length" or "speed" """
     groups = shop.sweep(config)
@@ -76,7 +69,7 @@ def curves(shop, config, abscissa, parameter, quantity):
     axes.set_ylabel(style.AXES[quantity])
     style.grid(axes)
     style.legend(axes, groups if quantity == "length" else ())
-    note = length_note(groups) if quantity == "length" else "bars: standard error"
+    note = style.length_note(groups, shop.confidence(config)) if quantity == "length" else "bars: standard error"
     style.caption(axes, f"{describe(groups, [parameter])}\n{note}")
     return Plate(drawing, data)
 
@@ -132,7 +125,7 @@ def sags(shop, config, groups):
 
 def over_sag(shop, configs, gap, quantity):
     drawing, axes = plt.subplots(figsize=(6.8, 5.0), layout="constrained")
-    data, captions = [], []
+    data, captions, drawn = [], [], []
     for index, config in enumerate(configs):
         groups = [group for group in shop.sweep(config) if math.isclose(group["obstacle_gap"], gap)]
         if not groups:
@@ -142,6 +135,7 @@ def over_sag(shop, configs, gap, quantity):
         (style.draw_lengths if quantity == "length" else style.draw_speeds)(axes, places, groups, index, label)
         data += numbers(groups, label, sag=places)
         captions.append(describe(groups))
+        drawn += groups
     style.logarithmic_abscissa(axes)
     if quantity == "length":
         axes.set_yscale("log")
@@ -151,7 +145,7 @@ def over_sag(shop, configs, gap, quantity):
     axes.text(0.25, 0.02, r"$\delta_s = 0.25\sigma$ ", ha="right", color="0.4", fontsize=8, transform=axes.get_xaxis_transform())
     style.grid(axes)
     axes.legend(frameon=False)
-    note = length_note(groups) if quantity == "length" else "bars: standard error"
+    note = style.length_note(drawn, shop.confidence(config)) if quantity == "length" else "bars: standard error"
     style.caption(axes, "\n".join(captions) + f"\n{note}")
     return Plate(drawing, data)
 

@@ -104,7 +104,8 @@ class Workshop:
         self._note_sweep(name)
         return [group for group in fit["groups"] if group["runs"] > 0]
 
-    def survival_confidence(self, name):
+    def confidence(self, name):
+        """Of the intervals of a sweep that sweep() has run."""
         return self._fits[name]["confidence"]
 
     def rows(self, name):

@@ -3,7 +3,7 @@
 import re
 import subprocess
 
-from programs import command, quoted, run
+from launch import command, quoted, run
 from samples import FILE, Sample
 
 NUMBERS = ["0", "-1", "1e308", "-1e308", "5e-324", "1e400", "nan", "NaN", "inf", "-inf", "0x10", "1e", "1,5", "1.5.2",

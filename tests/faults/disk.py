@@ -6,7 +6,7 @@ import resource
 import signal
 import subprocess
 
-from programs import command, quoted, run
+from launch import command, quoted, run
 from samples import FILE, Sample, check_complete, finished_rows
 from support import QUICK
 

@@ -5,7 +5,7 @@ import subprocess
 import time
 
 from processes import are_gone, descend, kill, send
-from programs import WALL_SECONDS, command, limit_time, run
+from launch import WALL_SECONDS, command, limit_time, run
 from samples import FILE, check_complete, finished_rows, stored_rows
 from support import SMALL, TIMING
 

@@ -4,7 +4,7 @@ import shutil
 import subprocess
 
 from damage import harm
-from programs import command, run
+from launch import command, run
 from samples import (FILE, REPORTS, VERIFY, check_complete, check_readers, check_resumed, rows_place, samples,
                      stored_rows)
 from support import SMALL

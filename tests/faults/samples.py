@@ -7,7 +7,7 @@ import subprocess
 import h5py
 import stored
 from command_line import UserError
-from programs import CPU_SECONDS, command, run
+from launch import CPU_SECONDS, command, run
 from support import BLOCKED, QUICK, TIMING
 
 FILE = "s.h5"

@@ -3,7 +3,7 @@
 import os
 import shutil
 
-from programs import EXIT_CODES, READER_GONE, quoted, run
+from launch import EXIT_CODES, READER_GONE, quoted, run
 from samples import FILE, Sample, check_complete, in_child, stored_rows
 
 PROFILE = "h [sigma], v [v_t], A\n-1,1,1\n-0.5,0.9,1.02\n0,0.5,1.1\n0.5,0.7,1.05\n1,1,1\n"
@@ -17,7 +17,7 @@ REPORTS = [
     ["clogfit", FILE], ["clogfit", FILE, "--format", "csv"], ["clogfit", FILE, "--format", "json"],
     ["clogfit", "--help"],
     ["clogfit", "deviation", "p.csv", "p.csv"], ["clogfit", "drag", "d.csv"], ["clogfit", "report", "--help"],
-    ["clogrun", "sag", "vertices=32", "line-tension=1"], ["clogrun", "--version"], ["clogsweep", "no-such-word"],
+    ["clogrun", "sag", "vertices=64", "line-tension=1"], ["clogrun", "--version"], ["clogsweep", "no-such-word"],
 ]
 TRAJECTORIES = [["clogrun", "array", *SHORT, "--output", "r.h5"],
                 ["clogrun", "channel", "vertices=32", "max-time=1", "--start=-1", "--output", "r.h5"]]

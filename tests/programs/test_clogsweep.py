@@ -144,7 +144,7 @@ class Sweep(ProgramTest):
         told = self.succeed("clogsweep", *QUICK, "--dry-run").stdout
         self.assertNotIn("box", told)
         self.assertNotIn("proved", told)
-        told = self.succeed("clogsweep", *QUICK, "max-time=2000", "--dry-run").stdout
+        told = self.succeed("clogsweep", *SMALL, "max-time=2000", "--dry-run").stdout
         self.assertIn("# droplets of 1 of 1 parameter sets may come farther than their array is long ", told)
         self.assertIn("# not proved sound (tests/soundness/README.md): line-tension=30 ", self.succeed("clogsweep", *QUICK, "line-tension=30", "--dry-run").stdout)
 

@@ -13,7 +13,7 @@ SMALL_SWEEP = [*QUICK, "seeds=1..3", "--verbose", "--output", "s.h5"]
 REPORTS = [["clogsweep", "--help"], ["clogsweep", "--version"], ["clogsweep", "--print-config"], ["clogsweep", *QUICK, "--dry-run"],
            ["clogsweep", "doctor"], ["clogsweep", "doctor", "--help"], ["clogsweep", "status", "done.h5"],
            ["clogsweep", "verify", "done.h5"], ["clogsweep", "replay", "done.h5", "0"],
-           ["clogrun", "--help"], ["clogrun", "sag", "vertices=32", "max-time=1"],
+           ["clogrun", "--help"], ["clogrun", "sag", "vertices=64", "max-time=1"],
            ["clogrun", "array", *QUICK, "--output", "run.h5"],
            ["clogfit", "--help"], ["clogfit", "done.h5"], ["clogfit", "done.h5", "--format", "json"],
            ["clogfit", "drag", "speeds.csv"]]
