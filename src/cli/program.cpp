@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <ctime>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <new>
 
@@ -70,6 +71,10 @@ int run_program(const std::string& program, const std::function<int()>& body) {
   } catch (const std::ios_base::failure&) {  // of std::cout
     if (is_reader_gone()) return exit_reader_gone;
     say(program + ": cannot write the output; the disk may be full");
+    return exit_user_fault;
+  } catch (const std::filesystem::filesystem_error& error) {
+    say(program + ": cannot use " + error.path1().string() + " (" + error.code().message() +
+        "); check the name and the permissions");
     return exit_user_fault;
   } catch (const std::bad_alloc&) {
     say(program + ": out of memory; a smaller box or more memory per rank helps");

@@ -51,6 +51,12 @@ class Meant(ProgramTest):
     def test_a_range_of_numbers_is_pointed_to_lin(self):
         self.refuse("clogsweep", "line-tension=0.1..0.5", "--output", "s.h5", words=["lin(0.1,0.5,5)"])
 
+    def test_a_name_that_no_file_can_have_is_the_user_s_mistake(self):
+        name = 300 * "x"
+        for program, *arguments in [["clogfit", name], ["clogsweep", "salvage", name, "--output", "w.h5"], ["clogsweep", "--output", name],
+                                    ["clogrun", "array", "--output", name], ["clogrun", "array", "--config", name, "--output", "w.h5"]]:
+            self.refuse(program, *arguments, words=["File name too long"])
+
     def test_what_is_too_stiff_blames_itself(self):
         for program in (["clogsweep"], ["clogsweep", "--dry-run"], ["clogsweep", "--print-config"], ["clogrun", "array"]):
             self.refuse(*program, "line-tension=1e300", "seeds=1", "--output", "s.h5", words=["invalid line-tension=1e+300"])
