@@ -113,6 +113,9 @@ def run(body):
         return _refuse(error)
     except OSError as error:
         return _refuse(f"cannot use {error.filename or 'a file'} ({error.strerror or error}); look at its name and permissions")
+    except KeyboardInterrupt:
+        _refuse("interrupted; what was not complete has not been written")
+        return INTERRUPTED
     except ProgramFailed as error:
         _refuse(str(error).removeprefix(f"{name().split()[0]}: "))  # clogfit report: clogfit: ...
         return error.exit_code if error.exit_code in (USER_FAULT, INTERRUPTED) else 1

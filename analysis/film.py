@@ -187,8 +187,14 @@ def path_of(output):
 
 
 def write_film(film, path, rate):
-    """@param path  see path_of(). @return the file written"""
-    return (write_mp4 if path.suffix == ".mp4" else write_gif)(film, path, rate)
+    """The path leads to a whole film, or to nothing. @param path  see path_of(). @return the file written"""
+    part = path.with_name(f"{path.stem}.part{path.suffix}")
+    try:
+        (write_mp4 if path.suffix == ".mp4" else write_gif)(film, part, rate)
+        part.rename(path)
+    finally:
+        part.unlink(missing_ok=True)
+    return path
 
 
 def write_mp4(film, path, rate):
@@ -197,7 +203,6 @@ def write_mp4(film, path, rate):
     with writer.saving(film.figure, path, dpi=DPI):
         for _ in film.play_and_hold():
             writer.grab_frame()
-    return path
 
 
 def write_gif(film, path, rate):
@@ -211,7 +216,6 @@ def write_gif(film, path, rate):
 
     frames = images()
     next(frames).save(path, save_all=True, append_images=frames, duration=1000 / rate, loop=0)
-    return path
 
 
 def write_pictures(film, folder):

@@ -96,7 +96,16 @@ void CommandLine::refuse_misspelt_command(const std::string& word) const {
 
 void CommandLine::refuse_surplus_words() const {
   std::string all;
-  for (const std::string& word : get_all(surplus_words)) all += (all.empty() ? "'" : ", '") + word + "'";
+  for (const std::string& word : get_all(surplus_words)) {
+    // Columns of the table are called like keys, with other dashes.
+    const std::size_t equals = std::min(word.find('='), word.size());
+    std::string key = word.substr(0, equals);
+    std::replace(key.begin(), key.end(), '_', '-');
+    if (sweep_keys_ == SweepKeys::accepted && is_key(key))
+      throw Error("no place for '" + word + "'; did you mean " + key +
+                  (equals < word.size() ? word.substr(equals) : "=VALUE") + "?");
+    all += (all.empty() ? "'" : ", '") + word + "'";
+  }
   throw Error("no place for " + all + " (" + surplus_remedy_ + "); see " + program_ + " --help");
 }
 

@@ -54,7 +54,8 @@ void rehearse(const std::string& path, const std::function<void()>& read) {
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
   const std::string reason =
       WIFSIGNALED(status) ? std::string("ends with ") + strsignal(WTERMSIG(status)) : "fails";
-  throw Error("cannot read " + path + " (damaged: reading it " + reason + "); take a copy, or begin anew");
+  throw Error("cannot read " + path + " (damaged: reading it " + reason +
+              "); put a copy in its place, or begin anew");
 }
 
 }  // namespace clog::store

@@ -156,7 +156,7 @@ std::string version_of(hid_t file, const std::string& path) {
 }
 
 [[noreturn]] void refuse_table(const std::string& path, const std::string& what) {
-  throw Error("cannot read " + path + " (damaged: " + what + "); take a copy, or begin anew");
+  throw Error("cannot read " + path + " (damaged: " + what + "); put a copy in its place, or begin anew");
 }
 
 /// How long a dataset is; a size that cannot be is not believed.

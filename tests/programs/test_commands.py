@@ -25,6 +25,10 @@ class Meant(ProgramTest):
         self.refuse("clogsweep", "s.h5", words=["no place for 's.h5'", "--output", "clogsweep status"])
         self.refuse("clogfit", "a.h5", "b.h5", "c.h5", words=["'b.h5', 'c.h5'", "one sweep file"])
 
+    def test_a_column_s_name_is_answered_with_the_key(self):
+        self.refuse("clogsweep", "line_tension=1", "--output", "s.h5", words=["no place for 'line_tension=1'; did you mean line-tension=1?"])
+        self.refuse("clogrun", "sag", "line-tension", "0.2", words=["no place for 'line-tension'; did you mean line-tension=VALUE?"])
+
     def test_h_is_help(self):
         for program in ("clogsweep", "clogrun", "clogfit"):
             self.assertEqual(self.succeed(program, "-h").stdout, self.succeed(program, "--help").stdout)

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import unittest
 import unittest.mock
+import unittest.mock
 import xml.etree.ElementTree as xml
 
 import h5py
@@ -254,6 +255,15 @@ class Figures(Analysis):
 
 
 class Pictures(Analysis):
+    def test_a_film_is_whole_or_not_there(self):
+        def stopped(drawn, part, rate):
+            part.write_bytes(b"half a film")
+            raise KeyboardInterrupt
+
+        with unittest.mock.patch.object(film, "write_gif", stopped), self.assertRaises(KeyboardInterrupt):
+            film.write_film(None, self.folder / "film.gif", 25)
+        self.assertEqual(list(self.folder.iterdir()), [])
+
     def test_mixtures_and_lattices_are_drawn_from_a_fit(self):
         soft_disks = ["model=sp", "wall-stiffness=0.3,3", "box=20", "max-time=300", "seeds=1..2"]
         for name, keys in [
