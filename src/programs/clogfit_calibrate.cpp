@@ -198,6 +198,10 @@ std::vector<Text> warnings(const fit::Calibration& found) {
     all.push_back(
         "no errors: the frames do not determine both, or the droplet clogs at a line tension beside this "
         "one");
+  constexpr double good = 0.2;  // speeds that agree within a fifth
+  if (found.deviation.speed > good)
+    all.push_back(
+        "Delta_v is large: no simulated droplet moves like this one; look at --orifice, units, vertices");
   constexpr double near = 1.1;
   if (found.clogging_tension < near * found.line_tension) {
     char text[96];

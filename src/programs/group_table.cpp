@@ -97,7 +97,9 @@ std::vector<std::string> result_cells(const Group& group, OptionalColumns option
   std::vector<std::string> cells = {
       std::to_string(clogging.num_runs),
       std::to_string(clogging.num_clogs),
-      bounded ? number(clogging.length) : "> " + number(clogging.interval.lower),
+      bounded                  ? number(clogging.length)
+      : clogging.num_runs == 0 ? "-"
+                               : "> " + number(clogging.interval.lower),
       bounded ? number(clogging.interval.lower) + " .. " + number(clogging.interval.upper) : "-",
       has_speed ? number(group.relative_speed.mean) : "-",
       has_speed ? number(group.relative_speed.standard_error) : "-"};

@@ -51,6 +51,12 @@ class Calibrate(ProgramTest):
         self.assertAlmostEqual(found["line_tension"], sum(tensions) / 2)
         self.assertAlmostEqual(found["line_tension_deviation"], abs(tensions[0] - tensions[1]) / math.sqrt(2))
 
+    def test_it_says_that_no_droplet_moves_like_that(self):
+        self.write("odd.csv", "\n".join(["h [sigma], v [v_t]", *(f"{0.1 * i},{2 + i % 2}" for i in range(-5, 6))]))
+        trial, = json.loads(self.succeed("clogfit", "calibrate", "odd.csv", *CHANNEL, "terminal-speed=0.05", "--format=json").stdout)["trials"]
+        self.assertGreater(trial["delta_v"], 0.2)
+        self.assertTrue(any("Delta_v is large" in warning for warning in trial["warnings"]), trial["warnings"])
+
     def test_it_finds_what_made_a_passage_close_to_a_clog(self):
         # Stiffer by 2 %, this droplet clogs; there Delta_v has narrow minima.
         line_tension, near_wall_drag = 1.0, 0.07

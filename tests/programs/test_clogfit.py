@@ -191,6 +191,7 @@ class Fit(ProgramTest):
         self.assertEqual((group["runs"], group["clogs"], group["left_out"]), (8, 6, 0))
         group, = self.fit("--from-distance", 100)["groups"]
         self.assertEqual((group["runs"], group["clogs"], group["left_out"]), (0, 0, 8))
+        self.assertNotIn("> 0", self.succeed("clogfit", "sweep.h5", "--from-distance=100").stdout)
 
     def test_each_mechanism_has_a_length_of_its_own(self):
         self.sweep("seeds=1..10", *FAR)
