@@ -55,9 +55,8 @@ inline constexpr DoubtText doubt_texts[] = {
      "runs went farther than boxes times box, where obstacles repeat: what lets a droplet pass once does so "
      "again"},
     {Doubt::below_spacing, 'v', "below_spacing",
-     "lambda is below one obstacle spacing (diameter + gap): it says how deep the void of release is, not "
-     "how "
-     "often gaps clog droplets"},
+     "lambda is below one obstacle spacing (diameter + gap): it says how deep the void of release is, "
+     "not how often gaps clog droplets"},
     {Doubt::not_proved_sound, 'u', "not_proved_sound",
      "line tension, preset or vertices are outside of what was proved sound (tests/soundness/README.md)"}};
 const DoubtText& text_of(Doubt doubt);
@@ -93,9 +92,8 @@ inline constexpr ClogMechanism causes[] = {ClogMechanism::wrapped, ClogMechanism
                                            ClogMechanism::hybrid, ClogMechanism::none};
 
 /// Groups rows by everything but the seed, in the order of their parameters.
-/// @param from_distance  clogging lengths count from here on: runs that ended before are left out of them,
-/// the
-///                       others are as long as they went beyond (left truncation) [sigma]
+/// @param from_distance  clogging lengths count from here on [sigma]: runs that ended before are left out of
+/// them, the others are as long as they went beyond (left truncation)
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence,
                               double from_distance = 0);
 

@@ -92,7 +92,7 @@ std::vector<std::int64_t> tasks_to_try(const sweep::Plan& plan) {
       const RunParameters run = plan.task(task);
       const ObstacleParameters& obstacles = run.obstacles;
       return std::tuple(run.seed, obstacles.gap, obstacles.diameter, obstacles.diameter_spread,
-                        obstacles.density, obstacles.box, obstacles.lattice_angle);
+                        obstacles.density, obstacles.box, obstacles.boxes, obstacles.lattice_angle);
     };
     return array(a) < array(b);
   });

@@ -121,8 +121,8 @@ std::vector<std::byte> read_file(const std::string& path) {
 
 File open_image(std::vector<std::byte>& image, const std::string& path) {
   prepare_library();
-  if (std::memcmp(image.data(), hdf5_mark.data(), std::min(image.size(), hdf5_mark.size())) != 0 ||
-      image.size() < hdf5_mark.size())
+  const std::string_view content(reinterpret_cast<const char*>(image.data()), image.size());
+  if (!content.starts_with(hdf5_mark))
     throw Error("cannot read " + path + " (not an HDF5 file); give a file written by clogsweep");
   const PropertyList access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_fapl_core(access, image.size(), false);

@@ -60,7 +60,7 @@ Type text_type(std::size_t length);
 /// Of a compound type; empty if there is none.
 std::string member_name(hid_t type, unsigned index);
 void write_attribute(hid_t object, const std::string& name, const std::string& text);
-/// Text of the file's size at most; empty if there is none.
+/// Empty if there is none, or one that is no text of fixed length.
 std::string read_attribute(hid_t object, const std::string& name);
 /// Name and text of every attribute of an open file's root. @throws Error naming the path
 std::vector<std::pair<std::string, std::string>> read_attributes(hid_t file, const std::string& path);

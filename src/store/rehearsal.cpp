@@ -5,7 +5,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -18,7 +17,7 @@
 namespace clog::store {
 namespace {
 
-/// [s of CPU time] Reading takes 2 s per GB on a slow disk's cache; a loop never ends.
+/// Far more than reading takes [s of CPU time]; a loop never ends.
 rlim_t patience(const std::string& path) {
   constexpr std::uintmax_t least = 10, bytes_per_second = 50'000'000;
   std::error_code none;

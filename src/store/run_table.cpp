@@ -191,18 +191,14 @@ std::vector<std::byte> packed_rows(hid_t table, const RowLayout& layout, std::si
   return packed;
 }
 
-/// Lines of the attribute with checksums, by name. A line that is none has no place in it.
-std::vector<std::pair<std::string, std::uint32_t>> check_sums_of(hid_t file) {
-  std::vector<std::pair<std::string, std::uint32_t>> all;
-  std::istringstream lines(read_attribute(file, list_name));
+/// A line of the attribute with checksums; nothing if it does not look like one.
+std::optional<std::pair<std::string, std::uint32_t>> check_sum_line(const std::string& line) {
   constexpr std::size_t num_digits = 8;
-  for (std::string line; std::getline(lines, line);) {
-    std::uint32_t sum = 0;
-    const char* end = line.data() + std::min(num_digits, line.size());
-    if (std::from_chars(line.data(), end, sum, 16).ptr == end && line.size() > num_digits + 1)
-      all.emplace_back(line.substr(num_digits + 1), sum);
-  }
-  return all;
+  if (line.size() <= num_digits + 1) return std::nullopt;
+  std::uint32_t sum = 0;
+  const char* end = line.data() + num_digits;
+  if (std::from_chars(line.data(), end, sum, 16).ptr != end) return std::nullopt;
+  return std::pair(line.substr(num_digits + 1), sum);
 }
 
 CheckSums read_check_sums(hid_t file, std::size_t num_rows, const std::string& path) {
@@ -255,15 +251,18 @@ void compare_rows(const PackedTable& table, const CheckSums& sums, Examination& 
 void compare_attributes(hid_t file, const CheckSums& sums, Examination& found) {
   const std::pair rows_line(name_of_rows(sums.size()), joint_check_sum(sums));
   bool has_rows_line = false;
-  for (const auto& line : check_sums_of(file)) {
-    const auto& [name, sum] = line;
-    has_rows_line = has_rows_line || line == rows_line;
-    if (line == rows_line) continue;
-    std::string text = read_attribute(file, name);
-    if (check_sum(text) == sum)
-      found.whole.provenance.emplace_back(name, std::move(text));
-    else
-      found.damage.push_back("its attribute " + name + " is not as it was written");
+  std::istringstream lines(read_attribute(file, list_name));
+  for (std::string line; std::getline(lines, line);) {
+    const auto listed = check_sum_line(line);
+    if (!listed) {
+      found.damage.emplace_back("a line of its attribute checksums is not as it was written");
+    } else if (*listed == rows_line) {
+      has_rows_line = true;
+    } else if (std::string text = read_attribute(file, listed->first); check_sum(text) == listed->second) {
+      found.whole.provenance.emplace_back(listed->first, std::move(text));
+    } else {
+      found.damage.push_back("its attribute " + listed->first + " is not as it was written");
+    }
   }
   if (!has_rows_line)
     found.damage.emplace_back("its table is not the one that was written: rows are missing, or exchanged");
