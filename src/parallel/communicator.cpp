@@ -8,11 +8,22 @@
 #include <thread>
 
 namespace clog::parallel {
+namespace {
+
+/// A rank that no launcher has started stands alone. Otherwise Open MPI would begin a daemon for it, which
+/// looks for ssh and takes the rank with it when it is killed; and a folder of a name that all such ranks of
+/// a user share, so that one that starts while another ends may fail.
+void stand_alone_without_launcher() {
+  for (const char* mark : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"})
+    if (std::getenv(mark)) return;
+  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
+}
+
+}  // namespace
 
 Communicator::Communicator(int& argc, char**& argv) {
-  // A rank that no launcher has started begins a daemon otherwise, which looks for ssh and takes the rank
-  // with it when it is killed. Under mpirun this says nothing.
-  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  stand_alone_without_launcher();
   MPI_Init(&argc, &argv);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &size_);

@@ -71,7 +71,10 @@ def run(case, name, *arguments, prepare=None, ranks=None, exit_codes=EXIT_CODES,
         output, error = process.communicate()
         code = None
     outcome = Outcome(title(name, arguments), code, output or b"", error or b"")
-    case.findings += wrongs(outcome, exit_codes)
+    found = list(wrongs(outcome, exit_codes))
+    if found:
+        case.note(f"{outcome.name} says: {outcome.error[-300:].decode('utf-8', 'replace').strip()}")
+    case.findings += found
     return outcome
 
 

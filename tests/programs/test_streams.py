@@ -161,6 +161,12 @@ class Alone(SweepTest):
         self.assertEqual(process.returncode, 75, error)
         self.assertEqual(set(names.split()), {"clogsweep"})
 
+    def test_it_needs_no_folder_for_its_own_files(self):
+        # All ranks of a user that stand alone would share one, and fail when one ends while another starts.
+        done = subprocess.run([str(BIN / "clogsweep"), *QUICK, "--output", "s.h5"], cwd=self.folder, env={**os.environ, "TMPDIR": "/proc"},
+                              capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+
 
 if __name__ == "__main__":
     unittest.main()
