@@ -2,28 +2,23 @@ import csv
 import html
 import json
 import math
-import multiprocessing
 import os
-import runpy
 import shutil
 import subprocess
 import sys
 import unittest
-import unittest.mock
 import unittest.mock
 import xml.etree.ElementTree as xml
 
 import h5py
 import numpy as np
 import pandas
-import tables  # noqa: F401, see run_script
-from matplotlib import image
-from matplotlib import pyplot  # noqa: F401, see run_script
+from matplotlib import image, pyplot
 
 import stored_rows
-from support import BIN, QUICK, ROOT, SMALL, ProgramTest, table
+from scripts import Analysis
+from support import BIN, QUICK, ROOT, SMALL, table
 
-sys.path.insert(1, str(ROOT / "analysis"))
 import clogging_length
 import clogs
 import film
@@ -46,49 +41,6 @@ TINY = {
 }
 SETTINGS = [f"{name}:{key}" for name, keys in TINY.items() for key in [*keys, "box=20", "seeds=1..2"]]
 SET = [word for setting in [*SETTINGS, "max-time=40", "channel:vertices=64", "channel:max-time=60", "trajectory:max-time=150"] for word in ("--set", setting)]
-
-
-def run_script(words, folder, out, error):
-    """A script of analysis/ as a person runs it, in a process forked for it: what takes a second to load is there already."""
-    os.chdir(folder)
-    for file, descriptor in [(out, 1), (error, 2)]:
-        with open(file, "w") as stream:
-            os.dup2(stream.fileno(), descriptor)
-    sys.argv, sys.path[0] = words, os.path.dirname(words[0])
-    runpy.run_path(words[0], run_name="__main__")
-
-
-class Analysis(ProgramTest):
-    def analyse(self, script, *arguments):
-        words = [str(ROOT / "analysis" / script), *map(str, arguments)]
-        out, error = self.folder / "stdout.txt", self.folder / "stderr.txt"
-        process = multiprocessing.get_context("fork").Process(target=run_script, args=(words, self.folder, out, error))
-        process.start()
-        process.join(300)
-        if process.exitcode is None:
-            process.kill()
-            self.fail(f"{words} takes more than 300 s")
-        return subprocess.CompletedProcess(words, process.exitcode, out.read_text(), error.read_text())
-
-    def draw(self, script, *arguments):
-        done = self.analyse(script, *arguments)
-        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        return done
-
-    def refuse_analysis(self, script, *arguments, words):
-        done = self.analyse(script, *arguments)
-        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
-        self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
-        for word in words:
-            self.assertIn(word, done.stderr)
-
-    def assert_picture(self, name):
-        pixels = image.imread(self.folder / f"{name}.png")
-        self.assertGreater(min(pixels.shape[:2]), 300)
-        self.assertGreater(pixels[..., :3].std(), 0.05, "a picture that is not blank")
-        margins = [pixels[:2], pixels[-2:], pixels[:, :2], pixels[:, -2:]]
-        self.assertTrue(all((margin == 1).all() for margin in margins), f"{name}: something is cut off at the margin")
-        self.assertTrue((self.folder / f"{name}.pdf").read_bytes().startswith(b"%PDF"))
 
 
 class Survival(unittest.TestCase):
