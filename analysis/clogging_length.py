@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Draws the clogging length against line tension (DP) or wall stiffness (SP), one curve per obstacle array.
 
-    analysis/clogging_length.py sweep.h5 --output clogging-length
+    analysis/clogging_length.py sweep.h5        # sweep-clogging-length.png, sweep-clogging-length.pdf
     clogfit sweep.h5 --format json | analysis/clogging_length.py /dev/stdin --output clogging-length     # the same
 
 Every number comes from clogfit, which is asked for a sweep's; nothing is fitted here. Bars are its confidence
@@ -120,6 +120,8 @@ def read_fit(path, folder):
     except OSError as error:
         raise UserError(f"cannot read {path} ({error.strerror}); give a sweep, or the output of clogfit --format json") from error
     if content.startswith(HDF5_BEGINNING):
+    except FileNotFoundError as error:
+        raise UserError(f"cannot read {path} (no such file); check the name") from error
         content = programs.run_program(programs.programs_in(folder) / "clogfit", path, "--format", "json")
     try:
         fit = json.loads(content)
@@ -131,16 +133,17 @@ def read_fit(path, folder):
 def body():
     parser = command_line.Parser(__doc__)
     parser.add_argument("sweep", type=pathlib.Path, help="file of clogsweep --output, or output of clogfit --format json")
-    parser.add_argument("--output", type=pathlib.Path, required=True, help="name without ending; .png and .pdf are made")
+    command_line.add_output(parser, "name of the picture; .png and .pdf are made (SWEEP-clogging-length)", ".png", ".pdf")
     programs.add_option(parser)
     arguments = parser.parse_args()
-    command_line.refuse_unwritable_picture(arguments.output, arguments.sweep)
+    output = arguments.output or command_line.beside(arguments.sweep, "clogging-length")
+    command_line.refuse_unwritable_picture(output, arguments.sweep)
     fit, groups = read_fit(arguments.sweep, arguments.programs)
     if not groups:
         raise UserError(f"{arguments.sweep} holds no finished runs")
     abscissa = "line_tension" if groups[0]["model"] == "dp" else "wall_stiffness"
-    style.save(draw(groups, abscissa, fit["confidence"]), arguments.output)
-    print(f"{arguments.output}.png (and .pdf)")
+    style.save(draw(groups, abscissa, fit["confidence"]), output)
+    print(f"{output}.png (and .pdf)")
     return 0
 
 

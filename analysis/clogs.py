@@ -5,7 +5,7 @@
     analysis/clogs.py sweep.h5                  # sweep-clogs.png, sweep-clogs.pdf
 
 Runs the clogged rows again until they rest (clogrun; an outline is in no table). The flow goes to the right. Touched
-obstacles are dark, arcs of contact red, the droplet's convex hull dashed. Titles say by what and how far away it clogged, how many obstacles
+obstacles are blue, arcs of contact red, the droplet's convex hull dashed. Titles say by what and how far away it clogged, how many obstacles
 it wraps and which part of its support they bear, and how many gaps and contacts it has.
 """
 
@@ -33,7 +33,7 @@ LISTS = ["line_tension", "obstacle_gap", "near_wall_drag", "seed"]
 
 
 def read_clogs(path):
-    with stored.opened(path) as file:
+    with stored.opened(path, stored.SWEEP) as file:
         rows, config = file["runs"][:], stored.attributes(file)["config"]
     return [row for row in rows if row["status"] == b"clogged" and row["model"] == b"dp"], config
 
@@ -124,28 +124,25 @@ def numbers(words):
 def body():
     parser = command_line.Parser(__doc__)
     parser.add_argument("sweep", type=pathlib.Path, help="file of clogsweep --output")
-    parser.add_argument("--output", type=pathlib.Path, help="name without ending; .png and .pdf are made (SWEEP-clogs)")
+    command_line.add_output(parser, "name of the picture; .png and .pdf are made (SWEEP-clogs)", ".png", ".pdf")
     programs.add_option(parser)
     parser.add_argument("--most", type=int, default=30, help="draw so many clogs at most, the first (%(default)s)")
     parser.add_argument("--tasks", type=numbers, help="only these, e.g. 3,17,40")
     parser.add_argument("--mechanism", choices=["wrapped", "squeezed", "hybrid", "other"], help="only these")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time (%(default)s)")
     arguments = parser.parse_args()
-    output = arguments.output or arguments.sweep.with_name(f"{arguments.sweep.stem}-clogs")
+    output = arguments.output or command_line.beside(arguments.sweep, "clogs")
     command_line.refuse_unwritable_picture(output, arguments.sweep)
     clogrun = programs.programs_in(arguments.programs) / "clogrun"
-    try:
-        rows, config = read_clogs(arguments.sweep)
-        rows = [row for row in rows if arguments.mechanism in (None, mechanism(row))]
-        if arguments.tasks:
-            missing = arguments.tasks - {row["task"] for row in rows}
-            if missing:
-                raise UserError(f"--tasks: {', '.join(map(str, sorted(missing)))} of {arguments.sweep} are no such clogged polygons")
-            rows = [row for row in rows if row["task"] in arguments.tasks]
-        else:
-            rows = rows[: arguments.most]
-    except (OSError, KeyError, ValueError) as error:
-        raise UserError(f"cannot read {arguments.sweep} ({error}); give the output of clogsweep")
+    rows, config = read_clogs(arguments.sweep)
+    rows = [row for row in rows if arguments.mechanism in (None, mechanism(row))]
+    if arguments.tasks:
+        missing = arguments.tasks - {row["task"] for row in rows}
+        if missing:
+            raise UserError(f"--tasks: {', '.join(map(str, sorted(missing)))} of {arguments.sweep} are no such clogged polygons")
+        rows = [row for row in rows if row["task"] in arguments.tasks]
+    else:
+        rows = rows[: arguments.most]
     if not rows:
         raise UserError(f"{arguments.sweep} holds no such clogged polygon")
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:

@@ -50,6 +50,22 @@ def not_negative(word):
     return number
 
 
+def add_output(parser, meaning, *endings, required=False):
+    """--output of a script. @param endings  such as ".png", that it gives its files itself: a name may have them or not"""
+    def without_ending(word):
+        path = pathlib.Path(word)
+        return path.with_suffix("") if path.suffix in endings else path
+
+    parser.add_argument("-o", "--output", type=without_ending, required=required, help=meaning)
+
+
+def beside(source, ending):
+    """The name of what is made of a file where --output gives none, such as sweep-clogs of sweep.h5."""
+    if source.exists() and not source.is_file():
+        raise UserError(f"no name for what is made of {source}; give --output")
+    return source.with_name(f"{source.stem}-{ending}")
+
+
 # How the files begin that scripts here make.
 BEGINNINGS = {"html": b"<!DOCTYPE html>", "png": b"\x89PNG\r\n", "pdf": b"%PDF-", "vtk": b"<?xml", "text": b""}
 

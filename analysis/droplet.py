@@ -6,8 +6,8 @@
     analysis/droplet.py run.h5 --output droplet --film --colour speed
 
 The flow goes to the right. In a picture the last outline is filled; earlier ones are thin, evenly spaced along the way,
-coloured by time. A film is DROPLET.mp4 if ffmpeg is there, otherwise DROPLET.gif; a name that ends in .mp4 or .gif decides
-itself, and a film that is there is never replaced. --pictures makes numbered pictures in the folder DROPLET-frames.
+coloured by time. A film is DROPLET.mp4 if ffmpeg is there, otherwise DROPLET.gif; a name that ends in .mp4 or .gif asks
+for that film, and a film that is there is never replaced. --pictures makes numbered pictures in the folder DROPLET-frames.
 The camera follows the droplet, the way of its centre is a line, and r(t) grows in a corner. The outline has the colour of
 its speed; with --colour mechanism the last frame has that of how the droplet clogged.
 
@@ -70,7 +70,7 @@ def draw(run, num_outlines):
 def body():
     parser = command_line.Parser(__doc__)
     parser.add_argument("run", type=pathlib.Path, help="output of clogrun with --polygon-interval")
-    parser.add_argument("--output", type=pathlib.Path, required=True, help="name without ending; .png and .pdf are made, or a film")
+    command_line.add_output(parser, "name of the picture, .png and .pdf are made; or of a film", ".png", ".pdf", required=True)
     parser.add_argument("--outlines", type=int, default=12, help="how many moments to show in a picture (12)")
     parser.add_argument("--film", action="store_true", help="a film instead: .mp4 (ffmpeg) or .gif")
     parser.add_argument("--pictures", action="store_true", help="numbered pictures in OUTPUT-frames instead")
@@ -82,13 +82,11 @@ def body():
         raise UserError("--rate, --outlines and --most-frames must be positive")
     if not arguments.output.parent.is_dir():
         raise UserError(f"no folder {arguments.output.parent}; make it first")
+    arguments.film |= arguments.output.suffix in film.ENDINGS
     path = film.path_of(arguments.output) if arguments.film else None
     if not arguments.film and not arguments.pictures:
         command_line.refuse_unwritable_picture(arguments.output, arguments.run)
-    try:
-        run = trajectory.read(arguments.run)
-    except ValueError as error:
-        raise UserError(error) from error
+    run = trajectory.read(arguments.run)
     if not arguments.film and not arguments.pictures:
         style.save(draw(run, arguments.outlines), arguments.output)
         print(f"{arguments.output}.png (and .pdf)")

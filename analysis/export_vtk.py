@@ -109,10 +109,11 @@ def export(run, output):
 def body():
     parser = command_line.Parser(__doc__)
     parser.add_argument("run", type=pathlib.Path, help="output of clogrun with --polygon-interval")
-    parser.add_argument("--output", type=pathlib.Path, required=True, help="name without ending")
+    command_line.add_output(parser, "name of the files; their endings are given", ".pvd", required=True)
     arguments = parser.parse_args()
+    run = trajectory.read(arguments.run)
     try:
-        print(export(trajectory.read(arguments.run), arguments.output))
+        print(export(run, arguments.output))
     except ValueError as error:
         raise UserError(error) from error
     return 0

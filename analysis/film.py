@@ -20,6 +20,7 @@ PLACE = (0.0, 0.0, 0.91, 0.93)  # of the droplet's surroundings in the figure: l
 ASPECT = SIZE[0] * PLACE[2] / (SIZE[1] * PLACE[3])
 LONGEST_STEP = 0.5  # between frames [sigma]: what moves farther cannot be followed by eye
 SECONDS_OF_VERDICT = 2
+ENDINGS = (".mp4", ".gif")
 
 
 def chosen_frames(run, most):
@@ -177,7 +178,7 @@ def path_of(output):
     """The file that a film goes to: the ending that was asked for, or .mp4 with ffmpeg, .gif otherwise.
     @throws UserError if it cannot be made, or is there"""
     has_ffmpeg = shutil.which("ffmpeg") is not None
-    if output.suffix not in (".mp4", ".gif"):
+    if output.suffix not in ENDINGS:
         output = output.with_name(output.name + (".mp4" if has_ffmpeg else ".gif"))
     if output.suffix == ".mp4" and not has_ffmpeg:
         raise UserError(f"cannot write {output} (no ffmpeg); install it, or ask for {output.with_suffix('.gif')}")

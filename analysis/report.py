@@ -215,11 +215,12 @@ def page(path, fit, status, rows, about, pictures):
 def body():
     parser = command_line.Parser(__doc__)
     parser.add_argument("sweep", type=pathlib.Path, help="output of clogsweep")
-    parser.add_argument("--output", type=pathlib.Path, required=True, help="HTML file to write")
+    command_line.add_output(parser, "HTML file to write (SWEEP-report.html)")
     parser.add_argument("--examples", type=command_line.not_negative, default=4, help="clogs to show (4); 0 runs nothing")
     programs.add_option(parser)
     arguments = parser.parse_args()
-    command_line.refuse_unwritable(arguments.output, "html", arguments.sweep)
+    output = arguments.output or command_line.beside(arguments.sweep, "report.html")
+    command_line.refuse_unwritable(output, "html", arguments.sweep)
     folder = programs.programs_in(arguments.programs)
     fit = json.loads(programs.run_program(folder / "clogfit", arguments.sweep, "--format", "json"))
     status = json.loads(programs.run_program(folder / "clogsweep", "status", arguments.sweep, "--format", "json"))
@@ -230,10 +231,10 @@ def body():
         about = stored.attributes(file)
     pictures = example_pictures(examples(clogs.read_clogs(arguments.sweep)[0], arguments.examples), about["config"], folder / "clogrun")
     try:
-        arguments.output.write_text(page(arguments.sweep, fit, status, rows, about, pictures))
+        output.write_text(page(arguments.sweep, fit, status, rows, about, pictures))
     except OSError as error:
-        raise UserError(f"cannot write {arguments.output} ({error.strerror}); give another --output") from error
-    print(arguments.output)
+        raise UserError(f"cannot write {output} ({error.strerror}); give another --output") from error
+    print(output)
     return 0
 
 

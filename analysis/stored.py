@@ -1,6 +1,7 @@
 """Files of clogsweep and clogrun, opened only if nothing in them is damaged (src/store/README.md says how that is known)."""
 
 import contextlib
+import os
 import re
 import sys
 import zlib
@@ -11,6 +12,8 @@ from command_line import UserError
 SEAL = re.compile(rb"\nclogsweep seal 1: crc32 ([0-9a-f]{8}) of ([0-9]{20}) bytes\n")
 SEAL_SIZE = 64
 OLD_VERSIONS = ("2", "3", "4")  # had no checksums
+SWEEP, RUN = "sweep", "run"
+WRITERS = {SWEEP: "the output of clogsweep", RUN: "the output of clogrun with --polygon-interval", None: "a file of clogsweep or clogrun"}
 
 
 class Damaged(UserError):
@@ -43,19 +46,55 @@ def text(value):
     return value.decode() if isinstance(value, bytes) else str(value)
 
 
+def unreadable(path, reason, kind=None):
+    """What is to be thrown where a file is not of the kind that is wanted."""
+    return UserError(f"cannot read {path} ({reason}); give {WRITERS[kind]}")
+
+
+def check_kind(path, file, kind):
+    """@throws UserError"""
+    if "runs" not in file:
+        raise unreadable(path, "an HDF5 file, but not one of clogsweep or clogrun", kind)
+    if kind == SWEEP and "trajectory" in file:
+        raise unreadable(path, "holds one run of clogrun, not a sweep", kind)
+    if kind == RUN and "trajectory" not in file:
+        raise unreadable(path, "holds a sweep, not one run of clogrun", kind)
+
+
+def check_checksums(path, file, sealed):
+    """Makes the second of the checks, unless the first has been made. @throws Damaged"""
+    if text(file.attrs.get("format_version", "")) in OLD_VERSIONS:
+        print(f"{path} is of an older format without checksums: damage to it may go unnoticed", file=sys.stderr)
+    elif not sealed:
+        try:
+            check_rows(path, file)
+        except (KeyError, ValueError, OSError) as error:
+            raise Damaged(f"cannot trust {path} (damaged: {error}); see clogsweep verify") from error
+
+
+def why_not_open(path, error):
+    if error.errno:
+        return os.strerror(error.errno)
+    return error if h5py.is_hdf5(path) else "not an HDF5 file"
+
+
 @contextlib.contextmanager
-def opened(path):
-    """The file for h5py, read only. @throws Damaged; OSError if it cannot be read"""
-    sealed = is_sealed(path)
-    with h5py.File(path, "r") as file:
-        if text(file.attrs.get("format_version", "")) in OLD_VERSIONS:
-            print(f"{path} is of an older format without checksums: damage to it may go unnoticed", file=sys.stderr)
-        elif not sealed:
-            try:
-                check_rows(path, file)
-            except (KeyError, ValueError, OSError) as error:
-                raise Damaged(f"cannot trust {path} (damaged: {error}); see clogsweep verify") from error
-        yield file
+def opened(path, kind=None):
+    """The file for h5py, read only. @param kind  SWEEP or RUN, if only that will do. @throws Damaged; UserError if it cannot be read"""
+    try:
+        sealed = is_sealed(path)
+        opened_file = h5py.File(path, "r")
+    except FileNotFoundError as error:
+        raise UserError(f"cannot read {path} (no such file); check the name") from error
+    except OSError as error:
+        raise unreadable(path, why_not_open(path, error), kind) from error
+    with opened_file as file:
+        try:
+            check_kind(path, file, kind)
+            check_checksums(path, file, sealed)
+            yield file
+        except (OSError, KeyError, ValueError) as error:
+            raise unreadable(path, error, kind) from error
 
 
 def attributes(file):

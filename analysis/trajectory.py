@@ -57,20 +57,16 @@ def contact_range(row):
 
 
 def read(path, needs_frames=True):
-    """@throws ValueError with one line if it is not a trajectory (with frames)"""
-    try:
-        with stored.opened(path) as file:
-            frames = [file[name][:] if name in file else np.empty(shape)
-                      for name, shape in [("polygons", (0, 2, 0)), ("polygon_times", (0,)),
-                                          ("obstacles", (0, 3)), ("wedges", (0, 6))]]
-            attributes = stored.attributes(file)
-            row = file["runs"][0]
-            frames[0] = refined(frames[0], row)
-            trajectory = Trajectory(pathlib.Path(path), file["trajectory"][:], row, attributes, *frames)
-    except (OSError, KeyError, ValueError) as error:
-        raise ValueError(f"cannot read {path} ({error}); give the output of clogrun with --polygon-interval") from error
+    """@throws UserError if it is not a trajectory (with frames)"""
+    with stored.opened(path, stored.RUN) as file:
+        frames = [file[name][:] if name in file else np.empty(shape)
+                  for name, shape in [("polygons", (0, 2, 0)), ("polygon_times", (0,)),
+                                      ("obstacles", (0, 3)), ("wedges", (0, 6))]]
+        row = file["runs"][0]
+        frames[0] = refined(frames[0], row)
+        trajectory = Trajectory(pathlib.Path(path), file["trajectory"][:], row, stored.attributes(file), *frames)
     if needs_frames and len(trajectory.times) == 0:
-        raise ValueError(f"cannot read {path} (holds no polygons); give the output of clogrun with --polygon-interval")
+        raise stored.unreadable(path, "holds no polygons", stored.RUN)
     return trajectory
 
 

@@ -401,7 +401,6 @@ class Pictures(Analysis):
         for arguments, words in [
             (["missing.h5", "--output", "page.html"], ["missing.h5", "no such file"]),
             (["text.h5", "--output", "page.html"], ["text.h5", "not an HDF5 file"]),
-            (["s.h5"], ["--output", "--help"]),
             (["s.h5", "--output", "nowhere/page.html"], ["no folder nowhere"]),
             (["s.h5", "--output", "folder"], ["is a folder"]),
             (["s.h5", "--output", "/dev/full"], ["/dev/full", "No space left"]),
