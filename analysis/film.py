@@ -137,9 +137,11 @@ class Film:
         self._outline.set_segments(np.stack([polygon, np.roll(polygon, -1, axis=0)], axis=1))
         if self._speeds is not None:
             self._outline.set_array(self._speeds[frame])
-        self._show_time(self._run.times[frame])
         if index == len(self) - 1:
             self._show_end()
+        else:
+            table, time = self._run.table, self._run.times[frame]
+            self._show_time(time, np.interp(time, table["time"], table["distance"]))
 
     def _look(self, low, high):
         trajectory.frame_limits(self._axes, low, high)
@@ -147,15 +149,16 @@ class Film:
         near = np.all((centres + radii > low) & (centres - radii < high), axis=1)
         self._obstacles.set_paths([Circle((x, y), diameter / 2) for x, y, diameter in self._run.obstacles[near]])
 
-    def _show_time(self, time):
+    def _show_time(self, time, distance):
         table = self._run.table
         until = np.searchsorted(table["time"], time, side="right")
         self._course.set_data(table["time"][:until], table["distance"][:until])
-        distance = np.interp(time, table["time"], table["distance"])
         self._head.set_data([time], [distance])
         self._clock.set_text(f"t = {time:.0f} t\N{SUBSCRIPT ZERO},  r = {distance:.2f} \N{GREEK SMALL LETTER SIGMA}")
 
     def _show_end(self):
+        # A certified clog's distance is that of the equilibrium, up to a hundredth of a diameter beyond the last frame.
+        self._show_time(self._run.row["time"], self._run.row["distance"])
         self._verdict.set_text(trajectory.verdict(self._run))
         self._verdict.set_visible(True)
         if self._colour_of_the_end:
