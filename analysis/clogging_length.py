@@ -63,9 +63,14 @@ def caption(groups):
         words.append("saturated arrays")
     if first["lattice_angle"] is not None:
         words.append("square lattice")
-    runs = sorted({group["runs"] for group in groups})
-    words.append(f"{runs[0]} runs a point" if len(runs) == 1 else f"{runs[0]} to {runs[-1]} runs a point")
+    words.append(style.runs_a_point(groups))
     return ", ".join(words)
+
+
+def note(groups, about_bars):
+    """The interface, if it is one, and what bars and markers mean."""
+    presets = {group["preset"] for group in groups if group["model"] == "dp"}
+    return (f"interface: {presets.pop()}; " if len(presets) == 1 else "") + about_bars
 
 
 def follows(name, groups, others):
@@ -107,9 +112,7 @@ def draw(groups, abscissa, confidence):
     axes.set_ylabel(style.AXES["length"])
     style.grid(axes)
     style.legend(axes, groups)
-    presets = {group["preset"] for group in groups if group["model"] == "dp"}
-    note = (f"interface: {presets.pop()}; " if len(presets) == 1 else "") + style.length_note(groups, confidence)
-    style.caption(axes, f"{caption(groups)}\n{note}")
+    style.caption(axes, f"{caption(groups)}\n{note(groups, style.length_note(groups, confidence))}")
     return figure
 
 
@@ -117,11 +120,11 @@ def read_fit(path, folder):
     """What clogfit says of a sweep. @param path  of the sweep, or of clogfit's JSON; @param folder  of the programs"""
     try:
         content = path.read_bytes()
+    except FileNotFoundError as error:
+        raise UserError(f"cannot read {path} (no such file); check the name") from error
     except OSError as error:
         raise UserError(f"cannot read {path} ({error.strerror}); give a sweep, or the output of clogfit --format json") from error
     if content.startswith(HDF5_BEGINNING):
-    except FileNotFoundError as error:
-        raise UserError(f"cannot read {path} (no such file); check the name") from error
         content = programs.run_program(programs.programs_in(folder) / "clogfit", path, "--format", "json")
     try:
         fit = json.loads(content)

@@ -90,12 +90,10 @@ def hull(points):
 
 def title(row):
     """What clogged and how, in words."""
-    def count(number, name):
-        return f"{number} {name}" if number == 1 else f"{number} {name}s"
     wrapped = f"{row['num_wrapped']} wrapped (bears {100 * row['wrapped_support']:.0f} %)" if row["num_wrapped"] > 0 else "none wrapped"
     return (rf"task {row['task']}: {mechanism(row)} after $r = {rounded.plain(row['distance'])}\,\sigma$" "\n"
             rf"$\Gamma = {row['line_tension']:g}$, smallest gap ${row['obstacle_gap']:g}\,\sigma$, seed {row['seed']}" "\n"
-            f"{wrapped}, {count(row['num_gaps'], 'gap')}, {count(row['num_arcs'], 'contact')}")
+            f"{wrapped}, {rounded.counted(row['num_gaps'], 'gap')}, {rounded.counted(row['num_arcs'], 'contact')}")
 
 
 def draw(axes, row, polygon, obstacles):

@@ -26,6 +26,7 @@ with command_line.needs_modules():
     import rounded
     import stored
     import style
+    import survival_curve
     from style import plt
 
 SYMBOLS = {"line_tension": r"\Gamma", "wall_stiffness": "E_w"}
@@ -61,28 +62,28 @@ def speeds(groups, abscissa):
     axes.set_ylabel(style.AXES["speed"])
     style.grid(axes)
     style.legend(axes)
-    style.caption(axes, f"{clogging_length.caption(groups)}\nbars: standard error")
+    style.caption(axes, f"{clogging_length.caption(groups)}\n{clogging_length.note(groups, 'bars: standard error')}")
     return figure
 
 
 def survival(label, groups, abscissa):
-    """P(r) of the groups of one curve, each with the exponential of its length."""
+    """P(r) of the groups of one curve to their longest ways, each with the exponential of its length if it is known."""
     figure, axes = plt.subplots(figsize=(6.4, 4.8), layout="constrained")
     for group, colour in zip(groups, plt.get_cmap("viridis")(np.linspace(0, 0.9, len(groups)))):
-        if not group["survival"]:
-            continue
-        r = group["clogging_length"] * np.logspace(-2, 1, 100)
-        axes.plot(r, np.exp(-r / group["clogging_length"]), color=colour, linewidth=0.8, linestyle="--")
-        distances = [min(r[0], group["survival"][0]["distance"]), *(step["distance"] for step in group["survival"])]
-        axes.step(distances, [1.0, *(step["probability"] for step in group["survival"])], where="post", color=colour, linewidth=1.5,
-                  label=f"${SYMBOLS[abscissa]} = {group[abscissa]:g}$")
+        begin = 0.01 * survival_curve.longest_way(group)
+        if group["survival"]:
+            r = group["clogging_length"] * np.logspace(-2, 1, 100)
+            axes.plot(r, np.exp(-r / group["clogging_length"]), color=colour, linewidth=0.8, linestyle="--")
+            begin = min(r[0], group["survival"][0]["distance"])
+        survival_curve.draw(axes, group, colour, f"${SYMBOLS[abscissa]} = {group[abscissa]:g}$", begin=begin)
     axes.set_xscale("log")
     axes.set_ylim(0, 1.02)
     axes.set_xlabel(r"displacement along the flow $r/\sigma$")
     axes.set_ylabel("probability $P(r)$ of not having clogged")
     style.grid(axes)
     axes.legend(frameon=False, fontsize=8, ncols=1 + len(groups) // 8)
-    style.caption(axes, f"{label}\nsteps: runs; dashed: exponential of the same length")
+    style.caption(axes, f"{label or clogging_length.caption(groups)}\nsteps: clogs; ticks: runs last seen going; "
+                        "dashed: exponential of the same length")
     return figure
 
 
@@ -136,7 +137,7 @@ def doubts(groups, sentences, rows):
     words = []
     for name in dict.fromkeys(name for group in groups for name in (group["doubts"] or "").split()):
         count = sum(name in (group["doubts"] or "").split() for group in groups)
-        words.append(f"<li class=doubt>{count} of {len(groups)} points: {html.escape(sentences[name])}</li>")
+        words.append(f"<li class=doubt>{count} of {rounded.counted(len(groups), 'point')}: {html.escape(sentences[name])}</li>")
     failed = rows[rows.status == "failed"]
     for _, row in failed.head(5).iterrows():
         words.append(f"<li class=doubt>task {row.task} (seed {row.seed}) failed: {html.escape(row.message)}</li>")
@@ -181,7 +182,7 @@ def example_pictures(shown, config, clogrun):
 def progress_of(status, rows):
     """@param status  of clogsweep status; @param rows  the tasks that have begun"""
     counts = ", ".join(f"{count} {name}" for name, count in rows.status.value_counts().items())
-    return f"{status['over']} of {status['runs']} runs are over ({counts})"
+    return f"{status['over']} of {rounded.counted(status['runs'], 'run')} finished ({counts})"
 
 
 def page(path, fit, status, rows, about, pictures):
@@ -191,7 +192,7 @@ def page(path, fit, status, rows, about, pictures):
     if any(group["relative_speed"] is not None for group in groups):
         curves += picture(speeds(groups, abscissa), "mean speed over terminal speed")
     families = list(clogging_length.curves(groups, abscissa))
-    survivals = "".join(picture(survival(label, members, abscissa), "P(r), to the last clog") for label, members in families
+    survivals = "".join(picture(survival(label, members, abscissa), "P(r), to the longest way") for label, members in families
                         if any(group["survival"] for group in members))
     ends = "".join(picture(causes(label, members, abscissa), "clogs by mechanism") for label, members in families)
     provenance = "\n".join([f"{key}: {about[key]}" for key in ("command_line", "version", "git_hash", "compiler", "mpi_version", "hdf5_version", "start_time", "num_ranks")
@@ -199,7 +200,7 @@ def page(path, fit, status, rows, about, pictures):
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{html.escape(path.name)}</title><style>{STYLE}</style></head><body>
 <h1>Sweep {html.escape(path.name)}</h1>
-<p class="about">{html.escape(progress_of(status, rows))}, {len(groups)} points.
+<p class="about">{html.escape(progress_of(status, rows))}, {rounded.counted(len(groups), "point")}.
 &lambda; is the way after which 1/e of the droplets have not clogged, in droplet diameters; v<sub>t</sub> is the speed of a free droplet.</p>
 <h2>Curves</h2><div class="pictures">{curves}</div>
 <h2>How far droplets get</h2><div class="pictures">{survivals}</div>

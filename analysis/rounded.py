@@ -1,4 +1,5 @@
-"""Numbers as they are printed: with as many figures as their uncertainty allows, three at least."""
+"""Numbers as they are printed: counts with their noun, others with as many figures as their uncertainty allows, three
+at least."""
 
 import math
 
@@ -23,6 +24,11 @@ def plain(value, figures=LEAST_FIGURES):
     if rounded and not -5 < exponent(rounded) < 6:
         return f"{value:.{figures - 1}e}"
     return f"{rounded:.{max(0, figures - 1 - exponent(rounded))}f}"
+
+
+def counted(number, noun):
+    """Such as 1 run, 2 runs."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
 def with_interval(value, lower, upper):

@@ -3,6 +3,7 @@
 import math
 
 import matplotlib
+import rounded
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
@@ -118,7 +119,7 @@ def side_by_side(index, num_curves):
 def far_apart(values):
     """Of values on a logarithmic axis those whose labels have room side by side."""
     values = sorted(set(values))
-    room = 0.09 * math.log(values[-1] / values[0])
+    room = 0.08 * math.log(values[-1] / values[0])
     kept = values[:1]
     for value in values[1:]:
         if math.log(value / kept[-1]) >= room:
@@ -135,6 +136,10 @@ def logarithmic_abscissa(axes, values=()):
         axis.set_ticks(far_apart(values), minor=False)
         axis.set_ticks(values, minor=True)
         axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
+    if values:
+        # Ticks widen an axis without a margin: what is drawn at the last one would lie on the frame.
+        margin = (max(values) / min(values)) ** 0.05 if max(values) > min(values) else 1.3
+        axes.set_xlim(min(values) / margin, max(values) * margin)
 
 
 def grid(axes):
@@ -142,8 +147,32 @@ def grid(axes):
     axes.set_axisbelow(True)
 
 
+def runs_a_point(groups):
+    counts = sorted({group["runs"] for group in groups})
+    return f"{rounded.counted(counts[0], 'run')} a point" if len(counts) == 1 else f"{counts[0]} to {counts[-1]} runs a point"
+
+
 def caption(axes, text):
-    axes.set_title(text, fontsize=8, color="0.25")
+    """Above the axes; lines that are wider than these go on below."""
+    title = axes.set_title(text, fontsize=8, color="0.25")
+    renderer = axes.figure.canvas.get_renderer()
+    widest = 1.1 * axes.get_window_extent(renderer).width  # the layout makes axes wider than they are now
+
+    def fits(line):
+        title.set_text(line)
+        return title.get_window_extent(renderer).width <= widest
+
+    lines = []
+    for line in text.split("\n"):
+        first, *others = line.split(", ")
+        lines.append(first)
+        for phrase in others:
+            if fits(f"{lines[-1]}, {phrase}"):
+                lines[-1] += f", {phrase}"
+            else:
+                lines[-1] += ","
+                lines.append(phrase)
+    title.set_text("\n".join(lines))
 
 
 def save(figure, output, metadata=None):

@@ -3,7 +3,9 @@
 import math
 
 import numpy as np
+import rounded
 import style
+import survival_curve
 import trajectory
 from paper.plate import Plate, figure, interface_of
 from command_line import UserError
@@ -11,11 +13,6 @@ from style import plt
 
 SYMBOLS = {"obstacle_gap": r"w_\mathrm{ob}/\sigma", "obstacle_diameter": r"\sigma_\mathrm{ob}/\sigma",
            "near_wall_drag": r"b_0/b_\infty"}
-
-
-def runs_of(groups):
-    counts = sorted({group["runs"] for group in groups})
-    return f"{counts[0]} runs a point" if len(counts) == 1 else f"{counts[0]} to {counts[-1]} runs a point"
 
 
 def describe(groups, without=()):
@@ -27,7 +24,7 @@ def describe(groups, without=()):
             words.append(f"${symbol} = {first[name]:g}$")
     words.append("saturated arrays" if first["obstacle_filling"] == "saturated" else rf"$\rho_\mathrm{{ob}}\sigma^2 = {first['obstacle_density']:g}$")
     words += [f"$V_t = {first['terminal_speed']:g}$", f"$T = {first['max_time']:g}\\,t_0$", f"$L = {first['box']:g}\\sigma$"]
-    line = f"{runs_of(groups)}"
+    line = style.runs_a_point(groups)
     if first["model"] == "dp":
         words.insert(0, f"$N_v = {first['vertices']}$")
         line += f"; interface: {interface_of(first['preset'])}"
@@ -311,27 +308,14 @@ def kinetic_energy(shop):
     return Plate(drawing, data)
 
 
-def beyond(steps, distances):
-    """P(r) of the estimate at these distances."""
-    values = np.array([1.0] + [step["probability"] for step in steps])
-    return values[np.searchsorted([step["distance"] for step in steps], distances, side="right")]
-
-
-def draw_survival(axes, group):
-    """The estimate and its band to the longest way, ticks where runs were last seen going. @return  the longest way"""
-    steps, censored = group["survival"], group["censored_distances"]
-    end = max([steps[-1]["distance"], *censored])
+def draw_band(axes, group):
+    """The error of P(r), to the longest way."""
+    steps = group["survival"]
     known = [step for step in steps if step["lower"] is not None]  # not of the last one if no run is left
-    band_end = end if known == steps else steps[-1]["distance"]
-    axes.fill_between([0.0] + [step["distance"] for step in known] + [band_end], *(
+    end = survival_curve.longest_way(group) if known == steps else steps[-1]["distance"]
+    axes.fill_between([0.0] + [step["distance"] for step in known] + [end], *(
         [1.0] + [step[bound] for step in known] + [known[-1][bound] if known else 1.0] for bound in ("lower", "upper")),
         step="post", color=style.COLOURS[0], alpha=0.2, linewidth=0, label="95 %, log-log")
-    axes.step([0.0] + [step["distance"] for step in steps] + [end], [1.0] + [step["probability"] for step in steps] + [steps[-1]["probability"]],
-              where="post", color=style.COLOURS[0], linewidth=1.2, label=f"{group['runs']} runs, {group['clogs']} clogs")
-    if censored:
-        axes.plot(censored, beyond(steps, censored), linestyle="none", marker="|", markersize=9, markeredgewidth=1.2, color=style.COLOURS[0],
-                  label=f"last seen going ({len(censored)} runs)")
-    return end
 
 
 def lowest_shown(group, end):
@@ -346,7 +330,10 @@ def survival(shop):
     if not group["survival"]:
         raise UserError(f"no run has clogged in {shop.sweep_file('survival')}; raise max-time or seeds")
     drawing, axes = plt.subplots(figsize=(6.8, 5.0), layout="constrained")
-    end = draw_survival(axes, group)
+    draw_band(axes, group)
+    survival_curve.draw(axes, group, style.COLOURS[0], f"{rounded.counted(group['runs'], 'run')}, {rounded.counted(group['clogs'], 'clog')}",
+                        f"last seen going ({rounded.counted(len(group['censored_distances']), 'run')})")
+    end = survival_curve.longest_way(group)
     length, lower, upper = (group[f"clogging_length{bound}"] for bound in ("", "_lower", "_upper"))
     r = np.linspace(0, end, 200)
     axes.plot(r, np.exp(-r / length), color=style.COLOURS[1], linewidth=1.4,

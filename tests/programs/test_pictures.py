@@ -1,9 +1,21 @@
-"""How the scripts of analysis/ are called."""
+"""How the scripts of analysis/ are called, and what their pictures and pages say."""
 
+import json
 import unittest
+
+from matplotlib import pyplot
 
 from scripts import Analysis
 from support import BIN, QUICK
+
+import clogging_length
+import film
+import report
+import rounded
+import style
+import trajectory
+
+ONE_CURVE = [*QUICK, "line-tension=0.5,3", "seeds=1..2", "near-wall-drag=0.07", "obstacle-gap=0.35", "terminal-speed=0.032"]
 
 
 class Calls(Analysis):
@@ -44,6 +56,76 @@ class Calls(Analysis):
 
     def test_the_colour_of_obstacles_is_the_one_in_the_help(self):
         self.assertIn("obstacles are blue", " ".join(self.draw("clogs.py", "--help").stdout.split()))
+
+
+class Looks(Analysis):
+    def fit(self, *keys):
+        self.succeed("clogsweep", *keys, "--output", "s.h5")
+        return json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
+
+    def assert_title_is_whole(self, drawing):
+        drawing.canvas.draw()
+        page = drawing.bbox
+        for axes in drawing.axes:
+            title = axes.title.get_window_extent()
+            self.assertTrue(page.x0 < title.x0 and title.x1 < page.x1 and title.y1 < page.y1, axes.get_title())
+
+    def test_one_curve_has_its_whole_title_the_interface_and_room_at_the_frame(self):
+        groups = self.fit(*ONE_CURVE)
+        for drawing in (clogging_length.draw(groups, "line_tension", 0.95), report.speeds(groups, "line_tension"), report.survival("", groups, "line_tension")):
+            self.addCleanup(pyplot.close, drawing)
+            self.assert_title_is_whole(drawing)
+            self.assertIn("2 runs a point", drawing.axes[0].get_title())
+        # The speed of the stiffer droplets, which clog at once, is not known.
+        drawing = report.speeds([groups[0] | {"relative_speed": 0.4, "relative_speed_error": 0.1}, groups[1] | {"relative_speed": None}], "line_tension")
+        self.addCleanup(pyplot.close, drawing)
+        axes = drawing.axes[0]
+        self.assertIn("interface: robust", axes.get_title())
+        low, high = axes.get_xlim()
+        self.assertTrue(low < 0.5 and high > 3, (low, high))
+
+    def test_long_captions_of_panels_are_wrapped_between_phrases(self):
+        drawing, panels = pyplot.subplots(1, 2, figsize=(7, 3), layout="constrained")
+        self.addCleanup(pyplot.close, drawing)
+        phrases = [rf"$\sigma_\mathrm{{ob}}/\sigma = {number}$" for number in range(9)]
+        for axes in panels:
+            style.caption(axes, ", ".join(phrases) + "\nsecond line")
+            lines = axes.get_title().split("\n")
+            self.assertGreater(len(lines), 2)
+            self.assertEqual(" ".join(lines[:-1]).split(", "), phrases)
+            self.assertEqual(lines[-1], "second line")
+        self.assert_title_is_whole(drawing)
+
+    def test_p_of_r_goes_to_the_longest_way_in_a_report_too(self):
+        steps = [{"distance": 2.0, "probability": 0.75, "lower": 0.1, "upper": 0.9}]
+        groups = [{"line_tension": 0.3, "clogging_length": 8.0, "survival": steps, "censored_distances": [3.0, 9.0]},
+                  {"line_tension": 0.1, "clogging_length": None, "survival": [], "censored_distances": [40.0]}]
+        drawing = report.survival("two", groups, "line_tension")
+        self.addCleanup(pyplot.close, drawing)
+        curves = [line.get_xydata() for line in drawing.axes[0].lines if line.get_drawstyle() == "steps-post"]
+        self.assertEqual([curve[-1].tolist() for curve in curves], [[9, 0.75], [40, 1]])
+        self.assertTrue(all(curve[0, 0] > 0 and curve[0, 1] == 1 for curve in curves), "it begins where the scale does")
+        ticks = [line.get_xydata().tolist() for line in drawing.axes[0].lines if line.get_marker() == "|"]
+        self.assertEqual(ticks, [[[3, 0.75], [9, 0.75]], [[40, 1]]])
+
+    def test_one_is_no_plural(self):
+        self.assertEqual([rounded.counted(number, "run") for number in (0, 1, 2)], ["0 runs", "1 run", "2 runs"])
+        self.assertEqual([style.runs_a_point([{"runs": runs} for runs in all_runs]) for all_runs in ([1, 1], [4], [1, 3])],
+                         ["1 run a point", "4 runs a point", "1 to 3 runs a point"])
+        self.succeed("clogsweep", *QUICK, "seeds=1", "--output", "s.h5")
+        self.succeed("clogfit", "report", "s.h5", "--output", "s.html", "--examples", 0)
+        self.assertNotRegex((self.folder / "s.html").read_text(), r"\b1 (runs|points|clogs|gaps|contacts)\b")
+
+    def test_the_last_frame_of_a_film_is_the_end_of_the_run(self):
+        self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 20, "--output", "run.h5")
+        run = trajectory.read(self.folder / "run.h5")
+        # As of a certified clog, whose equilibrium is beyond the last frame.
+        run.row["distance"] = run.table["distance"][-1] + 0.01
+        moving = film.Film(run, film.chosen_frames(run, 50), "speed", 20)
+        self.addCleanup(pyplot.close, moving.figure)
+        moving.show(len(moving) - 1)
+        end = f"r = {run.row['distance']:.2f} "
+        self.assertTrue(any(end in text.get_text() for text in moving.figure.texts), [text.get_text() for text in moving.figure.texts])
 
 
 if __name__ == "__main__":
