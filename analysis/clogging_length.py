@@ -38,6 +38,7 @@ CURVE_PARAMETERS = [
     ("boxes", r"n_\mathrm{box}"),
     ("clog_energy", r"E_k/E_t"),
 ]
+IN_CAPTION = {"obstacle_gap", "obstacle_diameter", "lattice_angle", "near_wall_drag", "terminal_speed", "vertices"}
 # Their automatic values follow from the others; then they make no curve of their own.
 AUTOMATIC_PARAMETERS = [
     ("time_step", r"\Delta t/t_0"),
@@ -57,7 +58,8 @@ def caption(groups):
     words = ["deformable polygon" if first["model"] == "dp" else "soft disk"]
     for name, symbol in CURVE_PARAMETERS:
         is_common = first[name] is not None and all(group[name] == first[name] for group in groups)
-        if is_common and name in ("obstacle_gap", "obstacle_diameter", "lattice_angle", "near_wall_drag", "terminal_speed", "vertices"):
+        is_of_model = first["model"] == "dp" or name not in ("near_wall_drag", "vertices")
+        if is_common and is_of_model and name in IN_CAPTION:
             words.append(f"${symbol} = {number(first[name])}$")
     if all(group["obstacle_filling"] == "saturated" for group in groups):
         words.append("saturated arrays")

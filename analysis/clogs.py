@@ -5,8 +5,8 @@
     analysis/clogs.py sweep.h5                  # sweep-clogs.png, sweep-clogs.pdf
 
 Runs the clogged rows again until they rest (clogrun; an outline is in no table). The flow goes to the right. Touched
-obstacles are blue, arcs of contact red, the droplet's convex hull dashed. Titles say by what and how far away it clogged, how many obstacles
-it wraps and which part of its support they bear, and how many gaps and contacts it has.
+obstacles are blue, arcs of contact red, the droplet's convex hull dashed. Titles say by what and how far away it
+clogged, how many obstacles it wraps and which part of its support they bear, and how many gaps and contacts it has.
 """
 
 import concurrent.futures
@@ -114,9 +114,16 @@ def draw(axes, row, polygon, obstacles):
     axes.set_title(title(row), fontsize=8)
 
 
-def numbers(words):
-    """Type of an option; argparse names it in its error."""
-    return {int(word) for word in words.split(",")}
+def chosen(clogs, arguments):
+    """@throws UserError where there is none, or not all of --tasks"""
+    if not clogs:
+        raise UserError(f"{arguments.sweep} holds no clogged polygon (soft disks are none); let it go on, or farther (max-time)")
+    rows = [row for row in clogs if arguments.mechanism in (None, mechanism(row))]
+    missing = (arguments.tasks or set()) - {row["task"] for row in rows}
+    if missing or not rows:
+        which = f"--tasks {', '.join(map(str, sorted(missing)))}" if missing else f"--mechanism {arguments.mechanism}"
+        raise UserError(f"{which}: {arguments.sweep} holds no such clogged polygon; clogfit counts them")
+    return [row for row in rows if row["task"] in arguments.tasks] if arguments.tasks else rows[: arguments.most]
 
 
 def body():
@@ -124,25 +131,16 @@ def body():
     parser.add_argument("sweep", type=pathlib.Path, help="file of clogsweep --output")
     command_line.add_output(parser, "name of the picture; .png and .pdf are made (SWEEP-clogs)", ".png", ".pdf")
     programs.add_option(parser)
-    parser.add_argument("--most", type=int, default=30, help="draw so many clogs at most, the first (%(default)s)")
-    parser.add_argument("--tasks", type=numbers, help="only these, e.g. 3,17,40")
+    parser.add_argument("--most", type=command_line.whole(1), default=30, help="draw so many clogs at most, the first (%(default)s)")
+    parser.add_argument("--tasks", type=command_line.tasks, help="only these, e.g. 3,17,40")
     parser.add_argument("--mechanism", choices=["wrapped", "squeezed", "hybrid", "other"], help="only these")
-    parser.add_argument("--jobs", type=int, default=2, help="runs at a time (%(default)s)")
+    parser.add_argument("--jobs", type=command_line.whole(1), default=2, help="runs at a time (%(default)s)")
     arguments = parser.parse_args()
     output = arguments.output or command_line.beside(arguments.sweep, "clogs")
     command_line.refuse_unwritable_picture(output, arguments.sweep)
     clogrun = programs.programs_in(arguments.programs) / "clogrun"
     rows, config = read_clogs(arguments.sweep)
-    rows = [row for row in rows if arguments.mechanism in (None, mechanism(row))]
-    if arguments.tasks:
-        missing = arguments.tasks - {row["task"] for row in rows}
-        if missing:
-            raise UserError(f"--tasks: {', '.join(map(str, sorted(missing)))} of {arguments.sweep} are no such clogged polygons")
-        rows = [row for row in rows if row["task"] in arguments.tasks]
-    else:
-        rows = rows[: arguments.most]
-    if not rows:
-        raise UserError(f"{arguments.sweep} holds no such clogged polygon")
+    rows = chosen(rows, arguments)
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
         config_file = pathlib.Path(folder) / "sweep.cfg"
         config_file.write_text(config)

@@ -42,12 +42,21 @@ class Parser(argparse.ArgumentParser):
         raise UserError(f"{message}; {name()} --help lists the options")
 
 
-def not_negative(word):
-    """Type of an option."""
-    number = int(word)
-    if number < 0:
-        raise argparse.ArgumentTypeError(f"invalid value: {word} (must be 0 or more)")
+def whole(least):
+    """Type of an option: a whole number that is not less."""
+    def number(word):
+        if not word.lstrip("+-").isdecimal() or int(word) < least:
+            raise argparse.ArgumentTypeError(f"invalid value: {word} (must be a whole number, {least} or more)")
+        return int(word)
+
     return number
+
+
+def tasks(word):
+    """Type of an option: numbers of tasks."""
+    if not all(part.isdecimal() for part in word.split(",")):
+        raise argparse.ArgumentTypeError(f"invalid value: {word} (must be whole numbers with commas between them) try 3,17,40")
+    return {int(part) for part in word.split(",")}
 
 
 def add_output(parser, meaning, *endings, required=False):

@@ -71,15 +71,13 @@ def body():
     parser = command_line.Parser(__doc__)
     parser.add_argument("run", type=pathlib.Path, help="output of clogrun with --polygon-interval")
     command_line.add_output(parser, "name of the picture, .png and .pdf are made; or of a film", ".png", ".pdf", required=True)
-    parser.add_argument("--outlines", type=int, default=12, help="how many moments to show in a picture (12)")
+    parser.add_argument("--outlines", type=command_line.whole(1), default=12, help="how many moments to show in a picture (12)")
     parser.add_argument("--film", action="store_true", help="a film instead: .mp4 (ffmpeg) or .gif")
     parser.add_argument("--pictures", action="store_true", help="numbered pictures in OUTPUT-frames instead")
     parser.add_argument("--colour", choices=["speed", "mechanism"], default="speed", help="of the droplet in a film (speed)")
-    parser.add_argument("--rate", type=int, default=20, help="frames of a film a second (20)")
-    parser.add_argument("--most-frames", type=int, default=600, help="of a film (600)")
+    parser.add_argument("--rate", type=command_line.whole(1), default=20, help="frames of a film a second (20)")
+    parser.add_argument("--most-frames", type=command_line.whole(1), default=600, help="of a film (600)")
     arguments = parser.parse_args()
-    if min(arguments.rate, arguments.outlines, arguments.most_frames) < 1:
-        raise UserError("--rate, --outlines and --most-frames must be positive")
     if not arguments.output.parent.is_dir():
         raise UserError(f"no folder {arguments.output.parent}; make it first")
     arguments.film |= arguments.output.suffix in film.ENDINGS

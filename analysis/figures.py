@@ -74,7 +74,7 @@ def parse():
     parser = command_line.Parser(__doc__)
     parser.add_argument("names", nargs="+", metavar="NAME", help="of figures, or list, or all")
     parser.add_argument("--size", choices=["reduced", "full"], default="reduced", help="reduced: minutes on two cores; full: as published")
-    parser.add_argument("--ranks", type=int, default=2, help="MPI ranks of the sweeps (2)")
+    parser.add_argument("--ranks", type=command_line.whole(1), default=2, help="MPI ranks of the sweeps (2)")
     parser.add_argument("-o", "--output", type=pathlib.Path, default=ROOT / "results" / "figures", help="folder (results/figures)")
     parser.add_argument("--draw-only", action="store_true", help="run nothing, draw from what is there")
     parser.add_argument("--profile", type=pathlib.Path, action="append", default=[], metavar="FILE.csv",
@@ -94,8 +94,6 @@ def body():
     for name in names:
         if name not in CATALOGUE:
             raise UserError(f"no figure {name}; analysis/figures.py list names them")
-    if arguments.ranks < 1:
-        raise UserError(f"invalid --ranks {arguments.ranks} (must be positive) try 2")
     shop = Workshop(size=arguments.size, ranks=arguments.ranks, folder=arguments.output / arguments.size,
                     programs=programs.programs_in(arguments.programs), overrides=[Override.parse(text) for text in getattr(arguments, "set")],
                     profiles=arguments.profile, draw_only=arguments.draw_only)

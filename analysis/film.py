@@ -227,4 +227,8 @@ def write_pictures(film, folder):
     folder.mkdir(parents=True, exist_ok=True)
     for index in film.play():
         film.figure.savefig(folder / f"{index:05d}.png", dpi=DPI)
+    # Those of a longer run that were there before are no part of this one.
+    for earlier in folder.glob("[0-9]" * 5 + ".png"):
+        if int(earlier.stem) >= len(film):
+            earlier.unlink()
     return folder

@@ -69,12 +69,11 @@ def speeds(groups, abscissa):
 def survival(label, groups, abscissa):
     """P(r) of the groups of one curve to their longest ways, each with the exponential of its length if it is known."""
     figure, axes = plt.subplots(figsize=(6.4, 4.8), layout="constrained")
+    begin = min(0.01 * (group["clogging_length"] or survival_curve.longest_way(group)) for group in groups)
     for group, colour in zip(groups, plt.get_cmap("viridis")(np.linspace(0, 0.9, len(groups)))):
-        begin = 0.01 * survival_curve.longest_way(group)
         if group["survival"]:
             r = group["clogging_length"] * np.logspace(-2, 1, 100)
             axes.plot(r, np.exp(-r / group["clogging_length"]), color=colour, linewidth=0.8, linestyle="--")
-            begin = min(r[0], group["survival"][0]["distance"])
         survival_curve.draw(axes, group, colour, f"${SYMBOLS[abscissa]} = {group[abscissa]:g}$", begin=begin)
     axes.set_xscale("log")
     axes.set_ylim(0, 1.02)
@@ -217,7 +216,7 @@ def body():
     parser = command_line.Parser(__doc__)
     parser.add_argument("sweep", type=pathlib.Path, help="output of clogsweep")
     command_line.add_output(parser, "HTML file to write (SWEEP-report.html)")
-    parser.add_argument("--examples", type=command_line.not_negative, default=4, help="clogs to show (4); 0 runs nothing")
+    parser.add_argument("--examples", type=command_line.whole(0), default=4, help="clogs to show (4); 0 runs nothing")
     programs.add_option(parser)
     arguments = parser.parse_args()
     output = arguments.output or command_line.beside(arguments.sweep, "report.html")

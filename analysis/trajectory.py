@@ -12,10 +12,13 @@ from matplotlib.patches import Circle, Polygon
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
 
+POINTS_OF_DISK = 128
+
+
 @dataclasses.dataclass
 class Trajectory:
     """Shapes as in src/store/README.md; without --polygon-interval there are no frames, obstacles and wedges. The polygons
-    are those that walls meet, see refined()."""
+    are those that walls meet, see outlines()."""
 
     path: pathlib.Path
     table: np.ndarray
@@ -49,6 +52,14 @@ def refined(polygons, row):
     return np.stack([polygons, middles], axis=-1).reshape(*polygons.shape[:-1], -1)
 
 
+def outlines(polygons, row):
+    """What meets walls: refined polygons, or the circle of a soft disk, of which only the centre is stored."""
+    if row["model"] != b"sp" or polygons.size == 0:
+        return refined(polygons, row)
+    angle = np.linspace(0, 2 * np.pi, POINTS_OF_DISK, endpoint=False)
+    return polygons + 0.5 * np.stack([np.cos(angle), np.sin(angle)])
+
+
 def contact_range(row):
     """Distance from a wall at which contact begins [sigma]; half a vertex diameter before it was stored."""
     if "contact_range" in row.dtype.names:
@@ -63,7 +74,7 @@ def read(path, needs_frames=True):
                   for name, shape in [("polygons", (0, 2, 0)), ("polygon_times", (0,)),
                                       ("obstacles", (0, 3)), ("wedges", (0, 6))]]
         row = file["runs"][0]
-        frames[0] = refined(frames[0], row)
+        frames[0] = outlines(frames[0], row)
         trajectory = Trajectory(pathlib.Path(path), file["trajectory"][:], row, stored.attributes(file), *frames)
     if needs_frames and len(trajectory.times) == 0:
         raise stored.unreadable(path, "holds no polygons", stored.RUN)

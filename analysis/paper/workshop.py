@@ -214,6 +214,8 @@ def measured(path):
 
     try:
         table = pandas.read_csv(path, comment="#", skipinitialspace=True)
+    except FileNotFoundError as error:
+        raise UserError(f"cannot read {path} (no such file); check the name") from error
     except (OSError, ValueError) as error:
         raise UserError(f"cannot read {path} ({error}); give a CSV file with the header h [sigma], v [v_t], A") from error
     table.columns = [name.strip() for name in table.columns]

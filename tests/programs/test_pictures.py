@@ -3,6 +3,7 @@
 import json
 import unittest
 
+import numpy as np
 from matplotlib import pyplot
 
 from scripts import Analysis
@@ -53,6 +54,30 @@ class Calls(Analysis):
         self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 30, "--output", "run.h5")
         self.assertEqual(self.draw("droplet.py", "run.h5", "-o", "run.gif").stdout, "run.gif\n")
         self.assertEqual((self.folder / "run.gif").read_bytes()[:4], b"GIF8")
+
+    def test_earlier_pictures_of_a_longer_run_do_not_stay_between_those_of_a_film(self):
+        self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 10, "--output", "run.h5")
+        for most in (4, 2):
+            self.draw("droplet.py", "run.h5", "-o", "run", "--pictures", "--most-frames", most)
+            self.assertEqual(len(list((self.folder / "run-frames").iterdir())), most)
+
+    def test_numbers_that_cannot_be_and_clogs_that_are_not_there_get_one_line(self):
+        self.succeed("clogsweep", *QUICK, "line-tension=3", "seeds=1", "--output", "s.h5")
+        self.succeed("clogsweep", "model=sp", "wall-stiffness=30", "box=20", "max-time=60", "seeds=1", "--output", "disk.h5")
+        for arguments, words in [
+            (["clogs.py", "s.h5", "--jobs", "0"], ["--jobs", "1 or more"]),
+            (["clogs.py", "s.h5", "--most", "few"], ["--most", "whole number"]),
+            (["clogs.py", "s.h5", "--tasks", "1-3"], ["--tasks", "1-3", "try 3,17,40"]),
+            (["clogs.py", "s.h5", "--tasks", "7,0"], ["--tasks 7:", "no such clogged polygon"]),
+            (["clogs.py", "s.h5", "--mechanism", "wrapped"], ["--mechanism wrapped", "no such clogged polygon"]),
+            (["clogs.py", "disk.h5"], ["disk.h5 holds no clogged polygon", "soft disks"]),
+            (["droplet.py", "s.h5", "-o", "x", "--rate", "0"], ["--rate", "1 or more"]),
+            (["figures.py", "2", "--ranks", "0"], ["--ranks", "1 or more"]),
+            (["figures.py", "2", "--profile", "none.csv"], ["cannot read none.csv (no such file); check the name"]),
+        ]:
+            with self.subTest(arguments=arguments):
+                where = ["--programs", BIN] if arguments[0] != "droplet.py" else []
+                self.refuse_analysis(*arguments, *where, words=words)
 
     def test_the_colour_of_obstacles_is_the_one_in_the_help(self):
         self.assertIn("obstacles are blue", " ".join(self.draw("clogs.py", "--help").stdout.split()))
@@ -107,6 +132,19 @@ class Looks(Analysis):
         self.assertTrue(all(curve[0, 0] > 0 and curve[0, 1] == 1 for curve in curves), "it begins where the scale does")
         ticks = [line.get_xydata().tolist() for line in drawing.axes[0].lines if line.get_marker() == "|"]
         self.assertEqual(ticks, [[[3, 0.75], [9, 0.75]], [[40, 1]]])
+
+    def test_a_soft_disk_can_be_seen(self):
+        self.succeed("clogrun", "array", "model=sp", "wall-stiffness=1", "box=20", "max-time=30", "--polygon-interval", 10, "--output", "run.h5")
+        run = trajectory.read(self.folder / "run.h5")
+        size = run.polygons.max(axis=2) - run.polygons.min(axis=2)
+        np.testing.assert_allclose(size, 1, atol=1e-3)
+        for script, made in [("droplet.py", "disk.png"), ("export_vtk.py", "disk.pvd")]:
+            self.draw(script, "run.h5", "-o", "disk")
+            self.assertTrue((self.folder / made).exists())
+
+    def test_a_caption_names_what_its_model_has(self):
+        disk = self.fit("model=sp", "wall-stiffness=30", "box=20", "max-time=60", "seeds=1")
+        self.assertNotRegex(clogging_length.caption(disk), "N_v|b_0")
 
     def test_one_is_no_plural(self):
         self.assertEqual([rounded.counted(number, "run") for number in (0, 1, 2)], ["0 runs", "1 run", "2 runs"])
