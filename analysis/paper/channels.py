@@ -9,6 +9,9 @@ from paper.plate import Plate, figure, interface_of
 from paper.workshop import measured
 from style import plt
 
+SMOOTH = 512  # vertices from which on a passage of w = 0.4 shows no ripple
+
+
 def in_channel(shop, name, orifice, line_tension, near_wall_drag, terminal_speed, **keys):
     # Frames a fiftieth of a diameter apart, samples a fifth of that.
     frame = 0.02 / terminal_speed
@@ -133,7 +136,8 @@ def squeezing(shop):
         finish(axes, ordinate)
         if shop.profiles:
             axes.legend(frameon=False)
-    drawing.suptitle(f"{parameters(run, 0.4)}; interface: {interface_of(run.word('preset'))}\nflow to the right, walls grey", fontsize=9, color="0.25")
+    ripples = "" if run.row["vertices"] >= SMOOTH else f"; ripples of the speed: one for each vertex that passes the tips, none with {SMOOTH}"
+    drawing.suptitle(f"{parameters(run, 0.4)}; interface: {interface_of(run.word('preset'))}\nflow to the right, walls grey{ripples}", fontsize=9, color="0.25")
     return Plate(drawing, profile_rows(run, "w=0.4"))
 
 
