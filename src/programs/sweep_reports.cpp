@@ -1,5 +1,7 @@
 #include "sweep_reports.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -33,6 +35,8 @@ namespace {
 
 namespace po = boost::program_options;
 using sweep::RunRow;
+
+constexpr const char* clear_screen = "\x1b[H\x1b[2J";
 
 cli::CommandLine command(const char* name, const char* usage) {
   cli::CommandLine line(std::string("clogsweep ") + name, usage, cli::CommandLine::SweepKeys::none);
@@ -212,7 +216,7 @@ would give too short ones, since runs that clog early finish first.
   for (bool is_first = true;; is_first = false) {
     const Status status =
         status_of(path, is_first ? read_with_caution(path) : store::read_sweep(path), confidence);
-    if (line.has("watch") && format == "text") std::cout << "\x1b[H\x1b[2J";  // clear the screen
+    if (line.has("watch") && format == "text" && isatty(STDOUT_FILENO)) std::cout << clear_screen;
     std::cout << (format == "json" ? to_json(status, confidence) : to_text(path, status, confidence, shared))
               << std::flush;
     if (!line.has("watch") || !status.is_alive) return cli::exit_success;

@@ -139,7 +139,9 @@ class Resumed(SweepTest):
         self.assertIn("another sweep is writing to it", refused.stderr)
         _, error = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 0, error)
-        self.assertIn("24 of 24 runs over", self.succeed("clogsweep", "status", "s.h5", "--watch").stdout)
+        watched = self.succeed("clogsweep", "status", "s.h5", "--watch").stdout
+        self.assertIn("24 of 24 runs over", watched)
+        self.assertNotIn("\x1b", watched)  # no terminal, whose screen would be cleared
 
     def test_status_counts_runs_under_way_as_not_clogged(self):
         self.stop_under_way(SWEEP)
