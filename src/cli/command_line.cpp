@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <limits>
 #include <set>
+#include <span>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "clog/cli/text_file.hpp"
@@ -66,7 +68,7 @@ void CommandLine::parse(int argc, const char* const* argv) {
     const int style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
     po::store(po::command_line_parser(words).options(all).positional(places).style(style).run(), values_);
   } catch (const po::unknown_option& error) {
-    refuse_unknown(error.get_option_name());
+    refuse_unknown(error.get_option_name(), {argv, static_cast<std::size_t>(argc)});
   } catch (const po::error& error) {
     throw Error(std::string(error.what()) + "; see " + program_ + " --help");
   }
@@ -109,15 +111,19 @@ void CommandLine::refuse_surplus_words() const {
   throw Error("no place for " + all + " (" + surplus_remedy_ + "); see " + program_ + " --help");
 }
 
-void CommandLine::refuse_unknown(const std::string& word) const {
+void CommandLine::refuse_unknown(const std::string& word, std::span<const char* const> typed) const {
   std::vector<std::string> names;
   for (const auto* group : {&own_, &keys_})
-    for (const auto& option : group->options()) names.push_back(option->long_name());
-  const std::string bare = word.substr(std::min(word.find_first_not_of('-'), word.size()));
+    for (const auto& known : group->options()) names.push_back(known->long_name());
+  const std::string option = word.substr(0, word.find('='));
+  const std::string bare = option.substr(std::min(option.find_first_not_of('-'), option.size()));
+  // The dashes of `key=value` are not the user's.
+  const bool has_dashes =
+      std::any_of(typed.begin(), typed.end(), [&](std::string_view one) { return one.starts_with(option); });
   const std::string near = sweep::did_you_mean(bare, names);
-  throw Error(
-      "unknown option " + word +
-      (near.empty() ? "; " + program_ + " --help lists the options" : "; did you mean --" + near + "?"));
+  throw Error((has_dashes ? "unknown option " + option : "unknown key " + bare) +
+              (near.empty() ? "; " + program_ + " --help lists the options"
+                            : std::string("; did you mean ") + (has_dashes ? "--" : "") + near + "?"));
 }
 
 void CommandLine::read_config(const std::string& path) {

@@ -365,7 +365,7 @@ class Refusals(ProgramTest):
             ([], ["missing --output"]),
             (["--line-tenson=1", *out], ["--line-tenson", "did you mean --line-tension"]),
             (["--frobnicate", *out], ["unknown option", "--frobnicate"]),
-            (["line-tenson=1", *out], ["did you mean --line-tension"]),
+            (["line-tenson=1", *out], ["did you mean line-tension"]),
             (["stray", *out], ["no place for 'stray'"]),
             (["line-tension=soft", *out], ["line-tension=soft", "not a finite number"]),
             (["line-tension=-1", *out], ["line-tension=-1"]),

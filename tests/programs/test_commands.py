@@ -29,6 +29,12 @@ class Meant(ProgramTest):
         self.refuse("clogsweep", "line_tension=1", "--output", "s.h5", words=["no place for 'line_tension=1'; did you mean line-tension=1?"])
         self.refuse("clogrun", "sag", "line-tension", "0.2", words=["no place for 'line-tension'; did you mean line-tension=VALUE?"])
 
+    def test_an_unknown_key_is_quoted_as_it_was_typed(self):
+        for typed, told in [("line-tensoin=1", "unknown key line-tensoin; did you mean line-tension?"),
+                            ("--line-tensoin=1", "unknown option --line-tensoin; did you mean --line-tension?"),
+                            ("frobnicate=1", "unknown key frobnicate; clogsweep --help lists the options")]:
+            self.refuse("clogsweep", typed, "--output", "s.h5", words=[told])
+
     def test_h_is_help(self):
         for program in ("clogsweep", "clogrun", "clogfit"):
             self.assertEqual(self.succeed(program, "-h").stdout, self.succeed(program, "--help").stdout)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <boost/program_options.hpp>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,7 +68,7 @@ class CommandLine {
   bool awaits_value(const std::string& word) const;
   void refuse_misspelt_command(const std::string& word) const;
   [[noreturn]] void refuse_surplus_words() const;
-  [[noreturn]] void refuse_unknown(const std::string& word) const;
+  [[noreturn]] void refuse_unknown(const std::string& word, std::span<const char* const> typed) const;
   void read_config(const std::string& path);
 };
 
