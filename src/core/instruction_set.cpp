@@ -32,11 +32,16 @@ std::vector<std::string> instruction_sets() {
   return names;
 }
 
-std::string instruction_set() { return name_of(hwy::SupportedAndGeneratedTargets().front()); }
+std::string instruction_set() {
+  // Highway asks the processor each time, unless targets are allowed by name; under a hypervisor that takes
+  // longer than all else that is to be known of a task.
+  [[maybe_unused]] static const bool is_asked_once = (allow_targets(hwy::SupportedTargets()), true);
+  return name_of(hwy::SupportedAndGeneratedTargets().front());
+}
 
 void use_instruction_set(const std::string& name) {
   allow_targets(0);
-  if (name == "auto") return;
+  if (name == "auto") return allow_targets(hwy::SupportedTargets());
   std::string names;
   for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
     if (name_of(target) == name) return allow_targets(target);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <numbers>
 #include <sstream>
 #include <string>
@@ -17,11 +18,20 @@
 namespace clog {
 namespace {
 
-void require(bool holds, const char* key, double value, const std::string& reason_and_remedy) {
-  if (holds) return;
+[[noreturn]] void refuse(const char* key, double value, const std::string& reason_and_remedy) {
   std::ostringstream message;
   message << "invalid " << key << '=' << value << " (" << reason_and_remedy;
   throw Error(message.str());
+}
+
+void require(bool holds, const char* key, double value, const char* reason_and_remedy) {
+  if (!holds) refuse(key, value, reason_and_remedy);
+}
+/// @param reason_and_remedy  makes the text, only where it is needed: numbers in it would take most of the
+/// time of a large sweep's plan
+template <std::invocable Words>
+void require(bool holds, const char* key, double value, const Words& reason_and_remedy) {
+  if (!holds) refuse(key, value, reason_and_remedy());
 }
 
 void require_positive(const char* key, double value) {
@@ -65,23 +75,27 @@ void validate_obstacles(const ObstacleParameters& obstacles, int vertices, Model
           "diameters are uniform in obstacle-diameter*(1 -+ spread)) use 0 or more, and less than 1");
   const double spacing = obstacles.smallest_diameter() + obstacles.gap;
   const double widest_spacing = obstacles.largest_diameter() + obstacles.gap;
-  require(widest_spacing <= 5 * spacing, "obstacle-diameter-spread", spread,
-          "the largest two obstacles keep " + text(widest_spacing / spacing) +
-              " times the distance of the smallest two: sampling would take hours) use " +
-              text(0.999 * 2 / 3 * (1 + obstacles.gap / obstacles.diameter)) +
-              " or less, or a wider obstacle-gap");
-  require(widest_spacing <= obstacles.box / 2, "box", obstacles.box,
-          "holds no two obstacles of diameter " + text(obstacles.largest_diameter()) + " with gap " +
-              text(obstacles.gap) + ") use at least " + text(2 * widest_spacing));
+  require(widest_spacing <= 5 * spacing, "obstacle-diameter-spread", spread, [&] {
+    return "the largest two obstacles keep " + text(widest_spacing / spacing) +
+           " times the distance of the smallest two: sampling would take hours) use " +
+           text(0.999 * 2 / 3 * (1 + obstacles.gap / obstacles.diameter)) +
+           " or less, or a wider obstacle-gap";
+  });
+  require(widest_spacing <= obstacles.box / 2, "box", obstacles.box, [&] {
+    return "holds no two obstacles of diameter " + text(obstacles.largest_diameter()) + " with gap " +
+           text(obstacles.gap) + ") use at least " + text(2 * widest_spacing);
+  });
   const double largest_box = 1e4 * spacing / std::sqrt(obstacles.boxes);
-  require(obstacles.box <= largest_box, "box", obstacles.box,
-          "the array would need more than ten gigabytes) use at most " + text(largest_box) +
-              "; the array is periodic");
+  require(obstacles.box <= largest_box, "box", obstacles.box, [&] {
+    return "the array would need more than ten gigabytes) use at most " + text(largest_box) +
+           "; the array is periodic";
+  });
   if (model == Model::dp) {
     const double vertex_diameter = units::regular_edge_length(vertices);
-    require(obstacles.gap > vertex_diameter, "obstacle-gap", obstacles.gap,
-            "not wider than an edge is long, " + text(vertex_diameter) +
-                " sigma: nothing of the passage would be resolved) widen the gap or use more vertices");
+    require(obstacles.gap > vertex_diameter, "obstacle-gap", obstacles.gap, [&] {
+      return "not wider than an edge is long, " + text(vertex_diameter) +
+             " sigma: nothing of the passage would be resolved) widen the gap or use more vertices";
+    });
   }
 }
 
@@ -90,10 +104,11 @@ void validate_density(const ObstacleParameters& obstacles) {
   if (!obstacles.density) return;
   const double largest = largest_density(obstacles);
   // The value in the message, rounded, may be the least bit larger.
-  require(*obstacles.density <= (1 + 1e-9) * largest, "obstacle-density", *obstacles.density,
-          "more than every seed finds room for, with obstacle-gap=" + text(obstacles.gap) +
-              " and box=" + text(obstacles.box) + ") use at most " + text(rounded_down(largest, 4), 4) +
-              ", or saturated: as many as fit");
+  require(*obstacles.density <= (1 + 1e-9) * largest, "obstacle-density", *obstacles.density, [&] {
+    return "more than every seed finds room for, with obstacle-gap=" + text(obstacles.gap) +
+           " and box=" + text(obstacles.box) + ") use at most " + text(rounded_down(largest, 4), 4) +
+           ", or saturated: as many as fit";
+  });
 }
 
 /// Replaces box and angle of a lattice by those of the nearest one that is periodic.
@@ -105,16 +120,17 @@ void resolve_layout(ObstacleParameters& obstacles) {
     return;
   }
   if (obstacles.density)
-    require(false, "obstacle-density", *obstacles.density,
-            "a lattice has one obstacle per (obstacle-gap + obstacle-diameter)^2) leave it out, or use "
-            "obstacle-layout=random");
+    refuse("obstacle-density", *obstacles.density,
+           "a lattice has one obstacle per (obstacle-gap + obstacle-diameter)^2) leave it out, or use "
+           "obstacle-layout=random");
   require(obstacles.boxes == 1, "boxes", obstacles.boxes,
           "a lattice repeats in each of them) leave it out, or use obstacle-layout=random");
   require(obstacles.diameter_spread == 0, "obstacle-diameter-spread", obstacles.diameter_spread,
           "the obstacles of a lattice are alike) leave it out, or use obstacle-layout=random");
-  require(std::abs(angle) <= 45, "lattice-angle", angle,
-          "must lie in -45..45; a square lattice turned by 90 degrees is the same) try " +
-              text(std::remainder(angle, 90)));
+  require(std::abs(angle) <= 45, "lattice-angle", angle, [&] {
+    return "must lie in -45..45; a square lattice turned by 90 degrees is the same) try " +
+           text(std::remainder(angle, 90));
+  });
   const double spacing = obstacles.diameter + obstacles.gap;
   const double narrowest = std::max(smallest_box, 2 * spacing);
   const auto is_near = [=](const std::optional<CommensurateLattice>& lattice) {
@@ -124,10 +140,10 @@ void resolve_layout(ObstacleParameters& obstacles) {
   if (!is_near(lattice)) {
     double box = obstacles.box;
     while (!is_near(lattice)) lattice = nearest_lattice(spacing, angle, narrowest, box += spacing);
-    require(false, "lattice-angle", angle,
-            "no lattice of spacing " + text(spacing) + " within " + text(largest_angle_error) +
-                " degrees of it has a period of box=" + text(obstacles.box) + " or less) use box=" +
-                std::to_string(static_cast<long>(std::ceil(lattice->box))) + " or more");
+    refuse("lattice-angle", angle,
+           "no lattice of spacing " + text(spacing) + " within " + text(largest_angle_error) +
+               " degrees of it has a period of box=" + text(obstacles.box) + " or less) use box=" +
+               std::to_string(static_cast<long>(std::ceil(lattice->box))) + " or more");
   }
   obstacles.box = lattice->box;
   obstacles.lattice_angle = lattice->angle;
@@ -183,8 +199,8 @@ void choose_time_step(RunParameters& run) {
   run.time_step = automatic_time_step(run);
   if (*run.time_step >= smallest_time_step) return;
   const Rate rate = fastest_rate(run);
-  require(false, rate.key, rate.value,
-          "would need a time-step of " + text(*run.time_step) + ") use a value nearer to the usual ones");
+  refuse(rate.key, rate.value,
+         "would need a time-step of " + text(*run.time_step) + ") use a value nearer to the usual ones");
 }
 
 void resolve_time_step(RunParameters& run) {
@@ -193,12 +209,13 @@ void resolve_time_step(RunParameters& run) {
   require_positive("time-step", time_step);
   require(time_step >= smallest_time_step, "time-step", time_step, "smaller than any mode needs) try 1e-3");
   require(run.max_time >= time_step, "max-time", run.max_time,
-          "shorter than one time-step) use at least " + text(time_step));
+          [&] { return "shorter than one time-step) use at least " + text(time_step); });
   require(run.max_time / time_step <= 1e15, "max-time", run.max_time,
-          "more than 1e15 steps) use at most " + text(1e15 * time_step));
-  require(time_step <= run.drag.terminal_speed, "time-step", time_step,
-          "does not resolve the drag's relaxation time, terminal-speed=" + text(run.drag.terminal_speed) +
-              ") try " + text(0.1 * run.drag.terminal_speed));
+          [&] { return "more than 1e15 steps) use at most " + text(1e15 * time_step); });
+  require(time_step <= run.drag.terminal_speed, "time-step", time_step, [&] {
+    return "does not resolve the drag's relaxation time, terminal-speed=" + text(run.drag.terminal_speed) +
+           ") try " + text(0.1 * run.drag.terminal_speed);
+  });
 }
 
 /// The droplet keeps its area under its own line tension.
@@ -207,12 +224,14 @@ void validate_compression(const DpParameters& dp, bool automatic_area) {
   const double softest_per_tension = 1 / (units::droplet_diameter / 2) / (largest * units::rest_area);
   const double softest = dp.line_tension * softest_per_tension;
   if (automatic_area)
-    require(*dp.area_stiffness >= softest, "line-tension", dp.line_tension,
-            "would compress the droplet by more than 5 %, with the stiffest automatic area-stiffness) use at "
-            "most " +
-                text(rounded_down(*dp.area_stiffness / softest_per_tension)) + ", or give area-stiffness");
-  require(*dp.area_stiffness >= softest, "area-stiffness", *dp.area_stiffness,
-          "the line tension would compress the droplet by more than 5 %) use at least " + text(softest));
+    require(*dp.area_stiffness >= softest, "line-tension", dp.line_tension, [&] {
+      return "would compress the droplet by more than 5 %, with the stiffest automatic "
+             "area-stiffness) use at most " +
+             text(rounded_down(*dp.area_stiffness / softest_per_tension)) + ", or give area-stiffness";
+    });
+  require(*dp.area_stiffness >= softest, "area-stiffness", *dp.area_stiffness, [&] {
+    return "the line tension would compress the droplet by more than 5 %) use at least " + text(softest);
+  });
 }
 
 void resolve_dp(RunParameters& run) {
@@ -255,16 +274,18 @@ void resolve_dp(RunParameters& run) {
   const StiffModes modes = stiff_modes_of_circle(dp, *run.wall_stiffness);
   const double largest = automatic ? largest_step_with_automatic_contact(dp) : largest_stable_step(modes);
   const double stiffest_omega_dt = std::sqrt(modes.sum()) * time_step;
-  require(num_substeps(modes, time_step) == 1, "time-step", time_step,
-          "contact, area, tension and spring modes together have omega*dt = " + text(stiffest_omega_dt) +
-              ", wall-stiffness=" + text(*run.wall_stiffness) + ") try " + text(0.99 * largest));
+  require(num_substeps(modes, time_step) == 1, "time-step", time_step, [&] {
+    return "contact, area, tension and spring modes together have omega*dt = " + text(stiffest_omega_dt) +
+           ", wall-stiffness=" + text(*run.wall_stiffness) + ") try " + text(0.99 * largest);
+  });
   // A contact too soft to carry the droplet lets obstacles sink into it: demand that a weight of M g on
   // the vertices of an eighth of the circumference leaves less than half the contact range.
   const double softest = units::droplet_mass / (dp.vertices / 8.0) / (vertex_diameter / 4);
   require(contact_stiffness(*run.wall_stiffness, vertex_diameter) >= softest, "wall-stiffness",
-          *run.wall_stiffness,
-          "too soft to hold the droplet's weight off an obstacle) use at least " +
-              text(wall_stiffness(softest, vertex_diameter)) + " or a smaller time-step");
+          *run.wall_stiffness, [&] {
+            return "too soft to hold the droplet's weight off an obstacle) use at least " +
+                   text(wall_stiffness(softest, vertex_diameter)) + " or a smaller time-step";
+          });
 }
 
 void resolve_sp(RunParameters& run) {
@@ -281,8 +302,9 @@ void resolve_sp(RunParameters& run) {
   const double omega = soft_disk_frequency(run);
   // Up to a dozen obstacles of a saturated array overlap a soft disk at once.
   const double largest = std::sqrt(max_total_omega_dt2 / 12) / omega;
-  require(*run.time_step <= largest, "time-step", *run.time_step,
-          "contact has omega*dt = " + text(omega * *run.time_step) + ") try " + text(0.99 * largest));
+  require(*run.time_step <= largest, "time-step", *run.time_step, [&] {
+    return "contact has omega*dt = " + text(omega * *run.time_step) + ") try " + text(0.99 * largest);
+  });
 }
 
 }  // namespace

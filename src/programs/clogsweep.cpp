@@ -154,8 +154,9 @@ struct Enlarged {
   std::int64_t num_first = 0;  ///< tasks to begin with
   std::optional<SeedRule> rule;
 };
-Enlarged enlarge(const cli::CommandLine& line) {
-  Enlarged sweep{line.settings(), sweep::Plan(line.settings()).size(), std::nullopt};
+/// @param plan  of the settings
+Enlarged enlarge(const cli::CommandLine& line, const sweep::Plan& plan) {
+  Enlarged sweep{line.settings(), plan.size(), std::nullopt};
   if (!line.has("until-precision")) {
     if (line.has("most-seeds")) throw Error("--most-seeds needs --until-precision");
     return sweep;
@@ -198,8 +199,8 @@ std::optional<int> prepare(const cli::CommandLine& line) {
   lead_options(line);
   attempts(line);
   check_isolate(line);
-  enlarge(line);
   const sweep::Plan plan(line.settings());
+  enlarge(line, plan);
   if (line.has("print-config")) print_config(line.settings(), plan);
   if (line.has("dry-run")) {
     print_tasks(plan);
@@ -253,7 +254,7 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, parallel::IsolatedJo
       parse(line, argc, argv);
       if (const auto over = prepare(line)) return *over;
       refuse_to_be_alone(ranks.size());
-      sweep = enlarge(line);
+      sweep = enlarge(line, sweep::Plan(line.settings()));
       plan.emplace(sweep.settings);
       ledger.emplace(line.get("output"), *plan, sweep.settings, provenance(line, sweep, ranks.size()),
                      sweep.num_first, attempts(line));
