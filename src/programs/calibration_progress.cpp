@@ -6,6 +6,7 @@
 #include <iostream>
 #include <limits>
 
+#include "clog/sweep/value_list.hpp"
 #include "duration.hpp"
 
 namespace clog {
@@ -27,7 +28,7 @@ void CalibrationProgress::ended() {
 }
 
 std::string CalibrationProgress::line() const {
-  std::string text = std::to_string(num_simulations_) + " simulations";
+  std::string text = sweep::counted(num_simulations_, "simulation");
   if (least_deltas_.size() > 1)
     text += ", " + std::to_string(num_ended_) + "/" + std::to_string(least_deltas_.size()) + " trials done";
   const double worst = *std::max_element(least_deltas_.begin(), least_deltas_.end());

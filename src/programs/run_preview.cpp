@@ -1,9 +1,11 @@
 #include "run_preview.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 
 #include "clog/cli/program.hpp"
+#include "clog/sweep/value_list.hpp"
 #include "duration.hpp"
 
 namespace clog {
@@ -20,10 +22,13 @@ MostCost& MostCost::operator+=(const MostCost& other) {
 
 int print_preview(const std::string& config, const MostCost& cost) {
   std::cout << config;
+  const std::string duration = cost.seconds < 1 ? "below 1 s" : readable_duration(cost.seconds);
   std::printf("# at most %.4g t0 in %.4g steps: %s on this machine; one that clogs or passes ends sooner\n",
-              cost.time, cost.steps, readable_duration(cost.seconds).c_str());
-  std::printf("# at most %.0f samples", cost.samples);
-  if (cost.polygons > 0) std::printf(" and %.0f polygons (%.3g MB)", cost.polygons, cost.polygon_bytes / 1e6);
+              cost.time, cost.steps, duration.c_str());
+  std::printf("# at most %s", sweep::counted(std::llround(cost.samples), "sample").c_str());
+  if (cost.polygons > 0)
+    std::printf(" and %s (%.3g MB)", sweep::counted(std::llround(cost.polygons), "polygon").c_str(),
+                cost.polygon_bytes / 1e6);
   std::printf("\n");
   return cli::exit_success;
 }

@@ -54,7 +54,7 @@ std::vector<std::int64_t> SeedRule::next_round(const std::function<bool(std::int
 std::string SeedRule::text() const {
   return "seeds are added, in rounds, to every parameter set with fewer than " +
          std::to_string(clogs_needed(precision_)) + " clogs (a 95 % interval of lambda within +-" +
-         sweep::shortest(100 * precision_) + " %), up to " + std::to_string(most_seeds_) + " seeds";
+         sweep::shortest(100 * precision_) + " %), up to " + sweep::counted(most_seeds_, "seed");
 }
 
 }  // namespace clog

@@ -11,6 +11,7 @@
 #include "clog/parallel/task_order.hpp"
 #include "clog/store/journal.hpp"
 #include "clog/sweep/row_limits.hpp"
+#include "clog/sweep/value_list.hpp"
 #include "sweep_progress.hpp"
 
 namespace clog {
@@ -28,8 +29,9 @@ void announce(const std::string& output, const sweep::Plan& plan, const SweepLed
   const auto num_left = static_cast<std::int64_t>(ledger.tasks_left().size());
   if (!ledger.caution().empty()) cli::say(ledger.caution());
   if (num_left < num_runs)
-    cli::say(output + " has " + std::to_string(num_runs - num_left) + " of " + std::to_string(num_runs) +
-             " runs" + (num_left == 0 && !may_grow ? "; there is nothing left to do" : ""));
+    cli::say(output + " has " + std::to_string(num_runs - num_left) + " of " +
+             sweep::counted(num_runs, "run") +
+             (num_left == 0 && !may_grow ? "; there is nothing left to do" : ""));
   if (ledger.num_faulty() > 0)
     cli::say(output + ": " + std::to_string(ledger.num_faulty()) +
              (ledger.num_faulty() == 1 ? " row holds" : " rows hold") +
@@ -38,12 +40,13 @@ void announce(const std::string& output, const sweep::Plan& plan, const SweepLed
     cli::say(store::journal_path(output) + ": " + std::to_string(ledger.num_unreadable()) +
              (ledger.num_unreadable() == 1 ? " record is" : " records are") +
              " damaged; what was in there is computed again");
-  if (ledger.num_resumed() > 0) cli::say(std::to_string(ledger.num_resumed()) + " go on where they were");
+  if (const std::int64_t number = ledger.num_resumed(); number > 0)
+    cli::say(std::to_string(number) + (number == 1 ? " goes on where it was" : " go on where they were"));
   if (const std::string words = sweep::unproven_parameters(plan); num_left > 0 && !words.empty())
     cli::say(words);
   if (num_left > 0)
-    cli::say(std::to_string(num_left) + " runs on " + std::to_string(num_ranks) +
-             (num_ranks == 1 ? " computing rank" : " computing ranks") + ", results go to " + output);
+    cli::say(sweep::counted(num_left, "run") + " on " + sweep::counted(num_ranks, "computing rank") +
+             ", results go to " + output);
 }
 
 SweepProgress::Screen screen(SweepLog::Level level) {
@@ -169,8 +172,8 @@ int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, 
   }
   lead.finish();
   if (is_complete && rule && options.log != SweepLog::Level::quiet)
-    cli::say(std::to_string(rule->num_reached()) + " of " + std::to_string(rule->num_groups()) +
-             " parameter sets have reached --until-precision");
+    cli::say(std::to_string(rule->num_reached()) + " of " +
+             sweep::counted(rule->num_groups(), "parameter set") + " reached --until-precision");
   if (const sweep::RunRow* first = is_complete ? ledger.first_if_all_failed() : nullptr) {
     cli::say("clogsweep: every run has failed, the first one: " + std::string(first->message.view()));
     return cli::exit_internal_fault;

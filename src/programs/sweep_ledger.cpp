@@ -12,6 +12,7 @@
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/settings.hpp"
+#include "clog/sweep/value_list.hpp"
 #include "stored_sweep.hpp"
 
 namespace clog {
@@ -95,8 +96,8 @@ SweepLedger::SweepLedger(std::string path, const sweep::Plan& plan, const sweep:
   std::vector<Entry> entries = journal_.take_entries();
   if (!has_table && !entries.empty())
     throw Error("cannot begin " + path_ + " (its table is gone, but " + store::journal_path(path_) +
-                " holds " + std::to_string(entries.size()) +
-                " reports of an earlier sweep); put the table back, or remove the journal to begin anew");
+                " holds " + sweep::counted(static_cast<std::int64_t>(entries.size()), "report") +
+                " of an earlier sweep); put the table back, or remove the journal to begin anew");
   for (Entry& entry : entries) {
     std::string run = sweep::identity(entry.row);
     // A run that has its result in the table is not over in the journal if its last record there was lost.

@@ -95,7 +95,7 @@ std::string to_text(const std::string& path, const Status& status, double confid
                     SharedParameters shared) {
   const auto number = [](std::int64_t value) { return std::to_string(value); };
   std::string text = cli::printable(path) + ": " + number(status.num_over()) + " of " +
-                     number(status.num_runs) + " runs over, " + number(status.count("clogged")) +
+                     sweep::counted(status.num_runs, "run") + " over, " + number(status.count("clogged")) +
                      " clogged, " + number(status.count("flowing")) + " flowing, " +
                      number(status.count("failed")) + " failed";
   if (const std::int64_t under_way = status.count("running") + status.count("interrupted"); under_way > 0)
@@ -136,8 +136,8 @@ std::string to_json(const Status& status, double confidence) {
 std::string to_text(const store::Journal::Contents& journal, bool is_alive) {
   const auto num_snapshots = std::count_if(journal.entries.begin(), journal.entries.end(),
                                            [](const auto& entry) { return !entry.snapshot.empty(); });
-  std::string text = std::to_string(journal.entries.size()) + " records, " + std::to_string(num_snapshots) +
-                     " of them with snapshots, ";
+  std::string text = sweep::counted(static_cast<std::int64_t>(journal.entries.size()), "record") + ", " +
+                     std::to_string(num_snapshots) + " of them with snapshots, ";
   text +=
       journal.num_unreadable == 0 ? "all whole" : std::to_string(journal.num_unreadable) + " more damaged";
   if (is_alive) return text + "; a sweep is writing to it";
@@ -254,11 +254,13 @@ damaged. 1: this is not so; `clogsweep salvage` keeps what is whole. 2: the file
     ++num_faults;
     std::cout << "task " << row.task << ": " << cli::printable(fault) << '\n';
   }
-  std::cout << cli::printable(line.get("file")) << ": " << file.rows.size();
+  const auto num_rows = static_cast<std::int64_t>(file.rows.size());
+  std::cout << cli::printable(line.get("file")) << ": ";
   if (num_faults == 0)
-    std::cout << " rows of " << num_planned << " runs, all whole\n";
+    std::cout << sweep::counted(num_rows, "row") << " of " << sweep::counted(num_planned, "run")
+              << ", all whole\n";
   else
-    std::cout << " whole rows, " << num_faults << (num_faults == 1 ? " fault\n" : " faults\n");
+    std::cout << sweep::counted(num_rows, "whole row") << ", " << sweep::counted(num_faults, "fault") << '\n';
   if (const std::string words = store::caution(line.get("file"), file); !words.empty())
     std::cout << cli::printable(words) << '\n';
   const std::string journal = store::journal_path(line.get("file"));

@@ -6,6 +6,7 @@
 #include "clog/cli/program.hpp"
 #include "clog/core/error.hpp"
 #include "clog/store/run_table.hpp"
+#include "clog/sweep/value_list.hpp"
 #include "sweep_reports.hpp"
 
 namespace clog {
@@ -35,7 +36,8 @@ int clogsweep_salvage(int argc, const char* const* argv) {
   const store::Examination found = store::examine_sweep(line.get("file"));
   for (const std::string& damage : found.damage) std::cout << cli::printable(damage) << '\n';
   store::publish_sweep(output, found.whole.rows, found.whole.provenance);
-  std::cout << cli::printable(output) << ": " << found.whole.rows.size() << " rows that are whole\n";
+  const auto num_rows = static_cast<std::int64_t>(found.whole.rows.size());
+  std::cout << cli::printable(output) << ": " << sweep::counted(num_rows, "whole row") << '\n';
   return cli::exit_success;
 }
 

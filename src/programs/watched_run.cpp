@@ -11,6 +11,7 @@
 #include "clog/core/error.hpp"
 #include "clog/core/units.hpp"
 #include "clog/sweep/row_limits.hpp"
+#include "clog/sweep/value_list.hpp"
 #include "run_progress.hpp"
 
 namespace clog {
@@ -173,7 +174,7 @@ int WatchedRun::report() const {
   if (!result.message.empty()) std::printf("%s\n", result.message.c_str());
   const double vertex_steps =
       static_cast<double>(result.steps) * static_cast<double>(run_.droplet().state().size());
-  std::printf("%lld steps, %.3f s, %.2f ns per vertex-step\n", static_cast<long long>(result.steps), seconds_,
+  std::printf("%s, %.3f s, %.2f ns per vertex-step\n", sweep::counted(result.steps, "step").c_str(), seconds_,
               1e9 * seconds_ / vertex_steps);
   return result.status == RunStatus::interrupted ? cli::exit_incomplete
          : result.status == RunStatus::failed    ? cli::exit_internal_fault

@@ -15,6 +15,7 @@
 
 #include "check_sum.hpp"
 #include "clog/core/error.hpp"
+#include "clog/sweep/value_list.hpp"
 #include "file_io.hpp"
 #include "hdf5.hpp"
 #include "rehearsal.hpp"
@@ -167,7 +168,7 @@ std::size_t size_of(hid_t dataset, std::size_t bytes_each, const std::string& pa
     refuse_table(path, "its table has another shape than it was given");
   constexpr hsize_t most_compressed = 1100;  // h5repack's zlib does not exceed 1032
   if (size / most_compressed > H5Dget_storage_size(dataset) / bytes_each)
-    refuse_table(path, "its table cannot hold " + std::to_string(size) + " rows");
+    refuse_table(path, "its table cannot hold " + sweep::counted(static_cast<std::int64_t>(size), "row"));
   return size;
 }
 
@@ -207,7 +208,8 @@ CheckSums read_check_sums(hid_t file, std::size_t num_rows, const std::string& p
   if (!dataset.valid()) refuse_table(path, "the rows' checksums are gone");
   const Type type(H5Dget_type(dataset));
   if (H5Tequal(type, H5T_NATIVE_UINT32) <= 0 || size_of(dataset, sizeof(std::uint32_t), path) != num_rows)
-    refuse_table(path, "the rows' checksums are not those of its " + std::to_string(num_rows) + " rows");
+    refuse_table(path, "the rows' checksums are not those of its " +
+                           sweep::counted(static_cast<std::int64_t>(num_rows), "row"));
   CheckSums sums(num_rows);
   if (num_rows > 0 &&
       H5Dread(dataset, H5T_NATIVE_UINT32, H5S_ALL, H5S_ALL, without_library_check(), sums.data()) < 0)

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "clog/core/error.hpp"
+#include "clog/sweep/value_list.hpp"
 #include "file_io.hpp"
 #include "hdf5.hpp"
 #include "rehearsal.hpp"
@@ -120,7 +121,7 @@ std::vector<TrajectoryColumn> read_columns(hid_t file, const std::string& path) 
   if (columns.empty() || num_samples < 0) throw Error(damaged + "is not as it was written); run it again");
   // It is not compressed.
   if (H5Dget_storage_size(table) / H5Tget_size(type) < static_cast<hsize_t>(num_samples))
-    throw Error(damaged + "cannot hold " + std::to_string(num_samples) + " samples); run it again");
+    throw Error(damaged + "cannot hold " + sweep::counted(num_samples, "sample") + "); run it again");
   std::vector<double> rows(columns.size() * static_cast<std::size_t>(num_samples));
   if (H5Dread(table, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) < 0)
     throw Error(damaged + "cannot be read); run it again");

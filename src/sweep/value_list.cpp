@@ -147,6 +147,10 @@ std::string with_decimal_point(std::string_view text) {
   return std::string(whole) + '.' + std::string(fraction);
 }
 
+std::string counted(std::int64_t number, const std::string& noun) {
+  return std::to_string(number) + ' ' + noun + (number == 1 ? "" : "s");
+}
+
 double to_number(std::string_view text) {
   double value = 0;
   const bool has_plus = text.starts_with('+') && !text.starts_with("+-");  // which from_chars does not know

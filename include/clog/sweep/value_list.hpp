@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,6 +19,9 @@ std::vector<std::string> expand_list(std::string_view text, ValueKind kind,
 
 /// Shortest decimal text that reads back as the same number.
 std::string shortest(double value);
+
+/// `1 run`, `2 runs`.
+std::string counted(std::int64_t number, const std::string& noun);
 
 /// @throws Error if the whole text is not one finite number
 double to_number(std::string_view text);
