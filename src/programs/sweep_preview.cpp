@@ -11,8 +11,10 @@
 #include <unordered_map>
 #include <vector>
 
+#include "clog/cli/printable.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/sweep/obstacle_arrays.hpp"
+#include "clog/sweep/row_check.hpp"
 #include "clog/sweep/row_limits.hpp"
 #include "clog/sweep/run_job.hpp"
 #include "clog/sweep/run_row.hpp"
@@ -24,6 +26,8 @@ namespace clog {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr double hour = 3600;
 
 std::string number(double value) { return sweep::shortest(value); }
 
@@ -47,6 +51,10 @@ struct Sample {
   std::string failure;  ///< of the first that could not begin; these are not among the costs
 };
 
+bool is_over(const sweep::RunRow& row) {
+  return row.status.view() != "running" && row.status.view() != "interrupted";
+}
+
 /// Of the last row of a run. @param first  of the same run, when it had just begun
 RunCost cost_of(const sweep::RunRow& row, const sweep::RunRow& first, const RunParameters& run,
                 std::int64_t parameter_set) {
@@ -55,24 +63,34 @@ RunCost cost_of(const sweep::RunRow& row, const sweep::RunRow& first, const RunP
           .seconds = row.wall_seconds - first.wall_seconds,
           .work = static_cast<double>(row.steps - first.steps) * work_per_step(run),
           .longest_work = longest_work(run),
-          .is_over = row.status.view() != "running" && row.status.view() != "interrupted"};
+          .is_over = is_over(row)};
 }
 
 constexpr std::size_t fewest_stored_runs = 5;
 
-/// What the sweep's own file knows of its runs; empty if there is none.
-Sample stored_sample(const sweep::Plan& plan, const std::string& path) {
-  Sample sample{{}, "that " + path + " holds", ""};
-  if (path.empty() || !std::filesystem::exists(path)) return sample;
+/// What the sweep's own file has of its runs; nothing if there is none.
+struct Stored {
+  Sample sample;
+  std::int64_t num_done = 0;  ///< tasks that are not to be done again
+  double seconds = 0;         ///< that its tasks have taken so far
+};
+Stored stored_runs(const sweep::Plan& plan, const std::string& path) {
+  Stored stored{.sample = {{}, "that " + path + " holds", ""}};
+  if (path.empty() || !std::filesystem::exists(path)) return stored;
   std::unordered_map<std::string, sweep::RunRow> rows;
   for (const sweep::RunRow& row : read_with_caution(path).rows)
-    if (row.steps > 0 && row.wall_seconds > 0) rows.emplace(sweep::identity(row), row);
+    if (sweep::fault_of(row).empty()) rows.emplace(sweep::identity(row), row);
   for (std::int64_t task = 0; task < plan.size() && !rows.empty(); ++task) {
     const RunParameters run = plan.task(task);
-    if (const auto row = rows.extract(sweep::identity(sweep::describe(run))); !row.empty())
-      sample.costs.push_back(cost_of(row.mapped(), {}, run, task % plan.num_groups()));
+    const auto found = rows.extract(sweep::identity(sweep::describe(run)));
+    if (found.empty()) continue;
+    const sweep::RunRow& row = found.mapped();
+    stored.num_done += is_over(row);
+    stored.seconds += row.wall_seconds;
+    if (row.steps > 0 && row.wall_seconds > 0)
+      stored.sample.costs.push_back(cost_of(row, {}, run, task % plan.num_groups()));
   }
-  return sample;
+  return stored;
 }
 
 /// Tasks spread over parameter sets and, where these are few, over seeds; those of the same array together.
@@ -144,9 +162,9 @@ void print_tasks(const sweep::Plan& plan) {
   }
   if (cli::stop_signalled()) return;
   const std::int64_t seeds = plan.size() / plan.num_groups();
-  std::cout << "# " << plan.size() << " tasks: " << plan.num_groups()
-            << (plan.num_groups() == 1 ? " parameter set" : " parameter sets") << ", " << seeds
-            << (seeds == 1 ? " seed" : " seeds") << " each\n";
+  std::cout << "# " << sweep::counted(plan.size(), "task") << ": "
+            << sweep::counted(plan.num_groups(), "parameter set") << ", " << sweep::counted(seeds, "seed")
+            << " each\n";
 }
 
 void print_limits(const sweep::Plan& plan) {
@@ -155,8 +173,15 @@ void print_limits(const sweep::Plan& plan) {
 }
 
 int print_cost(const sweep::Plan& plan, const std::string& output) {
-  Sample sample = stored_sample(plan, output);
-  if (sample.costs.size() < fewest_stored_runs) sample = tried_sample(plan);
+  const Stored stored = stored_runs(plan, output);
+  if (stored.num_done == plan.size()) {
+    std::printf("# %s has all %s, which took %.2g core-hours; nothing is left to do\n",
+                cli::printable(output).c_str(), sweep::counted(plan.size(), "task").c_str(),
+                stored.seconds / hour);
+    return cli::exit_success;
+  }
+  const bool knows_enough = stored.sample.costs.size() >= fewest_stored_runs;
+  const Sample sample = knows_enough ? stored.sample : tried_sample(plan);
   if (cli::stop_signalled()) return cli::exit_incomplete;
   if (sample.costs.empty()) {
     cli::say("clogsweep: none of the runs that were tried can begin, the first one: " + sample.failure);
@@ -167,15 +192,22 @@ int print_cost(const sweep::Plan& plan, const std::string& output) {
   all_work *= static_cast<double>(plan.size() / plan.num_groups());
   const SweepCost cost = sweep_cost(sample.costs, all_work, plan.size());
   const double us_per_step = 1e6 * cost.seconds_per_work * work_per_step(plan.task(0));
-  constexpr double hour = 3600;
   std::printf(
       "# at most %.3g core-hours on this machine, %.3g us per step measured; runs that clog end sooner\n",
       cost.bound / hour, us_per_step);
   const auto num_over =
       std::count_if(sample.costs.begin(), sample.costs.end(), [](const RunCost& run) { return run.is_over; });
-  std::printf("# expected %.2g core-hours (95 %%: %.2g to %.2g), from %zu runs %s, %td of them over\n",
-              cost.expected / hour, cost.lower / hour, cost.upper / hour, sample.costs.size(),
-              sample.source.c_str(), num_over);
+  const auto num_runs = static_cast<std::int64_t>(sample.costs.size());
+  std::printf("# expected %.2g core-hours (95 %%: %.2g to %.2g), from %s %s, %td of them over\n",
+              cost.expected / hour, cost.lower / hour, cost.upper / hour,
+              sweep::counted(num_runs, "run").c_str(), sample.source.c_str(), num_over);
+  if (stored.seconds == 0) return cli::exit_success;
+  const auto hours_left = [&](double all) { return std::max(0.0, all - stored.seconds) / hour; };
+  std::printf("# %s has %lld of %s; %lld to go: expected %.2g core-hours more (95 %%: %.2g to %.2g)\n",
+              cli::printable(output).c_str(), static_cast<long long>(stored.num_done),
+              sweep::counted(plan.size(), "task").c_str(),
+              static_cast<long long>(plan.size() - stored.num_done), hours_left(cost.expected),
+              hours_left(cost.lower), hours_left(cost.upper));
   return cli::exit_success;
 }
 

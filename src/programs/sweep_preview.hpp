@@ -15,6 +15,7 @@ void print_tasks(const sweep::Plan& plan);
 void print_limits(const sweep::Plan& plan);
 /// How long the sweep takes at most, if no run ends before max-time, and how long is to be expected
 /// (sweep_cost()): from what `output` holds of its runs, or, where that is little, from short pieces of some.
+/// Then what `output` has of the sweep, and what is left.
 /// Returns the exit code: a fault if no run can begin.
 /// @param output  the sweep's file, which need not be there; empty: none is named
 int print_cost(const sweep::Plan& plan, const std::string& output);

@@ -114,13 +114,16 @@ class Sweep(ProgramTest):
         sweep = [*QUICK, "line-tension=0.5,1", "--output", "s.h5"]
         self.succeed("clogsweep", *sweep, "seeds=1..3")
         before = self.snapshot()
-        told = self.succeed("clogsweep", *sweep, "seeds=1..30", "--dry-run").stdout.splitlines()[-1]
-        self.assertRegex(told, self.EXPECTED + "that s.h5 holds, 6 of them over$")
+        expected, left = self.succeed("clogsweep", *sweep, "seeds=1..30", "--dry-run").stdout.splitlines()[-2:]
+        self.assertRegex(expected, self.EXPECTED + "that s.h5 holds, 6 of them over$")
         self.assertEqual(self.snapshot(), before)
-        # All runs of the sweep: nothing is left to be guessed.
         hours = table(self.folder / "s.h5").wall_seconds.sum() / 3600
+        self.assertRegex(left, r"^# s.h5 has 6 of 60 tasks; 54 to go: expected \S+ core-hours more \(95 %: \S+ to \S+\)$")
+        of_all, more = (float(re.search("expected ([^ ]+) ", line)[1]) for line in (expected, left))
+        self.assertAlmostEqual(more / of_all, 1 - hours / of_all, delta=0.1)
+        # Nothing is left to be guessed.
         told = self.succeed("clogsweep", *sweep, "seeds=1..3", "--dry-run").stdout.splitlines()[-1]
-        self.assertTrue(told.startswith(f"# expected {hours:.2g} core-hours (95 %: {hours:.2g} to {hours:.2g}), from 6 runs"), told)
+        self.assertEqual(told, f"# s.h5 has all 6 tasks, which took {hours:.2g} core-hours; nothing is left to do")
 
     def test_a_dry_run_of_runs_that_cannot_begin_fails(self):
         done = self.run_program("clogsweep", *BLOCKED, "seeds=64", "--dry-run")
@@ -145,7 +148,7 @@ class Sweep(ProgramTest):
         self.assertNotIn("box", told)
         self.assertNotIn("proved", told)
         told = self.succeed("clogsweep", *SMALL, "max-time=2000", "--dry-run").stdout
-        self.assertIn("# droplets of 1 of 1 parameter sets may come farther than their array is long ", told)
+        self.assertIn("# droplets of 1 of 1 parameter set may come farther than their array is long ", told)
         self.assertIn("# not proved sound (tests/soundness/README.md): line-tension=30 ", self.succeed("clogsweep", *QUICK, "line-tension=30", "--dry-run").stdout)
 
     def test_what_was_not_proved_sound_is_said_once_when_the_sweep_starts(self):
@@ -155,6 +158,17 @@ class Sweep(ProgramTest):
         self.assertFalse(any("line-tension=0.05" in line for line in lines), lines)
         self.assertNotIn("proved", self.succeed("clogsweep", *sweep).stderr, "nothing is left to do")
         self.assertEqual(self.succeed("clogsweep", *sweep[:-1], "quiet.h5", "--quiet").stderr, "")
+
+    def test_one_of_a_kind_is_told_in_the_singular(self):
+        sweep = [*QUICK, "line-tension=0.5", "seeds=1", "--output", "s.h5"]
+        told = self.succeed("clogsweep", *sweep, "--dry-run").stdout
+        self.assertIn("# 1 task: 1 parameter set, 1 seed each\n", told)
+        self.assertIn(", from 1 run tried ", told)
+        self.assertIn("1 run on 1 computing rank, results go to s.h5\n", self.succeed("clogsweep", *sweep).stderr)
+        self.assertIn("s.h5 has 1 of 1 run; there is nothing left to do\n", self.succeed("clogsweep", *sweep).stderr)
+        self.assertIn("s.h5: 1 of 1 run over, ", self.succeed("clogsweep", "status", "s.h5").stdout)
+        self.assertIn("s.h5: 1 row of 1 run, all whole\n", self.succeed("clogsweep", "verify", "s.h5").stdout)
+        self.assertIn("whole.h5: 1 whole row\n", self.succeed("clogsweep", "salvage", "s.h5", "--output", "whole.h5").stdout)
 
     def test_help_and_version(self):
         self.assertIn("--line-tension", self.succeed("clogsweep", "--help").stdout)
@@ -291,7 +305,7 @@ class Isolated(ProgramTest):
         _, error = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 75, error)
         self.assertEqual(table(self.folder / "s.h5").distance[0], hung_at)
-        self.assertIn("1 go on where they were", self.succeed("clogsweep", *self.LONG, *sweep).stderr)
+        self.assertIn("1 goes on where it was", self.succeed("clogsweep", *self.LONG, *sweep).stderr)
         self.assertEqual(table(self.folder / "s.h5").status[0], "flowing")
 
     def test_a_sweep_goes_on_without_the_helper(self):
