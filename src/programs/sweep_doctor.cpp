@@ -19,6 +19,7 @@
 #include "clog/cli/printable.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/core/error.hpp"
+#include "clog/sweep/value_list.hpp"
 #include "rank_facts.hpp"
 
 namespace clog {
@@ -29,7 +30,7 @@ constexpr const char* usage =
     R"(clogsweep doctor looks for what spoils sweeps on this machine, and says what helps.
 
   clogsweep doctor
-  mpirun -np 4 clogsweep doctor --output results/sweep.h5    as the sweep will be started
+  mpirun -np 4 clogsweep doctor --output results/sweep.h5    as the sweep will be started, on 4 cores
 
 Exit code 1 if there is something to mend.
 )";
@@ -50,6 +51,10 @@ std::string joined(const std::set<std::string>& words) {
   std::string all;
   for (const std::string& word : words) all += (all.empty() ? "" : ", ") + word;
   return all;
+}
+
+std::string counted(std::size_t number, const char* noun) {
+  return sweep::counted(static_cast<std::int64_t>(number), noun);
 }
 
 bool is_set(const char* name) { return std::getenv(name) != nullptr; }
@@ -95,13 +100,11 @@ Finding cores(const std::string& host, const std::vector<const RankFacts*>& rank
     all.insert(rank->cores.begin(), rank->cores.end());
   }
   const double granted = ranks.front()->cores_granted;
-  const std::string where = host + ": " + std::to_string(ranks.size()) +
-                            (ranks.size() == 1 ? " rank, " : " ranks, ") + std::to_string(all.size()) +
-                            (all.size() == 1 ? " core" : " cores");
+  const std::string where = host + ": " + counted(ranks.size(), "rank") + ", " + counted(all.size(), "core");
   if (ranks.size() > all.size())
     return {where,
-            "start no more ranks than cores; if there are more cores, ranks are bound: set "
-            "OMPI_MCA_hwloc_base_binding_policy=none"};
+            "one rank per core is as fast: mpirun -np " + std::to_string(all.size()) +
+                "; if there are more cores, ranks are bound: set OMPI_MCA_hwloc_base_binding_policy=none"};
   if (granted > 0 && granted < static_cast<double>(ranks.size()))
     return {where + ", of which " + formatted("%.3g", granted) + " are granted (cpu.max of a control group)",
             "ask for more cores, or start fewer ranks"};

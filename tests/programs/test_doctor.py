@@ -35,7 +35,9 @@ class Doctor(ProgramTest):
         core = str(min(os.sched_getaffinity(0)))
         done = self.examine(ranks=2, before=["taskset", "-c", core])
         self.assertIn("2 ranks, started together", done.stdout)
-        self.assertIn("OMPI_MCA_hwloc_base_binding_policy=none", self.fault(done, "2 ranks, 1 core"))
+        remedy = self.fault(done, "2 ranks, 1 core")
+        self.assertIn("mpirun -np 1;", remedy)
+        self.assertIn("OMPI_MCA_hwloc_base_binding_policy=none", remedy)
 
     def test_a_lonely_rank_of_many_is_seen(self):
         self.assertIn("use mpirun", self.fault(self.examine(SLURM_NTASKS="8"), "allocation of 8 tasks"))
