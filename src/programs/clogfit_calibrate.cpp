@@ -43,6 +43,9 @@ root-mean-square deviation of the speeds. One file per trial.
 
 A profile is a CSV file with the header h [sigma], v [v_t], A or, with --diameter and --speed, in laboratory units such
 as h [mm], v [mm/s], A; or what clogrun channel has written. With --angle the terminal speed V_t follows from the laboratory's quantities.
+
+Errors (+-) are those of the scatter of a trial's frames about the best run, taken for independent noise. What the model
+or its mesh lacks is not in them: frames without noise give errors that are too small.
 )";
 
 using Text = std::string;

@@ -1,5 +1,6 @@
 #include "profile_file.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <sstream>
@@ -13,6 +14,8 @@
 #include "clog/store/trajectory_file.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "laboratory.hpp"
+#include "rounded.hpp"
+#include "stored_sweep.hpp"
 
 namespace clog {
 namespace {
@@ -132,13 +135,26 @@ fit::Profile samples(const std::string& path, const store::TrajectoryTable& tabl
   }
 }
 
+constexpr double farthest_frame = 1.5;  // on both sides of the orifice [sigma]
+
 fit::Profile frames_of_camera(const fit::Profile& profile) {
-  constexpr int frames_per_diameter = 20, farthest = 30;
+  constexpr int frames_per_diameter = 20;
+  constexpr int last = static_cast<int>(farthest_frame * frames_per_diameter);
   fit::Profile frames;
-  for (int i = -farthest; i <= farthest; ++i)
+  for (int i = -last; i <= last; ++i)
     if (const auto frame = fit::frame_at(profile, static_cast<double>(i) / frames_per_diameter))
       frames.push_back(*frame);
   return frames;
+}
+
+/// @throws Error if the droplet did not come as far as the frames go, or to the end of its channel
+void refuse_unfinished(const std::string& path, const fit::Profile& profile,
+                       const store::Provenance& origin) {
+  const double farthest = profile.empty() ? 0 : profile.back().h;
+  const double end = std::min(sweep::to_number(attribute(origin, "end_h")), farthest_frame);
+  if (farthest >= end) return;
+  throw Error("cannot calibrate with " + path + " (its droplet was at h = " + plain(farthest) +
+              " when the run ended: it clogged, or was stopped); give a droplet that passed");
 }
 
 fit::Profile read_csv(const std::string& path, const ProfileScales& scales) {
@@ -166,7 +182,9 @@ MeasuredProfile read_measured_profile(const std::string& path, const ProfileScal
   MeasuredProfile measured;
   if (store::looks_like_hdf5(path)) {
     store::TrajectoryTable table = read_passage(path);
-    measured = {frames_of_camera(samples(path, table)), std::move(table.provenance)};
+    const fit::Profile passage = samples(path, table);
+    refuse_unfinished(path, passage, table.provenance);
+    measured = {frames_of_camera(passage), std::move(table.provenance)};
   } else {
     measured.frames = read_csv(path, scales);
   }

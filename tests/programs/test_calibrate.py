@@ -111,6 +111,8 @@ class Calibrate(ProgramTest):
         self.succeed("clogrun", "channel", "--output", "channel.h5", "--orifice=0.9", "--start=-2.5", "--end=1.3", *keys)
         self.succeed("clogrun", "array", "--output", "array.h5", "box=20", "max-time=1", *keys)
         self.succeed("clogsweep", "--output", "sweep.h5", "box=20", "max-time=1", "seeds=1", *keys)
+        self.succeed("clogrun", "channel", "--output", "clogged.h5", "--orifice=0.5", "--start=-1.5", "vertices=32", "line-tension=3",
+                     "terminal-speed=0.3")
         content = bytearray((self.folder / "channel.h5").read_bytes())
         content[len(content) // 2] ^= 1
         (self.folder / "damaged.h5").write_bytes(content)
@@ -120,6 +122,7 @@ class Calibrate(ProgramTest):
         for arguments, words in [
             (["channel.h5", "--orifice=0.7", *keys[2:]], ["channel.h5", "--orifice=0.9, not 0.7"]),
             (["channel.h5", "--orifice=0.9", "terminal-speed=0.03"], ["channel.h5", "terminal-speed=0.3, not 0.03"]),
+            (["clogged.h5", "--orifice=0.5", "terminal-speed=0.3"], ["clogged.h5", "it clogged", "give a droplet that passed"]),
             (["array.h5"], ["array.h5", "not a passage"]),
             (["sweep.h5"], ["sweep.h5", "not a trajectory"]),
             (["damaged.h5"], ["damaged.h5", "damaged"]),
@@ -127,10 +130,15 @@ class Calibrate(ProgramTest):
         ]:
             with self.subTest(arguments=arguments):
                 self.refuse("clogfit", "calibrate", *arguments, words=words)
+        with h5py.File(self.folder / "clogged.h5") as file:
+            self.assertEqual(file["runs"]["status"][0], b"clogged")
         with h5py.File(self.folder / "channel.h5", "a") as file:
             file.attrs["note"] = "changed by hand"  # cuts the seal off
         done = self.succeed("clogfit", "deviation", "channel.h5", "channel.h5")
         self.assertIn("may go unnoticed", done.stderr)
+
+    def test_its_help_says_what_the_errors_leave_out(self):
+        self.assertIn("frames without noise give errors that are too small", self.succeed("clogfit", "calibrate", "--help").stdout)
 
     def test_mistakes_get_one_line_and_exit_code_2(self):
         self.write("p.csv", "h [mm],v [mm/s]\n-1,1\n0,0.5\n1,1\n")
