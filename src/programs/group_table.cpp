@@ -11,6 +11,7 @@
 
 #include "clog/sweep/settings.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "rounded.hpp"
 #include "usual_parameters.hpp"
 
 namespace clog {
@@ -65,7 +66,7 @@ std::string legend(const std::vector<Group>& groups) {
 
 /// Which columns are worth their place.
 struct OptionalColumns {
-  bool mechanisms;  ///< where clogs are not all of one kind
+  bool mechanisms;  ///< where clogs are not all of one kind, or some are left out
   bool migration;   ///< in random arrays a droplet goes straight on the average
 };
 
@@ -74,7 +75,10 @@ OptionalColumns optional_columns(const std::vector<Group>& groups) {
   for (const Group& group : groups)
     for (const Group::Cause& cause : group.causes)
       if (cause.clogging.num_clogs > 0) seen.insert(cause.mechanism);
-  return {.mechanisms = seen.size() > 1, .migration = std::any_of(groups.begin(), groups.end(), is_lattice)};
+  const bool are_some_left_out =
+      std::any_of(groups.begin(), groups.end(), [](const Group& group) { return group.num_left_out > 0; });
+  return {.mechanisms = seen.size() > 1 || are_some_left_out,
+          .migration = std::any_of(groups.begin(), groups.end(), is_lattice)};
 }
 
 /// Clogs by mechanism, as 3/5/2/0.
@@ -90,22 +94,25 @@ std::string mechanism_counts(const Group& group) {
 std::vector<std::string> result_cells(const Group& group, OptionalColumns optional) {
   const fit::CloggingLength& clogging = group.clogging;
   const bool bounded = clogging.num_clogs > 0;
-  const auto number = [](double value) { return std::isnan(value) ? "-" : rounded(value); };
+  const RoundedInterval length =
+      with_interval(clogging.length, clogging.interval.lower, clogging.interval.upper);
+  const RoundedError speed = with_error(group.relative_speed.mean, group.relative_speed.standard_error);
   // One or two runs that happened to come far enough to have a speed say little of all.
   constexpr int fewest_speeds = 3;
   const bool has_speed = group.relative_speed.num_runs >= fewest_speeds;
-  std::vector<std::string> cells = {
-      std::to_string(clogging.num_runs),
-      std::to_string(clogging.num_clogs),
-      bounded                  ? number(clogging.length)
-      : clogging.num_runs == 0 ? "-"
-                               : "> " + number(clogging.interval.lower),
-      bounded ? number(clogging.interval.lower) + " .. " + number(clogging.interval.upper) : "-",
-      has_speed ? number(group.relative_speed.mean) : "-",
-      has_speed ? number(group.relative_speed.standard_error) : "-"};
+  std::vector<std::string> cells = {std::to_string(clogging.num_runs),
+                                    std::to_string(clogging.num_clogs),
+                                    bounded                  ? length.value
+                                    : clogging.num_runs == 0 ? "-"
+                                                             : "> " + plain(clogging.interval.lower),
+                                    bounded ? length.lower + " .. " + length.upper : "-",
+                                    has_speed ? speed.value : "-",
+                                    has_speed ? speed.error : "-"};
   if (optional.mechanisms) cells.insert(cells.begin() + 2, mechanism_counts(group));
-  if (optional.migration)
-    cells.insert(cells.end(), {number(group.migration.slope), number(group.migration.standard_error)});
+  if (optional.migration) {
+    const RoundedError slope = with_error(group.migration.slope, group.migration.standard_error);
+    cells.insert(cells.end(), {slope.value, slope.error});
+  }
   return cells;
 }
 
@@ -241,14 +248,16 @@ std::string to_text(const std::vector<Group>& groups, double confidence, SharedP
   text += "\n\n" + aligned(lines) + legend(groups);
   if (optional.mechanisms) text += "w/s/h/o: clogs by wrapping, by squeezing, by both, by neither\n";
   if (num_left_out > 0)
-    text +=
-        "   " + std::to_string(num_left_out) + " ended before --from-distance and are left out of lambda\n";
+    text += "   " + sweep::counted(num_left_out, "run") + " ended before --from-distance, left out of " +
+            "runs, clogs and lambda; <v_g> is still of all runs\n";
   if (num_interrupted > 0)
-    text += "   " + std::to_string(num_interrupted) + " runs are under way or interrupted\n";
-  if (num_failed > 0)
-    text += "   " + std::to_string(num_failed) + " failed; their column `message` says why\n";
+    text +=
+        "   " + sweep::counted(num_interrupted, "run") + (num_interrupted == 1 ? " is" : " are") +
+        " under way or interrupted: lambda holds for the distances reached so far, and the clogs so far are "
+        "the early ones\n";
+  if (num_failed > 0) text += "   " + std::to_string(num_failed) + " failed; the column `message` says why\n";
   if (num_damaged > 0)
-    text += "   " + std::to_string(num_damaged) + " damaged; clogsweep verify names them\n";
+    text += "   " + std::to_string(num_damaged) + " damaged; clogsweep verify tells which\n";
   return text;
 }
 

@@ -32,7 +32,8 @@ bool hangs_on_mesh(const Group& group) {
 std::vector<Doubt> doubts_about(const Group& group) {
   constexpr int few = 5;
   std::vector<Doubt> doubts;
-  if (group.clogging.num_clogs < few) doubts.push_back(Doubt::few_clogs);
+  const bool has_runs = group.clogging.num_runs > 0;  // not if all ended before distances are counted
+  if (has_runs && group.clogging.num_clogs < few) doubts.push_back(Doubt::few_clogs);
   if (group.num_flowing > 0) doubts.push_back(Doubt::censored_by_time);
   if (group.num_interrupted > 0 || group.num_failed > 0) doubts.push_back(Doubt::incomplete);
   if (group.num_damaged > 0) doubts.push_back(Doubt::damaged);
@@ -177,12 +178,12 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
       group.num_damaged += is_damaged;
       group.num_failed += is_failed;
       if (is_damaged || is_failed) continue;
-      group.num_flowing += run->status.view() == "flowing";
       group.num_interrupted += run->status.view() == "interrupted" || run->status.view() == "running";
       group.num_repeating += sweep::has_met_repetition(*run);
       const bool is_left_out = std::max(run->distance, 0.0) < from_distance;
       group.num_left_out += is_left_out;
       if (!is_left_out) counted.push_back(run);
+      group.num_flowing += !is_left_out && run->status.view() == "flowing";
       speeds.push_back(run->mean_speed / run->terminal_speed);
       travels.push_back({run->mean_speed / run->terminal_speed * run->travel_time, run->travel_time});
       displacements.push_back({run->distance, run->lateral_displacement});

@@ -2,6 +2,7 @@ import csv
 import io
 import json
 import math
+import re
 import subprocess
 import sys
 import unittest
@@ -14,6 +15,7 @@ import stored_rows
 from support import BIN, ROOT, SMALL, ProgramTest
 
 sys.path.insert(0, str(ROOT / "analysis"))
+import rounded  # noqa: E402
 import stored  # noqa: E402
 
 # Such droplets might get a hundred diameters far: rows of theirs can be given any distance up to that.
@@ -186,11 +188,15 @@ class Fit(ProgramTest):
         self.assertEqual((group["clogging_length"], group["total_distance"]), (10 / 4, 10))
         self.assertEqual((group["squeezed"], group["wrapped"], group["clogging_length_wrapped"]), (2, 2, 5))
         self.assertEqual([step["distance"] for step in group["survival"]], [0, 1, 2, 3])
-        self.assertIn("3 ended before --from-distance", self.succeed("clogfit", "sweep.h5", "--from-distance=0.5").stdout)
+        text = self.succeed("clogfit", "sweep.h5", "--from-distance=0.5").stdout
+        self.assertIn("3 runs ended before --from-distance, left out of runs, clogs and lambda; <v_g> is still of all runs", text)
+        # Mechanisms are told also where those that are left clogged by one only.
+        self.assertRegex(self.succeed("clogfit", "sweep.h5", "--from-distance=3").stdout, "w/s/h/o.*\n.* 1/0/0/0 ")
         group, = self.fit()["groups"]
         self.assertEqual((group["runs"], group["clogs"], group["left_out"]), (8, 6, 0))
         group, = self.fit("--from-distance", 100)["groups"]
         self.assertEqual((group["runs"], group["clogs"], group["left_out"]), (0, 0, 8))
+        self.assertIsNone(group["doubts"])  # of no runs
         self.assertNotIn("> 0", self.succeed("clogfit", "sweep.h5", "--from-distance=100").stdout)
 
     def test_each_mechanism_has_a_length_of_its_own(self):
@@ -272,7 +278,7 @@ class Fit(ProgramTest):
         self.assertEqual(group["clogging_length"], 6)
         self.assertEqual((group["runs"], group["interrupted"], group["failed"]), (3, 1, 1))
         text = self.succeed("clogfit", "sweep.h5").stdout
-        self.assertIn("1 runs are under way or interrupted", text)
+        self.assertIn("1 run is under way or interrupted: lambda holds for the distances reached so far", text)
         self.assertIn("1 failed", text)
 
     def test_rows_that_hold_what_cannot_be_are_left_out_with_a_doubt(self):
@@ -296,8 +302,8 @@ class Fit(ProgramTest):
     def test_nothing_clogged_is_a_lower_bound(self):
         self.sweep("seeds=1..3", *FAR)
         self.change(distance=[10, 20, 30], status=[b"flowing"] * 3, mean_speed=np.nan)
-        self.assertIn("> 20.03", self.succeed("clogfit", "sweep.h5").stdout)  # 60/log(20)
-        self.assertIn("> 26.06", self.succeed("clogfit", "sweep.h5", "--confidence", 0.9).stdout)  # 60/log(10)
+        self.assertIn("> 20.0 ", self.succeed("clogfit", "sweep.h5").stdout)  # 60/log(20)
+        self.assertIn("> 26.1 ", self.succeed("clogfit", "sweep.h5", "--confidence", 0.9).stdout)  # 60/log(10)
 
     def test_the_table_in_every_format(self):
         self.sweep("max-time=60", "line-tension=0.4,2", "seeds=1..3")
@@ -310,6 +316,20 @@ class Fit(ProgramTest):
         for line, group in zip(lines, groups):
             self.assertEqual(list(line), [name for name in group if name not in ("survival", "censored_distances")])
             self.assertEqual(float(line["total_distance"]), group["total_distance"])
+
+    def test_numbers_have_the_figures_that_their_interval_allows(self):
+        self.sweep("seeds=1..40", *FAR, "line-tension=0.3,1,3")
+        chance = np.random.default_rng(1)
+        lengths = np.tile([0.05, 7, 50], 40)  # in the order of the tasks: seeds vary slowest
+        self.change(distance=np.minimum(lengths * chance.exponential(size=120), 90), status=[b"clogged"] * 120,
+                    mean_speed=100 * chance.uniform(0.2, 0.4, 120), travel_time=0.5)
+        text = self.succeed("clogfit", "sweep.h5").stdout
+        for group in self.fit()["groups"]:
+            value, lower, upper = re.fullmatch(r"(\S+) \((\S+) to (\S+)\)", rounded.with_interval(
+                *(group["clogging_length" + which] for which in ("", "_lower", "_upper")))).groups()
+            speed, error = rounded.with_error(group["relative_speed"], group["relative_speed_error"]).split(" \u00b1 ")
+            self.assertRegex(text, rf"\n +\S+ +{group['line_tension']:g} +40 +40 +{value} +{lower} \.\. {upper} +{speed} +{error} ")
+        self.assertGreater(len(str(self.fit()["groups"][0]["clogging_length"])), 12)
 
     def test_lattices_have_a_migration_angle(self):
         keys = ["model=sp", "wall-stiffness=10", "obstacle-layout=lattice", "obstacle-gap=1.2", "lattice-angle=-10,15"]
