@@ -58,7 +58,8 @@ inline constexpr DoubtText doubt_texts[] = {
      "lambda is below one obstacle spacing (diameter + gap): it says how deep the void of release is, "
      "not how often gaps clog droplets"},
     {Doubt::not_proved_sound, 'u', "not_proved_sound",
-     "line tension, preset or vertices are outside of what was proved sound (tests/soundness/README.md)"}};
+     "line tension, preset, vertices or obstacles are outside of what was proved sound "
+     "(tests/soundness/README.md)"}};
 const DoubtText& text_of(Doubt doubt);
 
 /// The runs of a sweep that differ in their seed only, and what they say together.
@@ -78,7 +79,7 @@ struct Group {
   fit::MeanSpeed relative_speed;         ///< v_g/v_t, mean of the runs
   fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, way over time of all runs together
   fit::Migration migration;
-  int num_flowing = 0;
+  int num_flowing = 0;  ///< ended by max-time
   int num_interrupted = 0;
   int num_failed = 0;     ///< left out of all fits
   int num_damaged = 0;    ///< likewise

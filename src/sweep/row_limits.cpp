@@ -7,6 +7,7 @@
 #include <limits>
 #include <string_view>
 
+#include "clog/core/units.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {
@@ -51,12 +52,23 @@ std::string unproven_vertices(const RunRow& row) {
          std::to_string(most_vertices) + " were looked at)";
 }
 
+/// Needles slip through the interface: then the droplet encloses them, at its release or on its way. Seen
+/// with obstacles as thick as an edge is long and thinner ones, the more often the more of them there are.
+std::string unproven_diameter(const RunRow& row) {
+  constexpr double thinnest = 2;  // over the length of an edge, with a margin
+  const double diameter = row.obstacle_diameter * (1 - row.obstacle_diameter_spread);
+  const double edge = units::regular_edge_length(static_cast<int>(row.vertices));
+  if (!(diameter < thinnest * edge)) return "";
+  return "obstacle-diameter=" + shortest(row.obstacle_diameter) + " (obstacles thinner than two edges, " +
+         rounded(thinnest * edge) + ", slip into the droplet; use more vertices)";
+}
+
 }  // namespace
 
 std::vector<std::string> unproven_parameters(const RunRow& row) {
   std::vector<std::string> all;
   if (row.model.view() != "dp") return all;
-  for (const std::string& one : {unproven_tension(row), unproven_vertices(row)})
+  for (const std::string& one : {unproven_tension(row), unproven_vertices(row), unproven_diameter(row)})
     if (!one.empty()) all.push_back(one);
   return all;
 }
@@ -97,8 +109,8 @@ std::string possible_repetition(const Plan& plan) {
     most_boxes = way / row.box;
   }
   if (num_groups == 0) return "";
-  return "droplets of " + std::to_string(num_groups) + " of " + std::to_string(plan.num_groups()) +
-         " parameter sets may come farther than their array is long and meet the same obstacles again: "
+  return "droplets of " + std::to_string(num_groups) + " of " + counted(plan.num_groups(), "parameter set") +
+         " may come farther than their array is long and meet the same obstacles again: "
          "terminal-speed*max-time is up to " +
          rounded(farthest) + ", boxes*box " + rounded(shortest_length) +
          "; boxes=" + rounded(std::ceil(most_boxes)) + " is long enough";

@@ -44,7 +44,10 @@ TEST(UnprovenParameters, AreNamedWithTheirValueBeyondIt) {
       {{{"preset", "literal"}}, "preset=literal (droplets cross themselves and obstacles)"},
       {{{"self-contact", "off"}}, "preset=custom (an interface that was not looked at)"},
       {{{"vertices", "32"}}, "vertices=32 (64 to 256 were looked at)"},
-      {{{"vertices", "512"}}, "vertices=512 (64 to 256 were looked at)"}};
+      {{{"vertices", "512"}}, "vertices=512 (64 to 256 were looked at)"},
+      {{{"obstacle-diameter", "0.04"}},
+       "obstacle-diameter=0.04 (obstacles thinner than two edges, 0.04909, slip into the droplet; use more "
+       "vertices)"}};
   for (const auto& [keys, words] : unproven)
     EXPECT_EQ(unproven_parameters(row_of(keys)), std::vector<std::string>{words});
 }
