@@ -46,8 +46,9 @@ cli::CommandLine parse(int argc, char** argv) {
       "most-frames", text(),
       "film: this many frames at most; a longer one is thinned, or shows the end (600)")(
       "dry-run", "print the config and how long the run takes at most, run nothing")(
-      "obstacles", text(), "array: CSV file x,y[,diameter] to use; the droplet starts near its centre")(
-      "write-obstacles", text(), "array: write the obstacles as a CSV file")(
+      "obstacles", text(),
+      "array: CSV file x,y[,diameter] to use, with the gap and the density that it has; the droplet starts "
+      "near its centre")("write-obstacles", text(), "array: write the obstacles as a CSV file")(
       "start", text(), "channel: h at release [sigma] (-10)")("end", text(),
                                                               "channel: h at the end [sigma] (3)");
   add_channel_options(line);

@@ -22,7 +22,8 @@ Setup read_setup(cli::CommandLine& line) {
   for (const char* key :
        {"obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "obstacle-layout", "lattice-angle"})
     if (line.has(key))
-      throw Error("--obstacles and " + std::string(key) + " contradict each other; give one of them");
+      throw Error("--obstacles and " + std::string(key) +
+                  " contradict each other (the file's own gap, density and layout count); give one of them");
   // One parameter set is needed to read the file (box, default diameter); its gap is then the file's own.
   const RunParameters draft = single_run(line.settings());
   if (draft.obstacles.layout == ObstacleLayout::lattice || draft.obstacles.diameter_spread > 0)

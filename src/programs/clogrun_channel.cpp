@@ -7,6 +7,17 @@
 #include "watched_run.hpp"
 
 namespace clog {
+namespace {
+
+void say_what_is_coarse(const RunParameters& run) {
+  constexpr int fine = 128;
+  if (run.model == Model::dp && run.dp.vertices < fine)
+    cli::say("vertices=" + std::to_string(run.dp.vertices) +
+             " may clog where 128 and more pass (corners of the polygon catch on the wedges' tips); use "
+             "vertices=128 or more");
+}
+
+}  // namespace
 
 int clogrun_channel(cli::CommandLine& line) {
   refuse_options(line, "channel", array_options);
@@ -28,6 +39,7 @@ int clogrun_channel(cli::CommandLine& line) {
     return now.droplet().centre_velocity()[0] / now.parameters().drag.terminal_speed;
   });
   say_what_is_unproven(sweep::Plan(line.settings()));
+  say_what_is_coarse(parameters);
   cli::catch_stop_signals();
   watched.follow();
   store::Trajectory trajectory =

@@ -65,6 +65,12 @@ class Run(ProgramTest):
                                  "(robust of less than 128 vertices is sound from 0.02 to 10)")
         self.assertEqual(self.succeed("clogrun", "array", *SMALL, "max-time=1", "--output", "sound.h5").stderr, "")
 
+    def test_a_coarse_polygon_in_a_channel_is_cautioned_against(self):
+        for vertices, told in ((96, ["vertices=96 may clog where 128 and more pass (corners of the polygon catch on the wedges' tips); "
+                                     "use vertices=128 or more"]), (128, [])):
+            done = self.succeed("clogrun", "channel", f"vertices={vertices}", "max-time=1", "--output", f"{vertices}.h5")
+            self.assertEqual(done.stderr.splitlines(), told)
+
     def test_it_writes_the_trajectory(self):
         done = self.succeed("clogrun", "array", *QUICK, "obstacle-gap=1.2", "--sample-interval", 2, "time-step=1e-3", "--output", "run.h5")
         self.assertRegex(done.stdout.splitlines()[-1], r"^\d+ steps, [\d.]+ s, [\d.]+ ns per vertex-step$")
@@ -224,6 +230,7 @@ class Run(ProgramTest):
         told = self.succeed("clogrun", "array", *keys, "--dry-run", "--output", "run.h5").stdout
         self.assertEqual(self.snapshot(), {})
         self.assertIn("at most 100 t0 in ", told)
+        self.assertNotIn(": 0 s on", self.succeed("clogrun", "array", *SMALL, "max-time=0.1", "--dry-run", "--output", "run.h5").stdout)
         self.assertIn("on this machine", told)
         samples, polygons = map(int, re.search(r"# at most (\d+) samples and (\d+) polygons", told).groups())
         # It is a config, and that of the run.
@@ -283,7 +290,7 @@ class Run(ProgramTest):
             (["array", "--obstacles", "infinite.csv", *out], ["infinite.csv line 1", "inf"]),
             (["array", "--obstacles", "header.csv", *out], ["no obstacles"]),
             (["array", "--obstacles", "empty.csv", *out], ["no obstacles"]),
-            (["array", "--obstacles", "outside.csv", "obstacle-gap=0.3", *out], ["contradict"]),
+            (["array", "--obstacles", "outside.csv", "obstacle-gap=0.3", *out], ["contradict", "the file's own gap"]),
             (["array", "--obstacles", "outside.csv", "obstacle-layout=lattice", *out], ["contradict"]),
             (["array", "--obstacles", "outside.csv", "--config", "lattice.cfg", *out], ["config's lattice"]),
             (["array", "obstacle-layout=lattice", "obstacle-density=1", *out], ["obstacle-density=1", "lattice"]),
