@@ -281,7 +281,7 @@ std::vector<Key> make_keys() {
        number,
        {},
        "1e-17",
-       "clogged when E_k/E_t stays below this",
+       "clogged when E_k/E_t, the kinetic energy over that at terminal speed, stays below this",
        false,
        [](RunParameters& run, const std::string& value) { run.clog_energy = to_number(value); }},
       {"clog-detection",
