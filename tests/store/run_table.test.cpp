@@ -194,13 +194,12 @@ TEST_F(RunTableTest, NoticesEveryFlippedBit) {
   const std::size_t seal = content.size() - seal_size;
   for (std::size_t byte = 0; byte < content.size(); byte += byte < seal ? 307 : 1) {
     write_text("flipped.h5", flipped(content, byte));
-    try {
-      EXPECT_EQ(read_sweep(path("flipped.h5")).checked, Checked::rows_and_settings) << byte;
-      EXPECT_GE(byte, seal) << "only one that hides the seal goes by with a word of caution";
-    } catch (const Error&) {
-      // as it should
-    }
+    EXPECT_THROW(read_sweep(path("flipped.h5")), Error) << byte;
   }
+  // A seal that is none any more, with a hole in what h5py reads and no checksum of ours covers.
+  std::string damaged = content.substr(0, seal) + std::string(seal_size, 'x');
+  damaged.replace(damaged.find("distance below which"), 8, 8, '\0');
+  EXPECT_NE(refusal(write_text("damaged.h5", damaged)), "");
 }
 
 TEST_F(RunTableTest, GivesNoWrongRowOfACopyWithoutASeal) {
