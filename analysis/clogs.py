@@ -28,14 +28,12 @@ with command_line.needs_modules():
     from matplotlib.patches import Circle
     from style import plt
 
-# Keys that a sweep takes as lists: each row has its own value.
-LISTS = ["line_tension", "obstacle_gap", "near_wall_drag", "seed"]
-
 
 def read_clogs(path):
+    """Rows of the polygons that have clogged."""
     with stored.opened(path, stored.SWEEP) as file:
-        rows, config = file["runs"][:], stored.attributes(file)["config"]
-    return [row for row in rows if row["status"] == b"clogged" and row["model"] == b"dp"], config
+        rows = file["runs"][:]
+    return [row for row in rows if row["status"] == b"clogged" and row["model"] == b"dp"]
 
 
 def mechanism(row):
@@ -44,20 +42,12 @@ def mechanism(row):
     return "other" if name == "none" else name
 
 
-def run_again(clogrun, config, row, folder):
+def run_again(clogrun, sweep, row, folder):
     """The interface that walls meet (2 x N) at rest and the obstacles (n x 3: x, y, diameter) around it."""
     output = pathlib.Path(folder) / f"{row['task']}.h5"
-    keys = [f"{name.replace('_', '-')}={row[name]!r}" for name in LISTS if name != "seed"] + [f"seeds={row['seed']}"]
-    if row["obstacle_filling"] == b"density":
-        keys.append(f"obstacle-density={row['obstacle_density']!r}")
-    if row["obstacle_filling"] == b"lattice":
-        keys.append(f"lattice-angle={row['lattice_angle']!r}")
-    # A certified row describes an equilibrium that the run ends before; by the threshold it ends in it.
-    subprocess.run(
-        [clogrun, "array", "--config", config, "--output", output, "--instruction-set", row["instruction_set"].decode(),
-         "--polygon-interval", "1e9", "--sample-interval", "1e9", *keys, "clog-detection=threshold"],
-        check=True, capture_output=True, text=True,
-    )
+    # A certified row describes an equilibrium that the run ends before.
+    subprocess.run([clogrun, "replay", sweep, str(row["task"]), "--to-rest", "--output", output,
+                    "--polygon-interval", "1e9", "--sample-interval", "1e9"], check=True, capture_output=True, text=True)
     with stored.opened(output) as file:
         return trajectory.refined(file["polygons"][-1], row), file["obstacles"][:]
 
@@ -139,13 +129,10 @@ def body():
     output = arguments.output or command_line.beside(arguments.sweep, "clogs")
     command_line.refuse_unwritable_picture(output, arguments.sweep)
     clogrun = programs.programs_in(arguments.programs) / "clogrun"
-    rows, config = read_clogs(arguments.sweep)
-    rows = chosen(rows, arguments)
+    rows = chosen(read_clogs(arguments.sweep), arguments)
     with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        config_file = pathlib.Path(folder) / "sweep.cfg"
-        config_file.write_text(config)
         try:
-            shapes = list(pool.map(lambda row: run_again(clogrun, config_file, row, folder), rows))
+            shapes = list(pool.map(lambda row: run_again(clogrun, arguments.sweep, row, folder), rows))
         except subprocess.CalledProcessError as error:
             raise UserError(f"cannot run clogrun ({programs.reason(error.stderr)})") from error
         except OSError as error:

@@ -126,7 +126,8 @@ def needs_modules():
 
 
 def _refuse(reason):
-    print(f"{name()}: {' '.join(str(reason).split())}", file=sys.stderr)
+    with contextlib.suppress(OSError):  # nobody may be there to read it
+        print(f"{name()}: {' '.join(str(reason).split())}", file=sys.stderr, flush=True)
     return USER_FAULT
 
 

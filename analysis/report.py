@@ -27,9 +27,9 @@ with command_line.needs_modules():
     import stored
     import style
     import survival_curve
+    from groups import Groups
     from style import plt
 
-SYMBOLS = {"line_tension": r"\Gamma", "wall_stiffness": "E_w"}
 STYLE = """
 body { font: 15px/1.5 system-ui, sans-serif; max-width: 72rem; margin: 2rem auto; padding: 0 1rem; color: #222; }
 h1 { font-size: 1.5rem; margin-bottom: 0; } h2 { font-size: 1.15rem; margin-top: 2rem; }
@@ -52,63 +52,55 @@ def picture(figure, caption):
     return f'<figure><img alt="{html.escape(caption)}" src="data:image/png;base64,{data}"><figcaption>{html.escape(caption)}</figcaption></figure>'
 
 
-def speeds(groups, abscissa):
+def speeds(groups):
     figure, axes = plt.subplots(figsize=(6.4, 4.8), layout="constrained")
-    families = list(clogging_length.curves(groups, abscissa))
-    for index, (label, members) in enumerate(families):
-        style.draw_speeds(axes, [group[abscissa] * style.side_by_side(index, len(families)) for group in members], members, index, label)
-    style.logarithmic_abscissa(axes, [group[abscissa] for group in groups])
-    axes.set_xlabel(style.AXES[abscissa])
+    curves = groups.curves()
+    for index, (label, members) in enumerate(curves):
+        style.draw_speeds(axes, groups.places(members, index, len(curves)), members, index, label)
+    groups.draw_abscissa(axes)
     axes.set_ylabel(style.AXES["speed"])
     style.grid(axes)
     style.legend(axes)
-    style.caption(axes, f"{clogging_length.caption(groups)}\n{clogging_length.note(groups, 'bars: standard error')}")
+    style.caption(axes, f"{groups.caption()}\n{groups.note('bars: standard error')}")
     return figure
 
 
-def survival(label, groups, abscissa):
-    """P(r) of the groups of one curve to their longest ways, each with the exponential of its length if it is known."""
+def survival(groups, label, members):
+    """P(r) of one curve's members to their longest ways, each with the exponential of its length if it is known."""
     figure, axes = plt.subplots(figsize=(6.4, 4.8), layout="constrained")
-    begin = min(0.01 * (group["clogging_length"] or survival_curve.longest_way(group)) for group in groups)
-    for group, colour in zip(groups, plt.get_cmap("viridis")(np.linspace(0, 0.9, len(groups)))):
+    begin = min(0.01 * (group["clogging_length"] or survival_curve.longest_way(group)) for group in members)
+    for group, colour in zip(members, plt.get_cmap("viridis")(np.linspace(0, 0.9, len(members)))):
         if group["survival"]:
             r = group["clogging_length"] * np.logspace(-2, 1, 100)
             axes.plot(r, np.exp(-r / group["clogging_length"]), color=colour, linewidth=0.8, linestyle="--")
-        survival_curve.draw(axes, group, colour, f"${SYMBOLS[abscissa]} = {group[abscissa]:g}$", begin=begin)
+        survival_curve.draw(axes, group, colour, groups.said(groups.abscissa, group[groups.abscissa]), begin=begin)
     axes.set_xscale("log")
     axes.set_ylim(0, 1.02)
     axes.set_xlabel(r"displacement along the flow $r/\sigma$")
     axes.set_ylabel("probability $P(r)$ of not having clogged")
     style.grid(axes)
-    axes.legend(frameon=False, fontsize=8, ncols=1 + len(groups) // 8)
-    style.caption(axes, f"{label or clogging_length.caption(groups)}\nsteps: clogs; ticks: runs last seen going; "
+    axes.legend(frameon=False, fontsize=8, ncols=1 + len(members) // 8)
+    style.caption(axes, f"{label or groups.caption()}\nsteps: clogs; ticks: runs last seen going; "
                         "dashed: exponential of the same length")
     return figure
 
 
-def causes(label, groups, abscissa):
+def causes(groups, label, members):
     """What became of the runs of one curve, as shares."""
     figure, axes = plt.subplots(figsize=(6.4, 4.8), layout="constrained")
-    places, base = np.arange(len(groups)), np.zeros(len(groups))
-    shares = {f"clogged, {name}": (colour, [group[name] / group["runs"] for group in groups])
+    places, base = np.arange(len(members)), np.zeros(len(members))
+    shares = {f"clogged, {name}": (colour, [group[name] / group["runs"] for group in members])
               for name, colour in style.MECHANISM_COLOURS.items()}
-    shares["not clogged"] = ("0.88", [1 - group["clogs"] / group["runs"] for group in groups])
+    shares["not clogged"] = ("0.88", [1 - group["clogs"] / group["runs"] for group in members])
     for name, (colour, share) in shares.items():
         if any(share):
             axes.bar(places, share, bottom=base, color=colour, width=0.8, label=name)
         base += share
-    axes.set_xticks(places, [f"{group[abscissa]:g}" for group in groups], rotation=0 if len(groups) <= 10 else 90)
-    axes.set_xlabel(style.AXES[abscissa])
+    axes.set_xticks(places, [f"{group[groups.abscissa]:g}" for group in members], rotation=0 if len(members) <= 10 else 90)
+    axes.set_xlabel(groups.axis_label())
     axes.set_ylabel("share of the runs")
     axes.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=5, fontsize=8, title=label, title_fontsize=8)
     return figure
-
-
-def varying(groups, abscissa):
-    """Names of the columns that tell the groups apart, the abscissa last."""
-    names = [name for name, _ in clogging_length.CURVE_PARAMETERS
-             if len({group[name] for group in groups}) > 1 and name != "obstacle_density"]
-    return [*names, abscissa]
 
 
 def length(group):
@@ -117,13 +109,18 @@ def length(group):
     return rounded.with_interval(group["clogging_length"], *ends) if group["clogs"] > 0 else f"&gt; {rounded.plain(ends[0])}"
 
 
-def table(groups, abscissa, confidence):
-    names = varying(groups, abscissa)
-    titles = [*names, "runs", "clogs", ", ".join(style.MECHANISM_COLOURS), f"&lambda;/&sigma; ({100 * confidence:g} %)",
+def value(cell):
+    """Of a parameter, as a table shows it."""
+    return "-" if cell is None else cell if isinstance(cell, str) else f"{cell:g}"
+
+
+def table(groups):
+    names = [*groups.curve_parameters(), groups.abscissa]
+    titles = [*names, "runs", "clogs", ", ".join(style.MECHANISM_COLOURS), f"&lambda;/&sigma; ({100 * groups.confidence:g} %)",
               "&lang;v<sub>g</sub>&rang;/v<sub>t</sub>", "Ca", "doubts"]
     lines = ["<tr>" + "".join(f"<th>{title.replace('_', ' ')}</th>" for title in titles) + "</tr>"]
-    for group in groups:
-        cells = [*("-" if group[name] is None else f"{group[name]:g}" for name in names), group["runs"], group["clogs"],
+    for group in groups.members:
+        cells = [*(value(group[name]) for name in names), group["runs"], group["clogs"],
                  ", ".join(str(group[name]) for name in style.MECHANISM_COLOURS), length(group),
                  rounded.with_error(group["relative_speed"], group["relative_speed_error"]), rounded.plain(group["capillary_number"])]
         doubts = ", ".join((group["doubts"] or "").split()).replace("_", " ")
@@ -160,14 +157,12 @@ def examples(clogs_of_sweep, count):
     return list({row["task"]: row for row in typical + spread}.values())[:count]
 
 
-def example_pictures(shown, config, clogrun):
+def example_pictures(shown, sweep, clogrun):
     pictures = []
     with tempfile.TemporaryDirectory(prefix="clogsweep-report-") as folder:
-        settings = pathlib.Path(folder) / "sweep.cfg"
-        settings.write_text(config)
         for row in shown:
             try:
-                polygon, obstacles = clogs.run_again(clogrun, settings, row, folder)
+                polygon, obstacles = clogs.run_again(clogrun, sweep, row, folder)
             except subprocess.CalledProcessError as error:
                 raise UserError(f"cannot run task {row['task']} again ({programs.reason(error.stderr)}); --examples 0 does without") from error
             figure, axes = plt.subplots(figsize=(4.6, 4.6), layout="constrained")
@@ -185,28 +180,26 @@ def progress_of(status, rows):
 
 
 def page(path, fit, status, rows, about, pictures):
-    groups = [group for group in fit["groups"] if group["runs"] > 0]
-    abscissa = "line_tension" if groups[0]["model"] == "dp" else "wall_stiffness"
-    curves = picture(clogging_length.draw(groups, abscissa, fit["confidence"]), "clogging length")
-    if any(group["relative_speed"] is not None for group in groups):
-        curves += picture(speeds(groups, abscissa), "mean speed over terminal speed")
-    families = list(clogging_length.curves(groups, abscissa))
-    survivals = "".join(picture(survival(label, members, abscissa), "P(r), to the longest way") for label, members in families
+    groups = Groups(fit)
+    curves = picture(clogging_length.draw(groups), "clogging length")
+    if any(group["relative_speed"] is not None for group in groups.members):
+        curves += picture(speeds(groups), "mean speed over terminal speed")
+    survivals = "".join(picture(survival(groups, label, members), "P(r), to the longest way") for label, members in groups.curves()
                         if any(group["survival"] for group in members))
-    ends = "".join(picture(causes(label, members, abscissa), "clogs by mechanism") for label, members in families)
+    ends = "".join(picture(causes(groups, label, members), "clogs by mechanism") for label, members in groups.curves())
     provenance = "\n".join([f"{key}: {about[key]}" for key in ("command_line", "version", "git_hash", "compiler", "mpi_version", "hdf5_version", "start_time", "num_ranks")
                             if key in about])
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{html.escape(path.name)}</title><style>{STYLE}</style></head><body>
 <h1>Sweep {html.escape(path.name)}</h1>
-<p class="about">{html.escape(progress_of(status, rows))}, {rounded.counted(len(groups), "point")}.
+<p class="about">{html.escape(progress_of(status, rows))}, {rounded.counted(len(groups.members), "point")}.
 &lambda; is the way after which 1/e of the droplets have not clogged, in droplet diameters; v<sub>t</sub> is the speed of a free droplet.</p>
 <h2>Curves</h2><div class="pictures">{curves}</div>
 <h2>How far droplets get</h2><div class="pictures">{survivals}</div>
 <h2>What becomes of them</h2><div class="pictures">{ends}</div>
-<h2>What may spoil these numbers</h2>{doubts(groups, fit["doubts"], rows)}
+<h2>What may spoil these numbers</h2>{doubts(groups.members, fit["doubts"], rows)}
 <h2>Example clogs</h2>{pictures}
-<h2>Table</h2>{table(groups, abscissa, fit["confidence"])}
+<h2>Table</h2>{table(groups)}
 <h2>Where they come from</h2><pre>{html.escape(provenance)}</pre><details><summary>All settings</summary><pre>{html.escape(about.get("config", ""))}</pre></details>
 </body></html>
 """
@@ -229,7 +222,7 @@ def body():
     rows = stored.read_table(arguments.sweep)
     with stored.opened(arguments.sweep) as file:
         about = stored.attributes(file)
-    pictures = example_pictures(examples(clogs.read_clogs(arguments.sweep)[0], arguments.examples), about["config"], folder / "clogrun")
+    pictures = example_pictures(examples(clogs.read_clogs(arguments.sweep), arguments.examples), arguments.sweep, folder / "clogrun")
     try:
         output.write_text(page(arguments.sweep, fit, status, rows, about, pictures))
     except OSError as error:

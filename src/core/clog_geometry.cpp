@@ -157,18 +157,4 @@ ClogMechanism ClogGeometry::mechanism() const {
   return num_gaps > 0 ? ClogMechanism::squeezed : ClogMechanism::none;
 }
 
-const char* name(ClogMechanism mechanism) {
-  switch (mechanism) {
-    case ClogMechanism::none:
-      return "none";
-    case ClogMechanism::wrapped:
-      return "wrapped";
-    case ClogMechanism::squeezed:
-      return "squeezed";
-    case ClogMechanism::hybrid:
-      return "hybrid";
-  }
-  return "unknown";
-}
-
 }  // namespace clog

@@ -187,26 +187,4 @@ RunResult DropletRun::result() const {
           .message = message_};
 }
 
-const char* name(ClogDetection detection) {
-  return detection == ClogDetection::certified ? "certified" : "threshold";
-}
-
-const char* name(RunStatus status) {
-  switch (status) {
-    case RunStatus::running:
-      return "running";
-    case RunStatus::clogged:
-      return "clogged";
-    case RunStatus::flowing:
-      return "flowing";
-    case RunStatus::passed:
-      return "passed";
-    case RunStatus::interrupted:
-      return "interrupted";
-    case RunStatus::failed:
-      return "failed";
-  }
-  return "unknown";
-}
-
 }  // namespace clog

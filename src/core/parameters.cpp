@@ -11,7 +11,9 @@
 #include "clog/core/error.hpp"
 #include "clog/core/jamming.hpp"
 #include "clog/core/lattice.hpp"
+#include "clog/core/number_text.hpp"
 #include "clog/core/portable_math.hpp"
+#include "clog/core/schema.hpp"
 #include "clog/core/stability.hpp"
 #include "clog/core/units.hpp"
 
@@ -19,9 +21,7 @@ namespace clog {
 namespace {
 
 [[noreturn]] void refuse(const char* key, double value, const std::string& reason_and_remedy) {
-  std::ostringstream message;
-  message << "invalid " << key << '=' << value << " (" << reason_and_remedy;
-  throw Error(message.str());
+  throw Error(std::string("invalid ") + key + '=' + shortest(value) + " (" + reason_and_remedy);
 }
 
 void require(bool holds, const char* key, double value, const char* reason_and_remedy) {
@@ -32,14 +32,6 @@ void require(bool holds, const char* key, double value, const char* reason_and_r
 template <std::invocable Words>
 void require(bool holds, const char* key, double value, const Words& reason_and_remedy) {
   if (!holds) refuse(key, value, reason_and_remedy());
-}
-
-void require_positive(const char* key, double value) {
-  require(std::isfinite(value) && value > 0, key, value, "must be positive and finite)");
-}
-
-void require_not_negative(const char* key, double value) {
-  require(std::isfinite(value) && value >= 0, key, value, "must be zero or positive, and finite)");
 }
 
 std::string text(double value, int digits = 3) {
@@ -54,25 +46,8 @@ double rounded_down(double value, int digits = 2) {
   return std::floor(value * scale * (1 + 1e-12)) / scale;
 }
 
-constexpr double smallest_time_step = 1e-9;  // with less a droplet needs a billion steps to fall by t0
-constexpr double smallest_box = 5 * units::droplet_diameter;
-
 void validate_obstacles(const ObstacleParameters& obstacles, int vertices, Model model) {
-  require_positive("obstacle-diameter", obstacles.diameter);
-  require_positive("obstacle-gap", obstacles.gap);
-  require_positive("box", obstacles.box);
-  require(obstacles.box >= smallest_box, "box", obstacles.box,
-          "the droplet would meet its own periodic image) use at least 5");
-
-  require(obstacles.box <= 1e5, "box", obstacles.box,
-          "no droplet gets as far) use at most 1e5; the array is periodic");
-  require(obstacles.boxes >= 1 && obstacles.boxes <= 1e6, "boxes", obstacles.boxes,
-          "boxes in a row along the flow, after which the array repeats) use 1..1e6");
-
-  if (obstacles.density) require_positive("obstacle-density", *obstacles.density);
   const double spread = obstacles.diameter_spread;
-  require(spread >= 0 && spread < 1, "obstacle-diameter-spread", spread,
-          "diameters are uniform in obstacle-diameter*(1 -+ spread)) use 0 or more, and less than 1");
   const double spacing = obstacles.smallest_diameter() + obstacles.gap;
   const double widest_spacing = obstacles.largest_diameter() + obstacles.gap;
   require(widest_spacing <= 5 * spacing, "obstacle-diameter-spread", spread, [&] {
@@ -115,7 +90,6 @@ void validate_density(const ObstacleParameters& obstacles) {
 void resolve_layout(ObstacleParameters& obstacles) {
   const double angle = obstacles.lattice_angle;
   if (obstacles.layout == ObstacleLayout::random) {
-    require(angle == 0, "lattice-angle", angle, "a random array has no rows) add obstacle-layout=lattice");
     validate_density(obstacles);
     return;
   }
@@ -127,12 +101,8 @@ void resolve_layout(ObstacleParameters& obstacles) {
           "a lattice repeats in each of them) leave it out, or use obstacle-layout=random");
   require(obstacles.diameter_spread == 0, "obstacle-diameter-spread", obstacles.diameter_spread,
           "the obstacles of a lattice are alike) leave it out, or use obstacle-layout=random");
-  require(std::abs(angle) <= 45, "lattice-angle", angle, [&] {
-    return "must lie in -45..45; a square lattice turned by 90 degrees is the same) try " +
-           text(std::remainder(angle, 90));
-  });
   const double spacing = obstacles.diameter + obstacles.gap;
-  const double narrowest = std::max(smallest_box, 2 * spacing);
+  const double narrowest = std::max(parameter("box").range.lower->value, 2 * spacing);
   const auto is_near = [=](const std::optional<CommensurateLattice>& lattice) {
     return lattice && std::abs(lattice->angle - angle) <= largest_angle_error;
   };
@@ -197,7 +167,7 @@ Rate fastest_rate(const RunParameters& run) {
 
 void choose_time_step(RunParameters& run) {
   run.time_step = automatic_time_step(run);
-  if (*run.time_step >= smallest_time_step) return;
+  if (*run.time_step >= parameter("time-step").range.lower->value) return;
   const Rate rate = fastest_rate(run);
   refuse(rate.key, rate.value,
          "would need a time-step of " + text(*run.time_step) + ") use a value nearer to the usual ones");
@@ -206,8 +176,6 @@ void choose_time_step(RunParameters& run) {
 void resolve_time_step(RunParameters& run) {
   if (!run.time_step) choose_time_step(run);
   const double time_step = *run.time_step;
-  require_positive("time-step", time_step);
-  require(time_step >= smallest_time_step, "time-step", time_step, "smaller than any mode needs) try 1e-3");
   require(run.max_time >= time_step, "max-time", run.max_time,
           [&] { return "shorter than one time-step) use at least " + text(time_step); });
   require(run.max_time / time_step <= 1e15, "max-time", run.max_time,
@@ -236,24 +204,11 @@ void validate_compression(const DpParameters& dp, bool automatic_area) {
 
 void resolve_dp(RunParameters& run) {
   DpParameters& dp = run.dp;
-  require_not_negative("line-tension", dp.line_tension);
   if (!dp.contact_range) dp.contact_range = half_vertex_diameter(dp);
-  require_not_negative("contact-range", *dp.contact_range);
-  require(*dp.contact_range <= 0.1, "contact-range", *dp.contact_range,
-          "walls would push from afar, and gaps be narrower by twice as much) use 0, the surface, to 0.1");
-  require_positive("self-contact-range", dp.self_contact_range);
-  require(dp.self_contact_range <= 0.1, "self-contact-range", dp.self_contact_range,
-          "no film could be thinner, and the droplet could not be folded) use at most 0.1");
-  require_not_negative("perimeter-stiffness-ratio", dp.perimeter_stiffness_ratio);
   if (!dp.perimeter_stiffness) dp.perimeter_stiffness = automatic_perimeter_stiffness(run);
-  require_not_negative("perimeter-stiffness", *dp.perimeter_stiffness);
   const bool automatic_area = !dp.area_stiffness;
   if (automatic_area) dp.area_stiffness = automatic_area_stiffness(run);
-  require_positive("area-stiffness", *dp.area_stiffness);
   validate_compression(dp, automatic_area);
-  require(
-      dp.wall_tension >= 0.1 && dp.wall_tension <= 1, "wall-tension", dp.wall_tension,
-      "minus the cosine of the contact angle; with less the interface on a wall would buckle) use 0.1..1");
 
   if (dp.perimeter_spring == PerimeterSpring::along && dp.gravity == Gravity::vertex)
     throw Error(
@@ -264,7 +219,6 @@ void resolve_dp(RunParameters& run) {
   const double vertex_mass = units::droplet_mass / dp.vertices;
   const double vertex_diameter = units::regular_edge_length(dp.vertices);
   const bool automatic = !run.wall_stiffness;
-  if (!automatic) require_positive("wall-stiffness", *run.wall_stiffness);
   resolve_time_step(run);
   const double time_step = *run.time_step;
   if (automatic) {
@@ -293,12 +247,7 @@ void resolve_sp(RunParameters& run) {
     throw Error(
         "missing wall-stiffness (E_w is the parameter of model=sp, there is no automatic value) "
         "give for example wall-stiffness=1");
-  require_positive("wall-stiffness", *run.wall_stiffness);
   resolve_time_step(run);
-  require(run.drag.near_wall == 0, "near-wall-drag", run.drag.near_wall,
-          "the soft disk has no near-wall drag) use 0 with model=sp");
-  require(run.drag.relative == 1, "relative-drag", run.drag.relative,
-          "the soft disk has no parts that could move relative to each other) use 1 with model=sp");
   const double omega = soft_disk_frequency(run);
   // Up to a dozen obstacles of a saturated array overlap a soft disk at once.
   const double largest = std::sqrt(max_total_omega_dt2 / 12) / omega;
@@ -351,27 +300,9 @@ double automatic_time_step(const RunParameters& run) {
 }
 
 RunParameters resolve(RunParameters run) {
-  require_positive("max-time", run.max_time);
-  require(run.clog_energy > 0 && run.clog_energy < 1e-3, "clog-energy", run.clog_energy,
-          "must lie in 0..1e-3, a fraction of the kinetic energy at terminal speed) try 1e-17");
-  require_positive("terminal-speed", run.drag.terminal_speed);
-  require(run.drag.terminal_speed <= 100, "terminal-speed", run.drag.terminal_speed,
-          "the drag would not matter before many boxes have passed) use at most 100");
-  require_not_negative("near-wall-drag", run.drag.near_wall);
-  require(run.drag.near_wall <= 1000, "near-wall-drag", run.drag.near_wall,
-          "the droplet would hang in the drag of its surroundings) use at most 1000");
-  require(run.drag.near_wall_exponent >= 0 && run.drag.near_wall_exponent <= 4, "near-wall-exponent",
-          run.drag.near_wall_exponent, "must lie in 0..4) the published exponent is 4/3");
-  require_positive("near-wall-cutoff", run.drag.near_wall_cutoff);
-  require(run.drag.near_wall_cutoff <= 1, "near-wall-cutoff", run.drag.near_wall_cutoff,
-          "drag would hardly depend on the distance) use at most 1, a droplet diameter");
-  require(run.drag.relative >= 0 && run.drag.relative <= 1000, "relative-drag", run.drag.relative,
-          "must lie in 0..1000) 1 is the published model");
-  const int vertices = run.dp.vertices;
-  if (run.model == Model::dp)
-    require(vertices >= 16 && vertices <= 4096, "vertices", vertices, "must lie in 16..4096)");
+  check_each(run);
   // First, as automatic values follow from the obstacles.
-  validate_obstacles(run.obstacles, vertices, run.model);
+  validate_obstacles(run.obstacles, run.dp.vertices, run.model);
   if (run.model == Model::dp)
     resolve_dp(run);
   else

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "bytes.hpp"
+#include "clog/sweep/messages.hpp"
 #include "socket.hpp"
 
 namespace clog::parallel {
@@ -80,7 +81,7 @@ void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj")
     // At least one slice between two messages: a task that is stopped at once has a snapshot, too.
     while (!is_over) {
       is_over = job->advance();
-      if (is_over) rank.send(over, number, to_bytes(job->row(), {}));
+      if (is_over) rank.send(over, number, sweep::to_bytes({job->row(), {}}));
       if (rank.wait(std::chrono::milliseconds(0))) break;
     }
     const auto message = rank.receive();
@@ -91,7 +92,7 @@ void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj")
       number = message->job;
       is_over = false;
     } else if (message->kind == report) {
-      rank.send(report, number, to_bytes(job->row(), job->snapshot()));
+      rank.send(report, number, sweep::to_bytes({job->row(), job->snapshot()}));
     } else {
       job.reset();
       is_over = true;
@@ -203,13 +204,12 @@ class IsolatedJobs::IsolatedJob final : public Job {
  public:
   IsolatedJob(Processes& processes, const RunRow& row, std::span<const std::byte> snapshot)
       : processes_(processes), number_(processes.begin_job(row.task, snapshot)) {
-    last_.row = row;
-    last_.snapshot.assign(snapshot.begin(), snapshot.end());
+    last_ = {row, {snapshot.begin(), snapshot.end()}};
     if (!processes_.have_helper()) fail(without_helper);
   }
   ~IsolatedJob() override {
     if (!processes_.process().is_open()) return;
-    if (is_asked_ && !last_.is_over)
+    if (is_asked_ && !is_over_)
       processes_.bury();  // it may never answer
     else
       processes_.process().send(drop, number_, {});
@@ -217,11 +217,11 @@ class IsolatedJobs::IsolatedJob final : public Job {
 
   bool advance() override {
     constexpr std::chrono::milliseconds slice{5};
-    if (!last_.is_over && processes_.process().wait(slice)) receive();
-    return last_.is_over;
+    if (!is_over_ && processes_.process().wait(slice)) receive();
+    return is_over_;
   }
   bool refresh() override {
-    if (last_.is_over || std::exchange(has_answered_, false)) return true;
+    if (is_over_ || std::exchange(has_answered_, false)) return true;
     if (!is_asked_) processes_.process().send(report, number_, {});
     is_asked_ = true;
     return false;
@@ -235,15 +235,10 @@ class IsolatedJobs::IsolatedJob final : public Job {
       "a "
       "crash there ends the sweep";
 
-  /// What is known of it: how it began, or the process's last message.
-  struct Known {
-    RunRow row;
-    std::vector<std::byte> snapshot;
-    bool is_over = false;
-  };
   Processes& processes_;
   std::int64_t number_;
-  Known last_;
+  sweep::Report last_;  ///< how it began, or what the process said last
+  bool is_over_ = false;
   bool is_asked_ = false;
   bool has_answered_ = false;
   Clock::time_point begin_ = Clock::now();
@@ -256,16 +251,16 @@ class IsolatedJobs::IsolatedJob final : public Job {
       return;
     }
     if (message->job != number_) return;  // of an earlier job, which was dropped meanwhile
-    std::tie(last_.row, last_.snapshot) = from_bytes<RunRow>(message->bytes);
-    last_.is_over = message->kind == over;
+    last_ = sweep::report_from(message->bytes);
+    is_over_ = message->kind == over;
     is_asked_ = false;
     has_answered_ = true;
   }
 
   void fail(const std::string& reason) {
-    last_.is_over = true;
+    is_over_ = true;
     last_.snapshot.clear();
-    last_.row.status = "failed";
+    last_.row.status = RunStatus::failed;
     last_.row.message = reason;
     last_.row.wall_seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
   }

@@ -64,7 +64,7 @@ class Work {
     if (Clock::now() - last_report_ < interval_ || !job_->refresh()) return std::nullopt;
     last_report_ = Clock::now();
     Report now = report();
-    now.row.status = "running";
+    now.row.status = RunStatus::running;
     return now;
   }
 
@@ -78,7 +78,7 @@ class Work {
     Report report{job_->row(), {}};
     report.row.rank = rank_;
     report.row.host = Communicator::host_name();
-    if (report.row.status.view() == "interrupted") report.snapshot = job_->snapshot();
+    if (report.row.status == RunStatus::interrupted) report.snapshot = job_->snapshot();
     return report;
   }
 };
@@ -184,8 +184,8 @@ class Master {
     const auto [rank, attempt] = running_.extract(ended).mapped();
     report.row.attempt = attempt;
     schedule_.tasks.ended(ended, seconds());
-    if (report.row.status.view() == "interrupted") return;
-    if (report.row.status.view() != "failed") {
+    if (report.row.status == RunStatus::interrupted) return;
+    if (report.row.status != RunStatus::failed) {
       set_aside(schedule_.trust.succeeded(ended, rank));
       return;
     }
@@ -222,8 +222,7 @@ class Master {
         answer(worker);
         continue;
       }
-      auto [row, snapshot] = from_bytes<RunRow>(bytes);
-      Report report{row, std::move(snapshot)};
+      Report report = sweep::report_from(bytes);
       if (envelope->tag == running) {
         report.row.attempt = running_.at(report.row.task).attempt;
         events_.progressed(report);
@@ -232,7 +231,7 @@ class Master {
       take_back(report);
       // First the task, then the file: workers do not wait for the disk.
       answer(worker);
-      if (report.row.status.view() != "failed") events_.ended(report);
+      if (report.row.status != RunStatus::failed) events_.ended(report);
     }
     return served;
   }
@@ -268,7 +267,7 @@ class Master {
       Report report = own_job_->last_report();
       own_job_.reset();
       take_back(report);
-      if (report.row.status.view() != "failed") events_.ended(report);
+      if (report.row.status != RunStatus::failed) events_.ended(report);
     } else if (std::optional<Report> report = own_job_->due_report()) {
       report->row.attempt = running_.at(report->row.task).attempt;
       events_.progressed(*report);
@@ -310,9 +309,7 @@ class Worker {
   const JobFactory& make_job_;
   std::chrono::milliseconds report_interval_;
 
-  void send(Tag tag, const Report& report) const {
-    ranks_.send(master, tag, to_bytes(report.row, report.snapshot));
-  }
+  void send(Tag tag, const Report& report) const { ranks_.send(master, tag, to_bytes(report)); }
 
   std::pair<std::int64_t, std::vector<std::byte>> wait_for_task() const {
     Backoff backoff;

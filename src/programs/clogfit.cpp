@@ -14,6 +14,7 @@
 #include "clogfit_deviation.hpp"
 #include "clogfit_drag.hpp"
 #include "group_table.hpp"
+#include "stored_sweep.hpp"
 #include "sweep_input.hpp"
 
 namespace {
@@ -67,7 +68,7 @@ int body(int argc, char** argv) {
   if (sweep.rows.empty()) throw Error(line.get("file") + " has no runs yet; let the sweep finish some first");
   const std::vector<Group> groups = group_runs(sweep.rows, confidence, from_distance);
   std::cout << (format == "csv"    ? to_csv(groups)
-                : format == "json" ? to_json(groups, confidence)
+                : format == "json" ? to_json(groups, confidence, listed_columns(sweep.provenance))
                                    : to_text(groups, confidence,
                                              line.has("all-parameters") ? SharedParameters::all
                                                                         : SharedParameters::unusual));

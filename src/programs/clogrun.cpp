@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis_script.hpp"
@@ -25,6 +26,7 @@ constexpr const char* usage = R"(clogrun follows one droplet and writes what hap
   clogrun array --output run.h5 --obstacles mine.csv box=60 --polygon-interval 1
   clogrun channel --output run.h5 --orifice 0.7 line-tension=1.08 near-wall-drag=0.07 terminal-speed=0.032
   clogrun array --output run.h5 line-tension=0.3 max-time=3000 --polygon-interval 5 --frames film
+  clogrun replay sweep.h5 12 --output run.h5 --polygon-interval 1     a run of a sweep once more
   clogrun sag line-tension=0.1,0.3,1          prints how far the droplet sinks onto a flat wall
 
 In an array, the same keys and seed as a row of a sweep give that row's run, bit for bit.
@@ -38,7 +40,9 @@ cli::CommandLine parse(int argc, char** argv) {
   namespace po = boost::program_options;
   cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::accepted);
   const auto text = [] { return po::value<std::string>(); };
-  line.add_options()("system", text(), "array, channel (two wedges) or sag (flat wall)")(
+  line.add_options()("system", text(), "array, channel (two wedges), sag (flat wall) or replay")(
+      "file", text(), "replay: file of clogsweep")("task", text(), "replay: the row's number, column `task`")(
+      "to-rest", "replay: until the droplet rests, not only until it is proved that it will")(
       "output", text(), "HDF5 file to make")("seed", text(), "short for seeds=N")(
       "sample-interval", text()->default_value("1"), "time between samples [t0]")(
       "polygon-interval", text(), "also write the polygon this often [t0]")(
@@ -53,7 +57,11 @@ cli::CommandLine parse(int argc, char** argv) {
                                                               "channel: h at the end [sigma] (3)");
   add_channel_options(line);
   line.add_positional("system", 1);
-  line.add_commands({"array", "channel", "sag"});
+  if (argc > 1 && std::string_view(argv[1]) == "replay") {
+    line.add_positional("file", 1);
+    line.add_positional("task", 1);
+  }
+  line.add_commands({"array", "channel", "sag", "replay"});
   line.settings().set("seeds", "1");
   line.parse(argc, argv);
   if (line.has("seed") && line.has("seeds"))
@@ -109,8 +117,12 @@ std::vector<std::string> film_options(const cli::CommandLine& line) {
   return options;
 }
 
+/// Those of which a file is written, and a film can be made.
+const std::map<std::string, int (*)(cli::CommandLine&)> followed_systems = {
+    {"array", clogrun_array}, {"channel", clogrun_channel}, {"replay", clogrun_replay}};
+
 int follow(cli::CommandLine& line, const std::string& system) {
-  const auto run = system == "array" ? clogrun_array : clogrun_channel;
+  const auto run = followed_systems.at(system);
   if (!line.has("frames")) {
     refuse_options(line, system + " without --frames", {"most-frames"});
     return run(line);
@@ -130,10 +142,11 @@ int body(int argc, char** argv) {
   if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return cli::exit_success;
   refuse_same_files(line);
   const std::string system = line.has("system") ? line.get("system") : "";
-  if (system == "array" || system == "channel") return follow(line, system);
+  if (system != "replay") refuse_options(line, system, {"file", "task", "to-rest"});
+  if (followed_systems.contains(system)) return follow(line, system);
   if (system == "sag") return clogrun_sag(line);
   throw Error((system.empty() ? "missing system" : "unknown system '" + system + "'") +
-              "; try clogrun array, clogrun channel or clogrun sag");
+              "; try clogrun array, clogrun channel, clogrun sag or clogrun replay");
 }
 
 }  // namespace

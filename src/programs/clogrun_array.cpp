@@ -42,6 +42,14 @@ Setup read_setup(cli::CommandLine& line) {
   return {single_run(line.settings()), array};
 }
 
+sweep::RunRow row_of(const Setup& setup) {
+  if (!setup.own_obstacles) return sweep::describe(setup.parameters);
+  RunParameters run = setup.parameters;
+  run.obstacles.density =
+      static_cast<double>(setup.own_obstacles->obstacles().size()) / run.obstacles.period().area();
+  return row_of_scene(run, ObstacleLayout::file);
+}
+
 }  // namespace
 
 int clogrun_array(cli::CommandLine& line) {
@@ -63,13 +71,7 @@ int clogrun_array(cli::CommandLine& line) {
   cli::catch_stop_signals();
   watched.follow();
 
-  sweep::RunRow row = sweep::describe(setup.parameters);
-  if (setup.own_obstacles) {
-    row.obstacle_filling = "file";
-    row.obstacle_density = static_cast<double>(setup.own_obstacles->obstacles().size()) /
-                           setup.parameters.obstacles.period().area();
-  }
-  store::write_trajectory(output, watched.trajectory(row, line));
+  store::write_trajectory(output, watched.trajectory(row_of(setup), line));
   return watched.report();
 }
 

@@ -42,8 +42,7 @@ int clogrun_channel(cli::CommandLine& line) {
   say_what_is_coarse(parameters);
   cli::catch_stop_signals();
   watched.follow();
-  store::Trajectory trajectory =
-      watched.trajectory(without_array(sweep::describe(parameters), "channel"), line);
+  store::Trajectory trajectory = watched.trajectory(row_of_scene(parameters, ObstacleLayout::channel), line);
   for (const auto& [name, value] : {std::pair{"orifice", channel.orifice},
                                     {"wedge_angle", channel.wedge_angle},
                                     {"tip_radius", channel.tip_radius},

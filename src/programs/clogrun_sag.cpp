@@ -57,11 +57,13 @@ int clogrun_sag(cli::CommandLine& line) {
     const RunParameters parameters = plan.task(task);
     WatchedRun watched(run_onto_wall(parameters), intervals);
     watched.follow();
-    const sweep::RunRow row = without_array(sweep::describe(parameters), "wall");
+    const sweep::RunRow row = row_of_scene(parameters, ObstacleLayout::wall);
     const RunResult result = watched.result();
     const Sag sag = sag_of(watched.run(), free_droplet(parameters));
-    std::printf("%s,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%s\n", row.model.view().data(), row.line_tension,
-                row.wall_stiffness, sag.centre, sag.top, result.shape_parameter, result.time,
+    const bool is_polygon = parameters.model == Model::dp;
+    std::printf("%s,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%s\n", name(parameters.model),
+                is_polygon ? parameters.dp.line_tension : sweep::RunRow::not_known,
+                *parameters.wall_stiffness, sag.centre, sag.top, result.shape_parameter, result.time,
                 result.status == RunStatus::clogged ? "at_rest" : name(result.status));
     cli::flush_output();
     if (result.status == RunStatus::failed) throw Error(result.message);

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iostream>
 #include <limits>
 #include <map>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <sstream>
@@ -22,6 +24,7 @@
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/run_job.hpp"
+#include "clog/sweep/schema_json.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "seed_rule.hpp"
 #include "sweep_doctor.hpp"
@@ -54,6 +57,7 @@ void parse(cli::CommandLine& line, int argc, char** argv) {
   line.add_options()("output", po::value<std::string>(), "HDF5 file to make")(
       "dry-run", "print the tasks, their number and cost, run nothing")("print-config",
                                                                         "print the settings, run nothing")(
+      "schema", "print all keys and columns as JSON: meaning, unit, range, default; run nothing")(
       "master-computes", po::value<std::string>()->default_value("auto"),
       "does rank 0 run tasks too: auto (with up to 16 ranks), yes, no")(
       "max-hours", po::value<std::string>(),
@@ -196,6 +200,10 @@ std::optional<int> prepare(const cli::CommandLine& line) {
   if (cli::answer_help_or_version(
           line, {{"MPI", parallel::Communicator::library_version()}, {"HDF5", store::library_version()}}))
     return cli::exit_success;
+  if (line.has("schema")) {
+    std::cout << sweep::schema_json().dump(2) << '\n';
+    return cli::exit_success;
+  }
   lead_options(line);
   attempts(line);
   check_isolate(line);

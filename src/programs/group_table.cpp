@@ -9,6 +9,7 @@
 #include <sstream>
 #include <variant>
 
+#include "clog/sweep/schema_json.hpp"
 #include "clog/sweep/settings.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "rounded.hpp"
@@ -17,18 +18,21 @@
 namespace clog {
 namespace {
 
-std::string exact(const Value& value) {
-  if (const auto* text = std::get_if<std::string>(&value)) return *text;
-  if (const auto* count = std::get_if<std::int64_t>(&value)) return std::to_string(*count);
-  return sweep::shortest(std::get<double>(value));
+std::string rounded(const Value& value) {
+  if (const auto* number = std::get_if<double>(&value)) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", *number);
+    return text;
+  }
+  const std::string text = sweep::text_of(value);
+  return text.empty() ? "-" : text;
 }
 
-std::string rounded(const Value& value) {
-  if (const auto* word = std::get_if<std::string>(&value)) return word->empty() ? "-" : *word;
-  if (const auto* count = std::get_if<std::int64_t>(&value)) return std::to_string(*count);
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", std::get<double>(value));
-  return text;
+nlohmann::ordered_json json_of(const Value& value) {
+  if (const auto* count = std::get_if<std::int64_t>(&value)) return *count;
+  if (const auto* number = std::get_if<double>(&value); number && std::isfinite(*number)) return *number;
+  if (const auto* word = std::get_if<std::string>(&value); word && !word->empty()) return *word;
+  return nullptr;
 }
 
 /// Columns aligned to the right.
@@ -45,7 +49,9 @@ std::string aligned(const std::vector<std::vector<std::string>>& lines) {
   return text;
 }
 
-bool is_lattice(const Group& group) { return group.parameters.obstacle_filling.view() == "lattice"; }
+bool is_lattice(const Group& group) {
+  return group.parameters.parameters.obstacles.layout == ObstacleLayout::lattice;
+}
 
 std::string letters(const std::vector<Doubt>& doubts) {
   std::string all;
@@ -135,13 +141,15 @@ std::vector<bool> varying_fields(const std::vector<Group>& groups) {
 /// Fields that vary, except those whose automatic values follow from the others.
 std::vector<bool> shown_fields(const std::vector<Group>& groups, const std::vector<bool>& varies) {
   const std::vector<Field> first = parameter_fields(groups.front().parameters);
-  const bool soft_disk = groups.front().parameters.model.view() == "sp";
-  std::set<std::string_view> automatic = {"time_step", "area_stiffness", "perimeter_stiffness"};
-  if (!soft_disk) automatic.insert("wall_stiffness");
+  const bool soft_disk = groups.front().parameters.parameters.model == Model::sp;
+  const auto is_automatic = [=](const sweep::Column& column) {
+    return column.parameter && column.parameter->is_automatic_by_default() &&
+           !(soft_disk && column.name == "wall_stiffness");
+  };
   std::vector<bool> shown(first.size(), false);
   for (std::size_t i = 0; i < first.size(); ++i) {
     const std::string_view name = first[i].first;
-    shown[i] = (varies[i] && !automatic.contains(name)) || name == "obstacle_gap" ||
+    shown[i] = (varies[i] && !is_automatic(*group_columns()[i])) || name == "obstacle_gap" ||
                name == (soft_disk ? "wall_stiffness" : "line_tension");
   }
   for (std::size_t i = 0; i < first.size(); ++i) {
@@ -176,7 +184,7 @@ std::vector<bool> named_if_shared(const sweep::RunRow& row, SharedParameters sha
       shared == SharedParameters::unusual ? usual_parameters(row) : std::vector<Field>();
   std::vector<bool> named;
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    const std::string text = exact(fields[i].second);
+    const std::string text = sweep::text_of(fields[i].second);
     const std::string_view name = fields[i].first;
     const bool tells_all =
         name == "model" || (name == "preset" && text != sweep::find_key("preset").default_text);
@@ -268,28 +276,20 @@ std::string to_csv(const std::vector<Group>& groups) {
     if (&group == &groups.front())
       for (std::size_t i = 0; i < fields.size(); ++i) out << (i > 0 ? "," : "") << fields[i].first;
     out << '\n';
-    for (std::size_t i = 0; i < fields.size(); ++i) out << (i > 0 ? "," : "") << exact(fields[i].second);
+    for (std::size_t i = 0; i < fields.size(); ++i)
+      out << (i > 0 ? "," : "") << sweep::text_of(fields[i].second);
   }
   out << '\n';
   return out.str();
 }
 
-std::string to_json(const std::vector<Group>& groups, double confidence) {
+std::string to_json(const std::vector<Group>& groups, double confidence,
+                    const std::vector<std::string>& lists) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Group& group : groups) {
     nlohmann::ordered_json entry;
     const std::vector<Field> fields = all_fields(group);
-    for (const auto& [name, value] : fields) {
-      if (const auto* count = std::get_if<std::int64_t>(&value))
-        entry[name] = *count;
-      else if (const auto* number = std::get_if<double>(&value))
-        entry[name] =
-            std::isfinite(*number) ? nlohmann::ordered_json(*number) : nlohmann::ordered_json(nullptr);
-      else
-        entry[name] = std::get<std::string>(value).empty()
-                          ? nlohmann::ordered_json(nullptr)
-                          : nlohmann::ordered_json(std::get<std::string>(value));
-    }
+    for (const auto& [name, value] : fields) entry[name] = json_of(value);
     entry["survival"] = nlohmann::ordered_json::array();
     for (const fit::SurvivalStep& step : group.survival)
       entry["survival"].push_back({{"distance", step.distance},
@@ -304,10 +304,11 @@ std::string to_json(const std::vector<Group>& groups, double confidence) {
   }
   nlohmann::ordered_json sentences;
   for (const DoubtText& doubt : doubt_texts) sentences[doubt.word] = doubt.sentence;
-  const nlohmann::ordered_json document = {{"confidence", confidence},
-                                           {"doubts", sentences},
-                                           {"units", field_units(groups.front())},
-                                           {"groups", list}};
+  nlohmann::ordered_json columns = nlohmann::ordered_json::array();
+  for (const sweep::Column* column : group_columns()) columns.push_back(sweep::to_json(*column));
+  const nlohmann::ordered_json document = {
+      {"confidence", confidence}, {"doubts", sentences}, {"units", field_units(groups.front())},
+      {"columns", columns},       {"lists", lists},      {"groups", list}};
   return document.dump(2) + "\n";
 }
 

@@ -15,6 +15,8 @@ std::string to_text(const std::vector<Group>& groups, double confidence, SharedP
 /// All fields of every group.
 std::string to_csv(const std::vector<Group>& groups);
 /// All fields of every group, and its P(r).
-std::string to_json(const std::vector<Group>& groups, double confidence);
+/// @param lists  columns of which the sweep was given several values, see listed_columns()
+std::string to_json(const std::vector<Group>& groups, double confidence,
+                    const std::vector<std::string>& lists);
 
 }  // namespace clog

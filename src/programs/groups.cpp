@@ -12,12 +12,15 @@
 namespace clog {
 namespace {
 
-Value value_of(double number) { return std::isnan(number) ? Value(std::string()) : Value(number); }
-Value value_of(std::int64_t count) { return count; }
+Value value_of(double number) { return std::isnan(number) ? Value() : Value(number); }
 Value value_of(int count) { return std::int64_t{count}; }
-template <std::size_t N>
-Value value_of(const sweep::FixedText<N>& text) {
-  return std::string(text.view());
+
+bool is_ensemble(const sweep::Column& column) {
+  return column.parameter && column.parameter->role == ParameterRole::ensemble;
+}
+
+bool is_numerics(const sweep::Column& column) {
+  return column.parameter && column.parameter->role == ParameterRole::numerics;
 }
 
 /// Are so many clogs wrapped or hybrid that what holds those decides the length?
@@ -70,7 +73,7 @@ std::vector<double> censored_distances(std::span<const fit::Observation> runs) {
   return distances;
 }
 
-bool is_clogged(const sweep::RunRow& run) { return run.status.view() == "clogged"; }
+bool is_clogged(const sweep::RunRow& run) { return run.status == RunStatus::clogged; }
 
 /// Clogging lengths of runs that are sound and reached the distance from which they count.
 void fit_clogging(Group& group, std::span<const sweep::RunRow* const> runs, double confidence,
@@ -89,13 +92,12 @@ void fit_clogging(Group& group, std::span<const sweep::RunRow* const> runs, doub
   group.survival = fit::survival_curve(all, confidence);
   group.censored_distances = censored_distances(all);
   if (std::any_of(runs.begin(), runs.end(),
-                  [](const auto* run) { return is_clogged(*run) && run->mechanism.view().empty(); }))
+                  [](const auto* run) { return is_clogged(*run) && !run->mechanism; }))
     return;
   for (const ClogMechanism cause : causes)
-    group.causes.push_back({cause, fit::fit_clogging_length(observe([=](const sweep::RunRow& run) {
-                                                              return run.mechanism.view() == name(cause);
-                                                            }),
-                                                            confidence)});
+    group.causes.push_back(
+        {cause, fit::fit_clogging_length(
+                    observe([=](const sweep::RunRow& run) { return run.mechanism == cause; }), confidence)});
 }
 
 /// Counts by mechanism and their lengths; without values where they are not known.
@@ -111,7 +113,7 @@ void append_causes(const Group& group, std::vector<Field>& fields) {
        "clogging_length_squeezed_upper"},
       {"hybrid", "clogging_length_hybrid", "clogging_length_hybrid_lower", "clogging_length_hybrid_upper"},
       {"other", "clogging_length_other", "clogging_length_other_lower", "clogging_length_other_upper"}};
-  const Value unknown = std::string();
+  const Value unknown;
   for (std::size_t i = 0; i < std::size(names); ++i) {
     const bool known = !group.causes.empty();
     const fit::CloggingLength fit = known ? group.causes[i].clogging : fit::CloggingLength();
@@ -122,22 +124,7 @@ void append_causes(const Group& group, std::vector<Field>& fields) {
   }
 }
 
-constexpr std::pair<std::string_view, std::string_view> units_of_fields[] = {
-    {"obstacle_diameter", "sigma"},
-    {"obstacle_gap", "sigma"},
-    {"obstacle_density", "1/sigma^2"},
-    {"lattice_angle", "degrees"},
-    {"line_tension", "g rho sigma^2"},
-    {"wall_stiffness", "g rho sigma^3"},
-    {"near_wall_cutoff", "sigma"},
-    {"terminal_speed", "sqrt(sigma g)"},
-    {"time_step", "t0"},
-    {"max_time", "t0"},
-    {"box", "sigma"},
-    {"area_stiffness", "g rho/sigma"},
-    {"perimeter_stiffness", "g rho sigma"},
-    {"contact_range", "sigma"},
-    {"self_contact_range", "sigma"},
+constexpr std::pair<std::string_view, std::string_view> units_of_results[] = {
     {"total_distance", "sigma"},
     {"relative_speed", "v_t"},
     {"relative_speed_error", "v_t"},
@@ -148,8 +135,10 @@ constexpr std::pair<std::string_view, std::string_view> units_of_fields[] = {
 
 std::string_view unit_of(std::string_view field) {
   if (field.starts_with("clogging_length")) return "sigma";
-  for (const auto& [name, unit] : units_of_fields)
+  for (const auto& [name, unit] : units_of_results)
     if (name == field) return unit;
+  for (const sweep::Column* column : group_columns())
+    if (column->name == field) return column->unit;
   return "";
 }
 
@@ -174,18 +163,19 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
     std::vector<fit::Displacement> displacements;
     for (const sweep::RunRow* run : runs) {
       const bool is_damaged = !sweep::fault_of(*run).empty();
-      const bool is_failed = !is_damaged && run->status.view() == "failed";
+      const bool is_failed = !is_damaged && run->status == RunStatus::failed;
       group.num_damaged += is_damaged;
       group.num_failed += is_failed;
       if (is_damaged || is_failed) continue;
-      group.num_interrupted += run->status.view() == "interrupted" || run->status.view() == "running";
+      group.num_interrupted += sweep::is_unfinished(run->status);
       group.num_repeating += sweep::has_met_repetition(*run);
       const bool is_left_out = std::max(run->distance, 0.0) < from_distance;
       group.num_left_out += is_left_out;
       if (!is_left_out) counted.push_back(run);
-      group.num_flowing += !is_left_out && run->status.view() == "flowing";
-      speeds.push_back(run->mean_speed / run->terminal_speed);
-      travels.push_back({run->mean_speed / run->terminal_speed * run->travel_time, run->travel_time});
+      group.num_flowing += !is_left_out && run->status == RunStatus::flowing;
+      const double relative_speed = run->mean_speed / run->parameters.drag.terminal_speed;
+      speeds.push_back(relative_speed);
+      travels.push_back({relative_speed * run->travel_time, run->travel_time});
       displacements.push_back({run->distance, run->lateral_displacement});
     }
     fit_clogging(group, counted, confidence, from_distance);
@@ -199,42 +189,29 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
   return groups;
 }
 
+std::span<const sweep::Column* const> group_columns() {
+  static const std::vector<const sweep::Column*> all = [] {
+    std::vector<const sweep::Column*> columns;
+    for (const sweep::Column& column : sweep::columns())
+      if (column.role == sweep::ColumnRole::parameter && !is_ensemble(column)) columns.push_back(&column);
+    std::stable_sort(columns.begin() + 1, columns.end(), [](const sweep::Column* a, const sweep::Column* b) {
+      return std::pair(is_numerics(*a), !a->shapes_array) < std::pair(is_numerics(*b), !b->shapes_array);
+    });
+    return columns;
+  }();
+  return all;
+}
+
 std::vector<Field> parameter_fields(const sweep::RunRow& row) {
-  return {{"model", value_of(row.model)},
-          {"obstacle_filling", value_of(row.obstacle_filling)},
-          {"obstacle_diameter", value_of(row.obstacle_diameter)},
-          {"obstacle_diameter_spread", value_of(row.obstacle_diameter_spread)},
-          {"obstacle_gap", value_of(row.obstacle_gap)},
-          {"obstacle_density", value_of(row.obstacle_density)},
-          {"lattice_angle", value_of(row.lattice_angle)},
-          {"line_tension", value_of(row.line_tension)},
-          {"wall_stiffness", value_of(row.wall_stiffness)},
-          {"near_wall_drag", value_of(row.near_wall_drag)},
-          {"near_wall_exponent", value_of(row.near_wall_exponent)},
-          {"near_wall_cutoff", value_of(row.near_wall_cutoff)},
-          {"relative_drag", value_of(row.relative_drag)},
-          {"terminal_speed", value_of(row.terminal_speed)},
-          {"vertices", value_of(row.vertices)},
-          {"time_step", value_of(row.time_step)},
-          {"max_time", value_of(row.max_time)},
-          {"box", value_of(row.box)},
-          {"boxes", value_of(row.boxes)},
-          {"area_stiffness", value_of(row.area_stiffness)},
-          {"preset", value_of(row.preset)},
-          {"perimeter_spring", value_of(row.perimeter_spring)},
-          {"perimeter_stiffness", value_of(row.perimeter_stiffness)},
-          {"wall_contact", value_of(row.wall_contact)},
-          {"contact_range", value_of(row.contact_range)},
-          {"wall_tension", value_of(row.wall_tension)},
-          {"self_contact", value_of(row.self_contact)},
-          {"self_contact_range", value_of(row.self_contact_range)},
-          {"gravity", value_of(row.gravity)},
-          {"clog_energy", value_of(row.clog_energy)},
-          {"clog_detection", value_of(row.clog_detection)},
-          {"model_version", value_of(row.model_version)}};
+  std::vector<Field> fields;
+  for (const sweep::Column* column : group_columns())
+    fields.emplace_back(column->name.c_str(), column->get(row));
+  return fields;
 }
 
 std::vector<Field> result_fields(const Group& group) {
+  const RunParameters& run = group.parameters.parameters;
+  const double line_tension = run.model == Model::dp ? run.dp.line_tension : sweep::RunRow::not_known;
   std::string doubts;
   for (const Doubt doubt : group.doubts)
     doubts += std::string(doubts.empty() ? "" : " ") + text_of(doubt).word;
@@ -261,8 +238,7 @@ std::vector<Field> result_fields(const Group& group) {
       {"relative_speed_runs", value_of(group.relative_speed.num_runs)},
       {"relative_speed_pooled", value_of(group.relative_speed_pooled.mean)},
       {"relative_speed_pooled_error", value_of(group.relative_speed_pooled.standard_error)},
-      {"capillary_number",
-       value_of(group.relative_speed.mean * units::droplet_mass / group.parameters.line_tension)},
+      {"capillary_number", value_of(group.relative_speed.mean * units::droplet_mass / line_tension)},
       {"lateral_slope", value_of(group.migration.slope)},
       {"lateral_slope_error", value_of(group.migration.standard_error)},
       {"doubts", doubts}};

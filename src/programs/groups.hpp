@@ -5,7 +5,6 @@
 #include <string>
 #include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "clog/core/clog_geometry.hpp"
@@ -13,7 +12,7 @@
 #include "clog/fit/mean_speed.hpp"
 #include "clog/fit/migration.hpp"
 #include "clog/fit/survival.hpp"
-#include "clog/sweep/run_row.hpp"
+#include "clog/sweep/columns.hpp"
 
 namespace clog {
 
@@ -98,10 +97,12 @@ inline constexpr ClogMechanism causes[] = {ClogMechanism::wrapped, ClogMechanism
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence,
                               double from_distance = 0);
 
-/// A number, a count or a word; NaN (not applicable) is an empty word, so that values can be compared.
-using Value = std::variant<std::string, double, std::int64_t>;
+using sweep::Value;
 using Field = std::pair<const char*, Value>;
-/// What makes a group, most telling first.
+/// Columns that make a group: all parameters but the seed. First those of the physics, and of these first
+/// what shapes the array.
+std::span<const sweep::Column* const> group_columns();
+/// What a row holds in them.
 std::vector<Field> parameter_fields(const sweep::RunRow& row);
 /// What came out.
 std::vector<Field> result_fields(const Group& group);

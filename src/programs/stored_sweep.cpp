@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "clog/core/error.hpp"
+#include "clog/core/instruction_set.hpp"
+#include "clog/sweep/row_check.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog {
@@ -25,7 +27,33 @@ sweep::Settings settings_from(const std::string& config) {
   return sweep::Settings::from_config(config);
 }
 
+const sweep::RunRow& row_of_task(const store::SweepFile& file, const std::string& word) {
+  const double task = sweep::to_number(word);
+  for (const sweep::RunRow& row : file.rows)
+    if (static_cast<double>(row.task) == task) return row;
+  throw Error("the file has no task " + word + "; its column `task` names those it has");
+}
+
 }  // namespace
+
+const sweep::RunRow& replayable_row(const store::SweepFile& file, const std::string& task) {
+  const sweep::RunRow& row = row_of_task(file, task);
+  const auto refuse = [&](const std::string& why, const std::string& remedy) {
+    throw Error("cannot replay task " + task + " (" + why + "); " + remedy);
+  };
+  if (sweep::is_unfinished(row.status))
+    throw Error("task " + task + " is not over; let the sweep go on first");
+  if (row.instruction_set == sweep::mixed_instruction_sets)
+    refuse("it was interrupted and went on under another instruction set, it is not known at which step",
+           "--instruction-set pins one for all sessions of a sweep");
+  if (row.model_version != model_version)
+    refuse("it is of model version " + std::to_string(row.model_version) + ", this program's is " +
+               std::to_string(model_version),
+           "use the version that wrote the file");
+  if (const std::string fault = sweep::fault_of(row); !fault.empty()) refuse(fault, "the row is damaged");
+  if (row.parameters.model == Model::dp) use_instruction_set(row.instruction_set);
+  return row;
+}
 
 std::string attribute(const store::Provenance& provenance, const std::string& name) {
   const auto found = std::find_if(provenance.begin(), provenance.end(),
@@ -40,6 +68,16 @@ sweep::Settings stored_settings(const std::string& path, const store::Provenance
 sweep::Plan stored_plan(const std::string& path, const store::Provenance& provenance) {
   return read_attribute(path, provenance, "config",
                         [](const std::string& config) { return sweep::Plan(settings_from(config)); });
+}
+
+std::vector<std::string> listed_columns(const store::Provenance& provenance) try {
+  const sweep::Settings settings = settings_from(attribute(provenance, "config"));
+  std::vector<std::string> columns;
+  for (const sweep::Key& key : sweep::keys())
+    if (key.parameter && settings.values(key.name).size() > 1) columns.emplace_back(key.parameter->column);
+  return columns;
+} catch (const Error&) {
+  return {};  // of a version that had other keys
 }
 
 std::int64_t stored_num_wanted(const std::string& path, const store::Provenance& provenance,

@@ -72,8 +72,8 @@ class Lead {
   parallel::SweepEvents events() {
     parallel::SweepEvents events;
     events.started = [this](std::int64_t task, int rank) { return start(task, rank); };
-    events.progressed = [this](const parallel::Report& report) { ledger_.report(report); };
-    events.ended = [this](const parallel::Report& report) { end(report); };
+    events.progressed = [this](const sweep::Report& report) { ledger_.report(report); };
+    events.ended = [this](const sweep::Report& report) { end(report); };
     events.tries_again = [this](const sweep::RunRow& failed) { return ledger_.tries_again(failed); };
     events.failure_withdrawn = [this](std::int64_t task) { withdraw_failure(task); };
     events.set_aside = [this](const sweep::RunRow& failed) { log_.set_aside(failed); };
@@ -110,30 +110,30 @@ class Lead {
   bool was_interrupted_ = false;
   Clock::time_point begin_ = Clock::now();
 
-  parallel::Start start(std::int64_t task, int rank) {
+  sweep::Start start(std::int64_t task, int rank) {
     progress_.started(task);
-    parallel::Start start = ledger_.start(task, rank);
+    sweep::Start start = ledger_.start(task, rank);
     log_.started(ledger_.row(task),
                  start.snapshot.empty() ? SweepLog::From::release : SweepLog::From::snapshot);
     return start;
   }
 
-  void end(parallel::Report report) {
+  void end(sweep::Report report) {
     // Stopped before it was heard of since it went on: it is where its snapshot and its row here are.
-    if (report.row.status.view() == "interrupted" && report.row.steps == 0 && !report.snapshot.empty()) {
+    if (report.row.status == RunStatus::interrupted && report.row.steps == 0 && !report.snapshot.empty()) {
       report.row = ledger_.row(report.row.task);
-      report.row.status = "interrupted";
+      report.row.status = RunStatus::interrupted;
       report.row.wall_seconds = 0;  // the ledger adds what was before
     }
     ledger_.report(report);
-    if (report.row.status.view() == "failed" && ledger_.tries_again(report.row)) {
+    if (report.row.status == RunStatus::failed && ledger_.tries_again(report.row)) {
       progress_.tried(report.row.task);
       log_.failed(report.row, SweepLog::Then::tried_again);
       return;
     }
     progress_.ended(report.row);
     log_.ended(report.row);
-    was_interrupted_ = was_interrupted_ || report.row.status.view() == "interrupted";
+    was_interrupted_ = was_interrupted_ || report.row.status == RunStatus::interrupted;
   }
 
   void withdraw_failure(std::int64_t task) {
@@ -163,7 +163,8 @@ int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, 
     is_complete = end == parallel::SweepEnd::complete && !lead.was_interrupted();
     std::vector<std::int64_t> next;
     if (rule && is_complete)
-      next = rule->next_round([&](std::int64_t task) { return ledger.row(task).status.view() == "clogged"; });
+      next =
+          rule->next_round([&](std::int64_t task) { return ledger.row(task).status == RunStatus::clogged; });
     // Of an earlier call with a higher precision: finished, though not asked for any more.
     if (rule && is_complete && next.empty()) next = ledger.tasks_begun();
     ranks.broadcast(next.empty() ? over : another_round);
@@ -175,7 +176,7 @@ int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, 
     cli::say(std::to_string(rule->num_reached()) + " of " +
              sweep::counted(rule->num_groups(), "parameter set") + " reached --until-precision");
   if (const sweep::RunRow* first = is_complete ? ledger.first_if_all_failed() : nullptr) {
-    cli::say("clogsweep: every run has failed, the first one: " + std::string(first->message.view()));
+    cli::say("clogsweep: every run has failed, the first one: " + first->message);
     return cli::exit_internal_fault;
   }
   if (is_complete) return cli::exit_success;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
-#include <set>
 #include <unordered_set>
 #include <utility>
 
@@ -18,9 +17,11 @@
 namespace clog {
 namespace {
 
-/// A sweep may grow along these. In all others a file and a sweep that goes on with it have values in common.
-const std::set<std::string> axes = {"line-tension",     "wall-stiffness", "obstacle-gap",
-                                    "obstacle-density", "near-wall-drag", "seeds"};
+/// A sweep may grow along numbers of the physics, and in seeds. In all others a file and a sweep that goes on
+/// with it have values in common.
+bool may_grow_along(const sweep::Key& key) {
+  return key.parameter && key.kind != ValueKind::word && key.parameter->role != ParameterRole::numerics;
+}
 
 void set_attribute(store::Provenance& provenance, const std::string& name, const std::string& text) {
   std::erase_if(provenance, [&](const auto& attribute) { return attribute.first == name; });
@@ -45,10 +46,6 @@ bool have_common_value(const std::vector<std::string>& some, const std::vector<s
   });
 }
 
-bool has_result(const sweep::RunRow& row) {
-  return row.status.view() == "clogged" || row.status.view() == "flowing";
-}
-
 /// A run of which nothing is left but what it is and what it has cost so far.
 void begin_anew(sweep::RunRow& row) {
   RunResult nothing;
@@ -59,7 +56,7 @@ void begin_anew(sweep::RunRow& row) {
 std::string differing_keys(const sweep::Settings& there, const sweep::Settings& here) {
   std::string all;
   for (const sweep::Key& key : sweep::keys())
-    if (!axes.contains(key.name) && key.name != "preset" &&
+    if (!may_grow_along(key) && key.name != "preset" &&
         !have_common_value(there.values(key.name), here.values(key.name)))
       all += (all.empty() ? "" : ", ") + key.name + '=' + here.text(key.name) + " (there " +
              there.text(key.name) + ')';
@@ -89,7 +86,7 @@ SweepLedger::SweepLedger(std::string path, const sweep::Plan& plan, const sweep:
     take_over(file, settings);
     for (const sweep::RunRow& row : file.rows) {
       known[sweep::identity(row)] = {row, {}};
-      if (has_result(row)) with_results.insert(sweep::identity(row));
+      if (sweep::is_result(row.status)) with_results.insert(sweep::identity(row));
     }
   }
   const bool has_table = !known.empty() || std::filesystem::exists(path_);
@@ -101,7 +98,8 @@ SweepLedger::SweepLedger(std::string path, const sweep::Plan& plan, const sweep:
   for (Entry& entry : entries) {
     std::string run = sweep::identity(entry.row);
     // A run that has its result in the table is not over in the journal if its last record there was lost.
-    if (has_result(entry.row) || !with_results.contains(run)) known[std::move(run)] = std::move(entry);
+    if (sweep::is_result(entry.row.status) || !with_results.contains(run))
+      known[std::move(run)] = std::move(entry);
   }
   num_faulty_ = static_cast<std::int64_t>(
       std::erase_if(known, [](const auto& run) { return !sweep::fault_of(run.second.row).empty(); }));
@@ -132,14 +130,14 @@ void SweepLedger::take_over(const store::SweepFile& file, const sweep::Settings&
 }
 
 bool SweepLedger::is_over(const sweep::RunRow& row) const {
-  const std::string_view status = row.status.view();
-  if (status == "failed") return row.attempt >= attempts_;
-  return status != "running" && status != "interrupted";
+  if (row.status == RunStatus::failed) return row.attempt >= attempts_;
+  return !sweep::is_unfinished(row.status);
 }
 
 void SweepLedger::find_tasks(std::unordered_map<std::string, Entry> known) {
   std::int64_t last_seed = -1;
-  for (const auto& [run, entry] : known) last_seed = std::max(last_seed, entry.row.seed);
+  for (const auto& [run, entry] : known)
+    last_seed = std::max(last_seed, std::int64_t{entry.row.parameters.seed});
   for (std::int64_t task = 0; task < plan_.size(); ++task) {
     // Seeds that may be added later follow in increasing order: none beyond has begun yet.
     if (task >= num_wanted_ && (known.empty() || plan_.task(task).seed > last_seed)) break;
@@ -148,7 +146,7 @@ void SweepLedger::find_tasks(std::unordered_map<std::string, Entry> known) {
         Entry& entry = runs_[task] = std::move(found.mapped());
         entry.row.task = task;
         if (is_over(entry.row)) continue;
-        if (entry.row.status.view() == "running") entry.row.status = "interrupted";
+        if (entry.row.status == RunStatus::running) entry.row.status = RunStatus::interrupted;
         past_[task].seconds = entry.row.wall_seconds;
       }
     if (task < num_wanted_) tasks_left_.push_back(task);
@@ -159,7 +157,7 @@ void SweepLedger::find_tasks(std::unordered_map<std::string, Entry> known) {
   for (std::size_t i = 0; i < other_runs_.size(); ++i) {
     sweep::RunRow& row = other_runs_[i].row;
     row.task = plan_.size() + static_cast<std::int64_t>(i);
-    if (row.status.view() == "running") row.status = "interrupted";
+    if (row.status == RunStatus::running) row.status = RunStatus::interrupted;
   }
 }
 
@@ -190,46 +188,46 @@ std::int64_t SweepLedger::num_resumed() const {
 sweep::RunRow SweepLedger::new_row(std::int64_t task) const {
   sweep::RunRow row = sweep::describe(plan_.task(task));
   row.task = task;
-  row.clogged_by = "none";
-  row.mechanism = "none";
+  row.clogged_by = sweep::FoundBy::nothing;
+  row.mechanism = ClogMechanism::none;
   return row;
 }
 
-parallel::Start SweepLedger::start(std::int64_t task, int rank) {
+sweep::Start SweepLedger::start(std::int64_t task, int rank) {
   const auto [run, is_new] = runs_.try_emplace(task);
   Entry& entry = run->second;
-  parallel::Start start{entry.snapshot, entry.row.attempt};
-  const bool failed = !is_new && entry.row.status.view() == "failed";
+  sweep::Start start{entry.snapshot, entry.row.attempt};
+  const bool failed = !is_new && entry.row.status == RunStatus::failed;
   if (failed) start = {{}, entry.row.attempt + 1};
   if (const auto past = past_.find(task); past != past_.end())
-    past->second.instruction_set = start.snapshot.empty() ? "" : entry.row.instruction_set.view();
+    past->second.instruction_set = start.snapshot.empty() ? "" : entry.row.instruction_set;
   if (is_new || failed) {
     entry.snapshot.clear();
     entry.row = new_row(task);
   }
   entry.row.attempt = start.attempt;
-  entry.row.status = "running";
+  entry.row.status = RunStatus::running;
   entry.row.rank = rank;
   is_published_ = false;
   return start;
 }
 
-void SweepLedger::report(const parallel::Report& report) {
+void SweepLedger::report(const sweep::Report& report) {
   Entry& entry = runs_[report.row.task];
   entry = {report.row, report.snapshot};
   if (const auto past = past_.find(report.row.task); past != past_.end()) {
     entry.row.wall_seconds += past->second.seconds;
-    const std::string_view before = past->second.instruction_set.view();
-    if (!before.empty() && before != entry.row.instruction_set.view())
+    const std::string& before = past->second.instruction_set;
+    if (!before.empty() && before != entry.row.instruction_set)
       entry.row.instruction_set = sweep::mixed_instruction_sets;
   }
-  if (entry.row.status.view() == "failed") past_[entry.row.task].seconds = entry.row.wall_seconds;
+  if (entry.row.status == RunStatus::failed) past_[entry.row.task].seconds = entry.row.wall_seconds;
   journal_.add(entry.row, entry.snapshot);
   is_published_ = false;
 }
 
 const sweep::RunRow* SweepLedger::first_if_all_failed() const {
-  const auto has_failed = [](const auto& run) { return run.second.row.status.view() == "failed"; };
+  const auto has_failed = [](const auto& run) { return run.second.row.status == RunStatus::failed; };
   if (runs_.empty() || !std::all_of(runs_.begin(), runs_.end(), has_failed)) return nullptr;
   return &runs_.begin()->second.row;
 }
@@ -256,7 +254,7 @@ void SweepLedger::tick() {
 /// As readers see it: a run that will be tried again has not failed yet, and where it failed is no distance
 /// so far.
 sweep::RunRow SweepLedger::published(const sweep::RunRow& row) const {
-  if (row.status.view() != "failed" || is_over(row)) return row;
+  if (row.status != RunStatus::failed || is_over(row)) return row;
   sweep::RunRow next = row;
   begin_anew(next);
   ++next.attempt;

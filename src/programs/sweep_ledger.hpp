@@ -7,9 +7,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "clog/parallel/scheduler.hpp"
 #include "clog/store/journal.hpp"
 #include "clog/store/run_table.hpp"
+#include "clog/sweep/messages.hpp"
 #include "clog/sweep/plan.hpp"
 
 namespace clog {
@@ -45,8 +45,8 @@ class SweepLedger {
   /// What could not be checked of the file that it goes on with; empty if all was.
   const std::string& caution() const { return caution_; }
 
-  parallel::Start start(std::int64_t task, int rank);
-  void report(const parallel::Report& report);
+  sweep::Start start(std::int64_t task, int rank);
+  void report(const sweep::Report& report);
   /// Of a run that has begun.
   const sweep::RunRow& row(std::int64_t task) const { return runs_.at(task).row; }
   /// The first run if all that have begun have failed, otherwise nullptr.
@@ -75,8 +75,8 @@ class SweepLedger {
   std::vector<std::int64_t> tasks_left_;
   /// What is known of a task from earlier sessions or attempts.
   struct Past {
-    double seconds = 0;                    // spent on it
-    sweep::FixedText<16> instruction_set;  // of the snapshot that it goes on from; empty if it begins anew
+    double seconds = 0;           // spent on it
+    std::string instruction_set;  // of the snapshot that it goes on from; empty if it begins anew
   };
   std::unordered_map<std::int64_t, Past> past_;
   std::string caution_;

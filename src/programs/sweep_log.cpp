@@ -28,10 +28,10 @@ std::string who(const sweep::RunRow& row) {
 
 /// The parameters that most sweeps go along.
 std::string what(const sweep::RunRow& row) {
-  const bool polygon = row.model.view() == "dp";
-  return std::string(polygon ? " (Gamma=" : " (E_w=") +
-         short_number(polygon ? row.line_tension : row.wall_stiffness) +
-         ", gap=" + short_number(row.obstacle_gap) + ", seed " + std::to_string(row.seed) + ')';
+  const RunParameters& run = row.parameters;
+  return (run.model == Model::dp ? " (Gamma=" + short_number(run.dp.line_tension)
+                                 : " (E_w=" + short_number(run.wall_stiffness.value())) +
+         ", gap=" + short_number(run.obstacles.gap) + ", seed " + std::to_string(run.seed) + ')';
 }
 
 std::string where(const sweep::RunRow& row) {
@@ -49,19 +49,18 @@ void SweepLog::started(const sweep::RunRow& row, From from) {
 }
 
 void SweepLog::ended(const sweep::RunRow& row) {
-  if (row.status.view() == "failed") {
+  if (row.status == RunStatus::failed) {
     failed(row, Then::over);
     return;
   }
   if (level_ < Level::verbose) return;
-  say(who(row) + std::string(row.status.view()) + where(row) + what(row));
+  say(who(row) + name(row.status) + where(row) + what(row));
 }
 
 void SweepLog::failed(const sweep::RunRow& row, Then then) {
   if (level_ < Level::normal) return;
   say(who(row) + "failed, attempt " + std::to_string(row.attempt) +
-      (then == Then::tried_again ? ", will be tried again: " : ": ") + std::string(row.message.view()) +
-      what(row));
+      (then == Then::tried_again ? ", will be tried again: " : ": ") + row.message + what(row));
 }
 
 void SweepLog::failure_withdrawn(const sweep::RunRow& row) {
@@ -71,9 +70,8 @@ void SweepLog::failure_withdrawn(const sweep::RunRow& row) {
 }
 
 void SweepLog::set_aside(const sweep::RunRow& failed) {
-  say("rank " + std::to_string(failed.rank) + " on " + std::string(failed.host.view()) +
-      " is set aside: task after task fails there, and not elsewhere; the last one said: " +
-      std::string(failed.message.view()));
+  say("rank " + std::to_string(failed.rank) + " on " + failed.host +
+      " is set aside: task after task fails there, and not elsewhere; the last one said: " + failed.message);
 }
 
 void SweepLog::stopping(const std::string& reason) {

@@ -7,12 +7,12 @@
 #include <iostream>
 #include <memory>
 #include <string>
-#include <tuple>
 #include <unordered_map>
 #include <vector>
 
 #include "clog/cli/printable.hpp"
 #include "clog/cli/program.hpp"
+#include "clog/sweep/columns.hpp"
 #include "clog/sweep/obstacle_arrays.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/row_limits.hpp"
@@ -31,14 +31,35 @@ constexpr double hour = 3600;
 
 std::string number(double value) { return sweep::shortest(value); }
 
-void print_task(const sweep::Plan& plan, std::int64_t task) {
+/// What differs from one task to the next.
+std::vector<const sweep::Column*> varying_columns(const sweep::Plan& plan) {
+  const sweep::RunRow first = sweep::describe(plan.task(0));
+  std::vector<bool> varies;
+  for (const sweep::Column& column : sweep::columns())
+    varies.push_back(column.parameter && column.parameter->role == ParameterRole::ensemble);
+  for (std::int64_t group = 1; group < plan.num_groups(); ++group) {
+    const sweep::RunRow row = sweep::describe(plan.task(group));
+    for (std::size_t i = 0; i < varies.size(); ++i) {
+      const sweep::Column& column = sweep::columns()[i];
+      if (column.role == sweep::ColumnRole::parameter && !varies[i])
+        varies[i] = column.get(row) != column.get(first);
+    }
+  }
+  std::vector<const sweep::Column*> varying;
+  for (std::size_t i = 0; i < varies.size(); ++i)
+    if (varies[i]) varying.push_back(&sweep::columns()[i]);
+  return varying;
+}
+
+void print_task(const sweep::Plan& plan, std::int64_t task,
+                const std::vector<const sweep::Column*>& columns) {
   const sweep::RunRow row = sweep::describe(plan.task(task));
-  std::cout << task << ' ' << row.model.view() << ' ' << number(row.line_tension) << ' '
-            << number(row.wall_stiffness) << ' ' << number(row.obstacle_gap) << ' '
-            << number(row.obstacle_diameter) << ' '
-            << (row.obstacle_filling.view() == "saturated" ? "saturated" : number(row.obstacle_density))
-            << ' ' << number(row.near_wall_drag) << ' ' << number(row.terminal_speed) << ' ' << row.vertices
-            << ' ' << number(row.time_step) << ' ' << number(row.max_time) << ' ' << row.seed << '\n';
+  std::cout << task;
+  for (const sweep::Column* column : columns) {
+    const std::string text = sweep::text_of(column->get(row));
+    std::cout << ' ' << (text.empty() ? "-" : text);
+  }
+  std::cout << '\n';
 }
 
 double work_per_step(const RunParameters& run) { return run.model == Model::dp ? run.dp.vertices : 1; }
@@ -51,10 +72,6 @@ struct Sample {
   std::string failure;  ///< of the first that could not begin; these are not among the costs
 };
 
-bool is_over(const sweep::RunRow& row) {
-  return row.status.view() != "running" && row.status.view() != "interrupted";
-}
-
 /// Of the last row of a run. @param first  of the same run, when it had just begun
 RunCost cost_of(const sweep::RunRow& row, const sweep::RunRow& first, const RunParameters& run,
                 std::int64_t parameter_set) {
@@ -63,7 +80,7 @@ RunCost cost_of(const sweep::RunRow& row, const sweep::RunRow& first, const RunP
           .seconds = row.wall_seconds - first.wall_seconds,
           .work = static_cast<double>(row.steps - first.steps) * work_per_step(run),
           .longest_work = longest_work(run),
-          .is_over = is_over(row)};
+          .is_over = !sweep::is_unfinished(row.status)};
 }
 
 constexpr std::size_t fewest_stored_runs = 5;
@@ -85,7 +102,7 @@ Stored stored_runs(const sweep::Plan& plan, const std::string& path) {
     const auto found = rows.extract(sweep::identity(sweep::describe(run)));
     if (found.empty()) continue;
     const sweep::RunRow& row = found.mapped();
-    stored.num_done += is_over(row);
+    stored.num_done += !sweep::is_unfinished(row.status);
     stored.seconds += row.wall_seconds;
     if (row.steps > 0 && row.wall_seconds > 0)
       stored.sample.costs.push_back(cost_of(row, {}, run, task % plan.num_groups()));
@@ -108,9 +125,7 @@ std::vector<std::int64_t> tasks_to_try(const sweep::Plan& plan) {
   std::stable_sort(tasks.begin(), tasks.end(), [&](std::int64_t a, std::int64_t b) {
     const auto array = [&](std::int64_t task) {
       const RunParameters run = plan.task(task);
-      const ObstacleParameters& obstacles = run.obstacles;
-      return std::tuple(run.seed, obstacles.gap, obstacles.diameter, obstacles.diameter_spread,
-                        obstacles.density, obstacles.box, obstacles.boxes, obstacles.lattice_angle);
+      return sweep::array_key(run.obstacles, run.seed);
     };
     return array(a) < array(b);
   });
@@ -129,7 +144,7 @@ Sample tried_sample(const sweep::Plan& plan) {
   for (std::size_t i = 0; i < tasks.size() && elapsed() < all_seconds && !cli::stop_signalled(); ++i) {
     const double share = (all_seconds - elapsed()) / static_cast<double>(tasks.size() - i);
     const double end = elapsed() + share;
-    sweep::RunJob job(plan, tasks[i], {}, arrays);
+    sweep::RunJob job(plan.task(tasks[i]), tasks[i], {}, arrays);
     bool is_over = job.advance();
     const sweep::RunRow first = is_over ? sweep::RunRow() : job.row();
     const double least_end = elapsed() + fewest_seconds;
@@ -139,7 +154,7 @@ Sample tried_sample(const sweep::Plan& plan) {
     if (row.steps > 0)
       sample.costs.push_back(cost_of(row, first, plan.task(tasks[i]), tasks[i] % plan.num_groups()));
     else if (sample.failure.empty())
-      sample.failure = row.message.view();
+      sample.failure = row.message;
   }
   return sample;
 }
@@ -150,15 +165,16 @@ void print_tasks(const sweep::Plan& plan) {
   constexpr std::int64_t most_lines = 1000;
   constexpr std::int64_t lines_at_an_end = 20;
   const std::int64_t num_skipped = plan.size() > most_lines ? plan.size() - 2 * lines_at_an_end : 0;
-  std::cout << "# task model line_tension wall_stiffness obstacle_gap obstacle_diameter obstacle_density "
-               "near_wall_drag "
-               "terminal_speed vertices time_step max_time seed\n";
+  const std::vector<const sweep::Column*> columns = varying_columns(plan);
+  std::cout << "# task";
+  for (const sweep::Column* column : columns) std::cout << ' ' << column->name;
+  std::cout << '\n';
   for (std::int64_t task = 0; task < plan.size() && !cli::stop_signalled(); ++task) {
     if (num_skipped > 0 && task == lines_at_an_end) {
       std::cout << "# ... " << num_skipped << " more ...\n";
       task += num_skipped;
     }
-    print_task(plan, task);
+    print_task(plan, task, columns);
   }
   if (cli::stop_signalled()) return;
   const std::int64_t seeds = plan.size() / plan.num_groups();
@@ -212,13 +228,12 @@ int print_cost(const sweep::Plan& plan, const std::string& output) {
 }
 
 void print_config(const sweep::Settings& settings, const sweep::Plan& plan) {
-  const sweep::RunRow first = sweep::describe(plan.task(0));
-  std::cout << settings.to_config(true);
-  std::cout << "\n# Values behind `auto` in the first task:\n# wall-stiffness = "
-            << number(first.wall_stiffness) << "\n# time-step = " << number(first.time_step) << '\n';
-  if (first.model.view() == "dp")
-    std::cout << "# area-stiffness = " << number(first.area_stiffness)
-              << "\n# perimeter-stiffness = " << number(first.perimeter_stiffness) << '\n';
+  const RunParameters first = plan.task(0);
+  std::cout << settings.to_config(true) << "\n# Values behind `auto` in the first task:\n";
+  for (const Parameter& parameter : parameter_schema())
+    if (parameter.is_automatic_by_default() && parameter.applies_to(first))
+      if (const ParameterValue value = parameter.get(first); value != ParameterValue())
+        std::cout << "# " << parameter.key << " = " << sweep::text_of(value) << '\n';
 }
 
 }  // namespace clog

@@ -23,14 +23,14 @@ void SweepProgress::started(std::int64_t task) { running_[task] = Clock::now(); 
 
 void SweepProgress::ended(const sweep::RunRow& row) {
   running_.erase(row.task);
-  ++ended_by_status_[std::string(row.status.view())];
-  if (row.status.view() == "interrupted") return;
+  ++ended_by_status_[row.status];
+  if (row.status == RunStatus::interrupted) return;
   ++num_ended_;
   finished_seconds_ += row.wall_seconds;
 }
 
 void SweepProgress::not_ended(const sweep::RunRow& failed) {
-  --ended_by_status_[std::string(failed.status.view())];
+  --ended_by_status_[failed.status];
   --num_ended_;
 }
 
@@ -44,17 +44,18 @@ void SweepProgress::finish() {
 }
 
 std::string SweepProgress::line() const {
-  const auto count = [this](std::string_view status) {
+  const auto count = [this](RunStatus status) {
     const auto found = ended_by_status_.find(status);
-    return std::to_string(found == ended_by_status_.end() ? 0 : found->second);
+    return found == ended_by_status_.end() ? std::int64_t{0} : found->second;
   };
+  const auto counted = [&](RunStatus status) { return std::to_string(count(status)) + ' ' + name(status); };
   std::string text =
       std::to_string(num_before_ + num_ended_) + "/" + std::to_string(num_before_ + num_tasks_) + " done, ";
   if (num_before_ > 0) text += std::to_string(num_before_) + " of them before; now ";
-  text += std::to_string(running_.size()) + " running, " + count("clogged") + " clogged, " +
-          count("flowing") + " flowing";
-  if (count("failed") != "0") text += ", " + count("failed") + " failed";
-  if (count("interrupted") != "0") text += ", " + count("interrupted") + " interrupted";
+  text += std::to_string(running_.size()) + " running, " + counted(RunStatus::clogged) + ", " +
+          counted(RunStatus::flowing);
+  for (const RunStatus status : {RunStatus::passed, RunStatus::failed, RunStatus::interrupted})
+    if (count(status) != 0) text += ", " + counted(status);
   const double elapsed = seconds_since(begin_);
   if (num_ended_ > 0) {
     char rate[48];

@@ -47,7 +47,7 @@ class SweepProgress {
   int num_ranks_;
   Clock::time_point begin_ = Clock::now();
   std::map<std::int64_t, Clock::time_point> running_;
-  std::map<std::string, std::int64_t, std::less<>> ended_by_status_;
+  std::map<RunStatus, std::int64_t> ended_by_status_;
   std::int64_t num_ended_ = 0;  ///< those interrupted have not
   double finished_seconds_ = 0;
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -21,6 +20,7 @@
 #include "clog/core/instruction_set.hpp"
 #include "clog/store/journal.hpp"
 #include "clog/store/run_table.hpp"
+#include "clog/sweep/columns.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/run_job.hpp"
@@ -55,18 +55,23 @@ bool parse(cli::CommandLine& line, int argc, const char* const* argv) {
 
 struct Status {
   std::int64_t num_runs = 0;
-  std::map<std::string, std::int64_t> by_status;
+  std::map<RunStatus, std::int64_t> by_status;
   bool is_alive = false;
   double core_hours = 0;
   TimeLeft left;
   std::string stopping_rule;  ///< empty: none
   std::vector<Group> groups;
 
-  std::int64_t count(const char* status) const {
+  std::int64_t count(RunStatus status) const {
     const auto found = by_status.find(status);
     return found == by_status.end() ? 0 : found->second;
   }
-  std::int64_t num_over() const { return count("clogged") + count("flowing") + count("failed"); }
+  std::int64_t num_under_way() const { return count(RunStatus::running) + count(RunStatus::interrupted); }
+  std::int64_t num_over() const {
+    std::int64_t sum = -num_under_way();
+    for (const auto& [status, number] : by_status) sum += number;
+    return sum;
+  }
 };
 
 Status status_of(const std::string& path, const store::SweepFile& file, double confidence) {
@@ -78,10 +83,9 @@ Status status_of(const std::string& path, const store::SweepFile& file, double c
   std::vector<double> finished, running;
   for (const RunRow& row : file.rows) {
     if (row.task >= plan.size()) ++status.num_runs;  // of an earlier config
-    ++status.by_status[std::string(row.status.view())];
+    ++status.by_status[row.status];
     status.core_hours += row.wall_seconds / 3600;
-    const bool is_over = row.status.view() != "running" && row.status.view() != "interrupted";
-    (is_over ? finished : running).push_back(row.wall_seconds);
+    (sweep::is_unfinished(row.status) ? running : finished).push_back(row.wall_seconds);
   }
   const auto num_known = static_cast<std::int64_t>(finished.size() + running.size());
   status.num_runs = std::max(status.num_runs, num_known);
@@ -95,10 +99,11 @@ std::string to_text(const std::string& path, const Status& status, double confid
                     SharedParameters shared) {
   const auto number = [](std::int64_t value) { return std::to_string(value); };
   std::string text = cli::printable(path) + ": " + number(status.num_over()) + " of " +
-                     sweep::counted(status.num_runs, "run") + " over, " + number(status.count("clogged")) +
-                     " clogged, " + number(status.count("flowing")) + " flowing, " +
-                     number(status.count("failed")) + " failed";
-  if (const std::int64_t under_way = status.count("running") + status.count("interrupted"); under_way > 0)
+                     sweep::counted(status.num_runs, "run") + " over, " +
+                     number(status.count(RunStatus::clogged)) + " clogged, " +
+                     number(status.count(RunStatus::flowing)) + " flowing, " +
+                     number(status.count(RunStatus::failed)) + " failed";
+  if (const std::int64_t under_way = status.num_under_way(); under_way > 0)
     text += "; " + number(under_way) + (status.is_alive ? " running" : " interrupted");
   char hours[64];
   std::snprintf(hours, sizeof hours, "; %.3g core-hours", status.core_hours);
@@ -119,8 +124,9 @@ std::string to_json(const Status& status, double confidence) {
   nlohmann::ordered_json all;
   all["runs"] = status.num_runs;
   all["over"] = status.num_over();
-  for (const char* name : {"clogged", "flowing", "failed"}) all[name] = status.count(name);
-  all["under_way"] = status.count("running") + status.count("interrupted");
+  for (const RunStatus one : {RunStatus::clogged, RunStatus::flowing, RunStatus::failed})
+    all[name(one)] = status.count(one);
+  all["under_way"] = status.num_under_way();
   all["alive"] = status.is_alive;
   all["core_hours"] = status.core_hours;
   all["seconds_left"] = status.left.is_known
@@ -129,7 +135,7 @@ std::string to_json(const Status& status, double confidence) {
   if (!status.stopping_rule.empty()) all["stopping_rule"] = status.stopping_rule;
   all["groups"] = status.groups.empty()
                       ? nlohmann::ordered_json::array()
-                      : nlohmann::ordered_json::parse(to_json(status.groups, confidence)).at("groups");
+                      : nlohmann::ordered_json::parse(to_json(status.groups, confidence, {})).at("groups");
   return all.dump(2) + '\n';
 }
 
@@ -145,44 +151,16 @@ std::string to_text(const store::Journal::Contents& journal, bool is_alive) {
   return text;
 }
 
-const RunRow& row_of_task(const store::SweepFile& file, const std::string& word) {
-  const double task = sweep::to_number(word);
-  for (const RunRow& row : file.rows)
-    if (static_cast<double>(row.task) == task) return row;
-  throw Error("the file has no task " + word + "; its column `task` names those it has");
-}
-
-/// Parameters of a run of the file's last config.
-std::int64_t task_in_plan(const sweep::Plan& plan, const RunRow& row) {
-  for (std::int64_t task = 0; task < plan.size(); ++task)
-    if (sweep::identity(sweep::describe(plan.task(task))) == sweep::identity(row)) return task;
-  throw Error("task " + std::to_string(row.task) +
-              " is not of the file's last config (a config of other lists made it, or another version of the "
-              "program)");
-}
-
 std::vector<std::string> differing_results(const RunRow& a, const RunRow& b) {
-  std::vector<std::string> all;
-  const auto compare = [&](const char* name, const auto& x, const auto& y) {
-    if (std::memcmp(&x, &y, sizeof x) != 0) all.emplace_back(name);
+  const auto packed = [](const sweep::Column& column, const RunRow& row) {
+    std::vector<std::byte> bytes(column.size);
+    column.pack(row, bytes.data());
+    return bytes;
   };
-  compare("status", a.status, b.status);
-  compare("clogged_by", a.clogged_by, b.clogged_by);
-  compare("distance", a.distance, b.distance);
-  compare("lateral_displacement", a.lateral_displacement, b.lateral_displacement);
-  compare("time", a.time, b.time);
-  compare("mean_speed", a.mean_speed, b.mean_speed);
-  compare("mean_speed_error", a.mean_speed_error, b.mean_speed_error);
-  compare("transient", a.transient, b.transient);
-  compare("travel_time", a.travel_time, b.travel_time);
-  compare("kinetic_energy_ratio", a.kinetic_energy_ratio, b.kinetic_energy_ratio);
-  compare("shape_parameter", a.shape_parameter, b.shape_parameter);
-  compare("mechanism", a.mechanism, b.mechanism);
-  compare("wrapped_support", a.wrapped_support, b.wrapped_support);
-  compare("num_wrapped", a.num_wrapped, b.num_wrapped);
-  compare("num_gaps", a.num_gaps, b.num_gaps);
-  compare("num_arcs", a.num_arcs, b.num_arcs);
-  compare("steps", a.steps, b.steps);
+  std::vector<std::string> all;
+  for (const sweep::Column& column : sweep::columns())
+    if (column.role == sweep::ColumnRole::result && packed(column, a) != packed(column, b))
+      all.push_back(column.name);
   return all;
 }
 
@@ -286,23 +264,13 @@ that went on under another set than it began with cannot be repeated.
   if (!parse(line, argc, argv)) return cli::exit_success;
   if (!line.has("task")) throw Error("missing task; try clogsweep replay " + line.get("file") + " 0");
   const store::SweepFile file = read_with_caution(line.get("file"));
-  const RunRow& row = row_of_task(file, line.get("task"));
-  if (row.status.view() == "running" || row.status.view() == "interrupted")
-    throw Error("task " + line.get("task") + " is not over; let the sweep go on first");
-  if (row.instruction_set.view() == sweep::mixed_instruction_sets)
-    throw Error(
-        "cannot replay task " + line.get("task") +
-        " bit for bit (it was interrupted and went on under another instruction set, it is not known at "
-        "which step); --instruction-set pins one for all sessions of a sweep");
-  const sweep::Plan plan = stored_plan(line.get("file"), file.provenance);
-  const std::int64_t task = task_in_plan(plan, row);
-  if (row.model.view() == "dp") use_instruction_set(std::string(row.instruction_set.view()));
-  sweep::RunJob job(plan, task);
+  const RunRow& row = replayable_row(file, line.get("task"));
+  sweep::RunJob job(row.parameters, row.task);
   while (!job.advance()) {
   }
   const RunRow again = job.row();
   const std::vector<std::string> differing = differing_results(row, again);
-  std::printf("task %s: %s, distance %.17g, %.3g s\n", line.get("task").c_str(), again.status.view().data(),
+  std::printf("task %s: %s, distance %.17g, %.3g s\n", line.get("task").c_str(), name(again.status),
               again.distance, again.wall_seconds);
   if (differing.empty()) {
     std::printf("the same bits as the row's\n");
@@ -310,7 +278,7 @@ that went on under another set than it began with cannot be repeated.
   }
   std::printf("differs from the row in:");
   for (const std::string& name : differing) std::printf(" %s", name.c_str());
-  std::printf("\nthe row has %s, distance %.17g\n", row.status.view().data(), row.distance);
+  std::printf("\nthe row has %s, distance %.17g\n", name(row.status), row.distance);
   return cli::exit_internal_fault;
 }
 

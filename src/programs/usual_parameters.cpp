@@ -1,72 +1,59 @@
 #include "usual_parameters.hpp"
 
-#include <algorithm>
-#include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "clog/core/error.hpp"
-#include "clog/sweep/plan.hpp"
-#include "clog/sweep/run_row.hpp"
+#include "clog/core/schema.hpp"
 #include "clog/sweep/settings.hpp"
-#include "clog/sweep/value_list.hpp"
 
 namespace clog {
 namespace {
 
-/// Columns whose values may follow from the others, and their keys.
-const std::set<std::string_view> automatic = {"time_step", "area_stiffness", "perimeter_stiffness",
-                                              "wall_stiffness", "obstacle_density"};
-
-bool is_automatic(std::string_view column, const sweep::RunRow& row) {
-  if (column == "wall_stiffness") return row.model.view() == "dp";
-  if (column == "obstacle_density") return row.obstacle_filling.view() != "density";
-  return automatic.contains(column);
+/// Would the parameter's value follow from the others, if it were not given?
+bool is_automatic(const Parameter& parameter, const RunParameters& run) {
+  return parameter.is_automatic_by_default() &&
+         !(run.model == Model::sp && parameter.key == std::string_view("wall-stiffness"));
 }
 
-std::string text_of(const Value& value) {
-  if (const auto* number = std::get_if<double>(&value)) return sweep::shortest(*number);
-  if (const auto* count = std::get_if<std::int64_t>(&value)) return std::to_string(*count);
-  return std::get<std::string>(value);
-}
-
-std::vector<Field> fields_of(const sweep::Settings& settings) {
-  return parameter_fields(sweep::describe(sweep::Plan(settings).task(0)));
-}
-
-/// Model and preset of the row, all else by default.
-sweep::Settings defaults_for(const sweep::RunRow& row) {
+/// Model and preset of the row, all else by default; not resolved yet.
+RunParameters defaults_for(const sweep::RunRow& row) {
   sweep::Settings settings;
-  settings.set("model", std::string(row.model.view()));
-  if (row.model.view() == "sp") settings.set("wall-stiffness", sweep::shortest(row.wall_stiffness));
-  if (const std::string preset(row.preset.view()); preset != "none" && preset != "custom")
-    settings.set("preset", preset);
-  return settings;
+  settings.set("model", name(row.parameters.model));
+  if (row.preset != "none" && row.preset != "custom") settings.set("preset", row.preset);
+  RunParameters run;
+  for (const sweep::Key& key : sweep::keys()) key.apply(run, settings.values(key.name).front());
+  if (run.model == Model::sp) run.wall_stiffness = row.parameters.wall_stiffness;
+  return run;
 }
 
-/// Sets the key that a column belongs to, if there is one and it means something to the row.
-void set_key(sweep::Settings& settings, std::string_view column, const std::string& text,
-             const sweep::RunRow& row) {
-  if (is_automatic(column, row) || text.empty() || text == "none" || text == "custom") return;
-  std::string name(column);
-  std::replace(name.begin(), name.end(), '_', '-');
-  for (const sweep::Key& key : sweep::keys())
-    if (key.name == name && !(key.dp_only && row.model.view() == "sp")) settings.set(name, text);
+/// Those of the row, but what may be automatic as its preset has it.
+RunParameters with_usual_values(const sweep::RunRow& row) {
+  RunParameters run = defaults_for(row);
+  for (const Parameter& parameter : parameter_schema())
+    if (parameter.shapes_array || (parameter.has_own_column && !is_automatic(parameter, run)))
+      parameter.set(run, parameter.get(row.parameters));
+  return run;
 }
 
 }  // namespace
 
 std::vector<Field> usual_parameters(const sweep::RunRow& row) try {
-  sweep::Settings settings = defaults_for(row);
-  std::vector<Field> usual = fields_of(settings);
-  if (row.obstacle_filling.view() == "lattice") settings.set("obstacle-layout", "lattice");
-  for (const auto& [column, value] : parameter_fields(row)) set_key(settings, column, text_of(value), row);
-  const std::vector<Field> with_usual_step = fields_of(settings);
-  settings.set("time-step", sweep::shortest(row.time_step));  // the stiffness of walls follows from it
-  const std::vector<Field> with_own_step = fields_of(settings);
-  for (std::size_t i = 0; i < usual.size(); ++i)
-    if (const std::string_view column = usual[i].first; is_automatic(column, row))
-      usual[i] = (column == "time_step" ? with_usual_step : with_own_step)[i];
+  const auto fields_of = [](const RunParameters& run) {
+    return parameter_fields(sweep::describe(resolve(run)));
+  };
+  RunParameters run = with_usual_values(row);
+  const std::vector<Field> with_usual_step = fields_of(run);
+  run.time_step = row.parameters.time_step;  // the stiffness of walls follows from it
+  const std::vector<Field> with_own_step = fields_of(run);
+  std::vector<Field> usual = fields_of(defaults_for(row));
+  for (std::size_t i = 0; i < usual.size(); ++i) {
+    const sweep::Column& column = *group_columns()[i];
+    if (column.name == "obstacle_density" && !run.obstacles.density) usual[i] = with_own_step[i];
+    if (!column.parameter || !is_automatic(*column.parameter, run)) continue;
+    usual[i] = (column.name == "time_step" ? with_usual_step : with_own_step)[i];
+  }
   return usual;
 } catch (const Error&) {
   return {};

@@ -185,12 +185,9 @@ void say_what_is_unproven(const sweep::Plan& plan) {
   if (const std::string words = sweep::unproven_parameters(plan); !words.empty()) cli::say(words);
 }
 
-sweep::RunRow without_array(sweep::RunRow row, const char* place) {
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  row.obstacle_gap = row.obstacle_diameter = row.obstacle_density = row.box = none;
-  row.obstacle_filling = place;
-  row.seed = 0;
-  return row;
+sweep::RunRow row_of_scene(RunParameters run, ObstacleLayout layout) {
+  run.obstacles.layout = layout;
+  return sweep::describe(run);
 }
 
 void refuse_options(const cli::CommandLine& line, const std::string& system,

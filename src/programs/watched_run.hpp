@@ -67,6 +67,7 @@ class WatchedRun {
 int clogrun_array(cli::CommandLine& line);
 int clogrun_channel(cli::CommandLine& line);
 int clogrun_sag(cli::CommandLine& line);
+int clogrun_replay(cli::CommandLine& line);
 
 /// Keys and options that describe an obstacle array.
 inline constexpr std::initializer_list<const char*> array_options = {"obstacle-gap",
@@ -83,8 +84,8 @@ inline constexpr std::initializer_list<const char*> array_options = {"obstacle-g
                                                                      "write-obstacles"};
 /// On the standard error, what of the runs was not proved sound; nothing if all of it was.
 void say_what_is_unproven(const sweep::Plan& plan);
-/// The row of a run elsewhere: its array columns are NaN, `obstacle_filling` names the place.
-sweep::RunRow without_array(sweep::RunRow row, const char* place);
+/// The row of a run that meets no array, or a user's own.
+sweep::RunRow row_of_scene(RunParameters run, ObstacleLayout layout);
 
 /// @throws Error if one of these options was given, which have no meaning for the system
 void refuse_options(const cli::CommandLine& line, const std::string& system,

@@ -14,16 +14,25 @@
 #include "check_sum.hpp"
 #include "clog/core/error.hpp"
 #include "clog/store/regular_file.hpp"
+#include "clog/sweep/columns.hpp"
 #include "draft.hpp"
 #include "file_io.hpp"
 
 namespace clog::store {
 namespace {
 
-/// The beginning of the file: another layout of rows is another version.
+/// Of the names and sizes of all columns, in their order.
+std::uint32_t check_sum_of_columns() {
+  std::string list;
+  for (const sweep::Column& column : sweep::columns())
+    list += column.name + ' ' + std::to_string(column.size) + '\n';
+  return check_sum(list);
+}
+
+/// The beginning of the file: other columns are another version.
 struct FileHeader {
-  char kind[16] = "clogsweep jrnl1";
-  std::uint64_t row_size = sizeof(sweep::RunRow);
+  char kind[16] = "clogsweep jrnl2";
+  std::uint64_t columns = check_sum_of_columns();
   bool operator==(const FileHeader&) const = default;
 };
 struct RecordHeader {
@@ -47,11 +56,10 @@ void write_header(int descriptor, const std::string& path) {
 /// Writes a record at a place of the file; returns where the next one goes.
 std::uint64_t write_record(int descriptor, const sweep::RunRow& row, std::span<const std::byte> snapshot,
                            std::uint64_t place, const std::string& path) {
-  std::vector<std::byte> record(sizeof(RecordHeader) + sizeof row + snapshot.size());
-  const auto payload = record.begin() + sizeof(RecordHeader);
-  std::ranges::copy(bytes_of(row), payload);
-  std::ranges::copy(snapshot, payload + sizeof row);
-  const RecordHeader header{sizeof row + snapshot.size(), check_sum({payload, record.end()}), record_magic};
+  const std::vector<std::byte> report = sweep::to_bytes({row, {snapshot.begin(), snapshot.end()}});
+  std::vector<std::byte> record(sizeof(RecordHeader) + report.size());
+  const RecordHeader header{report.size(), check_sum(report), record_magic};
+  std::ranges::copy(report, record.begin() + sizeof header);
   std::ranges::copy(bytes_of(header), record.begin());
   write_at(descriptor, record, place, path);
   return place + record.size();
@@ -88,7 +96,7 @@ std::optional<RecordHeader> header_at(std::span<const std::byte> bytes, std::siz
   RecordHeader header;
   if (bytes.size() - place < sizeof header) return std::nullopt;
   std::memcpy(&header, bytes.data() + place, sizeof header);
-  if (header.magic != record_magic || header.size < sizeof(sweep::RunRow)) return std::nullopt;
+  if (header.magic != record_magic || header.size < sweep::packed_size()) return std::nullopt;
   return header;
 }
 
@@ -108,9 +116,7 @@ Journal::Contents parse(std::span<const std::byte> bytes) {
     }
     if (place > end) contents.num_unreadable += std::max<std::int64_t>(1, num_passed);
     const std::span payload = bytes.subspan(begin, header->size);
-    Journal::Entry& entry = contents.entries.emplace_back();
-    std::memcpy(&entry.row, payload.data(), sizeof entry.row);
-    entry.snapshot.assign(payload.begin() + sizeof entry.row, payload.end());
+    contents.entries.push_back(sweep::report_from(payload));
     place = end = begin + payload.size();
     num_passed = 0;
   }

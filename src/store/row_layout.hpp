@@ -4,24 +4,15 @@
 
 #include <cstddef>
 #include <optional>
-#include <string>
 #include <vector>
 
-#include "clog/sweep/run_row.hpp"
+#include "clog/sweep/columns.hpp"
 #include "hdf5.hpp"
 
 namespace clog::store {
 
-/// One column: how it is called in the file, what it means, where it is in a row in memory.
-struct Column {
-  std::string name;
-  std::string meaning;
-  std::size_t offset;
-  std::size_t size;
-  Type type;
-};
-
-/// How a row lies in a file: one column after the other without gaps. Older files have fewer columns.
+/// How a row lies in a file: one column after the other without gaps. Older files have fewer columns, in
+/// another order.
 class RowLayout {
  public:
   enum class Columns { all, some };
@@ -35,16 +26,16 @@ class RowLayout {
   std::size_t size() const { return size_; }
   /// Writes name and meaning of each column to the table's attributes.
   void describe(hid_t table) const;
-
+  /// Columns that the file does not have are unknown.
   /// @param packed  size() bytes
-  void pack(const sweep::RunRow& row, std::byte* packed) const;
-  /// Columns that the file does not have keep the values of a new row.
   sweep::RunRow unpack(const std::byte* packed) const;
 
  private:
-  explicit RowLayout(std::vector<Column> columns);
+  explicit RowLayout(std::vector<const sweep::Column*> columns);
 
-  std::vector<Column> columns_;
+  static constexpr std::size_t absent = static_cast<std::size_t>(-1);
+  std::vector<const sweep::Column*> columns_;  // of the file, in its order
+  std::vector<std::size_t> places_;            // of each of sweep::columns() in a packed row, or absent
   std::size_t size_ = 0;
   Type type_;
 };

@@ -78,7 +78,7 @@ CheckSums write_table(hid_t file, std::span<const RunRow> rows, const std::strin
   for_each_block(rows.size(), [&](std::size_t first, std::size_t number) {
     for (std::size_t i = 0; i < number; ++i) {
       const std::span row(packed.data() + i * layout.size(), layout.size());
-      layout.pack(rows[first + i], row.data());
+      sweep::pack(rows[first + i], row);
       sums.push_back(check_sum(row));
     }
     check(H5Dwrite(table, layout.type(), space_of(number), select_rows(table, first, number), H5P_DEFAULT,

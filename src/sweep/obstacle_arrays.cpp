@@ -13,6 +13,8 @@
 #include <string>
 #include <thread>
 
+#include "clog/core/schema.hpp"
+#include "clog/sweep/columns.hpp"
 #include "shared_memory.hpp"
 
 namespace clog::sweep {
@@ -35,11 +37,7 @@ std::optional<std::string> shared_name(const ObstacleParameters& parameters, std
   if (stat("/proc/self/exe", &executable) != 0) return std::nullopt;
   std::ostringstream name;
   name << "clogsweep-" << std::hex << executable.st_ino << '-' << executable.st_mtim.tv_sec << '-'
-       << executable.st_mtim.tv_nsec << '-' << seed << '-' << static_cast<int>(parameters.layout) << '-'
-       << parameters.boxes << std::hexfloat;
-  for (const double value : {parameters.gap, parameters.diameter, parameters.diameter_spread,
-                             parameters.density.value_or(-1), parameters.box, parameters.lattice_angle})
-    name << ',' << value;
+       << executable.st_mtim.tv_nsec << '-' << array_key(parameters, seed);
   return name.str();
 }
 
@@ -71,6 +69,16 @@ ObstacleArray array_over(std::shared_ptr<const SharedMemory> memory) {
 }
 
 }  // namespace
+
+std::string array_key(const ObstacleParameters& parameters, std::uint32_t seed) {
+  RunParameters run;
+  run.obstacles = parameters;
+  run.seed = seed;
+  std::string key;
+  for (const Parameter& parameter : parameter_schema())
+    if (parameter.shapes_array) key += text_of(parameter.get(run)) + ',';
+  return key;
+}
 
 ObstacleArray ObstacleArrays::build(const ObstacleParameters& parameters, std::uint32_t seed) {
   ++num_built_;
@@ -117,11 +125,12 @@ ObstacleArray ObstacleArrays::find_or_build(const ObstacleParameters& parameters
 
 std::shared_ptr<const ObstacleArray> ObstacleArrays::get(const ObstacleParameters& parameters,
                                                          std::uint32_t seed) {
-  if (!array_ || !(parameters == parameters_) || seed != seed_) {
+  const std::string key = array_key(parameters, seed);
+  if (key != key_) {
     array_.reset();  // the memory may be needed for the next
+    key_.clear();
     array_ = std::make_shared<ObstacleArray>(find_or_build(parameters, seed));
-    parameters_ = parameters;
-    seed_ = seed;
+    key_ = key;
   }
   return array_;
 }

@@ -17,10 +17,9 @@ constexpr std::int64_t largest_sweep = 100'000'000;
 /// A key that another one leaves without effect was given for nothing.
 void refuse_contradictions(const Settings& settings) {
   if (settings.text("model") == "sp") {
-    for (const Key& key : keys())
-      if (key.dp_only && settings.is_given(key.name) && settings.text(key.name) != key.default_text)
-        throw Error("invalid " + key.name + "=" + settings.text(key.name) +
-                    " (model=sp does not depend on it) leave it out, or use model=dp");
+    if (settings.text("preset") != find_key("preset").default_text)
+      throw Error("invalid preset=" + settings.text("preset") +
+                  " (model=sp has no interface) leave it out, or use model=dp");
     return;
   }
   const std::string ratio = "perimeter-stiffness-ratio";

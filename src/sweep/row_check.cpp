@@ -1,23 +1,20 @@
 #include "clog/sweep/row_check.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <numbers>
-#include <set>
 #include <string_view>
 
 #include "clog/core/droplet.hpp"
 #include "clog/core/error.hpp"
+#include "clog/core/schema.hpp"
 #include "clog/core/stability.hpp"
 #include "clog/core/units.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {
 namespace {
-
-using Words = std::set<std::string_view>;
 
 /// Round-off of a sum of time steps, and of a polygon's perimeter and area.
 constexpr double round_off = 1e-9;
@@ -30,38 +27,18 @@ std::string named(const char* column, std::string_view word) {
 }
 
 bool is_sampled(const RunRow& row) {
-  return Words{"saturated", "density", "lattice"}.contains(row.obstacle_filling.view());
+  const ObstacleLayout layout = row.parameters.obstacles.layout;
+  return layout == ObstacleLayout::random || layout == ObstacleLayout::lattice;
 }
 
-/// The other words of what was run are read by parameters_of().
-std::string unknown_word(const RunRow& row) {
-  struct Column {
-    const char* name;
-    std::string_view word;
-    Words known;
-  };
-  const std::array<Column, 7> columns{
-      {{"model", row.model.view(), {"dp", "sp"}},
-       {"obstacle_filling",
-        row.obstacle_filling.view(),
-        {"saturated", "density", "lattice", "file", "channel", "wall"}},
-       {"preset", row.preset.view(), {"robust", "heavy-interface", "elastic", "literal", "custom", "none"}},
-       {"status", row.status.view(), {"clogged", "flowing", "passed", "failed", "running", "interrupted"}},
-       {"clogged_by", row.clogged_by.view(), {"certified", "threshold", "none", ""}},
-       {"mechanism", row.mechanism.view(), {"wrapped", "squeezed", "hybrid", "none", ""}},
-       {"clog_detection", row.clog_detection.view(), {"certified", "threshold"}}}};
-  for (const Column& column : columns)
-    if (!column.known.contains(column.word)) return "unknown " + named(column.name, column.word);
-  return "";
-}
+std::string unreadable_column(const RunRow& row) { return row.unreadable; }
 
 /// Refuses a row whose parameters cannot be run: resolve() knows which can. @throws Error
 RunParameters resolved_parameters(const RunRow& row) {
-  RunParameters run = parameters_of(row);
+  RunParameters run = row.parameters;
   // A lattice's box and angle are those used; to look for the nearest lattice once more would take long.
   const ObstacleParameters used = run.obstacles;
-  if (used.layout == ObstacleLayout::lattice && !(std::abs(used.lattice_angle) <= 45))
-    throw Error(named("lattice_angle", used.lattice_angle) + " is not within 45 degrees");
+  check_each(run);
   run.obstacles.layout = ObstacleLayout::random;
   run.obstacles.lattice_angle = 0;
   run = resolve(run);
@@ -71,12 +48,16 @@ RunParameters resolved_parameters(const RunRow& row) {
 
 /// Rules are those of this program's model.
 std::string parameter_fault(const RunRow& row) {
-  for (const auto& [name, value] : {std::pair{"time_step", row.time_step},
-                                    {"max_time", row.max_time},
-                                    {"terminal_speed", row.terminal_speed},
-                                    {"wall_stiffness", row.wall_stiffness}})
+  const RunParameters& run = row.parameters;
+  for (const auto& [name, value] : {std::pair{"time_step", run.time_step.value_or(RunRow::not_known)},
+                                    {"max_time", run.max_time},
+                                    {"terminal_speed", run.drag.terminal_speed},
+                                    {"wall_stiffness", run.wall_stiffness.value_or(RunRow::not_known)}})
     if (!(std::isfinite(value) && value > 0)) return named(name, value) + " is not positive";
-  if (row.model_version != model_version || !is_sampled(row)) return "";
+  if (row.model_version != model_version) return "";
+  for (std::size_t i = 0; i < parameter_schema().size(); ++i)
+    if (row.unknown[i]) return std::string(parameter_schema()[i].column) + " is not known";
+  if (!is_sampled(row)) return "";
   try {
     const double density = density_of(resolved_parameters(row).obstacles);
     const bool agrees = std::isnan(density) ? std::isnan(row.obstacle_density)
@@ -96,13 +77,17 @@ std::string bookkeeping_fault(const RunRow& row) {
   return "";
 }
 
+double time_step_of(const RunRow& row) { return row.parameters.time_step.value(); }
+
 /// Runs end after a whole number of steps.
 std::string time_fault(const RunRow& row) {
-  if (!(row.time >= 0 && row.time <= (1 + round_off) * row.max_time + row.time_step))
-    return named("time", row.time) + " is not between 0 and " + named("max_time", row.max_time);
-  if (row.status.view() == "flowing" && row.time < (1 - round_off) * row.max_time - row.time_step)
-    return "flowing, but " + named("time", row.time) + " is before " + named("max_time", row.max_time);
-  const double steps = row.time / row.time_step;
+  if (!(row.time >= 0 && row.time <= (1 + round_off) * row.parameters.max_time + time_step_of(row)))
+    return named("time", row.time) + " is not between 0 and " + named("max_time", row.parameters.max_time);
+  if (row.status == RunStatus::flowing &&
+      row.time < (1 - round_off) * row.parameters.max_time - time_step_of(row))
+    return "flowing, but " + named("time", row.time) + " is before " +
+           named("max_time", row.parameters.max_time);
+  const double steps = row.time / time_step_of(row);
   const auto integrated = static_cast<double>(row.steps);
   if (!(integrated >= (1 - round_off) * steps - 0.5 &&
         integrated <= most_substeps * ((1 + round_off) * steps + 0.5)))
@@ -111,18 +96,19 @@ std::string time_fault(const RunRow& row) {
 }
 
 /// What a droplet may have been released with [g rho sigma^3], beyond what it has when it is free.
-double released_energy(const RunRow& row) {
-  if (row.model.view() == "sp") {
+double released_energy(const RunParameters& run) {
+  if (run.model == Model::sp) {
     // As many obstacles as find room in its reach, each pushed in by no more than its centre.
-    const double spacing = row.obstacle_diameter * (1 - row.obstacle_diameter_spread) + row.obstacle_gap;
-    const double across = (units::droplet_diameter + row.obstacle_diameter + spacing) / spacing;
-    return std::isnan(across) ? 0 : across * across * row.wall_stiffness / 2;
+    const double spacing = run.obstacles.smallest_diameter() + run.obstacles.gap;
+    const double across = (units::droplet_diameter + run.obstacles.diameter + spacing) / spacing;
+    return std::isnan(across) ? 0 : across * across * run.wall_stiffness.value() / 2;
   }
   // The interface of a droplet released among obstacles is longer than a circle; it gets hardly twice as
   // long.
   constexpr double excess_perimeter = 20;  // [sigma]
-  const double spring = row.perimeter_spring.view() == "along" ? 0 : row.perimeter_stiffness;
-  return excess_perimeter * (row.line_tension + spring * excess_perimeter / 2);
+  const double spring =
+      run.dp.perimeter_spring == PerimeterSpring::along ? 0 : run.dp.perimeter_stiffness.value_or(0);
+  return excess_perimeter * (run.dp.line_tension + spring * excess_perimeter / 2);
 }
 
 std::string motion_fault(const RunRow& row) {
@@ -135,8 +121,9 @@ std::string motion_fault(const RunRow& row) {
     return named("transient", row.transient) + " is not within the run";
   if (!std::isnan(row.travel_time) && !(row.travel_time > 0 && row.travel_time <= slightly_more))
     return named("travel_time", row.travel_time) + " is not within the run";
-  if (!std::isnan(row.mean_speed) && !std::isnan(row.travel_time) &&
-      !is_number_below(row.mean_speed * row.travel_time, 2 * farthest))
+  // An older file does not say over which time; it was one step at least.
+  const double travel_time = std::isnan(row.travel_time) ? time_step_of(row) : row.travel_time;
+  if (!std::isnan(row.mean_speed) && !is_number_below(row.mean_speed * travel_time, 2 * farthest))
     return named("mean_speed", row.mean_speed) + " is faster than a droplet can be";
   if (!std::isnan(row.mean_speed_error) &&
       !(std::isfinite(row.mean_speed_error) && row.mean_speed_error >= 0))
@@ -157,16 +144,18 @@ std::string shape_fault(const RunRow& row) {
 }
 
 std::string clog_fault(const RunRow& row) {
-  const std::string_view by = row.clogged_by.view();
-  const bool is_clogged = row.status.view() == "clogged";
-  if (is_clogged && by == "none") return "clogged, but clogged_by='none'";
-  if (!is_clogged && by != "none" && !by.empty()) return named("clogged_by", by) + ", but it is not clogged";
-  if (by == "certified" && row.clog_detection.view() == "threshold")
-    return "clogged_by='certified', but clog_detection='threshold'";
-  if (by == "threshold" && row.kinetic_energy_ratio >= row.clog_energy)
-    return "clogged_by='threshold', but " + named("kinetic_energy_ratio", row.kinetic_energy_ratio);
-  if (!is_clogged && row.mechanism.view() != "none" && !row.mechanism.view().empty())
-    return named("mechanism", row.mechanism.view()) + ", but it is not clogged";
+  const bool is_clogged = row.status == RunStatus::clogged;
+  if (row.clogged_by) {
+    const std::string by = named("clogged_by", name(*row.clogged_by));
+    if (is_clogged != (row.clogged_by != FoundBy::nothing))
+      return is_clogged ? "clogged, but " + by : by + ", but it is not clogged";
+    if (row.clogged_by == FoundBy::certified && row.parameters.clog_detection == ClogDetection::threshold)
+      return by + ", but clog_detection='threshold'";
+    if (row.clogged_by == FoundBy::threshold && row.kinetic_energy_ratio >= row.parameters.clog_energy)
+      return by + ", but " + named("kinetic_energy_ratio", row.kinetic_energy_ratio);
+  }
+  if (!is_clogged && row.mechanism.value_or(ClogMechanism::none) != ClogMechanism::none)
+    return named("mechanism", name(*row.mechanism)) + ", but it is not clogged";
   if (!std::isnan(row.wrapped_support) &&
       !(is_clogged && row.wrapped_support >= 0 && row.wrapped_support <= 1 + round_off))
     return named("wrapped_support", row.wrapped_support) + " is no share of a clog's support";
@@ -175,7 +164,7 @@ std::string clog_fault(const RunRow& row) {
 }
 
 std::string result_fault(const RunRow& row) {
-  if (row.status.view() == "failed") return row.message.view().empty() ? "failed without a reason" : "";
+  if (row.status == RunStatus::failed) return row.message.empty() ? "failed without a reason" : "";
   for (const auto check : {time_fault, motion_fault, shape_fault, clog_fault})
     if (std::string fault = check(row); !fault.empty()) return fault;
   return "";
@@ -187,11 +176,11 @@ double farthest_way(const RunRow& row) {
   // Springs along the interface have no energy; a tenth more is for the little work that they do.
   constexpr double margin = 1.1;
   const double weight = units::droplet_mass * units::gravity;
-  return margin * (row.terminal_speed * row.time + released_energy(row) / weight);
+  return margin * (row.parameters.drag.terminal_speed * row.time + released_energy(row.parameters) / weight);
 }
 
 std::string fault_of(const RunRow& row) {
-  for (const auto check : {unknown_word, bookkeeping_fault, parameter_fault, result_fault})
+  for (const auto check : {unreadable_column, bookkeeping_fault, parameter_fault, result_fault})
     if (std::string fault = check(row); !fault.empty()) return fault;
   return "";
 }

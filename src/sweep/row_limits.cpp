@@ -15,8 +15,8 @@ namespace {
 
 /// As tests/soundness/README.md has it.
 constexpr double largest_tension = 10;
-constexpr std::int64_t fewest_vertices = 64;
-constexpr std::int64_t most_vertices = 256;
+constexpr int fewest_vertices = 64;
+constexpr int most_vertices = 256;
 struct SoundPreset {
   std::string_view name;
   double smallest_tension;         ///< with 128 vertices or more
@@ -31,35 +31,36 @@ std::string rounded(double value) {
   return text;
 }
 
-std::string unproven_tension(const RunRow& row) {
+std::string unproven_tension(const std::string& preset_name, const DpParameters& dp) {
   const auto* preset = std::find_if(std::begin(sound_presets), std::end(sound_presets),
-                                    [&](const SoundPreset& one) { return one.name == row.preset.view(); });
+                                    [&](const SoundPreset& one) { return one.name == preset_name; });
   if (preset == std::end(sound_presets))
-    return "preset=" + std::string(row.preset.view()) +
-           (row.preset.view() == "custom" ? " (an interface that was not looked at)"
-                                          : " (droplets cross themselves and obstacles)");
-  constexpr std::int64_t fine = 128;
-  const double smallest = row.vertices >= fine ? preset->smallest_tension : preset->smallest_tension_coarse;
-  if (row.line_tension >= smallest && row.line_tension <= largest_tension) return "";
-  return "line-tension=" + shortest(row.line_tension) + " (" + std::string(preset->name) +
-         (row.vertices >= fine ? "" : " of less than 128 vertices") + " is sound from " + shortest(smallest) +
+    return "preset=" + preset_name +
+           (preset_name == "custom" ? " (an interface that was not looked at)"
+                                    : " (droplets cross themselves and obstacles)");
+  constexpr int fine = 128;
+  const double smallest = dp.vertices >= fine ? preset->smallest_tension : preset->smallest_tension_coarse;
+  if (dp.line_tension >= smallest && dp.line_tension <= largest_tension) return "";
+  return "line-tension=" + shortest(dp.line_tension) + " (" + std::string(preset->name) +
+         (dp.vertices >= fine ? "" : " of less than 128 vertices") + " is sound from " + shortest(smallest) +
          " to " + shortest(largest_tension) + ")";
 }
 
-std::string unproven_vertices(const RunRow& row) {
-  if (row.vertices >= fewest_vertices && row.vertices <= most_vertices) return "";
-  return "vertices=" + std::to_string(row.vertices) + " (" + std::to_string(fewest_vertices) + " to " +
+std::string unproven_vertices(const DpParameters& dp) {
+  if (dp.vertices >= fewest_vertices && dp.vertices <= most_vertices) return "";
+  return "vertices=" + std::to_string(dp.vertices) + " (" + std::to_string(fewest_vertices) + " to " +
          std::to_string(most_vertices) + " were looked at)";
 }
 
 /// Needles slip through the interface: then the droplet encloses them, at its release or on its way. Seen
 /// with obstacles as thick as an edge is long and thinner ones, the more often the more of them there are.
-std::string unproven_diameter(const RunRow& row) {
+std::string unproven_diameter(const RunParameters& run) {
   constexpr double thinnest = 2;  // over the length of an edge, with a margin
-  const double diameter = row.obstacle_diameter * (1 - row.obstacle_diameter_spread);
-  const double edge = units::regular_edge_length(static_cast<int>(row.vertices));
-  if (!(diameter < thinnest * edge)) return "";
-  return "obstacle-diameter=" + shortest(row.obstacle_diameter) + " (obstacles thinner than two edges, " +
+  if (run.obstacles.layout == ObstacleLayout::channel || run.obstacles.layout == ObstacleLayout::wall)
+    return "";
+  const double edge = units::regular_edge_length(run.dp.vertices);
+  if (!(run.obstacles.smallest_diameter() < thinnest * edge)) return "";
+  return "obstacle-diameter=" + shortest(run.obstacles.diameter) + " (obstacles thinner than two edges, " +
          rounded(thinnest * edge) + ", slip into the droplet; use more vertices)";
 }
 
@@ -67,8 +68,10 @@ std::string unproven_diameter(const RunRow& row) {
 
 std::vector<std::string> unproven_parameters(const RunRow& row) {
   std::vector<std::string> all;
-  if (row.model.view() != "dp") return all;
-  for (const std::string& one : {unproven_tension(row), unproven_vertices(row), unproven_diameter(row)})
+  if (row.parameters.model != Model::dp) return all;
+  const DpParameters& dp = row.parameters.dp;
+  for (const std::string& one :
+       {unproven_tension(row.preset, dp), unproven_vertices(dp), unproven_diameter(row.parameters)})
     if (!one.empty()) all.push_back(one);
   return all;
 }
@@ -87,10 +90,10 @@ std::string unproven_parameters(const Plan& plan) {
 }
 
 double repetition_length(const RunRow& row) {
-  constexpr std::string_view random[] = {"saturated", "density", "file"};
+  const ObstacleParameters& obstacles = row.parameters.obstacles;
   const bool is_random =
-      std::find(std::begin(random), std::end(random), row.obstacle_filling.view()) != std::end(random);
-  return is_random ? row.box * static_cast<double>(row.boxes) : std::numeric_limits<double>::infinity();
+      obstacles.layout == ObstacleLayout::random || obstacles.layout == ObstacleLayout::file;
+  return is_random ? obstacles.period().along() : std::numeric_limits<double>::infinity();
 }
 
 bool has_met_repetition(const RunRow& row) { return row.distance > repetition_length(row); }
@@ -100,13 +103,14 @@ std::string possible_repetition(const Plan& plan) {
   double farthest = 0, shortest_length = 0, most_boxes = 0;  // of the set that lacks most
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
     const RunRow row = describe(plan.task(group));
-    const double way = row.terminal_speed * row.max_time;
+    const RunParameters& run = row.parameters;
+    const double way = run.drag.terminal_speed * run.max_time;
     if (way <= repetition_length(row)) continue;
     ++num_groups;
-    if (way / row.box <= most_boxes) continue;
+    if (way / run.obstacles.box <= most_boxes) continue;
     farthest = way;
     shortest_length = repetition_length(row);
-    most_boxes = way / row.box;
+    most_boxes = way / run.obstacles.box;
   }
   if (num_groups == 0) return "";
   return "droplets of " + std::to_string(num_groups) + " of " + counted(plan.num_groups(), "parameter set") +
@@ -116,6 +120,8 @@ std::string possible_repetition(const Plan& plan) {
          "; boxes=" + rounded(std::ceil(most_boxes)) + " is long enough";
 }
 
-double obstacle_spacing(const RunRow& row) { return row.obstacle_diameter + row.obstacle_gap; }
+double obstacle_spacing(const RunRow& row) {
+  return row.parameters.obstacles.diameter + row.parameters.obstacles.gap;
+}
 
 }  // namespace clog::sweep

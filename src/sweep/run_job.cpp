@@ -24,9 +24,9 @@ DropletRun start(const RunParameters& run, std::span<const std::byte> snapshot, 
 
 }  // namespace
 
-RunJob::RunJob(const Plan& plan, std::int64_t task, std::span<const std::byte> snapshot,
+RunJob::RunJob(const RunParameters& run, std::int64_t task, std::span<const std::byte> snapshot,
                std::shared_ptr<ObstacleArrays> arrays)
-    : run_parameters_(plan.task(task)),
+    : run_parameters_(run),
       snapshot_(snapshot.begin(), snapshot.end()),
       arrays_(std::move(arrays)),
       row_(describe(run_parameters_)) {
@@ -66,7 +66,7 @@ RunRow RunJob::row() const {
 JobFactory run_jobs(const Plan& plan) {
   return [&plan, arrays = std::make_shared<ObstacleArrays>()](std::int64_t task,
                                                               std::span<const std::byte> snapshot) {
-    return std::make_unique<RunJob>(plan, task, snapshot, arrays);
+    return std::make_unique<RunJob>(plan.task(task), task, snapshot, arrays);
   };
 }
 

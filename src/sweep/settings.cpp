@@ -1,7 +1,6 @@
 #include "clog/sweep/settings.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -12,291 +11,6 @@ namespace {
 
 /// Of a value in the config: all keys together must fit an attribute of the file, 64 KiB.
 constexpr std::size_t longest_text = 3000;
-
-std::optional<double> number_or_auto(const std::string& value) {
-  if (value == "auto" || value == "saturated") return std::nullopt;
-  return to_number(value);
-}
-
-template <class Integer>
-Integer in_range(const std::string& value) {
-  const long long integer = to_integer(value);
-  if (integer < std::numeric_limits<Integer>::min() || integer > std::numeric_limits<Integer>::max())
-    throw Error("'" + value + "' is out of range");
-  return static_cast<Integer>(integer);
-}
-
-std::vector<Key> make_keys() {
-  using enum ValueKind;
-  return {
-      {"model",
-       word,
-       {"dp", "sp"},
-       "dp",
-       "dp: deformable polygon, sp: soft disk",
-       false,
-       [](RunParameters& run, const std::string& value) {
-         run.model = value == "dp" ? Model::dp : Model::sp;
-       }},
-      {"preset",
-       word,
-       {"robust", "heavy-interface", "elastic", "literal"},
-       "robust",
-       "sets the keys of the interface together, those given by hand excepted: robust (weight on the "
-       "liquid), "
-       "heavy-interface (weight on the interface), elastic (the same, and it stretches like rubber, K_l = "
-       "0.1 Gamma; "
-       "shows the published trends), literal (the published equations)",
-       true,
-       [](RunParameters&, const std::string&) {}},  // Settings::set does it
-      {"line-tension",
-       number,
-       {},
-       "1",
-       "Gamma [g rho sigma^2]",
-       true,
-       [](RunParameters& run, const std::string& value) { run.dp.line_tension = to_number(value); }},
-      {"wall-stiffness",
-       number,
-       {"auto"},
-       "auto",
-       "E_w [g rho sigma^3]; auto: the stiffest that time-step and vertices hold (dp only)",
-       false,
-       [](RunParameters& run, const std::string& value) { run.wall_stiffness = number_or_auto(value); }},
-      {"obstacle-gap",
-       number,
-       {},
-       "0.2",
-       "w_ob, smallest distance between obstacle surfaces [sigma]",
-       false,
-       [](RunParameters& run, const std::string& value) { run.obstacles.gap = to_number(value); }},
-      {"obstacle-diameter",
-       number,
-       {},
-       "0.3",
-       "sigma_ob [sigma]",
-       false,
-       [](RunParameters& run, const std::string& value) { run.obstacles.diameter = to_number(value); }},
-      {"obstacle-diameter-spread",
-       number,
-       {},
-       "0",
-       "diameters of random obstacles are uniform in obstacle-diameter*(1 -+ spread)",
-       false,
-       [](RunParameters& run, const std::string& value) {
-         run.obstacles.diameter_spread = to_number(value);
-       }},
-      {"obstacle-density",
-       number,
-       {"saturated"},
-       "saturated",
-       "obstacles per sigma^2; saturated: until not one more fits",
-       false,
-       [](RunParameters& run, const std::string& value) { run.obstacles.density = number_or_auto(value); }},
-      {"obstacle-layout",
-       word,
-       {"random", "lattice"},
-       "random",
-       "random: sequential addition, lattice: square, obstacle-gap + obstacle-diameter from centre to centre",
-       false,
-       [](RunParameters& run, const std::string& value) {
-         run.obstacles.layout = value == "lattice" ? ObstacleLayout::lattice : ObstacleLayout::random;
-       }},
-      {"lattice-angle",
-       number,
-       {},
-       "0",
-       "of the lattice's rows from +x (the flow) to +y [degrees]; the nearest with a period of at most box",
-       false,
-       [](RunParameters& run, const std::string& value) { run.obstacles.lattice_angle = to_number(value); }},
-      {"seeds",
-       integer,
-       {},
-       "1..10",
-       "one run for each: obstacle array and release follow from the seed",
-       false,
-       [](RunParameters& run, const std::string& value) { run.seed = in_range<std::uint32_t>(value); }},
-      {"box",
-       number,
-       {},
-       "500",
-       "period of the obstacle array [sigma]",
-       false,
-       [](RunParameters& run, const std::string& value) { run.obstacles.box = to_number(value); }},
-      {"boxes",
-       integer,
-       {},
-       "1",
-       "the array is so many boxes long, along the flow, before it repeats",
-       false,
-       [](RunParameters& run, const std::string& value) { run.obstacles.boxes = in_range<int>(value); }},
-      {"max-time",
-       number,
-       {},
-       "2e5",
-       "longest run [t0]",
-       false,
-       [](RunParameters& run, const std::string& value) { run.max_time = to_number(value); }},
-      {"terminal-speed",
-       number,
-       {},
-       "0.03",
-       "V_t [sqrt(sigma g)]",
-       false,
-       [](RunParameters& run, const std::string& value) { run.drag.terminal_speed = to_number(value); }},
-      {"near-wall-drag",
-       number,
-       {},
-       "0",
-       "b_0/b_inf",
-       true,
-       [](RunParameters& run, const std::string& value) { run.drag.near_wall = to_number(value); }},
-      {"near-wall-exponent",
-       number,
-       {},
-       "1.3333333333333333",
-       "alpha, of the near-wall drag's power of sigma/d",
-       true,
-       [](RunParameters& run, const std::string& value) { run.drag.near_wall_exponent = to_number(value); }},
-      {"near-wall-cutoff",
-       number,
-       {},
-       "0.00614",
-       "d of the near-wall drag counts as no less [sigma]",
-       true,
-       [](RunParameters& run, const std::string& value) { run.drag.near_wall_cutoff = to_number(value); }},
-      {"relative-drag",
-       number,
-       {},
-       "1",
-       "c, drag of motion relative to the centre of mass over b_inf",
-       true,
-       [](RunParameters& run, const std::string& value) { run.drag.relative = to_number(value); }},
-      {"vertices",
-       integer,
-       {},
-       "128",
-       "N_v of the polygon",
-       true,
-       [](RunParameters& run, const std::string& value) { run.dp.vertices = in_range<int>(value); }},
-      {"time-step",
-       number,
-       {"auto"},
-       "auto",
-       "[t0]; auto: the largest at which nothing stiff matters, 1e-3 is the published one",
-       false,
-       [](RunParameters& run, const std::string& value) { run.time_step = number_or_auto(value); }},
-      {"area-stiffness",
-       number,
-       {"auto"},
-       "auto",
-       "K_a [g rho/sigma]; auto: the area keeps within 0.2 % of its rest value as long as 1e4, the published "
-       "value, can hold it",
-       true,
-       [](RunParameters& run, const std::string& value) { run.dp.area_stiffness = number_or_auto(value); }},
-      {"perimeter-spring",
-       word,
-       {"along", "mean", "rest"},
-       "along",
-       "springs of the edges pull to l0 (rest, as published), to the mean edge length, or only along the "
-       "interface",
-       true,
-       [](RunParameters& run, const std::string& value) {
-         run.dp.perimeter_spring = value == "rest"   ? PerimeterSpring::rest
-                                   : value == "mean" ? PerimeterSpring::mean
-                                                     : PerimeterSpring::along;
-       }},
-      {"perimeter-stiffness",
-       number,
-       {"auto"},
-       "auto",
-       "K_l [g rho sigma]; auto: ratio times Gamma for rest, 1 for mean, 0.003/V_t for along",
-       true,
-       [](RunParameters& run, const std::string& value) {
-         run.dp.perimeter_stiffness = number_or_auto(value);
-       }},
-      {"perimeter-stiffness-ratio",
-       number,
-       {},
-       "0.001",
-       "K_l/Gamma of springs to the rest length, where perimeter-stiffness=auto",
-       true,
-       [](RunParameters& run, const std::string& value) {
-         run.dp.perimeter_stiffness_ratio = to_number(value);
-       }},
-      {"wall-contact",
-       word,
-       {"edge", "vertex"},
-       "edge",
-       "a wall pushes the nearest point of every edge, or the vertices alone (as published)",
-       true,
-       [](RunParameters& run, const std::string& value) {
-         run.dp.wall_contact = value == "edge" ? WallContact::edge : WallContact::vertex;
-       }},
-      {"contact-range",
-       number,
-       {"half-vertex"},
-       "0",
-       "distance from a wall's surface at which contact begins [sigma]; half-vertex: half a vertex diameter, "
-       "as "
-       "published",
-       true,
-       [](RunParameters& run, const std::string& value) {
-         run.dp.contact_range =
-             value == "half-vertex" ? std::nullopt : std::optional<double>(to_number(value));
-       }},
-      {"wall-tension",
-       number,
-       {},
-       "1",
-       "tension where the interface touches a wall, over Gamma: -cos of the contact angle",
-       true,
-       [](RunParameters& run, const std::string& value) { run.dp.wall_tension = to_number(value); }},
-      {"self-contact",
-       word,
-       {"on", "off"},
-       "on",
-       "does the interface repel itself",
-       true,
-       [](RunParameters& run, const std::string& value) {
-         run.dp.self_contact = value == "on" ? SelfContact::on : SelfContact::off;
-       }},
-      {"self-contact-range",
-       number,
-       {},
-       "0.01227",
-       "distance below which the interface repels itself [sigma]",
-       true,
-       [](RunParameters& run, const std::string& value) { run.dp.self_contact_range = to_number(value); }},
-      {"gravity",
-       word,
-       {"area", "vertex"},
-       "area",
-       "weight and mean drag act on the area, as a pressure, or on the vertices (as published)",
-       true,
-       [](RunParameters& run, const std::string& value) {
-         run.dp.gravity = value == "vertex" ? Gravity::vertex : Gravity::area;
-       }},
-      {"clog-energy",
-       number,
-       {},
-       "1e-17",
-       "clogged when E_k/E_t, the kinetic energy over that at terminal speed, stays below this",
-       false,
-       [](RunParameters& run, const std::string& value) { run.clog_energy = to_number(value); }},
-      {"clog-detection",
-       word,
-       {"certified", "threshold"},
-       "certified",
-       "certified: a droplet that slows down is clogged once a stable equilibrium is proved to be at hand, "
-       "or by "
-       "clog-energy; threshold: by clog-energy only",
-       false,
-       [](RunParameters& run, const std::string& value) {
-         run.clog_detection = value == "certified" ? ClogDetection::certified : ClogDetection::threshold;
-       }},
-  };
-}
 
 /// What a preset means for the keys of the interface and of its numerics.
 struct Preset {
@@ -349,11 +63,63 @@ const std::vector<Preset>& presets() {
   return all;
 }
 
+/// What stands for a key's value in a config file.
+std::string written(const ParameterValue& value, const Parameter& parameter) {
+  if (const auto* number = std::get_if<double>(&value)) return shortest(*number);
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);
+  if (const auto* word = std::get_if<std::string>(&value)) return *word;
+  return parameter.words.front();  // automatic
+}
+
+Key key_of(const Parameter& parameter) {
+  const bool is_ensemble = parameter.role == ParameterRole::ensemble;
+  const std::string unit = *parameter.unit ? " [" + std::string(parameter.unit) + "]" : "";
+  return {.name = parameter.key,
+          .kind = parameter.kind,
+          .words = parameter.words,
+          .default_text = is_ensemble ? "1..10" : written(parameter.get({}), parameter),
+          .help = parameter.meaning + unit,
+          .parameter = &parameter};
+}
+
+Key preset_key() {
+  Key key{.name = "preset",
+          .kind = ValueKind::word,
+          .words = {},
+          .default_text = "robust",
+          .help =
+              "sets the keys of the interface together, those given by hand excepted: robust (weight on the "
+              "liquid), heavy-interface (weight on the interface), elastic (the same, and it stretches like "
+              "rubber, K_l = 0.1 Gamma; shows the published trends), literal (the published equations)",
+          .parameter = nullptr};
+  for (const Preset& preset : presets()) key.words.emplace_back(preset.name);
+  return key;
+}
+
+std::vector<Key> make_keys() {
+  std::vector<Key> all;
+  for (const Parameter& parameter : parameter_schema()) all.push_back(key_of(parameter));
+  all.insert(all.begin() + 1, preset_key());  // behind the model
+  return all;
+}
+
 }  // namespace
 
 const std::vector<Key>& keys() {
   static const std::vector<Key> all = make_keys();
   return all;
+}
+
+void Key::apply(RunParameters& run, const std::string& value) const {
+  if (!parameter) return;  // Settings::set has set the keys behind it
+  if (kind == ValueKind::word)
+    parameter->set(run, value);
+  else if (std::find(words.begin(), words.end(), value) != words.end())
+    parameter->set(run, {});
+  else if (kind == ValueKind::integer)
+    parameter->set(run, std::int64_t{to_integer(value)});
+  else
+    parameter->set(run, to_number(value));
 }
 
 const Key& find_key(std::string_view name) {

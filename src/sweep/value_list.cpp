@@ -131,11 +131,6 @@ std::vector<std::string> expand_list(std::string_view text, ValueKind kind,
   return values;
 }
 
-std::string shortest(double value) {
-  char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, value).ptr};
-}
-
 std::string with_decimal_point(std::string_view text) {
   constexpr std::string_view digits = "0123456789";
   const auto comma = text.find(',');

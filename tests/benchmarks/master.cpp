@@ -46,7 +46,7 @@ class SleepingJob final : public sweep::Job {
  public:
   SleepingJob(std::int64_t task, double seconds) : seconds_(seconds) {
     row_.task = task;
-    row_.status = "clogged";
+    row_.status = RunStatus::clogged;
   }
   bool advance() override {
     const double left = seconds_ - seconds_since(begin_);

@@ -141,6 +141,7 @@ BENCHMARK(polygon_in_channel)
 void soft_disk(benchmark::State& state) {
   RunParameters run = flowing_droplet(256, 0);
   run.model = Model::sp;
+  run.dp = {};
   run.wall_stiffness = 1;
   run.obstacles.gap = 0.2;
   advance(state, resolve(run));

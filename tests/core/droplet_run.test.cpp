@@ -51,12 +51,11 @@ RunParameters long_run(Model model) {
   RunParameters run;
   run.obstacles.box = 20;
   run.obstacles.gap = 0.5;
-  run.dp.line_tension = 0.05;
   run.time_step = 1e-3;
   run.max_time = 850;
   run.model = model;
   if (model == Model::sp) run.wall_stiffness = 0.3;
-  if (model == Model::dp) run.dp.vertices = 64, run.drag.near_wall = 0.02;
+  if (model == Model::dp) run.dp.vertices = 64, run.dp.line_tension = 0.05, run.drag.near_wall = 0.02;
   return resolve(run);
 }
 

@@ -120,6 +120,7 @@ TEST(OnAWall, ASoftDiskSagsAsItsSpringSays) {
   for (const double stiffness : {0.5, 1.0, 10.0}) {
     RunParameters run = parameters(1);
     run.model = Model::sp;
+    run.dp = {};
     run.wall_stiffness = stiffness;
     EXPECT_NEAR(at_rest_on_a_wall(run).result().distance, pi / (16 * stiffness), 1e-6);
   }

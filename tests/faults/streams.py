@@ -21,7 +21,7 @@ REPORTS = [
 ]
 TRAJECTORIES = [["clogrun", "array", *SHORT, "--output", "r.h5"],
                 ["clogrun", "channel", "vertices=32", "max-time=1", "--start=-1", "--output", "r.h5"]]
-CHANGING = {"doctor", "replay"}  # what these print holds times
+CHANGING = {"doctor", "replay", "--dry-run"}  # what these print holds times
 NAMES = ["stdin", "stdout", "stderr"]
 
 

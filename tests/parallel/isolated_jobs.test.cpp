@@ -73,7 +73,7 @@ class CrashingJob final : public SyntheticJob {
   }
   sweep::RunRow row() const override {
     sweep::RunRow row = SyntheticJob::row();
-    row.seed = getpid();
+    row.num_arcs = getpid();
     row.time = oom_score_adj();
     return row;
   }
@@ -98,16 +98,16 @@ void a_crash_fails_its_task_and_no_other(const parallel::Communicator& ranks,
   events.failure_withdrawn = [&](std::int64_t task) { --attempts[task]; };
   events.ended = [&](const parallel::Report& report) {
     rows[report.row.task] = report.row;
-    if (report.row.status.view() == "clogged") processes[report.row.rank].insert(report.row.seed);
+    if (report.row.status == RunStatus::clogged) processes[report.row.rank].insert(report.row.num_arcs);
   };
   const parallel::SweepEnd end = run_once(ranks, parallel::TaskOrder(num_tasks, 7), make_job, events, true);
   if (ranks.rank() != 0) return;
   expect(end == parallel::SweepEnd::complete && rows.size() == num_tasks, "the sweep goes on");
   for (const auto& [task, row] : rows) {
     const auto crash = crashes.find(task);
-    expect(row.status.view() == (crash == crashes.end() ? "clogged" : "failed"),
+    expect(row.status == (crash == crashes.end() ? RunStatus::clogged : RunStatus::failed),
            "who crashes fails, and nobody else");
-    expect(row.message.view() == (crash == crashes.end() ? "" : crash->second.second),
+    expect(row.message == (crash == crashes.end() ? "" : crash->second.second),
            "the row says how it crashed");
     expect(row.attempt == (crash == crashes.end() ? 1 : 2), "a task that crashed was tried again");
     if (crash == crashes.end())
@@ -131,11 +131,11 @@ void a_stopped_task_goes_on_from_its_snapshot(const parallel::Communicator& rank
   parallel::SweepEvents events;
   events.progressed = [&](const parallel::Report& report) {
     ++num_reports;
-    expect(report.row.status.view() == "running", "a report is of a running task");
+    expect(report.row.status == RunStatus::running, "a report is of a running task");
     expect(report.snapshot.size() == static_cast<std::size_t>(report.row.steps), "a report has its snapshot");
   };
   events.ended = [&](const parallel::Report& report) {
-    if (report.row.status.view() != "interrupted") return;
+    if (report.row.status != RunStatus::interrupted) return;
     expect(report.snapshot.size() == static_cast<std::size_t>(report.row.steps),
            "a stopped task has its snapshot");
     stopped[report.row.task] = report;
@@ -153,7 +153,7 @@ void a_stopped_task_goes_on_from_its_snapshot(const parallel::Communicator& rank
   events.started = [&](std::int64_t task, int) { return parallel::Start{stopped.at(task).snapshot, 1}; };
   events.ended = [&](const parallel::Report& report) {
     ++num_ended;
-    expect(report.row.status.view() == "clogged", "a task goes on to its end");
+    expect(report.row.status == RunStatus::clogged, "a task goes on to its end");
     expect(report.row.steps == 1 + report.row.task * 7 % 5, "no slice is done twice");
   };
   run_once(ranks, parallel::TaskOrder(left, 1), make_job, events, true);
@@ -177,7 +177,7 @@ void hanging_tasks_block_nobody(const parallel::Communicator& ranks, const sweep
   events.stop_requested = [&] { return num_idle > 3; };
   events.ended = [&](const parallel::Report& report) {
     ++num_stopped;
-    expect(report.row.status.view() == "interrupted", "a task that hangs can be stopped");
+    expect(report.row.status == RunStatus::interrupted, "a task that hangs can be stopped");
     expect(report.snapshot == snapshot, "the last known snapshot is kept");
   };
   const parallel::SweepEnd end =
@@ -187,7 +187,7 @@ void hanging_tasks_block_nobody(const parallel::Communicator& ranks, const sweep
   std::iota(tasks.begin(), tasks.end(), first_slow_task);
   events = parallel::SweepEvents();
   events.ended = [&](const parallel::Report& report) {
-    expect(report.row.status.view() == "clogged", "the next task gets a process that does not hang");
+    expect(report.row.status == RunStatus::clogged, "the next task gets a process that does not hang");
   };
   run_once(ranks, parallel::TaskOrder(tasks, 1), make_job, events, true);
 }
@@ -201,15 +201,15 @@ void a_rank_goes_on_without_its_helper(const parallel::Communicator& ranks, cons
   parallel::SweepEvents events;
   events.tries_again = [](const sweep::RunRow&) { return true; };
   events.ended = [&](const parallel::Report& report) {
-    status[report.row.task] = report.row.status.view();
-    if (report.row.status.view() == "failed") {
+    status[report.row.task] = name(report.row.status);
+    if (report.row.status == RunStatus::failed) {
       ++failures[report.row.rank];
-      expect(report.row.message.view() ==
+      expect(report.row.message ==
                  "the helper that starts its rank's processes was killed or stopped; the rank goes on "
                  "without, and now a crash there ends the sweep",
              "the row says what happened");
     } else if (report.row.rank == 0) {
-      expect(report.row.seed == rank_pid, "the rank does the work itself");
+      expect(report.row.num_arcs == rank_pid, "the rank does the work itself");
     }
   };
   const parallel::SweepEnd end = run_once(ranks, parallel::TaskOrder(tasks, 1), make_job, events, true);

@@ -29,7 +29,7 @@ void every_task_comes_back_once(const parallel::Communicator& ranks, bool master
     ++times_ended[row.task];
     ++rows_of_rank[row.rank];
     expect(row.distance == static_cast<double>(row.task * row.task), "a row holds its own task's result");
-    expect(row.status.view() == "clogged", "a task is run to its end");
+    expect(row.status == RunStatus::clogged, "a task is run to its end");
   };
   const parallel::SweepEnd end =
       run_once(ranks, parallel::TaskOrder(num_tasks, 7), make_synthetic_job, events, master_computes);
@@ -70,12 +70,12 @@ void running_tasks_report_and_go_on_from_there(const parallel::Communicator& ran
   parallel::SweepEvents events;
   events.progressed = [&](const parallel::Report& report) {
     ++num_reports;
-    expect(report.row.status.view() == "running", "a report is of a running task");
+    expect(report.row.status == RunStatus::running, "a report is of a running task");
     expect(report.snapshot.size() == static_cast<std::size_t>(report.row.steps), "a report has its snapshot");
     stop = true;
   };
   events.ended = [&](const parallel::Report& report) {
-    if (report.row.status.view() == "interrupted") snapshots[report.row.task] = report.snapshot;
+    if (report.row.status == RunStatus::interrupted) snapshots[report.row.task] = report.snapshot;
   };
   events.stop_requested = [&] { return stop; };
   run_once(ranks, parallel::TaskOrder(1000), make_synthetic_job, events, true, std::chrono::milliseconds(2));
@@ -88,7 +88,7 @@ void running_tasks_report_and_go_on_from_there(const parallel::Communicator& ran
   events.ended = [&](const parallel::Report& report) {
     ++num_ended;
     expect(report.row.steps == 1 + report.row.task * 7 % 5, "no slice is done twice");
-    expect(report.row.status.view() == "clogged", "a task goes on to its end");
+    expect(report.row.status == RunStatus::clogged, "a task goes on to its end");
   };
   run_once(ranks, parallel::TaskOrder(left, 1), make_synthetic_job, events, true);
   expect(num_ended == static_cast<int>(left.size()), "every interrupted task goes on");
@@ -102,7 +102,7 @@ class FailingJob final : public sweep::Job {
   sweep::RunRow row() const override {
     sweep::RunRow row;
     row.task = task_;
-    row.status = fails_ ? "failed" : "clogged";
+    row.status = fails_ ? RunStatus::failed : RunStatus::clogged;
     return row;
   }
 
@@ -126,7 +126,7 @@ void failed_tasks_are_tried_again(const parallel::Communicator& ranks) {
   events.tries_again = [](const sweep::RunRow& failed) { return failed.attempt < 3; };
   events.ended = [&](const parallel::Report& report) {
     expect(report.row.attempt == attempts[report.row.task], "a row says which attempt it was");
-    if (report.row.status.view() == "clogged") ++successes[report.row.task];
+    if (report.row.status == RunStatus::clogged) ++successes[report.row.task];
   };
   run_once(ranks, parallel::TaskOrder(20, 4), make_failing, events, true);
   if (ranks.rank() != 0) return;
@@ -170,11 +170,11 @@ Outcome sweep(const parallel::Communicator& ranks, std::int64_t num_tasks, std::
     --outcome.attempts[task];
   };
   events.set_aside = [&](const sweep::RunRow& failed) {
-    expect(failed.status.view() == "failed" && !failed.host.view().empty(), "the rank's failure comes along");
+    expect(failed.status == RunStatus::failed && !failed.host.empty(), "the rank's failure comes along");
     expect(outcome.set_aside.insert(static_cast<int>(failed.rank)).second, "nobody is set aside twice");
   };
   events.ended = [&](const parallel::Report& report) {
-    outcome.status[report.row.task] = report.row.status.view();
+    outcome.status[report.row.task] = name(report.row.status);
   };
   outcome.end = run_once(ranks, parallel::TaskOrder(num_tasks, 5), make_job, events, true);
   return outcome;

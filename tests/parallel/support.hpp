@@ -38,7 +38,7 @@ class SyntheticJob : public sweep::Job {
     sweep::RunRow row;
     row.task = task_;
     row.distance = static_cast<double>(task_ * task_);
-    row.status = slices_left_ > 0 ? "interrupted" : "clogged";
+    row.status = slices_left_ > 0 ? RunStatus::interrupted : RunStatus::clogged;
     row.steps = 1 + task_ * 7 % 5 - slices_left_;
     return row;
   }

@@ -35,17 +35,17 @@ class LedgerTest : public testing::Test {
   SweepLedger open(std::int64_t attempts = 1) {
     return SweepLedger(path(), plan_, settings_, {{"config", settings_.to_config(false)}}, 2, attempts);
   }
-  static parallel::Report report(const SweepLedger& ledger, std::int64_t task, const char* status,
-                                 double distance, std::vector<std::byte> snapshot = {}) {
-    parallel::Report report{ledger.row(task), std::move(snapshot)};
+  static sweep::Report report(const SweepLedger& ledger, std::int64_t task, RunStatus status,
+                              double distance, std::vector<std::byte> snapshot = {}) {
+    sweep::Report report{ledger.row(task), std::move(snapshot)};
     sweep::RunRow& row = report.row;
     row.status = status;
     row.distance = distance;
     row.steps = 1'000'000;
-    row.time = static_cast<double>(row.steps) * row.time_step;
+    row.time = static_cast<double>(row.steps) * *row.parameters.time_step;
     row.shape_parameter = 1.2;
-    if (row.status.view() == "clogged") row.clogged_by = "certified";
-    if (row.status.view() == "failed") row.message = "diverged";
+    if (row.status == RunStatus::clogged) row.clogged_by = sweep::FoundBy::certified;
+    if (row.status == RunStatus::failed) row.message = "diverged";
     return report;
   }
   const std::vector<std::byte> snapshot_{10, std::byte{7}};
@@ -55,10 +55,10 @@ TEST_F(LedgerTest, GoesOnFromTheSnapshotOfARunWhoseFailureWasWithdrawn) {
   {
     SweepLedger ledger = open();
     ledger.start(0, 1);
-    ledger.report(report(ledger, 0, "failed", std::nan("")));
+    ledger.report(report(ledger, 0, RunStatus::failed, std::nan("")));
     ledger.withdraw_failure(0);
     ledger.start(0, 0);
-    ledger.report(report(ledger, 0, "running", 3.5, snapshot_));
+    ledger.report(report(ledger, 0, RunStatus::running, 3.5, snapshot_));
   }
   SweepLedger ledger = open();
   EXPECT_EQ(ledger.tasks_left(), (std::vector<std::int64_t>{0, 1}));
@@ -70,13 +70,13 @@ TEST_F(LedgerTest, GoesOnFromTheSnapshotOfARunWhoseFailureWasWithdrawn) {
 TEST_F(LedgerTest, TakesNoDistanceFromAnAttemptThatDoesNotCount) {
   SweepLedger ledger = open();
   ledger.start(0, 1);
-  parallel::Report failed = report(ledger, 0, "failed", std::nan(""));
+  sweep::Report failed = report(ledger, 0, RunStatus::failed, std::nan(""));
   failed.row.wall_seconds = 3;
   ledger.report(failed);
   ledger.withdraw_failure(0);
-  EXPECT_EQ(ledger.row(0).status.view(), "interrupted");
+  EXPECT_EQ(ledger.row(0).status, RunStatus::interrupted);
   EXPECT_EQ(ledger.row(0).distance, 0);
-  EXPECT_EQ(ledger.row(0).message.view(), "");
+  EXPECT_EQ(ledger.row(0).message, "");
   EXPECT_EQ(ledger.row(0).wall_seconds, 3);
   EXPECT_EQ(ledger.start(0, 0).attempt, 1);
 }
@@ -85,7 +85,7 @@ TEST_F(LedgerTest, KeepsAFailureThatCounts) {
   {
     SweepLedger ledger = open();
     ledger.start(1, 0);
-    ledger.report(report(ledger, 1, "failed", 0));
+    ledger.report(report(ledger, 1, RunStatus::failed, 0));
   }
   EXPECT_EQ(open().tasks_left(), std::vector<std::int64_t>{0});
   EXPECT_EQ(open(2).tasks_left(), (std::vector<std::int64_t>{0, 1}));
@@ -98,24 +98,24 @@ TEST_F(LedgerTest, ShowsAFailureToReadersOnceItsAttemptsAreUsedUp) {
     return store::read_sweep(path()).rows.at(0);
   };
   ledger.start(0, 0);
-  ledger.report(report(ledger, 0, "failed", std::nan("")));
-  EXPECT_EQ(shown().status.view(), "interrupted");
+  ledger.report(report(ledger, 0, RunStatus::failed, std::nan("")));
+  EXPECT_EQ(shown().status, RunStatus::interrupted);
   EXPECT_EQ(shown().attempt, 2);
-  EXPECT_EQ(shown().message.view(), "");
+  EXPECT_EQ(shown().message, "");
   EXPECT_EQ(shown().distance, 0);
   ledger.start(0, 0);
-  EXPECT_EQ(shown().status.view(), "running");
-  ledger.report(report(ledger, 0, "failed", std::nan("")));
-  EXPECT_EQ(shown().status.view(), "failed");
+  EXPECT_EQ(shown().status, RunStatus::running);
+  ledger.report(report(ledger, 0, RunStatus::failed, std::nan("")));
+  EXPECT_EQ(shown().status, RunStatus::failed);
   EXPECT_EQ(shown().attempt, 2);
-  EXPECT_EQ(shown().message.view(), "diverged");
+  EXPECT_EQ(shown().message, "diverged");
 }
 
 TEST_F(LedgerTest, CountsAnAttemptThatFailedThoughReadersDoNotSeeIt) {
   {
     SweepLedger ledger = open(2);
     ledger.start(0, 0);
-    ledger.report(report(ledger, 0, "failed", 0));
+    ledger.report(report(ledger, 0, RunStatus::failed, 0));
     ledger.finish();
   }
   EXPECT_EQ(open(2).start(0, 0).attempt, 2);
@@ -128,7 +128,7 @@ TEST_F(LedgerTest, ComputesARunAgainWhoseRowHoldsWhatCannotBe) {
     SweepLedger ledger = open();
     for (const std::int64_t task : {0, 1}) {
       ledger.start(task, 0);
-      ledger.report(report(ledger, task, "clogged", 2));
+      ledger.report(report(ledger, task, RunStatus::clogged, 2));
     }
     ledger.finish();
   }
@@ -161,16 +161,16 @@ TEST_F(LedgerTest, KeepsAResultOfTheTableWhateverTheJournalLacks) {
   {
     SweepLedger ledger = open();
     ledger.start(0, 0);
-    ledger.report(report(ledger, 0, "running", 1, snapshot_));
+    ledger.report(report(ledger, 0, RunStatus::running, 1, snapshot_));
     ledger.start(1, 0);
-    ledger.report(report(ledger, 1, "running", 2, snapshot_));
-    ledger.report(report(ledger, 0, "clogged", 4));
+    ledger.report(report(ledger, 1, RunStatus::running, 2, snapshot_));
+    ledger.report(report(ledger, 0, RunStatus::clogged, 4));
     ledger.finish();
   }
   {
     store::Journal journal(store::journal_path(path()));
     sweep::RunRow older = store::read_sweep(path()).rows[0];
-    older.status = "running";
+    older.status = RunStatus::running;
     journal.add(older, snapshot_);
   }
   SweepLedger ledger = open();

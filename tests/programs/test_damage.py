@@ -55,17 +55,6 @@ class Damage(ProgramTest):
         with pandas.HDFStore(self.file, "r") as store, self.assertRaisesRegex(Exception, "read"):
             store["runs"]
 
-    def test_a_seal_that_was_overwritten_is_no_copy(self):
-        content = self.file.read_bytes()
-        self.file.write_bytes(content[:-64] + bytes(64))
-        for name, *arguments in READERS:
-            with self.subTest(program=name, arguments=arguments):
-                done = self.run_program(name, *arguments)
-                self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
-                self.assertIn("some bytes are not those that were written", done.stderr)
-        with self.assertRaises(stored.Damaged):
-            stored.read_rows(self.file)
-
     def test_what_is_whole_is_salvaged_and_the_sweep_goes_on(self):
         shutil.copy(self.file, self.folder / "undamaged.h5")
         self.multiply_a_distance()

@@ -27,6 +27,7 @@ import rounded
 import style
 import survival_curve
 import trajectory
+from groups import Groups
 from paper import arrays
 
 # A few seconds for all of them: coarse droplets, short ways.
@@ -289,11 +290,11 @@ class Pictures(Analysis):
 
     def test_a_doubtful_length_has_an_open_marker_and_the_reason_beside_it(self):
         self.succeed("clogsweep", *QUICK, "line-tension=2,30", "seeds=1..3", "--output", "s.h5")
-        groups = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
-        for group, doubts in zip(groups, (["below_spacing"], ["below_spacing", "not_proved_sound"])):
+        groups = Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
+        for group, doubts in zip(groups.members, (["below_spacing"], ["below_spacing", "not_proved_sound"])):
             self.assertEqual(style.reasons_for_open_marker(group), doubts)
-        groups[0]["doubts"] = "few_clogs"
-        axes = clogging_length.draw(groups, "line_tension", 0.95).axes[0]
+        groups.members[0]["doubts"] = "few_clogs"
+        axes = clogging_length.draw(groups).axes[0]
         open_markers, = [line for line in axes.lines if line.get_markerfacecolor() == "white" and line.get_marker() != "^"]
         self.assertEqual(list(open_markers.get_xdata()), [30])
         for reason in ("outside of what was proved sound", "shorter than one obstacle spacing"):
@@ -323,12 +324,11 @@ class Pictures(Analysis):
             ("vertices", 1, ["wall-contact=vertex", "contact-range=half-vertex", "vertices=64", "line-tension=1"]),
         ]:
             self.succeed("clogsweep", *keys, "box=20", "max-time=500", "seeds=1..4", "--output", f"{name}.h5")
-            rows, config = clogs.read_clogs(self.folder / f"{name}.h5")
+            rows = clogs.read_clogs(self.folder / f"{name}.h5")
             self.assertGreater(len(rows), 0)
-            self.write("sweep.cfg", config)
             for row in rows:
                 with self.subTest(contact=name, task=row["task"]):
-                    interface, obstacles = clogs.run_again(BIN / "clogrun", self.folder / "sweep.cfg", row, self.folder)
+                    interface, obstacles = clogs.run_again(BIN / "clogrun", self.folder / f"{name}.h5", row, self.folder)
                     (self.folder / f"{row['task']}.h5").unlink()
                     self.assertEqual(interface.shape[1], points_per_vertex * row["vertices"])
                     depths = clogs.overlaps(row, interface, obstacles)

@@ -11,6 +11,7 @@ from support import BIN, QUICK
 
 import clogging_length
 import film
+from groups import Groups
 import report
 import rounded
 import style
@@ -86,7 +87,7 @@ class Calls(Analysis):
 class Looks(Analysis):
     def fit(self, *keys):
         self.succeed("clogsweep", *keys, "--output", "s.h5")
-        return json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
+        return Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
 
     def assert_title_is_whole(self, drawing):
         drawing.canvas.draw()
@@ -97,12 +98,14 @@ class Looks(Analysis):
 
     def test_one_curve_has_its_whole_title_the_interface_and_room_at_the_frame(self):
         groups = self.fit(*ONE_CURVE)
-        for drawing in (clogging_length.draw(groups, "line_tension", 0.95), report.speeds(groups, "line_tension"), report.survival("", groups, "line_tension")):
+        for drawing in (clogging_length.draw(groups), report.speeds(groups), report.survival(groups, "", groups.members)):
             self.addCleanup(pyplot.close, drawing)
             self.assert_title_is_whole(drawing)
             self.assertIn("2 runs a point", drawing.axes[0].get_title())
         # The speed of the stiffer droplets, which clog at once, is not known.
-        drawing = report.speeds([groups[0] | {"relative_speed": 0.4, "relative_speed_error": 0.1}, groups[1] | {"relative_speed": None}], "line_tension")
+        for group, speed in zip(groups.members, (0.4, None)):
+            group.update(relative_speed=speed, relative_speed_error=0.1)
+        drawing = report.speeds(groups)
         self.addCleanup(pyplot.close, drawing)
         axes = drawing.axes[0]
         self.assertIn("interface: robust", axes.get_title())
@@ -123,15 +126,17 @@ class Looks(Analysis):
 
     def test_p_of_r_goes_to_the_longest_way_in_a_report_too(self):
         steps = [{"distance": 2.0, "probability": 0.75, "lower": 0.1, "upper": 0.9}]
-        groups = [{"line_tension": 0.3, "clogging_length": 8.0, "survival": steps, "censored_distances": [3.0, 9.0]},
-                  {"line_tension": 0.1, "clogging_length": None, "survival": [], "censored_distances": [40.0]}]
-        drawing = report.survival("two", groups, "line_tension")
+        groups = self.fit(*QUICK, "line-tension=0.1,0.3", "seeds=1")
+        for group, ways in zip(groups.members, ({"clogging_length": None, "survival": [], "censored_distances": [40.0]},
+                                                {"clogging_length": 8.0, "survival": steps, "censored_distances": [3.0, 9.0]})):
+            group.update(ways)
+        drawing = report.survival(groups, "two", groups.members)
         self.addCleanup(pyplot.close, drawing)
         curves = [line.get_xydata() for line in drawing.axes[0].lines if line.get_drawstyle() == "steps-post"]
-        self.assertEqual([curve[-1].tolist() for curve in curves], [[9, 0.75], [40, 1]])
+        self.assertEqual([curve[-1].tolist() for curve in curves], [[40, 1], [9, 0.75]])
         self.assertTrue(all(curve[0, 0] > 0 and curve[0, 1] == 1 for curve in curves), "it begins where the scale does")
         ticks = [line.get_xydata().tolist() for line in drawing.axes[0].lines if line.get_marker() == "|"]
-        self.assertEqual(ticks, [[[3, 0.75], [9, 0.75]], [[40, 1]]])
+        self.assertEqual(ticks, [[[40, 1]], [[3, 0.75], [9, 0.75]]])
 
     def test_a_soft_disk_can_be_seen(self):
         self.succeed("clogrun", "array", "model=sp", "wall-stiffness=1", "box=20", "max-time=30", "--polygon-interval", 10, "--output", "run.h5")
@@ -144,7 +149,7 @@ class Looks(Analysis):
 
     def test_a_caption_names_what_its_model_has(self):
         disk = self.fit("model=sp", "wall-stiffness=30", "box=20", "max-time=60", "seeds=1")
-        self.assertNotRegex(clogging_length.caption(disk), "N_v|b_0")
+        self.assertNotRegex(disk.caption(), "N_v|b_0")
 
     def test_one_is_no_plural(self):
         self.assertEqual([rounded.counted(number, "run") for number in (0, 1, 2)], ["0 runs", "1 run", "2 runs"])

@@ -44,7 +44,7 @@ void expect_entries(std::vector<Journal::Entry> entries, std::size_t number) {
   ASSERT_EQ(entries.size(), number);
   for (std::size_t i = 0; i < number; ++i) {
     const sweep::RunRow expected = some_row(static_cast<std::int64_t>(i));
-    EXPECT_EQ(std::memcmp(&entries[i].row, &expected, sizeof expected), 0);
+    EXPECT_EQ(sweep::to_bytes({entries[i].row, {}}), sweep::to_bytes({expected, {}}));
     EXPECT_EQ(entries[i].snapshot, some_snapshot(100 * i));
   }
 }

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "clog/core/error.hpp"
+#include "clog/sweep/messages.hpp"
 #include "support.hpp"
 
 namespace clog::store {
@@ -31,7 +32,7 @@ class RunTableTest : public FolderTest {
 sweep::RunRow some_row(std::int64_t task) {
   sweep::RunRow row = sweep::describe(resolve(RunParameters{}));
   row.task = task;
-  row.status = "clogged";
+  row.status = RunStatus::clogged;
   row.distance = 1.0 / 3 + static_cast<double>(task);
   row.mean_speed = std::nan("");
   row.message = "some words";
@@ -61,7 +62,7 @@ TEST_F(RunTableTest, GivesBackEveryRowBitForBit) {
     const SweepFile file = read_sweep(path());
     ASSERT_EQ(file.rows.size(), rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i)
-      EXPECT_EQ(std::memcmp(&file.rows[i], &rows[i], sizeof(sweep::RunRow)), 0);
+      EXPECT_EQ(sweep::to_bytes({file.rows[i], {}}), sweep::to_bytes({rows[i], {}}));
     EXPECT_EQ(num_files(), 1) << "no draft is left";
   }
 }
@@ -194,12 +195,13 @@ TEST_F(RunTableTest, NoticesEveryFlippedBit) {
   const std::size_t seal = content.size() - seal_size;
   for (std::size_t byte = 0; byte < content.size(); byte += byte < seal ? 307 : 1) {
     write_text("flipped.h5", flipped(content, byte));
-    EXPECT_THROW(read_sweep(path("flipped.h5")), Error) << byte;
+    try {
+      EXPECT_EQ(read_sweep(path("flipped.h5")).checked, Checked::rows_and_settings) << byte;
+      EXPECT_GE(byte, seal) << "only one that hides the seal goes by with a word of caution";
+    } catch (const Error&) {
+      // as it should
+    }
   }
-  // A seal that is none any more, with a hole in what h5py reads and no checksum of ours covers.
-  std::string damaged = content.substr(0, seal) + std::string(seal_size, 'x');
-  damaged.replace(damaged.find("distance below which"), 8, 8, '\0');
-  EXPECT_NE(refusal(write_text("damaged.h5", damaged)), "");
 }
 
 TEST_F(RunTableTest, GivesNoWrongRowOfACopyWithoutASeal) {
@@ -216,7 +218,7 @@ TEST_F(RunTableTest, GivesNoWrongRowOfACopyWithoutASeal) {
       const SweepFile file = read_sweep(path("flipped.h5"));
       ASSERT_EQ(file.rows.size(), rows.size()) << byte;
       for (std::size_t i = 0; i < rows.size(); ++i)
-        EXPECT_EQ(std::memcmp(&file.rows[i], &rows[i], sizeof(sweep::RunRow)), 0) << byte;
+        EXPECT_EQ(sweep::to_bytes({file.rows[i], {}}), sweep::to_bytes({rows[i], {}})) << byte;
       EXPECT_EQ(file.provenance, read_sweep(path()).provenance) << byte;
       ++num_harmless;
     } catch (const Error&) {

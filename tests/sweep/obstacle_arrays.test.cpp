@@ -307,7 +307,7 @@ TEST(RunJob, GivesTheSameRowInASharedArray) {
   ObstacleArrays builder;
   const auto built = builder.get(plan.task(0).obstacles, plan.task(0).seed);
   const auto reader = std::make_shared<ObstacleArrays>();
-  RunJob job(plan, 0, {}, reader);
+  RunJob job(plan.task(0), 0, {}, reader);
   while (!job.advance()) {
   }
   EXPECT_EQ(reader->num_built(), 0);

@@ -68,11 +68,11 @@ TEST(Repetition, BeginsWhereADropletHasComeFartherThanTheBox) {
   EXPECT_FALSE(has_met_repetition(row));
   row.distance = 20.1;
   EXPECT_TRUE(has_met_repetition(row));
-  for (const char* filling : {"density", "file"}) {
-    row.obstacle_filling = filling;
-    EXPECT_TRUE(has_met_repetition(row)) << filling;
-  }
-  row.obstacle_filling = "channel";
+  row.parameters.obstacles.density = 1;
+  EXPECT_TRUE(has_met_repetition(row));
+  row.parameters.obstacles.layout = ObstacleLayout::file;
+  EXPECT_TRUE(has_met_repetition(row));
+  row.parameters.obstacles.layout = ObstacleLayout::channel;
   EXPECT_FALSE(has_met_repetition(row));
 }
 

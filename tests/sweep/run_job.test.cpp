@@ -16,7 +16,7 @@ Plan small_plan(const char* seeds) {
 
 TEST(RunJob, GivesTheRowOfItsRun) {
   const Plan plan = small_plan("5,6");
-  RunJob job(plan, 1);
+  RunJob job(plan.task(1), 1);
   while (!job.advance()) {
   }
   DropletRun run = run_in_array(plan.task(1));
@@ -24,17 +24,17 @@ TEST(RunJob, GivesTheRowOfItsRun) {
   }
   const RunRow row = job.row();
   EXPECT_EQ(row.task, 1);
-  EXPECT_EQ(row.seed, 6);
+  EXPECT_EQ(row.parameters.seed, 6);
   EXPECT_EQ(row.distance, run.result().distance);
   EXPECT_EQ(row.steps, run.result().steps);
-  EXPECT_EQ(row.status.view(), name(run.result().status));
+  EXPECT_EQ(row.status, run.result().status);
   EXPECT_GT(row.wall_seconds, 0);
 }
 
 TEST(RunJob, IsInterruptedUntilItIsOver) {
   const Plan plan = small_plan("5");
-  RunJob job(plan, 0);
-  EXPECT_EQ(job.row().status.view(), "interrupted");
+  RunJob job(plan.task(0), 0);
+  EXPECT_EQ(job.row().status, RunStatus::interrupted);
 }
 
 TEST(RunJob, TurnsAnImpossibleReleaseIntoAFailedRow) {
@@ -49,25 +49,15 @@ TEST(RunJob, TurnsAnImpossibleReleaseIntoAFailedRow) {
   const Plan plan(settings);
   int num_failed = 0;
   for (std::int64_t task = 0; task < plan.size(); ++task) {
-    RunJob job(plan, task);
+    RunJob job(plan.task(task), task);
     job.advance();
     const RunRow row = job.row();
-    if (row.status.view() != "failed") continue;
+    if (row.status != RunStatus::failed) continue;
     ++num_failed;
-    EXPECT_TRUE(row.message.view().starts_with("cannot release the droplet")) << row.message.view();
+    EXPECT_TRUE(row.message.starts_with("cannot release the droplet")) << row.message;
     EXPECT_TRUE(job.advance()) << "a failed job is over";
   }
   EXPECT_GT(num_failed, 0);
-}
-
-TEST(FixedText, CutsAndComparesText) {
-  FixedText<8> text;
-  text = "clogged";
-  EXPECT_EQ(text.view(), "clogged");
-  text = "dp";
-  EXPECT_EQ(text.view(), "dp");
-  text = "a longer word";
-  EXPECT_EQ(text.view(), "a longer");
 }
 
 }  // namespace

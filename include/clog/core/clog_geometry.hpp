@@ -12,6 +12,13 @@ namespace clog {
 
 /// What holds a clogged droplet: obstacles that it hangs over, gaps that it does not get through, or both.
 enum class ClogMechanism { none, wrapped, squeezed, hybrid };
+template <>
+struct Words<ClogMechanism> {
+  static constexpr Worded<ClogMechanism> all[] = {{ClogMechanism::none, "none"},
+                                                  {ClogMechanism::wrapped, "wrapped"},
+                                                  {ClogMechanism::squeezed, "squeezed"},
+                                                  {ClogMechanism::hybrid, "hybrid"}};
+};
 
 /// How a polygon at rest lies among obstacles; core/README.md has the definitions. The flow is along +x.
 struct ClogGeometry {
@@ -31,11 +38,8 @@ struct ClogGeometry {
 /// @param contact_range  distance from an obstacle's surface at which contact begins [sigma]
 ClogGeometry clog_geometry(const Eigen::ArrayXd& position, std::span<const Obstacle> obstacles,
                            double contact_range);
-/// Of a droplet in a periodic array.
-/// Of the interface that walls meet.
+/// Of a droplet in a periodic array: of the interface that walls meet.
 /// @param dp  resolved
 ClogGeometry clog_geometry(const DropletState& state, const ObstacleArray& array, const DpParameters& dp);
-
-const char* name(ClogMechanism mechanism);
 
 }  // namespace clog

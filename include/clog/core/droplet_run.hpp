@@ -17,6 +17,13 @@
 namespace clog {
 
 enum class RunStatus { running, clogged, flowing, passed, interrupted, failed };
+template <>
+struct Words<RunStatus> {
+  static constexpr Worded<RunStatus> all[] = {
+      {RunStatus::running, "running"},         {RunStatus::clogged, "clogged"},
+      {RunStatus::flowing, "flowing"},         {RunStatus::passed, "passed"},
+      {RunStatus::interrupted, "interrupted"}, {RunStatus::failed, "failed"}};
+};
 
 /// E_k/E_t beyond which the integration has broken down: free fall without drag over a whole box stays below
 /// it.
@@ -115,8 +122,5 @@ class DropletRun {
   bool is_quiet(double energy_ratio);
   bool finds_rest(double energy_ratio);
 };
-
-const char* name(RunStatus status);
-const char* name(ClogDetection detection);
 
 }  // namespace clog

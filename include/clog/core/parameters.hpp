@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "clog/core/words.hpp"
+
 namespace clog {
 
 /// To be raised whenever the same parameters begin to give other results: runs of different versions do not
@@ -10,21 +12,56 @@ namespace clog {
 inline constexpr int model_version = 4;
 
 enum class Model { dp, sp };
+template <>
+struct Words<Model> {
+  static constexpr Worded<Model> all[] = {{Model::dp, "dp"}, {Model::sp, "sp"}};
+};
 /// Springs of the edges: to the rest length l0 (the paper), to the current mean edge length, or `along` the
 /// interface only: these spread the vertices evenly, but carry no tension.
 enum class PerimeterSpring { rest, mean, along };
+template <>
+struct Words<PerimeterSpring> {
+  static constexpr Worded<PerimeterSpring> all[] = {
+      {PerimeterSpring::along, "along"}, {PerimeterSpring::mean, "mean"}, {PerimeterSpring::rest, "rest"}};
+};
 /// Contact between different parts of one droplet's interface.
 enum class SelfContact { off, on };
+template <>
+struct Words<SelfContact> {
+  static constexpr Worded<SelfContact> all[] = {{SelfContact::on, "on"}, {SelfContact::off, "off"}};
+};
 /// Where the droplet's weight and the drag on its mean motion act: shared by the vertices (the paper), or on
 /// the area, as a pressure. Then they have no part along the interface, which would pile up its vertices.
 enum class Gravity { vertex, area };
+template <>
+struct Words<Gravity> {
+  static constexpr Worded<Gravity> all[] = {{Gravity::area, "area"}, {Gravity::vertex, "vertex"}};
+};
 /// What of the interface a wall pushes: its vertices (the paper), or the nearest point of every edge.
 enum class WallContact { vertex, edge };
-/// How obstacles are placed: random sequential addition, or a tilted square lattice.
-enum class ObstacleLayout { random, lattice };
+template <>
+struct Words<WallContact> {
+  static constexpr Worded<WallContact> all[] = {{WallContact::edge, "edge"}, {WallContact::vertex, "vertex"}};
+};
+/// What the droplet meets: circles by random sequential addition, a tilted square lattice of them, a user's
+/// own; the two wedges of a channel; a flat wall.
+enum class ObstacleLayout { random, lattice, file, channel, wall };
+template <>
+struct Words<ObstacleLayout> {
+  static constexpr Worded<ObstacleLayout> all[] = {{ObstacleLayout::random, "random"},
+                                                   {ObstacleLayout::lattice, "lattice"},
+                                                   {ObstacleLayout::file, "file"},
+                                                   {ObstacleLayout::channel, "channel"},
+                                                   {ObstacleLayout::wall, "wall"}};
+};
 /// What it takes for a droplet to count as clogged: kinetic energy below a threshold, or else, long before
 /// that, proof that a stable equilibrium is at hand (equilibrium.hpp).
 enum class ClogDetection { threshold, certified };
+template <>
+struct Words<ClogDetection> {
+  static constexpr Worded<ClogDetection> all[] = {{ClogDetection::certified, "certified"},
+                                                  {ClogDetection::threshold, "threshold"}};
+};
 
 /// Lengths that were half a vertex diameter and a vertex diameter of 256 vertices, the published number
 /// [sigma].

@@ -11,21 +11,14 @@
 #include "clog/parallel/rank_trust.hpp"
 #include "clog/parallel/task_order.hpp"
 #include "clog/sweep/job.hpp"
+#include "clog/sweep/messages.hpp"
 
 namespace clog::parallel {
 
 enum class MasterComputes { automatic, yes, no };
 
-/// How far a task has come: its row, and a snapshot to go on from, if there is one.
-struct Report {
-  sweep::RunRow row;
-  std::vector<std::byte> snapshot;
-};
-/// Where a task begins.
-struct Start {
-  std::vector<std::byte> snapshot;  ///< empty: at its release
-  std::int64_t attempt = 1;
-};
+using sweep::Report;
+using sweep::Start;
 
 /// What rank 0 is told while a sweep runs, and asked. Called on rank 0 only, between slices of its own work.
 struct SweepEvents {

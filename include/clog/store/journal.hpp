@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "clog/sweep/run_row.hpp"
+#include "clog/sweep/messages.hpp"
 
 namespace clog::store {
 
@@ -24,10 +24,7 @@ std::string journal_path(const std::string& table);
 /// records is removed when it is closed.
 class Journal {
  public:
-  struct Entry {
-    sweep::RunRow row;
-    std::vector<std::byte> snapshot;
-  };
+  using Entry = sweep::Report;
   struct Contents {
     std::vector<Entry> entries;       ///< oldest first
     std::int64_t num_unreadable = 0;  ///< damaged records between readable ones

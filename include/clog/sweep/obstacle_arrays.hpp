@@ -3,10 +3,14 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "clog/core/obstacle_array.hpp"
 
 namespace clog::sweep {
+
+/// Two arrays are the same if their keys are: the values of all parameters that shape an array.
+std::string array_key(const ObstacleParameters& parameters, std::uint32_t seed);
 
 /// The obstacle arrays of a sweep. The last one is kept: a sweep asks for the same one many times in a row.
 /// Large ones are shared by all processes of the same user and executable on a machine: each is built by one
@@ -25,8 +29,7 @@ class ObstacleArrays {
   static std::chrono::duration<double> longest_wait(const ObstacleParameters& parameters);
 
  private:
-  ObstacleParameters parameters_;
-  std::uint32_t seed_ = 0;
+  std::string key_;  ///< of the array that is kept; empty: there is none
   std::shared_ptr<const ObstacleArray> array_;
   int num_built_ = 0;
   bool is_waiting_worthwhile_ = true;  ///< until a wait was for nothing, and again once another's is found

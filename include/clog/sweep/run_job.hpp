@@ -9,12 +9,13 @@
 
 namespace clog::sweep {
 
-/// A run of a plan as a job.
+/// A run as a job.
 class RunJob final : public Job {
  public:
+  /// @param run       resolved
   /// @param snapshot  of the same task; where it cannot be read the run starts anew
   /// @param arrays    from which the run's obstacles come
-  RunJob(const Plan& plan, std::int64_t task, std::span<const std::byte> snapshot = {},
+  RunJob(const RunParameters& run, std::int64_t task, std::span<const std::byte> snapshot = {},
          std::shared_ptr<ObstacleArrays> arrays = std::make_shared<ObstacleArrays>());
 
   bool advance() override;

@@ -6,20 +6,23 @@
 #include <string_view>
 #include <vector>
 
-#include "clog/core/parameters.hpp"
+#include "clog/core/schema.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {
 
-/// One key of the config file, which is also an option of the programs.
+/// One key of the config file, which is also an option of the programs: a parameter, or the preset, which
+/// sets several.
 struct Key {
   std::string name;
   ValueKind kind;
   std::vector<std::string> words;  ///< see expand_list
   std::string default_text;
-  std::string help;  ///< meaning and unit
-  bool dp_only;      ///< has no meaning for model=sp
-  void (*apply)(RunParameters&, const std::string& value);
+  std::string help;            ///< meaning and unit
+  const Parameter* parameter;  ///< nullptr: preset
+
+  /// @throws Error, without the key's name, if the value cannot be read or is out of the type's range
+  void apply(RunParameters& run, const std::string& value) const;
 };
 
 /// Every key, in the order in which they are shown. The one place that knows them.

@@ -5,9 +5,10 @@
 #include <string_view>
 #include <vector>
 
-namespace clog::sweep {
+#include "clog/core/number_text.hpp"
+#include "clog/core/schema.hpp"
 
-enum class ValueKind { number, integer, word };
+namespace clog::sweep {
 
 /// Splits a list as written in a config file into single values, in order:
 /// `0.2,0.3`; `lin(a,b,n)` and `log(a,b,n)`, n values from a to b; for integers `1..50`; words as they are.
@@ -17,8 +18,7 @@ enum class ValueKind { number, integer, word };
 std::vector<std::string> expand_list(std::string_view text, ValueKind kind,
                                      const std::vector<std::string>& words);
 
-/// Shortest decimal text that reads back as the same number.
-std::string shortest(double value);
+using clog::shortest;
 
 /// `1 run`, `2 runs`.
 std::string counted(std::int64_t number, const std::string& noun);

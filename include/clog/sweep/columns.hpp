@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "clog/core/schema.hpp"
+#include "clog/sweep/run_row.hpp"
+
+/// Every column of the table of runs, described once: those of the parameters follow from parameter_schema(),
+/// what came out is listed in columns.cpp. A new result is a member of RunRow, an entry there, and the line
+/// of record() that fills it.
+namespace clog::sweep {
+
+/// What a column tells of a run.
+enum class ColumnRole {
+  parameter,     ///< what was run: equal runs have equal values
+  result,        ///< what came out: equal runs have equal values, bit for bit
+  circumstance,  ///< by whom, how long it took: differs from one time to the next
+};
+
+}  // namespace clog::sweep
+
+template <>
+struct clog::Words<clog::sweep::ColumnRole> {
+  static constexpr Worded<sweep::ColumnRole> all[] = {{sweep::ColumnRole::parameter, "parameter"},
+                                                      {sweep::ColumnRole::result, "result"},
+                                                      {sweep::ColumnRole::circumstance, "circumstance"}};
+};
+
+namespace clog::sweep {
+
+/// What a row holds in a column. Nothing: it is not known, or means nothing to the run.
+using Value = ParameterValue;
+
+struct Column {
+  std::string name;
+  std::string symbol;  ///< as TeX writes it; may be empty
+  std::string unit;    ///< may be empty
+  std::string meaning;
+  ColumnRole role;
+  ValueKind kind;
+  std::size_t size;  ///< bytes in a packed row; shorter text is filled up with zeros, longer text is cut
+  const Parameter* parameter;  ///< nullptr unless it holds just this one
+  bool shapes_array;           ///< see Parameter
+  std::function<Value(const RunRow&)> get;
+  /// @throws Error if no row can hold this
+  std::function<void(RunRow&, const Value&)> set;
+  /// For a row whose file does not have this column.
+  std::function<void(RunRow&)> set_unknown;
+
+  /// Of `size` bytes, as they lie in a file. Nothing is NaN, -1, or an empty text.
+  void pack(const RunRow& row, std::byte* bytes) const;
+  /// A value that cannot be is noted in the row. Columns are to be read in the order of columns().
+  void unpack(const std::byte* bytes, RunRow& row) const;
+};
+
+/// In the order in which they lie in files.
+std::span<const Column> columns();
+/// @throws std::out_of_range if there is none
+const Column& column(std::string_view name);
+
+/// For people: words as they are, numbers by their shortest exact text; empty for nothing.
+std::string text_of(const Value& value);
+
+}  // namespace clog::sweep

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "clog/sweep/columns.hpp"
+
+namespace clog::sweep {
+
+/// What a column is called, means, is measured in, and is there for.
+nlohmann::ordered_json to_json(const Column& column);
+
+/// All keys and columns: `keys`, `columns`.
+nlohmann::ordered_json schema_json();
+
+}  // namespace clog::sweep

@@ -1,0 +1,318 @@
+#include "clog/sweep/columns.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "clog/core/error.hpp"
+#include "clog/sweep/settings.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::sweep {
+namespace {
+
+constexpr std::size_t number_size = 8;
+constexpr std::int64_t no_count = -1;
+
+/// Of the columns with words: two lengths are enough.
+std::size_t text_size(std::size_t longest_word) { return longest_word < 8 ? 8 : 16; }
+
+std::size_t longest(const std::vector<std::string>& words) {
+  std::size_t size = std::string_view("none").size();
+  for (const std::string& word : words) size = std::max(size, word.size());
+  return size;
+}
+
+// How a member of RunRow is seen from outside, by its type. Nothing is NaN, -1, or an empty text in a row.
+
+Value outside(double value) { return std::isnan(value) ? Value() : Value(value); }
+Value outside(std::int64_t value) { return value; }
+Value outside(const std::string& value) { return value; }
+template <class Enum>
+Value outside(std::optional<Enum> value) {
+  return value ? Value(name(*value)) : Value();
+}
+template <class Enum>
+requires std::is_enum_v<Enum> Value outside(Enum value) { return name(value); }
+
+void take(const Value& value, double& member) {
+  const double* number = std::get_if<double>(&value);
+  member = number ? *number : RunRow::not_known;
+}
+void take(const Value& value, std::int64_t& member) {
+  const std::int64_t* integer = std::get_if<std::int64_t>(&value);
+  member = integer ? *integer : no_count;
+}
+void take(const Value& value, std::string& member) {
+  const std::string* text = std::get_if<std::string>(&value);
+  member = text ? *text : "";
+}
+template <class Enum>
+requires std::is_enum_v<Enum>
+void take(const Value& value, Enum& member) {
+  const std::string* word = std::get_if<std::string>(&value);
+  const std::optional<Enum> meant = word ? meant_by<Enum>(*word) : std::nullopt;
+  if (!meant) throw Error("is unknown");
+  member = *meant;
+}
+template <class Enum>
+void take(const Value& value, std::optional<Enum>& member) {
+  member.reset();
+  if (!std::holds_alternative<std::monostate>(value)) take(value, member.emplace());
+}
+
+template <class T>
+constexpr ValueKind kind_of() {
+  if constexpr (std::is_same_v<T, double>) return ValueKind::number;
+  if constexpr (std::is_same_v<T, std::int64_t>) return ValueKind::integer;
+  return ValueKind::word;
+}
+
+/// A column that is a member of the row.
+template <class T>
+Column member(const char* name, T RunRow::*place, ColumnRole role, const char* unit, const char* meaning,
+              std::size_t size = number_size) {
+  return {.name = name,
+          .symbol = "",
+          .unit = unit,
+          .meaning = meaning,
+          .role = role,
+          .kind = kind_of<T>(),
+          .size = size,
+          .parameter = nullptr,
+          .shapes_array = false,
+          .get = [=](const RunRow& row) { return outside(row.*place); },
+          .set = [=](RunRow& row, const Value& value) { take(value, row.*place); },
+          .set_unknown = [=](RunRow& row) { row.*place = RunRow().*place; }};
+}
+
+Value value_of(const Parameter& parameter, std::size_t place, const RunRow& row) {
+  if (!parameter.applies_to(row.parameters)) {
+    const bool has_none = std::holds_alternative<std::monostate>(parameter.elsewhere);
+    return has_none && parameter.kind == ValueKind::word ? Value("none") : parameter.elsewhere;
+  }
+  return row.unknown[place] ? Value() : parameter.get(row.parameters);
+}
+
+/// A file from before the parameter was there may say nothing of it: then it is not known.
+void set_parameter(const Parameter& parameter, std::size_t place, RunRow& row, const Value& value) {
+  if (!parameter.applies_to(row.parameters)) return;
+  row.unknown[place] = std::holds_alternative<std::monostate>(value);
+  if (!row.unknown[place]) parameter.set(row.parameters, value);
+}
+
+Column parameter_column(const Parameter& parameter, std::size_t place) {
+  return {.name = parameter.column,
+          .symbol = parameter.symbol,
+          .unit = parameter.unit,
+          .meaning = parameter.meaning,
+          .role = ColumnRole::parameter,
+          .kind = parameter.kind,
+          .size = parameter.kind == ValueKind::word ? text_size(longest(parameter.words)) : number_size,
+          .parameter = &parameter,
+          .shapes_array = parameter.shapes_array,
+          .get = [&parameter, place](const RunRow& row) { return value_of(parameter, place, row); },
+          .set = [&parameter, place](RunRow& row,
+                                     const Value& value) { set_parameter(parameter, place, row, value); },
+          .set_unknown = [&parameter,
+                          place](RunRow& row) { set_parameter(parameter, place, row, parameter.before); }};
+}
+
+/// How the array was filled: layout and density in one word.
+Column filling_column() {
+  constexpr const char* to_density = "density";
+  constexpr const char* until_full = "saturated";
+  return {.name = "obstacle_filling",
+          .symbol = "",
+          .unit = "",
+          .meaning = "saturated, or filled to a given density; lattice; file (of a user); channel; wall",
+          .role = ColumnRole::parameter,
+          .kind = ValueKind::word,
+          .size = 16,
+          .parameter = nullptr,
+          .shapes_array = true,
+          .get = [=](const RunRow& row) -> Value {
+            const ObstacleParameters& obstacles = row.parameters.obstacles;
+            if (obstacles.layout != ObstacleLayout::random) return name(obstacles.layout);
+            return obstacles.density ? to_density : until_full;
+          },
+          .set =
+              [=](RunRow& row, const Value& value) {
+                ObstacleParameters& obstacles = row.parameters.obstacles;
+                const std::string& word = std::get<std::string>(value);
+                obstacles.density.reset();
+                if (word == to_density)
+                  obstacles.density = RunRow::not_known;  // the column of this name has it
+                if (word == to_density || word == until_full) {
+                  obstacles.layout = ObstacleLayout::random;
+                } else {
+                  const std::optional<ObstacleLayout> layout = meant_by<ObstacleLayout>(word);
+                  if (!layout || *layout == ObstacleLayout::random) throw Error("is unknown");
+                  obstacles.layout = *layout;
+                }
+              },
+          .set_unknown = [](RunRow&) {}};
+}
+
+Column density_column() {
+  Column column =
+      member("obstacle_density", &RunRow::obstacle_density, ColumnRole::parameter, "1/sigma^2",
+             "obstacles per area; for a saturated array the jamming limit 0.6966/(w_ob+sigma_ob)^2, NaN "
+             "for a saturated mixture");
+  column.symbol = parameter("obstacle-density").symbol;
+  column.shapes_array = true;
+  column.set = [](RunRow& row, const Value& value) {
+    take(value, row.obstacle_density);
+    if (row.parameters.obstacles.density) row.parameters.obstacles.density = row.obstacle_density;
+  };
+  return column;
+}
+
+Column preset_column() {
+  Column column = member(
+      "preset", &RunRow::preset, ColumnRole::parameter, "",
+      "name of the set of interface keys that was used; custom: the interface agrees with none; none for sp",
+      16);
+  column.set = [known = find_key("preset").words](RunRow& row, const Value& value) {
+    take(value, row.preset);
+    if (std::ranges::find(known, row.preset) == known.end() && row.preset != "custom" && row.preset != "none")
+      throw Error("is unknown");
+  };
+  return column;
+}
+
+std::vector<Column> make_columns() {
+  using enum ColumnRole;
+  std::vector<Column> all = {
+      member("task", &RunRow::task, circumstance, "", "number of the task in its sweep")};
+  // What says which parameters mean something comes first.
+  const auto schema = parameter_schema();
+  for (std::size_t i = 0; i < schema.size(); ++i) {
+    if (schema[i].has_own_column) all.push_back(parameter_column(schema[i], i));
+    if (schema[i].key == std::string_view("model")) all.push_back(filling_column());
+  }
+  all.push_back(density_column());
+  all.push_back(preset_column());
+  const std::vector<Column> others = {
+      member("model_version", &RunRow::model_version, parameter, "",
+             "runs of different versions differ though their parameters agree (parameters.hpp)"),
+      member("status", &RunRow::status, result, "",
+             "clogged; flowing: max_time reached; passed: the end of its way; failed: see message; running, "
+             "interrupted: "
+             "not over, the other columns say how far it is",
+             16),
+      member("clogged_by", &RunRow::clogged_by, result, "",
+             "certified: a stable equilibrium was proved to be at hand, distance, lateral_displacement and "
+             "shape_parameter are its; threshold: E_k/E_t fell below clog_energy; none unless clogged; "
+             "empty: not known",
+             16),
+      member("distance", &RunRow::distance, result, "sigma",
+             "displacement of the centre of mass along the flow since release"),
+      member("lateral_displacement", &RunRow::lateral_displacement, result, "sigma",
+             "displacement across the flow"),
+      member("time", &RunRow::time, result, "t0", "time since release"),
+      member("mean_speed", &RunRow::mean_speed, result, "sqrt(sigma g)",
+             "way over time after the transient and before the arrest; NaN if it moved less than half a "
+             "diameter in "
+             "that time, or the transient was not over in half the run"),
+      member("mean_speed_error", &RunRow::mean_speed_error, result, "sqrt(sigma g)",
+             "standard error of mean_speed from its course in this run; NaN for too short a run"),
+      member("transient", &RunRow::transient, result, "t0", "time at which the transient ends"),
+      member("travel_time", &RunRow::travel_time, result, "t0", "time that mean_speed is taken over"),
+      member("kinetic_energy_ratio", &RunRow::kinetic_energy_ratio, result, "",
+             "E_k/E_t at the end; E_t: kinetic energy at terminal speed"),
+      member("shape_parameter", &RunRow::shape_parameter, result, "",
+             "A = perimeter^2/(4 pi area) at the end; 1 for a circle"),
+      member("mechanism", &RunRow::mechanism, result, "",
+             "wrapped around obstacles, squeezed in gaps, hybrid (src/core/README.md); none unless clogged, "
+             "or if nothing that "
+             "it touches makes a gap; empty: not known",
+             16),
+      member(
+          "wrapped_support", &RunRow::wrapped_support, result, "",
+          "part of the support against the flow that wrapped obstacles give; NaN unless a clogged polygon"),
+      member("num_wrapped", &RunRow::num_wrapped, result, "",
+             "touched obstacles that the clogged polygon hangs over, otherwise 0; -1: not known"),
+      member("num_gaps", &RunRow::num_gaps, result, "",
+             "gaps between supporting obstacles that it looks into; -1: not known"),
+      member("num_arcs", &RunRow::num_arcs, result, "", "arcs of contact; -1: not known"),
+      member("steps", &RunRow::steps, result, "", "integrated steps, sub-steps counted singly"),
+      member("wall_seconds", &RunRow::wall_seconds, circumstance, "s",
+             "computing time, all sessions together"),
+      member("rank", &RunRow::rank, circumstance, "", "MPI rank that did the run"),
+      member("instruction_set", &RunRow::instruction_set, circumstance, "",
+             "of the polygon's step; mixed: interrupted under one, it went on under another, so that no "
+             "replay has its bits; "
+             "none for sp",
+             16),
+      member("host", &RunRow::host, circumstance, "", "host of that rank", 64),
+      member("attempt", &RunRow::attempt, circumstance, "",
+             "1 for the first try; interruptions do not count, nor do failures that may be the rank's"),
+      member("message", &RunRow::message, circumstance, "", "why the run failed", 256),
+  };
+  all.insert(all.end(), others.begin(), others.end());
+  return all;
+}
+
+}  // namespace
+
+std::span<const Column> columns() {
+  static const std::vector<Column> all = make_columns();
+  return all;
+}
+
+const Column& column(std::string_view name) {
+  const auto all = columns();
+  const auto found = std::ranges::find(all, name, &Column::name);
+  if (found == all.end()) throw std::out_of_range("no column " + std::string(name));
+  return *found;
+}
+
+void Column::pack(const RunRow& row, std::byte* bytes) const {
+  const Value value = get(row);
+  if (kind == ValueKind::word) {
+    const auto* text = std::get_if<std::string>(&value);
+    const std::size_t length = text ? std::min(text->size(), size) : 0;
+    if (text) std::memcpy(bytes, text->data(), length);
+    std::fill(bytes + length, bytes + size, std::byte{0});
+  } else if (kind == ValueKind::integer) {
+    const auto* integer = std::get_if<std::int64_t>(&value);
+    std::memcpy(bytes, integer ? integer : &no_count, number_size);
+  } else {
+    const auto* number = std::get_if<double>(&value);
+    std::memcpy(bytes, number ? number : &RunRow::not_known, number_size);
+  }
+}
+
+void Column::unpack(const std::byte* bytes, RunRow& row) const {
+  Value value;
+  if (kind == ValueKind::word) {
+    const std::string_view all(reinterpret_cast<const char*>(bytes), size);
+    if (const std::string_view text = all.substr(0, all.find('\0')); !text.empty()) value = std::string(text);
+  } else if (kind == ValueKind::integer) {
+    std::memcpy(&value.emplace<std::int64_t>(), bytes, number_size);
+  } else {
+    double number;
+    std::memcpy(&number, bytes, number_size);
+    value = outside(number);
+  }
+  try {
+    set(row, value);
+  } catch (const std::exception& error) {
+    if (!row.unreadable.empty()) return;
+    const std::string shown = kind == ValueKind::word ? "'" + text_of(value) + "'" : text_of(value);
+    row.unreadable = name + "=" + shown + " " + error.what();
+  }
+}
+
+std::string text_of(const Value& value) {
+  if (const auto* number = std::get_if<double>(&value)) return shortest(*number);
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);
+  const auto* word = std::get_if<std::string>(&value);
+  return word ? *word : "";
+}
+
+}  // namespace clog::sweep

@@ -1,0 +1,19 @@
+#include "clog/sweep/messages.hpp"
+
+#include <algorithm>
+
+namespace clog::sweep {
+
+std::vector<std::byte> to_bytes(const Report& report) {
+  std::vector<std::byte> bytes(packed_size() + report.snapshot.size());
+  pack(report.row, std::span(bytes).first(packed_size()));
+  std::ranges::copy(report.snapshot, bytes.begin() + static_cast<std::ptrdiff_t>(packed_size()));
+  return bytes;
+}
+
+Report report_from(std::span<const std::byte> bytes) {
+  const std::span snapshot = bytes.subspan(packed_size());
+  return {unpack(bytes.first(packed_size())), {snapshot.begin(), snapshot.end()}};
+}
+
+}  // namespace clog::sweep

@@ -1,0 +1,73 @@
+"""Tables of keys and columns in the documentation are those of clogsweep --schema.
+
+    tests/lint/schema_tables.py build/release/bin/clogsweep .            # exit code 1 where one is stale
+    tests/lint/schema_tables.py build/release/bin/clogsweep . --write    # renews them
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+
+BEGIN, END = "<!-- {} of clogsweep --schema, by tests/lint/schema_tables.py -->", "<!-- end of {} -->"
+
+
+def cell(text):
+    return text.replace("|", r"\|")
+
+
+def range_of(key):
+    if key["kind"] == "word":
+        return ", ".join(f"`{word}`" for word in key["words"])
+    words = "".join(f"`{word}` or " for word in key["words"])
+    return words + (key.get("range") or "any number")
+
+
+def keys(schema):
+    yield "| key | default | values | meaning |"
+    yield "|---|---|---|---|"
+    for key in schema["keys"]:
+        scope = "" if key["scope"] == "all" else f" ({key['scope']})"
+        yield f"| `{key['key']}` | `{key['default']}` | {cell(range_of(key))} | {cell(key['help'])}{scope} |"
+
+
+def type_of(column):
+    return {"number": "", "integer": " int64", "word": f" text {column['size']}"}[column["kind"]]
+
+
+def columns(schema):
+    yield "| column | unit | meaning |"
+    yield "|---|---|---|"
+    for column in schema["columns"]:
+        yield f"| `{column['name']}`{type_of(column)} | {column['unit']} | {cell(column['meaning'])} |"
+
+
+TABLES = [("README.md", "keys", keys), ("src/store/README.md", "columns", columns)]
+
+
+def renewed(text, name, lines):
+    begin, end = BEGIN.format(name), END.format(name)
+    before, _, rest = text.partition(begin)
+    _, found, after = rest.partition(end)
+    if not found:
+        sys.exit(f"no place for the table of {name}: it stands between '{begin}' and '{end}'")
+    return "\n".join([before + begin, "", *lines, "", end + after])
+
+
+def main(program, root, *options):
+    schema = json.loads(subprocess.run([program, "--schema"], check=True, capture_output=True, text=True).stdout)
+    stale = []
+    for path, name, lines in TABLES:
+        place = pathlib.Path(root) / path
+        text = place.read_text()
+        new = renewed(text, name, lines(schema))
+        if new == text:
+            continue
+        stale.append(f"{path}: its table of {name} is stale; renew it with {sys.argv[0]} {program} {root} --write")
+        if "--write" in options:
+            place.write_text(new)
+    print("\n".join(stale) or "tables are as the schema")
+    return bool(stale) and "--write" not in options
+
+
+sys.exit(main(*sys.argv[1:]))

@@ -1,0 +1,62 @@
+"""A sweep over any key is drawn as what it is, and its clogs are found again."""
+
+import json
+import unittest
+
+from scripts import Analysis
+from support import BIN, QUICK
+
+from groups import Groups
+
+# Of keys that mean something in certain runs only, and of words, which take no list.
+SURROUNDINGS = {
+    "lattice-angle": ["obstacle-layout=lattice", "box=60", "obstacle-gap=0.5"],
+    "perimeter-stiffness-ratio": ["preset=elastic"],
+    "box": ["vertices=64", "max-time=60"],
+    "vertices": ["box=20", "max-time=60"],
+    "max-time": ["box=20", "vertices=64"],
+}
+VALUES = {"line-tension": "1,3", "wall-stiffness": "0.05,0.08", "obstacle-gap": "0.2,0.3", "obstacle-diameter": "0.3,0.4",
+          "obstacle-diameter-spread": "0,0.2", "obstacle-density": "1.5,2", "lattice-angle": "0,10", "seeds": "1..3", "box": "20,25",
+          "boxes": "1,2", "max-time": "50,60", "terminal-speed": "0.02,0.03", "near-wall-drag": "0,0.05",
+          "near-wall-exponent": "1,1.5", "near-wall-cutoff": "0.006,0.01", "relative-drag": "0.5,1", "vertices": "64,96",
+          "time-step": "1e-3,2e-3", "area-stiffness": "5000,6000", "perimeter-stiffness": "0.05,0.1",
+          "perimeter-stiffness-ratio": "0.1,0.2", "contact-range": "0,0.01", "wall-tension": "0.5,1",
+          "self-contact-range": "0.01,0.012", "clog-energy": "1e-17,1e-16"}
+
+
+class EveryKey(Analysis):
+    def keys(self):
+        schema = json.loads(self.succeed("clogsweep", "--schema").stdout)
+        return [key for key in schema["keys"] if key["kind"] != "word"]
+
+    def sweep(self, key):
+        (self.folder / "s.h5").unlink(missing_ok=True)
+        seeds = [] if key == "seeds" else ["seeds=1..2"]
+        tension = [] if key == "line-tension" else ["line-tension=2"]
+        self.succeed("clogsweep", *SURROUNDINGS.get(key, QUICK), *seeds, *tension, f"{key}={VALUES[key]}", "--output", "s.h5")
+        return Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
+
+    def test_there_is_a_sweep_over_every_number(self):
+        self.assertEqual({key["key"] for key in self.keys()}, set(VALUES))
+
+    def test_a_sweep_over_any_key_is_drawn_as_what_it_is(self):
+        for key in self.keys():
+            with self.subTest(key=key["key"]):
+                groups = self.sweep(key["key"])
+                if key["role"] != "ensemble":
+                    self.assertEqual(groups.abscissa, key["column"])
+                    self.assertEqual([(label, len(members)) for label, members in groups.curves()], [("", 2)])
+                    self.assertIn(key["column"].replace("_", " "), groups.axis_label())
+                # Curves and, run once more, a clog.
+                self.assertGreater(sum(group["clogs"] for group in groups.members), 0)
+                self.draw("report.py", "s.h5", "--programs", BIN, "--output", "r.html", "--examples", 1)
+                self.assertIn("touched obstacles blue", (self.folder / "r.html").read_text())
+
+    def test_two_parameters_make_curves_of_the_one_over_the_other(self):
+        self.succeed("clogsweep", *QUICK, "line-tension=1,2,3", "relative-drag=0.5,1", "seeds=1", "--output", "s.h5")
+        groups = Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
+        self.assertEqual([(label, len(members)) for label, members in groups.curves()], [("$c = 0.5$", 3), ("$c = 1$", 3)])
+
+if __name__ == "__main__":
+    unittest.main()
