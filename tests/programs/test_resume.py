@@ -303,12 +303,20 @@ class Resumed(SweepTest):
 
     def test_other_physics_is_refused_by_name(self):
         self.succeed("clogsweep", "vertices=64", "box=20", "max-time=20", "seeds=1", "--output", "s.h5")
-        self.refuse("clogsweep", "vertices=64", "box=20", "max-time=20", "seeds=1", "terminal-speed=0.05", "gravity=vertex",
+        self.refuse("clogsweep", "vertices=64", "box=20", "max-time=20", "seeds=1", "clog-energy=1e-16", "gravity=vertex",
                     "perimeter-spring=mean", "--output", "s.h5",
-                    words=["terminal-speed=0.05 (there 0.03)", "gravity=vertex (there area)", "another --output"])
+                    words=["clog-energy=1e-16 (there 1e-17)", "gravity=vertex (there area)", "another --output"])
         # Numbers written otherwise are the same.
         done = self.succeed("clogsweep", "vertices=64", "box=2e1", "max-time=20", "seeds=1", "--output", "s.h5")
         self.assertIn("nothing left to do", done.stderr)
+
+    def test_it_grows_along_any_number_of_the_physics(self):
+        keys = ["vertices=64", "box=20", "max-time=20", "seeds=1", "--output", "s.h5"]
+        self.succeed("clogsweep", *keys, "wall-tension=1")
+        self.succeed("clogsweep", *keys, "wall-tension=0.5,1")
+        self.succeed("clogsweep", *keys, "wall-tension=0.5,1", "terminal-speed=0.03,0.04")
+        rows = table(self.folder / "s.h5")
+        self.assertEqual(sorted(zip(rows.wall_tension, rows.terminal_speed)), [(0.5, 0.03), (0.5, 0.04), (1, 0.03), (1, 0.04)])
 
     def test_foreign_and_torn_files_are_left_alone(self):
         self.write("s.h5", "not a table")
