@@ -60,7 +60,10 @@ class CrashingJob final : public SyntheticJob {
       kill(getppid(), SIGSTOP);
       _exit(0);
     }
-    if (getpid() != rank_pid && task >= first_task_that_kills_the_helper) kill(getppid(), SIGKILL);
+    if (getpid() != rank_pid && task >= first_task_that_kills_the_helper) {
+      kill(getppid(), SIGKILL);
+      while (true) pause();  // dies with the helper, and does not end its task before
+    }
     if (task >= first_hanging_task && task < first_task_that_kills_the_helper) std::raise(SIGSTOP);
     if (task >= first_slow_task && task < first_hanging_task)
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
