@@ -35,8 +35,8 @@ class LedgerTest : public testing::Test {
   SweepLedger open(std::int64_t attempts = 1) {
     return SweepLedger(path(), plan_, settings_, {{"config", settings_.to_config(false)}}, 2, attempts);
   }
-  static sweep::Report report(const SweepLedger& ledger, std::int64_t task, RunStatus status,
-                              double distance, std::vector<std::byte> snapshot = {}) {
+  static sweep::Report report(const SweepLedger& ledger, std::int64_t task, RunStatus status, double distance,
+                              std::vector<std::byte> snapshot = {}) {
     sweep::Report report{ledger.row(task), std::move(snapshot)};
     sweep::RunRow& row = report.row;
     row.status = status;
