@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 import pandas
 
-from support import BIN, QUICK, SMALL, ProgramTest
+from support import BIN, QUICK, SMALL, ProgramTest, table
 
 
 def centroid_x(polygon):
@@ -34,6 +34,22 @@ class Run(ProgramTest):
                 self.assertTrue(np.isnan(again[column]), column)
             else:
                 self.assertEqual(row[column], again[column], column)
+
+    def test_it_replays_a_row_whatever_the_sweep_goes_over(self):
+        self.succeed("clogsweep", *QUICK, "wall-tension=0.6,1", "line-tension=2", "seeds=4..5", "--output", "s.h5")
+        rows = table(self.folder / "s.h5")
+        for task in (1, 2):
+            self.succeed("clogrun", "replay", "s.h5", task, "--output", f"r{task}.h5")
+            again = table(self.folder / f"r{task}.h5").iloc[0]
+            for column in ("wall_tension", "seed", "status", "distance", "steps", "shape_parameter"):
+                self.assertEqual(again[column], rows.iloc[task][column], column)
+        self.succeed("clogrun", "replay", "s.h5", 1, "--to-rest", "--output", "rest.h5")
+        rest = table(self.folder / "rest.h5").iloc[0]
+        self.assertEqual((rest.status, rest.clogged_by), ("clogged", "threshold"))
+        self.refuse("clogrun", "replay", "s.h5", 77, "--output", "x.h5", words=["no task 77"])
+        self.refuse("clogrun", "replay", "s.h5", "--output", "x.h5", words=["missing sweep file or task"])
+        self.refuse("clogrun", "replay", "s.h5", 1, "line-tension=3", "--output", "x.h5", words=["line-tension contradicts it"])
+        self.refuse("clogrun", "array", "--to-rest", "--output", "x.h5", words=["--to-rest has no meaning for clogrun array"])
 
     def test_a_droplet_in_a_long_array_does_not_meet_the_same_obstacles_again(self):
         for boxes, repeats in ((1, True), (4, False)):
