@@ -87,4 +87,18 @@ std::int64_t stored_num_wanted(const std::string& path, const store::Provenance&
   });
 }
 
+RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, const sweep::Plan& plan) {
+  RunCount count;
+  count.num_beyond = std::count_if(file.rows.begin(), file.rows.end(),
+                                   [&](const sweep::RunRow& row) { return row.task >= plan.size(); });
+  // An earlier --until-precision may have had more of the plan's runs.
+  count.num_runs = std::max(stored_num_wanted(path, file.provenance, plan) + count.num_beyond,
+                            static_cast<std::int64_t>(file.rows.size()));
+  return count;
+}
+
+std::string RunCount::text_of_beyond() const {
+  return num_beyond == 0 ? "" : " (" + std::to_string(num_beyond) + " beyond the lists of its last command)";
+}
+
 }  // namespace clog

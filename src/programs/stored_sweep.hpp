@@ -21,6 +21,15 @@ std::vector<std::string> listed_columns(const store::Provenance& provenance);
 /// How many runs are wanted so far: of --until-precision those asked for, otherwise all of the plan.
 std::int64_t stored_num_wanted(const std::string& path, const store::Provenance& provenance,
                                const sweep::Plan& plan);
+/// What a file's sweep comes to: the runs that are wanted, and those that it holds besides.
+struct RunCount {
+  std::int64_t num_runs = 0;
+  std::int64_t num_beyond = 0;  ///< of these, runs that the lists of its last command do not have
+
+  /// The latter in brackets, with a space before; empty for none.
+  std::string text_of_beyond() const;
+};
+RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, const sweep::Plan& plan);
 
 /// The row of a task that is to be computed once more; the instruction set that it asks for is in use from
 /// then on.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 #include <vector>
 
@@ -86,9 +87,12 @@ class Share {
       longest_.push_back(run.begin_seconds + longest);
       expected_sum_ += expected_.back();
       longest_sum_ += longest_.back();
+      left_ += left;
     }
   }
   double value() const { return expected_sum_ / longest_sum_; }
+  /// What the sample's own runs still take.
+  double seconds_left() const { return left_; }
 
   /// Standard error over the value, as of a ratio of sums over a sample without replacement.
   double relative_error(std::int64_t population) const {
@@ -106,34 +110,125 @@ class Share {
   std::vector<double> expected_, longest_;
   double expected_sum_ = 0;
   double longest_sum_ = 0;
+  double left_ = 0;
 };
+
+/// What runs take to begin and per work, on the average.
+struct Pace {
+  double begin_seconds = 0;
+  double seconds_per_work = 0;
+
+  explicit Pace(std::span<const RunCost> sample) {
+    double seconds = 0, work = 0;
+    for (const RunCost& run : sample) {
+      begin_seconds += run.begin_seconds / static_cast<double>(sample.size());
+      seconds += run.seconds;
+      work += run.work;
+    }
+    seconds_per_work = seconds / work;
+  }
+  double longest(double work, std::int64_t num_runs) const {
+    return seconds_per_work * work + begin_seconds * static_cast<double>(num_runs);
+  }
+};
+
+/// Seconds that are expected at each outlook, with the standard error of the middle one.
+struct Expectation {
+  double lowest = 0;
+  double middle = 0;
+  double highest = 0;
+  double variance = 0;
+
+  double relative_error() const { return std::sqrt(variance) / middle; }
+};
+
+SweepCost with_interval(const Pace& pace, double bound, const Expectation& seconds) {
+  SweepCost cost{.seconds_per_work = pace.seconds_per_work, .bound = bound};
+  if (seconds.middle == 0) return cost;
+  const double sampling = 1.96 * seconds.relative_error();
+  const auto factor = [&](double outlooks) { return std::exp(std::hypot(std::log(outlooks), sampling)); };
+  cost.expected = seconds.middle;
+  cost.lower = cost.expected / factor(seconds.middle / seconds.lowest);
+  cost.upper = std::min(bound, cost.expected * factor(seconds.highest / seconds.middle));
+  return cost;
+}
+
+/// A sample at each outlook.
+class Shares {
+ public:
+  Shares(std::span<const RunCost> runs, const Pace& pace, const Outlook& outlook)
+      : lowest_(runs, pace.seconds_per_work, outlook, Outlook::Case::lowest),
+        middle_(runs, pace.seconds_per_work, outlook, Outlook::Case::middle),
+        highest_(runs, pace.seconds_per_work, outlook, Outlook::Case::highest),
+        num_runs_(static_cast<std::int64_t>(runs.size())) {}
+
+  /// What the sample's own runs still take.
+  Expectation left() const {
+    return {lowest_.seconds_left(), middle_.seconds_left(), highest_.seconds_left()};
+  }
+  /// Of runs that take so long at most.
+  Expectation of(double longest, double relative_error) const {
+    const double middle = longest * middle_.value();
+    return {longest * lowest_.value(), middle, longest * highest_.value(),
+            std::pow(middle * relative_error, 2)};
+  }
+  double error_of_all(std::int64_t population) const { return middle_.relative_error(population); }
+  /// The error of all is theirs, since those in the sample are known.
+  double error_of_others(std::int64_t number) const {
+    const std::int64_t all = num_runs_ + number;
+    return middle_.relative_error(all) * static_cast<double>(all) / static_cast<double>(number);
+  }
+
+ private:
+  Share lowest_, middle_, highest_;
+  std::int64_t num_runs_;
+};
+
+void add(Expectation& sum, const Expectation& more) {
+  sum.lowest += more.lowest;
+  sum.middle += more.middle;
+  sum.highest += more.highest;
+  sum.variance += more.variance;
+}
 
 }  // namespace
 
 SweepCost sweep_cost(std::span<const RunCost> sample, double all_work, std::int64_t num_runs) {
-  double begin_seconds = 0, seconds = 0, work = 0;
-  for (const RunCost& run : sample) {
-    begin_seconds += run.begin_seconds;
-    seconds += run.seconds;
-    work += run.work;
-  }
-  SweepCost cost;
-  cost.seconds_per_work = seconds / work;
-  cost.bound = cost.seconds_per_work * all_work +
-               begin_seconds / static_cast<double>(sample.size()) * static_cast<double>(num_runs);
+  const Pace pace(sample);
+  const double bound = pace.longest(all_work, num_runs);
+  const Shares shares(sample, pace, Outlook(sample));
+  return with_interval(pace, bound, shares.of(bound, shares.error_of_all(num_runs)));
+}
 
-  const Outlook outlook(sample);
-  const auto share = [&](Outlook::Case which) {
-    return Share(sample, cost.seconds_per_work, outlook, which);
-  };
-  const Share middle = share(Outlook::Case::middle);
-  const double sampling = 1.96 * middle.relative_error(num_runs);
-  const auto factor = [&](double outlooks) { return std::exp(std::hypot(std::log(outlooks), sampling)); };
-  cost.expected = cost.bound * middle.value();
-  cost.lower = cost.expected / factor(middle.value() / share(Outlook::Case::lowest).value());
-  cost.upper =
-      std::min(cost.bound, cost.expected * factor(share(Outlook::Case::highest).value() / middle.value()));
-  return cost;
+SweepCost cost_left(std::span<const RunCost> begun, std::span<const WaitingRuns> waiting) {
+  const Pace pace(begun);
+  const Outlook outlook_of_all(begun);
+  std::map<std::int64_t, std::vector<RunCost>> runs_of;
+  for (const RunCost& run : begun) runs_of[run.parameter_set].push_back(run);
+
+  double bound = 0;
+  Expectation seconds;
+  std::map<std::int64_t, Shares> sets;
+  for (const auto& [set, runs] : runs_of) {
+    const bool has_end =
+        std::any_of(runs.begin(), runs.end(), [](const RunCost& run) { return run.is_over; });
+    const Shares& shares =
+        sets.emplace(set, Shares(runs, pace, has_end ? Outlook(runs) : outlook_of_all)).first->second;
+    add(seconds, shares.left());
+    for (const RunCost& run : runs)
+      if (!run.is_over) bound += std::max(0.0, pace.seconds_per_work * run.longest_work - run.seconds);
+  }
+  const Shares all(begun, pace, outlook_of_all);
+  constexpr double error_of_strangers = 1;
+  for (const WaitingRuns& runs : waiting) {
+    if (runs.number == 0) continue;
+    const double longest = pace.longest(static_cast<double>(runs.number) * runs.longest_work, runs.number);
+    const auto set = sets.find(runs.parameter_set);
+    add(seconds, set == sets.end() ? all.of(longest, error_of_strangers)
+                                   : set->second.of(longest, set->second.error_of_others(runs.number)));
+    bound += longest;
+  }
+  return with_interval(pace, bound, seconds);
 }
 
 }  // namespace clog

@@ -15,7 +15,14 @@ struct RunCost {
   bool is_over = false;
 };
 
-/// Computing time of a whole sweep [s].
+/// Runs of one parameter set that have not begun.
+struct WaitingRuns {
+  std::int64_t parameter_set = 0;
+  std::int64_t number = 0;
+  double longest_work = 0;  ///< of each
+};
+
+/// Computing time of a whole sweep, or of what is left of it [s].
 struct SweepCost {
   double seconds_per_work = 0;
   double bound = 0;  ///< if every run goes on to max-time
@@ -36,5 +43,12 @@ struct SweepCost {
 /// @param sample  of at least one run that has done some work, in some time
 /// @param all_work  of all runs of the sweep, if every run goes on to max-time
 SweepCost sweep_cost(std::span<const RunCost> sample, double all_work, std::int64_t num_runs);
+
+/// What a sweep still costs, from all its runs that have begun. These are no sample of it: long ones are
+/// begun first. So each parameter set is judged by itself, as above: what its runs still take by how those
+/// fared of which it has one that is over, otherwise by how all did. A set of which none has begun is taken
+/// for the mean of all, with an error as large as that.
+/// @param begun  at least one that has done some work, in some time
+SweepCost cost_left(std::span<const RunCost> begun, std::span<const WaitingRuns> waiting);
 
 }  // namespace clog

@@ -32,6 +32,9 @@ void announce(const std::string& output, const sweep::Plan& plan, const SweepLed
     cli::say(output + " has " + std::to_string(num_runs - num_left) + " of " +
              sweep::counted(num_runs, "run") +
              (num_left == 0 && !may_grow ? "; there is nothing left to do" : ""));
+  if (ledger.num_beyond() > 0)
+    cli::say(output + " holds " + sweep::counted(ledger.num_beyond(), "run") +
+             " beyond the lists of this command; what it has of them stays");
   if (ledger.num_faulty() > 0)
     cli::say(output + ": " + std::to_string(ledger.num_faulty()) +
              (ledger.num_faulty() == 1 ? " row holds" : " rows hold") +
@@ -57,16 +60,16 @@ SweepProgress::Screen screen(SweepLog::Level level) {
 /// Joins what the scheduler tells and asks with what is kept and what is told to the user.
 class Lead {
  public:
-  Lead(const LeadOptions& options, SweepLedger& ledger, int num_ranks)
+  Lead(const LeadOptions& options, const sweep::Plan& plan, SweepLedger& ledger, int num_ranks)
       : ledger_(ledger),
-        progress_(std::cerr, screen(options.log), num_ranks),
+        progress_(std::cerr, screen(options.log), num_ranks, plan.num_groups()),
         log_(progress_, options.log),
         max_hours_(options.max_hours) {}
 
-  /// So many tasks more.
-  void expect(std::int64_t num_tasks) {
-    num_tasks_ += num_tasks;
-    progress_.expect(num_tasks, ledger_.num_wanted());
+  /// More tasks.
+  void expect(const std::vector<std::int64_t>& tasks) {
+    is_expecting_ = is_expecting_ || !tasks.empty();
+    progress_.expect(tasks, ledger_.num_wanted());
   }
 
   parallel::SweepEvents events() {
@@ -91,7 +94,7 @@ class Lead {
 
   void finish() {
     ledger_.finish();
-    if (num_tasks_ > 0) progress_.finish();
+    if (is_expecting_) progress_.finish();
   }
   bool was_interrupted() const { return was_interrupted_; }
   /// None: nullptr.
@@ -103,7 +106,7 @@ class Lead {
 
  private:
   SweepLedger& ledger_;
-  std::int64_t num_tasks_ = 0;
+  bool is_expecting_ = false;
   SweepProgress progress_;
   SweepLog log_;
   double max_hours_;
@@ -151,13 +154,13 @@ int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, 
   const int computing_ranks = ranks.size() - (computes ? 0 : 1);
   if (options.log != SweepLog::Level::quiet)
     announce(options.output, plan, ledger, rule.has_value(), computing_ranks);
-  Lead lead(options, ledger, computing_ranks);
+  Lead lead(options, plan, ledger, computing_ranks);
   parallel::Schedule schedule(parallel::TaskOrder(0, plan.num_groups()), ranks.size(), computes);
   parallel::SweepEnd end = parallel::SweepEnd::complete;
   bool is_complete = true;
   while (true) {
     const std::vector<std::int64_t> tasks = ledger.tasks_left();
-    lead.expect(static_cast<std::int64_t>(tasks.size()));
+    lead.expect(tasks);
     schedule.tasks.add(tasks);
     end = parallel::run_tasks(ranks, schedule, make_job, lead.events(), options.report_interval);
     is_complete = end == parallel::SweepEnd::complete && !lead.was_interrupted();

@@ -37,6 +37,8 @@ class SweepLedger {
   const std::vector<std::int64_t>& tasks_left() const { return tasks_left_; }
   /// Of those, how many have a snapshot to go on from.
   std::int64_t num_resumed() const;
+  /// Runs of the file that are not of this plan: they stay.
+  std::int64_t num_beyond() const { return static_cast<std::int64_t>(other_runs_.size()); }
   /// Runs whose row held what cannot be: they are computed again.
   std::int64_t num_faulty() const { return num_faulty_; }
   /// Records of the journal that were damaged: their runs are a few seconds behind, or begin anew.

@@ -29,8 +29,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double hour = 3600;
 
-std::string number(double value) { return sweep::shortest(value); }
-
 /// What differs from one task to the next.
 std::vector<const sweep::Column*> varying_columns(const sweep::Plan& plan) {
   const sweep::RunRow first = sweep::describe(plan.task(0));
@@ -88,24 +86,31 @@ constexpr std::size_t fewest_stored_runs = 5;
 /// What the sweep's own file has of its runs; nothing if there is none.
 struct Stored {
   Sample sample;
-  std::int64_t num_done = 0;  ///< tasks that are not to be done again
-  double seconds = 0;         ///< that its tasks have taken so far
+  std::vector<WaitingRuns> waiting;  ///< of each parameter set what is not in the sample
+  std::int64_t num_done = 0;         ///< tasks that are not to be done again
+  double seconds = 0;                ///< that its tasks have taken so far
 };
 Stored stored_runs(const sweep::Plan& plan, const std::string& path) {
-  Stored stored{.sample = {{}, "that " + path + " holds", ""}};
+  Stored stored;
+  stored.sample.source = "that " + path + " holds";
   if (path.empty() || !std::filesystem::exists(path)) return stored;
   std::unordered_map<std::string, sweep::RunRow> rows;
   for (const sweep::RunRow& row : read_with_caution(path).rows)
     if (sweep::fault_of(row).empty()) rows.emplace(sweep::identity(row), row);
+  for (std::int64_t set = 0; set < plan.num_groups(); ++set)
+    stored.waiting.push_back({set, plan.size() / plan.num_groups(), longest_work(plan.task(set))});
   for (std::int64_t task = 0; task < plan.size() && !rows.empty(); ++task) {
     const RunParameters run = plan.task(task);
     const auto found = rows.extract(sweep::identity(sweep::describe(run)));
     if (found.empty()) continue;
     const sweep::RunRow& row = found.mapped();
-    stored.num_done += !sweep::is_unfinished(row.status);
+    const std::int64_t set = task % plan.num_groups();
+    const bool is_over = !sweep::is_unfinished(row.status);
+    const bool has_moved = row.steps > 0 && row.wall_seconds > 0;
+    stored.num_done += is_over;
     stored.seconds += row.wall_seconds;
-    if (row.steps > 0 && row.wall_seconds > 0)
-      stored.sample.costs.push_back(cost_of(row, {}, run, task % plan.num_groups()));
+    if (has_moved) stored.sample.costs.push_back(cost_of(row, {}, run, set));
+    if (is_over || has_moved) --stored.waiting[set].number;
   }
   return stored;
 }
@@ -139,7 +144,7 @@ Sample tried_sample(const sweep::Plan& plan) {
   const Clock::time_point begin = Clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
   const auto arrays = std::make_shared<sweep::ObstacleArrays>();
-  Sample sample{{}, "tried for " + number(all_seconds) + " s in all", ""};
+  Sample sample;
   const std::vector<std::int64_t> tasks = tasks_to_try(plan);
   for (std::size_t i = 0; i < tasks.size() && elapsed() < all_seconds && !cli::stop_signalled(); ++i) {
     const double share = (all_seconds - elapsed()) / static_cast<double>(tasks.size() - i);
@@ -156,7 +161,24 @@ Sample tried_sample(const sweep::Plan& plan) {
     else if (sample.failure.empty())
       sample.failure = row.message;
   }
+  char source[48];
+  std::snprintf(source, sizeof source, "tried for %.2g s in all", elapsed());
+  sample.source = source;
   return sample;
+}
+
+SweepCost tried_cost(const sweep::Plan& plan, const Sample& sample) {
+  double all_work = 0;
+  for (std::int64_t group = 0; group < plan.num_groups(); ++group) all_work += longest_work(plan.task(group));
+  all_work *= static_cast<double>(plan.size() / plan.num_groups());
+  return sweep_cost(sample.costs, all_work, plan.size());
+}
+
+/// With what has been spent before, or without it.
+SweepCost plus(SweepCost cost, double seconds) {
+  for (double* part : {&cost.bound, &cost.expected, &cost.lower, &cost.upper})
+    *part = std::max(0.0, *part + seconds);
+  return cost;
 }
 
 }  // namespace
@@ -203,10 +225,9 @@ int print_cost(const sweep::Plan& plan, const std::string& output) {
     cli::say("clogsweep: none of the runs that were tried can begin, the first one: " + sample.failure);
     return cli::exit_internal_fault;
   }
-  double all_work = 0;
-  for (std::int64_t group = 0; group < plan.num_groups(); ++group) all_work += longest_work(plan.task(group));
-  all_work *= static_cast<double>(plan.size() / plan.num_groups());
-  const SweepCost cost = sweep_cost(sample.costs, all_work, plan.size());
+  const SweepCost cost =
+      knows_enough ? plus(cost_left(sample.costs, stored.waiting), stored.seconds) : tried_cost(plan, sample);
+  const SweepCost left = plus(cost, -stored.seconds);
   const double us_per_step = 1e6 * cost.seconds_per_work * work_per_step(plan.task(0));
   std::printf(
       "# at most %.3g core-hours on this machine, %.3g us per step measured; runs that clog end sooner\n",
@@ -218,12 +239,11 @@ int print_cost(const sweep::Plan& plan, const std::string& output) {
               cost.expected / hour, cost.lower / hour, cost.upper / hour,
               sweep::counted(num_runs, "run").c_str(), sample.source.c_str(), num_over);
   if (stored.seconds == 0) return cli::exit_success;
-  const auto hours_left = [&](double all) { return std::max(0.0, all - stored.seconds) / hour; };
   std::printf("# %s has %lld of %s; %lld to go: expected %.2g core-hours more (95 %%: %.2g to %.2g)\n",
               cli::printable(output).c_str(), static_cast<long long>(stored.num_done),
               sweep::counted(plan.size(), "task").c_str(),
-              static_cast<long long>(plan.size() - stored.num_done), hours_left(cost.expected),
-              hours_left(cost.lower), hours_left(cost.upper));
+              static_cast<long long>(plan.size() - stored.num_done), left.expected / hour, left.lower / hour,
+              left.upper / hour);
   return cli::exit_success;
 }
 

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "duration.hpp"
-#include "time_left.hpp"
 
 namespace clog {
 namespace {
@@ -16,8 +15,14 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 
 }  // namespace
 
-SweepProgress::SweepProgress(std::ostream& out, Screen screen, int num_computing_ranks)
-    : status_(out, screen), num_ranks_(num_computing_ranks) {}
+SweepProgress::SweepProgress(std::ostream& out, Screen screen, int num_computing_ranks, std::int64_t num_sets)
+    : status_(out, screen), sets_(num_sets), num_ranks_(num_computing_ranks) {}
+
+void SweepProgress::expect(std::span<const std::int64_t> tasks, std::int64_t num_wanted) {
+  for (const std::int64_t task : tasks) ++set_of(task).num_waiting;
+  num_tasks_ += static_cast<std::int64_t>(tasks.size());
+  num_before_ = num_wanted - num_tasks_;
+}
 
 void SweepProgress::started(std::int64_t task) { running_[task] = Clock::now(); }
 
@@ -26,12 +31,18 @@ void SweepProgress::ended(const sweep::RunRow& row) {
   ++ended_by_status_[row.status];
   if (row.status == RunStatus::interrupted) return;
   ++num_ended_;
-  finished_seconds_ += row.wall_seconds;
+  SetTimes& set = set_of(row.task);
+  ++set.num_finished;
+  --set.num_waiting;
+  set.seconds += row.wall_seconds;
 }
 
 void SweepProgress::not_ended(const sweep::RunRow& failed) {
   --ended_by_status_[failed.status];
   --num_ended_;
+  SetTimes& set = set_of(failed.task);
+  --set.num_finished;
+  ++set.num_waiting;
 }
 
 void SweepProgress::tick() {
@@ -67,13 +78,14 @@ std::string SweepProgress::line() const {
 
 std::string SweepProgress::time_left() const {
   if (num_ended_ == num_tasks_) return "";
-  // The sum of the finished ones is all that counts.
-  const std::vector<double> finished(num_ended_, finished_seconds_ / static_cast<double>(num_ended_));
-  std::vector<double> running;
-  for (const auto& [task, begin] : running_) running.push_back(seconds_since(begin));
-  const auto num_waiting =
-      static_cast<double>(num_tasks_ - num_ended_ - static_cast<std::int64_t>(running.size()));
-  return ", " + clog::time_left(finished, running, num_waiting, static_cast<std::size_t>(num_ranks_)).text();
+  std::vector<SetTimes> sets = sets_;
+  for (const auto& [task, begin] : running_) {
+    SetTimes& set = sets[task % sets.size()];
+    ++set.num_running;
+    --set.num_waiting;
+    set.seconds += seconds_since(begin);
+  }
+  return ", " + clog::time_left(sets, static_cast<std::size_t>(num_ranks_)).text();
 }
 
 }  // namespace clog

@@ -4,10 +4,13 @@
 #include <cstdint>
 #include <iosfwd>
 #include <map>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "clog/sweep/run_row.hpp"
 #include "status_line.hpp"
+#include "time_left.hpp"
 
 namespace clog {
 
@@ -17,14 +20,12 @@ class SweepProgress {
  public:
   using Screen = StatusLine::Screen;
 
-  SweepProgress(std::ostream& out, Screen screen, int num_computing_ranks);
+  /// @param num_sets  parameter sets; task i is of set i % num_sets
+  SweepProgress(std::ostream& out, Screen screen, int num_computing_ranks, std::int64_t num_sets);
 
-  /// So many tasks more.
+  /// More tasks.
   /// @param num_wanted  runs of the whole sweep; those that are not expected were done before
-  void expect(std::int64_t num_tasks, std::int64_t num_wanted) {
-    num_tasks_ += num_tasks;
-    num_before_ = num_wanted - num_tasks_;
-  }
+  void expect(std::span<const std::int64_t> tasks, std::int64_t num_wanted);
 
   void started(std::int64_t task);
   void ended(const sweep::RunRow& row);
@@ -42,15 +43,16 @@ class SweepProgress {
   using Clock = std::chrono::steady_clock;
 
   StatusLine status_;
+  std::vector<SetTimes> sets_;  // without those that run: these are in running_, and wait here
   std::int64_t num_tasks_ = 0;
   std::int64_t num_before_ = 0;
   int num_ranks_;
   Clock::time_point begin_ = Clock::now();
   std::map<std::int64_t, Clock::time_point> running_;
   std::map<RunStatus, std::int64_t> ended_by_status_;
-  std::int64_t num_ended_ = 0;  ///< those interrupted have not
-  double finished_seconds_ = 0;
+  std::int64_t num_ended_ = 0;  // of all sets
 
+  SetTimes& set_of(std::int64_t task) { return sets_[task % static_cast<std::int64_t>(sets_.size())]; }
   std::string line() const;
   std::string time_left() const;
 };

@@ -54,7 +54,7 @@ bool parse(cli::CommandLine& line, int argc, const char* const* argv) {
 }
 
 struct Status {
-  std::int64_t num_runs = 0;
+  RunCount runs;
   std::map<RunStatus, std::int64_t> by_status;
   bool is_alive = false;
   double core_hours = 0;
@@ -74,23 +74,36 @@ struct Status {
   }
 };
 
+/// Of the parameter sets of the last config. With --until-precision a set may want more seeds than others,
+/// which is not known here: each is taken to want the mean of all.
+std::vector<SetTimes> times_of_sets(const std::vector<RunRow>& rows, const sweep::Plan& plan,
+                                    std::int64_t num_wanted) {
+  const std::int64_t num_sets = plan.num_groups();
+  std::vector<SetTimes> sets(num_sets);
+  for (const RunRow& row : rows) {
+    if (row.task < 0 || row.task >= plan.size()) continue;
+    SetTimes& set = sets[row.task % num_sets];
+    ++(sweep::is_unfinished(row.status) ? set.num_running : set.num_finished);
+    set.seconds += row.wall_seconds;
+  }
+  for (SetTimes& set : sets)
+    set.num_waiting = std::max<std::int64_t>(0, num_wanted / num_sets - set.num_finished - set.num_running);
+  return sets;
+}
+
 Status status_of(const std::string& path, const store::SweepFile& file, double confidence) {
   Status status;
   const sweep::Plan plan = stored_plan(path, file.provenance);
-  status.num_runs = stored_num_wanted(path, file.provenance, plan);
+  status.runs = stored_num_runs(path, file, plan);
   status.stopping_rule = attribute(file.provenance, "stopping_rule");
   status.is_alive = store::Journal::is_open(store::journal_path(path));
-  std::vector<double> finished, running;
   for (const RunRow& row : file.rows) {
-    if (row.task >= plan.size()) ++status.num_runs;  // of an earlier config
     ++status.by_status[row.status];
     status.core_hours += row.wall_seconds / 3600;
-    (sweep::is_unfinished(row.status) ? running : finished).push_back(row.wall_seconds);
   }
-  const auto num_known = static_cast<std::int64_t>(finished.size() + running.size());
-  status.num_runs = std::max(status.num_runs, num_known);
-  const auto num_waiting = static_cast<double>(status.num_runs - num_known);
-  status.left = time_left(finished, running, num_waiting, std::max<std::size_t>(1, running.size()));
+  const std::int64_t num_wanted = status.runs.num_runs - status.runs.num_beyond;
+  status.left = time_left(times_of_sets(file.rows, plan, num_wanted),
+                          std::max<std::size_t>(1, static_cast<std::size_t>(status.num_under_way())));
   if (!file.rows.empty()) status.groups = group_runs(file.rows, confidence);
   return status;
 }
@@ -99,8 +112,8 @@ std::string to_text(const std::string& path, const Status& status, double confid
                     SharedParameters shared) {
   const auto number = [](std::int64_t value) { return std::to_string(value); };
   std::string text = cli::printable(path) + ": " + number(status.num_over()) + " of " +
-                     sweep::counted(status.num_runs, "run") + " over, " +
-                     number(status.count(RunStatus::clogged)) + " clogged, " +
+                     sweep::counted(status.runs.num_runs, "run") + " over" + status.runs.text_of_beyond() +
+                     ", " + number(status.count(RunStatus::clogged)) + " clogged, " +
                      number(status.count(RunStatus::flowing)) + " flowing, " +
                      number(status.count(RunStatus::failed)) + " failed";
   if (const std::int64_t under_way = status.num_under_way(); under_way > 0)
@@ -108,7 +121,7 @@ std::string to_text(const std::string& path, const Status& status, double confid
   char hours[64];
   std::snprintf(hours, sizeof hours, "; %.3g core-hours", status.core_hours);
   text += hours;
-  if (status.num_over() == status.num_runs)
+  if (status.num_over() == status.runs.num_runs)
     text += "; complete";
   else if (!status.is_alive)
     text += "; no sweep is writing to it: the command that began it goes on";
@@ -122,7 +135,8 @@ std::string to_text(const std::string& path, const Status& status, double confid
 
 std::string to_json(const Status& status, double confidence) {
   nlohmann::ordered_json all;
-  all["runs"] = status.num_runs;
+  all["runs"] = status.runs.num_runs;
+  all["runs_beyond_lists"] = status.runs.num_beyond;
   all["over"] = status.num_over();
   for (const RunStatus one : {RunStatus::clogged, RunStatus::flowing, RunStatus::failed})
     all[name(one)] = status.count(one);
@@ -219,8 +233,9 @@ damaged. 1: this is not so; `clogsweep salvage` keeps what is whole. 2: the file
   if (!parse(line, argc, argv)) return cli::exit_success;
   const store::Examination found = store::examine_sweep(line.get("file"));
   const store::SweepFile& file = found.whole;
-  std::int64_t num_planned = 0;  // not asked for where the file is damaged
-  if (found.damage.empty()) num_planned = stored_plan(line.get("file"), file.provenance).size();
+  RunCount runs;  // not asked for where the file is damaged
+  if (found.damage.empty())
+    runs = stored_num_runs(line.get("file"), file, stored_plan(line.get("file"), file.provenance));
   for (const std::string& damage : found.damage) std::cout << cli::printable(damage) << '\n';
   auto num_faults = static_cast<std::int64_t>(found.damage.size());
   std::unordered_map<std::string, std::int64_t> seen;
@@ -235,8 +250,8 @@ damaged. 1: this is not so; `clogsweep salvage` keeps what is whole. 2: the file
   const auto num_rows = static_cast<std::int64_t>(file.rows.size());
   std::cout << cli::printable(line.get("file")) << ": ";
   if (num_faults == 0)
-    std::cout << sweep::counted(num_rows, "row") << " of " << sweep::counted(num_planned, "run")
-              << ", all whole\n";
+    std::cout << sweep::counted(num_rows, "row") << " of " << sweep::counted(runs.num_runs, "run")
+              << runs.text_of_beyond() << ", all whole\n";
   else
     std::cout << sweep::counted(num_rows, "whole row") << ", " << sweep::counted(num_faults, "fault") << '\n';
   if (const std::string words = store::caution(line.get("file"), file); !words.empty())

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 
@@ -14,11 +15,18 @@ struct TimeLeft {
 
   std::string text() const;
 };
+/// Runs that differ in their seed only.
+struct SetTimes {
+  std::int64_t num_finished = 0;
+  std::int64_t num_running = 0;
+  std::int64_t num_waiting = 0;
+  double seconds = 0;  ///< that finished ones took and running ones have taken, together
+};
 /// Short runs end first, so the mean over finished runs alone is too small: running ones count as censored,
-/// as for the clogging length. What remains is then a share of the waiting runs for every rank, and a tail in
-/// which the ranks run dry one by one (the largest of W exponential times is 1 + 1/2 + ... + 1/W means).
-/// @param finished, running  how long they took, or have taken [s]
-TimeLeft time_left(std::span<const double> finished, std::span<const double> running, double num_waiting,
-                   std::size_t num_ranks);
+/// as for the clogging length. Each parameter set has a mean of its own; one of which no run has finished
+/// takes that of all, with an error as large. What remains is then a share of the waiting runs for every
+/// rank, and a tail in which the ranks run dry one by one (the largest of W exponential times is 1 + 1/2 +
+/// ... + 1/W means). The range is that of the means, 80 %.
+TimeLeft time_left(std::span<const SetTimes> sets, std::size_t num_ranks);
 
 }  // namespace clog

@@ -13,10 +13,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <sstream>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "clog/parallel/scheduler.hpp"
 #include "clog/store/run_table.hpp"
@@ -87,8 +89,10 @@ int main(int argc, char** argv) {
   const sweep::Plan plan(settings);
   std::optional<SweepLedger> ledger;
   std::ostringstream screen;  // progress goes nowhere, but is made
-  SweepProgress progress(screen, SweepProgress::Screen::terminal, num_workers);
-  progress.expect(num_tasks, num_tasks);
+  SweepProgress progress(screen, SweepProgress::Screen::terminal, num_workers, num_groups);
+  std::vector<std::int64_t> tasks(num_tasks);
+  std::iota(tasks.begin(), tasks.end(), std::int64_t{0});
+  progress.expect(tasks, num_tasks);
   parallel::SweepEvents events;
   if (ranks.rank() == 0) {
     ledger.emplace(path, plan, settings, store::Provenance(), plan.size(), 1);

@@ -92,6 +92,84 @@ TEST(SweepCost, WeighsRunsByWhatTheyMayCost) {
   EXPECT_NEAR(sweep_cost(sample, 110 * 50 / seconds_per_work, 100).expected, 550, 1e-9);
 }
 
+RunCost of_set(std::int64_t set, RunCost run) {
+  run.parameter_set = set;
+  return run;
+}
+WaitingRuns waiting(std::int64_t set, std::int64_t number, double longest) {
+  return {set, number, longest / seconds_per_work};
+}
+
+TEST(CostLeft, IsThatOfTheParameterSetsThatWait) {
+  // All long runs have begun, of the short ones a few.
+  std::vector<RunCost> begun(20, of_set(0, over(20, 100)));
+  for (const double seconds : {0.5, 0.6, 0.7, 0.8}) begun.push_back(of_set(1, over(seconds, 100)));
+  const std::vector<WaitingRuns> waits = {waiting(0, 0, 100), waiting(1, 16, 100)};
+  const SweepCost left = cost_left(begun, waits);
+  EXPECT_NEAR(left.expected, 16 * 0.65, 1e-9);
+  EXPECT_GT(left.lower, 16 * 0.4);
+  EXPECT_LT(left.upper, 16 * 1.0);
+  EXPECT_NEAR(left.bound, 16 * 100, 1e-6);
+}
+
+TEST(CostLeft, HasWhatRunsUnderWayStillTake) {
+  std::vector<RunCost> begun(10, of_set(0, over(20, 100)));
+  for (const double seconds : {0.5, 0.6, 0.7, 0.8}) begun.push_back(of_set(1, over(seconds, 100)));
+  begun.push_back(of_set(1, under_way(0.4, 100)));
+  const SweepCost left = cost_left(begun, {});
+  EXPECT_GT(left.expected, 0.2);  // a short one, judged by the short ones
+  EXPECT_LT(left.expected, 2);
+  EXPECT_GT(left.upper, left.expected);
+  EXPECT_LT(left.lower, left.expected);
+}
+
+TEST(CostLeft, OfASetWithoutAnEndMayBeTheBound) {
+  std::vector<RunCost> begun(10, of_set(0, over(1, 100)));
+  begun.push_back(of_set(1, under_way(1, 100)));
+  const std::vector<WaitingRuns> waits = {waiting(1, 9, 100)};
+  EXPECT_GT(cost_left(begun, waits).upper, 0.9 * 999);
+}
+
+TEST(CostLeft, OfASetThatHasNotBegunIsTheMeanOfAll) {
+  const std::vector<RunCost> begun = {of_set(0, over(1, 100)), of_set(1, over(3, 100))};
+  const std::vector<WaitingRuns> waits = {waiting(2, 5, 100)};
+  const SweepCost left = cost_left(begun, waits);
+  EXPECT_NEAR(left.expected, 10, 1e-9);
+  EXPECT_LT(left.lower, 2);
+  EXPECT_GT(left.upper, 50);
+}
+
+TEST(CostLeft, IsNothingOnceAllIsOver) {
+  const std::vector<RunCost> begun = {of_set(0, over(1, 100)), of_set(1, over(3, 100))};
+  const SweepCost left = cost_left(begun, {});
+  EXPECT_EQ(left.bound, 0);
+  EXPECT_EQ(left.expected, 0);
+  EXPECT_EQ(left.upper, 0);
+}
+
+TEST(CostLeft, CoversTheTruthWhereLongRunsBeginFirst) {
+  std::mt19937 random(5);
+  int num_covered = 0;
+  constexpr int num_trials = 400;
+  for (int trial = 0; trial < num_trials; ++trial) {
+    const std::vector<double> means = {20, 0.9, 0.5};
+    const std::vector<std::int64_t> num_begun = {24, 5, 5};
+    std::vector<RunCost> begun;
+    std::vector<WaitingRuns> waits;
+    double truth = 0;
+    for (std::size_t set = 0; set < means.size(); ++set) {
+      std::exponential_distribution<> draw(1 / means[set]);
+      for (std::int64_t i = 0; i < num_begun[set]; ++i)
+        begun.push_back(of_set(static_cast<std::int64_t>(set), over(draw(random), 1000)));
+      waits.push_back(waiting(static_cast<std::int64_t>(set), 24 - num_begun[set], 1000));
+      for (std::int64_t i = num_begun[set]; i < 24; ++i) truth += draw(random);
+    }
+    const SweepCost left = cost_left(begun, waits);
+    num_covered += left.lower < truth && truth < left.upper;
+  }
+  EXPECT_GT(num_covered, 0.85 * num_trials);
+}
+
 /// How often the interval covers the truth where short and long runs mix, in so many parameter sets.
 double coverage(int num_sets) {
   // A third of the runs takes 0.1 s on the average, a third 2 s, a third 40 s; each of 24 is followed for 0.4

@@ -1,3 +1,4 @@
+import json
 import os
 import pathlib
 import pty
@@ -11,6 +12,7 @@ import h5py
 import numpy as np
 import pandas
 
+import stored_rows
 from support import BIN, BLOCKED, MPIRUN, QUICK, ROOT, SMALL, STEPS_PER_SNAPSHOT, ProgramTest
 
 # Columns that tell where and how fast a row was made, not what came out.
@@ -102,12 +104,15 @@ class Sweep(ProgramTest):
     EXPECTED = r"^# expected [0-9.e+-]+ core-hours \(95 %: [0-9.e+-]+ to [0-9.e+-]+\), from \d+ runs "
 
     def test_a_dry_run_lists_the_tasks_and_runs_none(self):
+        begin = time.time()
         done = self.succeed("clogsweep", *QUICK, "line-tension=lin(0.5,1.5,3)", "seeds=1..4", "--dry-run", "--output", "s.h5")
+        elapsed = time.time() - begin
         lines = done.stdout.splitlines()
         self.assertEqual(len(lines), 1 + 12 + 3)
         self.assertIn("12 tasks: 3 parameter sets, 4 seeds each", lines[-3])
         self.assertRegex(lines[-2], "^# at most [0-9.e+-]+ core-hours on this machine")
-        self.assertRegex(lines[-1], self.EXPECTED + r"tried for 10 s in all, \d+ of them over$")
+        self.assertRegex(lines[-1], self.EXPECTED + r"tried for [0-9.e+-]+ s in all, \d+ of them over$")
+        self.assertLess(float(re.search("tried for ([^ ]+) s", lines[-1])[1]), 1.05 * elapsed)  # of two figures
         self.assertEqual(self.snapshot(), {})
 
     def test_a_dry_run_expects_what_the_file_s_runs_took(self):
@@ -124,6 +129,32 @@ class Sweep(ProgramTest):
         # Nothing is left to be guessed.
         told = self.succeed("clogsweep", *sweep, "seeds=1..3", "--dry-run").stdout.splitlines()[-1]
         self.assertEqual(told, f"# s.h5 has all 6 tasks, which took {hours:.2g} core-hours; nothing is left to do")
+
+    def test_a_dry_run_expects_of_what_is_left_what_its_own_parameter_set_takes(self):
+        sweep = [*QUICK, "--output", "s.h5"]
+        self.succeed("clogsweep", *sweep, "line-tension=0.5", "seeds=1..6")
+        self.succeed("clogsweep", *sweep, "line-tension=1", "seeds=1..3")
+
+        def edit(rows):
+            rows["wall_seconds"] = np.where(rows["line_tension"] == 0.5, 1000, 1)
+
+        stored_rows.change(self.folder / "s.h5", edit)
+        told = self.succeed("clogsweep", *sweep, "line-tension=0.5,1", "seeds=1..6", "--dry-run").stdout.splitlines()[-1]
+        self.assertIn(f"9 of 12 tasks; 3 to go: expected {3 / 3600:.2g} core-hours more ", told)
+
+    def test_runs_beyond_shorter_lists_stay_and_are_counted_everywhere(self):
+        sweep = [*QUICK, "line-tension=0.5,1", "--output", "s.h5"]
+        self.assertNotIn("beyond", self.succeed("clogsweep", *sweep, "seeds=1..5").stderr)
+        self.assertIn("10 rows of 10 runs, all whole", self.succeed("clogsweep", "verify", "s.h5").stdout)
+        told = self.succeed("clogsweep", *sweep, "seeds=1..3").stderr
+        self.assertIn("s.h5 holds 4 runs beyond the lists of this command", told)
+        beyond = "(4 beyond the lists of its last command)"
+        self.assertIn(f"10 rows of 10 runs {beyond}, all whole", self.succeed("clogsweep", "verify", "s.h5").stdout)
+        status = self.succeed("clogsweep", "status", "s.h5").stdout
+        self.assertIn(f"10 of 10 runs over {beyond}, ", status)
+        self.assertIn("; complete", status)
+        status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
+        self.assertEqual((status["runs"], status["over"], status["runs_beyond_lists"]), (10, 10, 4))
 
     def test_a_dry_run_of_runs_that_cannot_begin_fails(self):
         done = self.run_program("clogsweep", *BLOCKED, "seeds=64", "--dry-run")
