@@ -45,11 +45,10 @@ void announce(const std::string& output, const sweep::Plan& plan, const SweepLed
              " damaged; what was in there is computed again");
   if (const std::int64_t number = ledger.num_resumed(); number > 0)
     cli::say(std::to_string(number) + (number == 1 ? " goes on where it was" : " go on where they were"));
-  if (const std::string words = sweep::unproven_parameters(plan); num_left > 0 && !words.empty())
-    cli::say(words);
-  if (num_left > 0)
-    cli::say(sweep::counted(num_left, "run") + " on " + sweep::counted(num_ranks, "computing rank") +
-             ", results go to " + output);
+  if (num_left == 0) return;
+  for (const std::string& words : sweep::limits_of_results(plan)) cli::say(words);
+  cli::say(sweep::counted(num_left, "run") + " on " + sweep::counted(num_ranks, "computing rank") +
+           ", results go to " + output);
 }
 
 SweepProgress::Screen screen(SweepLog::Level level) {

@@ -206,8 +206,7 @@ void print_tasks(const sweep::Plan& plan) {
 }
 
 void print_limits(const sweep::Plan& plan) {
-  for (const std::string& words : {sweep::possible_repetition(plan), sweep::unproven_parameters(plan)})
-    if (!words.empty()) std::cout << "# " << words << '\n';
+  for (const std::string& words : sweep::limits_of_results(plan)) std::cout << "# " << words << '\n';
 }
 
 int print_cost(const sweep::Plan& plan, const std::string& output) {

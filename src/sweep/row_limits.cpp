@@ -120,6 +120,12 @@ std::string possible_repetition(const Plan& plan) {
          "; boxes=" + rounded(std::ceil(most_boxes)) + " is long enough";
 }
 
+std::vector<std::string> limits_of_results(const Plan& plan) {
+  std::vector<std::string> all = {possible_repetition(plan), unproven_parameters(plan)};
+  std::erase(all, "");
+  return all;
+}
+
 double obstacle_spacing(const RunRow& row) {
   return row.parameters.obstacles.diameter + row.parameters.obstacles.gap;
 }

@@ -156,6 +156,13 @@ class Sweep(ProgramTest):
         status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
         self.assertEqual((status["runs"], status["over"], status["runs_beyond_lists"]), (10, 10, 4))
 
+    def test_an_array_that_may_repeat_is_told_once_when_the_sweep_starts(self):
+        sweep = [*SMALL, "max-time=700", "seeds=1", "--output", "s.h5"]
+        repeats = "may come farther than their array is long"
+        self.assertEqual(self.succeed("clogsweep", *sweep, ranks=2).stderr.count(repeats), 1)
+        self.assertNotIn(repeats, self.succeed("clogsweep", *sweep).stderr, "nothing is left to do")
+        self.assertEqual(self.succeed("clogsweep", *sweep[:-1], "quiet.h5", "--quiet").stderr, "")
+
     def test_a_dry_run_of_runs_that_cannot_begin_fails(self):
         done = self.run_program("clogsweep", *BLOCKED, "seeds=64", "--dry-run")
         self.assertEqual(done.returncode, 1)

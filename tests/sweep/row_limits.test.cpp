@@ -101,6 +101,13 @@ TEST(Repetition, IsForeseenFromTheLongestTime) {
             "again: terminal-speed*max-time is up to 300, boxes*box 20; boxes=15 is long enough");
 }
 
+TEST(LimitsOfResults, AreTheLinesThatSaySomething) {
+  EXPECT_TRUE(limits_of_results(plan_of({{"box", "20"}, {"max-time", "600"}})).empty());
+  const Plan plan = plan_of({{"box", "20"}, {"max-time", "1e3"}, {"line-tension", "30"}});
+  EXPECT_EQ(limits_of_results(plan),
+            (std::vector<std::string>{possible_repetition(plan), unproven_parameters(plan)}));
+}
+
 TEST(ObstacleSpacing, IsFromCentreToCentre) {
   EXPECT_DOUBLE_EQ(obstacle_spacing(row_of({{"obstacle-gap", "0.4"}, {"obstacle-diameter", "0.5"}})), 0.9);
 }

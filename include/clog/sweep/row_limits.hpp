@@ -23,6 +23,10 @@ bool has_met_repetition(const RunRow& row);
 /// One line that says whether runs of a plan may come so far; empty if none does.
 std::string possible_repetition(const Plan& plan);
 
+/// What a plan's results will be worth less for, as far as that is known beforehand: the lines above that say
+/// something.
+std::vector<std::string> limits_of_results(const Plan& plan);
+
 /// Distance between the centres of two obstacles as near to each other as they may be, of a mixture the mean
 /// [sigma]. The void in which a droplet is released is about as large.
 double obstacle_spacing(const RunRow& row);
