@@ -107,10 +107,11 @@ class Groups:
 
     def places(self, members, index, num_curves):
         """Where a curve's points are drawn: apart from those of the others, so that their bars can be told apart."""
-        if self.is_logarithmic():
-            return [group[self.abscissa] * style.side_by_side(index, num_curves) for group in members]
         values = self.values(self.abscissa)
-        shift = 0.006 * (max(values) - min(values)) * (index - (num_curves - 1) / 2)
+        if self.is_logarithmic():
+            return [group[self.abscissa] * style.side_by_side(index, num_curves, values) for group in members]
+        step = min(0.006, 0.06 / max(num_curves - 1, 1))
+        shift = step * (max(values) - min(values)) * (index - (num_curves - 1) / 2)
         return [group[self.abscissa] + shift for group in members]
 
     def draw_abscissa(self, axes):

@@ -31,12 +31,15 @@ AXES = {
 
 
 def curve_style(index):
-    colour = COLOURS[index % len(COLOURS)]
-    return {"color": colour, "marker": MARKERS[index % len(MARKERS)]}
+    """Of no two curves the same: once colours and markers are used up, lines are broken, by more dots each time."""
+    round_, which = divmod(index, len(COLOURS))
+    line = (0, (6, 2) + (1, 2) * (round_ - 1)) if round_ > 0 else "-"
+    return {"color": COLOURS[which], "marker": MARKERS[which], "linestyle": line}
 
 
-# Doubts of clogfit in a length itself, which more runs would not take away, and what to say of them under a picture.
+# Doubts of clogfit in a length itself, and what to say of them under a picture.
 OPEN_MARKERS = {
+    "few_clogs": "fewer than 5 clogs: more seeds are needed",
     "held_by_mesh": "droplets hang over obstacles, and lengths depend on the number of vertices",
     "array_repeats": "droplets went farther than the array is long, which repeats",
     "below_spacing": "shorter than one obstacle spacing, the depth of the void of release",
@@ -44,8 +47,13 @@ OPEN_MARKERS = {
 }
 
 
+def doubts(group):
+    return (group["doubts"] or "").split()
+
+
 def reasons_for_open_marker(group):
-    return [doubt for doubt in (group["doubts"] or "").split() if doubt in OPEN_MARKERS]
+    """Of a group without clogs, whose marker is a triangle, it goes without saying that they are few."""
+    return [doubt for doubt in doubts(group) if doubt in OPEN_MARKERS and (doubt != "few_clogs" or group["clogs"] > 0)]
 
 
 def length_note(groups, confidence):
@@ -55,6 +63,8 @@ def length_note(groups, confidence):
         note += f"\nopen markers: {OPEN_MARKERS[reason]}"
     if any(group["clogs"] == 0 for group in groups):
         note += "\nopen triangles: lower bound, no run clogged, dotted: through bounds"
+    if num_incomplete := sum("incomplete" in doubts(group) for group in groups):
+        note += f"\nnot complete: {num_incomplete} of {rounded.counted(len(groups), 'point')} with runs that are under way, interrupted or failed"
     return note
 
 
@@ -64,13 +74,20 @@ def main_mechanism(group):
 
 
 def legend(axes, groups=()):
-    """Of the curves if they have names, and of the markers that draw_lengths() gave these groups."""
+    """Of the curves if they have names, and of the markers that draw_lengths() gave these groups. That of many curves is
+    beside the axes, in a figure that is as much wider."""
     curves = [(handle, label) for handle, label in zip(*axes.get_legend_handles_labels()) if label]
     names = {main_mechanism(group) for group in groups if group["clogs"] > 0}
     markers = [(Line2D([], [], color="0.4", marker=marker, linestyle="none"), f"most clogs {name}" if name != "other" else "other clogs")
                for name, marker in MECHANISM_MARKERS.items() if name in names]
-    if curves or markers:
-        axes.legend(*zip(*curves, *markers), frameon=False)
+    entries = [*curves, *markers]
+    if len(curves) > len(COLOURS):
+        made = axes.legend(*zip(*entries), frameon=False, fontsize=7, handlelength=4, ncols=math.ceil(len(entries) / 28),
+                           loc="upper left", bbox_to_anchor=(1, 1))
+        figure = axes.figure
+        figure.set_figwidth(figure.get_figwidth() + made.get_window_extent(figure.canvas.get_renderer()).width / figure.dpi)
+    elif entries:
+        axes.legend(*zip(*entries), frameon=False)
 
 
 def draw_lengths(axes, places, groups, index, label):
@@ -84,8 +101,8 @@ def draw_lengths(axes, places, groups, index, label):
         [math.nan if group["clogs"] == 0 else abs(group["clogging_length"] - group[end]) for group in groups]
         for end in ("clogging_length_lower", "clogging_length_upper")
     ]
-    colour = curve_style(index)["color"]
-    axes.errorbar(places, lengths, yerr=bars, color=colour, linewidth=1, elinewidth=1, capsize=2.5, label=label)
+    colour, line = (curve_style(index)[name] for name in ("color", "linestyle"))
+    axes.errorbar(places, lengths, yerr=bars, color=colour, linestyle=line, linewidth=1, elinewidth=1, capsize=2.5, label=label)
     for x, y, group in zip(places, lengths, groups):
         face = "white" if reasons_for_open_marker(group) else colour
         axes.plot(x, y, color=colour, marker=MECHANISM_MARKERS[main_mechanism(group)], markerfacecolor=face, markersize=5.5, zorder=3)
@@ -111,9 +128,16 @@ def draw_speeds(axes, places, groups, index, label):
     )
 
 
-def side_by_side(index, num_curves):
-    """Factor on logarithmic abscissae that curves share: moved apart by a percent, their bars can be told apart."""
-    return 1.012 ** (index - (num_curves - 1) / 2)
+def logarithmic_margin(values):
+    """Factor by which a logarithmic axis goes on beyond these values."""
+    return (max(values) / min(values)) ** 0.05 if max(values) > min(values) else 1.3
+
+
+def side_by_side(index, num_curves, values):
+    """Factor on logarithmic abscissae that curves share: moved apart by a percent, or less so that all of them stay off
+    the frame, their bars can be told apart."""
+    outermost = max(num_curves - 1, 1) / 2
+    return min(1.012, logarithmic_margin(values) ** (0.7 / outermost)) ** (index - (num_curves - 1) / 2)
 
 
 def far_apart(values):
@@ -138,7 +162,7 @@ def logarithmic_abscissa(axes, values=()):
         axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
     if values:
         # Ticks widen an axis without a margin: what is drawn at the last one would lie on the frame.
-        margin = (max(values) / min(values)) ** 0.05 if max(values) > min(values) else 1.3
+        margin = logarithmic_margin(values)
         axes.set_xlim(min(values) / margin, max(values) * margin)
 
 

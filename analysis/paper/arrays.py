@@ -52,14 +52,15 @@ def curves(shop, config, abscissa, parameter, quantity):
     drawing, axes = plt.subplots(figsize=(6.8, 5.0), layout="constrained")
     data = []
     families = by(groups, parameter)
+    places = [] if abscissa == "capillary_number" else [group[abscissa] for group in groups]
     for index, (value, members) in enumerate(families):
         label = f"${SYMBOLS[parameter]} = {value:g}$"
-        shift = style.side_by_side(index, len(families)) if abscissa != "capillary_number" else 1
+        shift = style.side_by_side(index, len(families), places) if places else 1
         members = [group for group in members if group[abscissa] is not None]
         draw = style.draw_lengths if quantity == "length" else style.draw_speeds
         draw(axes, [group[abscissa] * shift for group in members], members, index, label)
         data += numbers(members, label)
-    style.logarithmic_abscissa(axes, [] if abscissa == "capillary_number" else [group[abscissa] for group in groups])
+    style.logarithmic_abscissa(axes, places)
     if quantity == "length":
         axes.set_yscale("log")
     axes.set_xlabel(style.AXES[abscissa])

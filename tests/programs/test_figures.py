@@ -289,16 +289,29 @@ class Pictures(Analysis):
         self.assertIn(f"{status['over']} of 40 runs finished", (self.folder / "report.html").read_text())
 
     def test_a_doubtful_length_has_an_open_marker_and_the_reason_beside_it(self):
-        self.succeed("clogsweep", *QUICK, "line-tension=2,30", "seeds=1..3", "--output", "s.h5")
+        self.succeed("clogsweep", *QUICK, "line-tension=2,30", "seeds=1..5", "--output", "s.h5")
         groups = Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
         for group, doubts in zip(groups.members, (["below_spacing"], ["below_spacing", "not_proved_sound"])):
             self.assertEqual(style.reasons_for_open_marker(group), doubts)
-        groups.members[0]["doubts"] = "few_clogs"
-        axes = clogging_length.draw(groups).axes[0]
-        open_markers, = [line for line in axes.lines if line.get_markerfacecolor() == "white" and line.get_marker() != "^"]
-        self.assertEqual(list(open_markers.get_xdata()), [30])
+        def open_places():
+            """With the caption."""
+            axes = clogging_length.draw(groups).axes[0]
+            self.addCleanup(pyplot.close, axes.figure)
+            return [line.get_xdata()[0] for line in axes.lines if line.get_markerfacecolor() == "white" and line.get_marker() != "^"], axes.get_title()
+
+        groups.members[0]["doubts"] = "censored_by_time"
+        places, title = open_places()
+        self.assertEqual(places, [30])
         for reason in ("outside of what was proved sound", "shorter than one obstacle spacing"):
-            self.assertIn(f"open markers: {reason}", axes.get_title())
+            self.assertIn(f"open markers: {reason}", title)
+        self.assertNotIn("not complete", title)
+        groups.members[0]["doubts"] = "few_clogs incomplete"
+        places, title = open_places()
+        self.assertEqual(places, [2, 30])
+        self.assertIn("open markers: fewer than 5 clogs: more seeds are needed", title)
+        self.assertIn("not complete: 1 of 2 points with runs that are under way, interrupted or failed", title)
+        groups.members[0]["clogs"] = 0  # a triangle, which says it
+        self.assertNotIn("fewer than 5 clogs", open_places()[1])
 
     def test_clogs_are_drawn_from_a_sweep(self):
         self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1..2", "--output", "s.h5")

@@ -112,6 +112,27 @@ class Looks(Analysis):
         low, high = axes.get_xlim()
         self.assertTrue(low < 0.5 and high > 3, (low, high))
 
+    def test_many_curves_are_told_apart_beside_the_legend_and_off_the_frame(self):
+        arrays = ["obstacle-gap=lin(0.2,0.35,4)", "obstacle-diameter=lin(0.3,0.45,4)"]
+        for tensions in ("line-tension=6,8", "line-tension=3,3.3,9"):
+            (self.folder / "s.h5").unlink(missing_ok=True)
+            groups = self.fit(*QUICK, tensions, *arrays, "seeds=1")
+            for group in groups.members:
+                group.update(relative_speed=0.4, relative_speed_error=0.1)
+            for drawing in (clogging_length.draw(groups), report.speeds(groups)):
+                self.addCleanup(pyplot.close, drawing)
+                self.assert_title_is_whole(drawing)
+                axes, = drawing.axes
+                legend, frame = axes.get_legend().get_window_extent(), axes.get_window_extent()
+                self.assertLess(frame.x1, legend.x0)
+                self.assertTrue(legend.x1 < drawing.bbox.x1 and legend.y0 > drawing.bbox.y0 and legend.y1 <= frame.y1 + 1)
+                self.assertGreater(frame.width, 0.6 * 6.4 * drawing.dpi)
+                lines = [bars.lines[0] for bars in axes.containers]
+                self.assertEqual(len({(line.get_color(), str(line._dash_pattern)) for line in lines}), 16)
+                for line in axes.lines:
+                    for x, _ in axes.transData.transform(line.get_xydata()):
+                        self.assertTrue(frame.x0 + 4 < x < frame.x1 - 4 or np.isnan(x), (frame, x))
+
     def test_long_captions_of_panels_are_wrapped_between_phrases(self):
         drawing, panels = pyplot.subplots(1, 2, figsize=(7, 3), layout="constrained")
         self.addCleanup(pyplot.close, drawing)
