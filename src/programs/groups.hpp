@@ -39,8 +39,8 @@ struct DoubtText {
 inline constexpr DoubtText doubt_texts[] = {
     {Doubt::few_clogs, 'f', "few_clogs", "fewer than 5 clogs: more seeds are needed"},
     {Doubt::not_exponential, 'x', "not_exponential",
-     "P(r) is not exponential (p < 0.05, Holm's test of all groups): one length does not describe these "
-     "runs"},
+     "P(r) is not exponential (p < 0.05, Holm's test of all groups of ten clogs or more): one length does "
+     "not describe these runs"},
     {Doubt::censored_by_time, 't', "censored_by_time",
      "runs ended by max-time: right if slow droplets are as likely to clog as fast ones"},
     {Doubt::incomplete, 'i', "incomplete",
