@@ -80,8 +80,6 @@ void validate(const RunParameters& run, const ChannelParameters& channel, double
   if (!is_parallel && !(channel.wedge_angle >= 5 && channel.wedge_angle <= 85))
     refuse("wedge-angle", channel.wedge_angle,
            "degrees against the flow, must lie in 5..85, or be 0 for parallel walls) try 45");
-  if (!(std::abs(channel.end) <= 100 && channel.end > channel.start))
-    refuse("end", channel.end, "must lie downstream of the start and within 100 sigma of the orifice) try 3");
   if (!(channel.tip_radius >= 0 && channel.tip_radius <= 10))
     refuse("tip-radius", channel.tip_radius, "must lie in 0..10 sigma) try 0.03");
   if (is_parallel && !(channel.orifice / 2 > reach))
@@ -93,6 +91,11 @@ void validate(const RunParameters& run, const ChannelParameters& channel, double
     refuse("start", channel.start,
            "the droplet must be upstream, clear of the wedges, within 100 sigma) use at most " +
                text(last_start));
+  if (channel.end == ChannelParameters{}.end && channel.start >= channel.end)
+    refuse("start", channel.start,
+           "must lie upstream of the end, " + text(channel.end) + " by default) give --end, too");
+  if (!(std::abs(channel.end) <= 100 && channel.end > channel.start))
+    refuse("end", channel.end, "must lie downstream of the start and within 100 sigma of the orifice) try 3");
 }
 
 }  // namespace
