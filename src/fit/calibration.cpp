@@ -87,7 +87,7 @@ class Trier {
   SpeedResiduals residuals(const Place& place) {
     SpeedResiduals found = speed_residuals(measured_, profile(place));
     ++num_simulations_;
-    if (progress_) progress_(root_mean_square(found.values));
+    if (progress_) progress_({std::exp(place.log_tension), place.drag, root_mean_square(found.values)});
     return found;
   }
   Trial operator()(const Place& place) {

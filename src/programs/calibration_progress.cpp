@@ -10,15 +10,30 @@
 #include "duration.hpp"
 
 namespace clog {
+namespace {
+
+bool is_nearer(const fit::CalibrationAttempt& a, const fit::CalibrationAttempt& b) {
+  return a.delta < b.delta;
+}
+
+std::string text_of(const fit::CalibrationAttempt& best) {
+  if (!std::isfinite(best.delta)) return "no simulation is over";
+  char text[96];
+  std::snprintf(text, sizeof text, "Delta_v down to %.3g, with Gamma = %.4g, b_0/b_inf = %.4g", best.delta,
+                best.line_tension, best.near_wall_drag);
+  return text;
+}
+
+}  // namespace
 
 CalibrationProgress::CalibrationProgress(std::size_t num_trials)
     : status_(std::cerr, StatusLine::standard_error()),
-      least_deltas_(num_trials, std::numeric_limits<double>::infinity()) {}
+      best_(num_trials, {.delta = std::numeric_limits<double>::infinity()}) {}
 
-void CalibrationProgress::tried(std::size_t trial, double delta) {
+void CalibrationProgress::tried(std::size_t trial, const fit::CalibrationAttempt& attempt) {
   const std::scoped_lock lock(mutex_);
   ++num_simulations_;
-  least_deltas_[trial] = std::min(least_deltas_[trial], delta);
+  best_[trial] = std::min(attempt, best_[trial], is_nearer);
   if (status_.is_due()) status_.renew(line());
 }
 
@@ -27,16 +42,17 @@ void CalibrationProgress::ended() {
   ++num_ended_;
 }
 
+std::string CalibrationProgress::best(std::size_t trial) const {
+  const std::scoped_lock lock(mutex_);
+  return text_of(best_[trial]);
+}
+
 std::string CalibrationProgress::line() const {
   std::string text = sweep::counted(num_simulations_, "simulation");
-  if (least_deltas_.size() > 1)
-    text += ", " + std::to_string(num_ended_) + "/" + std::to_string(least_deltas_.size()) + " trials done";
-  const double worst = *std::max_element(least_deltas_.begin(), least_deltas_.end());
-  if (std::isfinite(worst)) {
-    char delta[48];
-    std::snprintf(delta, sizeof delta, ", Delta_v down to %.3g", worst);
-    text += delta;
-  }
+  if (best_.size() > 1)
+    text += ", " + std::to_string(num_ended_) + "/" + std::to_string(best_.size()) + " trials done";
+  const fit::CalibrationAttempt& worst = *std::max_element(best_.begin(), best_.end(), is_nearer);
+  if (std::isfinite(worst.delta)) text += ", " + text_of(worst);
   const double elapsed = std::chrono::duration<double>(Clock::now() - begin_).count();
   return text + ", " + readable_duration(elapsed) + " so far";
 }

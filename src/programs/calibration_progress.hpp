@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "clog/fit/calibration.hpp"
 #include "status_line.hpp"
 
 namespace clog {
@@ -15,18 +16,19 @@ namespace clog {
 class CalibrationProgress {
  public:
   explicit CalibrationProgress(std::size_t num_trials);
-  /// A simulation for this trial had this Delta_v.
-  void tried(std::size_t trial, double delta);
+  void tried(std::size_t trial, const fit::CalibrationAttempt& attempt);
   void ended();
+  /// Of a trial so far, in words.
+  std::string best(std::size_t trial) const;
   void finish() { status_.wipe(); }
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   StatusLine status_;
   Clock::time_point begin_ = Clock::now();
-  std::vector<double> least_deltas_;  ///< of each trial
+  std::vector<fit::CalibrationAttempt> best_;  ///< of each trial
   int num_simulations_ = 0;
   int num_ended_ = 0;
 

@@ -144,6 +144,7 @@ class ChannelSimulation {
   }
 
   /// From several threads at a time, as many as there are cores.
+  /// @throws cli::Stopped after a signal
   fit::Profile operator()(double line_tension, double near_wall_drag) const {
     const UseOfCore core;
     sweep::Settings settings = settings_;
@@ -154,6 +155,7 @@ class ChannelSimulation {
     fit::Profile profile;
     bool is_over = false;
     while (!is_over) {
+      if (cli::stop_signalled()) throw cli::Stopped("stopped by a signal");
       profile.push_back({channel_.start + run.displacement()[0],
                          run.droplet().centre_velocity()[0] / parameters.drag.terminal_speed,
                          run.droplet().shape().shape_parameter()});
@@ -168,14 +170,17 @@ class ChannelSimulation {
 };
 
 /// Trials side by side.
-std::vector<fit::Calibration> calibrate_all(const std::vector<fit::Profile>& profiles,
+/// @throws cli::Stopped after a signal, with the best so far
+std::vector<fit::Calibration> calibrate_all(const std::vector<Text>& files,
+                                            const std::vector<fit::Profile>& profiles,
                                             const sweep::Settings& settings,
                                             const ChannelParameters& channel) {
   CalibrationProgress progress(profiles.size());
   const auto calibrate = [&](std::size_t trial) {
     const fit::Profile& profile = profiles[trial];
-    fit::Calibration found = fit::calibrate(profile, ChannelSimulation(settings, channel, profile), {},
-                                            [&](double delta) { progress.tried(trial, delta); });
+    fit::Calibration found =
+        fit::calibrate(profile, ChannelSimulation(settings, channel, profile), {},
+                       [&](const fit::CalibrationAttempt& attempt) { progress.tried(trial, attempt); });
     progress.ended();
     return found;
   };
@@ -183,7 +188,17 @@ std::vector<fit::Calibration> calibrate_all(const std::vector<fit::Profile>& pro
   for (std::size_t trial = 0; trial < profiles.size(); ++trial)
     running.push_back(std::async(std::launch::async, calibrate, trial));
   std::vector<fit::Calibration> found;
-  for (auto& trial : running) found.push_back(trial.get());
+  try {
+    for (auto& trial : running) found.push_back(trial.get());
+  } catch (const cli::Stopped& stop) {
+    for (auto& trial : running)
+      if (trial.valid()) trial.wait();
+    progress.finish();
+    Text words = stop.what();
+    for (std::size_t trial = 0; trial < files.size(); ++trial)
+      words += "; " + files[trial] + ": " + progress.best(trial);
+    throw cli::Stopped(words);
+  }
   progress.finish();
   return found;
 }
@@ -324,7 +339,8 @@ int clogfit_calibrate(int argc, const char* const* argv) {
     profiles.push_back(std::move(measured.frames));
   }
 
-  const std::vector<fit::Calibration> found = calibrate_all(profiles, line.settings(), channel);
+  cli::catch_stop_signals();
+  const std::vector<fit::Calibration> found = calibrate_all(files, profiles, line.settings(), channel);
   (format == "json" ? print_json : print_text)(files, found, fit::combine(found), lab, terminal_speed, other);
   return cli::exit_success;
 }

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <random>
 #include <stdexcept>
 #include <vector>
@@ -159,9 +160,19 @@ TEST(Calibrate, SaysThatItDidNotConverge) {
 }
 
 TEST(Calibrate, TellsOfEverySimulationAndIsTheSameEveryTime) {
-  std::atomic<int> num_told = 0;
-  const Calibration found = calibrate(measured(1, 0.1, 0.02, 1), model, {}, [&](double) { ++num_told; });
+  std::mutex mutex;
+  int num_told = 0;
+  CalibrationAttempt best{.delta = 100};
+  const Calibration found =
+      calibrate(measured(1, 0.1, 0.02, 1), model, {}, [&](const CalibrationAttempt& attempt) {
+        const std::scoped_lock lock(mutex);
+        ++num_told;
+        if (attempt.delta < best.delta) best = attempt;
+      });
   EXPECT_EQ(found.num_simulations, num_told + 1);  // and the best once more
+  EXPECT_LE(best.delta, found.deviation.speed + 1e-12);
+  EXPECT_NEAR(best.line_tension, found.line_tension, found.line_tension_error);
+  EXPECT_NEAR(best.near_wall_drag, found.near_wall_drag, found.near_wall_drag_error);
   const Calibration again = calibrate(measured(1, 0.1, 0.02, 1), model);
   EXPECT_EQ(found.line_tension, again.line_tension);
   EXPECT_EQ(found.num_simulations, again.num_simulations);

@@ -4,6 +4,7 @@ import json
 import math
 import os
 import pty
+import signal
 import subprocess
 import threading
 import unittest
@@ -98,6 +99,26 @@ class Calibrate(ProgramTest):
         self.assertEqual(process.returncode, 0, text)
         self.assertRegex(text, r"\r\d+ simulations, 0/2 trials done, Delta_v down to ")
         return json.loads(printed)
+
+    def test_a_signal_ends_it_with_the_best_so_far(self):
+        self.write("trial.csv", "\n".join(["h [sigma], v [v_t]", *(f"{0.1 * i},{1 - 0.05 * (i % 3)}" for i in range(-10, 11))]))
+        ours, theirs = pty.openpty()
+        self.addCleanup(os.close, ours)
+        # It would take minutes.
+        with subprocess.Popen([BIN / "clogfit", "calibrate", "trial.csv", "--orifice=0.7", "vertices=256", "--format=json"], cwd=self.folder,
+                              stdout=subprocess.PIPE, stderr=theirs) as process:
+            os.close(theirs)
+            told = b""
+            while b"Delta_v" not in told and (some := self.read_some(ours)):
+                told += some
+            process.send_signal(signal.SIGINT)
+            while some := self.read_some(ours):
+                told += some
+            self.assertEqual(process.stdout.read(), b"")
+        self.assertEqual(process.returncode, 75, told)
+        best = r"Delta_v down to \S+, with Gamma = [0-9.e+-]+, b_0/b_inf = [0-9.e+-]+"
+        self.assertRegex(told.decode(), rf"\r\d+ simulations?, {best}, ")
+        self.assertRegex(told.decode(), rf"clogfit calibrate: stopped by a signal; trial.csv: {best}\r\n$")
 
     @staticmethod
     def read_some(terminal):

@@ -53,8 +53,14 @@ struct CalibrationRange {
 };
 /// Simulated profile for a line tension and b_0/b_inf. Called from several threads at a time.
 using Simulation = std::function<Profile(double line_tension, double near_wall_drag)>;
-/// Told of Delta_v after every simulation, from several threads at a time.
-using CalibrationProgress = std::function<void(double delta)>;
+/// What a simulation has come to.
+struct CalibrationAttempt {
+  double line_tension = 0;
+  double near_wall_drag = 0;
+  double delta = 0;  ///< Delta_v
+};
+/// Told of every simulation, from several threads at a time.
+using CalibrationProgress = std::function<void(const CalibrationAttempt& attempt)>;
 
 /// Minimises Delta_v. Near a line tension at which the droplet clogs it has several minima, narrow ones. So
 /// the search begins from the best points of a coarse grid, logarithmic in Gamma; brackets the line tension
@@ -64,7 +70,7 @@ using CalibrationProgress = std::function<void(double delta)>;
 ///
 /// Errors are those of linearised least squares with independent frames of equal relative scatter, linearised
 /// over a range like the errors themselves.
-/// @throws std::invalid_argument for fewer than three frames
+/// @throws std::invalid_argument for fewer than three frames; what a simulation throws, which ends the search
 Calibration calibrate(const Profile& measured, const Simulation& simulate, const CalibrationRange& range = {},
                       const CalibrationProgress& progress = {});
 
