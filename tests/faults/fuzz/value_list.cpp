@@ -10,7 +10,7 @@ using namespace clog;
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  const auto kind = static_cast<sweep::ValueKind>(data[0] % 3);
+  const auto kind = static_cast<ValueKind>(data[0] % 3);
   const std::vector<std::string> words = {"auto", "dp"};
   may_be_refused([&] {
     const std::vector<std::string> values = sweep::expand_list(text_of(data + 1, size - 1), kind, words);
