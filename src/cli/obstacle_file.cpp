@@ -4,23 +4,12 @@
 #include <fstream>
 #include <sstream>
 
-#include "clog/cli/text_file.hpp"
+#include "clog/cli/csv.hpp"
 #include "clog/core/error.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::cli {
 namespace {
-
-std::vector<std::string> split_line(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream in(line);
-  for (std::string cell; std::getline(in, cell, ',');) {
-    const auto first = cell.find_first_not_of(" \t\r");
-    const auto last = cell.find_last_not_of(" \t\r");
-    cells.push_back(first == std::string::npos ? "" : cell.substr(first, last - first + 1));
-  }
-  return cells;
-}
 
 Obstacle parse_obstacle(const std::vector<std::string>& cells, double default_diameter,
                         const Period& period) {
@@ -43,22 +32,12 @@ struct Lines {
 };
 
 Lines read_lines(const std::string& path, const ObstacleFileRules& rules) {
-  std::istringstream file(read_text(path));
   Lines lines;
-  int line_number = 0;
-  for (std::string line; std::getline(file, line);) {
-    ++line_number;
-    const std::vector<std::string> cells = split_line(line);
-    const bool is_blank = line.find_first_not_of(" \t\r") == std::string::npos;
-    const bool is_header = line_number == 1 && !cells.empty() && cells[0] == "x";
-    if (is_blank || is_header || line.starts_with('#')) continue;
-    try {
-      lines.obstacles.push_back(parse_obstacle(cells, rules.default_diameter, rules.period));
-      lines.numbers.push_back(line_number);
-    } catch (const Error& error) {
-      throw Error(path + " line " + std::to_string(line_number) + ": " + error.what());
-    }
-  }
+  read_csv(path, [&](int number, const std::vector<std::string>& cells) {
+    if (number == 1 && cells[0] == "x") return;  // the header
+    lines.obstacles.push_back(parse_obstacle(cells, rules.default_diameter, rules.period));
+    lines.numbers.push_back(number);
+  });
   if (lines.obstacles.empty()) throw Error(path + " holds no obstacles; lines are x,y[,diameter]");
   return lines;
 }

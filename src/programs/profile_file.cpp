@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "clog/cli/csv.hpp"
 #include "clog/cli/program.hpp"
-#include "clog/cli/text_file.hpp"
 #include "clog/core/error.hpp"
 #include "clog/store/trajectory_file.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -20,18 +19,7 @@
 namespace clog {
 namespace {
 
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string::npos) return "";
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream in(line);
-  for (std::string cell; std::getline(in, cell, ',');) cells.push_back(trimmed(cell));
-  return cells;
-}
+using cli::trimmed;
 
 /// Where a quantity stands in a line, and what to multiply it with.
 struct Column {
@@ -59,8 +47,9 @@ double factor(const std::string& unit, const std::string& reduced, const std::st
 /// Where a length and a speed stand in each line, and the shape if it is there.
 class Columns {
  public:
-  Columns(const std::string& length_name, const std::string& header, const ProfileScales& scales) {
-    const std::vector<std::string> cells = cells_of(header);
+  /// @param cells  of the header
+  Columns(const std::string& length_name, const std::vector<std::string>& cells,
+          const ProfileScales& scales) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const auto [name, unit] = name_and_unit(cells[i]);
       if (name == length_name)
@@ -94,21 +83,13 @@ class Columns {
 template <typename Add>
 void read_lines(const std::string& path, const std::string& length_name, const ProfileScales& scales,
                 Add add) {
-  std::istringstream file(cli::read_text(path));
   std::optional<Columns> columns;
-  int line_number = 0;
-  for (std::string line; std::getline(file, line);) {
-    ++line_number;
-    if (trimmed(line).empty() || line.starts_with('#')) continue;
-    try {
-      if (columns)
-        add(*columns, cells_of(line));
-      else
-        columns.emplace(length_name, line, scales);
-    } catch (const Error& error) {
-      throw Error(path + " line " + std::to_string(line_number) + ": " + error.what());
-    }
-  }
+  cli::read_csv(path, [&](int, const std::vector<std::string>& cells) {
+    if (columns)
+      add(*columns, cells);
+    else
+      columns.emplace(length_name, cells, scales);
+  });
 }
 
 store::TrajectoryTable read_passage(const std::string& path) {
@@ -157,7 +138,7 @@ void refuse_unfinished(const std::string& path, const fit::Profile& profile,
               " when the run ended: it clogged, or was stopped); give a droplet that passed");
 }
 
-fit::Profile read_csv(const std::string& path, const ProfileScales& scales) {
+fit::Profile profile_from_csv(const std::string& path, const ProfileScales& scales) {
   fit::Profile profile;
   read_lines(path, "h", scales, [&](const Columns& columns, const std::vector<std::string>& cells) {
     profile.push_back({columns.length(cells), columns.speed(cells), columns.shape(cells)});
@@ -173,7 +154,7 @@ void require_frames(const std::string& path, const fit::Profile& profile) {
 
 fit::Profile read_profile(const std::string& path, const ProfileScales& scales) {
   fit::Profile profile =
-      store::looks_like_hdf5(path) ? samples(path, read_passage(path)) : read_csv(path, scales);
+      store::looks_like_hdf5(path) ? samples(path, read_passage(path)) : profile_from_csv(path, scales);
   require_frames(path, profile);
   return profile;
 }
@@ -186,7 +167,7 @@ MeasuredProfile read_measured_profile(const std::string& path, const ProfileScal
     refuse_unfinished(path, passage, table.provenance);
     measured = {frames_of_camera(passage), std::move(table.provenance)};
   } else {
-    measured.frames = read_csv(path, scales);
+    measured.frames = profile_from_csv(path, scales);
   }
   require_frames(path, measured.frames);
   return measured;
