@@ -79,7 +79,8 @@ struct Parameter {
   bool is_automatic_by_default() const { return std::holds_alternative<std::monostate>(get({})); }
 };
 
-/// In the order in which they are shown, most telling first.
+/// In the order in which they are shown, and in which the axes of a plan follow each other: numbers of tasks
+/// depend on it.
 std::span<const Parameter> parameter_schema();
 /// @throws std::out_of_range if there is none
 const Parameter& parameter(std::string_view key);
