@@ -35,6 +35,10 @@ class Streams(SweepTest):
         self.assertFalse((self.folder / "s.h5.journal").exists())
         (self.folder / "s.h5").unlink()
 
+    def test_a_script_that_nobody_can_read_ends_as_its_fault_says(self):
+        done = self.redirect(">/dev/full 2>/dev/full", "clogfit", "report", "--help")
+        self.assertEqual(done.returncode, 2)
+
     def test_a_closed_stream_is_a_wish_for_silence(self):
         for redirection in (">&-", "2>&-", "<&-", "<&- >&- 2>&-"):
             for ranks in (None, 2):
