@@ -57,12 +57,12 @@ class Groups:
         return self.columns[name]["kind"] != "word"
 
     def _is_automatic(self, name):
-        """May its values follow from the others? A soft disk's stiffness is given, as is what the sweep has a list of."""
+        """May its values follow from the others? What the sweep has a list of is given."""
         if name in self.lists:
             return False
         fillings = self.values("obstacle_filling")
         from_array = (name == "obstacle_density" and fillings <= {"saturated", "lattice"}) or (name == "box" and fillings == {"lattice"})
-        return from_array or (self.columns[name].get("is_automatic", False) and (name != "wall_stiffness" or self.are_polygons))
+        return from_array or self.columns[name].get("automatic_in") in ("all", self.members[0]["model"])
 
     def curve_parameters(self):
         """Names of what tells the curves apart."""

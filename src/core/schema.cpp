@@ -85,6 +85,7 @@ struct Facts {
   const char* meaning;
   ParameterRole role = ParameterRole::physics;
   const ParameterScope* scope = &every_run;
+  const ParameterScope* automatic_in = nullptr;
   ParameterRange range = {};
   bool has_own_column = true;
   bool shapes_array = false;
@@ -105,6 +106,7 @@ Parameter entry(const char* key, Member, Facts facts) {
       .meaning = facts.meaning,
       .role = facts.role,
       .scope = facts.scope,
+      .automatic_in = facts.automatic_in,
       .range = facts.range,
       .has_own_column = facts.has_own_column,
       .shapes_array = facts.shapes_array,
@@ -143,6 +145,7 @@ std::vector<Parameter> make_schema() {
              .unit = "g rho sigma^3",
              .meaning =
                  "E_w, stiffness of contact; auto: the stiffest that time-step and vertices hold (dp only)",
+             .automatic_in = &polygons,
              .range = {positive, {}},
              .words = {"auto"}}),
       entry("obstacle-gap", [](auto& run) -> auto& { return run.obstacles.gap; },
@@ -178,6 +181,7 @@ std::vector<Parameter> make_schema() {
              .meaning = "obstacles per area; saturated: until not one more fits. More than every seed "
                         "reaches is refused",
              .scope = &arrays,
+             .automatic_in = &arrays,
              .range = {positive, {}},
              .has_own_column = false,
              .shapes_array = true,
@@ -294,6 +298,7 @@ std::vector<Parameter> make_schema() {
            .meaning = "step of the integrator; auto: the largest at which nothing stiff matters, 1e-3 is the "
                       "published one",
            .role = numerics,
+           .automatic_in = &every_run,
            .range = {from(1e-9, "smaller than any mode needs", "try 1e-3"), {}},
            .words = {"auto"}}),
       entry("area-stiffness", [](auto& run) -> auto& { return run.dp.area_stiffness; },
@@ -305,6 +310,7 @@ std::vector<Parameter> make_schema() {
                  "value, can hold it",
              .role = numerics,
              .scope = &polygons,
+             .automatic_in = &polygons,
              .range = {positive, {}},
              .words = {"auto"}}),
       entry(
@@ -320,6 +326,7 @@ std::vector<Parameter> make_schema() {
              .unit = "g rho sigma",
              .meaning = "K_l; auto: ratio times Gamma for rest, 1 for mean, 0.003/V_t for along",
              .scope = &polygons,
+             .automatic_in = &polygons,
              .range = {not_negative, {}},
              .words = {"auto"}}),
       entry("perimeter-stiffness-ratio", [](auto& run) -> auto& { return run.dp.perimeter_stiffness_ratio; },

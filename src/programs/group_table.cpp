@@ -50,7 +50,7 @@ std::string aligned(const std::vector<std::vector<std::string>>& lines) {
 }
 
 bool is_lattice(const Group& group) {
-  return group.parameters.parameters.obstacles.layout == ObstacleLayout::lattice;
+  return group.first_row.parameters.obstacles.layout == ObstacleLayout::lattice;
 }
 
 std::string letters(const std::vector<Doubt>& doubts) {
@@ -123,16 +123,16 @@ std::vector<std::string> result_cells(const Group& group, OptionalColumns option
 }
 
 std::vector<Field> all_fields(const Group& group) {
-  std::vector<Field> fields = parameter_fields(group.parameters);
+  std::vector<Field> fields = parameter_fields(group.first_row);
   for (Field& field : result_fields(group)) fields.push_back(std::move(field));
   return fields;
 }
 
 std::vector<bool> varying_fields(const std::vector<Group>& groups) {
-  const std::vector<Field> first = parameter_fields(groups.front().parameters);
+  const std::vector<Field> first = parameter_fields(groups.front().first_row);
   std::vector<bool> varies(first.size(), false);
   for (const Group& group : groups) {
-    const std::vector<Field> fields = parameter_fields(group.parameters);
+    const std::vector<Field> fields = parameter_fields(group.first_row);
     for (std::size_t i = 0; i < fields.size(); ++i) varies[i] = varies[i] || fields[i] != first[i];
   }
   return varies;
@@ -140,23 +140,19 @@ std::vector<bool> varying_fields(const std::vector<Group>& groups) {
 
 /// Fields that vary, except those whose automatic values follow from the others.
 std::vector<bool> shown_fields(const std::vector<Group>& groups, const std::vector<bool>& varies) {
-  const std::vector<Field> first = parameter_fields(groups.front().parameters);
-  const bool soft_disk = groups.front().parameters.parameters.model == Model::sp;
-  const auto is_automatic = [=](const sweep::Column& column) {
-    return column.parameter && column.parameter->is_automatic_by_default() &&
-           !(soft_disk && column.name == "wall_stiffness");
-  };
+  const std::vector<Field> first = parameter_fields(groups.front().first_row);
+  const RunParameters& run = groups.front().first_row.parameters;
   std::vector<bool> shown(first.size(), false);
   for (std::size_t i = 0; i < first.size(); ++i) {
     const std::string_view name = first[i].first;
-    shown[i] = (varies[i] && !is_automatic(*group_columns()[i])) || name == "obstacle_gap" ||
-               name == (soft_disk ? "wall_stiffness" : "line_tension");
+    shown[i] = (varies[i] && !group_columns()[i]->may_be_automatic(run)) || name == "obstacle_gap" ||
+               name == (run.model == Model::sp ? "wall_stiffness" : "line_tension");
   }
   for (std::size_t i = 0; i < first.size(); ++i) {
     if (!varies[i] || shown[i]) continue;
     std::map<std::vector<Value>, Value> follows;
     for (const Group& group : groups) {
-      const std::vector<Field> fields = parameter_fields(group.parameters);
+      const std::vector<Field> fields = parameter_fields(group.first_row);
       std::vector<Value> from;
       for (std::size_t j = 0; j < fields.size(); ++j)
         if (shown[j]) from.push_back(fields[j].second);
@@ -211,10 +207,10 @@ std::string wrapped(const std::vector<std::string>& words) {
 }  // namespace
 
 std::string to_text(const std::vector<Group>& groups, double confidence, SharedParameters shared) {
-  const std::vector<Field> first = parameter_fields(groups.front().parameters);
+  const std::vector<Field> first = parameter_fields(groups.front().first_row);
   const std::vector<bool> varies = varying_fields(groups);
   const std::vector<bool> shown = shown_fields(groups, varies);
-  const std::vector<bool> is_named = named_if_shared(groups.front().parameters, shared);
+  const std::vector<bool> is_named = named_if_shared(groups.front().first_row, shared);
   const auto is_shown = [&](std::size_t i) { return shown[i]; };
 
   std::vector<std::string> shared_words;
@@ -241,7 +237,7 @@ std::string to_text(const std::vector<Group>& groups, double confidence, SharedP
   int num_left_out = 0;
   for (const Group& group : groups) {
     std::vector<std::string>& line = lines.emplace_back();
-    const std::vector<Field> fields = parameter_fields(group.parameters);
+    const std::vector<Field> fields = parameter_fields(group.first_row);
     for (std::size_t i = 0; i < fields.size(); ++i)
       if (is_shown(i)) line.push_back(rounded(fields[i].second));
     for (std::string& cell : result_cells(group, optional)) line.push_back(std::move(cell));

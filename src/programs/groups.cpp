@@ -42,9 +42,9 @@ std::vector<Doubt> doubts_about(const Group& group) {
   if (group.num_damaged > 0) doubts.push_back(Doubt::damaged);
   if (hangs_on_mesh(group)) doubts.push_back(Doubt::held_by_mesh);
   if (group.num_repeating > 0) doubts.push_back(Doubt::array_repeats);
-  if (group.clogging.length < sweep::obstacle_spacing(group.parameters))
+  if (group.clogging.length < sweep::obstacle_spacing(group.first_row))
     doubts.push_back(Doubt::below_spacing);
-  if (!sweep::unproven_parameters(group.parameters).empty()) doubts.push_back(Doubt::not_proved_sound);
+  if (!sweep::unproven_parameters(group.first_row).empty()) doubts.push_back(Doubt::not_proved_sound);
   return doubts;
 }
 
@@ -156,7 +156,7 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
   std::vector<Group> groups;
   for (const auto& [fields, runs] : members) {
     Group group;
-    group.parameters = *runs.front();
+    group.first_row = *runs.front();
     std::vector<const sweep::RunRow*> counted;
     std::vector<double> speeds;
     std::vector<fit::Travel> travels;
@@ -210,7 +210,7 @@ std::vector<Field> parameter_fields(const sweep::RunRow& row) {
 }
 
 std::vector<Field> result_fields(const Group& group) {
-  const RunParameters& run = group.parameters.parameters;
+  const RunParameters& run = group.first_row.parameters;
   const double line_tension = run.model == Model::dp ? run.dp.line_tension : sweep::RunRow::not_known;
   std::string doubts;
   for (const Doubt doubt : group.doubts)

@@ -63,7 +63,7 @@ const DoubtText& text_of(Doubt doubt);
 
 /// The runs of a sweep that differ in their seed only, and what they say together.
 struct Group {
-  sweep::RunRow parameters;  ///< of its first run
+  sweep::RunRow first_row;  ///< its parameters are those of all
   fit::CloggingLength clogging;
   double least_squares_length = 0;  ///< the published way, biased; NaN for fewer than two clogs
   fit::WeibullTest weibull;

@@ -250,7 +250,7 @@ void print_config(const sweep::Settings& settings, const sweep::Plan& plan) {
   const RunParameters first = plan.task(0);
   std::cout << settings.to_config(true) << "\n# Values behind `auto` in the first task:\n";
   for (const Parameter& parameter : parameter_schema())
-    if (parameter.is_automatic_by_default() && parameter.applies_to(first))
+    if (parameter.may_be_automatic(first))
       if (const ParameterValue value = parameter.get(first); value != ParameterValue())
         std::cout << "# " << parameter.key << " = " << sweep::text_of(value) << '\n';
 }

@@ -1,7 +1,6 @@
 #include "usual_parameters.hpp"
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "clog/core/error.hpp"
@@ -10,12 +9,6 @@
 
 namespace clog {
 namespace {
-
-/// Would the parameter's value follow from the others, if it were not given?
-bool is_automatic(const Parameter& parameter, const RunParameters& run) {
-  return parameter.is_automatic_by_default() &&
-         !(run.model == Model::sp && parameter.key == std::string_view("wall-stiffness"));
-}
 
 /// Model and preset of the row, all else by default; not resolved yet.
 RunParameters defaults_for(const sweep::RunRow& row) {
@@ -32,7 +25,7 @@ RunParameters defaults_for(const sweep::RunRow& row) {
 RunParameters with_usual_values(const sweep::RunRow& row) {
   RunParameters run = defaults_for(row);
   for (const Parameter& parameter : parameter_schema())
-    if (parameter.shapes_array || (parameter.has_own_column && !is_automatic(parameter, run)))
+    if (parameter.shapes_array || (parameter.has_own_column && !parameter.may_be_automatic(run)))
       parameter.set(run, parameter.get(row.parameters));
   return run;
 }
@@ -51,7 +44,7 @@ std::vector<Field> usual_parameters(const sweep::RunRow& row) try {
   for (std::size_t i = 0; i < usual.size(); ++i) {
     const sweep::Column& column = *group_columns()[i];
     if (column.name == "obstacle_density" && !run.obstacles.density) usual[i] = with_own_step[i];
-    if (!column.parameter || !is_automatic(*column.parameter, run)) continue;
+    if (!column.may_be_automatic(run)) continue;
     usual[i] = (column.name == "time_step" ? with_usual_step : with_own_step)[i];
   }
   return usual;

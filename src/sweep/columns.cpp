@@ -158,10 +158,9 @@ Column filling_column() {
 }
 
 Column density_column() {
-  Column column =
-      member("obstacle_density", &RunRow::obstacle_density, ColumnRole::parameter, "1/sigma^2",
-             "obstacles per area; for a saturated array the jamming limit 0.6966/(w_ob+sigma_ob)^2, NaN "
-             "for a saturated mixture");
+  Column column = member("obstacle_density", &RunRow::obstacle_density, ColumnRole::parameter, "1/sigma^2",
+                         "obstacles per area; for a saturated array the jamming limit "
+                         "0.6966/(w_ob+sigma_ob)^2, NaN for a saturated mixture");
   column.symbol = parameter("obstacle-density").symbol;
   column.shapes_array = true;
   column.set = [](RunRow& row, const Value& value) {
@@ -201,8 +200,7 @@ std::vector<Column> make_columns() {
              "runs of different versions differ though their parameters agree (parameters.hpp)"),
       member("status", &RunRow::status, result, "",
              "clogged; flowing: max_time reached; passed: the end of its way; failed: see message; running, "
-             "interrupted: "
-             "not over, the other columns say how far it is",
+             "interrupted: not over, the other columns say how far it is",
              16),
       member("clogged_by", &RunRow::clogged_by, result, "",
              "certified: a stable equilibrium was proved to be at hand, distance, lateral_displacement and "
@@ -216,8 +214,7 @@ std::vector<Column> make_columns() {
       member("time", &RunRow::time, result, "t0", "time since release"),
       member("mean_speed", &RunRow::mean_speed, result, "sqrt(sigma g)",
              "way over time after the transient and before the arrest; NaN if it moved less than half a "
-             "diameter in "
-             "that time, or the transient was not over in half the run"),
+             "diameter in that time, or the transient was not over in half the run"),
       member("mean_speed_error", &RunRow::mean_speed_error, result, "sqrt(sigma g)",
              "standard error of mean_speed from its course in this run; NaN for too short a run"),
       member("transient", &RunRow::transient, result, "t0", "time at which the transient ends"),
@@ -228,8 +225,7 @@ std::vector<Column> make_columns() {
              "A = perimeter^2/(4 pi area) at the end; 1 for a circle"),
       member("mechanism", &RunRow::mechanism, result, "",
              "wrapped around obstacles, squeezed in gaps, hybrid (src/core/README.md); none unless clogged, "
-             "or if nothing that "
-             "it touches makes a gap; empty: not known",
+             "or if nothing that it touches makes a gap; empty: not known",
              16),
       member(
           "wrapped_support", &RunRow::wrapped_support, result, "",
@@ -245,8 +241,7 @@ std::vector<Column> make_columns() {
       member("rank", &RunRow::rank, circumstance, "", "MPI rank that did the run"),
       member("instruction_set", &RunRow::instruction_set, circumstance, "",
              "of the polygon's step; mixed: interrupted under one, it went on under another, so that no "
-             "replay has its bits; "
-             "none for sp",
+             "replay has its bits; none for sp",
              16),
       member("host", &RunRow::host, circumstance, "", "host of that rank", 64),
       member("attempt", &RunRow::attempt, circumstance, "",

@@ -60,7 +60,7 @@ Json to_json(const Column& column) {
   if (const Parameter* parameter = column.parameter) {
     json["key"] = parameter->key;
     json["parameter_role"] = name(parameter->role);
-    json["is_automatic"] = parameter->is_automatic_by_default();
+    if (parameter->automatic_in) json["automatic_in"] = parameter->automatic_in->word;
     json["default"] = find_key(parameter->key).default_text;
   }
   return json;

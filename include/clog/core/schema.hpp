@@ -60,9 +60,10 @@ struct Parameter {
   const char* meaning;  ///< one line
   ParameterRole role;
   const ParameterScope* scope;
-  ParameterRange range;  ///< of numbers
-  bool has_own_column;   ///< otherwise the column tells of others as well
-  bool shapes_array;     ///< do two values of it make two obstacle arrays?
+  const ParameterScope* automatic_in;  ///< runs in which its value follows from the others unless it is given
+  ParameterRange range;                ///< of numbers
+  bool has_own_column;                 ///< otherwise the column tells of others as well
+  bool shapes_array;                   ///< do two values of it make two obstacle arrays?
   /// What the column holds where the parameter means nothing; mostly nothing.
   ParameterValue elsewhere;
   /// Of files from before the parameter was there: what all runs had then. Nothing: it is not known.
@@ -75,8 +76,8 @@ struct Parameter {
   void (*set)(RunParameters&, const ParameterValue&);
 
   bool applies_to(const RunParameters& run) const { return scope->holds(run); }
-  /// Does its value follow from the others, unless it is given?
-  bool is_automatic_by_default() const { return std::holds_alternative<std::monostate>(get({})); }
+  /// Does its value follow from the others in such a run, unless it is given?
+  bool may_be_automatic(const RunParameters& run) const { return automatic_in && automatic_in->holds(run); }
 };
 
 /// In the order in which they are shown, and in which the axes of a plan follow each other: numbers of tasks

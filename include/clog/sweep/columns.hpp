@@ -52,6 +52,11 @@ struct Column {
   /// For a row whose file does not have this column.
   std::function<void(RunRow&)> set_unknown;
 
+  /// See Parameter.
+  bool may_be_automatic(const RunParameters& run) const {
+    return parameter && parameter->may_be_automatic(run);
+  }
+
   /// Of `size` bytes, as they lie in a file. Nothing is NaN, -1, or an empty text.
   void pack(const RunRow& row, std::byte* bytes) const;
   /// A value that cannot be is noted in the row. Columns are to be read in the order of columns().
