@@ -27,3 +27,11 @@ function(clog_layer name)
   add_library(clog_${name} STATIC ${LAYER_SOURCES})
   target_link_libraries(clog_${name} PUBLIC clog_flags ${LAYER_USES} PRIVATE ${LAYER_USES_PRIVATE})
 endfunction()
+
+# clog_program(<name> <files...> USES <libraries...>): <name>.cpp has the main.
+function(clog_program name)
+  cmake_parse_arguments(PROGRAM "" "" "USES" ${ARGN})
+  list(TRANSFORM PROGRAM_UNPARSED_ARGUMENTS PREPEND "programs/")
+  add_executable(${name} programs/${name}.cpp ${PROGRAM_UNPARSED_ARGUMENTS})
+  target_link_libraries(${name} PRIVATE ${PROGRAM_USES})
+endfunction()

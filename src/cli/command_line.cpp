@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "clog/cli/text_file.hpp"
+#include "clog/console/text_file.hpp"
 #include "clog/core/error.hpp"
 #include "clog/core/instruction_set.hpp"
 
@@ -127,7 +127,7 @@ void CommandLine::refuse_unknown(const std::string& word, std::span<const char* 
 }
 
 void CommandLine::read_config(const std::string& path) {
-  std::istringstream file(read_text(path));
+  std::istringstream file(console::read_text(path));
   try {
     const po::parsed_options parsed = po::parse_config_file(file, keys_, true);
     std::set<std::string> seen;

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "clog/cli/csv.hpp"
+#include "clog/console/csv.hpp"
 #include "clog/core/error.hpp"
 #include "clog/sweep/value_list.hpp"
 
@@ -33,7 +33,7 @@ struct Lines {
 
 Lines read_lines(const std::string& path, const ObstacleFileRules& rules) {
   Lines lines;
-  read_csv(path, [&](int number, const std::vector<std::string>& cells) {
+  console::read_csv(path, [&](int number, const std::vector<std::string>& cells) {
     if (number == 1 && cells[0] == "x") return;  // the header
     lines.obstacles.push_back(parse_obstacle(cells, rules.default_diameter, rules.period));
     lines.numbers.push_back(number);

@@ -1,28 +1,22 @@
 #include "clog/cli/program.hpp"
 
-#include <fcntl.h>
-#include <poll.h>
-#include <unistd.h>
-
-#include <csignal>
-#include <cstdio>
-#include <cstdlib>
 #include <ctime>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <new>
 
-#include "clog/cli/build_info.hpp"
-#include "clog/cli/printable.hpp"
+#include "clog/console/build_info.hpp"
+#include "clog/console/exit_codes.hpp"
+#include "clog/console/signals.hpp"
+#include "clog/console/streams.hpp"
 #include "clog/core/error.hpp"
 
 namespace clog::cli {
+
+using namespace console;
+
 namespace {
-
-volatile std::sig_atomic_t stop_flag = 0;  // the one thing a signal handler may write to
-
-void raise_stop_flag(int) { stop_flag = 1; }
 
 /// ISO 8601.
 std::string utc_now() {
@@ -33,29 +27,7 @@ std::string utc_now() {
   return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts)};
 }
 
-/// Has everybody left who could read the output?
-bool is_reader_gone() {
-  pollfd state{STDOUT_FILENO, POLLOUT, 0};
-  return poll(&state, 1, 0) == 1 && (state.revents & (POLLERR | POLLHUP)) != 0;
-}
-
 }  // namespace
-
-void prepare_streams() {
-  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
-    if (fcntl(descriptor, F_GETFD) < 0 && open("/dev/null", O_RDWR) != descriptor)
-      std::_Exit(exit_user_fault);  // there may be nowhere to say why
-  std::signal(SIGPIPE, SIG_IGN);
-  std::cout.exceptions(std::ios_base::badbit);
-  std::cerr.tie(nullptr);  // what is wrong is told, whether the output can be written or not
-}
-
-void say(const std::string& line) { std::cerr << printable(line) << std::endl; }
-
-void flush_output() {
-  std::cout.flush();
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw std::ios_base::failure("cannot print");
-}
 
 int run_program(const std::string& program, const std::function<int()>& body) {
   try {
@@ -108,13 +80,5 @@ NamedTexts origin(const CommandLine& line) {
           {"command_line", line.text()},
           {"start_time", utc_now()}};
 }
-
-void catch_stop_signals() {
-  std::signal(SIGINT, raise_stop_flag);
-  std::signal(SIGTERM, raise_stop_flag);
-  std::signal(SIGUSR1, raise_stop_flag);
-}
-
-bool stop_signalled() { return stop_flag != 0; }
 
 }  // namespace clog::cli

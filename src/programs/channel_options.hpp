@@ -3,14 +3,11 @@
 #include "clog/cli/command_line.hpp"
 #include "clog/core/systems.hpp"
 
-namespace clog {
+namespace clog::programs {
 
 /// Declares --orifice, --wedge-angle and --tip-radius.
 void add_channel_options(cli::CommandLine& line);
 /// The channel that they describe; `start` and `end` are left at their defaults. @throws Error
 ChannelParameters channel_from(const cli::CommandLine& line);
 
-/// The one parameter set that the settings mean in this channel, resolved. @throws Error if they mean several
-RunParameters channel_run(sweep::Settings settings, const ChannelParameters& channel);
-
-}  // namespace clog
+}  // namespace clog::programs

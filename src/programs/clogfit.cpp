@@ -5,21 +5,24 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis_script.hpp"
+#include "clog/campaign/group_table.hpp"
+#include "clog/campaign/stored_sweep.hpp"
+#include "clog/cli/analysis_script.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
+#include "clog/console/exit_codes.hpp"
+#include "clog/console/streams.hpp"
 #include "clog/core/error.hpp"
 #include "clog/store/run_table.hpp"
 #include "clogfit_calibrate.hpp"
 #include "clogfit_deviation.hpp"
 #include "clogfit_drag.hpp"
-#include "group_table.hpp"
-#include "stored_sweep.hpp"
-#include "sweep_input.hpp"
 
 namespace {
 
 using namespace clog;
+using namespace clog::programs;
+using campaign::SharedParameters;
 
 constexpr const char* program = "clogfit";
 constexpr const char* usage =
@@ -53,7 +56,7 @@ int body(int argc, char** argv) {
   line.add_commands({"calibrate", "deviation", "drag", "report"});
   line.explain_surplus_words("one sweep file is read at a time; call clogfit for each");
   line.parse(argc, argv);
-  if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return cli::exit_success;
+  if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return console::exit_success;
   if (!line.has("file")) throw Error("missing sweep file; try clogfit sweep.h5");
   const std::string format = line.get("format");
   if (format != "text" && format != "csv" && format != "json")
@@ -64,30 +67,30 @@ int body(int argc, char** argv) {
 
   const double from_distance = line.has("from-distance") ? line.get_positive("from-distance") : 0;
 
-  const store::SweepFile sweep = read_with_caution(line.get("file"));
+  const store::SweepFile sweep = campaign::read_with_caution(line.get("file"));
   if (sweep.rows.empty()) throw Error(line.get("file") + " has no runs yet; let the sweep finish some first");
-  const std::vector<Group> groups = group_runs(sweep.rows, confidence, from_distance);
-  std::cout << (format == "csv"    ? to_csv(groups)
-                : format == "json" ? to_json(groups, confidence, listed_columns(sweep.provenance))
-                                   : to_text(groups, confidence,
-                                             line.has("all-parameters") ? SharedParameters::all
-                                                                        : SharedParameters::unusual));
-  return cli::exit_success;
+  const std::vector<campaign::Group> groups = campaign::group_runs(sweep.rows, confidence, from_distance);
+  std::cout << (format == "csv" ? campaign::to_csv(groups)
+                : format == "json"
+                    ? campaign::to_json(groups, confidence, campaign::listed_columns(sweep.provenance))
+                    : campaign::to_text(
+                          groups, confidence,
+                          line.has("all-parameters") ? SharedParameters::all : SharedParameters::unusual));
+  return console::exit_success;
 }
 
 /// One page of HTML about a sweep: analysis/report.py, which asks this very program for the numbers.
 int report(int argc, char** argv) {
   // The user's own --programs comes later and has the last word.
-  std::vector<std::string> arguments = {"--programs", own_folder()};
+  std::vector<std::string> arguments = {"--programs", cli::own_folder()};
   arguments.insert(arguments.end(), argv + 2, argv + argc);
-  become_script("clogfit report", find_analysis_script("report.py"), arguments);
+  cli::become_script("clogfit report", cli::find_analysis_script("report.py"), arguments);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  using namespace clog;
-  cli::prepare_streams();
+  console::prepare_streams();
   if (argc > 1 && std::string_view(argv[1]) == "calibrate")
     return cli::run_program("clogfit calibrate", [&] { return clogfit_calibrate(argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "deviation")

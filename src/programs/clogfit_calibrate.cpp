@@ -1,34 +1,32 @@
 #include "clogfit_calibrate.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <future>
 #include <iostream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
-#include <semaphore>
 #include <string>
-#include <thread>
-#include <utility>
 #include <vector>
 
-#include "calibration_progress.hpp"
 #include "channel_options.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
+#include "clog/console/exit_codes.hpp"
+#include "clog/console/signals.hpp"
 #include "clog/core/error.hpp"
 #include "clog/fit/calibration.hpp"
+#include "clog/laboratory/experiment.hpp"
+#include "clog/laboratory/trials.hpp"
+#include "clog/sweep/single_run.hpp"
 #include "clog/sweep/value_list.hpp"
-#include "laboratory.hpp"
-#include "profile_file.hpp"
-#include "single_run.hpp"
-#include "stored_sweep.hpp"
 
-namespace clog {
+namespace clog::programs {
 namespace {
+
+using laboratory::Experiment;
+using laboratory::Trial;
 
 constexpr const char* program = "clogfit calibrate";
 constexpr const char* usage =
@@ -74,7 +72,7 @@ cli::CommandLine parse(int argc, const char* const* argv) {
 std::optional<double> quantity(const cli::CommandLine& line, const char* option, const char* units) {
   if (!line.has(option)) return std::nullopt;
   try {
-    const double value = to_si(line.get(option), units);
+    const double value = laboratory::to_si(line.get(option), units);
     if (value > 0) return value;
     throw Error("must be positive");
   } catch (const Error& error) {
@@ -82,9 +80,9 @@ std::optional<double> quantity(const cli::CommandLine& line, const char* option,
   }
 }
 
-Laboratory laboratory(const cli::CommandLine& line) {
+Experiment experiment(const cli::CommandLine& line) {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  const Laboratory lab{.diameter = quantity(line, "diameter", "length").value_or(0),
+  const Experiment lab{.diameter = quantity(line, "diameter", "length").value_or(0),
                        .terminal_speed = quantity(line, "speed", "speed").value_or(0),
                        .tilt = quantity(line, "angle", "angle").value_or(0),
                        .droplet_density = *quantity(line, "density", "density"),
@@ -103,137 +101,20 @@ Laboratory laboratory(const cli::CommandLine& line) {
 }
 
 /// "1.98mm 8.5deg"
-Laboratory other_laboratory(const cli::CommandLine& line, Laboratory lab) {
+Experiment other_experiment(const cli::CommandLine& line, Experiment lab) {
   const Text text = line.get("other");
   const auto space = text.find_last_of(' ');
   if (space == Text::npos)
     throw Error("invalid --other=" + text + " (needs a diameter and an angle) try \"1.98mm 8.5deg\"");
-  lab.diameter = to_si(text.substr(0, space), "length");
-  lab.tilt = to_si(text.substr(space + 1), "angle");
+  lab.diameter = laboratory::to_si(text.substr(0, space), "length");
+  lab.tilt = laboratory::to_si(text.substr(space + 1), "angle");
   if (!(lab.diameter > 0 && lab.tilt > 0)) throw Error("invalid --other=" + text + " (must be positive)");
   return lab;
 }
 
-/// One of the machine's cores, as long as it lives. Waits until one is free.
-class UseOfCore {
- public:
-  UseOfCore() { cores().acquire(); }
-  UseOfCore(UseOfCore&&) = delete;
-  ~UseOfCore() { cores().release(); }
-
- private:
-  static std::counting_semaphore<>& cores() {
-    static std::counting_semaphore<> free(std::max(1u, std::thread::hardware_concurrency()));
-    return free;
-  }
-};
-
-/// The simulated droplet's way past the frames.
-class ChannelSimulation {
- public:
-  ChannelSimulation(sweep::Settings settings, ChannelParameters channel, const fit::Profile& measured)
-      : settings_(std::move(settings)), channel_(channel) {
-    const auto [first, last] = std::minmax_element(
-        measured.begin(), measured.end(), [](const fit::Frame& a, const fit::Frame& b) { return a.h < b.h; });
-    // Motion is overdamped: half a diameter before the first frame the start is forgotten. The droplet must
-    // not touch the channel at the start.
-    channel_.start = std::min({first->h - 0.5, -2.0, last_free_start(single_run(settings_), channel_) - 0.1});
-    channel_.end = last->h + 0.1;
-    const double terminal_speed = single_run(settings_).drag.terminal_speed;
-    settings_.set("max-time", sweep::shortest(30 * (channel_.end - channel_.start) / terminal_speed));
-  }
-
-  /// From several threads at a time, as many as there are cores.
-  /// @throws cli::Stopped after a signal
-  fit::Profile operator()(double line_tension, double near_wall_drag) const {
-    const UseOfCore core;
-    sweep::Settings settings = settings_;
-    settings.set("line-tension", sweep::shortest(line_tension));
-    settings.set("near-wall-drag", sweep::shortest(near_wall_drag));
-    const RunParameters parameters = channel_run(std::move(settings), channel_);
-    DropletRun run = run_in_channel(parameters, channel_);
-    fit::Profile profile;
-    bool is_over = false;
-    while (!is_over) {
-      if (cli::stop_signalled()) throw cli::Stopped("stopped by a signal");
-      profile.push_back({channel_.start + run.displacement()[0],
-                         run.droplet().centre_velocity()[0] / parameters.drag.terminal_speed,
-                         run.droplet().shape().shape_parameter()});
-      is_over = run.advance(1);
-    }
-    return profile;  // of a droplet that breaks, as far as it came
-  }
-
- private:
-  sweep::Settings settings_;
-  ChannelParameters channel_;
-};
-
-/// Trials side by side.
-/// @throws cli::Stopped after a signal, with the best so far
-std::vector<fit::Calibration> calibrate_all(const std::vector<Text>& files,
-                                            const std::vector<fit::Profile>& profiles,
-                                            const sweep::Settings& settings,
-                                            const ChannelParameters& channel) {
-  CalibrationProgress progress(profiles.size());
-  const auto calibrate = [&](std::size_t trial) {
-    const fit::Profile& profile = profiles[trial];
-    fit::Calibration found =
-        fit::calibrate(profile, ChannelSimulation(settings, channel, profile), {},
-                       [&](const fit::CalibrationAttempt& attempt) { progress.tried(trial, attempt); });
-    progress.ended();
-    return found;
-  };
-  std::vector<std::future<fit::Calibration>> running;
-  for (std::size_t trial = 0; trial < profiles.size(); ++trial)
-    running.push_back(std::async(std::launch::async, calibrate, trial));
-  std::vector<fit::Calibration> found;
-  try {
-    for (auto& trial : running) found.push_back(trial.get());
-  } catch (const cli::Stopped& stop) {
-    for (auto& trial : running)
-      if (trial.valid()) trial.wait();
-    progress.finish();
-    Text words = stop.what();
-    for (std::size_t trial = 0; trial < files.size(); ++trial)
-      words += "; " + files[trial] + ": " + progress.best(trial);
-    throw cli::Stopped(words);
-  }
-  progress.finish();
-  return found;
-}
-
-/// What a reader must know before he uses a trial's numbers.
-std::vector<Text> warnings(const fit::Calibration& found) {
-  std::vector<Text> all;
-  if (!found.is_converged)
-    all.push_back("the search did not converge: another place may have a smaller Delta_v");
-  if (found.is_at_bound) all.push_back("the best is at the end of what was searched, and may lie beyond");
-  if (found.num_never_reached > 0)
-    all.push_back("no simulated droplet comes to " + std::to_string(found.num_never_reached) +
-                  " of the frames: look at --orifice, at the units and at h");
-  if (std::isnan(found.line_tension_error))
-    all.push_back(
-        "no errors: the frames do not determine both, or the droplet clogs at a line tension beside this "
-        "one");
-  constexpr double good = 0.2;  // speeds that agree within a fifth
-  if (found.deviation.speed > good)
-    all.push_back(
-        "Delta_v is large: no simulated droplet moves like this one; look at --orifice, units, vertices");
-  constexpr double near = 1.1;
-  if (found.clogging_tension < near * found.line_tension) {
-    char text[96];
-    std::snprintf(text, sizeof text,
-                  "close to a clog: simulated droplets of Gamma = %.4g and more do not pass",
-                  found.clogging_tension);
-    all.push_back(text);
-  }
-  return all;
-}
-
 void print_text(const std::vector<Text>& files, const std::vector<fit::Calibration>& found,
-                const fit::Trials& all, const Laboratory& lab, double terminal_speed,
-                const std::optional<Laboratory>& other) {
+                const fit::Trials& all, const Experiment& lab, double terminal_speed,
+                const std::optional<Experiment>& other) {
   std::size_t width = 7;
   for (const Text& file : files) width = std::max(width, file.size());
   const int w = static_cast<int>(width);
@@ -244,7 +125,7 @@ void print_text(const std::vector<Text>& files, const std::vector<fit::Calibrati
                 found[i].line_tension, found[i].line_tension_error, found[i].near_wall_drag,
                 found[i].near_wall_drag_error, found[i].deviation.speed, found[i].deviation.shape);
   for (std::size_t i = 0; i < files.size(); ++i)
-    for (const Text& warning : warnings(found[i]))
+    for (const Text& warning : laboratory::warnings(found[i]))
       std::printf("note: %s: %s\n", files[i].c_str(), warning.c_str());
   if (found.size() > 1)
     std::printf(
@@ -261,7 +142,7 @@ void print_text(const std::vector<Text>& files, const std::vector<fit::Calibrati
                 all.line_tension / lab.line_tension());
   if (other)
     std::printf("Gamma** = %.3g for a droplet of %.3g mm at %.3g degrees\n",
-                scaled_line_tension(all.line_tension, lab, *other), 1e3 * other->diameter,
+                laboratory::scaled_line_tension(all.line_tension, lab, *other), 1e3 * other->diameter,
                 other->tilt * 180 / std::numbers::pi);
 }
 
@@ -270,8 +151,8 @@ nlohmann::ordered_json number(double value) {
 }
 
 void print_json(const std::vector<Text>& files, const std::vector<fit::Calibration>& found,
-                const fit::Trials& all, const Laboratory& lab, double terminal_speed,
-                const std::optional<Laboratory>& other) {
+                const fit::Trials& all, const Experiment& lab, double terminal_speed,
+                const std::optional<Experiment>& other) {
   nlohmann::ordered_json trials = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < files.size(); ++i)
     trials.push_back({{"profile", files[i]},
@@ -284,7 +165,7 @@ void print_json(const std::vector<Text>& files, const std::vector<fit::Calibrati
                       {"converged", found[i].is_converged},
                       {"clogging_tension", number(found[i].clogging_tension)},
                       {"simulations", found[i].num_simulations},
-                      {"warnings", warnings(found[i])}});
+                      {"warnings", laboratory::warnings(found[i])}});
   nlohmann::ordered_json document = {{"trials", trials},
                                      {"line_tension", all.line_tension},
                                      {"line_tension_deviation", number(all.line_tension_deviation)},
@@ -293,30 +174,15 @@ void print_json(const std::vector<Text>& files, const std::vector<fit::Calibrati
                                      {"terminal_speed", terminal_speed}};
   if (lab.tilt > 0) document["gravity"] = lab.gravity();
   if (!std::isnan(lab.interfacial_tension)) document["line_tension_experiment"] = lab.line_tension();
-  if (other) document["line_tension_scaled"] = scaled_line_tension(all.line_tension, lab, *other);
+  if (other) document["line_tension_scaled"] = laboratory::scaled_line_tension(all.line_tension, lab, *other);
   std::cout << document.dump(2) << '\n';
-}
-
-/// @throws Error if a simulated passage was through another channel, or at another speed, than is to be
-/// simulated
-void refuse_other_channel(const Text& file, const store::Provenance& origin, const ChannelParameters& channel,
-                          double terminal_speed) {
-  const auto compare = [&](const Text& option, double stored, double given) {
-    if (stored != given)
-      throw Error(file + " was written with " + option + "=" + sweep::shortest(stored) + ", not " +
-                  sweep::shortest(given) + "; give " + option + "=" + sweep::shortest(stored));
-  };
-  compare("--orifice", sweep::to_number(attribute(origin, "orifice")), channel.orifice);
-  compare("--wedge-angle", sweep::to_number(attribute(origin, "wedge_angle")), channel.wedge_angle);
-  compare("--tip-radius", sweep::to_number(attribute(origin, "tip_radius")), channel.tip_radius);
-  compare("terminal-speed", single_run(stored_settings(file, origin)).drag.terminal_speed, terminal_speed);
 }
 
 }  // namespace
 
 int clogfit_calibrate(int argc, const char* const* argv) {
   cli::CommandLine line = parse(argc, argv);
-  if (cli::answer_help_or_version(line, {})) return cli::exit_success;
+  if (cli::answer_help_or_version(line, {})) return console::exit_success;
   const std::vector<Text> files = line.get_all("profiles");
   if (files.empty()) throw Error("missing profile; try clogfit calibrate trial.csv --orifice 0.7");
   for (const char* key : {"line-tension", "near-wall-drag"})
@@ -326,23 +192,19 @@ int clogfit_calibrate(int argc, const char* const* argv) {
   const Text format = line.get("format");
   if (format != "text" && format != "json")
     throw Error("invalid --format=" + format + " (is not one of text, json)");
-  const Laboratory lab = laboratory(line);
-  std::optional<Laboratory> other;
-  if (line.has("other")) other = other_laboratory(line, lab);
+  const Experiment lab = experiment(line);
+  std::optional<Experiment> other;
+  if (line.has("other")) other = other_experiment(line, lab);
   if (lab.tilt > 0) line.settings().set("terminal-speed", sweep::shortest(lab.reduced_terminal_speed()));
   const ChannelParameters channel = channel_from(line);
-  const double terminal_speed = single_run(line.settings()).drag.terminal_speed;
-  std::vector<fit::Profile> profiles;
-  for (const Text& file : files) {
-    MeasuredProfile measured = read_measured_profile(file, {lab.diameter, lab.terminal_speed});
-    if (!measured.origin.empty()) refuse_other_channel(file, measured.origin, channel, terminal_speed);
-    profiles.push_back(std::move(measured.frames));
-  }
+  const double terminal_speed = sweep::single_run(line.settings()).drag.terminal_speed;
+  const std::vector<Trial> trials =
+      laboratory::read_trials(files, {lab.diameter, lab.terminal_speed}, channel, terminal_speed);
 
-  cli::catch_stop_signals();
-  const std::vector<fit::Calibration> found = calibrate_all(files, profiles, line.settings(), channel);
+  console::catch_stop_signals();
+  const std::vector<fit::Calibration> found = laboratory::calibrate(trials, line.settings(), channel);
   (format == "json" ? print_json : print_text)(files, found, fit::combine(found), lab, terminal_speed, other);
-  return cli::exit_success;
+  return console::exit_success;
 }
 
-}  // namespace clog
+}  // namespace clog::programs

@@ -8,10 +8,11 @@
 
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
+#include "clog/console/exit_codes.hpp"
 #include "clog/core/error.hpp"
-#include "profile_file.hpp"
+#include "clog/laboratory/profile_file.hpp"
 
-namespace clog {
+namespace clog::programs {
 namespace {
 
 constexpr const char* usage =
@@ -33,21 +34,21 @@ int clogfit_deviation(int argc, const char* const* argv) {
                      "CSV files or of clogrun channel, the measured one first");
   line.add_positional("profiles", -1);
   line.parse(argc - 1, argv + 1);
-  if (cli::answer_help_or_version(line, {})) return cli::exit_success;
+  if (cli::answer_help_or_version(line, {})) return console::exit_success;
   const std::vector<std::string> files = line.get_all("profiles");
   if (files.size() < 2) throw Error("missing profiles; try clogfit deviation measured.csv simulated.csv");
 
-  const fit::Profile measured = read_measured_profile(files[0], {}).frames;
+  const fit::Profile measured = laboratory::read_measured_profile(files[0], {}).frames;
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (std::size_t i = 1; i < files.size(); ++i) {
-    const fit::Deviation found = fit::deviation(measured, read_profile(files[i], {}));
+    const fit::Deviation found = fit::deviation(measured, laboratory::read_profile(files[i], {}));
     list.push_back({{"profile", files[i]},
                     {"delta_v", found.speed},
                     {"delta_a", std::isnan(found.shape) ? nlohmann::ordered_json(nullptr)
                                                         : nlohmann::ordered_json(found.shape)}});
   }
   std::cout << nlohmann::ordered_json{{"measured", files[0]}, {"deviations", list}}.dump(2) << '\n';
-  return cli::exit_success;
+  return console::exit_success;
 }
 
-}  // namespace clog
+}  // namespace clog::programs

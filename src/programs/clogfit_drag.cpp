@@ -9,12 +9,13 @@
 
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
+#include "clog/console/exit_codes.hpp"
 #include "clog/core/error.hpp"
 #include "clog/fit/near_wall_drag.hpp"
-#include "laboratory.hpp"
-#include "profile_file.hpp"
+#include "clog/laboratory/experiment.hpp"
+#include "clog/laboratory/profile_file.hpp"
 
-namespace clog {
+namespace clog::programs {
 namespace {
 
 constexpr const char* usage =
@@ -31,7 +32,7 @@ d is the distance between wall and droplet surface.
 double scale(const cli::CommandLine& line, const char* option, const char* units) {
   if (!line.has(option)) return 0;
   try {
-    const double value = to_si(line.get(option), units);
+    const double value = laboratory::to_si(line.get(option), units);
     if (value > 0) return value;
     throw Error("must be positive");
   } catch (const Error& error) {
@@ -59,20 +60,20 @@ int clogfit_drag(int argc, const char* const* argv) {
                                                                   "text or json");
   line.add_positional("file", 1);
   line.parse(argc - 1, argv + 1);
-  if (cli::answer_help_or_version(line, {})) return cli::exit_success;
+  if (cli::answer_help_or_version(line, {})) return console::exit_success;
   if (!line.has("file")) throw Error("missing file; try clogfit drag speeds.csv");
   const std::string format = line.get("format");
   if (format != "text" && format != "json")
     throw Error("invalid --format=" + format + " (is not one of text, json)");
 
   const std::string path = line.get("file");
-  const auto speeds =
-      read_near_wall_speeds(path, {scale(line, "diameter", "length"), scale(line, "speed", "speed")});
+  const auto speeds = laboratory::read_near_wall_speeds(
+      path, {scale(line, "diameter", "length"), scale(line, "speed", "speed")});
   const fit::NearWallDrag fit = fit_file(path, speeds);
   if (format == "text") {
     std::printf("alpha = %.4g +- %.2g, b_0/b_inf = %.4g +- %.2g, from %zu speeds\n", fit.exponent,
                 fit.exponent_error, fit.drag, fit.drag_error, speeds.size());
-    return cli::exit_success;
+    return console::exit_success;
   }
   const auto number = [](double value) {
     return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
@@ -83,7 +84,7 @@ int clogfit_drag(int argc, const char* const* argv) {
                                            {"near_wall_drag_error", number(fit.drag_error)},
                                            {"speeds", speeds.size()}};
   std::cout << document.dump(2) << '\n';
-  return cli::exit_success;
+  return console::exit_success;
 }
 
-}  // namespace clog
+}  // namespace clog::programs

@@ -8,16 +8,19 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis_script.hpp"
 #include "channel_options.hpp"
+#include "clog/cli/analysis_script.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
+#include "clog/console/exit_codes.hpp"
+#include "clog/console/streams.hpp"
 #include "clog/core/error.hpp"
-#include "watched_run.hpp"
+#include "clogrun_commands.hpp"
 
 namespace {
 
 using namespace clog;
+using namespace clog::programs;
 
 constexpr const char* program = "clogrun";
 constexpr const char* usage = R"(clogrun follows one droplet and writes what happens to it.
@@ -128,18 +131,18 @@ int follow(cli::CommandLine& line, const std::string& system) {
     return run(line);
   }
   const std::vector<std::string> options = film_options(line);
-  const std::filesystem::path script = find_analysis_script("droplet.py");
+  const std::filesystem::path script = cli::find_analysis_script("droplet.py");
   const int exit_code = run(line);
-  if (exit_code == cli::exit_incomplete)
-    cli::say("clogrun: stopped before its end, so no film is drawn; " + script.string() + " " + options[0] +
-             " " + options[1] + " --film draws what there is");
-  if (exit_code != cli::exit_success || line.has("dry-run")) return exit_code;
-  become_script("clogrun", script, options);
+  if (exit_code == console::exit_incomplete)
+    console::say("clogrun: stopped before its end, so no film is drawn; " + script.string() + " " +
+                 options[0] + " " + options[1] + " --film draws what there is");
+  if (exit_code != console::exit_success || line.has("dry-run")) return exit_code;
+  cli::become_script("clogrun", script, options);
 }
 
 int body(int argc, char** argv) {
   cli::CommandLine line = parse(argc, argv);
-  if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return cli::exit_success;
+  if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return console::exit_success;
   refuse_same_files(line);
   const std::string system = line.has("system") ? line.get("system") : "";
   if (system != "replay") refuse_options(line, system, {"file", "task", "to-rest"});
@@ -152,6 +155,6 @@ int body(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  clog::cli::prepare_streams();
+  clog::console::prepare_streams();
   return clog::cli::run_program(program, [&] { return body(argc, argv); });
 }

@@ -3,13 +3,14 @@
 
 #include "clog/cli/obstacle_file.hpp"
 #include "clog/cli/program.hpp"
+#include "clog/console/signals.hpp"
 #include "clog/core/error.hpp"
 #include "clog/core/systems.hpp"
 #include "clog/core/units.hpp"
-#include "single_run.hpp"
-#include "watched_run.hpp"
+#include "clog/sweep/single_run.hpp"
+#include "clogrun_commands.hpp"
 
-namespace clog {
+namespace clog::programs {
 namespace {
 
 struct Setup {
@@ -18,14 +19,14 @@ struct Setup {
 };
 
 Setup read_setup(cli::CommandLine& line) {
-  if (!line.has("obstacles")) return {single_run(line.settings()), nullptr};
+  if (!line.has("obstacles")) return {sweep::single_run(line.settings()), nullptr};
   for (const char* key :
        {"obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "obstacle-layout", "lattice-angle"})
     if (line.has(key))
       throw Error("--obstacles and " + std::string(key) +
                   " contradict each other (the file's own gap, density and layout count); give one of them");
   // One parameter set is needed to read the file (box, default diameter); its gap is then the file's own.
-  const RunParameters draft = single_run(line.settings());
+  const RunParameters draft = sweep::single_run(line.settings());
   if (draft.obstacles.layout == ObstacleLayout::lattice || draft.obstacles.diameter_spread > 0)
     throw Error("--obstacles and the config's lattice or mixture contradict each other; give one of them");
   const bool polygon = draft.model == Model::dp;
@@ -39,7 +40,7 @@ Setup read_setup(cli::CommandLine& line) {
   line.settings().set("obstacle-gap", sweep::shortest(std::min(array->smallest_gap(), widest)));
   // The config's density may be more than a sampled array of that gap could have.
   line.settings().set("obstacle-density", "saturated");
-  return {single_run(line.settings()), array};
+  return {sweep::single_run(line.settings()), array};
 }
 
 sweep::RunRow row_of(const Setup& setup) {
@@ -57,22 +58,23 @@ int clogrun_array(cli::CommandLine& line) {
   // Everything that can be wrong is found before anything is computed or written.
   const std::string output = line.require("output");
   const Setup setup = read_setup(line);
-  const auto intervals = WatchedRun::intervals(line, *setup.parameters.time_step);
+  const auto often = intervals(line, *setup.parameters.time_step);
   store::refuse_unwritable(output);
   if (line.has("write-obstacles")) store::refuse_unwritable(line.get("write-obstacles"));
 
-  WatchedRun watched(setup.own_obstacles ? run_in_array(setup.parameters, setup.own_obstacles)
-                                         : run_in_array(setup.parameters),
-                     intervals);
-  if (line.has("dry-run")) return print_preview(line.settings().to_config(false), watched.measure_cost());
+  watch::WatchedRun watched(setup.own_obstacles ? run_in_array(setup.parameters, setup.own_obstacles)
+                                                : run_in_array(setup.parameters),
+                            often);
+  if (line.has("dry-run"))
+    return watch::print_preview(line.settings().to_config(false), watched.measure_cost());
   if (line.has("write-obstacles"))
     cli::write_obstacles(line.get("write-obstacles"), watched.run().obstacles().obstacles());
   say_what_is_unproven(sweep::Plan(line.settings()));
-  cli::catch_stop_signals();
+  console::catch_stop_signals();
   watched.follow();
 
-  store::write_trajectory(output, watched.trajectory(row_of(setup), line));
+  store::write_trajectory(output, watched.trajectory(row_of(setup), cli::origin(line)));
   return watched.report();
 }
 
-}  // namespace clog
+}  // namespace clog::programs

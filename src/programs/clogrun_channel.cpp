@@ -3,18 +3,21 @@
 
 #include "channel_options.hpp"
 #include "clog/cli/program.hpp"
+#include "clog/console/signals.hpp"
+#include "clog/console/streams.hpp"
 #include "clog/core/systems.hpp"
-#include "watched_run.hpp"
+#include "clog/sweep/single_run.hpp"
+#include "clogrun_commands.hpp"
 
-namespace clog {
+namespace clog::programs {
 namespace {
 
 void say_what_is_coarse(const RunParameters& run) {
   constexpr int fine = 128;
   if (run.model == Model::dp && run.dp.vertices < fine)
-    cli::say("vertices=" + std::to_string(run.dp.vertices) +
-             " may clog where 128 and more pass (corners of the polygon catch on the wedges' tips); use "
-             "vertices=128 or more");
+    console::say("vertices=" + std::to_string(run.dp.vertices) +
+                 " may clog where 128 and more pass (corners of the polygon catch on the wedges' tips); use "
+                 "vertices=128 or more");
 }
 
 }  // namespace
@@ -25,13 +28,14 @@ int clogrun_channel(cli::CommandLine& line) {
   ChannelParameters channel = channel_from(line);
   channel.start = line.get_number("start", channel.start);
   channel.end = line.get_number("end", channel.end);
-  const RunParameters parameters = channel_run(line.settings(), channel);
-  const auto intervals = WatchedRun::intervals(line, *parameters.time_step);
+  const RunParameters parameters = sweep::channel_run(line.settings(), channel);
+  const auto often = intervals(line, *parameters.time_step);
   DropletRun run = run_in_channel(parameters, channel);
   store::refuse_unwritable(output);
 
-  WatchedRun watched(std::move(run), intervals);
-  if (line.has("dry-run")) return print_preview(line.settings().to_config(false), watched.measure_cost());
+  watch::WatchedRun watched(std::move(run), often);
+  if (line.has("dry-run"))
+    return watch::print_preview(line.settings().to_config(false), watched.measure_cost());
   watched.add_column(
       "h", "distance of the centre of mass from the orifice, positive downstream [sigma]",
       [start = channel.start](const DropletRun& now) { return start + now.displacement()[0]; });
@@ -40,9 +44,10 @@ int clogrun_channel(cli::CommandLine& line) {
   });
   say_what_is_unproven(sweep::Plan(line.settings()));
   say_what_is_coarse(parameters);
-  cli::catch_stop_signals();
+  console::catch_stop_signals();
   watched.follow();
-  store::Trajectory trajectory = watched.trajectory(row_of_scene(parameters, ObstacleLayout::channel), line);
+  store::Trajectory trajectory =
+      watched.trajectory(row_of_scene(parameters, ObstacleLayout::channel), cli::origin(line));
   for (const auto& [name, value] : {std::pair{"orifice", channel.orifice},
                                     {"wedge_angle", channel.wedge_angle},
                                     {"tip_radius", channel.tip_radius},
@@ -53,4 +58,4 @@ int clogrun_channel(cli::CommandLine& line) {
   return watched.report();
 }
 
-}  // namespace clog
+}  // namespace clog::programs

@@ -1,15 +1,15 @@
 #include <string>
 
+#include "clog/campaign/stored_sweep.hpp"
 #include "clog/cli/program.hpp"
+#include "clog/console/signals.hpp"
 #include "clog/core/error.hpp"
 #include "clog/core/instruction_set.hpp"
 #include "clog/core/systems.hpp"
 #include "clog/sweep/settings.hpp"
-#include "stored_sweep.hpp"
-#include "sweep_input.hpp"
-#include "watched_run.hpp"
+#include "clogrun_commands.hpp"
 
-namespace clog {
+namespace clog::programs {
 namespace {
 
 /// The row says all that there is to say of the run.
@@ -29,18 +29,18 @@ int clogrun_replay(cli::CommandLine& line) {
   if (!line.has("file") || !line.has("task"))
     throw Error("missing sweep file or task; try clogrun replay sweep.h5 0 --output run.h5");
   const std::string output = line.require("output");
-  const store::SweepFile file = read_with_caution(line.get("file"));
-  sweep::RunRow row = replayable_row(file, line.get("task"));
+  const store::SweepFile file = campaign::read_with_caution(line.get("file"));
+  sweep::RunRow row = campaign::replayable_row(file, line.get("task"));
   if (line.has("to-rest")) row.parameters.clog_detection = ClogDetection::threshold;
-  const auto intervals = WatchedRun::intervals(line, *row.parameters.time_step);
+  const auto often = intervals(line, *row.parameters.time_step);
   store::refuse_unwritable(output);
 
-  WatchedRun watched(run_in_array(row.parameters), intervals);
-  if (line.has("dry-run")) return print_preview("", watched.measure_cost());
-  cli::catch_stop_signals();
+  watch::WatchedRun watched(run_in_array(row.parameters), often);
+  if (line.has("dry-run")) return watch::print_preview("", watched.measure_cost());
+  console::catch_stop_signals();
   watched.follow();
-  store::write_trajectory(output, watched.trajectory(sweep::describe(row.parameters), line));
+  store::write_trajectory(output, watched.trajectory(sweep::describe(row.parameters), cli::origin(line)));
   return watched.report();
 }
 
-}  // namespace clog
+}  // namespace clog::programs

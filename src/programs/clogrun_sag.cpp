@@ -2,13 +2,16 @@
 #include <string>
 
 #include "clog/cli/program.hpp"
+#include "clog/console/exit_codes.hpp"
+#include "clog/console/signals.hpp"
+#include "clog/console/streams.hpp"
 #include "clog/core/error.hpp"
 #include "clog/core/systems.hpp"
 #include "clog/sweep/plan.hpp"
-#include "single_run.hpp"
-#include "watched_run.hpp"
+#include "clog/sweep/single_run.hpp"
+#include "clogrun_commands.hpp"
 
-namespace clog {
+namespace clog::programs {
 namespace {
 
 /// Lowering of the droplet's parts since it touched the wall [sigma].
@@ -30,11 +33,11 @@ Sag sag_of(const DropletRun& run, const Eigen::ArrayXd& before) {
   return {.centre = run.displacement_of(centroid(state))[0], .top = top};
 }
 
-int preview(const cli::CommandLine& line, const sweep::Plan& plan, WatchedRun::Intervals intervals) {
-  MostCost cost;
+int preview(const cli::CommandLine& line, const sweep::Plan& plan, watch::WatchedRun::Intervals often) {
+  watch::MostCost cost;
   for (std::int64_t task = 0; task < plan.size(); ++task)
-    cost += WatchedRun(run_onto_wall(plan.task(task)), intervals).measure_cost();
-  return print_preview(line.settings().to_config(false), cost);
+    cost += watch::WatchedRun(run_onto_wall(plan.task(task)), often).measure_cost();
+  return watch::print_preview(line.settings().to_config(false), cost);
 }
 
 }  // namespace
@@ -44,18 +47,18 @@ int clogrun_sag(cli::CommandLine& line) {
   refuse_options(line, "sag",
                  {"orifice", "wedge-angle", "tip-radius", "start", "end", "frames", "most-frames"});
   const sweep::Plan plan(line.settings());
-  if (line.has("output")) single_run(line.settings());
-  const auto intervals = WatchedRun::intervals(line, *plan.task(0).time_step);
+  if (line.has("output")) sweep::single_run(line.settings());
+  const auto often = intervals(line, *plan.task(0).time_step);
   if (line.has("output")) store::refuse_unwritable(line.get("output"));
-  if (line.has("dry-run")) return preview(line, plan, intervals);
+  if (line.has("dry-run")) return preview(line, plan, often);
 
   say_what_is_unproven(plan);
-  cli::catch_stop_signals();
+  console::catch_stop_signals();
   std::printf("model,line_tension,wall_stiffness,sag,top_sag,shape_parameter,time,status\n");
   bool all_at_rest = true;
   for (std::int64_t task = 0; task < plan.size(); ++task) {
     const RunParameters parameters = plan.task(task);
-    WatchedRun watched(run_onto_wall(parameters), intervals);
+    watch::WatchedRun watched(run_onto_wall(parameters), often);
     watched.follow();
     const sweep::RunRow row = row_of_scene(parameters, ObstacleLayout::wall);
     const RunResult result = watched.result();
@@ -65,15 +68,16 @@ int clogrun_sag(cli::CommandLine& line) {
                 is_polygon ? parameters.dp.line_tension : sweep::RunRow::not_known,
                 *parameters.wall_stiffness, sag.centre, sag.top, result.shape_parameter, result.time,
                 result.status == RunStatus::clogged ? "at_rest" : name(result.status));
-    cli::flush_output();
+    console::flush_output();
     if (result.status == RunStatus::failed) throw Error(result.message);
-    if (line.has("output")) store::write_trajectory(line.get("output"), watched.trajectory(row, line));
-    if (result.status == RunStatus::interrupted) return cli::exit_incomplete;
+    if (line.has("output"))
+      store::write_trajectory(line.get("output"), watched.trajectory(row, cli::origin(line)));
+    if (result.status == RunStatus::interrupted) return console::exit_incomplete;
     all_at_rest &= result.status == RunStatus::clogged;
   }
-  if (all_at_rest) return cli::exit_success;
-  cli::say("clogrun: not every droplet has come to rest; give a longer max-time");
-  return cli::exit_incomplete;
+  if (all_at_rest) return console::exit_success;
+  console::say("clogrun: not every droplet has come to rest; give a longer max-time");
+  return console::exit_incomplete;
 }
 
-}  // namespace clog
+}  // namespace clog::programs

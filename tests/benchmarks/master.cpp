@@ -20,10 +20,10 @@
 #include <thread>
 #include <vector>
 
+#include "clog/campaign/ledger.hpp"
+#include "clog/campaign/progress.hpp"
 #include "clog/parallel/scheduler.hpp"
 #include "clog/store/run_table.hpp"
-#include "sweep_ledger.hpp"
-#include "sweep_progress.hpp"
 
 namespace {
 
@@ -87,9 +87,9 @@ int main(int argc, char** argv) {
   settings.set("line-tension", "lin(0.1,10," + std::to_string(num_groups) + ")");
   settings.set("seeds", "1.." + std::to_string(num_tasks / num_groups));
   const sweep::Plan plan(settings);
-  std::optional<SweepLedger> ledger;
+  std::optional<campaign::Ledger> ledger;
   std::ostringstream screen;  // progress goes nowhere, but is made
-  SweepProgress progress(screen, SweepProgress::Screen::terminal, num_workers, num_groups);
+  campaign::Progress progress(screen, campaign::Progress::Screen::terminal, num_workers, num_groups);
   std::vector<std::int64_t> tasks(num_tasks);
   std::iota(tasks.begin(), tasks.end(), std::int64_t{0});
   progress.expect(tasks, num_tasks);

@@ -1,39 +1,56 @@
-"""Includes go down the layers only: programs -> {cli, parallel, store, fit} -> sweep -> core.
+"""A room includes the rooms that its line in src/README.md names, and no others; some libraries belong to one room.
 
-Also: <mpi.h> only in parallel, <hdf5.h> only in store, and fit knows no droplet.
+    tests/lint/layers.py ROOT
 """
 
+import collections
 import pathlib
 import re
 import sys
 
-MAY_USE = {
-    "core": {"core"},
-    "sweep": {"sweep", "core"},
-    "fit": {"fit"},
-    "store": {"store", "sweep", "core"},
-    "parallel": {"parallel", "sweep", "core"},
-    "cli": {"cli", "sweep", "core"},
-    "programs": {"cli", "parallel", "store", "fit", "sweep", "core"},
-}
 OWN_LIBRARY = {"mpi.h": "parallel", "hdf5.h": "store", "boost/program_options.hpp": "cli"}
 
 
-def faults(root):
+def table(root):
+    """What each room uses, by src/README.md."""
+    rooms = {}
+    for line in (root / "src/README.md").read_text().splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        if line.startswith("| `") and len(cells) == 3:
+            rooms[cells[0].strip("`")] = cells[2]
+    return {room: set(rooms) if uses == "all" else set(re.findall(r"`(\w+)`", uses)) for room, uses in rooms.items()}
+
+
+def includes(root):
+    """File, line, room and what is included."""
     for base in (root / "include" / "clog", root / "src"):
         for path in sorted(base.rglob("*.?pp")):
-            layer = path.relative_to(base).parts[0]
             for number, line in enumerate(path.read_text().splitlines(), 1):
                 include = re.match(r'\s*#include [<"]([^>"]+)[>"]', line)
-                if not include:
-                    continue
-                target = include.group(1)
-                place = f"{path.relative_to(root)}:{number}"
-                if target.startswith("clog/") and target.split("/")[1] not in MAY_USE[layer]:
-                    yield f"{place}: {layer} must not use {target}"
-                owner = OWN_LIBRARY.get(target)
-                if owner not in (None, layer) and not (layer == "programs" and owner == "cli"):
-                    yield f"{place}: only {owner} includes <{target}>"
+                if include:
+                    yield path.relative_to(root), number, path.relative_to(base).parts[0], include.group(1)
+
+
+def faults(root):
+    uses = table(root)
+    used = collections.defaultdict(set)
+    for path, number, room, target in includes(root):
+        if room not in uses:
+            yield f"{path}: the room {room} is not in src/README.md"
+            continue
+        if target.startswith("clog/") and (other := target.split("/")[1]) != room:
+            used[room].add(other)
+            if other not in uses[room]:
+                yield f"{path}:{number}: {room} must not use {target}"
+        owner = OWN_LIBRARY.get(target)
+        if owner not in (None, room) and not (room == "programs" and owner == "cli"):
+            yield f"{path}:{number}: only {owner} includes <{target}>"
+    for room in uses:
+        for other in sorted(uses[room] - used[room] - {"programs", room}):
+            if room != "programs":
+                yield f"src/README.md: {room} does not use {other}"
+        if not (root / "src" / room).is_dir():
+            yield f"src/README.md: there is no room {room}"
 
 
 found = list(faults(pathlib.Path(sys.argv[1])))

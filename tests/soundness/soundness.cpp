@@ -20,6 +20,8 @@
 
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
+#include "clog/console/exit_codes.hpp"
+#include "clog/console/signals.hpp"
 #include "clog/core/dp_forces.hpp"
 #include "clog/core/error.hpp"
 #include "clog/core/release.hpp"
@@ -98,7 +100,7 @@ void follow(DropletRun& run, double longest, CaseReport& report) {
   const double check_time = DropletRun::steps_per_check * *parameters.time_step;
   soundness::TailRecorder recorder(parameters.drag.terminal_speed);
   look(run, 1, report);
-  for (bool over = false; !over && report.seconds < longest && !cli::stop_signalled();) {
+  for (bool over = false; !over && report.seconds < longest && !console::stop_signalled();) {
     const bool in_tail = run.time() > (1 - tail_part) * parameters.max_time;
     const double begin_time = run.time();
     const std::int64_t begin_steps = run.droplet().num_integrated_steps();
@@ -158,7 +160,8 @@ template <class Work>
 void for_all(std::size_t num_cases, unsigned num_threads, Work work) {
   std::atomic<std::size_t> next = 0;
   const auto work_on = [&] {
-    for (std::size_t index = next++; index < num_cases && !cli::stop_signalled(); index = next++) work(index);
+    for (std::size_t index = next++; index < num_cases && !console::stop_signalled(); index = next++)
+      work(index);
   };
   std::vector<std::jthread> threads;
   for (unsigned i = 1; i < num_threads; ++i) threads.emplace_back(work_on);
@@ -399,7 +402,7 @@ int conclude(const std::vector<CaseReport>& reports) {
     std::printf(", %zu were not looked at", reports.size() - done);
   std::printf(".\n");
   if (sound < done) return 1;
-  return is_complete ? cli::exit_success : cli::exit_incomplete;
+  return is_complete ? console::exit_success : console::exit_incomplete;
 }
 
 /// A whole number in 1..most, or the fallback if the option is not given.
@@ -415,7 +418,7 @@ std::int64_t count_given(const cli::CommandLine& line, const std::string& option
 
 int body(int argc, char** argv) {
   const cli::CommandLine line = parse(argc, argv);
-  if (cli::answer_help_or_version(line, {})) return cli::exit_success;
+  if (cli::answer_help_or_version(line, {})) return console::exit_success;
   const auto num_threads = static_cast<unsigned>(
       count_given(line, "threads", std::max(1U, std::thread::hardware_concurrency()), 1000));
   const double longest =
@@ -426,7 +429,7 @@ int body(int argc, char** argv) {
     runs.open(line.get("runs"));
     if (!runs) throw Error("cannot write " + line.get("runs"));
   }
-  cli::catch_stop_signals();  // then only what is finished is told of
+  console::catch_stop_signals();  // then only what is finished is told of
   std::vector<CaseReport> reports;
   if (line.has("releases")) {
     reports = planned_releases(plan, count_given(line, "releases", 0, 10'000'000));

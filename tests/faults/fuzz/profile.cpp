@@ -1,6 +1,6 @@
 /// Measured profiles and speeds, as for clogfit calibrate and clogfit drag.
 
-#include "profile_file.hpp"
+#include "clog/laboratory/profile_file.hpp"
 
 #include "fuzz.hpp"
 #include "memory_file.hpp"

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "clog/campaign/groups.hpp"
+
+namespace clog::campaign {
+
+/// Which of the parameters that all groups share are named above their table.
+enum class SharedParameters { unusual, all };
+
+/// One line per group, with what the groups differ in, for people.
+std::string to_text(const std::vector<Group>& groups, double confidence, SharedParameters shared);
+/// All fields of every group.
+std::string to_csv(const std::vector<Group>& groups);
+/// All fields of every group, and its P(r).
+/// @param lists  columns of which the sweep was given several values, see listed_columns()
+std::string to_json(const std::vector<Group>& groups, double confidence,
+                    const std::vector<std::string>& lists);
+
+}  // namespace clog::campaign

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "clog/core/clog_geometry.hpp"
+#include "clog/fit/clogging_length.hpp"
+#include "clog/fit/mean_speed.hpp"
+#include "clog/fit/migration.hpp"
+#include "clog/fit/survival.hpp"
+#include "clog/sweep/columns.hpp"
+
+namespace clog::campaign {
+
+/// What may spoil a group's clogging length.
+enum class Doubt {
+  few_clogs,         ///< fewer than five: the interval is wide and its coverage wavers
+  not_exponential,   ///< Weibull's law fits better, p < 0.05 by Holm's test of all groups with ten clogs or
+                     ///< more
+  censored_by_time,  ///< runs ended by max-time, slow ones nearer than fast ones
+  incomplete,        ///< runs are under way, interrupted or failed
+  damaged,           ///< rows hold what cannot be (sweep::fault_of)
+  held_by_mesh,      ///< a third of the clogs or more are wrapped or hybrid; the polygon's corners hold those
+  array_repeats,     ///< runs went farther than the period of their array (sweep::has_met_repetition)
+  below_spacing,     ///< lambda is shorter than one obstacle spacing (sweep::obstacle_spacing)
+  not_proved_sound,  ///< sweep::unproven_parameters
+};
+/// One letter each for tables, a word for files, a sentence for readers.
+struct DoubtText {
+  Doubt doubt;
+  char letter;
+  const char* word;
+  const char* sentence;
+};
+inline constexpr DoubtText doubt_texts[] = {
+    {Doubt::few_clogs, 'f', "few_clogs", "fewer than 5 clogs: more seeds are needed"},
+    {Doubt::not_exponential, 'x', "not_exponential",
+     "P(r) is not exponential (p < 0.05, Holm's test of all groups of ten clogs or more): one length does "
+     "not describe these runs"},
+    {Doubt::censored_by_time, 't', "censored_by_time",
+     "runs ended by max-time: right if slow droplets are as likely to clog as fast ones"},
+    {Doubt::incomplete, 'i', "incomplete",
+     "runs are under way or interrupted (they count as not clogged so far) or have failed (left out)"},
+    {Doubt::damaged, 'd', "damaged",
+     "rows hold what cannot be (left out; clogsweep verify names them): the file is damaged"},
+    {Doubt::held_by_mesh, 'm', "held_by_mesh",
+     "a third of the clogs or more hang over obstacles: how far such droplets get depends on the number of "
+     "vertices"},
+    {Doubt::array_repeats, 'r', "array_repeats",
+     "runs went farther than boxes times box, where obstacles repeat: what lets a droplet pass once does so "
+     "again"},
+    {Doubt::below_spacing, 'v', "below_spacing",
+     "lambda is below one obstacle spacing (diameter + gap): it says how deep the void of release is, "
+     "not how often gaps clog droplets"},
+    {Doubt::not_proved_sound, 'u', "not_proved_sound",
+     "line tension, preset, vertices or obstacles are outside of what was proved sound "
+     "(tests/soundness/README.md)"}};
+const DoubtText& text_of(Doubt doubt);
+
+/// The runs of a sweep that differ in their seed only, and what they say together.
+struct Group {
+  sweep::RunRow first_row;  ///< its parameters are those of all
+  fit::CloggingLength clogging;
+  double least_squares_length = 0;  ///< the published way, biased; NaN for fewer than two clogs
+  fit::WeibullTest weibull;
+  std::vector<fit::SurvivalStep> survival;
+  std::vector<double> censored_distances;  ///< of the runs that did not clog, increasing [sigma]
+  /// By mechanism: its clogs, all other runs censored there. Empty if the mechanism of a clog is not known.
+  struct Cause {
+    ClogMechanism mechanism;
+    fit::CloggingLength clogging;
+  };
+  std::vector<Cause> causes;
+  fit::MeanSpeed relative_speed;         ///< v_g/v_t, mean of the runs
+  fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, way over time of all runs together
+  fit::Migration migration;
+  int num_flowing = 0;  ///< ended by max-time
+  int num_interrupted = 0;
+  int num_failed = 0;     ///< left out of all fits
+  int num_damaged = 0;    ///< likewise
+  int num_left_out = 0;   ///< ended before distances are counted, see group_runs(); likewise
+  int num_repeating = 0;  ///< went farther than their array's period
+  std::vector<Doubt> doubts;
+};
+
+/// Mechanisms with a clogging length of their own; `none` are clogs of none of the others.
+inline constexpr ClogMechanism causes[] = {ClogMechanism::wrapped, ClogMechanism::squeezed,
+                                           ClogMechanism::hybrid, ClogMechanism::none};
+
+/// Groups rows by everything but the seed, in the order of their parameters.
+/// @param from_distance  clogging lengths count from here on [sigma]: runs that ended before are left out of
+/// them, the others are as long as they went beyond (left truncation)
+std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence,
+                              double from_distance = 0);
+
+using sweep::Value;
+using Field = std::pair<const char*, Value>;
+/// Columns that make a group: all parameters but the seed. First those of the physics, and of these first
+/// what shapes the array.
+std::span<const sweep::Column* const> group_columns();
+/// What a row holds in them.
+std::vector<Field> parameter_fields(const sweep::RunRow& row);
+/// What came out.
+std::vector<Field> result_fields(const Group& group);
+/// Of a number among them, e.g. "sigma"; empty for one without a unit, counts and words.
+std::string_view unit_of(std::string_view field);
+
+}  // namespace clog::campaign

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "clog/store/journal.hpp"
+#include "clog/store/run_table.hpp"
+#include "clog/sweep/messages.hpp"
+#include "clog/sweep/plan.hpp"
+
+namespace clog::campaign {
+
+/// What is known of a sweep's runs, on rank 0 and on the disk: the table of runs, published now and then as a
+/// whole, and the journal beside it, which has what came since and the snapshots of running tasks. A sweep
+/// that was stopped or killed goes on from there. Runs are known by what they are (sweep::identity), not by
+/// their number.
+class Ledger {
+ public:
+  /// Reads what is there, and checks that it belongs to this sweep.
+  /// @param num_wanted  how many of the plan's tasks, from its beginning, are to be done for the time being
+  /// @param attempts  how often a run that fails is tried, over all sessions
+  /// @throws Error if the file is foreign, of another model or other settings, or written to by another sweep
+  Ledger(std::string path, const sweep::Plan& plan, const sweep::Settings& settings,
+         store::Provenance provenance, std::int64_t num_wanted, std::int64_t attempts);
+
+  /// More of the plan's tasks are to be done; tasks_left() are then those of them that are not over.
+  void want(const std::vector<std::int64_t>& tasks);
+  std::int64_t num_wanted() const { return num_wanted_; }
+  /// Tasks that have begun and are not over, wanted or not.
+  std::vector<std::int64_t> tasks_begun() const;
+
+  /// Tasks that are wanted and not over.
+  const std::vector<std::int64_t>& tasks_left() const { return tasks_left_; }
+  /// Of those, how many have a snapshot to go on from.
+  std::int64_t num_resumed() const;
+  /// Runs of the file that are not of this plan: they stay.
+  std::int64_t num_beyond() const { return static_cast<std::int64_t>(other_runs_.size()); }
+  /// Runs whose row held what cannot be: they are computed again.
+  std::int64_t num_faulty() const { return num_faulty_; }
+  /// Records of the journal that were damaged: their runs are a few seconds behind, or begin anew.
+  std::int64_t num_unreadable() const { return journal_.num_unreadable(); }
+
+  /// What could not be checked of the file that it goes on with; empty if all was.
+  const std::string& caution() const { return caution_; }
+
+  sweep::Start start(std::int64_t task, int rank);
+  void report(const sweep::Report& report);
+  /// Of a run that has begun.
+  const sweep::RunRow& row(std::int64_t task) const { return runs_.at(task).row; }
+  /// The first run if all that have begun have failed, otherwise nullptr.
+  const sweep::RunRow* first_if_all_failed() const;
+  /// Of a run that failed: it is to be done again, as the same attempt.
+  void withdraw_failure(std::int64_t task);
+  bool tries_again(const sweep::RunRow& failed) const { return failed.attempt < attempts_; }
+  /// Publishes the table if it is time to.
+  void tick();
+  /// Publishes it; a sweep that is complete needs no journal any more.
+  void finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using Entry = store::Journal::Entry;
+
+  std::string path_;
+  const sweep::Plan& plan_;
+  store::Provenance provenance_;
+  std::int64_t attempts_;
+  store::Journal journal_;
+  std::map<std::int64_t, Entry> runs_;  // by task; those that have begun
+  std::vector<Entry> other_runs_;       // in the file, but not of this plan
+  std::int64_t num_wanted_;
+  std::int64_t num_faulty_ = 0;
+  std::vector<std::int64_t> tasks_left_;
+  /// What is known of a task from earlier sessions or attempts.
+  struct Past {
+    double seconds = 0;           // spent on it
+    std::string instruction_set;  // of the snapshot that it goes on from; empty if it begins anew
+  };
+  std::unordered_map<std::int64_t, Past> past_;
+  std::string caution_;
+  bool is_published_ = false;
+  Clock::time_point last_publication_;
+  Clock::duration publication_time_{0};
+
+  bool is_over(const sweep::RunRow& row) const;
+  sweep::RunRow new_row(std::int64_t task) const;
+  void take_over(const store::SweepFile& file, const sweep::Settings& settings);
+  void find_tasks(std::unordered_map<std::string, Entry> known);
+  sweep::RunRow published(const sweep::RunRow& row) const;
+  void publish();
+  void shorten_journal();
+};
+
+}  // namespace clog::campaign

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "clog/campaign/group_table.hpp"
+#include "clog/campaign/stored_sweep.hpp"
+#include "clog/campaign/time_left.hpp"
+#include "clog/store/run_table.hpp"
+
+namespace clog::campaign {
+
+/// How far a sweep is, and what it has found so far.
+struct Status {
+  RunCount runs;
+  std::map<RunStatus, std::int64_t> by_status;
+  bool is_alive = false;
+  double core_hours = 0;
+  TimeLeft left;
+  std::string stopping_rule;  ///< empty: none
+  std::vector<Group> groups;
+
+  std::int64_t count(RunStatus status) const {
+    const auto found = by_status.find(status);
+    return found == by_status.end() ? 0 : found->second;
+  }
+  std::int64_t num_under_way() const { return count(RunStatus::running) + count(RunStatus::interrupted); }
+  std::int64_t num_over() const {
+    std::int64_t sum = -num_under_way();
+    for (const auto& [status, number] : by_status) sum += number;
+    return sum;
+  }
+};
+
+/// Of a sweep's file, while it is written or afterwards. Runs under way count as not clogged so far, at the
+/// distance they have reached: finished runs alone would give too short lengths, since runs that clog early
+/// finish first.
+/// @throws Error if the file does not say what its sweep is
+Status status_of(const std::string& path, const store::SweepFile& file, double confidence);
+
+/// For people.
+std::string to_text(const std::string& path, const Status& status, double confidence,
+                    SharedParameters shared);
+std::string to_json(const Status& status, double confidence);
+
+}  // namespace clog::campaign

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "clog/store/run_table.hpp"
+#include "clog/sweep/plan.hpp"
+
+namespace clog::campaign {
+
+/// What a sweep's file says of its sweep, apart from the rows.
+
+/// A sweep's file for whoever prints something of it: what could not be checked is said on the standard
+/// error.
+/// @throws Error as store::read_sweep()
+store::SweepFile read_with_caution(const std::string& path);
+
+/// Text of an attribute; empty if there is none.
+std::string attribute(const store::Provenance& provenance, const std::string& name);
+/// @throws Error that names the file, as the next two do, if it does not say, or nothing that can be read
+sweep::Settings stored_settings(const std::string& path, const store::Provenance& provenance);
+sweep::Plan stored_plan(const std::string& path, const store::Provenance& provenance);
+/// Columns of the keys that its config has lists for; none if that cannot be read.
+std::vector<std::string> listed_columns(const store::Provenance& provenance);
+/// How many runs are wanted so far: of --until-precision those asked for, otherwise all of the plan.
+std::int64_t stored_num_wanted(const std::string& path, const store::Provenance& provenance,
+                               const sweep::Plan& plan);
+/// What a file's sweep comes to: the runs that are wanted, and those that it holds besides.
+struct RunCount {
+  std::int64_t num_runs = 0;
+  std::int64_t num_beyond = 0;  ///< of these, runs that the lists of its last command do not have
+
+  /// The latter in brackets, with a space before; empty for none.
+  std::string text_of_beyond() const;
+};
+RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, const sweep::Plan& plan);
+
+/// The row of a task that is to be computed once more; the instruction set that it asks for is in use from
+/// then on.
+/// @throws Error if there is none, it is not over, or this program would come to something else
+const sweep::RunRow& replayable_row(const store::SweepFile& file, const std::string& task);
+
+}  // namespace clog::campaign

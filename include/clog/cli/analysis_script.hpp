@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace clog::cli {
+
+/// A script of the source tree's folder analysis. @throws Error  if it is not there any more
+std::filesystem::path find_analysis_script(const std::string& name);
+
+/// The program goes on as this script; its exit code is the script's.
+/// @param name  under which the script speaks of itself
+/// @throws Error  if the script cannot be run
+[[noreturn]] void become_script(const std::string& name, const std::filesystem::path& script,
+                                std::vector<std::string> arguments);
+
+/// The folder this program is in.
+std::filesystem::path own_folder();
+
+}  // namespace clog::cli

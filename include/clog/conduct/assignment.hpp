@@ -1,0 +1,27 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "clog/sweep/job.hpp"
+#include "clog/sweep/settings.hpp"
+
+namespace clog::conduct {
+
+/// What rank 0 tells the others before a sweep: what they are to do, and how.
+struct Assignment {
+  std::chrono::milliseconds report_interval{10'000};
+  std::string instruction_set = "auto";
+  bool is_isolated = true;  ///< do tasks run in processes of their own?
+  std::string config;       ///< see sweep::Settings::to_config()
+
+  /// As it travels.
+  std::string text() const;
+  static Assignment from(const std::string& text);
+};
+
+/// The jobs of an assignment, in whichever process they are to be worked on.
+/// @param text  see Assignment::text()
+sweep::JobFactory assigned_jobs(const std::string& text);
+
+}  // namespace clog::conduct

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+
+#include "clog/campaign/progress.hpp"
+#include "clog/sweep/run_row.hpp"
+
+namespace clog::conduct {
+
+/// Tells what happens in a sweep, a line for each event:
+///   12:03:17 task 17 rank 3: clogged at 4.21 sigma after 812 t0 (Gamma=0.3, gap=0.2, seed 4)
+class Log {
+ public:
+  enum class Level {
+    quiet,   ///< what calls for somebody: a rank that is set aside
+    normal,  ///< and what is out of the ordinary
+    verbose  ///< and every task that starts or ends
+  };
+  enum class From { release, snapshot };
+  enum class Then { over, tried_again };
+
+  /// @param progress  whose lines these go between
+  Log(campaign::Progress& progress, Level level) : progress_(progress), level_(level) {}
+
+  void started(const sweep::RunRow& row, From from);
+  /// Of a task that is over, failed or not, or interrupted.
+  void ended(const sweep::RunRow& row);
+  void failed(const sweep::RunRow& row, Then then);
+  void failure_withdrawn(const sweep::RunRow& row);
+  /// @param failed  the last task that failed on the rank
+  void set_aside(const sweep::RunRow& failed);
+  void stopping(const std::string& reason);
+
+ private:
+  campaign::Progress& progress_;
+  Level level_;
+
+  void say(const std::string& text);
+};
+
+}  // namespace clog::conduct

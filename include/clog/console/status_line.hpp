@@ -1,0 +1,38 @@
+#pragma once
+
+#include <chrono>
+#include <iosfwd>
+#include <string>
+
+namespace clog::console {
+
+/// Says how something is getting on: one line that is renewed on a terminal, now and then a new line
+/// elsewhere.
+class StatusLine {
+ public:
+  enum class Screen { terminal, plain, none };
+  /// What the standard error is.
+  static Screen standard_error();
+
+  StatusLine(std::ostream& out, Screen screen);
+
+  /// Has the line been there long enough?
+  bool is_due() const;
+  void renew(const std::string& text);
+  /// Prints a line that stays, whatever the screen.
+  void say(const std::string& text);
+  /// What is on a terminal stays; other words follow below it.
+  void keep();
+  /// What is on a terminal goes.
+  void wipe();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::ostream& out_;
+  Screen screen_;
+  Clock::time_point last_renewal_ = Clock::now();
+  std::string text_;
+};
+
+}  // namespace clog::console

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "clog/host/rank_facts.hpp"
+
+namespace clog::host {
+
+/// One thing looked at: what is so, and what to do if it is not well.
+struct Finding {
+  std::string what;
+  std::string remedy = "";  ///< empty if all is well
+};
+
+/// Would a sweep on these ranks, that writes to `output`, go well?
+std::vector<Finding> examine(const std::vector<RankFacts>& ranks, const std::string& output);
+
+/// srun without PMIx starts as many programs as there are tasks, each of which believes that it is alone.
+/// @throws Error if this is one of them
+void refuse_to_be_alone(int num_ranks);
+
+}  // namespace clog::host

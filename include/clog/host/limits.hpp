@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+
+namespace clog::host {
+
+// What the host leaves to this process. Containers and batch systems may grant less than there is, through
+// control groups (Linux, Documentation/admin-guide/cgroup-v2.rst): the tightest of the process's own group
+// and all groups around it counts. Limits of version 1 are not seen.
+
+/// Cores that the control groups grant to all of their processes, as time per period; 0: no limit.
+/// @param root  holds proc and sys
+double granted_cores(const std::filesystem::path& root = "/");
+
+/// Memory still available [bytes], on the host and in the control groups; 0 if the host does not tell. What
+/// the kernel keeps of files that were not read of late counts as available: it gives that up first.
+/// @param root  holds proc and sys
+double available_memory(const std::filesystem::path& root = "/");
+
+}  // namespace clog::host

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+
+namespace clog::laboratory {
+
+/// A number with its unit, e.g. "3.5 mm" or "7mm/s", in SI units.
+/// @param units  what is measured: "length", "speed", "tension", "density" or "angle" (in radians)
+/// @throws Error naming the units that are understood
+double to_si(const std::string& text, const std::string& units);
+
+/// Factor from a unit alone. @throws Error
+double si_factor(const std::string& unit, const std::string& units);
+
+/// A droplet between two plates that are tilted, driven by buoyancy; all in SI units.
+struct Experiment {
+  double diameter = 0;        ///< of the undeformed droplet [m]
+  double terminal_speed = 0;  ///< far from walls [m/s]
+  double tilt = 0;            ///< of the plates against the horizontal [rad]
+  double droplet_density = 0;
+  double outer_density = 0;
+  double interfacial_tension = 0;  ///< NaN if it is not known [N/m]
+
+  /// g_exp = sin(tilt) g |rho_outer - rho_droplet|/rho_droplet, what buoyancy leaves [m/s^2]
+  double gravity() const;
+  /// V_t = v_t/sqrt(sigma g_exp)
+  double reduced_terminal_speed() const;
+  /// Gamma_exp = gamma/(g_exp rho_droplet sigma^2) (Cheng et al., Eq. 7)
+  double line_tension() const;
+};
+/// Gamma of another experiment with the same liquids: it goes with 1/(sigma^2 sin(tilt)).
+double scaled_line_tension(double line_tension, const Experiment& from, const Experiment& to);
+
+}  // namespace clog::laboratory

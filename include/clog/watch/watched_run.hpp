@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "clog/core/droplet_run.hpp"
+#include "clog/store/trajectory_file.hpp"
+#include "clog/watch/preview.hpp"
+
+namespace clog::watch {
+
+/// Follows one droplet to its end, or to a signal, and keeps samples of it on the way.
+class WatchedRun {
+ public:
+  /// How often, in checks of the run (0: no polygons).
+  struct Intervals {
+    std::int64_t samples = 1;
+    std::int64_t polygons = 0;
+  };
+  /// @param samples, polygons  [t0]; without polygons none are kept
+  static Intervals every(double samples, std::optional<double> polygons, double time_step);
+
+  WatchedRun(DropletRun run, Intervals intervals);
+
+  /// A column of the table beside those that every run has.
+  template <class Value>
+  void add_column(std::string name, std::string meaning, Value value) {
+    columns_.push_back({{std::move(name), std::move(meaning), {}}, value});
+  }
+  void follow();
+  /// Advances the run by a short piece, to see what a step costs. The run is good for nothing else then.
+  MostCost measure_cost();
+
+  const DropletRun& run() const { return run_; }
+  /// Of the run; `interrupted` if a signal ended it.
+  RunResult result() const;
+  /// Samples, polygons, the obstacles near them, and the row's columns of what came out.
+  /// @param row  the columns of what was run, see sweep::describe()
+  /// @param origin  where the trajectory comes from
+  store::Trajectory trajectory(sweep::RunRow row, store::Provenance origin) const;
+  /// Two lines on how it ended. Returns the exit code.
+  int report() const;
+
+ private:
+  struct Column {
+    store::TrajectoryColumn data;
+    std::function<double(const DropletRun&)> measure;
+  };
+  DropletRun run_;
+  Intervals intervals_;
+  std::vector<Column> columns_;
+  std::vector<store::PolygonFrame> polygons_;
+  bool interrupted_ = false;
+  double seconds_ = 0;
+
+  void add_common_columns();
+  void take_sample();
+  void take_polygon();
+};
+
+}  // namespace clog::watch

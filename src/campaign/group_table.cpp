@@ -1,0 +1,313 @@
+#include "clog/campaign/group_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <variant>
+
+#include "clog/campaign/usual_parameters.hpp"
+#include "clog/console/rounded.hpp"
+#include "clog/sweep/schema_json.hpp"
+#include "clog/sweep/settings.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::campaign {
+namespace {
+
+std::string rounded(const Value& value) {
+  if (const auto* number = std::get_if<double>(&value)) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g", *number);
+    return text;
+  }
+  const std::string text = sweep::text_of(value);
+  return text.empty() ? "-" : text;
+}
+
+nlohmann::ordered_json json_of(const Value& value) {
+  if (const auto* count = std::get_if<std::int64_t>(&value)) return *count;
+  if (const auto* number = std::get_if<double>(&value); number && std::isfinite(*number)) return *number;
+  if (const auto* word = std::get_if<std::string>(&value); word && !word->empty()) return *word;
+  return nullptr;
+}
+
+/// Columns aligned to the right.
+std::string aligned(const std::vector<std::vector<std::string>>& lines) {
+  std::vector<std::size_t> widths(lines.front().size(), 0);
+  for (const auto& line : lines)
+    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
+  std::string text;
+  for (const auto& line : lines) {
+    for (std::size_t i = 0; i < line.size(); ++i)
+      text += std::string(widths[i] - line[i].size() + (i > 0 ? 2 : 0), ' ') + line[i];
+    text += '\n';
+  }
+  return text;
+}
+
+bool is_lattice(const Group& group) {
+  return group.first_row.parameters.obstacles.layout == ObstacleLayout::lattice;
+}
+
+std::string letters(const std::vector<Doubt>& doubts) {
+  std::string all;
+  for (const Doubt doubt : doubts) all += text_of(doubt).letter;
+  return all;
+}
+
+/// What the letters in the last column mean, as far as they occur.
+std::string legend(const std::vector<Group>& groups) {
+  std::string text;
+  for (const DoubtText& doubt : doubt_texts)
+    if (std::any_of(groups.begin(), groups.end(), [&](const Group& group) {
+          return letters(group.doubts).find(doubt.letter) != std::string::npos;
+        }))
+      text += std::string(text.empty() ? "\n" : "") + doubt.letter + ": " + doubt.sentence + '\n';
+  return text;
+}
+
+/// Which columns are worth their place.
+struct OptionalColumns {
+  bool mechanisms;  ///< where clogs are not all of one kind, or some are left out
+  bool migration;   ///< in random arrays a droplet goes straight on the average
+};
+
+OptionalColumns optional_columns(const std::vector<Group>& groups) {
+  std::set<ClogMechanism> seen;
+  for (const Group& group : groups)
+    for (const Group::Cause& cause : group.causes)
+      if (cause.clogging.num_clogs > 0) seen.insert(cause.mechanism);
+  const bool are_some_left_out =
+      std::any_of(groups.begin(), groups.end(), [](const Group& group) { return group.num_left_out > 0; });
+  return {.mechanisms = seen.size() > 1 || are_some_left_out,
+          .migration = std::any_of(groups.begin(), groups.end(), is_lattice)};
+}
+
+/// Clogs by mechanism, as 3/5/2/0.
+std::string mechanism_counts(const Group& group) {
+  std::string counts;
+  for (const Group::Cause& cause : group.causes) {
+    if (!counts.empty()) counts += '/';
+    counts += std::to_string(cause.clogging.num_clogs);
+  }
+  return counts.empty() ? "-" : counts;
+}
+
+std::vector<std::string> result_cells(const Group& group, OptionalColumns optional) {
+  const fit::CloggingLength& clogging = group.clogging;
+  const bool bounded = clogging.num_clogs > 0;
+  const console::RoundedInterval length =
+      console::with_interval(clogging.length, clogging.interval.lower, clogging.interval.upper);
+  const console::RoundedError speed =
+      console::with_error(group.relative_speed.mean, group.relative_speed.standard_error);
+  // One or two runs that happened to come far enough to have a speed say little of all.
+  constexpr int fewest_speeds = 3;
+  const bool has_speed = group.relative_speed.num_runs >= fewest_speeds;
+  std::vector<std::string> cells = {std::to_string(clogging.num_runs),
+                                    std::to_string(clogging.num_clogs),
+                                    bounded                  ? length.value
+                                    : clogging.num_runs == 0 ? "-"
+                                                             : "> " + console::plain(clogging.interval.lower),
+                                    bounded ? length.lower + " .. " + length.upper : "-",
+                                    has_speed ? speed.value : "-",
+                                    has_speed ? speed.error : "-"};
+  if (optional.mechanisms) cells.insert(cells.begin() + 2, mechanism_counts(group));
+  if (optional.migration) {
+    const console::RoundedError slope =
+        console::with_error(group.migration.slope, group.migration.standard_error);
+    cells.insert(cells.end(), {slope.value, slope.error});
+  }
+  return cells;
+}
+
+std::vector<Field> all_fields(const Group& group) {
+  std::vector<Field> fields = parameter_fields(group.first_row);
+  for (Field& field : result_fields(group)) fields.push_back(std::move(field));
+  return fields;
+}
+
+std::vector<bool> varying_fields(const std::vector<Group>& groups) {
+  const std::vector<Field> first = parameter_fields(groups.front().first_row);
+  std::vector<bool> varies(first.size(), false);
+  for (const Group& group : groups) {
+    const std::vector<Field> fields = parameter_fields(group.first_row);
+    for (std::size_t i = 0; i < fields.size(); ++i) varies[i] = varies[i] || fields[i] != first[i];
+  }
+  return varies;
+}
+
+/// Fields that vary, except those whose automatic values follow from the others.
+std::vector<bool> shown_fields(const std::vector<Group>& groups, const std::vector<bool>& varies) {
+  const std::vector<Field> first = parameter_fields(groups.front().first_row);
+  const RunParameters& run = groups.front().first_row.parameters;
+  std::vector<bool> shown(first.size(), false);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const std::string_view name = first[i].first;
+    shown[i] = (varies[i] && !group_columns()[i]->may_be_automatic(run)) || name == "obstacle_gap" ||
+               name == (run.model == Model::sp ? "wall_stiffness" : "line_tension");
+  }
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    if (!varies[i] || shown[i]) continue;
+    std::map<std::vector<Value>, Value> follows;
+    for (const Group& group : groups) {
+      const std::vector<Field> fields = parameter_fields(group.first_row);
+      std::vector<Value> from;
+      for (std::size_t j = 0; j < fields.size(); ++j)
+        if (shown[j]) from.push_back(fields[j].second);
+      const auto [known, is_new] = follows.try_emplace(from, fields[i].second);
+      if (!is_new && known->second != fields[i].second) shown[i] = true;
+    }
+  }
+  return shown;
+}
+
+/// Of the fields of a group that have one, and of what is in its lists.
+nlohmann::ordered_json field_units(const Group& group) {
+  nlohmann::ordered_json all;
+  for (const auto& [name, value] : all_fields(group))
+    if (const std::string_view unit = unit_of(name); !unit.empty()) all[name] = unit;
+  all["survival"] = {{"distance", "sigma"}};
+  all["censored_distances"] = "sigma";
+  return all;
+}
+
+/// Of parameters that do not differ: are they worth a word?
+std::vector<bool> named_if_shared(const sweep::RunRow& row, SharedParameters shared) {
+  const std::vector<Field> fields = parameter_fields(row);
+  const std::vector<Field> usual =
+      shared == SharedParameters::unusual ? usual_parameters(row) : std::vector<Field>();
+  std::vector<bool> named;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const std::string text = sweep::text_of(fields[i].second);
+    const std::string_view name = fields[i].first;
+    const bool tells_all =
+        name == "model" || (name == "preset" && text != sweep::find_key("preset").default_text);
+    named.push_back(!text.empty() && text != "none" && (tells_all || usual.empty() || fields[i] != usual[i]));
+  }
+  return named;
+}
+
+/// Words in lines that fit a terminal, each after a space.
+std::string wrapped(const std::vector<std::string>& words) {
+  constexpr std::size_t longest_line = 100;
+  std::string text;
+  std::size_t line_begin = 0;
+  for (const std::string& word : words) {
+    if (text.size() - line_begin + word.size() >= longest_line) {
+      text += "\n ";
+      line_begin = text.size();
+    }
+    text += ' ' + word;
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string to_text(const std::vector<Group>& groups, double confidence, SharedParameters shared) {
+  const std::vector<Field> first = parameter_fields(groups.front().first_row);
+  const std::vector<bool> varies = varying_fields(groups);
+  const std::vector<bool> shown = shown_fields(groups, varies);
+  const std::vector<bool> is_named = named_if_shared(groups.front().first_row, shared);
+  const auto is_shown = [&](std::size_t i) { return shown[i]; };
+
+  std::vector<std::string> shared_words;
+  std::vector<std::vector<std::string>> lines(1);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    if (is_shown(i))
+      lines[0].push_back(first[i].first);
+    else if (!varies[i] && is_named[i])
+      shared_words.push_back(std::string(first[i].first) + "=" + rounded(first[i].second));
+  }
+  char interval[16];
+  std::snprintf(interval, sizeof interval, "%g %%", 100 * confidence);
+  const OptionalColumns optional = optional_columns(groups);
+  lines[0].insert(lines[0].end(), {"runs", "clogs"});
+  if (optional.mechanisms) lines[0].push_back("w/s/h/o");
+  lines[0].insert(lines[0].end(), {"lambda/sigma", interval, "<v_g>/v_t", "+-"});
+  if (optional.migration) lines[0].insert(lines[0].end(), {"lateral/r", "+-"});
+  const bool with_doubts =
+      std::any_of(groups.begin(), groups.end(), [](const Group& group) { return !group.doubts.empty(); });
+  if (with_doubts) lines[0].push_back("note");
+  int num_failed = 0;
+  int num_damaged = 0;
+  int num_interrupted = 0;
+  int num_left_out = 0;
+  for (const Group& group : groups) {
+    std::vector<std::string>& line = lines.emplace_back();
+    const std::vector<Field> fields = parameter_fields(group.first_row);
+    for (std::size_t i = 0; i < fields.size(); ++i)
+      if (is_shown(i)) line.push_back(rounded(fields[i].second));
+    for (std::string& cell : result_cells(group, optional)) line.push_back(std::move(cell));
+    if (with_doubts) line.push_back(letters(group.doubts));
+    num_failed += group.num_failed;
+    num_damaged += group.num_damaged;
+    num_interrupted += group.num_interrupted;
+    num_left_out += group.num_left_out;
+  }
+  std::string text = "all runs:" + wrapped(shared_words);
+  if (shared == SharedParameters::unusual) text += "\n(the rest as by default; --all-parameters names it)";
+  text += "\n\n" + aligned(lines) + legend(groups);
+  if (optional.mechanisms) text += "w/s/h/o: clogs by wrapping, by squeezing, by both, by neither\n";
+  if (num_left_out > 0)
+    text += "   " + sweep::counted(num_left_out, "run") + " ended before --from-distance, left out of " +
+            "runs, clogs and lambda; <v_g> is still of all runs\n";
+  if (num_interrupted > 0)
+    text +=
+        "   " + sweep::counted(num_interrupted, "run") + (num_interrupted == 1 ? " is" : " are") +
+        " under way or interrupted: lambda holds for the distances reached so far, and the clogs so far are "
+        "the early ones\n";
+  if (num_failed > 0) text += "   " + std::to_string(num_failed) + " failed; the column `message` says why\n";
+  if (num_damaged > 0)
+    text += "   " + std::to_string(num_damaged) + " damaged; clogsweep verify tells which\n";
+  return text;
+}
+
+std::string to_csv(const std::vector<Group>& groups) {
+  std::ostringstream out;
+  for (const Group& group : groups) {
+    const std::vector<Field> fields = all_fields(group);
+    if (&group == &groups.front())
+      for (std::size_t i = 0; i < fields.size(); ++i) out << (i > 0 ? "," : "") << fields[i].first;
+    out << '\n';
+    for (std::size_t i = 0; i < fields.size(); ++i)
+      out << (i > 0 ? "," : "") << sweep::text_of(fields[i].second);
+  }
+  out << '\n';
+  return out.str();
+}
+
+std::string to_json(const std::vector<Group>& groups, double confidence,
+                    const std::vector<std::string>& lists) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Group& group : groups) {
+    nlohmann::ordered_json entry;
+    const std::vector<Field> fields = all_fields(group);
+    for (const auto& [name, value] : fields) entry[name] = json_of(value);
+    entry["survival"] = nlohmann::ordered_json::array();
+    for (const fit::SurvivalStep& step : group.survival)
+      entry["survival"].push_back({{"distance", step.distance},
+                                   {"at_risk", step.num_at_risk},
+                                   {"clogs", step.num_clogs},
+                                   {"probability", step.probability},
+                                   {"standard_error", step.standard_error},
+                                   {"lower", step.interval.lower},
+                                   {"upper", step.interval.upper}});
+    entry["censored_distances"] = group.censored_distances;
+    list.push_back(std::move(entry));
+  }
+  nlohmann::ordered_json sentences;
+  for (const DoubtText& doubt : doubt_texts) sentences[doubt.word] = doubt.sentence;
+  nlohmann::ordered_json columns = nlohmann::ordered_json::array();
+  for (const sweep::Column* column : group_columns()) columns.push_back(sweep::to_json(*column));
+  const nlohmann::ordered_json document = {
+      {"confidence", confidence}, {"doubts", sentences}, {"units", field_units(groups.front())},
+      {"columns", columns},       {"lists", lists},      {"groups", list}};
+  return document.dump(2) + "\n";
+}
+
+}  // namespace clog::campaign

@@ -1,0 +1,249 @@
+#include "clog/campaign/groups.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+
+#include "clog/core/units.hpp"
+#include "clog/sweep/row_check.hpp"
+#include "clog/sweep/row_limits.hpp"
+
+namespace clog::campaign {
+namespace {
+
+Value value_of(double number) { return std::isnan(number) ? Value() : Value(number); }
+Value value_of(int count) { return std::int64_t{count}; }
+
+bool is_ensemble(const sweep::Column& column) {
+  return column.parameter && column.parameter->role == ParameterRole::ensemble;
+}
+
+bool is_numerics(const sweep::Column& column) {
+  return column.parameter && column.parameter->role == ParameterRole::numerics;
+}
+
+/// Are so many clogs wrapped or hybrid that what holds those decides the length?
+bool hangs_on_mesh(const Group& group) {
+  int hanging = 0;
+  for (const Group::Cause& cause : group.causes)
+    if (cause.mechanism == ClogMechanism::wrapped || cause.mechanism == ClogMechanism::hybrid)
+      hanging += cause.clogging.num_clogs;
+  return hanging > 0 && 3 * hanging >= group.clogging.num_clogs;
+}
+
+std::vector<Doubt> doubts_about(const Group& group) {
+  constexpr int few = 5;
+  std::vector<Doubt> doubts;
+  const bool has_runs = group.clogging.num_runs > 0;  // not if all ended before distances are counted
+  if (has_runs && group.clogging.num_clogs < few) doubts.push_back(Doubt::few_clogs);
+  if (group.num_flowing > 0) doubts.push_back(Doubt::censored_by_time);
+  if (group.num_interrupted > 0 || group.num_failed > 0) doubts.push_back(Doubt::incomplete);
+  if (group.num_damaged > 0) doubts.push_back(Doubt::damaged);
+  if (hangs_on_mesh(group)) doubts.push_back(Doubt::held_by_mesh);
+  if (group.num_repeating > 0) doubts.push_back(Doubt::array_repeats);
+  if (group.clogging.length < sweep::obstacle_spacing(group.first_row))
+    doubts.push_back(Doubt::below_spacing);
+  if (!sweep::unproven_parameters(group.first_row).empty()) doubts.push_back(Doubt::not_proved_sound);
+  return doubts;
+}
+
+/// Holm's step-down test (Scand. J. Stat. 6, 65 (1979)): with it, one sweep in twenty of exponential groups
+/// has any such doubt, however many groups it has. The p-value of few clogs is too small to be used.
+void doubt_exponentiality(std::vector<Group>& groups) {
+  constexpr int fewest_clogs = 10;
+  constexpr double significant = 0.05;
+  std::vector<Group*> tested;
+  for (Group& group : groups)
+    if (group.weibull.num_clogs >= fewest_clogs && !std::isnan(group.weibull.p_value))
+      tested.push_back(&group);
+  std::sort(tested.begin(), tested.end(),
+            [](const Group* a, const Group* b) { return a->weibull.p_value < b->weibull.p_value; });
+  for (std::size_t i = 0; i < tested.size(); ++i) {
+    if (tested[i]->weibull.p_value * static_cast<double>(tested.size() - i) >= significant) return;
+    tested[i]->doubts.push_back(Doubt::not_exponential);
+  }
+}
+
+std::vector<double> censored_distances(std::span<const fit::Observation> runs) {
+  std::vector<double> distances;
+  for (const fit::Observation& run : runs)
+    if (!run.clogged) distances.push_back(run.distance);
+  std::sort(distances.begin(), distances.end());
+  return distances;
+}
+
+bool is_clogged(const sweep::RunRow& run) { return run.status == RunStatus::clogged; }
+
+/// Clogging lengths of runs that are sound and reached the distance from which they count.
+void fit_clogging(Group& group, std::span<const sweep::RunRow* const> runs, double confidence,
+                  double from_distance) {
+  // Observations in which only some of the clogs are such, the other runs being censored where they ended.
+  const auto observe = [&](auto is_end) {
+    std::vector<fit::Observation> observations;
+    for (const sweep::RunRow* run : runs)
+      observations.push_back({run->distance - from_distance, is_clogged(*run) && is_end(*run)});
+    return observations;
+  };
+  const std::vector<fit::Observation> all = observe([](const sweep::RunRow&) { return true; });
+  group.clogging = fit::fit_clogging_length(all, confidence);
+  group.least_squares_length = fit::least_squares_length(all);
+  group.weibull = fit::test_exponentiality(all);
+  group.survival = fit::survival_curve(all, confidence);
+  group.censored_distances = censored_distances(all);
+  if (std::any_of(runs.begin(), runs.end(),
+                  [](const auto* run) { return is_clogged(*run) && !run->mechanism; }))
+    return;
+  for (const ClogMechanism cause : causes)
+    group.causes.push_back(
+        {cause, fit::fit_clogging_length(
+                    observe([=](const sweep::RunRow& run) { return run.mechanism == cause; }), confidence)});
+}
+
+/// Counts by mechanism and their lengths; without values where they are not known.
+void append_causes(const Group& group, std::vector<Field>& fields) {
+  // Fields are named by literals.
+  struct Names {
+    const char *count, *length, *lower, *upper;
+  };
+  constexpr Names names[] = {
+      {"wrapped", "clogging_length_wrapped", "clogging_length_wrapped_lower",
+       "clogging_length_wrapped_upper"},
+      {"squeezed", "clogging_length_squeezed", "clogging_length_squeezed_lower",
+       "clogging_length_squeezed_upper"},
+      {"hybrid", "clogging_length_hybrid", "clogging_length_hybrid_lower", "clogging_length_hybrid_upper"},
+      {"other", "clogging_length_other", "clogging_length_other_lower", "clogging_length_other_upper"}};
+  const Value unknown;
+  for (std::size_t i = 0; i < std::size(names); ++i) {
+    const bool known = !group.causes.empty();
+    const fit::CloggingLength fit = known ? group.causes[i].clogging : fit::CloggingLength();
+    fields.emplace_back(names[i].count, known ? value_of(fit.num_clogs) : unknown);
+    fields.emplace_back(names[i].length, known ? value_of(fit.length) : unknown);
+    fields.emplace_back(names[i].lower, known ? value_of(fit.interval.lower) : unknown);
+    fields.emplace_back(names[i].upper, known ? value_of(fit.interval.upper) : unknown);
+  }
+}
+
+constexpr std::pair<std::string_view, std::string_view> units_of_results[] = {
+    {"total_distance", "sigma"},
+    {"relative_speed", "v_t"},
+    {"relative_speed_error", "v_t"},
+    {"relative_speed_pooled", "v_t"},
+    {"relative_speed_pooled_error", "v_t"}};
+
+}  // namespace
+
+std::string_view unit_of(std::string_view field) {
+  if (field.starts_with("clogging_length")) return "sigma";
+  for (const auto& [name, unit] : units_of_results)
+    if (name == field) return unit;
+  for (const sweep::Column* column : group_columns())
+    if (column->name == field) return column->unit;
+  return "";
+}
+
+const DoubtText& text_of(Doubt doubt) {
+  return *std::find_if(std::begin(doubt_texts), std::end(doubt_texts),
+                       [=](const DoubtText& text) { return text.doubt == doubt; });
+}
+
+std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence, double from_distance) {
+  std::map<std::vector<Field>, std::vector<const sweep::RunRow*>> members;
+  for (const sweep::RunRow& row : rows) {
+    std::vector<Field> fields = parameter_fields(row);
+    members[std::move(fields)].push_back(&row);
+  }
+  std::vector<Group> groups;
+  for (const auto& [fields, runs] : members) {
+    Group group;
+    group.first_row = *runs.front();
+    std::vector<const sweep::RunRow*> counted;
+    std::vector<double> speeds;
+    std::vector<fit::Travel> travels;
+    std::vector<fit::Displacement> displacements;
+    for (const sweep::RunRow* run : runs) {
+      const bool is_damaged = !sweep::fault_of(*run).empty();
+      const bool is_failed = !is_damaged && run->status == RunStatus::failed;
+      group.num_damaged += is_damaged;
+      group.num_failed += is_failed;
+      if (is_damaged || is_failed) continue;
+      group.num_interrupted += sweep::is_unfinished(run->status);
+      group.num_repeating += sweep::has_met_repetition(*run);
+      const bool is_left_out = std::max(run->distance, 0.0) < from_distance;
+      group.num_left_out += is_left_out;
+      if (!is_left_out) counted.push_back(run);
+      group.num_flowing += !is_left_out && run->status == RunStatus::flowing;
+      const double relative_speed = run->mean_speed / run->parameters.drag.terminal_speed;
+      speeds.push_back(relative_speed);
+      travels.push_back({relative_speed * run->travel_time, run->travel_time});
+      displacements.push_back({run->distance, run->lateral_displacement});
+    }
+    fit_clogging(group, counted, confidence, from_distance);
+    group.relative_speed = fit::fit_mean_speed(speeds);
+    group.relative_speed_pooled = fit::fit_pooled_speed(travels);
+    group.migration = fit::fit_migration(displacements);
+    group.doubts = doubts_about(group);
+    groups.push_back(std::move(group));
+  }
+  doubt_exponentiality(groups);
+  return groups;
+}
+
+std::span<const sweep::Column* const> group_columns() {
+  static const std::vector<const sweep::Column*> all = [] {
+    std::vector<const sweep::Column*> columns;
+    for (const sweep::Column& column : sweep::columns())
+      if (column.role == sweep::ColumnRole::parameter && !is_ensemble(column)) columns.push_back(&column);
+    std::stable_sort(columns.begin() + 1, columns.end(), [](const sweep::Column* a, const sweep::Column* b) {
+      return std::pair(is_numerics(*a), !a->shapes_array) < std::pair(is_numerics(*b), !b->shapes_array);
+    });
+    return columns;
+  }();
+  return all;
+}
+
+std::vector<Field> parameter_fields(const sweep::RunRow& row) {
+  std::vector<Field> fields;
+  for (const sweep::Column* column : group_columns())
+    fields.emplace_back(column->name.c_str(), column->get(row));
+  return fields;
+}
+
+std::vector<Field> result_fields(const Group& group) {
+  const RunParameters& run = group.first_row.parameters;
+  const double line_tension = run.model == Model::dp ? run.dp.line_tension : sweep::RunRow::not_known;
+  std::string doubts;
+  for (const Doubt doubt : group.doubts)
+    doubts += std::string(doubts.empty() ? "" : " ") + text_of(doubt).word;
+  std::vector<Field> fields = {
+      {"runs", value_of(group.clogging.num_runs)},
+      {"clogs", value_of(group.clogging.num_clogs)},
+      {"flowing", value_of(group.num_flowing)},
+      {"interrupted", value_of(group.num_interrupted)},
+      {"failed", value_of(group.num_failed)},
+      {"damaged", value_of(group.num_damaged)},
+      {"left_out", value_of(group.num_left_out)},
+      {"repeating", value_of(group.num_repeating)},
+      {"total_distance", value_of(group.clogging.total_distance)},
+      {"clogging_length", value_of(group.clogging.length)},
+      {"clogging_length_lower", value_of(group.clogging.interval.lower)},
+      {"clogging_length_upper", value_of(group.clogging.interval.upper)},
+      {"clogging_length_profile_lower", value_of(group.clogging.profile.lower)},
+      {"clogging_length_profile_upper", value_of(group.clogging.profile.upper)},
+      {"clogging_length_least_squares", value_of(group.least_squares_length)},
+      {"weibull_shape", value_of(group.weibull.shape)},
+      {"weibull_p_value", value_of(group.weibull.p_value)},
+      {"relative_speed", value_of(group.relative_speed.mean)},
+      {"relative_speed_error", value_of(group.relative_speed.standard_error)},
+      {"relative_speed_runs", value_of(group.relative_speed.num_runs)},
+      {"relative_speed_pooled", value_of(group.relative_speed_pooled.mean)},
+      {"relative_speed_pooled_error", value_of(group.relative_speed_pooled.standard_error)},
+      {"capillary_number", value_of(group.relative_speed.mean * units::droplet_mass / line_tension)},
+      {"lateral_slope", value_of(group.migration.slope)},
+      {"lateral_slope_error", value_of(group.migration.standard_error)},
+      {"doubts", doubts}};
+  append_causes(group, fields);
+  return fields;
+}
+
+}  // namespace clog::campaign

@@ -1,0 +1,297 @@
+#include "clog/campaign/ledger.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <unordered_set>
+#include <utility>
+
+#include "clog/campaign/stored_sweep.hpp"
+#include "clog/core/error.hpp"
+#include "clog/store/regular_file.hpp"
+#include "clog/sweep/row_check.hpp"
+#include "clog/sweep/run_row.hpp"
+#include "clog/sweep/settings.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::campaign {
+namespace {
+
+/// A sweep may grow along numbers of the physics, and in seeds. In all others a file and a sweep that goes on
+/// with it have values in common.
+bool may_grow_along(const sweep::Key& key) {
+  return key.parameter && key.kind != ValueKind::word && key.parameter->role != ParameterRole::numerics;
+}
+
+void set_attribute(store::Provenance& provenance, const std::string& name, const std::string& text) {
+  std::erase_if(provenance, [&](const auto& attribute) { return attribute.first == name; });
+  provenance.emplace_back(name, text);
+}
+
+/// An attribute holds less than 64 kB: the oldest lines go first, and a long one loses its end.
+std::string latest_lines(std::string text) {
+  constexpr std::size_t longest_line = 2000;
+  constexpr std::size_t longest = 30'000;
+  const std::size_t last = text.rfind('\n', text.size() - 2) + 1;  // 0 if there is only one line
+  if (text.size() - last > longest_line) text = text.substr(0, last + longest_line) + "...\n";
+  while (text.size() > longest) text.erase(0, text.find('\n') + 1);
+  return text;
+}
+
+/// Is any value of the one list in the other? Numbers may be written differently.
+bool have_common_value(const std::vector<std::string>& some, const std::vector<std::string>& others) {
+  return std::any_of(some.begin(), some.end(), [&](const std::string& value) {
+    return std::any_of(others.begin(), others.end(),
+                       [&](const std::string& other) { return sweep::is_same_value(value, other); });
+  });
+}
+
+/// A run of which nothing is left but what it is and what it has cost so far.
+void begin_anew(sweep::RunRow& row) {
+  RunResult nothing;
+  nothing.status = RunStatus::interrupted;
+  sweep::record(nothing, row);
+}
+
+std::string differing_keys(const sweep::Settings& there, const sweep::Settings& here) {
+  std::string all;
+  for (const sweep::Key& key : sweep::keys())
+    if (!may_grow_along(key) && key.name != "preset" &&
+        !have_common_value(there.values(key.name), here.values(key.name)))
+      all += (all.empty() ? "" : ", ") + key.name + '=' + here.text(key.name) + " (there " +
+             there.text(key.name) + ')';
+  return all;
+}
+
+}  // namespace
+
+Ledger::Ledger(std::string path, const sweep::Plan& plan, const sweep::Settings& settings,
+               store::Provenance provenance, std::int64_t num_wanted, std::int64_t attempts)
+    : path_(store::require_regular(std::move(path))),
+      plan_(plan),
+      provenance_(std::move(provenance)),
+      attempts_(attempts),
+      journal_(store::journal_path(path_)),
+      num_wanted_(num_wanted) {
+  std::string session;
+  for (const char* name : {"start_time", "version", "git_hash", "num_ranks", "command_line"})
+    session += attribute(provenance_, name) + ' ';
+  session.back() = '\n';
+
+  std::unordered_map<std::string, Entry> known;
+  std::unordered_set<std::string> with_results;
+  if (std::filesystem::exists(path_)) {
+    const store::SweepFile file = store::read_sweep(path_);
+    caution_ = store::caution(path_, file);
+    take_over(file, settings);
+    for (const sweep::RunRow& row : file.rows) {
+      known[sweep::identity(row)] = {row, {}};
+      if (sweep::is_result(row.status)) with_results.insert(sweep::identity(row));
+    }
+  }
+  const bool has_table = !known.empty() || std::filesystem::exists(path_);
+  std::vector<Entry> entries = journal_.take_entries();
+  if (!has_table && !entries.empty())
+    throw Error("cannot begin " + path_ + " (its table is gone, but " + store::journal_path(path_) +
+                " holds " + sweep::counted(static_cast<std::int64_t>(entries.size()), "report") +
+                " of an earlier sweep); put the table back, or remove the journal to begin anew");
+  for (Entry& entry : entries) {
+    std::string run = sweep::identity(entry.row);
+    // A run that has its result in the table is not over in the journal if its last record there was lost.
+    if (sweep::is_result(entry.row.status) || !with_results.contains(run))
+      known[std::move(run)] = std::move(entry);
+  }
+  num_faulty_ = static_cast<std::int64_t>(
+      std::erase_if(known, [](const auto& run) { return !sweep::fault_of(run.second.row).empty(); }));
+  set_attribute(provenance_, "sessions", latest_lines(attribute(provenance_, "sessions") + session));
+  find_tasks(std::move(known));
+  publish();
+  last_publication_ = Clock::now();
+}
+
+/// A file that is there: do its runs belong to this sweep? Then what it says of its origin stays.
+void Ledger::take_over(const store::SweepFile& file, const sweep::Settings& settings) {
+  const std::string remedy = "; give another --output";
+  for (const sweep::RunRow& row : file.rows)
+    if (row.model_version != model_version)
+      throw Error("cannot continue with " + path_ + " (its runs are of model version " +
+                  std::to_string(row.model_version) + ", this program's is " + std::to_string(model_version) +
+                  ": the same parameters would give other results)" + remedy);
+  const std::string differing = differing_keys(stored_settings(path_, file.provenance), settings);
+  if (!differing.empty())
+    throw Error("cannot continue with " + path_ + " (it holds runs with other settings: " + differing + ")" +
+                remedy);
+  store::Provenance all = file.provenance;
+  for (const char* name : {"config", "stopping_rule", "num_wanted"}) {
+    std::erase_if(all, [&](const auto& attribute) { return attribute.first == name; });
+    if (const std::string text = attribute(provenance_, name); !text.empty()) all.emplace_back(name, text);
+  }
+  provenance_ = std::move(all);
+}
+
+bool Ledger::is_over(const sweep::RunRow& row) const {
+  if (row.status == RunStatus::failed) return row.attempt >= attempts_;
+  return !sweep::is_unfinished(row.status);
+}
+
+void Ledger::find_tasks(std::unordered_map<std::string, Entry> known) {
+  std::int64_t last_seed = -1;
+  for (const auto& [run, entry] : known)
+    last_seed = std::max(last_seed, std::int64_t{entry.row.parameters.seed});
+  for (std::int64_t task = 0; task < plan_.size(); ++task) {
+    // Seeds that may be added later follow in increasing order: none beyond has begun yet.
+    if (task >= num_wanted_ && (known.empty() || plan_.task(task).seed > last_seed)) break;
+    if (!known.empty())
+      if (auto found = known.extract(sweep::identity(sweep::describe(plan_.task(task)))); !found.empty()) {
+        Entry& entry = runs_[task] = std::move(found.mapped());
+        entry.row.task = task;
+        if (is_over(entry.row)) continue;
+        if (entry.row.status == RunStatus::running) entry.row.status = RunStatus::interrupted;
+        past_[task].seconds = entry.row.wall_seconds;
+      }
+    if (task < num_wanted_) tasks_left_.push_back(task);
+  }
+  for (auto& [run, entry] : known) other_runs_.push_back(std::move(entry));
+  std::sort(other_runs_.begin(), other_runs_.end(),
+            [](const Entry& a, const Entry& b) { return a.row.task < b.row.task; });
+  for (std::size_t i = 0; i < other_runs_.size(); ++i) {
+    sweep::RunRow& row = other_runs_[i].row;
+    row.task = plan_.size() + static_cast<std::int64_t>(i);
+    if (row.status == RunStatus::running) row.status = RunStatus::interrupted;
+  }
+}
+
+void Ledger::want(const std::vector<std::int64_t>& tasks) {
+  num_wanted_ += static_cast<std::int64_t>(tasks.size());
+  set_attribute(provenance_, "num_wanted", std::to_string(num_wanted_));
+  tasks_left_.clear();
+  for (const std::int64_t task : tasks)
+    if (const auto run = runs_.find(task); run == runs_.end() || !is_over(run->second.row))
+      tasks_left_.push_back(task);
+  is_published_ = false;
+}
+
+std::vector<std::int64_t> Ledger::tasks_begun() const {
+  std::vector<std::int64_t> tasks;
+  for (const auto& [task, entry] : runs_)
+    if (!is_over(entry.row)) tasks.push_back(task);
+  return tasks;
+}
+
+std::int64_t Ledger::num_resumed() const {
+  return std::count_if(tasks_left_.begin(), tasks_left_.end(), [this](std::int64_t task) {
+    const auto run = runs_.find(task);
+    return run != runs_.end() && !run->second.snapshot.empty();
+  });
+}
+
+sweep::RunRow Ledger::new_row(std::int64_t task) const {
+  sweep::RunRow row = sweep::describe(plan_.task(task));
+  row.task = task;
+  row.clogged_by = sweep::FoundBy::nothing;
+  row.mechanism = ClogMechanism::none;
+  return row;
+}
+
+sweep::Start Ledger::start(std::int64_t task, int rank) {
+  const auto [run, is_new] = runs_.try_emplace(task);
+  Entry& entry = run->second;
+  sweep::Start start{entry.snapshot, entry.row.attempt};
+  const bool failed = !is_new && entry.row.status == RunStatus::failed;
+  if (failed) start = {{}, entry.row.attempt + 1};
+  if (const auto past = past_.find(task); past != past_.end())
+    past->second.instruction_set = start.snapshot.empty() ? "" : entry.row.instruction_set;
+  if (is_new || failed) {
+    entry.snapshot.clear();
+    entry.row = new_row(task);
+  }
+  entry.row.attempt = start.attempt;
+  entry.row.status = RunStatus::running;
+  entry.row.rank = rank;
+  is_published_ = false;
+  return start;
+}
+
+void Ledger::report(const sweep::Report& report) {
+  Entry& entry = runs_[report.row.task];
+  entry = {report.row, report.snapshot};
+  if (const auto past = past_.find(report.row.task); past != past_.end()) {
+    entry.row.wall_seconds += past->second.seconds;
+    const std::string& before = past->second.instruction_set;
+    if (!before.empty() && before != entry.row.instruction_set)
+      entry.row.instruction_set = sweep::mixed_instruction_sets;
+  }
+  if (entry.row.status == RunStatus::failed) past_[entry.row.task].seconds = entry.row.wall_seconds;
+  journal_.add(entry.row, entry.snapshot);
+  is_published_ = false;
+}
+
+const sweep::RunRow* Ledger::first_if_all_failed() const {
+  const auto has_failed = [](const auto& run) { return run.second.row.status == RunStatus::failed; };
+  if (runs_.empty() || !std::all_of(runs_.begin(), runs_.end(), has_failed)) return nullptr;
+  return &runs_.begin()->second.row;
+}
+
+void Ledger::withdraw_failure(std::int64_t task) {
+  Entry& entry = runs_.at(task);
+  begin_anew(entry.row);  // what a bad rank made of it is no distance so far
+  journal_.add(entry.row, entry.snapshot);
+  is_published_ = false;
+}
+
+void Ledger::tick() {
+  // Writing the whole table takes longer the more runs there are, and the journal must be rewritten now and
+  // then; they may take two percent of the time.
+  const Clock::time_point begin = Clock::now();
+  const Clock::duration pause = std::max<Clock::duration>(std::chrono::seconds(1), 50 * publication_time_);
+  if (is_published_ || begin - last_publication_ < pause) return;
+  publish();
+  if (journal_.is_to_be_rewritten()) shorten_journal();
+  last_publication_ = Clock::now();
+  publication_time_ = last_publication_ - begin;
+}
+
+/// As readers see it: a run that will be tried again has not failed yet, and where it failed is no distance
+/// so far.
+sweep::RunRow Ledger::published(const sweep::RunRow& row) const {
+  if (row.status != RunStatus::failed || is_over(row)) return row;
+  sweep::RunRow next = row;
+  begin_anew(next);
+  ++next.attempt;
+  return next;
+}
+
+void Ledger::publish() {
+  std::vector<sweep::RunRow> rows;
+  rows.reserve(runs_.size() + other_runs_.size());
+  for (const auto& [task, entry] : runs_) rows.push_back(published(entry.row));
+  for (const Entry& entry : other_runs_) rows.push_back(published(entry.row));
+  journal_.flush();
+  store::publish_sweep(path_, rows, provenance_);
+  is_published_ = true;
+}
+
+/// To the snapshots that are still needed; what is over is in the table.
+void Ledger::shorten_journal() {
+  std::vector<const Entry*> needed;
+  for (const auto& [task, entry] : runs_)
+    if (!is_over(entry.row)) needed.push_back(&entry);
+  for (const Entry& entry : other_runs_)
+    if (!is_over(entry.row)) needed.push_back(&entry);
+  journal_.rewrite(needed);
+}
+
+void Ledger::finish() {
+  publish();
+  const bool is_complete =
+      static_cast<std::int64_t>(runs_.size()) >= num_wanted_ &&
+      std::all_of(runs_.begin(), runs_.end(), [this](const auto& run) { return is_over(run.second.row); }) &&
+      std::all_of(other_runs_.begin(), other_runs_.end(),
+                  [this](const Entry& run) { return is_over(run.row); });
+  if (is_complete)
+    journal_.remove();
+  else
+    shorten_journal();
+}
+
+}  // namespace clog::campaign

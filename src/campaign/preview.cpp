@@ -1,0 +1,260 @@
+#include "clog/campaign/preview.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "clog/campaign/cost.hpp"
+#include "clog/campaign/stored_sweep.hpp"
+#include "clog/console/exit_codes.hpp"
+#include "clog/console/printable.hpp"
+#include "clog/console/signals.hpp"
+#include "clog/console/streams.hpp"
+#include "clog/sweep/columns.hpp"
+#include "clog/sweep/obstacle_arrays.hpp"
+#include "clog/sweep/row_check.hpp"
+#include "clog/sweep/row_limits.hpp"
+#include "clog/sweep/run_job.hpp"
+#include "clog/sweep/run_row.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::campaign {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double hour = 3600;
+
+/// What differs from one task to the next.
+std::vector<const sweep::Column*> varying_columns(const sweep::Plan& plan) {
+  const sweep::RunRow first = sweep::describe(plan.task(0));
+  std::vector<bool> varies;
+  for (const sweep::Column& column : sweep::columns())
+    varies.push_back(column.parameter && column.parameter->role == ParameterRole::ensemble);
+  for (std::int64_t group = 1; group < plan.num_groups(); ++group) {
+    const sweep::RunRow row = sweep::describe(plan.task(group));
+    for (std::size_t i = 0; i < varies.size(); ++i) {
+      const sweep::Column& column = sweep::columns()[i];
+      if (column.role == sweep::ColumnRole::parameter && !varies[i])
+        varies[i] = column.get(row) != column.get(first);
+    }
+  }
+  std::vector<const sweep::Column*> varying;
+  for (std::size_t i = 0; i < varies.size(); ++i)
+    if (varies[i]) varying.push_back(&sweep::columns()[i]);
+  return varying;
+}
+
+void print_task(const sweep::Plan& plan, std::int64_t task,
+                const std::vector<const sweep::Column*>& columns) {
+  const sweep::RunRow row = sweep::describe(plan.task(task));
+  std::cout << task;
+  for (const sweep::Column* column : columns) {
+    const std::string text = sweep::text_of(column->get(row));
+    std::cout << ' ' << (text.empty() ? "-" : text);
+  }
+  std::cout << '\n';
+}
+
+double work_per_step(const RunParameters& run) { return run.model == Model::dp ? run.dp.vertices : 1; }
+double longest_work(const RunParameters& run) { return run.max_time / *run.time_step * work_per_step(run); }
+
+/// Runs of a sweep that say what it costs.
+struct Sample {
+  std::vector<RunCost> costs;
+  std::string source;
+  std::string failure;  ///< of the first that could not begin; these are not among the costs
+};
+
+/// Of the last row of a run. @param first  of the same run, when it had just begun
+RunCost cost_of(const sweep::RunRow& row, const sweep::RunRow& first, const RunParameters& run,
+                std::int64_t parameter_set) {
+  return {.parameter_set = parameter_set,
+          .begin_seconds = first.wall_seconds,
+          .seconds = row.wall_seconds - first.wall_seconds,
+          .work = static_cast<double>(row.steps - first.steps) * work_per_step(run),
+          .longest_work = longest_work(run),
+          .is_over = !sweep::is_unfinished(row.status)};
+}
+
+constexpr std::size_t fewest_stored_runs = 5;
+
+/// What the sweep's own file has of its runs; nothing if there is none.
+struct Stored {
+  Sample sample;
+  std::vector<WaitingRuns> waiting;  ///< of each parameter set what is not in the sample
+  std::int64_t num_done = 0;         ///< tasks that are not to be done again
+  double seconds = 0;                ///< that its tasks have taken so far
+};
+Stored stored_runs(const sweep::Plan& plan, const std::string& path) {
+  Stored stored;
+  stored.sample.source = "that " + path + " holds";
+  if (path.empty() || !std::filesystem::exists(path)) return stored;
+  std::unordered_map<std::string, sweep::RunRow> rows;
+  for (const sweep::RunRow& row : read_with_caution(path).rows)
+    if (sweep::fault_of(row).empty()) rows.emplace(sweep::identity(row), row);
+  for (std::int64_t set = 0; set < plan.num_groups(); ++set)
+    stored.waiting.push_back({set, plan.size() / plan.num_groups(), longest_work(plan.task(set))});
+  for (std::int64_t task = 0; task < plan.size() && !rows.empty(); ++task) {
+    const RunParameters run = plan.task(task);
+    const auto found = rows.extract(sweep::identity(sweep::describe(run)));
+    if (found.empty()) continue;
+    const sweep::RunRow& row = found.mapped();
+    const std::int64_t set = task % plan.num_groups();
+    const bool is_over = !sweep::is_unfinished(row.status);
+    const bool has_moved = row.steps > 0 && row.wall_seconds > 0;
+    stored.num_done += is_over;
+    stored.seconds += row.wall_seconds;
+    if (has_moved) stored.sample.costs.push_back(cost_of(row, {}, run, set));
+    if (is_over || has_moved) --stored.waiting[set].number;
+  }
+  return stored;
+}
+
+/// Tasks spread over parameter sets and, where these are few, over seeds; those of the same array together.
+std::vector<std::int64_t> tasks_to_try(const sweep::Plan& plan) {
+  constexpr std::int64_t most_tasks = 24;
+  constexpr std::int64_t most_seeds = 4;  // of many parameter sets: arrays may take long to make
+  const std::int64_t num_tasks = std::min(plan.size(), most_tasks);
+  const std::int64_t num_groups = plan.num_groups();
+  std::vector<std::int64_t> tasks;
+  for (std::int64_t i = 0; i < num_tasks; ++i)
+    tasks.push_back(num_groups <= num_tasks
+                        ? i
+                        : i * num_groups / num_tasks +
+                              num_groups * (i % std::min(most_seeds, plan.size() / num_groups)));
+  std::stable_sort(tasks.begin(), tasks.end(), [&](std::int64_t a, std::int64_t b) {
+    const auto array = [&](std::int64_t task) {
+      const RunParameters run = plan.task(task);
+      return sweep::array_key(run.obstacles, run.seed);
+    };
+    return array(a) < array(b);
+  });
+  return tasks;
+}
+
+/// Short pieces of real runs, ten seconds in all.
+Sample tried_sample(const sweep::Plan& plan) {
+  constexpr double all_seconds = 10;
+  constexpr double fewest_seconds = 0.1;  // for a run whose array took all of its share
+  const Clock::time_point begin = Clock::now();
+  const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+  const auto arrays = std::make_shared<sweep::ObstacleArrays>();
+  Sample sample;
+  const std::vector<std::int64_t> tasks = tasks_to_try(plan);
+  for (std::size_t i = 0; i < tasks.size() && elapsed() < all_seconds && !console::stop_signalled(); ++i) {
+    const double share = (all_seconds - elapsed()) / static_cast<double>(tasks.size() - i);
+    const double end = elapsed() + share;
+    sweep::RunJob job(plan.task(tasks[i]), tasks[i], {}, arrays);
+    bool is_over = job.advance();
+    const sweep::RunRow first = is_over ? sweep::RunRow() : job.row();
+    const double least_end = elapsed() + fewest_seconds;
+    while (!is_over && elapsed() < std::max(end, least_end) && !console::stop_signalled())
+      is_over = job.advance();
+    const sweep::RunRow row = job.row();
+    if (row.steps > 0)
+      sample.costs.push_back(cost_of(row, first, plan.task(tasks[i]), tasks[i] % plan.num_groups()));
+    else if (sample.failure.empty())
+      sample.failure = row.message;
+  }
+  char source[48];
+  std::snprintf(source, sizeof source, "tried for %.2g s in all", elapsed());
+  sample.source = source;
+  return sample;
+}
+
+SweepCost tried_cost(const sweep::Plan& plan, const Sample& sample) {
+  double all_work = 0;
+  for (std::int64_t group = 0; group < plan.num_groups(); ++group) all_work += longest_work(plan.task(group));
+  all_work *= static_cast<double>(plan.size() / plan.num_groups());
+  return sweep_cost(sample.costs, all_work, plan.size());
+}
+
+/// With what has been spent before, or without it.
+SweepCost plus(SweepCost cost, double seconds) {
+  for (double* part : {&cost.bound, &cost.expected, &cost.lower, &cost.upper})
+    *part = std::max(0.0, *part + seconds);
+  return cost;
+}
+
+}  // namespace
+
+void print_tasks(const sweep::Plan& plan) {
+  constexpr std::int64_t most_lines = 1000;
+  constexpr std::int64_t lines_at_an_end = 20;
+  const std::int64_t num_skipped = plan.size() > most_lines ? plan.size() - 2 * lines_at_an_end : 0;
+  const std::vector<const sweep::Column*> columns = varying_columns(plan);
+  std::cout << "# task";
+  for (const sweep::Column* column : columns) std::cout << ' ' << column->name;
+  std::cout << '\n';
+  for (std::int64_t task = 0; task < plan.size() && !console::stop_signalled(); ++task) {
+    if (num_skipped > 0 && task == lines_at_an_end) {
+      std::cout << "# ... " << num_skipped << " more ...\n";
+      task += num_skipped;
+    }
+    print_task(plan, task, columns);
+  }
+  if (console::stop_signalled()) return;
+  const std::int64_t seeds = plan.size() / plan.num_groups();
+  std::cout << "# " << sweep::counted(plan.size(), "task") << ": "
+            << sweep::counted(plan.num_groups(), "parameter set") << ", " << sweep::counted(seeds, "seed")
+            << " each\n";
+}
+
+void print_limits(const sweep::Plan& plan) {
+  for (const std::string& words : sweep::limits_of_results(plan)) std::cout << "# " << words << '\n';
+}
+
+int print_cost(const sweep::Plan& plan, const std::string& output) {
+  const Stored stored = stored_runs(plan, output);
+  if (stored.num_done == plan.size()) {
+    std::printf("# %s has all %s, which took %.2g core-hours; nothing is left to do\n",
+                console::printable(output).c_str(), sweep::counted(plan.size(), "task").c_str(),
+                stored.seconds / hour);
+    return console::exit_success;
+  }
+  const bool knows_enough = stored.sample.costs.size() >= fewest_stored_runs;
+  const Sample sample = knows_enough ? stored.sample : tried_sample(plan);
+  if (console::stop_signalled()) return console::exit_incomplete;
+  if (sample.costs.empty()) {
+    console::say("clogsweep: none of the runs that were tried can begin, the first one: " + sample.failure);
+    return console::exit_internal_fault;
+  }
+  const SweepCost cost =
+      knows_enough ? plus(cost_left(sample.costs, stored.waiting), stored.seconds) : tried_cost(plan, sample);
+  const SweepCost left = plus(cost, -stored.seconds);
+  const double us_per_step = 1e6 * cost.seconds_per_work * work_per_step(plan.task(0));
+  std::printf(
+      "# at most %.3g core-hours on this machine, %.3g us per step measured; runs that clog end sooner\n",
+      cost.bound / hour, us_per_step);
+  const auto num_over =
+      std::count_if(sample.costs.begin(), sample.costs.end(), [](const RunCost& run) { return run.is_over; });
+  const auto num_runs = static_cast<std::int64_t>(sample.costs.size());
+  std::printf("# expected %.2g core-hours (95 %%: %.2g to %.2g), from %s %s, %td of them over\n",
+              cost.expected / hour, cost.lower / hour, cost.upper / hour,
+              sweep::counted(num_runs, "run").c_str(), sample.source.c_str(), num_over);
+  if (stored.seconds == 0) return console::exit_success;
+  std::printf("# %s has %lld of %s; %lld to go: expected %.2g core-hours more (95 %%: %.2g to %.2g)\n",
+              console::printable(output).c_str(), static_cast<long long>(stored.num_done),
+              sweep::counted(plan.size(), "task").c_str(),
+              static_cast<long long>(plan.size() - stored.num_done), left.expected / hour, left.lower / hour,
+              left.upper / hour);
+  return console::exit_success;
+}
+
+void print_config(const sweep::Settings& settings, const sweep::Plan& plan) {
+  const RunParameters first = plan.task(0);
+  std::cout << settings.to_config(true) << "\n# Values behind `auto` in the first task:\n";
+  for (const Parameter& parameter : parameter_schema())
+    if (parameter.may_be_automatic(first))
+      if (const ParameterValue value = parameter.get(first); value != ParameterValue())
+        std::cout << "# " << parameter.key << " = " << sweep::text_of(value) << '\n';
+}
+
+}  // namespace clog::campaign

@@ -1,0 +1,91 @@
+#include "clog/campaign/progress.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <vector>
+
+#include "clog/console/duration.hpp"
+
+namespace clog::campaign {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+}  // namespace
+
+Progress::Progress(std::ostream& out, Screen screen, int num_computing_ranks, std::int64_t num_sets)
+    : status_(out, screen), sets_(num_sets), num_ranks_(num_computing_ranks) {}
+
+void Progress::expect(std::span<const std::int64_t> tasks, std::int64_t num_wanted) {
+  for (const std::int64_t task : tasks) ++set_of(task).num_waiting;
+  num_tasks_ += static_cast<std::int64_t>(tasks.size());
+  num_before_ = num_wanted - num_tasks_;
+}
+
+void Progress::started(std::int64_t task) { running_[task] = Clock::now(); }
+
+void Progress::ended(const sweep::RunRow& row) {
+  running_.erase(row.task);
+  ++ended_by_status_[row.status];
+  if (row.status == RunStatus::interrupted) return;
+  ++num_ended_;
+  SetTimes& set = set_of(row.task);
+  ++set.num_finished;
+  --set.num_waiting;
+  set.seconds += row.wall_seconds;
+}
+
+void Progress::not_ended(const sweep::RunRow& failed) {
+  --ended_by_status_[failed.status];
+  --num_ended_;
+  SetTimes& set = set_of(failed.task);
+  --set.num_finished;
+  ++set.num_waiting;
+}
+
+void Progress::tick() {
+  if (status_.is_due()) status_.renew(line());
+}
+
+void Progress::finish() {
+  status_.renew(line());
+  status_.keep();
+}
+
+std::string Progress::line() const {
+  const auto count = [this](RunStatus status) {
+    const auto found = ended_by_status_.find(status);
+    return found == ended_by_status_.end() ? std::int64_t{0} : found->second;
+  };
+  const auto counted = [&](RunStatus status) { return std::to_string(count(status)) + ' ' + name(status); };
+  std::string text =
+      std::to_string(num_before_ + num_ended_) + "/" + std::to_string(num_before_ + num_tasks_) + " done, ";
+  if (num_before_ > 0) text += std::to_string(num_before_) + " of them before; now ";
+  text += std::to_string(running_.size()) + " running, " + counted(RunStatus::clogged) + ", " +
+          counted(RunStatus::flowing);
+  for (const RunStatus status : {RunStatus::passed, RunStatus::failed, RunStatus::interrupted})
+    if (count(status) != 0) text += ", " + counted(status);
+  const double elapsed = seconds_since(begin_);
+  if (num_ended_ > 0) {
+    char rate[48];
+    std::snprintf(rate, sizeof rate, ", %.3g runs/min", 60 * static_cast<double>(num_ended_) / elapsed);
+    text += rate;
+  }
+  return text + ", " + console::readable_duration(elapsed) + " so far" + time_left();
+}
+
+std::string Progress::time_left() const {
+  if (num_ended_ == num_tasks_) return "";
+  std::vector<SetTimes> sets = sets_;
+  for (const auto& [task, begin] : running_) {
+    SetTimes& set = sets[task % sets.size()];
+    ++set.num_running;
+    --set.num_waiting;
+    set.seconds += seconds_since(begin);
+  }
+  return ", " + campaign::time_left(sets, static_cast<std::size_t>(num_ranks_)).text();
+}
+
+}  // namespace clog::campaign

@@ -1,0 +1,80 @@
+#include "clog/campaign/seed_rule.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "clog/core/error.hpp"
+#include "clog/fit/clogging_length.hpp"
+#include "clog/sweep/plan.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::campaign {
+namespace {
+
+constexpr double confidence = 0.95;
+
+std::int64_t clogs_needed(double precision) {
+  std::int64_t enough = 1;
+  while (fit::relative_half_width(enough, confidence) > precision) enough *= 2;
+  std::int64_t too_few = enough / 2;
+  while (enough - too_few > 1) {
+    const std::int64_t middle = (too_few + enough) / 2;
+    (fit::relative_half_width(middle, confidence) > precision ? too_few : enough) = middle;
+  }
+  return enough;
+}
+
+}  // namespace
+
+SeedRule::SeedRule(double precision, std::int64_t num_groups, std::int64_t first_seeds,
+                   std::int64_t most_seeds)
+    : precision_(precision),
+      most_seeds_(most_seeds),
+      num_seeds_(static_cast<std::size_t>(num_groups), first_seeds) {}
+
+std::vector<std::int64_t> SeedRule::next_round(const std::function<bool(std::int64_t task)>& has_clogged) {
+  const std::int64_t needed = clogs_needed(precision_);
+  std::vector<std::int64_t> tasks;
+  num_reached_ = 0;
+  for (std::int64_t group = 0; group < num_groups(); ++group) {
+    std::int64_t& num_seeds = num_seeds_[static_cast<std::size_t>(group)];
+    std::int64_t clogs = 0;
+    for (std::int64_t seed = 0; seed < num_seeds; ++seed) clogs += has_clogged(seed * num_groups() + group);
+    num_reached_ += clogs >= needed;
+    if (clogs >= needed) continue;
+    const auto estimate =
+        static_cast<std::int64_t>(std::ceil(static_cast<double>(num_seeds) * static_cast<double>(needed) /
+                                            static_cast<double>(std::max<std::int64_t>(clogs, 1))));
+    const std::int64_t next = std::min(std::clamp(estimate, num_seeds + 1, 2 * num_seeds), most_seeds_);
+    for (std::int64_t seed = num_seeds; seed < next; ++seed) tasks.push_back(seed * num_groups() + group);
+    num_seeds = std::max(num_seeds, next);
+  }
+  std::sort(tasks.begin(), tasks.end());  // seeds vary slowest, as in the plan
+  return tasks;
+}
+
+std::string SeedRule::text() const {
+  return "seeds are added, in rounds, to every parameter set with fewer than " +
+         std::to_string(clogs_needed(precision_)) + " clogs (a 95 % interval of lambda within +-" +
+         sweep::shortest(100 * precision_) + " %), up to " + sweep::counted(most_seeds_, "seed");
+}
+
+GrowingSweep growing_sweep(const sweep::Settings& settings, double precision, std::int64_t most_seeds) {
+  const std::vector<std::string>& seeds = settings.values("seeds");
+  const auto first_seeds = static_cast<std::int64_t>(seeds.size());
+  const sweep::Plan plan(settings);
+  GrowingSweep sweep{settings, plan.size(), {precision, plan.num_groups(), first_seeds, most_seeds}};
+  if (most_seeds == first_seeds) return sweep;
+  long long last = 0;
+  for (const std::string& seed : seeds) last = std::max(last, sweep::to_integer(seed));
+  constexpr long long largest_seed = 4'294'967'295;
+  if (last + most_seeds - first_seeds > largest_seed)
+    throw Error("invalid --most-seeds=" + std::to_string(most_seeds) + " (seeds after " +
+                std::to_string(last) + " would exceed " + std::to_string(largest_seed) +
+                ") begin with smaller seeds");
+  sweep.settings.set("seeds", settings.text("seeds") + "," + std::to_string(last + 1) + ".." +
+                                  std::to_string(last + most_seeds - first_seeds));
+  return sweep;
+}
+
+}  // namespace clog::campaign

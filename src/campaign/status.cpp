@@ -1,0 +1,98 @@
+#include "clog/campaign/status.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "clog/console/printable.hpp"
+#include "clog/store/journal.hpp"
+#include "clog/sweep/plan.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::campaign {
+namespace {
+
+using sweep::RunRow;
+
+/// Of the parameter sets of the last config. With --until-precision a set may want more seeds than others,
+/// which is not known here: each is taken to want the mean of all.
+std::vector<SetTimes> times_of_sets(const std::vector<RunRow>& rows, const sweep::Plan& plan,
+                                    std::int64_t num_wanted) {
+  const std::int64_t num_sets = plan.num_groups();
+  std::vector<SetTimes> sets(num_sets);
+  for (const RunRow& row : rows) {
+    if (row.task < 0 || row.task >= plan.size()) continue;
+    SetTimes& set = sets[row.task % num_sets];
+    ++(sweep::is_unfinished(row.status) ? set.num_running : set.num_finished);
+    set.seconds += row.wall_seconds;
+  }
+  for (SetTimes& set : sets)
+    set.num_waiting = std::max<std::int64_t>(0, num_wanted / num_sets - set.num_finished - set.num_running);
+  return sets;
+}
+
+}  // namespace
+
+Status status_of(const std::string& path, const store::SweepFile& file, double confidence) {
+  Status status;
+  const sweep::Plan plan = stored_plan(path, file.provenance);
+  status.runs = stored_num_runs(path, file, plan);
+  status.stopping_rule = attribute(file.provenance, "stopping_rule");
+  status.is_alive = store::Journal::is_open(store::journal_path(path));
+  for (const RunRow& row : file.rows) {
+    ++status.by_status[row.status];
+    status.core_hours += row.wall_seconds / 3600;
+  }
+  const std::int64_t num_wanted = status.runs.num_runs - status.runs.num_beyond;
+  status.left = time_left(times_of_sets(file.rows, plan, num_wanted),
+                          std::max<std::size_t>(1, static_cast<std::size_t>(status.num_under_way())));
+  if (!file.rows.empty()) status.groups = group_runs(file.rows, confidence);
+  return status;
+}
+
+std::string to_text(const std::string& path, const Status& status, double confidence,
+                    SharedParameters shared) {
+  const auto number = [](std::int64_t value) { return std::to_string(value); };
+  std::string text = console::printable(path) + ": " + number(status.num_over()) + " of " +
+                     sweep::counted(status.runs.num_runs, "run") + " over" + status.runs.text_of_beyond() +
+                     ", " + number(status.count(RunStatus::clogged)) + " clogged, " +
+                     number(status.count(RunStatus::flowing)) + " flowing, " +
+                     number(status.count(RunStatus::failed)) + " failed";
+  if (const std::int64_t under_way = status.num_under_way(); under_way > 0)
+    text += "; " + number(under_way) + (status.is_alive ? " running" : " interrupted");
+  char hours[64];
+  std::snprintf(hours, sizeof hours, "; %.3g core-hours", status.core_hours);
+  text += hours;
+  if (status.num_over() == status.runs.num_runs)
+    text += "; complete";
+  else if (!status.is_alive)
+    text += "; no sweep is writing to it: the command that began it goes on";
+  else
+    text += ", " + status.left.text();
+  text += '\n';
+  if (!status.stopping_rule.empty()) text += status.stopping_rule + '\n';
+  if (!status.groups.empty()) text += '\n' + to_text(status.groups, confidence, shared);
+  return text;
+}
+
+std::string to_json(const Status& status, double confidence) {
+  nlohmann::ordered_json all;
+  all["runs"] = status.runs.num_runs;
+  all["runs_beyond_lists"] = status.runs.num_beyond;
+  all["over"] = status.num_over();
+  for (const RunStatus one : {RunStatus::clogged, RunStatus::flowing, RunStatus::failed})
+    all[name(one)] = status.count(one);
+  all["under_way"] = status.num_under_way();
+  all["alive"] = status.is_alive;
+  all["core_hours"] = status.core_hours;
+  all["seconds_left"] = status.left.is_known
+                            ? nlohmann::ordered_json{status.left.shortest, status.left.longest}
+                            : nlohmann::ordered_json();
+  if (!status.stopping_rule.empty()) all["stopping_rule"] = status.stopping_rule;
+  all["groups"] = status.groups.empty()
+                      ? nlohmann::ordered_json::array()
+                      : nlohmann::ordered_json::parse(to_json(status.groups, confidence, {})).at("groups");
+  return all.dump(2) + '\n';
+}
+
+}  // namespace clog::campaign

@@ -1,0 +1,111 @@
+#include "clog/campaign/stored_sweep.hpp"
+
+#include <algorithm>
+
+#include "clog/console/streams.hpp"
+#include "clog/core/error.hpp"
+#include "clog/core/instruction_set.hpp"
+#include "clog/sweep/row_check.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::campaign {
+namespace {
+
+/// What `read` makes of an attribute's text; says where the text is from if it cannot be read.
+template <class Read>
+auto read_attribute(const std::string& path, const store::Provenance& provenance, const std::string& name,
+                    const Read& read) {
+  try {
+    return read(attribute(provenance, name));
+  } catch (const Error& error) {
+    throw Error("cannot read " + path + " (its attribute " + name + ": " + error.what() +
+                "); the file is damaged, or of another version of the program");
+  }
+}
+
+sweep::Settings settings_from(const std::string& config) {
+  if (config.empty()) throw Error("it is missing, or empty");
+  return sweep::Settings::from_config(config);
+}
+
+const sweep::RunRow& row_of_task(const store::SweepFile& file, const std::string& word) {
+  const double task = sweep::to_number(word);
+  for (const sweep::RunRow& row : file.rows)
+    if (static_cast<double>(row.task) == task) return row;
+  throw Error("the file has no task " + word + "; its column `task` names those it has");
+}
+
+}  // namespace
+
+const sweep::RunRow& replayable_row(const store::SweepFile& file, const std::string& task) {
+  const sweep::RunRow& row = row_of_task(file, task);
+  const auto refuse = [&](const std::string& why, const std::string& remedy) {
+    throw Error("cannot replay task " + task + " (" + why + "); " + remedy);
+  };
+  if (sweep::is_unfinished(row.status))
+    throw Error("task " + task + " is not over; let the sweep go on first");
+  if (row.instruction_set == sweep::mixed_instruction_sets)
+    refuse("it was interrupted and went on under another instruction set, it is not known at which step",
+           "--instruction-set pins one for all sessions of a sweep");
+  if (row.model_version != model_version)
+    refuse("it is of model version " + std::to_string(row.model_version) + ", this program's is " +
+               std::to_string(model_version),
+           "use the version that wrote the file");
+  if (const std::string fault = sweep::fault_of(row); !fault.empty()) refuse(fault, "the row is damaged");
+  if (row.parameters.model == Model::dp) use_instruction_set(row.instruction_set);
+  return row;
+}
+
+store::SweepFile read_with_caution(const std::string& path) {
+  store::SweepFile file = store::read_sweep(path);
+  if (const std::string words = store::caution(path, file); !words.empty()) console::say(words);
+  return file;
+}
+
+std::string attribute(const store::Provenance& provenance, const std::string& name) {
+  const auto found = std::find_if(provenance.begin(), provenance.end(),
+                                  [&](const auto& attribute) { return attribute.first == name; });
+  return found == provenance.end() ? "" : found->second;
+}
+
+sweep::Settings stored_settings(const std::string& path, const store::Provenance& provenance) {
+  return read_attribute(path, provenance, "config", settings_from);
+}
+
+sweep::Plan stored_plan(const std::string& path, const store::Provenance& provenance) {
+  return read_attribute(path, provenance, "config",
+                        [](const std::string& config) { return sweep::Plan(settings_from(config)); });
+}
+
+std::vector<std::string> listed_columns(const store::Provenance& provenance) try {
+  const sweep::Settings settings = settings_from(attribute(provenance, "config"));
+  std::vector<std::string> columns;
+  for (const sweep::Key& key : sweep::keys())
+    if (key.parameter && settings.values(key.name).size() > 1) columns.emplace_back(key.parameter->column);
+  return columns;
+} catch (const Error&) {
+  return {};  // of a version that had other keys
+}
+
+std::int64_t stored_num_wanted(const std::string& path, const store::Provenance& provenance,
+                               const sweep::Plan& plan) {
+  return read_attribute(path, provenance, "num_wanted", [&](const std::string& number) {
+    return number.empty() ? plan.size() : sweep::to_integer(number);
+  });
+}
+
+RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, const sweep::Plan& plan) {
+  RunCount count;
+  count.num_beyond = std::count_if(file.rows.begin(), file.rows.end(),
+                                   [&](const sweep::RunRow& row) { return row.task >= plan.size(); });
+  // An earlier --until-precision may have had more of the plan's runs.
+  count.num_runs = std::max(stored_num_wanted(path, file.provenance, plan) + count.num_beyond,
+                            static_cast<std::int64_t>(file.rows.size()));
+  return count;
+}
+
+std::string RunCount::text_of_beyond() const {
+  return num_beyond == 0 ? "" : " (" + std::to_string(num_beyond) + " beyond the lists of its last command)";
+}
+
+}  // namespace clog::campaign

@@ -1,0 +1,55 @@
+#include "clog/campaign/usual_parameters.hpp"
+
+#include <string>
+#include <vector>
+
+#include "clog/core/error.hpp"
+#include "clog/core/schema.hpp"
+#include "clog/sweep/settings.hpp"
+
+namespace clog::campaign {
+namespace {
+
+/// Model and preset of the row, all else by default; not resolved yet.
+RunParameters defaults_for(const sweep::RunRow& row) {
+  sweep::Settings settings;
+  settings.set("model", name(row.parameters.model));
+  if (row.preset != "none" && row.preset != "custom") settings.set("preset", row.preset);
+  RunParameters run;
+  for (const sweep::Key& key : sweep::keys()) key.apply(run, settings.values(key.name).front());
+  if (run.model == Model::sp) run.wall_stiffness = row.parameters.wall_stiffness;
+  return run;
+}
+
+/// Those of the row, but what may be automatic as its preset has it.
+RunParameters with_usual_values(const sweep::RunRow& row) {
+  RunParameters run = defaults_for(row);
+  for (const Parameter& parameter : parameter_schema())
+    if (parameter.shapes_array || (parameter.has_own_column && !parameter.may_be_automatic(run)))
+      parameter.set(run, parameter.get(row.parameters));
+  return run;
+}
+
+}  // namespace
+
+std::vector<Field> usual_parameters(const sweep::RunRow& row) try {
+  const auto fields_of = [](const RunParameters& run) {
+    return parameter_fields(sweep::describe(resolve(run)));
+  };
+  RunParameters run = with_usual_values(row);
+  const std::vector<Field> with_usual_step = fields_of(run);
+  run.time_step = row.parameters.time_step;  // the stiffness of walls follows from it
+  const std::vector<Field> with_own_step = fields_of(run);
+  std::vector<Field> usual = fields_of(defaults_for(row));
+  for (std::size_t i = 0; i < usual.size(); ++i) {
+    const sweep::Column& column = *group_columns()[i];
+    if (column.name == "obstacle_density" && !run.obstacles.density) usual[i] = with_own_step[i];
+    if (!column.may_be_automatic(run)) continue;
+    usual[i] = (column.name == "time_step" ? with_usual_step : with_own_step)[i];
+  }
+  return usual;
+} catch (const Error&) {
+  return {};
+}
+
+}  // namespace clog::campaign

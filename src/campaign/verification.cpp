@@ -1,0 +1,67 @@
+#include "clog/campaign/verification.hpp"
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "clog/campaign/stored_sweep.hpp"
+#include "clog/store/journal.hpp"
+#include "clog/store/run_table.hpp"
+#include "clog/sweep/row_check.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::campaign {
+namespace {
+
+std::string to_text(const store::Journal::Contents& journal, bool is_alive) {
+  const auto num_snapshots = std::count_if(journal.entries.begin(), journal.entries.end(),
+                                           [](const auto& entry) { return !entry.snapshot.empty(); });
+  std::string text = sweep::counted(static_cast<std::int64_t>(journal.entries.size()), "record") + ", " +
+                     std::to_string(num_snapshots) + " of them with snapshots, ";
+  text +=
+      journal.num_unreadable == 0 ? "all whole" : std::to_string(journal.num_unreadable) + " more damaged";
+  if (is_alive) return text + "; a sweep is writing to it";
+  if (journal.has_torn_end) text += "; the last one is torn, as after a kill, and will be dropped";
+  return text;
+}
+
+/// What is wrong with the rows themselves, a line for each.
+std::vector<std::string> faults_of(const std::vector<sweep::RunRow>& rows) {
+  std::vector<std::string> faults;
+  std::unordered_map<std::string, std::int64_t> seen;
+  for (const sweep::RunRow& row : rows) {
+    std::string fault = sweep::fault_of(row);
+    const auto [first, is_new] = seen.emplace(sweep::identity(row), row.task);
+    if (fault.empty() && !is_new) fault = "the same run as task " + std::to_string(first->second);
+    if (!fault.empty()) faults.push_back("task " + std::to_string(row.task) + ": " + fault);
+  }
+  return faults;
+}
+
+}  // namespace
+
+Verification verify(const std::string& path) {
+  const store::Examination found = store::examine_sweep(path);
+  const store::SweepFile& file = found.whole;
+  RunCount runs;  // not asked for where the file is damaged
+  if (found.damage.empty()) runs = stored_num_runs(path, file, stored_plan(path, file.provenance));
+  Verification result{.findings = found.damage};
+  for (std::string& fault : faults_of(file.rows)) result.findings.push_back(std::move(fault));
+  result.num_faults = static_cast<std::int64_t>(result.findings.size());
+  const auto num_rows = static_cast<std::int64_t>(file.rows.size());
+  result.findings.push_back(
+      path + ": " +
+      (result.num_faults == 0
+           ? sweep::counted(num_rows, "row") + " of " + sweep::counted(runs.num_runs, "run") +
+                 runs.text_of_beyond() + ", all whole"
+           : sweep::counted(num_rows, "whole row") + ", " + sweep::counted(result.num_faults, "fault")));
+  if (std::string words = store::caution(path, file); !words.empty())
+    result.findings.push_back(std::move(words));
+  const std::string journal = store::journal_path(path);
+  if (const auto contents = store::Journal::look(journal)) {
+    result.findings.push_back(journal + ": " + to_text(*contents, store::Journal::is_open(journal)));
+    result.num_faults += contents->num_unreadable;
+  }
+  return result;
+}
+
+}  // namespace clog::campaign

@@ -1,0 +1,39 @@
+#include "clog/cli/analysis_script.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <system_error>
+
+#include "clog/console/streams.hpp"
+#include "clog/core/error.hpp"
+
+namespace clog::cli {
+
+std::filesystem::path find_analysis_script(const std::string& name) {
+  const std::filesystem::path script = std::filesystem::path(CLOG_ANALYSIS_FOLDER) / name;
+  std::error_code error;
+  if (!std::filesystem::exists(script, error))
+    throw Error("cannot draw without " + script.string() + ", which was there when " + own_folder().string() +
+                " was built; run analysis/" + name + " of the source tree instead");
+  return script;
+}
+
+void become_script(const std::string& name, const std::filesystem::path& script,
+                   std::vector<std::string> arguments) {
+  console::flush_output();
+  setenv("CLOG_CALLED_AS", name.c_str(), 1);
+  arguments.insert(arguments.begin(), script.string());
+  std::vector<char*> words;
+  for (std::string& argument : arguments) words.push_back(argument.data());
+  words.push_back(nullptr);
+  execv(script.c_str(), words.data());
+  throw Error("cannot run " + script.string() + " (" + std::strerror(errno) +
+              "); it needs Debian's python3 with h5py, pandas and matplotlib");
+}
+
+std::filesystem::path own_folder() { return std::filesystem::read_symlink("/proc/self/exe").parent_path(); }
+
+}  // namespace clog::cli

@@ -1,0 +1,203 @@
+#include "clog/conduct/lead.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <iostream>
+#include <ratio>
+#include <string>
+#include <vector>
+
+#include "clog/campaign/progress.hpp"
+#include "clog/console/exit_codes.hpp"
+#include "clog/console/signals.hpp"
+#include "clog/console/status_line.hpp"
+#include "clog/console/streams.hpp"
+#include "clog/parallel/task_order.hpp"
+#include "clog/store/journal.hpp"
+#include "clog/sweep/row_limits.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::conduct {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+// What the ranks are told after a round.
+const std::string another_round = "another round";
+const std::string over = "over";
+
+/// @param may_grow  runs may be added later
+void announce(const std::string& output, const sweep::Plan& plan, const campaign::Ledger& ledger,
+              bool may_grow, int num_ranks) {
+  const std::int64_t num_runs = ledger.num_wanted();
+  const auto num_left = static_cast<std::int64_t>(ledger.tasks_left().size());
+  if (!ledger.caution().empty()) console::say(ledger.caution());
+  if (num_left < num_runs)
+    console::say(output + " has " + std::to_string(num_runs - num_left) + " of " +
+                 sweep::counted(num_runs, "run") +
+                 (num_left == 0 && !may_grow ? "; there is nothing left to do" : ""));
+  if (ledger.num_beyond() > 0)
+    console::say(output + " holds " + sweep::counted(ledger.num_beyond(), "run") +
+                 " beyond the lists of this command; what it has of them stays");
+  if (ledger.num_faulty() > 0)
+    console::say(output + ": " + std::to_string(ledger.num_faulty()) +
+                 (ledger.num_faulty() == 1 ? " row holds" : " rows hold") +
+                 " what cannot be; what the sweep has of these runs is computed again");
+  if (ledger.num_unreadable() > 0)
+    console::say(store::journal_path(output) + ": " + std::to_string(ledger.num_unreadable()) +
+                 (ledger.num_unreadable() == 1 ? " record is" : " records are") +
+                 " damaged; what was in there is computed again");
+  if (const std::int64_t number = ledger.num_resumed(); number > 0)
+    console::say(std::to_string(number) + (number == 1 ? " goes on where it was" : " go on where they were"));
+  if (num_left == 0) return;
+  for (const std::string& words : sweep::limits_of_results(plan)) console::say(words);
+  console::say(sweep::counted(num_left, "run") + " on " + sweep::counted(num_ranks, "computing rank") +
+               ", results go to " + output);
+}
+
+campaign::Progress::Screen screen(Log::Level level) {
+  if (level == Log::Level::quiet) return campaign::Progress::Screen::none;
+  return console::StatusLine::standard_error();
+}
+
+/// Joins what the scheduler tells and asks with what is kept and what is told to the user.
+class Lead {
+ public:
+  Lead(const LeadOptions& options, const sweep::Plan& plan, campaign::Ledger& ledger, int num_ranks)
+      : ledger_(ledger),
+        progress_(std::cerr, screen(options.log), num_ranks, plan.num_groups()),
+        log_(progress_, options.log),
+        max_hours_(options.max_hours) {}
+
+  /// More tasks.
+  void expect(const std::vector<std::int64_t>& tasks) {
+    is_expecting_ = is_expecting_ || !tasks.empty();
+    progress_.expect(tasks, ledger_.num_wanted());
+  }
+
+  parallel::SweepEvents events() {
+    parallel::SweepEvents events;
+    events.started = [this](std::int64_t task, int rank) { return start(task, rank); };
+    events.progressed = [this](const sweep::Report& report) { ledger_.report(report); };
+    events.ended = [this](const sweep::Report& report) { end(report); };
+    events.tries_again = [this](const sweep::RunRow& failed) { return ledger_.tries_again(failed); };
+    events.failure_withdrawn = [this](std::int64_t task) { withdraw_failure(task); };
+    events.set_aside = [this](const sweep::RunRow& failed) { log_.set_aside(failed); };
+    events.idle = [this] {
+      ledger_.tick();
+      progress_.tick();
+    };
+    events.stop_requested = [this] {
+      const char* reason = reason_to_stop();
+      if (reason) log_.stopping(reason);
+      return reason != nullptr;
+    };
+    return events;
+  }
+
+  void finish() {
+    ledger_.finish();
+    if (is_expecting_) progress_.finish();
+  }
+  bool was_interrupted() const { return was_interrupted_; }
+  /// None: nullptr.
+  const char* reason_to_stop() const {
+    if (console::stop_signalled()) return "a signal";
+    const std::chrono::duration<double, std::ratio<3600>> hours = Clock::now() - begin_;
+    return hours.count() >= max_hours_ ? "--max-hours" : nullptr;
+  }
+
+ private:
+  campaign::Ledger& ledger_;
+  bool is_expecting_ = false;
+  campaign::Progress progress_;
+  Log log_;
+  double max_hours_;
+  bool was_interrupted_ = false;
+  Clock::time_point begin_ = Clock::now();
+
+  sweep::Start start(std::int64_t task, int rank) {
+    progress_.started(task);
+    sweep::Start start = ledger_.start(task, rank);
+    log_.started(ledger_.row(task), start.snapshot.empty() ? Log::From::release : Log::From::snapshot);
+    return start;
+  }
+
+  void end(sweep::Report report) {
+    // Stopped before it was heard of since it went on: it is where its snapshot and its row here are.
+    if (report.row.status == RunStatus::interrupted && report.row.steps == 0 && !report.snapshot.empty()) {
+      report.row = ledger_.row(report.row.task);
+      report.row.status = RunStatus::interrupted;
+      report.row.wall_seconds = 0;  // the ledger adds what was before
+    }
+    ledger_.report(report);
+    if (report.row.status == RunStatus::failed && ledger_.tries_again(report.row)) {
+      progress_.tried(report.row.task);
+      log_.failed(report.row, Log::Then::tried_again);
+      return;
+    }
+    progress_.ended(report.row);
+    log_.ended(report.row);
+    was_interrupted_ = was_interrupted_ || report.row.status == RunStatus::interrupted;
+  }
+
+  void withdraw_failure(std::int64_t task) {
+    if (!ledger_.tries_again(ledger_.row(task))) progress_.not_ended(ledger_.row(task));
+    ledger_.withdraw_failure(task);
+    log_.failure_withdrawn(ledger_.row(task));
+  }
+};
+
+}  // namespace
+
+int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, const sweep::Plan& plan,
+               const sweep::JobFactory& make_job, campaign::Ledger& ledger, campaign::SeedRule* rule) {
+  const bool computes = parallel::computes(ranks.size(), options.master_computes);
+  const int computing_ranks = ranks.size() - (computes ? 0 : 1);
+  if (options.log != Log::Level::quiet)
+    announce(options.output, plan, ledger, rule != nullptr, computing_ranks);
+  Lead lead(options, plan, ledger, computing_ranks);
+  parallel::Schedule schedule(parallel::TaskOrder(0, plan.num_groups()), ranks.size(), computes);
+  parallel::SweepEnd end = parallel::SweepEnd::complete;
+  bool is_complete = true;
+  while (true) {
+    const std::vector<std::int64_t> tasks = ledger.tasks_left();
+    lead.expect(tasks);
+    schedule.tasks.add(tasks);
+    end = parallel::run_tasks(ranks, schedule, make_job, lead.events(), options.report_interval);
+    is_complete = end == parallel::SweepEnd::complete && !lead.was_interrupted();
+    std::vector<std::int64_t> next;
+    if (rule && is_complete)
+      next =
+          rule->next_round([&](std::int64_t task) { return ledger.row(task).status == RunStatus::clogged; });
+    // Of an earlier call with a higher precision: finished, though not asked for any more.
+    if (rule && is_complete && next.empty()) next = ledger.tasks_begun();
+    ranks.broadcast(next.empty() ? over : another_round);
+    if (next.empty()) break;
+    ledger.want(next);
+  }
+  lead.finish();
+  if (is_complete && rule && options.log != Log::Level::quiet)
+    console::say(std::to_string(rule->num_reached()) + " of " +
+                 sweep::counted(rule->num_groups(), "parameter set") + " reached --until-precision");
+  if (const sweep::RunRow* first = is_complete ? ledger.first_if_all_failed() : nullptr) {
+    console::say("clogsweep: every run has failed, the first one: " + first->message);
+    return console::exit_internal_fault;
+  }
+  if (is_complete) return console::exit_success;
+  const bool no_rank_left = end == parallel::SweepEnd::no_rank_left;
+  console::say("clogsweep: " +
+               (no_rank_left ? std::string("every rank was set aside, see above; look after these machines")
+                             : std::string("stopped by ") + lead.reason_to_stop()) +
+               "; the same command goes on. Finished rows and the distances so far are in " + options.output);
+  return no_rank_left ? console::exit_internal_fault : console::exit_incomplete;
+}
+
+void follow_sweep(const parallel::Communicator& ranks, const sweep::JobFactory& make_job,
+                  std::chrono::milliseconds report_interval) {
+  parallel::Schedule none(parallel::TaskOrder(0), ranks.size(), false);
+  do {
+    parallel::run_tasks(ranks, none, make_job, {}, report_interval);
+  } while (ranks.broadcast("") == another_round);
+}
+
+}  // namespace clog::conduct

@@ -1,0 +1,38 @@
+#include "clog/console/streams.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+
+#include "clog/console/exit_codes.hpp"
+#include "clog/console/printable.hpp"
+
+namespace clog::console {
+
+void prepare_streams() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(descriptor, F_GETFD) < 0 && open("/dev/null", O_RDWR) != descriptor)
+      std::_Exit(exit_user_fault);  // there may be nowhere to say why
+  std::signal(SIGPIPE, SIG_IGN);
+  std::cout.exceptions(std::ios_base::badbit);
+  std::cerr.tie(nullptr);  // what is wrong is told, whether the output can be written or not
+}
+
+void say(const std::string& line) { std::cerr << printable(line) << std::endl; }
+
+void flush_output() {
+  std::cout.flush();
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw std::ios_base::failure("cannot print");
+}
+
+bool is_reader_gone() {
+  pollfd state{STDOUT_FILENO, POLLOUT, 0};
+  return poll(&state, 1, 0) == 1 && (state.revents & (POLLERR | POLLHUP)) != 0;
+}
+
+}  // namespace clog::console

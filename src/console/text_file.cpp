@@ -1,0 +1,75 @@
+#include "clog/console/text_file.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <string_view>
+
+#include "clog/console/signals.hpp"
+#include "clog/core/error.hpp"
+
+namespace clog::console {
+namespace {
+
+/// UTF-8's, with which editors and spreadsheets of Windows begin their files.
+constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+
+[[noreturn]] void refuse(const std::string& path, const std::string& reason) {
+  throw Error("cannot read " + path + " (" + reason + "); give a text file");
+}
+
+/// An open file, to be read without blocking: a pipe that nobody writes to must not keep a signal from ending
+/// the program.
+class OpenText {
+ public:
+  explicit OpenText(const std::string& path)
+      : path_(path), descriptor_(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
+    if (descriptor_ < 0) refuse(path, std::strerror(errno));
+  }
+  OpenText(OpenText&&) = delete;
+  ~OpenText() { close(descriptor_); }
+
+  /// Adds what comes next. Returns whether more may follow.
+  bool read_some(std::string& text) {
+    wait();
+    std::array<char, 65536> bytes;
+    const ssize_t size = read(descriptor_, bytes.data(), bytes.size());
+    if (size < 0 && (errno == EINTR || errno == EAGAIN)) return true;
+    if (size < 0) refuse(path_, std::strerror(errno));
+    text.append(bytes.data(), static_cast<std::size_t>(size));
+    return size > 0;
+  }
+
+ private:
+  const std::string& path_;
+  int descriptor_;
+
+  void wait() const {
+    constexpr int milliseconds = 100;
+    pollfd state{descriptor_, POLLIN, 0};
+    do {
+      if (stop_signalled()) throw Stopped("stopped by a signal while reading " + path_);
+    } while (poll(&state, 1, milliseconds) <= 0);
+  }
+};
+
+}  // namespace
+
+std::string read_text(const std::string& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0) refuse(path, std::strerror(errno));
+  if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode))
+    refuse(path, "a folder, device or socket, neither a file nor a pipe");
+  OpenText file(path);
+  std::string text;
+  while (file.read_some(text)) continue;
+  if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
+  return text;
+}
+
+}  // namespace clog::console

@@ -1,0 +1,180 @@
+#include "clog/host/examination.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <set>
+
+#include "clog/core/error.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::host {
+namespace {
+
+std::string formatted(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string joined(const std::set<std::string>& words) {
+  std::string all;
+  for (const std::string& word : words) all += (all.empty() ? "" : ", ") + word;
+  return all;
+}
+
+std::string counted(std::size_t number, const char* noun) {
+  return sweep::counted(static_cast<std::int64_t>(number), noun);
+}
+
+bool is_set(const char* name) { return std::getenv(name) != nullptr; }
+
+bool lacks_its_ranks(int num_ranks) {
+  const char* tasks = std::getenv("SLURM_NTASKS");
+  return num_ranks == 1 && tasks && std::atoi(tasks) > 1 && !is_set("OMPI_COMM_WORLD_SIZE");
+}
+
+Finding launcher(int num_ranks) {
+  if (lacks_its_ranks(num_ranks))
+    return {std::string("one rank in a Slurm allocation of ") + std::getenv("SLURM_NTASKS") + " tasks",
+            "srun cannot start this MPI's ranks together: use mpirun, as jobs/slurm.sh does"};
+  if (num_ranks > 1) return {std::to_string(num_ranks) + " ranks, started together"};
+  if (geteuid() == 0 && !(is_set("OMPI_ALLOW_RUN_AS_ROOT") && is_set("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM")))
+    return {"one rank; mpirun will refuse to start more for root",
+            "in a container: source jobs/mpi-settings.sh first; elsewhere use an account of your own"};
+  return {"one rank; under mpirun the doctor sees more"};
+}
+
+Finding versions(const std::vector<RankFacts>& ranks) {
+  std::set<std::string> all;
+  for (const RankFacts& rank : ranks) all.insert(rank.version);
+  if (all.size() == 1) return {"clogsweep " + *all.begin() + (ranks.size() > 1 ? " on all ranks" : "")};
+  return {"the ranks run different programs: " + joined(all),
+          "install one build on all hosts, or on a shared file system"};
+}
+
+Finding instruction_sets_of(const std::vector<RankFacts>& ranks) {
+  std::set<std::string> all;
+  for (const RankFacts& rank : ranks) all.insert(rank.instruction_set);
+  if (all.size() == 1) return {"instruction set " + *all.begin()};
+  return {"instruction sets differ: " + joined(all),
+          "harmless but for the last bits; for the same on all: --instruction-set " + *all.rbegin()};
+}
+
+/// Ranks of one host that may only run on cores too few for all of them.
+Finding cores(const std::string& host, const std::vector<const RankFacts*>& ranks) {
+  std::map<std::vector<int>, int> ranks_by_cores;
+  std::set<int> all;
+  for (const RankFacts* rank : ranks) {
+    ++ranks_by_cores[rank->cores];
+    all.insert(rank->cores.begin(), rank->cores.end());
+  }
+  const double granted = ranks.front()->cores_granted;
+  const std::string where = host + ": " + counted(ranks.size(), "rank") + ", " + counted(all.size(), "core");
+  if (ranks.size() > all.size())
+    return {where,
+            "one rank per core is as fast: mpirun -np " + std::to_string(all.size()) +
+                "; if there are more cores, ranks are bound: set OMPI_MCA_hwloc_base_binding_policy=none"};
+  if (granted > 0 && granted < static_cast<double>(ranks.size()))
+    return {where + ", of which " + formatted("%.3g", granted) + " are granted (cpu.max of a control group)",
+            "ask for more cores, or start fewer ranks"};
+  for (const auto& [set, number] : ranks_by_cores)
+    if (static_cast<std::size_t>(number) > set.size())
+      return {where + ", but " + std::to_string(number) + " ranks are bound to " +
+                  (set.size() == 1 ? "one core (" + std::to_string(set.front()) + ")"
+                                   : std::to_string(set.size()) + " of them"),
+              "set OMPI_MCA_hwloc_base_binding_policy=none, or core where the host is yours alone"};
+  return {where};
+}
+
+Finding memory(const std::string& host, const std::vector<const RankFacts*>& ranks) {
+  constexpr double needed = 100e6;  // of a rank with an array of 500 sigma, generously
+  const double available = ranks.front()->memory / static_cast<double>(ranks.size());
+  const std::string what = host + ": " + formatted("%.3g GB of memory per rank", available / 1e9);
+  if (available < needed) return {what, "start fewer ranks per host, or take a smaller box"};
+  return {what};
+}
+
+Finding speed(const std::vector<RankFacts>& ranks) {
+  constexpr double much_slower = 1.5;
+  std::vector<double> costs;
+  for (const RankFacts& rank : ranks) costs.push_back(rank.nanoseconds_per_step);
+  std::sort(costs.begin(), costs.end());
+  const double median = costs[(costs.size() - 1) / 2];
+  const std::string what = "a step takes " + formatted("%.3g", costs.front()) +
+                           (costs.size() > 1 ? " to " + formatted("%.3g", costs.back()) : "") +
+                           " ns per vertex";
+  std::set<std::string> slow;
+  for (const RankFacts& rank : ranks)
+    if (rank.nanoseconds_per_step > much_slower * median)
+      slow.insert("rank " + std::to_string(rank.rank) + " on " + rank.host);
+  if (slow.empty()) return {what};
+  return {what + "; much slower than the median: " + joined(slow),
+          "look for other programs on those cores, and for bound ranks"};
+}
+
+/// What the sweep will do in its folder, with a file of our own.
+Finding folder(const std::string& output) {
+  namespace fs = std::filesystem;
+  const fs::path parent = fs::path(output).parent_path();
+  const std::string place = parent.empty() ? "." : parent.string();
+  std::string name = (fs::path(place) / "clogsweep-doctor.XXXXXX").string();
+  const int file = mkstemp(name.data());
+  if (file < 0)
+    return {"cannot write in " + place + " (" + std::strerror(errno) + ")",
+            "give a folder of yours that exists: --output FOLDER/sweep.h5"};
+  const std::string renamed = name + ".h5";
+  const std::vector<char> bytes(1 << 20, 'x');
+  const auto begin = std::chrono::steady_clock::now();
+  const bool is_written =
+      write(file, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()) && fsync(file) == 0;
+  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
+  const bool is_locked = flock(file, LOCK_EX | LOCK_NB) == 0;
+  const bool is_renamed = rename(name.c_str(), renamed.c_str()) == 0;
+  close(file);
+  unlink(is_renamed ? renamed.c_str() : name.c_str());
+  std::error_code ignored;
+  const double free = static_cast<double>(fs::space(place, ignored).available);
+  const std::string what = "folder " + place + ": " + formatted("%.3g GB free", free / 1e9) +
+                           formatted(", a megabyte takes %.3g ms to reach the disk", elapsed.count());
+  if (!is_written) return {what + ", cannot be written to", "make room, or give another --output"};
+  if (!is_locked)
+    return {what + ", files cannot be locked (flock)",
+            "give an --output on another file system, or mount this one with locks"};
+  if (!is_renamed) return {what + ", files cannot be renamed", "give an --output on another file system"};
+  if (free < 1e8) return {what, "make room, or give another --output"};
+  return {what + ", locks work"};
+}
+
+}  // namespace
+
+std::vector<Finding> examine(const std::vector<RankFacts>& ranks, const std::string& output) {
+  std::map<std::string, std::vector<const RankFacts*>> by_host;
+  for (const RankFacts& rank : ranks) by_host[rank.host].push_back(&rank);
+  std::vector<Finding> all = {launcher(static_cast<int>(ranks.size())), versions(ranks),
+                              instruction_sets_of(ranks), speed(ranks)};
+  for (const auto& [host, members] : by_host) {
+    all.push_back(cores(host, members));
+    all.push_back(memory(host, members));
+  }
+  all.push_back(folder(output));
+  return all;
+}
+
+void refuse_to_be_alone(int num_ranks) {
+  if (!lacks_its_ranks(num_ranks)) return;
+  throw Error(std::string("one rank in a Slurm allocation of ") + std::getenv("SLURM_NTASKS") +
+              " tasks (srun cannot start this MPI's ranks together); use mpirun as jobs/slurm.sh does, or "
+              "mpirun -np 1 if one is meant");
+}
+
+}  // namespace clog::host

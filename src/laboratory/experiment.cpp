@@ -1,0 +1,57 @@
+#include "clog/laboratory/experiment.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <numbers>
+
+#include "clog/core/error.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::laboratory {
+namespace {
+
+const std::map<std::string, std::map<std::string, double>> known_units = {
+    {"length", {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}}},
+    {"speed", {{"m/s", 1}, {"cm/s", 1e-2}, {"mm/s", 1e-3}, {"um/s", 1e-6}}},
+    {"tension", {{"N/m", 1}, {"mN/m", 1e-3}, {"J/m^2", 1}, {"mJ/m^2", 1e-3}}},
+    {"density", {{"kg/m^3", 1}, {"g/cm^3", 1e3}, {"g/ml", 1e3}}},
+    {"angle", {{"deg", std::numbers::pi / 180}, {"rad", 1}}}};
+
+}  // namespace
+
+double si_factor(const std::string& unit, const std::string& units) {
+  const auto& known = known_units.at(units);
+  if (const auto found = known.find(unit); found != known.end()) return found->second;
+  std::string names;
+  for (const auto& [name, factor] : known) names += (names.empty() ? "" : ", ") + name;
+  throw Error("unknown unit '" + unit + "' of a " + units + " (known: " + names + ")");
+}
+
+double to_si(const std::string& text, const std::string& units) {
+  char* rest = nullptr;
+  std::strtod(text.c_str(), &rest);
+  const auto end = static_cast<std::size_t>(rest - text.c_str());
+  const std::size_t unit = text.find_first_not_of(' ', end);
+  if (unit == std::string::npos)
+    throw Error("'" + text + "' has no unit; write for example 3.5" + known_units.at(units).begin()->first);
+  return sweep::to_number(text.substr(0, end)) * si_factor(text.substr(unit), units);
+}
+
+double Experiment::gravity() const {
+  constexpr double earth = 9.81;  // [m/s^2]
+  return std::sin(tilt) * earth * std::abs(outer_density - droplet_density) / droplet_density;
+}
+
+double Experiment::reduced_terminal_speed() const { return terminal_speed / std::sqrt(diameter * gravity()); }
+
+double Experiment::line_tension() const {
+  return interfacial_tension / (gravity() * droplet_density * diameter * diameter);
+}
+
+double scaled_line_tension(double line_tension, const Experiment& from, const Experiment& to) {
+  const auto weight = [](const Experiment& lab) { return lab.diameter * lab.diameter * std::sin(lab.tilt); };
+  return line_tension * weight(from) / weight(to);
+}
+
+}  // namespace clog::laboratory

@@ -1,0 +1,163 @@
+#include "clog/laboratory/trials.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <future>
+#include <semaphore>
+#include <thread>
+#include <utility>
+
+#include "clog/campaign/stored_sweep.hpp"
+#include "clog/console/signals.hpp"
+#include "clog/core/error.hpp"
+#include "clog/laboratory/progress.hpp"
+#include "clog/sweep/single_run.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::laboratory {
+namespace {
+
+/// One of the machine's cores, as long as it lives. Waits until one is free.
+class UseOfCore {
+ public:
+  UseOfCore() { cores().acquire(); }
+  UseOfCore(UseOfCore&&) = delete;
+  ~UseOfCore() { cores().release(); }
+
+ private:
+  static std::counting_semaphore<>& cores() {
+    static std::counting_semaphore<> free(std::max(1u, std::thread::hardware_concurrency()));
+    return free;
+  }
+};
+
+/// The simulated droplet's way past the frames.
+class ChannelSimulation {
+ public:
+  ChannelSimulation(sweep::Settings settings, ChannelParameters channel, const fit::Profile& measured)
+      : settings_(std::move(settings)), channel_(channel) {
+    const auto [first, last] = std::minmax_element(
+        measured.begin(), measured.end(), [](const fit::Frame& a, const fit::Frame& b) { return a.h < b.h; });
+    // Motion is overdamped: half a diameter before the first frame the start is forgotten. The droplet must
+    // not touch the channel at the start.
+    channel_.start =
+        std::min({first->h - 0.5, -2.0, last_free_start(sweep::single_run(settings_), channel_) - 0.1});
+    channel_.end = last->h + 0.1;
+    const double terminal_speed = sweep::single_run(settings_).drag.terminal_speed;
+    settings_.set("max-time", sweep::shortest(30 * (channel_.end - channel_.start) / terminal_speed));
+  }
+
+  /// From several threads at a time, as many as there are cores.
+  /// @throws console::Stopped after a signal
+  fit::Profile operator()(double line_tension, double near_wall_drag) const {
+    const UseOfCore core;
+    sweep::Settings settings = settings_;
+    settings.set("line-tension", sweep::shortest(line_tension));
+    settings.set("near-wall-drag", sweep::shortest(near_wall_drag));
+    const RunParameters parameters = sweep::channel_run(std::move(settings), channel_);
+    DropletRun run = run_in_channel(parameters, channel_);
+    fit::Profile profile;
+    bool is_over = false;
+    while (!is_over) {
+      if (console::stop_signalled()) throw console::Stopped("stopped by a signal");
+      profile.push_back({channel_.start + run.displacement()[0],
+                         run.droplet().centre_velocity()[0] / parameters.drag.terminal_speed,
+                         run.droplet().shape().shape_parameter()});
+      is_over = run.advance(1);
+    }
+    return profile;  // of a droplet that breaks, as far as it came
+  }
+
+ private:
+  sweep::Settings settings_;
+  ChannelParameters channel_;
+};
+
+/// @throws Error if a simulated passage was through another channel, or at another speed, than is to be
+/// simulated
+void refuse_other_channel(const std::string& file, const store::Provenance& origin,
+                          const ChannelParameters& channel, double terminal_speed) {
+  const auto compare = [&](const std::string& option, double stored, double given) {
+    if (stored != given)
+      throw Error(file + " was written with " + option + "=" + sweep::shortest(stored) + ", not " +
+                  sweep::shortest(given) + "; give " + option + "=" + sweep::shortest(stored));
+  };
+  compare("--orifice", sweep::to_number(campaign::attribute(origin, "orifice")), channel.orifice);
+  compare("--wedge-angle", sweep::to_number(campaign::attribute(origin, "wedge_angle")), channel.wedge_angle);
+  compare("--tip-radius", sweep::to_number(campaign::attribute(origin, "tip_radius")), channel.tip_radius);
+  compare("terminal-speed", sweep::single_run(campaign::stored_settings(file, origin)).drag.terminal_speed,
+          terminal_speed);
+}
+
+}  // namespace
+
+std::vector<Trial> read_trials(const std::vector<std::string>& files, const ProfileScales& scales,
+                               const ChannelParameters& channel, double terminal_speed) {
+  std::vector<Trial> trials;
+  for (const std::string& file : files) {
+    MeasuredProfile measured = read_measured_profile(file, scales);
+    if (!measured.origin.empty()) refuse_other_channel(file, measured.origin, channel, terminal_speed);
+    trials.push_back({file, std::move(measured.frames)});
+  }
+  return trials;
+}
+
+std::vector<fit::Calibration> calibrate(const std::vector<Trial>& trials, const sweep::Settings& settings,
+                                        const ChannelParameters& channel) {
+  CalibrationProgress progress(trials.size());
+  const auto calibrate_one = [&](std::size_t trial) {
+    const fit::Profile& profile = trials[trial].frames;
+    fit::Calibration found =
+        fit::calibrate(profile, ChannelSimulation(settings, channel, profile), {},
+                       [&](const fit::CalibrationAttempt& attempt) { progress.tried(trial, attempt); });
+    progress.ended();
+    return found;
+  };
+  std::vector<std::future<fit::Calibration>> running;
+  for (std::size_t trial = 0; trial < trials.size(); ++trial)
+    running.push_back(std::async(std::launch::async, calibrate_one, trial));
+  std::vector<fit::Calibration> found;
+  try {
+    for (auto& trial : running) found.push_back(trial.get());
+  } catch (const console::Stopped& stop) {
+    for (auto& trial : running)
+      if (trial.valid()) trial.wait();
+    progress.finish();
+    std::string words = stop.what();
+    for (std::size_t trial = 0; trial < trials.size(); ++trial)
+      words += "; " + trials[trial].file + ": " + progress.best(trial);
+    throw console::Stopped(words);
+  }
+  progress.finish();
+  return found;
+}
+
+std::vector<std::string> warnings(const fit::Calibration& found) {
+  std::vector<std::string> all;
+  if (!found.is_converged)
+    all.push_back("the search did not converge: another place may have a smaller Delta_v");
+  if (found.is_at_bound) all.push_back("the best is at the end of what was searched, and may lie beyond");
+  if (found.num_never_reached > 0)
+    all.push_back("no simulated droplet comes to " + std::to_string(found.num_never_reached) +
+                  " of the frames: look at --orifice, at the units and at h");
+  if (std::isnan(found.line_tension_error))
+    all.push_back(
+        "no errors: the frames do not determine both, or the droplet clogs at a line tension beside this "
+        "one");
+  constexpr double good = 0.2;  // speeds that agree within a fifth
+  if (found.deviation.speed > good)
+    all.push_back(
+        "Delta_v is large: no simulated droplet moves like this one; look at --orifice, units, vertices");
+  constexpr double near = 1.1;
+  if (found.clogging_tension < near * found.line_tension) {
+    char text[96];
+    std::snprintf(text, sizeof text,
+                  "close to a clog: simulated droplets of Gamma = %.4g and more do not pass",
+                  found.clogging_tension);
+    all.push_back(text);
+  }
+  return all;
+}
+
+}  // namespace clog::laboratory

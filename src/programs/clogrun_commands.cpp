@@ -1,0 +1,33 @@
+#include "clogrun_commands.hpp"
+
+#include <optional>
+
+#include "clog/console/streams.hpp"
+#include "clog/core/error.hpp"
+#include "clog/sweep/row_limits.hpp"
+
+namespace clog::programs {
+
+void refuse_options(const cli::CommandLine& line, const std::string& system,
+                    std::initializer_list<const char*> options) {
+  for (const char* option : options)
+    if (line.has(option))
+      throw Error(std::string("--") + option + " has no meaning for clogrun " + system + "; leave it out");
+}
+
+watch::WatchedRun::Intervals intervals(const cli::CommandLine& line, double time_step) {
+  std::optional<double> polygons;
+  if (line.has("polygon-interval")) polygons = line.get_positive("polygon-interval");
+  return watch::WatchedRun::every(line.get_positive("sample-interval"), polygons, time_step);
+}
+
+void say_what_is_unproven(const sweep::Plan& plan) {
+  if (const std::string words = sweep::unproven_parameters(plan); !words.empty()) console::say(words);
+}
+
+sweep::RunRow row_of_scene(RunParameters run, ObstacleLayout layout) {
+  run.obstacles.layout = layout;
+  return sweep::describe(run);
+}
+
+}  // namespace clog::programs

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "clog/parallel/communicator.hpp"
+
+namespace clog::programs {
+
+/// `clogsweep NAME FILE ...`: what they do is in their --help. They need neither MPI nor the sweep's config,
+/// and never write to the file. Each returns the program's exit code. @throws Error
+int clogsweep_status(int argc, const char* const* argv);
+int clogsweep_verify(int argc, const char* const* argv);
+int clogsweep_salvage(int argc, const char* const* argv);
+int clogsweep_replay(int argc, const char* const* argv);
+
+/// `clogsweep doctor`, on one rank or under mpirun. Collective. Returns the exit code on rank 0, 1 if there
+/// is something to mend. @throws Error
+int clogsweep_doctor(const parallel::Communicator& ranks, int argc, const char* const* argv);
+
+}  // namespace clog::programs

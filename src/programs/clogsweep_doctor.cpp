@@ -1,0 +1,67 @@
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "clog/cli/command_line.hpp"
+#include "clog/cli/program.hpp"
+#include "clog/console/exit_codes.hpp"
+#include "clog/console/printable.hpp"
+#include "clog/host/examination.hpp"
+#include "clogsweep_commands.hpp"
+
+namespace clog::programs {
+namespace {
+
+using host::Finding;
+using host::RankFacts;
+
+constexpr const char* program = "clogsweep doctor";
+constexpr const char* usage =
+    R"(clogsweep doctor looks for what spoils sweeps on this machine, and says what helps.
+
+  clogsweep doctor
+  mpirun -np 4 clogsweep doctor --output results/sweep.h5    as the sweep will be started, on 4 cores
+
+Exit code 1 if there is something to mend.
+)";
+
+/// Returns the exit code.
+int print(const std::vector<Finding>& findings) {
+  bool is_well = true;
+  for (const Finding& finding : findings) {
+    std::cout << (finding.remedy.empty() ? "ok    " : "MEND  ") << console::printable(finding.what) << '\n';
+    if (!finding.remedy.empty()) std::cout << "      " << finding.remedy << '\n';
+    is_well = is_well && finding.remedy.empty();
+  }
+  return is_well ? console::exit_success : console::exit_internal_fault;
+}
+
+}  // namespace
+
+int clogsweep_doctor(const parallel::Communicator& ranks, int argc, const char* const* argv) {
+  namespace po = boost::program_options;
+  // Rank 0 reads the command line; the others wait for its word.
+  cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::none);
+  bool is_answered = false;
+  int exit_code = console::exit_success;
+  if (ranks.rank() == 0)
+    exit_code = cli::run_program(program, [&] {
+      line.add_options()("output", po::value<std::string>()->default_value("sweep.h5"),
+                         "where the sweep will write");
+      line.parse(argc - 1, argv + 1);
+      is_answered = cli::answer_help_or_version(line, {});
+      return console::exit_success;
+    });
+  const bool is_over = is_answered || exit_code != console::exit_success;
+  if (ranks.broadcast(is_over ? "over" : "go on") == "over") return exit_code;
+
+  constexpr double seconds_of_steps = 0.5;
+  const std::vector<std::string> texts =
+      ranks.gather(to_text(host::find_rank_facts(ranks.rank(), seconds_of_steps)));
+  if (ranks.rank() != 0) return console::exit_success;
+  std::vector<RankFacts> facts;
+  for (const std::string& text : texts) facts.push_back(host::rank_facts_from(text));
+  return cli::run_program(program, [&] { return print(host::examine(facts, line.get("output"))); });
+}
+
+}  // namespace clog::programs

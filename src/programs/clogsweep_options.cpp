@@ -1,0 +1,128 @@
+#include "clogsweep_options.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "clog/core/error.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::programs {
+namespace {
+
+parallel::MasterComputes master_computes(const std::string& word) {
+  if (word == "auto") return parallel::MasterComputes::automatic;
+  if (word == "yes") return parallel::MasterComputes::yes;
+  if (word == "no") return parallel::MasterComputes::no;
+  throw Error("invalid --master-computes=" + word + " (is not one of auto, yes, no)");
+}
+
+bool is_isolated(const cli::CommandLine& line) {
+  const std::string word = line.get("isolate");
+  if (word != "yes" && word != "no") throw Error("invalid --isolate=" + word + " (is not one of yes, no)");
+  return word == "yes";
+}
+
+conduct::Log::Level log_level(const cli::CommandLine& line) {
+  if (line.has("verbose") && line.has("quiet"))
+    throw Error("--verbose and --quiet exclude each other; give one");
+  return line.has("verbose") ? conduct::Log::Level::verbose
+         : line.has("quiet") ? conduct::Log::Level::quiet
+                             : conduct::Log::Level::normal;
+}
+
+std::chrono::milliseconds report_interval(const cli::CommandLine& line) {
+  const std::chrono::milliseconds interval(std::llround(1000 * sweep::to_number(line.get("report-seconds"))));
+  if (interval.count() < 1)
+    throw Error("invalid --report-seconds=" + line.get("report-seconds") + " (must be 0.001 or more) try 10");
+  return interval;
+}
+
+double max_hours(const cli::CommandLine& line) {
+  return line.has("max-hours") ? line.get_positive("max-hours") : std::numeric_limits<double>::infinity();
+}
+
+double precision(const cli::CommandLine& line) {
+  std::string text = line.get("until-precision");
+  const bool is_percent = text.ends_with('%');
+  if (is_percent) text.pop_back();
+  double number = 0;
+  try {
+    number = sweep::to_number(text) / (is_percent ? 100 : 1);
+  } catch (const Error&) {
+    // said below, with the option's name
+  }
+  if (number >= 0.001 && number < 1) return number;
+  throw Error("invalid --until-precision=" + line.get("until-precision") +
+              " (must lie between 0.1% and 100%) try 20%");
+}
+
+std::int64_t most_seeds(const cli::CommandLine& line, std::int64_t first_seeds) {
+  const double number = line.get_number("most-seeds", static_cast<double>(20 * first_seeds));
+  if (!(number >= static_cast<double>(first_seeds) && number <= 1e5 && number == std::floor(number)))
+    throw Error("invalid --most-seeds=" + line.get("most-seeds") + " (must be a whole number from " +
+                std::to_string(first_seeds) + ", the number of `seeds`, to 1e5)");
+  return static_cast<std::int64_t>(number);
+}
+
+}  // namespace
+
+void parse_sweep_options(cli::CommandLine& line, int argc, const char* const* argv) {
+  namespace po = boost::program_options;
+  line.add_options()("output", po::value<std::string>(), "HDF5 file to make")(
+      "dry-run", "print the tasks, their number and cost, run nothing")("print-config",
+                                                                        "print the settings, run nothing")(
+      "schema", "print all keys and columns as JSON: meaning, unit, range, default; run nothing")(
+      "master-computes", po::value<std::string>()->default_value("auto"),
+      "does rank 0 run tasks too: auto (with up to 16 ranks), yes, no")(
+      "max-hours", po::value<std::string>(),
+      "stop after so many hours, as after a signal; the same command goes on")(
+      "until-precision", po::value<std::string>(),
+      "add seeds until lambda is known so well, e.g. 10%: half its 95 % interval over lambda")(
+      "most-seeds", po::value<std::string>(), "with --until-precision: per parameter set (20 times `seeds`)")(
+      "attempts", po::value<std::string>()->default_value("2"), "how often a run that fails is tried")(
+      "report-seconds", po::value<std::string>()->default_value("10"),
+      "how often a running task reports how far it has come; a kill loses no more than that")(
+      "isolate", po::value<std::string>()->default_value("yes"),
+      "tasks run in processes of their own, so that a crash costs one task and not the sweep: yes, no")(
+      "verbose", "a line for every task that starts or ends")("quiet", "errors only");
+  line.add_commands({"status", "verify", "replay", "salvage", "doctor"});
+  line.explain_surplus_words(
+      "--output names the file of a sweep, and clogsweep status FILE tells how far it is");
+  line.parse(argc, argv);
+}
+
+conduct::LeadOptions lead_options(const cli::CommandLine& line) {
+  return {.output = line.has("output") ? line.get("output") : "",
+          .master_computes = master_computes(line.get("master-computes")),
+          .report_interval = report_interval(line),
+          .max_hours = max_hours(line),
+          .log = log_level(line)};
+}
+
+conduct::Assignment assignment(const cli::CommandLine& line, const sweep::Settings& settings) {
+  return {.report_interval = report_interval(line),
+          .instruction_set = line.has("instruction-set") ? line.get("instruction-set") : "auto",
+          .is_isolated = is_isolated(line),
+          .config = settings.to_config(false)};
+}
+
+std::int64_t attempts(const cli::CommandLine& line) {
+  const double number = line.get_number("attempts", 2);
+  if (!(number >= 1 && number <= 1000 && number == std::floor(number)))
+    throw Error("invalid --attempts=" + line.get("attempts") + " (must be a whole number, 1..1000) try 2");
+  return static_cast<std::int64_t>(number);
+}
+
+std::optional<campaign::GrowingSweep> growing_sweep(const cli::CommandLine& line) {
+  if (!line.has("until-precision")) {
+    if (line.has("most-seeds")) throw Error("--most-seeds needs --until-precision");
+    return std::nullopt;
+  }
+  const auto first_seeds = static_cast<std::int64_t>(line.settings().values("seeds").size());
+  const std::int64_t most = most_seeds(line, first_seeds);
+  return campaign::growing_sweep(line.settings(), precision(line), most);
+}
+
+}  // namespace clog::programs

@@ -1,0 +1,43 @@
+#include <cstdio>
+#include <string>
+
+#include "clog/campaign/repetition.hpp"
+#include "clog/campaign/stored_sweep.hpp"
+#include "clog/console/exit_codes.hpp"
+#include "clog/core/error.hpp"
+#include "clogsweep_commands.hpp"
+#include "file_command.hpp"
+
+namespace clog::programs {
+
+namespace po = boost::program_options;
+
+int clogsweep_replay(int argc, const char* const* argv) {
+  cli::CommandLine line = file_command(
+      "replay", R"(clogsweep replay does one run of a sweep once more and compares the results bit for bit.
+
+  clogsweep replay sweep.h5 12
+
+Exit code 0: the same bits. 1: other results. 2: it cannot be done again. The run uses the row's instruction set; one
+that went on under another set than it began with cannot be repeated.
+)");
+  line.add_options()("task", po::value<std::string>(), "the row's number, column `task`");
+  line.add_positional("task", 1);
+  if (!parse_file_command(line, argc, argv)) return console::exit_success;
+  if (!line.has("task")) throw Error("missing task; try clogsweep replay " + line.get("file") + " 0");
+  const store::SweepFile file = campaign::read_with_caution(line.get("file"));
+  const sweep::RunRow& row = campaign::replayable_row(file, line.get("task"));
+  const auto [again, differing] = campaign::repeat(row);
+  std::printf("task %s: %s, distance %.17g, %.3g s\n", line.get("task").c_str(), name(again.status),
+              again.distance, again.wall_seconds);
+  if (differing.empty()) {
+    std::printf("the same bits as the row's\n");
+    return console::exit_success;
+  }
+  std::printf("differs from the row in:");
+  for (const std::string& name : differing) std::printf(" %s", name.c_str());
+  std::printf("\nthe row has %s, distance %.17g\n", name(row.status), row.distance);
+  return console::exit_internal_fault;
+}
+
+}  // namespace clog::programs

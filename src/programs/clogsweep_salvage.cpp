@@ -1,0 +1,45 @@
+#include <iostream>
+#include <string>
+
+#include "clog/cli/command_line.hpp"
+#include "clog/cli/program.hpp"
+#include "clog/console/exit_codes.hpp"
+#include "clog/console/printable.hpp"
+#include "clog/core/error.hpp"
+#include "clog/store/run_table.hpp"
+#include "clog/sweep/value_list.hpp"
+#include "clogsweep_commands.hpp"
+
+namespace clog::programs {
+namespace {
+
+constexpr const char* usage = R"(clogsweep salvage keeps what is whole of a damaged sweep file, in a new one.
+
+  clogsweep salvage sweep.h5 --output whole.h5
+
+Rows and attributes that are not as they were written are left out and named. The sweep's own command, with --output
+whole.h5, then computes the missing runs again.
+)";
+
+}  // namespace
+
+int clogsweep_salvage(int argc, const char* const* argv) {
+  namespace po = boost::program_options;
+  cli::CommandLine line("clogsweep salvage", usage, cli::CommandLine::SweepKeys::none);
+  line.add_options()("file", po::value<std::string>(), "sweep file")("output", po::value<std::string>(),
+                                                                     "HDF5 file to make");
+  line.add_positional("file", 1);
+  line.parse(argc - 1, argv + 1);
+  if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return console::exit_success;
+  if (!line.has("file")) throw Error("missing sweep file; try clogsweep salvage sweep.h5 --output whole.h5");
+  const std::string output = line.require("output");
+  store::refuse_existing(output);
+  const store::Examination found = store::examine_sweep(line.get("file"));
+  for (const std::string& damage : found.damage) std::cout << console::printable(damage) << '\n';
+  store::publish_sweep(output, found.whole.rows, found.whole.provenance);
+  const auto num_rows = static_cast<std::int64_t>(found.whole.rows.size());
+  std::cout << console::printable(output) << ": " << sweep::counted(num_rows, "whole row") << '\n';
+  return console::exit_success;
+}
+
+}  // namespace clog::programs

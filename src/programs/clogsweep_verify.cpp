@@ -1,0 +1,29 @@
+#include <iostream>
+#include <string>
+
+#include "clog/campaign/verification.hpp"
+#include "clog/console/exit_codes.hpp"
+#include "clog/console/printable.hpp"
+#include "clogsweep_commands.hpp"
+#include "file_command.hpp"
+
+namespace clog::programs {
+
+int clogsweep_verify(int argc, const char* const* argv) {
+  cli::CommandLine line = file_command(
+      "verify", R"(clogsweep verify reads every row of a sweep's file and says whether it is whole.
+
+  clogsweep verify sweep.h5
+
+The same for the journal beside it, which is there while the sweep is not complete.
+
+Exit code 0: every bit is as it was written, every row makes sense, none is there twice, no record of the journal is
+damaged. 1: this is not so; `clogsweep salvage` keeps what is whole. 2: the file or its journal cannot be read.
+)");
+  if (!parse_file_command(line, argc, argv)) return console::exit_success;
+  const campaign::Verification found = campaign::verify(line.get("file"));
+  for (const std::string& finding : found.findings) std::cout << console::printable(finding) << '\n';
+  return found.num_faults == 0 ? console::exit_success : console::exit_internal_fault;
+}
+
+}  // namespace clog::programs

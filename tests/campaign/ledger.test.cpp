@@ -1,0 +1,182 @@
+#include "clog/campaign/ledger.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "clog/core/error.hpp"
+#include "clog/store/journal.hpp"
+#include "clog/store/run_table.hpp"
+
+namespace clog::campaign {
+namespace {
+
+/// A sweep of two runs, whose ledger is opened again and again as after kills.
+class LedgerTest : public testing::Test {
+ protected:
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("clog_ledger_" + std::to_string(::getpid()));
+  sweep::Settings settings_ = [] {
+    sweep::Settings settings;
+    settings.set("seeds", "1..2");
+    return settings;
+  }();
+  sweep::Plan plan_{settings_};
+
+  void SetUp() override { std::filesystem::create_directory(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::string path() const { return (folder_ / "s.h5").string(); }
+
+  Ledger open(std::int64_t attempts = 1) {
+    return Ledger(path(), plan_, settings_, {{"config", settings_.to_config(false)}}, 2, attempts);
+  }
+  static sweep::Report report(const Ledger& ledger, std::int64_t task, RunStatus status, double distance,
+                              std::vector<std::byte> snapshot = {}) {
+    sweep::Report report{ledger.row(task), std::move(snapshot)};
+    sweep::RunRow& row = report.row;
+    row.status = status;
+    row.distance = distance;
+    row.steps = 1'000'000;
+    row.time = static_cast<double>(row.steps) * *row.parameters.time_step;
+    row.shape_parameter = 1.2;
+    if (row.status == RunStatus::clogged) row.clogged_by = sweep::FoundBy::certified;
+    if (row.status == RunStatus::failed) row.message = "diverged";
+    return report;
+  }
+  const std::vector<std::byte> snapshot_{10, std::byte{7}};
+};
+
+TEST_F(LedgerTest, GoesOnFromTheSnapshotOfARunWhoseFailureWasWithdrawn) {
+  {
+    Ledger ledger = open();
+    ledger.start(0, 1);
+    ledger.report(report(ledger, 0, RunStatus::failed, std::nan("")));
+    ledger.withdraw_failure(0);
+    ledger.start(0, 0);
+    ledger.report(report(ledger, 0, RunStatus::running, 3.5, snapshot_));
+  }
+  Ledger ledger = open();
+  EXPECT_EQ(ledger.tasks_left(), (std::vector<std::int64_t>{0, 1}));
+  EXPECT_EQ(ledger.num_resumed(), 1);
+  EXPECT_EQ(ledger.start(0, 0).snapshot, snapshot_);
+  EXPECT_EQ(ledger.row(0).distance, 3.5);
+}
+
+TEST_F(LedgerTest, TakesNoDistanceFromAnAttemptThatDoesNotCount) {
+  Ledger ledger = open();
+  ledger.start(0, 1);
+  sweep::Report failed = report(ledger, 0, RunStatus::failed, std::nan(""));
+  failed.row.wall_seconds = 3;
+  ledger.report(failed);
+  ledger.withdraw_failure(0);
+  EXPECT_EQ(ledger.row(0).status, RunStatus::interrupted);
+  EXPECT_EQ(ledger.row(0).distance, 0);
+  EXPECT_EQ(ledger.row(0).message, "");
+  EXPECT_EQ(ledger.row(0).wall_seconds, 3);
+  EXPECT_EQ(ledger.start(0, 0).attempt, 1);
+}
+
+TEST_F(LedgerTest, KeepsAFailureThatCounts) {
+  {
+    Ledger ledger = open();
+    ledger.start(1, 0);
+    ledger.report(report(ledger, 1, RunStatus::failed, 0));
+  }
+  EXPECT_EQ(open().tasks_left(), std::vector<std::int64_t>{0});
+  EXPECT_EQ(open(2).tasks_left(), (std::vector<std::int64_t>{0, 1}));
+}
+
+TEST_F(LedgerTest, ShowsAFailureToReadersOnceItsAttemptsAreUsedUp) {
+  Ledger ledger = open(2);
+  const auto shown = [&] {
+    ledger.finish();
+    return store::read_sweep(path()).rows.at(0);
+  };
+  ledger.start(0, 0);
+  ledger.report(report(ledger, 0, RunStatus::failed, std::nan("")));
+  EXPECT_EQ(shown().status, RunStatus::interrupted);
+  EXPECT_EQ(shown().attempt, 2);
+  EXPECT_EQ(shown().message, "");
+  EXPECT_EQ(shown().distance, 0);
+  ledger.start(0, 0);
+  EXPECT_EQ(shown().status, RunStatus::running);
+  ledger.report(report(ledger, 0, RunStatus::failed, std::nan("")));
+  EXPECT_EQ(shown().status, RunStatus::failed);
+  EXPECT_EQ(shown().attempt, 2);
+  EXPECT_EQ(shown().message, "diverged");
+}
+
+TEST_F(LedgerTest, CountsAnAttemptThatFailedThoughReadersDoNotSeeIt) {
+  {
+    Ledger ledger = open(2);
+    ledger.start(0, 0);
+    ledger.report(report(ledger, 0, RunStatus::failed, 0));
+    ledger.finish();
+  }
+  EXPECT_EQ(open(2).start(0, 0).attempt, 2);
+  std::filesystem::remove(store::journal_path(path()));
+  EXPECT_EQ(open(2).start(0, 0).attempt, 2);
+}
+
+TEST_F(LedgerTest, ComputesARunAgainWhoseRowHoldsWhatCannotBe) {
+  {
+    Ledger ledger = open();
+    for (const std::int64_t task : {0, 1}) {
+      ledger.start(task, 0);
+      ledger.report(report(ledger, task, RunStatus::clogged, 2));
+    }
+    ledger.finish();
+  }
+  store::SweepFile file = store::read_sweep(path());
+  file.rows[1].distance = 1e308;
+  std::erase_if(file.provenance, [](const auto& attribute) {
+    return attribute.first == "kind" || attribute.first == "format_version";
+  });
+  store::publish_sweep(path(), file.rows, file.provenance);
+  Ledger ledger = open();
+  EXPECT_EQ(ledger.num_faulty(), 1);
+  EXPECT_EQ(ledger.tasks_left(), std::vector<std::int64_t>{1});
+  EXPECT_EQ(store::read_sweep(path()).rows.size(), 1u);
+}
+
+TEST_F(LedgerTest, NamesTheFileWhoseConfigItCannotRead) {
+  open().finish();
+  store::publish_sweep(path(), {}, {{"config", "line-tension = many\n"}});
+  try {
+    open();
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("cannot read " + path() + " (its attribute config: invalid"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST_F(LedgerTest, KeepsAResultOfTheTableWhateverTheJournalLacks) {
+  {
+    Ledger ledger = open();
+    ledger.start(0, 0);
+    ledger.report(report(ledger, 0, RunStatus::running, 1, snapshot_));
+    ledger.start(1, 0);
+    ledger.report(report(ledger, 1, RunStatus::running, 2, snapshot_));
+    ledger.report(report(ledger, 0, RunStatus::clogged, 4));
+    ledger.finish();
+  }
+  {
+    store::Journal journal(store::journal_path(path()));
+    sweep::RunRow older = store::read_sweep(path()).rows[0];
+    older.status = RunStatus::running;
+    journal.add(older, snapshot_);
+  }
+  Ledger ledger = open();
+  EXPECT_EQ(ledger.tasks_left(), std::vector<std::int64_t>{1});
+  EXPECT_EQ(ledger.row(0).distance, 4);
+}
+
+}  // namespace
+}  // namespace clog::campaign

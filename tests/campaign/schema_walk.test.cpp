@@ -1,0 +1,110 @@
+/// Two values of any parameter are two runs, everywhere: what compares, groups, lists or shares runs has no
+/// list of parameters of its own that could lack one.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <ostream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "clog/campaign/groups.hpp"
+#include "clog/campaign/preview.hpp"
+#include "clog/core/schema.hpp"
+#include "clog/sweep/obstacle_arrays.hpp"
+#include "clog/sweep/plan.hpp"
+#include "clog/sweep/run_row.hpp"
+
+namespace clog::campaign {
+
+/// For whoever reads of a test that fails.
+void PrintTo(const Parameter& parameter, std::ostream* out) { *out << parameter.key; }
+
+namespace {
+
+class EveryKey : public testing::TestWithParam<Parameter> {};
+
+/// Settings in which the parameter means something.
+sweep::Settings settings_for(const Parameter& parameter) {
+  sweep::Settings settings;
+  settings.set("seeds", "1");
+  settings.set("box", "60");
+  settings.set("obstacle-gap", "0.6");
+  if (parameter.scope->word == std::string("lattice")) settings.set("obstacle-layout", "lattice");
+  if (parameter.key == std::string("perimeter-stiffness-ratio")) settings.set("preset", "elastic");
+  if (parameter.key == std::string("gravity")) settings.set("preset", "heavy-interface");
+  if (parameter.key == std::string("model")) settings.set("wall-stiffness", "1");
+  return settings;
+}
+
+/// Another value than that of the settings, in the text of a config.
+std::string other_value(const Parameter& parameter, const sweep::Settings& settings) {
+  const ParameterValue value = parameter.get(sweep::Plan(settings).task(0));
+  if (parameter.kind == ValueKind::word)
+    return *std::ranges::find_if(parameter.words,
+                                 [&](const std::string& word) { return ParameterValue(word) != value; });
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer + 1);
+  if (parameter.unit == std::string("degrees")) return "10";  // a little less may be the same lattice
+  if (const auto* number = std::get_if<double>(&value)) return shortest(*number == 0 ? 0.05 : 0.8 * *number);
+  return "0.5";
+}
+
+/// Of a number: the sweep over both values.
+sweep::Plan plan_of_both(const Parameter& parameter) {
+  sweep::Settings settings = settings_for(parameter);
+  settings.set(parameter.key, settings.text(parameter.key) + "," + other_value(parameter, settings));
+  return sweep::Plan(settings);
+}
+
+/// The two runs; a word takes no list.
+std::vector<RunParameters> both_runs(const Parameter& parameter) {
+  sweep::Settings settings = settings_for(parameter);
+  const RunParameters one = sweep::Plan(settings).task(0);
+  settings.set(parameter.key, other_value(parameter, settings));
+  return {one, sweep::Plan(settings).task(0)};
+}
+
+TEST_P(EveryKey, MakesTwoIdentities) {
+  const auto runs = both_runs(GetParam());
+  EXPECT_NE(sweep::identity(sweep::describe(runs[0])), sweep::identity(sweep::describe(runs[1])));
+}
+
+TEST_P(EveryKey, MakesTwoGroups) {
+  std::vector<sweep::RunRow> rows;
+  for (const RunParameters& run : both_runs(GetParam())) rows.push_back(sweep::describe(run));
+  EXPECT_EQ(group_runs(rows, 0.95).size(), GetParam().role == ParameterRole::ensemble ? 1u : 2u);
+}
+
+TEST_P(EveryKey, MakesTwoArraysIfItShapesThem) {
+  const auto runs = both_runs(GetParam());
+  EXPECT_EQ(
+      sweep::array_key(runs[0].obstacles, runs[0].seed) != sweep::array_key(runs[1].obstacles, runs[1].seed),
+      GetParam().shapes_array);
+}
+
+TEST_P(EveryKey, MakesTwoLinesOfADryRun) {
+  if (GetParam().kind == ValueKind::word) return;  // no sweep goes over one
+  const sweep::Plan plan = plan_of_both(GetParam());
+  testing::internal::CaptureStdout();
+  print_tasks(plan);
+  std::istringstream lines(testing::internal::GetCapturedStdout());
+  std::string header, one, other;
+  std::getline(lines, header);
+  std::getline(lines, one);
+  std::getline(lines, other);
+  const auto without_number = [](const std::string& line) { return line.substr(line.find(' ')); };
+  EXPECT_NE(without_number(one), without_number(other)) << header;
+  EXPECT_GE(std::ranges::count(header, ' '), 2) << "the task's number, and what differs";
+}
+
+INSTANTIATE_TEST_SUITE_P(Schema, EveryKey,
+                         testing::ValuesIn(parameter_schema().begin(), parameter_schema().end()),
+                         [](const auto& one) {
+                           std::string name = one.param.key;
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace clog::campaign
