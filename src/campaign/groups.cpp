@@ -5,7 +5,7 @@
 #include <iterator>
 #include <map>
 
-#include "clog/core/units.hpp"
+#include "clog/core/tools/units.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/row_limits.hpp"
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "clog/campaign/stored_sweep.hpp"
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/store/regular_file.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/run_row.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/fit/clogging_length.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/value_list.hpp"

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "clog/console/streams.hpp"
-#include "clog/core/error.hpp"
-#include "clog/core/instruction_set.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/instruction_set.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/value_list.hpp"
 

@@ -3,8 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "clog/core/error.hpp"
-#include "clog/core/schema.hpp"
+#include "clog/core/parameters/schema.hpp"
+#include "clog/core/run/resolve.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/sweep/settings.hpp"
 
 namespace clog::campaign {

@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include "clog/console/streams.hpp"
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 
 namespace clog::cli {
 

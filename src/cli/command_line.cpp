@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "clog/console/text_file.hpp"
-#include "clog/core/error.hpp"
-#include "clog/core/instruction_set.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/instruction_set.hpp"
 
 namespace clog::cli {
 namespace {

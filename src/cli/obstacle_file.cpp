@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "clog/console/csv.hpp"
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::cli {

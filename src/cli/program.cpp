@@ -10,7 +10,7 @@
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/console/streams.hpp"
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 
 namespace clog::cli {
 

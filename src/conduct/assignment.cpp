@@ -5,7 +5,7 @@
 #include <span>
 #include <sstream>
 
-#include "clog/core/instruction_set.hpp"
+#include "clog/core/tools/instruction_set.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/run_job.hpp"
 

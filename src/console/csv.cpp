@@ -3,7 +3,7 @@
 #include <sstream>
 
 #include "clog/console/text_file.hpp"
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 
 namespace clog::console {
 

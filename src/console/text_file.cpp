@@ -11,7 +11,7 @@
 #include <string_view>
 
 #include "clog/console/signals.hpp"
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 
 namespace clog::console {
 namespace {

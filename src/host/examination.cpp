@@ -14,7 +14,7 @@
 #include <map>
 #include <set>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::host {

@@ -6,8 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "clog/console/build_info.hpp"
-#include "clog/core/instruction_set.hpp"
-#include "clog/core/systems.hpp"
+#include "clog/core/run/resolve.hpp"
+#include "clog/core/run/systems.hpp"
+#include "clog/core/tools/instruction_set.hpp"
 #include "clog/host/limits.hpp"
 #include "clog/parallel/communicator.hpp"
 

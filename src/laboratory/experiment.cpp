@@ -5,7 +5,7 @@
 #include <map>
 #include <numbers>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::laboratory {

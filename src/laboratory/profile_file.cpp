@@ -11,7 +11,7 @@
 #include "clog/console/csv.hpp"
 #include "clog/console/rounded.hpp"
 #include "clog/console/streams.hpp"
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/laboratory/experiment.hpp"
 #include "clog/store/trajectory_file.hpp"
 #include "clog/sweep/value_list.hpp"

@@ -10,7 +10,7 @@
 
 #include "clog/campaign/stored_sweep.hpp"
 #include "clog/console/signals.hpp"
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/laboratory/progress.hpp"
 #include "clog/sweep/single_run.hpp"
 #include "clog/sweep/value_list.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "clog/cli/command_line.hpp"
-#include "clog/core/systems.hpp"
+#include "clog/core/run/systems.hpp"
 
 namespace clog::programs {
 

@@ -12,7 +12,7 @@
 #include "clog/cli/program.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/streams.hpp"
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/store/run_table.hpp"
 #include "clogfit_calibrate.hpp"
 #include "clogfit_deviation.hpp"

@@ -15,7 +15,7 @@
 #include "clog/cli/program.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/signals.hpp"
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/fit/calibration.hpp"
 #include "clog/laboratory/experiment.hpp"
 #include "clog/laboratory/trials.hpp"

@@ -9,7 +9,7 @@
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/console/exit_codes.hpp"
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/laboratory/profile_file.hpp"
 
 namespace clog::programs {

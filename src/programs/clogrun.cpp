@@ -14,7 +14,7 @@
 #include "clog/cli/program.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/streams.hpp"
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clogrun_commands.hpp"
 
 namespace {

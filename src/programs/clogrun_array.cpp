@@ -4,9 +4,9 @@
 #include "clog/cli/obstacle_file.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/console/signals.hpp"
-#include "clog/core/error.hpp"
-#include "clog/core/systems.hpp"
-#include "clog/core/units.hpp"
+#include "clog/core/run/systems.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/units.hpp"
 #include "clog/sweep/single_run.hpp"
 #include "clogrun_commands.hpp"
 

@@ -5,7 +5,7 @@
 #include "clog/cli/program.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/console/streams.hpp"
-#include "clog/core/systems.hpp"
+#include "clog/core/run/systems.hpp"
 #include "clog/sweep/single_run.hpp"
 #include "clogrun_commands.hpp"
 

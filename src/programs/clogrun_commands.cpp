@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "clog/console/streams.hpp"
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/sweep/row_limits.hpp"
 
 namespace clog::programs {

@@ -3,9 +3,9 @@
 #include "clog/campaign/stored_sweep.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/console/signals.hpp"
-#include "clog/core/error.hpp"
-#include "clog/core/instruction_set.hpp"
-#include "clog/core/systems.hpp"
+#include "clog/core/run/systems.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/instruction_set.hpp"
 #include "clog/sweep/settings.hpp"
 #include "clogrun_commands.hpp"
 

@@ -17,7 +17,7 @@
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/console/streams.hpp"
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/host/examination.hpp"
 #include "clog/parallel/communicator.hpp"
 #include "clog/parallel/isolated_jobs.hpp"

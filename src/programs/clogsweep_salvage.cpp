@@ -5,7 +5,7 @@
 #include "clog/cli/program.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/printable.hpp"
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "clogsweep_commands.hpp"

@@ -9,7 +9,7 @@
 #include "clog/campaign/stored_sweep.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/signals.hpp"
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clogsweep_commands.hpp"
 #include "file_command.hpp"
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "clog/cli/program.hpp"
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/store/run_table.hpp"
 
 namespace clog::programs {

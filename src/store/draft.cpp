@@ -13,7 +13,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/store/run_table.hpp"
 #include "file_io.hpp"
 

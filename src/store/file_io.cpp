@@ -8,7 +8,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 
 namespace clog::store {
 

@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/store/regular_file.hpp"
 #include "clog/store/run_table.hpp"
 #include "draft.hpp"

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "check_sum.hpp"
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/store/regular_file.hpp"
 #include "clog/sweep/columns.hpp"
 #include "draft.hpp"

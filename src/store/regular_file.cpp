@@ -2,7 +2,7 @@
 
 #include <sys/stat.h>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 
 namespace clog::store {
 

@@ -11,7 +11,7 @@
 #include <exception>
 #include <filesystem>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "file_io.hpp"
 
 namespace clog::store {

@@ -14,7 +14,7 @@
 #include <string_view>
 
 #include "check_sum.hpp"
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "file_io.hpp"
 #include "hdf5.hpp"

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "file_io.hpp"
 #include "hdf5.hpp"

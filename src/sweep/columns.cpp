@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/sweep/settings.hpp"
 #include "clog/sweep/value_list.hpp"
 

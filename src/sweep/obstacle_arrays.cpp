@@ -13,7 +13,7 @@
 #include <string>
 #include <thread>
 
-#include "clog/core/schema.hpp"
+#include "clog/core/parameters/schema.hpp"
 #include "clog/sweep/columns.hpp"
 #include "shared_memory.hpp"
 

@@ -5,7 +5,8 @@
 #include <string>
 #include <unordered_map>
 
-#include "clog/core/error.hpp"
+#include "clog/core/run/resolve.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/value_list.hpp"
 

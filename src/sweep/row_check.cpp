@@ -6,11 +6,12 @@
 #include <numbers>
 #include <string_view>
 
-#include "clog/core/droplet.hpp"
-#include "clog/core/error.hpp"
-#include "clog/core/schema.hpp"
-#include "clog/core/stability.hpp"
-#include "clog/core/units.hpp"
+#include "clog/core/droplet/droplet.hpp"
+#include "clog/core/parameters/schema.hpp"
+#include "clog/core/polygon/stability.hpp"
+#include "clog/core/run/resolve.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/units.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {

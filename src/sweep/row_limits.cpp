@@ -7,7 +7,7 @@
 #include <limits>
 #include <string_view>
 
-#include "clog/core/units.hpp"
+#include "clog/core/tools/units.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {

@@ -4,7 +4,7 @@
 #include <exception>
 #include <utility>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 
 namespace clog::sweep {
 namespace {

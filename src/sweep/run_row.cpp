@@ -2,8 +2,8 @@
 
 #include <cassert>
 
-#include "clog/core/instruction_set.hpp"
-#include "clog/core/jamming.hpp"
+#include "clog/core/tools/instruction_set.hpp"
+#include "clog/core/world/jamming.hpp"
 #include "clog/sweep/columns.hpp"
 #include "clog/sweep/settings.hpp"
 

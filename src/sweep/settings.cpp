@@ -4,7 +4,8 @@
 #include <sstream>
 #include <utility>
 
-#include "clog/core/error.hpp"
+#include "clog/core/run/resolve.hpp"
+#include "clog/core/tools/error.hpp"
 
 namespace clog::sweep {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/value_list.hpp"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "clog/core/error.hpp"
-#include "clog/core/portable_math.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/portable_math.hpp"
 
 namespace clog::sweep {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/signals.hpp"
-#include "clog/core/units.hpp"
+#include "clog/core/tools/units.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "clog/watch/progress.hpp"
 

@@ -9,7 +9,7 @@
 #include <ctime>
 #include <vector>
 
-#include "clog/core/obstacle_array.hpp"
+#include "clog/core/world/obstacle_array.hpp"
 
 namespace {
 

@@ -7,7 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "clog/core/systems.hpp"
+#include "clog/core/run/resolve.hpp"
+#include "clog/core/run/systems.hpp"
 
 namespace {
 

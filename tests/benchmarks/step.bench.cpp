@@ -4,9 +4,10 @@
 
 #include <string>
 
-#include "clog/core/error.hpp"
-#include "clog/core/instruction_set.hpp"
-#include "clog/core/systems.hpp"
+#include "clog/core/run/resolve.hpp"
+#include "clog/core/run/systems.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/instruction_set.hpp"
 
 namespace {
 

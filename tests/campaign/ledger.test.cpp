@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/store/journal.hpp"
 #include "clog/store/run_table.hpp"
 

@@ -11,7 +11,7 @@
 
 #include "clog/campaign/groups.hpp"
 #include "clog/campaign/preview.hpp"
-#include "clog/core/schema.hpp"
+#include "clog/core/parameters/schema.hpp"
 #include "clog/sweep/obstacle_arrays.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/run_row.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 
 namespace clog::console {
 namespace {

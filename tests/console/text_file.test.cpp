@@ -8,7 +8,7 @@
 #include <fstream>
 #include <thread>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 
 namespace clog::console {
 namespace {

@@ -6,10 +6,10 @@
 #include <random>
 #include <vector>
 
-#include "clog/core/dp_forces.hpp"
-#include "clog/core/obstacle_array.hpp"
-#include "clog/core/polygon.hpp"
-#include "clog/core/units.hpp"
+#include "clog/core/droplet/shape.hpp"
+#include "clog/core/polygon/dp_forces.hpp"
+#include "clog/core/tools/units.hpp"
+#include "clog/core/world/obstacle_array.hpp"
 
 namespace clog::test {
 

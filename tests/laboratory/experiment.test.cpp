@@ -10,7 +10,7 @@
 #include <numbers>
 #include <string>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/laboratory/profile_file.hpp"
 
 namespace clog::laboratory {

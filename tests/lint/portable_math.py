@@ -1,5 +1,5 @@
 """Layers whose numbers end up in rows call no function of the C library of which it has versions for several kinds of
-processors; those of include/clog/core/portable_math.hpp take their place.
+processors; those of include/clog/core/tools/portable_math.hpp take their place.
 
     portable_math.py READELF ARCHIVE...
 """

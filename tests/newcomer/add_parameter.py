@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A new parameter is a member of RunParameters, an entry in core/schema.cpp, and its physics: quiet_checks.patch.
+"""A new parameter is a member of RunParameters, an entry in core/parameters/schema.cpp, and its physics: quiet_checks.patch.
 
     tests/newcomer/add_parameter.py            # applies it to a copy, builds that, and looks for the parameter everywhere
     tests/newcomer/add_parameter.py --check    # does the patch still fit? Takes no time

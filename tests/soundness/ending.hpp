@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "clog/core/droplet_state.hpp"
+#include "clog/core/droplet/droplet_state.hpp"
 
 namespace clog::soundness {
 

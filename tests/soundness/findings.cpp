@@ -6,9 +6,9 @@
 #include <numbers>
 #include <vector>
 
-#include "clog/core/polygon.hpp"
-#include "clog/core/release.hpp"
-#include "clog/core/units.hpp"
+#include "clog/core/droplet/shape.hpp"
+#include "clog/core/run/release.hpp"
+#include "clog/core/tools/units.hpp"
 
 namespace clog::soundness {
 namespace {

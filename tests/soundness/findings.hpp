@@ -1,7 +1,7 @@
 #pragma once
 
-#include "clog/core/droplet_state.hpp"
-#include "clog/core/obstacle_array.hpp"
+#include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/world/obstacle_array.hpp"
 
 namespace clog::soundness {
 

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "../core/support.hpp"
-#include "clog/core/units.hpp"
+#include "clog/core/tools/units.hpp"
 #include "ending.hpp"
 #include "findings.hpp"
 

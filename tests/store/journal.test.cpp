@@ -12,7 +12,7 @@
 #include <fstream>
 #include <optional>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "support.hpp"
 
 namespace clog::store {

@@ -15,7 +15,8 @@
 #include <fstream>
 #include <vector>
 
-#include "clog/core/error.hpp"
+#include "clog/core/run/resolve.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/sweep/messages.hpp"
 #include "support.hpp"
 

@@ -14,7 +14,7 @@
 #include <iterator>
 #include <string>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 
 namespace clog::store {
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 #include "support.hpp"
 
 namespace clog::store {

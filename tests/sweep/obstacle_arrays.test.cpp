@@ -19,6 +19,7 @@
 #include <thread>
 #include <vector>
 
+#include "clog/core/run/resolve.hpp"
 #include "clog/sweep/run_job.hpp"
 #include "shared_memory.hpp"
 

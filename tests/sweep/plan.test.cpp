@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 
 namespace clog::sweep {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 
 namespace clog::sweep {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "clog/core/clog_geometry.hpp"
+#include "clog/core/polygon/clog_geometry.hpp"
 #include "clog/fit/clogging_length.hpp"
 #include "clog/fit/mean_speed.hpp"
 #include "clog/fit/migration.hpp"

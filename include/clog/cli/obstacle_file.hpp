@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "clog/core/obstacle_array.hpp"
+#include "clog/core/world/obstacle_array.hpp"
 
 namespace clog::cli {
 

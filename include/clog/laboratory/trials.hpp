@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "clog/console/signals.hpp"
-#include "clog/core/systems.hpp"
+#include "clog/core/run/systems.hpp"
 #include "clog/fit/calibration.hpp"
 #include "clog/laboratory/profile_file.hpp"
 #include "clog/sweep/settings.hpp"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "clog/core/obstacle_array.hpp"
+#include "clog/core/world/obstacle_array.hpp"
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/run_row.hpp"
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "clog/core/schema.hpp"
+#include "clog/core/parameters/schema.hpp"
 #include "clog/sweep/run_row.hpp"
 
 /// Every column of the table of runs, described once: those of the parameters follow from parameter_schema(),

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "clog/core/obstacle_array.hpp"
+#include "clog/core/world/obstacle_array.hpp"
 
 namespace clog::sweep {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "clog/core/parameters.hpp"
+#include "clog/core/parameters/parameters.hpp"
 #include "clog/sweep/settings.hpp"
 
 namespace clog::sweep {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "clog/core/parameters.hpp"
-#include "clog/core/systems.hpp"
+#include "clog/core/parameters/parameters.hpp"
+#include "clog/core/run/systems.hpp"
 
 namespace clog::sweep {
 

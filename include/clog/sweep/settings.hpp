@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "clog/core/schema.hpp"
+#include "clog/core/parameters/schema.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "clog/core/parameters.hpp"
-#include "clog/core/systems.hpp"
+#include "clog/core/parameters/parameters.hpp"
+#include "clog/core/run/systems.hpp"
 #include "clog/sweep/settings.hpp"
 
 namespace clog::sweep {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "clog/console/status_line.hpp"
-#include "clog/core/droplet_run.hpp"
+#include "clog/core/run/droplet_run.hpp"
 
 namespace clog::watch {
 

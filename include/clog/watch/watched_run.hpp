@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "clog/core/droplet_run.hpp"
+#include "clog/core/run/droplet_run.hpp"
 #include "clog/store/trajectory_file.hpp"
 #include "clog/watch/preview.hpp"
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "clog/core/error.hpp"
+#include "clog/core/tools/error.hpp"
 
 /// What libFuzzer calls with every input.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+
+#include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/droplet/energy.hpp"
+#include "clog/core/droplet/shape.hpp"
+
+namespace clog {
+
+/// A polygon with a longer perimeter has burst [sigma]: it is not integrated any further.
+inline constexpr double burst_perimeter = 1000;
+
+/// A droplet that moves: what a run needs to know of either model.
+class Droplet {
+ public:
+  virtual ~Droplet() = default;
+
+  /// Integrates the equations of motion over `num_steps` time steps. A step may be split into sub-steps.
+  virtual void advance(int num_steps) = 0;
+
+  /// Forgets everything but what save() saves: contact lists and sums over them are made anew. A droplet
+  /// restored from there moves on exactly as this one does.
+  virtual void start_afresh() = 0;
+  void save(ByteWriter& bytes) const;
+  /// Of a droplet with the same parameters and obstacles; starts afresh.
+  void restore(ByteReader& bytes);
+
+  /// Sub-steps done so far.
+  std::int64_t num_integrated_steps() const { return num_integrated_steps_; }
+  const DropletState& state() const { return state_; }
+  /// [g rho sigma^3]
+  virtual double kinetic_energy() const = 0;
+  /// Its gravity term is measured from the frame's origin.
+  virtual PotentialEnergy potential_energy() const = 0;
+  /// Centre of mass: of the area where the weight acts on it, otherwise the vertices' mean [sigma], local.
+  virtual Eigen::Array2d centre() const { return state_.centre(); }
+  /// [sqrt(sigma g)]
+  virtual Eigen::Array2d centre_velocity() const { return state_.mean_velocity(); }
+  /// Area, perimeter; those of the undeformed disk for the soft disk.
+  virtual PolygonShape shape() const = 0;
+
+  /// From now on adds up what the drag takes out, which costs a pass over the velocities per step.
+  void measure_dissipation() { measures_dissipation_ = true; }
+  /// Since measure_dissipation() [g rho sigma^3]: energy lost to drag, and work of the springs along the
+  /// interface, which have no energy. By the trapezoidal rule: second order in the time step, as the
+  /// integrator.
+  struct Work {
+    double dissipated = 0;
+    double spreading = 0;
+  };
+  const Work& work() const { return work_; }
+
+ protected:
+  DropletState state_;
+  bool measures_dissipation_ = false;
+  Work work_;
+  std::int64_t num_integrated_steps_ = 0;
+};
+
+}  // namespace clog

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdint>
+
+#include "clog/core/tools/byte_archive.hpp"
+#include "clog/core/tools/units.hpp"
+
+namespace clog {
+
+/// Where a droplet's local coordinates sit in the periodic plane: global = image * period + origin + local.
+/// The origin stays inside the first period and follows the droplet in whole units, so coordinates stay of
+/// order one however far the droplet travels, and a droplet one period further on feels bit-identical forces.
+struct LocalFrame {
+  Eigen::Array2d period{0, 0};                   ///< along and across the flow [sigma]
+  Eigen::Array2d origin{0, 0};                   ///< in the first period [sigma]
+  Eigen::Array<std::int64_t, 2, 1> image{0, 0};  ///< whole periods
+
+  Eigen::Array2d global(const Eigen::Array2d& local) const {
+    return image.cast<double>() * period + origin + local;
+  }
+  /// Displacement from a place of another frame of the same period, without forming large coordinates.
+  Eigen::Array2d displacement(const Eigen::Array2d& local, const LocalFrame& from,
+                              const Eigen::Array2d& from_local) const {
+    return (image - from.image).cast<double>() * period + (origin - from.origin) + (local - from_local);
+  }
+  void save(ByteWriter& bytes) const {
+    bytes.put(period);
+    bytes.put(origin);
+    bytes.put(image[0]);
+    bytes.put(image[1]);
+  }
+  void restore(ByteReader& bytes) {
+    bytes.get(period);
+    bytes.get(origin);
+    bytes.get(image[0]);
+    bytes.get(image[1]);
+  }
+  /// Moves the origin by a whole-numbered step [sigma].
+  void shift(const Eigen::Array2d& step) {
+    origin += step;
+    for (int axis = 0; axis < 2; ++axis) {
+      while (origin[axis] >= period[axis]) origin[axis] -= period[axis], ++image[axis];
+      while (origin[axis] < 0) origin[axis] += period[axis], --image[axis];
+    }
+  }
+};
+
+/// How far points may move until somebody looks again [sigma].
+struct Travel {
+  double absolute = 0;
+  double relative = 0;  ///< to the mean of the points
+};
+/// Contact lists look no farther ahead than this [sigma]: what moves as fast has diverged.
+inline constexpr double widest_skin = 4;
+
+/// Points (the polygon's vertices, or the soft disk's centre) and their velocities. Coordinates are kept
+/// as one array, all x then all y, so that the integrator and the minimiser see plain vectors.
+struct DropletState {
+  Eigen::ArrayXd position;  ///< 2N, local [sigma]
+  Eigen::ArrayXd velocity;  ///< 2N [sqrt(sigma g)]
+  LocalFrame frame;
+
+  Eigen::Index size() const { return position.size() / 2; }
+  auto x() { return position.head(size()); }
+  auto x() const { return position.head(size()); }
+  auto y() { return position.tail(size()); }
+  auto y() const { return position.tail(size()); }
+  /// Mean of the points: the centre of mass, as the points carry equal masses [sigma].
+  Eigen::Array2d centre() const { return {x().mean(), y().mean()}; }
+  Eigen::Array2d mean_velocity() const {
+    return {velocity.head(size()).mean(), velocity.tail(size()).mean()};
+  }
+
+  /// Bound on the way in a time [t0]: twice that at the fastest point's present speed plus free fall.
+  Travel possible_travel(double time) const {
+    const auto way = [time](double speed) { return 2 * time * (speed + units::gravity * time); };
+    const Eigen::Array2d drift = mean_velocity();
+    const auto vx = velocity.head(size());
+    const auto vy = velocity.tail(size());
+    return {.absolute = way(std::sqrt((vx.square() + vy.square()).maxCoeff())),
+            .relative = way(std::sqrt(((vx - drift[0]).square() + (vy - drift[1]).square()).maxCoeff()))};
+  }
+
+  void save(ByteWriter& bytes) const {
+    bytes.put(position);
+    bytes.put(velocity);
+    frame.save(bytes);
+  }
+  void restore(ByteReader& bytes) {
+    bytes.get(position);
+    bytes.get(velocity);
+    frame.restore(bytes);
+  }
+
+  /// Keeps local coordinates of order one: moves the frame by whole units when the centre has left the unit
+  /// square around the origin. Returns the step taken (usually zero).
+  Eigen::Array2d recentre() {
+    const Eigen::Array2d centre_now = centre();
+    if ((centre_now.abs() <= 1).all()) return {0, 0};
+    const Eigen::Array2d step = centre_now.round();
+    x() -= step[0];
+    y() -= step[1];
+    frame.shift(step);
+    return step;
+  }
+};
+
+}  // namespace clog

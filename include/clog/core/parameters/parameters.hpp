@@ -1,0 +1,163 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "clog/core/tools/words.hpp"
+
+namespace clog {
+
+/// To be raised whenever the same parameters begin to give other results: runs of different versions do not
+/// belong in one table.
+inline constexpr int model_version = 4;
+
+enum class Model { dp, sp };
+template <>
+struct Words<Model> {
+  static constexpr Worded<Model> all[] = {{Model::dp, "dp"}, {Model::sp, "sp"}};
+};
+/// Springs of the edges: to the rest length l0 (the paper), to the current mean edge length, or `along` the
+/// interface only: these spread the vertices evenly, but carry no tension.
+enum class PerimeterSpring { rest, mean, along };
+template <>
+struct Words<PerimeterSpring> {
+  static constexpr Worded<PerimeterSpring> all[] = {
+      {PerimeterSpring::along, "along"}, {PerimeterSpring::mean, "mean"}, {PerimeterSpring::rest, "rest"}};
+};
+/// Contact between different parts of one droplet's interface.
+enum class SelfContact { off, on };
+template <>
+struct Words<SelfContact> {
+  static constexpr Worded<SelfContact> all[] = {{SelfContact::on, "on"}, {SelfContact::off, "off"}};
+};
+/// Where the droplet's weight and the drag on its mean motion act: shared by the vertices (the paper), or on
+/// the area, as a pressure. Then they have no part along the interface, which would pile up its vertices.
+enum class Gravity { vertex, area };
+template <>
+struct Words<Gravity> {
+  static constexpr Worded<Gravity> all[] = {{Gravity::area, "area"}, {Gravity::vertex, "vertex"}};
+};
+/// What of the interface a wall pushes: its vertices (the paper), or the nearest point of every edge.
+enum class WallContact { vertex, edge };
+template <>
+struct Words<WallContact> {
+  static constexpr Worded<WallContact> all[] = {{WallContact::edge, "edge"}, {WallContact::vertex, "vertex"}};
+};
+/// What the droplet meets: circles by random sequential addition, a tilted square lattice of them, a user's
+/// own; the two wedges of a channel; a flat wall.
+enum class ObstacleLayout { random, lattice, file, channel, wall };
+template <>
+struct Words<ObstacleLayout> {
+  static constexpr Worded<ObstacleLayout> all[] = {{ObstacleLayout::random, "random"},
+                                                   {ObstacleLayout::lattice, "lattice"},
+                                                   {ObstacleLayout::file, "file"},
+                                                   {ObstacleLayout::channel, "channel"},
+                                                   {ObstacleLayout::wall, "wall"}};
+};
+/// What it takes for a droplet to count as clogged: kinetic energy below a threshold, or else, long before
+/// that, proof that a stable equilibrium is at hand (equilibrium.hpp).
+enum class ClogDetection { threshold, certified };
+template <>
+struct Words<ClogDetection> {
+  static constexpr Worded<ClogDetection> all[] = {{ClogDetection::certified, "certified"},
+                                                  {ClogDetection::threshold, "threshold"}};
+};
+
+/// Lengths that were half a vertex diameter and a vertex diameter of 256 vertices, the published number
+/// [sigma].
+inline constexpr double published_contact_range = 0.00614;
+inline constexpr double published_vertex_diameter = 0.01227;
+
+/// The tension changes to that of a wetted wall over this many vertex diameters. Over one, the contact angle
+/// is wrong however many vertices there are, and droplets of 128 are up to 5 % too tall; over two to four the
+/// shapes agree.
+inline constexpr double wetting_width = 3;
+
+/// Deformable polygon, Cheng et al. Eqs. 1-6. Reduced units, see units.hpp.
+struct DpParameters {
+  double line_tension = 1.0;             ///< Gamma [g rho sigma^2]
+  std::optional<double> area_stiffness;  ///< K_a [g rho / sigma]; empty: automatic
+  PerimeterSpring perimeter_spring = PerimeterSpring::along;
+  std::optional<double> perimeter_stiffness;  ///< K_l [g rho sigma]; empty: automatic
+  double perimeter_stiffness_ratio = 1e-3;    ///< K_l/Gamma of springs to the rest length
+  WallContact wall_contact = WallContact::edge;
+  /// Distance from a wall's surface at which contact begins [sigma]; empty: half a vertex diameter, as
+  /// published, which makes every gap narrower by a vertex diameter.
+  std::optional<double> contact_range = 0;
+  /// Tension of the interface where it touches a wall, over Gamma: (gamma_so - gamma_sw)/gamma_ow, which is
+  /// -cos of the contact angle (Young). 1: a film of water everywhere, as in the paper's figures.
+  double wall_tension = 1;
+  SelfContact self_contact = SelfContact::on;
+  /// Distance below which the interface repels itself: the thickness of a film between two parts of it
+  /// [sigma].
+  double self_contact_range = published_vertex_diameter;
+  Gravity gravity = Gravity::area;
+  int vertices = 128;  ///< N_v
+};
+
+/// The rectangle after which an array repeats: square boxes in a row along the flow.
+struct Period {
+  double box = 0;  ///< [sigma]
+  int boxes = 1;
+
+  Period() = default;
+  // A single box is a period; nothing is lost in the conversion.
+  Period(double edge, int number = 1) : box(edge), boxes(number) {}
+
+  double along() const { return boxes * box; }
+  double across() const { return box; }
+  double area() const { return along() * across(); }
+  bool operator==(const Period&) const = default;
+};
+
+/// Periodic array of circular obstacles, Cheng et al., "Geometry".
+struct ObstacleParameters {
+  double gap = 0.2;               ///< w_ob, smallest surface-to-surface distance [sigma]
+  double diameter = 0.3;          ///< sigma_ob, of a mixture the mean of the arriving ones [sigma]
+  double diameter_spread = 0;     ///< diameters are uniform in diameter (1 -+ spread)
+  std::optional<double> density;  ///< obstacles per sigma^2; empty: saturated, or given by the lattice
+  double box = 500;               ///< period L across the flow [sigma]
+  int boxes = 1;                  ///< period along the flow over that across it
+  ObstacleLayout layout = ObstacleLayout::random;
+  double lattice_angle = 0;  ///< of the lattice's rows from +x to +y [degrees]
+
+  double smallest_diameter() const { return diameter * (1 - diameter_spread); }
+  double largest_diameter() const { return diameter * (1 + diameter_spread); }
+  Period period() const { return {box, boxes}; }
+  bool operator==(const ObstacleParameters&) const = default;
+};
+
+/// Drag on a vertex: -(zeta v + (c - 1) b_inf (v - v_cm))/N_v, zeta = b_inf (1 + (b_0/b_inf)
+/// (sigma/d)^alpha), Cheng et al. Eq. 7 for c = 1. The second part damps changes of shape only.
+struct DragParameters {
+  double terminal_speed = 0.03;         ///< V_t [sqrt(sigma g)]; b_inf = M g / V_t
+  double near_wall = 0;                 ///< b_0/b_inf; the soft disk has no near-wall drag
+  double near_wall_exponent = 4.0 / 3;  ///< alpha; 4/3 is calibrated in Appendix A of Cheng et al.
+  double near_wall_cutoff = published_contact_range;  ///< d counts as no less [sigma]
+  double relative = 1;  ///< c, drag of motion relative to the centre of mass over b_inf; dp only
+};
+
+/// Everything that decides the course of one run. Two runs with equal parameters are equal bit for bit.
+struct RunParameters {
+  Model model = Model::dp;
+  DpParameters dp;
+  std::optional<double> wall_stiffness;  ///< E_w [g rho sigma^3]; empty: stiffest stable value (dp only)
+  ObstacleParameters obstacles;
+  DragParameters drag;
+  std::optional<double> time_step;  ///< [t0]; empty: automatic
+  double max_time = 2e5;            ///< [t0]
+  double clog_energy = 1e-17;       ///< E_k/E_t below which a droplet counts as clogged
+  ClogDetection clog_detection = ClogDetection::certified;
+  std::uint32_t seed = 1;
+};
+
+/// Contact stiffness k_c, force over overlap [g rho sigma], of the wall energy U_w = (E_w/2)(1 - 2d/size)^2:
+/// k_c = 4 E_w / size^2. `size` is the vertex diameter (DP) or sigma (SP). And the way back.
+inline double contact_stiffness(double wall_stiffness, double size) {
+  return 4 * wall_stiffness / (size * size);
+}
+inline double wall_stiffness(double contact_stiffness, double size) {
+  return contact_stiffness * size * size / 4;
+}
+
+}  // namespace clog

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "clog/core/parameters/parameters.hpp"
+
+/// Every parameter of a run, described once. Keys, their checks, columns, groups, labels and documentation
+/// follow from here: a new parameter is a member of RunParameters, an entry of parameter_schema(), and its
+/// physics.
+namespace clog {
+
+/// The value of a parameter. Nothing: an automatic value, or one that means nothing to the run.
+using ParameterValue = std::variant<std::monostate, double, std::int64_t, std::string>;
+
+enum class ValueKind { number, integer, word };
+
+/// What a parameter is there for.
+enum class ParameterRole {
+  physics,   ///< of what is modelled
+  numerics,  ///< of how it is computed or looked at; results should hardly depend on it
+  ensemble,  ///< which of many equal runs
+};
+template <>
+struct Words<ParameterRole> {
+  static constexpr Worded<ParameterRole> all[] = {{ParameterRole::physics, "physics"},
+                                                  {ParameterRole::numerics, "numerics"},
+                                                  {ParameterRole::ensemble, "ensemble"}};
+};
+
+/// Runs to which a parameter means something.
+struct ParameterScope {
+  const char* word;    ///< "dp", "lattice", ...
+  const char* reason;  ///< why it means nothing to the others
+  const char* remedy;
+  bool (*holds)(const RunParameters&);
+};
+
+/// The end of a parameter's range.
+struct Bound {
+  double value;
+  bool is_allowed;     ///< the value itself
+  const char* reason;  ///< against values beyond
+  const char* remedy;
+};
+struct ParameterRange {
+  std::optional<Bound> lower, upper;
+};
+
+struct Parameter {
+  const char* key;      ///< in config files and on command lines, e.g. "line-tension"
+  const char* column;   ///< of the table of runs, that tells of it
+  const char* symbol;   ///< as TeX writes it
+  const char* unit;     ///< e.g. "g rho sigma^2"; empty: a pure number, or a word
+  const char* meaning;  ///< one line
+  ParameterRole role;
+  const ParameterScope* scope;
+  const ParameterScope* automatic_in;  ///< runs in which its value follows from the others unless it is given
+  ParameterRange range;                ///< of numbers
+  bool has_own_column;                 ///< otherwise the column tells of others as well
+  bool shapes_array;                   ///< do two values of it make two obstacle arrays?
+  /// What the column holds where the parameter means nothing; mostly nothing.
+  ParameterValue elsewhere;
+  /// Of files from before the parameter was there: what all runs had then. Nothing: it is not known.
+  ParameterValue before;
+
+  ValueKind kind;
+  std::vector<std::string> words;  ///< of a word: all; of a number: what stands for an automatic value
+  ParameterValue (*get)(const RunParameters&);
+  /// @throws Error if the value is out of the type's range, or the word is unknown
+  void (*set)(RunParameters&, const ParameterValue&);
+
+  bool applies_to(const RunParameters& run) const { return scope->holds(run); }
+  /// Does its value follow from the others in such a run, unless it is given?
+  bool may_be_automatic(const RunParameters& run) const { return automatic_in && automatic_in->holds(run); }
+};
+
+/// In the order in which they are shown, and in which the axes of a plan follow each other: numbers of tasks
+/// depend on it.
+std::span<const Parameter> parameter_schema();
+/// @throws std::out_of_range if there is none
+const Parameter& parameter(std::string_view key);
+
+/// Refuses numbers beyond their range, and values other than the default where they mean nothing to the run.
+/// @throws Error naming the key, its value, the reason and a remedy
+void check_each(const RunParameters& run);
+
+/// A range in words, e.g. "above 0, at most 100"; empty if every number is allowed.
+std::string text_of(const ParameterRange& range);
+
+}  // namespace clog

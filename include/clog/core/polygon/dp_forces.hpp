@@ -1,0 +1,116 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/droplet/energy.hpp"
+#include "clog/core/droplet/shape.hpp"
+#include "clog/core/parameters/parameters.hpp"
+#include "clog/core/polygon/self_contacts.hpp"
+#include "clog/core/polygon/wall_contacts.hpp"
+#include "clog/core/world/obstacle_array.hpp"
+
+namespace clog {
+namespace kernel {
+struct Interface;
+}
+
+/// Potential energy of a deformable polygon among obstacles and its negative gradient.
+/// Contacts act through lists: update_contacts() must have been called, and nothing have travelled farther
+/// than it was told.
+class DpForces {
+ public:
+  /// @param run  resolved parameters (see resolve())
+  DpForces(const RunParameters& run, const ObstacleArray& obstacles);
+
+  /// @param travel  bound on the way until the next call
+  void update_contacts(const DropletState& state, const Travel& travel);
+  /// To be called when local coordinates have moved by a shift of the frame.
+  void forget_contacts();
+  /// Those with itself, too, which a shift does not change.
+  void forget_all_contacts();
+
+  /// force = -grad U, all x then all y [g rho sigma^2]. Also measures shape() and, with near-wall drag,
+  /// wall_distance().
+  void evaluate(const DropletState& state, Eigen::ArrayXd& force);
+  PotentialEnergy energy(const DropletState& state) const;
+
+  /// Area and perimeter at the last evaluate().
+  const PolygonShape& shape() const { return shape_; }
+  /// Distance of each vertex to the nearest obstacle at the last evaluate(), not below the near-wall drag's
+  /// cutoff [sigma]; empty without near-wall drag.
+  const Eigen::ArrayXd& wall_distance() const { return wall_distance_; }
+  /// Deepest overlap of the interface with a wall's contact range [sigma]: of its edges or of its vertices,
+  /// as the contact counts them.
+  double deepest_overlap(const DropletState& state) const;
+  /// Distance from an obstacle's surface at which contact begins [sigma].
+  double contact_range() const { return walls_.range(); }
+
+  double vertex_diameter() const { return vertex_diameter_; }
+
+  /// For the integrator: the terms of the interface at this area and perimeter, and the contacts.
+  kernel::Interface interface(double area, double perimeter) const;
+  double contact_stiffness() const { return contact_stiffness_; }
+  const WallContacts& walls() const { return walls_; }
+  const WallContacts& nearest_walls() const { return nearest_walls_; }
+  const SelfContacts& self_contacts() const { return self_; }
+  const std::vector<Wedge>& wedges() const { return obstacles_->wedges(); }
+  /// Are walls wetted, so that the tension on them differs?
+  bool wets() const { return extra_tension() != 0; }
+  /// Forces of wetted walls on the vertices, which add up: all x then all y [g rho sigma^2]. `gradient` is
+  /// minus the energy's. `spreading` is minus its part along the interface, where springs carry no tension
+  /// (`along`), otherwise 0; it has no energy.
+  struct WettingForces {
+    Eigen::ArrayXd gradient;
+    Eigen::ArrayXd spreading;
+    /// The net force of `spreading`. The liquid takes it: weight on the area is reduced by it.
+    Eigen::Array2d net_spreading() const {
+      const Eigen::Index n = spreading.size() / 2;
+      return {spreading.head(n).sum(), spreading.tail(n).sum()};
+    }
+  };
+  WettingForces wetting_forces(const DropletState& state) const;
+
+  /// For the release, where the droplet grows without weight.
+  void set_rest_area(double area);
+  void set_weight(double weight) { weight_ = weight; }
+  /// d(X, Y)/d(x_i, y_i), X, Y the area's centroid, at the last evaluate(): dX/dx, dX/dy, dY/dx, dY/dy, each
+  /// of length N_v. Zero with the weight on the vertices.
+  Eigen::ArrayXd& centroid_gradient() { return centroid_gradient_; }
+
+ private:
+  DpParameters dp_;
+  const ObstacleArray* obstacles_;
+  double vertex_diameter_;
+  double contact_stiffness_;
+  double rest_area_;
+  double rest_edge_;
+  double weight_;
+  double near_wall_cutoff_;
+  WallContacts walls_;
+  WallContacts nearest_walls_;   // kept only with near-wall drag
+  WallContacts adhesive_walls_;  // kept only where walls are wetted
+  SelfContacts self_;
+  PolygonShape shape_;
+  Eigen::ArrayXd edge_x_, edge_y_, edge_length_, pull_, centroid_gradient_, refined_edges_;
+  Eigen::ArrayXd wall_distance_;
+
+  /// A wall near a vertex, for wetting: how far the tension has changed to that of the wall, its derivative
+  /// by the distance [1/sigma], and the direction away from the wall.
+  struct Wetted {
+    double share = 0;
+    double slope = 0;
+    Eigen::Array2d normal{0, 0};
+  };
+  Wetted wetted(const DropletState& state, int vertex) const;
+  double extra_tension() const { return (dp_.wall_tension - 1) * dp_.line_tension; }
+  void add_walls(const DropletState& state, Eigen::ArrayXd& force);
+  void measure_wall_distance(const DropletState& state);
+  /// Calls visit(overlap) for every half edge (vertex) and slot or wedge [sigma]; negative where they do not
+  /// touch.
+  template <class Visit>
+  void visit_overlaps(const DropletState& state, Visit visit) const;
+  void add_self_contact(const DropletState& state, Eigen::ArrayXd& force) const;
+};
+
+}  // namespace clog

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/world/obstacle_array.hpp"
+
+namespace clog {
+
+/// The obstacles that matter to each edge, or each vertex, of a polygon until the list has to be renewed.
+///
+/// `touched_by_edge`: edge i (from vertex i to the next) lists every obstacle whose surface was within
+/// `range` + skin of it; `touched_by_vertex`: the same for vertex i. `nearest_to_vertex`: vertex i lists
+/// every obstacle that could become its nearest. Lists hold while no vertex has moved by more than the skin.
+/// They are kept as `slots`: slot s of edge or vertex i is one circle; unused slots hold a circle out of
+/// reach, so that the force loop has no branch.
+class WallContacts {
+ public:
+  enum class Keep { touched_by_edge, touched_by_vertex, nearest_to_vertex };
+
+  /// @param range  largest surface distance at which a wall force acts [sigma]
+  WallContacts(const ObstacleArray& array, double range, Keep keep);
+
+  /// Renews the lists when a vertex may leave its skin on the way to the next update.
+  void update(const DropletState& state, const Travel& travel);
+  /// Forgets the lists: positions changed by more than a move (a new frame origin, a rescaled polygon).
+  void invalidate() { reference_.resize(0); }
+
+  int num_slots() const { return num_slots_; }
+  /// Centres and radii of slot `s`, one per edge or vertex, relative to the state's frame [sigma].
+  const double* slot_x(int s) const { return slots_.data() + (3 * s + 0) * num_points_; }
+  const double* slot_y(int s) const { return slots_.data() + (3 * s + 1) * num_points_; }
+  const double* slot_radius(int s) const { return slots_.data() + (3 * s + 2) * num_points_; }
+  double range() const { return range_; }
+  /// Of the circles that the lists are made of.
+  bool radii_are_equal() const { return smallest_radius_ == largest_radius_; }
+  double largest_radius() const { return largest_radius_; }
+
+  /// The same lists by obstacle: circles that some edge (vertex) of a group of `edges_per_group` lists, in
+  /// the groups' order.
+  struct Item {
+    double x, y;   ///< centre, relative to the state's frame [sigma]
+    double reach;  ///< radius + range [sigma]
+    int group;
+    std::uint8_t edges;  ///< those that list it, as bits
+  };
+  static constexpr int edges_per_group = 8;
+  const std::vector<Item>& items() const { return items_; }
+
+ private:
+  const ObstacleArray* array_;
+  double range_;
+  Keep keep_;
+  double skin_ = 0;  // of the present lists
+  int num_slots_ = 0;
+  Eigen::Index num_points_ = 0;
+  Eigen::ArrayXd reference_;
+  Eigen::ArrayXd slots_;
+  std::vector<Obstacle> nearby_;
+  std::vector<std::vector<int>> candidates_;
+  std::vector<Item> items_;
+  double smallest_radius_ = 0, largest_radius_ = 0;
+
+  void rebuild(const DropletState& state, double skin);
+  void gather_nearby(const DropletState& state);
+  void fill_slots();
+  void fill_items();
+};
+
+}  // namespace clog

@@ -1,0 +1,126 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "clog/core/droplet/droplet.hpp"
+#include "clog/core/parameters/parameters.hpp"
+#include "clog/core/polygon/clog_geometry.hpp"
+#include "clog/core/run/displacement_record.hpp"
+#include "clog/core/world/obstacle_array.hpp"
+
+namespace clog {
+
+enum class RunStatus { running, clogged, flowing, passed, interrupted, failed };
+template <>
+struct Words<RunStatus> {
+  static constexpr Worded<RunStatus> all[] = {
+      {RunStatus::running, "running"},         {RunStatus::clogged, "clogged"},
+      {RunStatus::flowing, "flowing"},         {RunStatus::passed, "passed"},
+      {RunStatus::interrupted, "interrupted"}, {RunStatus::failed, "failed"}};
+};
+
+/// E_k/E_t beyond which the integration has broken down: free fall without drag over a whole box stays below
+/// it.
+inline constexpr double diverged_energy_ratio = 1e8;
+/// Relative error of the area, likewise: compressibility and line tension keep a droplet far within it.
+inline constexpr double diverged_area_error = 0.5;
+
+/// What one run found out.
+struct RunResult {
+  RunStatus status = RunStatus::running;
+  std::optional<ClogDetection> clogged_by;  ///< how a clog was found; empty unless clogged
+  double distance = 0;              ///< displacement along the flow since release, certified: at rest [sigma]
+  double lateral = 0;               ///< displacement across the flow, certified: at rest [sigma]
+  double time = 0;                  ///< [t0]
+  TravelSpeed speed;                ///< of the way so far
+  double kinetic_energy_ratio = 0;  ///< E_k/E_t at the end
+  double shape_parameter = 0;       ///< A at the end, certified: at rest
+  ClogMechanism mechanism = ClogMechanism::none;  ///< what holds it; a soft disk is always squeezed
+  ClogGeometry geometry;                          ///< of a clogged polygon, certified: at rest
+  std::int64_t steps = 0;                         ///< integrated steps, sub-steps counted singly
+  std::string message;                            ///< why it failed
+};
+
+/// One droplet followed from its release until it clogs, passes the end of its way, or its time is up. Where
+/// it runs (an array, a channel, onto a wall) is made in systems.hpp.
+///
+/// The droplet counts as clogged when E_k/E_t (E_t: kinetic energy at terminal speed) has been below
+/// clog-energy at two checks in a row, not before it had ten relaxation times V_t/g to fall. With
+/// clog-detection=certified it also does as soon as find_equilibrium() knows where it will rest. The course
+/// of a run depends on its parameters alone, not on how advance() is called, nor on how clogs are found.
+class DropletRun {
+ public:
+  /// Clogging and the end of the run are looked for, and r(t) is recorded, once in so many steps.
+  static constexpr int steps_per_check = 64;
+  /// A snapshot is taken once in so many steps; a quarter of a second apart for 256 vertices.
+  static constexpr std::int64_t steps_per_snapshot = 4096 * steps_per_check;
+  static constexpr double no_end = std::numeric_limits<double>::infinity();
+
+  /// @param run       resolved parameters
+  /// @param initial   the droplet at its release
+  /// @param end       displacement along the flow at which the run is over, status `passed` [sigma]
+  DropletRun(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles, DropletState initial,
+             double end = no_end);
+
+  /// A run restored from a snapshot() goes on bit for bit like the one that it was taken of, since that one,
+  /// too, starts afresh there: contact lists are made anew.
+  /// @param run, obstacles, end  as in that one
+  /// @throws Error if the bytes are no snapshot of such a run
+  static DropletRun resume(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
+                           std::span<const std::byte> snapshot, double end = no_end);
+  /// The last one; empty before the first.
+  const std::vector<std::byte>& snapshot() const { return snapshot_; }
+
+  /// Goes on for at most `num_checks` intervals of `steps_per_check` steps. Returns whether the run is over.
+  bool advance(int num_checks);
+
+  /// Of the run so far; status `running` while it is not over.
+  RunResult result() const;
+  double time() const { return static_cast<double>(steps_done_) * run_.time_step.value(); }
+  /// Along and across the flow since release [sigma].
+  Eigen::Array2d displacement() const { return displacement_of(droplet_->centre()); }
+  /// Of a point in the droplet's frame from the place of release [sigma].
+  Eigen::Array2d displacement_of(const Eigen::Array2d& local) const {
+    return droplet_->state().frame.displacement(local, start_frame_, start_);
+  }
+  double kinetic_energy_ratio() const;
+  /// The gravity term is measured from the place of release.
+  PotentialEnergy potential_energy() const;
+  /// From now on the energy lost to drag is added up, see Droplet::work().
+  void measure_dissipation() { droplet_->measure_dissipation(); }
+  const Droplet& droplet() const { return *droplet_; }
+  const ObstacleArray& obstacles() const { return *obstacles_; }
+  const RunParameters& parameters() const { return run_; }
+
+ private:
+  RunParameters run_;
+  std::shared_ptr<const ObstacleArray> obstacles_;
+  std::unique_ptr<Droplet> droplet_;
+  LocalFrame start_frame_;
+  Eigen::Array2d start_;
+  double end_;
+  std::int64_t steps_done_ = 0;
+  std::int64_t max_steps_;
+  double first_quiet_time_;
+  int quiet_checks_ = 0;
+  RunStatus status_ = RunStatus::running;
+  std::optional<ClogDetection> clogged_by_;
+  double next_search_;                // E_k/E_t below which an equilibrium is looked for
+  std::unique_ptr<Droplet> at_rest_;  // of a certified clog
+  std::string message_;
+  DisplacementRecord record_;
+  std::vector<std::byte> snapshot_;
+
+  void check();
+  void take_snapshot();
+  bool is_quiet(double energy_ratio);
+  bool finds_rest(double energy_ratio);
+};
+
+}  // namespace clog

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "clog/core/droplet/droplet_state.hpp"
+
+namespace clog {
+
+struct FireOptions {
+  double mass = 1;             ///< of each point
+  double largest_step = 1e-3;  ///< [t0]; must be stable for velocity Verlet
+  double force_tolerance = 0;  ///< stop when no force component exceeds this [g rho sigma^2]
+  int max_iterations = 0;
+  double max_move = 0;  ///< no coordinate moves by more than this in one iteration [sigma]
+};
+
+struct FireResult {
+  bool converged = false;
+  int iterations = 0;
+  double largest_force = 0;
+};
+
+/// Energy minimisation by the fast inertial relaxation engine, Bitzek et al., Phys. Rev. Lett. 97, 170201
+/// (2006), with its standard constants. Velocities are left at zero.
+/// @param forces  has update_contacts(state, travel) and evaluate(state, force)
+template <class Forces>
+FireResult minimize_fire(Forces& forces, DropletState& state, const FireOptions& options) {
+  constexpr int min_downhill = 5;
+  constexpr double grow = 1.1, shrink = 0.5, start_mixing = 0.1, less_mixing = 0.99;
+  constexpr int iterations_per_check = 2;
+
+  // max_move bounds each coordinate.
+  const double farthest = iterations_per_check * options.max_move * std::numbers::sqrt2;
+  const Travel travel{.absolute = farthest, .relative = 2 * farthest};
+  Eigen::ArrayXd force(state.position.size());
+  state.velocity.setZero();
+  double dt = 0.25 * options.largest_step;
+  double mixing = start_mixing;
+  int downhill = 0;
+  FireResult result;
+  for (; result.iterations < options.max_iterations; ++result.iterations) {
+    if (result.iterations % iterations_per_check == 0) forces.update_contacts(state, travel);
+    forces.evaluate(state, force);
+    result.largest_force = force.abs().maxCoeff();
+    result.converged = result.largest_force <= options.force_tolerance;
+    if (result.converged || !std::isfinite(result.largest_force)) break;
+
+    const double power = (force * state.velocity).sum();
+    if (power > 0) {
+      const double speed = state.velocity.matrix().norm();
+      state.velocity = (1 - mixing) * state.velocity + mixing * speed / force.matrix().norm() * force;
+      if (++downhill > min_downhill) {
+        dt = std::min(dt * grow, options.largest_step);
+        mixing *= less_mixing;
+      }
+    } else {
+      state.velocity.setZero();
+      downhill = 0;
+      dt *= shrink;
+      mixing = start_mixing;
+    }
+    state.velocity += dt / options.mass * force;
+    const double fastest = options.max_move / dt;
+    state.velocity = state.velocity.max(-fastest).min(fastest);
+    state.position += dt * state.velocity;
+  }
+  state.velocity.setZero();
+  return result;
+}
+
+/// Damped motion until it comes to rest, as a droplet would. Slower than FIRE for soft modes, but it also
+/// settles forces that have no energy, where FIRE, which judges by the work done, goes round in circles.
+template <class Forces>
+FireResult settle(Forces& forces, DropletState& state, const FireOptions& options, double damping_rate) {
+  const double dt = options.largest_step;
+  const double shrink = 1 / (1 + dt * damping_rate);
+  Eigen::ArrayXd force(state.position.size());
+  state.velocity.setZero();
+  FireResult result;
+  for (; result.iterations < options.max_iterations; ++result.iterations) {
+    forces.update_contacts(state, state.possible_travel(dt));
+    forces.evaluate(state, force);
+    result.largest_force = force.abs().maxCoeff();
+    result.converged = result.largest_force <= options.force_tolerance;
+    if (result.converged || !std::isfinite(result.largest_force)) break;
+    const double fastest = options.max_move / dt;
+    state.velocity = ((state.velocity + dt / options.mass * force) * shrink).max(-fastest).min(fastest);
+    state.position += dt * state.velocity;
+  }
+  state.velocity.setZero();
+  return result;
+}
+
+}  // namespace clog

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "clog/core/parameters/parameters.hpp"
+
+namespace clog {
+
+/// Density of a saturated array of equal discs [1/sigma^2]: discs of diameter + gap cover 0.547069 of the
+/// plane at the jamming limit of random sequential addition (Feder 1980; value of Wang, Int. J. Mod. Phys. C
+/// 5, 707 (1994)).
+double saturated_density(double diameter, double gap);
+
+/// The largest density of a random array that every seed can be relied on to reach [1/sigma^2]: eight
+/// standard deviations below the mean number of obstacles of saturated arrays of this box. In small boxes,
+/// where that is next to nothing, what no saturated array can be without.
+/// @param obstacles  of random layout
+double largest_density(const ObstacleParameters& obstacles);
+
+}  // namespace clog

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "clog/core/parameters/parameters.hpp"
+#include "clog/core/world/wedge.hpp"
+
+namespace clog {
+
+/// Circular obstacle: centre and radius [sigma].
+struct Obstacle {
+  double x = 0;
+  double y = 0;
+  double radius = 0;
+
+  bool operator==(const Obstacle&) const = default;
+};
+
+/// Circles sorted into the square cells of a grid, row by row.
+struct BinnedObstacles {
+  Period period;
+  double largest_radius = 0;  ///< [sigma]
+  std::span<const Obstacle> obstacles;
+  /// Of each cell, the index of its first obstacle; at the end, their number.
+  std::span<const std::uint32_t> cell_start;
+};
+
+/// Periodic array of circles in a rectangle, binned into cells of about one droplet diameter so that the
+/// neighbourhood of a droplet is found at a cost that does not depend on the period. There may be wedges as
+/// well, without periodic images.
+class ObstacleArray {
+ public:
+  /// @param obstacles  centres are wrapped into one period, [0, along) x [0, across)
+  /// @throws Error if a centre is not finite or a radius not positive and finite
+  ObstacleArray(const Period& period, std::vector<Obstacle> obstacles, std::vector<Wedge> wedges = {});
+
+  /// The same array over memory of another's binned(), a copy of which may come from another process.
+  /// @param memory  keeps it alive
+  ObstacleArray(const BinnedObstacles& binned, std::shared_ptr<const void> memory);
+  const BinnedObstacles& binned() const { return binned_; }
+  static std::size_t num_cells(const Period& period);
+
+  const Period& period() const { return binned_.period; }
+  /// All obstacles, ordered by cell.
+  std::span<const Obstacle> obstacles() const { return binned_.obstacles; }
+  const std::vector<Wedge>& wedges() const { return wedges_; }
+
+  /// Appends to `out` every obstacle, periodic images included, whose surface may come within `margin` of the
+  /// rectangle [x_min, x_max] x [y_min, y_max]. Coordinates, in and out, are relative to `origin`, a point of
+  /// the first period; obstacles a little further away may be included.
+  struct Window {
+    double origin_x, origin_y;
+    double x_min, x_max, y_min, y_max;
+    double margin;
+  };
+  void gather(const Window& window, std::vector<Obstacle>& out) const;
+
+  /// Two obstacles and the surface-to-surface distance between them, periodic images included [sigma];
+  /// negative if they overlap.
+  struct Pair {
+    Obstacle first, second;
+    double gap;
+  };
+  /// The pair with the smallest gap, which is infinite if there is no pair nearer than a box.
+  Pair closest_pair() const;
+  double smallest_gap() const { return closest_pair().gap; }
+
+ private:
+  BinnedObstacles binned_;
+  std::shared_ptr<const void> memory_;  // of the obstacles
+  int cells_per_box_;                   // along one side
+  std::vector<Wedge> wedges_;
+
+  int num_columns() const { return period().boxes * cells_per_box_; }
+  std::uint32_t cell_of(double x, double y) const;
+  /// Sorts the obstacles by cell, and returns where each cell starts.
+  std::vector<std::uint32_t> bin(std::vector<Obstacle>& obstacles) const;
+  /// Calls visit(index, x, y) for every obstacle and image that gather() would return.
+  template <class Visit>
+  void visit_window(const Window& window, Visit visit) const;
+};
+
+/// The array that the parameters describe: a lattice (lattice.hpp) or a Poisson-disk sample by random
+/// sequential addition. There, discs arrive one by one, with a diameter uniform in diameter (1 -+ spread) at
+/// a uniform place (periodic), and stay if all earlier surfaces are at least `gap` away: in a dense mixture
+/// small ones are more frequent than among the arriving ones. With a density, stops at round(density * area)
+/// obstacles; without, goes on until not even one of the smallest fits ("saturated", the jamming limit: discs
+/// of diameter + gap cover 0.547 of the plane, Feder, J. Theor. Biol. 87, 237 (1980)). Voids are tracked on a
+/// flat quadtree as in Ebeida et al., Comput. Graph. Forum 31, 785 (2012).
+/// @throws Error if the density exceeds what fits; resolve() lets only densities pass that every seed reaches
+ObstacleArray sample_obstacles(const ObstacleParameters& parameters, std::uint32_t seed);
+
+}  // namespace clog

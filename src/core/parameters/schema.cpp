@@ -1,0 +1,471 @@
+#include "clog/core/parameters/schema.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/number_text.hpp"
+
+namespace clog {
+namespace {
+
+constexpr ParameterScope every_run = {"all", "", "", [](const RunParameters&) { return true; }};
+constexpr ParameterScope polygons = {"dp", "model=sp does not depend on it", "leave it out, or use model=dp",
+                                     [](const RunParameters& run) { return run.model == Model::dp; }};
+constexpr ParameterScope arrays = {
+    "arrays", "there is no array of obstacles", "leave it out", [](const RunParameters& run) {
+      return run.obstacles.layout != ObstacleLayout::channel && run.obstacles.layout != ObstacleLayout::wall;
+    }};
+constexpr ParameterScope lattices = {
+    "lattice", "a random array has no rows", "add obstacle-layout=lattice",
+    [](const RunParameters& run) { return run.obstacles.layout == ObstacleLayout::lattice; }};
+
+// How a member is seen from outside, by its type.
+
+template <class T>
+struct Outside;
+
+template <>
+struct Outside<double> {
+  static constexpr ValueKind kind = ValueKind::number;
+  static std::vector<std::string> words() { return {}; }
+  static ParameterValue get(double value) { return value; }
+  static double set(const ParameterValue& value) { return std::get<double>(value); }
+};
+
+template <>
+struct Outside<std::optional<double>> : Outside<double> {
+  static ParameterValue get(std::optional<double> value) {
+    return value ? ParameterValue(*value) : ParameterValue();
+  }
+  static std::optional<double> set(const ParameterValue& value) {
+    const double* number = std::get_if<double>(&value);
+    return number ? std::optional(*number) : std::nullopt;
+  }
+};
+
+template <std::integral Integer>
+struct Outside<Integer> {
+  static constexpr ValueKind kind = ValueKind::integer;
+  static std::vector<std::string> words() { return {}; }
+  static ParameterValue get(Integer value) { return std::int64_t{value}; }
+  static Integer set(const ParameterValue& value) {
+    const auto integer = std::get<std::int64_t>(value);
+    if (!std::in_range<Integer>(integer)) throw Error("is out of range");
+    return static_cast<Integer>(integer);
+  }
+};
+
+template <class Enum>
+requires std::is_enum_v<Enum>
+struct Outside<Enum> {
+  static constexpr ValueKind kind = ValueKind::word;
+  static std::vector<std::string> words() {
+    std::vector<std::string> all;
+    for (const auto& [value, word] : Words<Enum>::all) all.emplace_back(word);
+    return all;
+  }
+  static ParameterValue get(Enum value) { return name(value); }
+  static Enum set(const ParameterValue& value) {
+    const std::string& word = std::get<std::string>(value);
+    if (const std::optional<Enum> meant = meant_by<Enum>(word)) return *meant;
+    throw Error("is unknown");
+  }
+};
+
+/// What an entry says of a parameter, but for its key, its member and what follows from that one's type.
+struct Facts {
+  const char* column;
+  const char* symbol = "";
+  const char* unit = "";
+  const char* meaning;
+  ParameterRole role = ParameterRole::physics;
+  const ParameterScope* scope = &every_run;
+  const ParameterScope* automatic_in = nullptr;
+  ParameterRange range = {};
+  bool has_own_column = true;
+  bool shapes_array = false;
+  std::vector<std::string> words = {};  ///< if not all of the type's
+  ParameterValue elsewhere = {};
+  ParameterValue before = {};
+};
+
+/// @param Member  stateless: from the parameters of a run, const or not, to a reference to the member
+template <class Member>
+Parameter entry(const char* key, Member, Facts facts) {
+  using T = std::remove_cvref_t<decltype(Member{}(std::declval<RunParameters&>()))>;
+  return {
+      .key = key,
+      .column = facts.column,
+      .symbol = facts.symbol,
+      .unit = facts.unit,
+      .meaning = facts.meaning,
+      .role = facts.role,
+      .scope = facts.scope,
+      .automatic_in = facts.automatic_in,
+      .range = facts.range,
+      .has_own_column = facts.has_own_column,
+      .shapes_array = facts.shapes_array,
+      .elsewhere = std::move(facts.elsewhere),
+      .before = std::move(facts.before),
+      .kind = Outside<T>::kind,
+      .words = facts.words.empty() ? Outside<T>::words() : std::move(facts.words),
+      .get = [](const RunParameters& run) { return Outside<T>::get(Member{}(run)); },
+      .set = [](RunParameters& run, const ParameterValue& value) { Member{}(run) = Outside<T>::set(value); }};
+}
+
+Bound from(double value, const char* reason, const char* remedy) { return {value, true, reason, remedy}; }
+Bound to(double value, const char* reason, const char* remedy) { return {value, true, reason, remedy}; }
+Bound above(double value, const char* reason, const char* remedy) { return {value, false, reason, remedy}; }
+Bound below(double value, const char* reason, const char* remedy) { return {value, false, reason, remedy}; }
+
+const Bound positive = above(0, "must be positive", "use a value above 0");
+const Bound not_negative = from(0, "must not be negative", "use 0 or more");
+
+using enum ParameterRole;
+
+std::vector<Parameter> make_schema() {
+  return {
+      entry("model", [](auto& run) -> auto& { return run.model; },
+            {.column = "model", .meaning = "dp: deformable polygon, sp: soft disk"}),
+      entry("line-tension", [](auto& run) -> auto& { return run.dp.line_tension; },
+            {.column = "line_tension",
+             .symbol = R"(\Gamma)",
+             .unit = "g rho sigma^2",
+             .meaning = "Gamma, tension of the interface",
+             .scope = &polygons,
+             .range = {not_negative, {}}}),
+      entry("wall-stiffness", [](auto& run) -> auto& { return run.wall_stiffness; },
+            {.column = "wall_stiffness",
+             .symbol = "E_w",
+             .unit = "g rho sigma^3",
+             .meaning =
+                 "E_w, stiffness of contact; auto: the stiffest that time-step and vertices hold (dp only)",
+             .automatic_in = &polygons,
+             .range = {positive, {}},
+             .words = {"auto"}}),
+      entry("obstacle-gap", [](auto& run) -> auto& { return run.obstacles.gap; },
+            {.column = "obstacle_gap",
+             .symbol = R"(w_\mathrm{ob})",
+             .unit = "sigma",
+             .meaning = "w_ob, smallest distance between obstacle surfaces",
+             .scope = &arrays,
+             .range = {positive, {}},
+             .shapes_array = true}),
+      entry("obstacle-diameter", [](auto& run) -> auto& { return run.obstacles.diameter; },
+            {.column = "obstacle_diameter",
+             .symbol = R"(\sigma_\mathrm{ob})",
+             .unit = "sigma",
+             .meaning = "sigma_ob, diameter of the obstacles",
+             .scope = &arrays,
+             .range = {positive, {}},
+             .shapes_array = true}),
+      entry("obstacle-diameter-spread", [](auto& run) -> auto& { return run.obstacles.diameter_spread; },
+            {.column = "obstacle_diameter_spread",
+             .symbol = R"(\Delta\sigma_\mathrm{ob}/\sigma_\mathrm{ob})",
+             .meaning = "diameters of random obstacles are uniform in obstacle-diameter*(1 -+ spread)",
+             .scope = &arrays,
+             .range = {not_negative,
+                       below(1, "the smallest obstacles would have no diameter", "use less than 1")},
+             .shapes_array = true,
+             .elsewhere = 0.0,
+             .before = 0.0}),
+      entry("obstacle-density", [](auto& run) -> auto& { return run.obstacles.density; },
+            {.column = "obstacle_density",
+             .symbol = R"(\rho_\mathrm{ob})",
+             .unit = "1/sigma^2",
+             .meaning = "obstacles per area; saturated: until not one more fits. More than every seed "
+                        "reaches is refused",
+             .scope = &arrays,
+             .automatic_in = &arrays,
+             .range = {positive, {}},
+             .has_own_column = false,
+             .shapes_array = true,
+             .words = {"saturated"}}),
+      entry("obstacle-layout", [](auto& run) -> auto& { return run.obstacles.layout; },
+            {.column = "obstacle_filling",
+             .meaning =
+                 "random: sequential addition, lattice: square, obstacle-gap + obstacle-diameter from centre "
+                 "to centre",
+             .has_own_column = false,
+             .shapes_array = true,
+             .words = {"random", "lattice"}}),
+      entry("lattice-angle", [](auto& run) -> auto& { return run.obstacles.lattice_angle; },
+            {.column = "lattice_angle",
+             .symbol = R"(\theta)",
+             .unit = "degrees",
+             .meaning =
+                 "of the lattice's rows from +x (the flow) to +y; the nearest with a period of at most box",
+             .scope = &lattices,
+             .range = {from(-45, "a square lattice turned by 90 degrees is the same", "use -45..45"),
+                       to(45, "a square lattice turned by 90 degrees is the same", "use -45..45")},
+             .shapes_array = true}),
+      entry("seeds", [](auto& run) -> auto& { return run.seed; },
+            {.column = "seed",
+             .meaning = "one run for each: obstacle array and release follow from the seed",
+             .role = ensemble,
+             .scope = &arrays,
+             .range = {from(0, "a seed is not negative", "use 0..4294967295"),
+                       to(4294967295, "a seed has 32 bits", "use 0..4294967295")},
+             .shapes_array = true,
+             .elsewhere = std::int64_t{0}}),
+      entry("box", [](auto& run) -> auto& { return run.obstacles.box; },
+            {.column = "box",
+             .symbol = "L",
+             .unit = "sigma",
+             .meaning = "period of the obstacle array across the flow, and along it with boxes=1",
+             .role = numerics,
+             .scope = &arrays,
+             .range = {from(5, "the droplet would meet its own periodic image", "use at least 5"),
+                       to(1e5, "no droplet gets as far", "use at most 1e5; the array is periodic")},
+             .shapes_array = true}),
+      entry("boxes", [](auto& run) -> auto& { return run.obstacles.boxes; },
+            {.column = "boxes",
+             .symbol = R"(n_\mathrm{box})",
+             .meaning = "the array is so many boxes long, along the flow, before it repeats: with "
+                        "terminal-speed*max-time/box and more never",
+             .role = numerics,
+             .scope = &arrays,
+             .range = {from(1, "boxes in a row along the flow, after which the array repeats", "use 1..1e6"),
+                       to(1e6, "boxes in a row along the flow, after which the array repeats", "use 1..1e6")},
+             .shapes_array = true,
+             .elsewhere = std::int64_t{1},
+             .before = std::int64_t{1}}),
+      entry("max-time", [](auto& run) -> auto& { return run.max_time; },
+            {.column = "max_time",
+             .symbol = "T",
+             .unit = "t0",
+             .meaning = "longest run: one that has not clogged ends here",
+             .role = numerics,
+             .range = {positive, {}}}),
+      entry("terminal-speed", [](auto& run) -> auto& { return run.drag.terminal_speed; },
+            {.column = "terminal_speed",
+             .symbol = "V_t",
+             .unit = "sqrt(sigma g)",
+             .meaning = "V_t, speed without obstacles",
+             .range = {positive, to(100, "the drag would not matter before many boxes have passed",
+                                    "use at most 100")}}),
+      entry("near-wall-drag", [](auto& run) -> auto& { return run.drag.near_wall; },
+            {.column = "near_wall_drag",
+             .symbol = R"(b_0/b_\infty)",
+             .meaning = "b_0/b_inf, drag near walls over that far from them",
+             .scope = &polygons,
+             .range = {not_negative, to(1000, "the droplet would hang in the drag of its surroundings",
+                                        "use at most 1000")},
+             .elsewhere = 0.0}),
+      entry("near-wall-exponent", [](auto& run) -> auto& { return run.drag.near_wall_exponent; },
+            {.column = "near_wall_exponent",
+             .symbol = R"(\alpha)",
+             .meaning = "alpha, of the near-wall drag's power of sigma/d",
+             .scope = &polygons,
+             .range = {from(0, "drag would grow away from walls", "the published exponent is 4/3"),
+                       to(4, "lubrication gives no more", "the published exponent is 4/3")}}),
+      entry("near-wall-cutoff", [](auto& run) -> auto& { return run.drag.near_wall_cutoff; },
+            {.column = "near_wall_cutoff",
+             .symbol = R"(d_\mathrm{min})",
+             .unit = "sigma",
+             .meaning = "d of the near-wall drag counts as no less",
+             .scope = &polygons,
+             .range = {positive, to(1, "drag would hardly depend on the distance",
+                                    "use at most 1, a droplet diameter")}}),
+      entry("relative-drag", [](auto& run) -> auto& { return run.drag.relative; },
+            {.column = "relative_drag",
+             .symbol = "c",
+             .meaning = "c, drag of motion relative to the centre of mass over b_inf",
+             .scope = &polygons,
+             .range = {not_negative, to(1000, "the droplet would hardly change its shape",
+                                        "use at most 1000; 1 is the published model")},
+             .elsewhere = 1.0,
+             .before = 1.0}),
+      entry("vertices", [](auto& run) -> auto& { return run.dp.vertices; },
+            {.column = "vertices",
+             .symbol = "N_v",
+             .meaning = "N_v, number of vertices of the polygon",
+             .role = numerics,
+             .scope = &polygons,
+             .range = {from(16, "a droplet is no circle any more", "use 16..4096"),
+                       to(4096, "a run would take months", "use 16..4096")},
+             .elsewhere = std::int64_t{1}}),
+      entry(
+          "time-step", [](auto& run) -> auto& { return run.time_step; },
+          {.column = "time_step",
+           .symbol = R"(\Delta t)",
+           .unit = "t0",
+           .meaning = "step of the integrator; auto: the largest at which nothing stiff matters, 1e-3 is the "
+                      "published one",
+           .role = numerics,
+           .automatic_in = &every_run,
+           .range = {from(1e-9, "smaller than any mode needs", "try 1e-3"), {}},
+           .words = {"auto"}}),
+      entry("area-stiffness", [](auto& run) -> auto& { return run.dp.area_stiffness; },
+            {.column = "area_stiffness",
+             .symbol = "K_a",
+             .unit = "g rho/sigma",
+             .meaning =
+                 "K_a; auto: the area keeps within 0.2 % of its rest value as long as 1e4, the published "
+                 "value, can hold it",
+             .role = numerics,
+             .scope = &polygons,
+             .automatic_in = &polygons,
+             .range = {positive, {}},
+             .words = {"auto"}}),
+      entry(
+          "perimeter-spring", [](auto& run) -> auto& { return run.dp.perimeter_spring; },
+          {.column = "perimeter_spring",
+           .meaning =
+               "springs of the edges pull to l0 (rest, as published), to the mean edge length, or only along "
+               "the interface",
+           .scope = &polygons}),
+      entry("perimeter-stiffness", [](auto& run) -> auto& { return run.dp.perimeter_stiffness; },
+            {.column = "perimeter_stiffness",
+             .symbol = "K_l",
+             .unit = "g rho sigma",
+             .meaning = "K_l; auto: ratio times Gamma for rest, 1 for mean, 0.003/V_t for along",
+             .scope = &polygons,
+             .automatic_in = &polygons,
+             .range = {not_negative, {}},
+             .words = {"auto"}}),
+      entry("perimeter-stiffness-ratio", [](auto& run) -> auto& { return run.dp.perimeter_stiffness_ratio; },
+            {.column = "perimeter_stiffness",
+             .symbol = R"(K_l/\Gamma)",
+             .meaning = "K_l/Gamma of springs to the rest length, where perimeter-stiffness=auto",
+             .scope = &polygons,
+             .range = {not_negative, {}},
+             .has_own_column = false}),
+      entry("wall-contact", [](auto& run) -> auto& { return run.dp.wall_contact; },
+            {.column = "wall_contact",
+             .meaning = "a wall pushes the nearest point of every edge, or the vertices alone (as published)",
+             .role = numerics,
+             .scope = &polygons}),
+      entry(
+          "contact-range", [](auto& run) -> auto& { return run.dp.contact_range; },
+          {.column = "contact_range",
+           .symbol = R"(d_\mathrm{c})",
+           .unit = "sigma",
+           .meaning =
+               "distance from a wall's surface at which contact begins; half-vertex: half a vertex diameter, "
+               "as published",
+           .scope = &polygons,
+           .range = {not_negative,
+                     to(0.1, "walls would push from afar, and gaps be narrower by twice as much",
+                        "use 0, the surface, to 0.1")},
+           .words = {"half-vertex"}}),
+      entry(
+          "wall-tension", [](auto& run) -> auto& { return run.dp.wall_tension; },
+          {.column = "wall_tension",
+           .symbol = R"(\gamma_\mathrm{w}/\Gamma)",
+           .meaning = "tension where the interface touches a wall, over Gamma: -cos of the contact angle",
+           .scope = &polygons,
+           .range =
+               {from(0.1,
+                     "minus the cosine of the contact angle; with less the interface on a wall would buckle",
+                     "use 0.1..1"),
+                to(1, "minus the cosine of the contact angle", "use 0.1..1")},
+           .before = 1.0}),
+      entry("self-contact", [](auto& run) -> auto& { return run.dp.self_contact; },
+            {.column = "self_contact",
+             .meaning = "does the interface repel itself",
+             .role = numerics,
+             .scope = &polygons}),
+      entry("self-contact-range", [](auto& run) -> auto& { return run.dp.self_contact_range; },
+            {.column = "self_contact_range",
+             .symbol = R"(d_\mathrm{s})",
+             .unit = "sigma",
+             .meaning = "distance below which the interface repels itself",
+             .scope = &polygons,
+             .range = {positive, to(0.1, "no film could be thinner, and the droplet could not be folded",
+                                    "use at most 0.1")}}),
+      entry("gravity", [](auto& run) -> auto& { return run.dp.gravity; },
+            {.column = "gravity",
+             .meaning =
+                 "weight and mean drag act on the area, as a pressure, or on the vertices (as published)",
+             .scope = &polygons}),
+      entry("clog-energy", [](auto& run) -> auto& { return run.clog_energy; },
+            {.column = "clog_energy",
+             .symbol = "E_k/E_t",
+             .meaning = "clogged when the kinetic energy, over that at terminal speed, stays below this",
+             .role = numerics,
+             .range = {above(0, "no droplet comes to rest altogether", "try 1e-17"),
+                       below(1e-3,
+                             "a fraction of the kinetic energy at terminal speed: droplets that only pause "
+                             "would count as clogged",
+                             "try 1e-17")}}),
+      entry(
+          "clog-detection", [](auto& run) -> auto& { return run.clog_detection; },
+          {.column = "clog_detection",
+           .meaning =
+               "certified: a droplet that slows down is clogged once a stable equilibrium is proved to be at "
+               "hand, or by clog-energy; threshold: by clog-energy only",
+           .role = numerics}),
+  };
+}
+
+std::string text_of(const ParameterValue& value) {
+  if (const auto* number = std::get_if<double>(&value)) return shortest(*number);
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);
+  if (const auto* word = std::get_if<std::string>(&value)) return *word;
+  return "auto";
+}
+
+[[noreturn]] void refuse(const Parameter& parameter, const ParameterValue& value, const char* reason,
+                         const char* remedy) {
+  throw Error("invalid " + std::string(parameter.key) + "=" + text_of(value) + " (" + reason + ") " + remedy);
+}
+
+bool is_beyond(const Bound& bound, double excess) { return bound.is_allowed ? excess < 0 : excess <= 0; }
+
+void check_range(const Parameter& parameter, double number, const ParameterValue& value) {
+  if (!std::isfinite(number)) refuse(parameter, value, "must be finite", "use a number");
+  const auto& [lower, upper] = parameter.range;
+  if (lower && is_beyond(*lower, number - lower->value))
+    refuse(parameter, value, lower->reason, lower->remedy);
+  if (upper && is_beyond(*upper, upper->value - number))
+    refuse(parameter, value, upper->reason, upper->remedy);
+}
+
+void check_one(const Parameter& parameter, const RunParameters& run) {
+  static const RunParameters defaults;
+  const ParameterValue value = parameter.get(run);
+  if (!parameter.applies_to(run)) {
+    if (value != parameter.get(defaults))
+      refuse(parameter, value, parameter.scope->reason, parameter.scope->remedy);
+    return;
+  }
+  if (const auto* number = std::get_if<double>(&value)) check_range(parameter, *number, value);
+  if (const auto* integer = std::get_if<std::int64_t>(&value))
+    check_range(parameter, static_cast<double>(*integer), value);
+}
+
+}  // namespace
+
+std::span<const Parameter> parameter_schema() {
+  static const std::vector<Parameter> all = make_schema();
+  return all;
+}
+
+const Parameter& parameter(std::string_view key) {
+  const auto all = parameter_schema();
+  const auto found =
+      std::find_if(all.begin(), all.end(), [=](const Parameter& one) { return one.key == key; });
+  if (found == all.end()) throw std::out_of_range("no parameter " + std::string(key));
+  return *found;
+}
+
+void check_each(const RunParameters& run) {
+  for (const Parameter& parameter : parameter_schema()) check_one(parameter, run);
+}
+
+std::string text_of(const ParameterRange& range) {
+  const auto& [lower, upper] = range;
+  std::string text;
+  if (lower) text += (lower->is_allowed ? "at least " : "above ") + shortest(lower->value);
+  if (lower && upper) text += ", ";
+  if (upper) text += (upper->is_allowed ? "at most " : "below ") + shortest(upper->value);
+  return text;
+}
+
+}  // namespace clog

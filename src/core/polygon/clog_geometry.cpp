@@ -1,0 +1,160 @@
+#include "clog/core/polygon/clog_geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "clog/core/droplet/shape.hpp"
+
+namespace clog {
+namespace {
+
+/// Shares of the support below and above which one mechanism alone holds the droplet.
+constexpr double squeezed_below = 1.0 / 3;
+constexpr double wrapped_above = 2.0 / 3;
+
+struct Polygon {
+  const Eigen::ArrayXd& position;
+
+  Eigen::Index size() const { return position.size() / 2; }
+  Eigen::Index next(Eigen::Index i) const { return i + 1 < size() ? i + 1 : 0; }
+  Eigen::Array2d vertex(Eigen::Index i) const { return {position[i], position[size() + i]}; }
+
+  /// Calls visit(coordinate) for every place where the contour crosses the line on which coordinate `axis` is
+  /// `value`, with the place's other coordinate.
+  template <class Visit>
+  void visit_crossings(int axis, double value, Visit visit) const {
+    for (Eigen::Index i = 0; i < size(); ++i) {
+      const Eigen::Array2d a = vertex(i), b = vertex(next(i));
+      if ((a[axis] > value) == (b[axis] > value)) continue;
+      visit(a[1 - axis] + (value - a[axis]) / (b[axis] - a[axis]) * (b[1 - axis] - a[1 - axis]));
+    }
+  }
+};
+
+/// Does the droplet hang over an obstacle? Its interface covers the upstream side, not farther off than a
+/// radius, and reaches beyond the obstacle on both sides.
+bool hangs_over(const Polygon& polygon, const Obstacle& obstacle) {
+  bool covers = false;
+  polygon.visit_crossings(1, obstacle.y, [&](double x) {
+    covers = covers || (x < obstacle.x && obstacle.x - x < 2 * obstacle.radius);
+  });
+  if (!covers) return false;
+  bool left = false, right = false;
+  polygon.visit_crossings(0, obstacle.x + obstacle.radius, [&](double y) {
+    left = left || y < obstacle.y;
+    right = right || y > obstacle.y;
+  });
+  return left && right;
+}
+
+/// A touched obstacle. The support is the force that the overlaps of all edges exert on the droplet against
+/// the flow, over the contact's stiffness [sigma].
+struct Touched {
+  double support = 0;
+  bool is_wrapped = false;
+};
+
+/// Which obstacle each edge touches, the one that it overlaps most; -1 for none.
+struct Contacts {
+  std::vector<Touched> obstacles;
+  std::vector<int> of_edge;
+};
+
+Contacts find_contacts(const Polygon& polygon, std::span<const Obstacle> obstacles, double contact_range) {
+  Contacts contacts{{}, std::vector<int>(static_cast<std::size_t>(polygon.size()), -1)};
+  std::vector<double> deepest(contacts.of_edge.size(), 0);
+  for (const Obstacle& obstacle : obstacles) {
+    const Eigen::Array2d centre{obstacle.x, obstacle.y};
+    Touched touched;
+    bool is_touched = false;
+    for (Eigen::Index i = 0; i < polygon.size(); ++i) {
+      const Eigen::Array2d away =
+          nearest_on_segment(centre, polygon.vertex(i), polygon.vertex(polygon.next(i))) - centre;
+      const double distance = away.matrix().norm();
+      const double overlap = contact_range + obstacle.radius - distance;
+      if (overlap <= 0) continue;
+      is_touched = true;
+      touched.support -= overlap * away[0] / distance;
+      if (overlap <= deepest[i]) continue;
+      deepest[i] = overlap;
+      contacts.of_edge[i] = static_cast<int>(contacts.obstacles.size());
+    }
+    if (!is_touched) continue;
+    touched.is_wrapped = hangs_over(polygon, obstacle);
+    contacts.obstacles.push_back(touched);
+  }
+  return contacts;
+}
+
+/// A run of successive edges that touch the same obstacle, counter-clockwise.
+struct Arc {
+  int obstacle;
+  Eigen::Index first_edge, last_edge;
+};
+
+std::vector<Arc> find_arcs(const Polygon& polygon, const std::vector<int>& of_edge) {
+  std::vector<Arc> arcs;
+  for (Eigen::Index i = 0; i < polygon.size(); ++i) {
+    const Eigen::Index before = i > 0 ? i - 1 : polygon.size() - 1;
+    if (of_edge[i] < 0 || of_edge[before] == of_edge[i]) continue;
+    Eigen::Index last = i;
+    while (of_edge[polygon.next(last)] == of_edge[i]) last = polygon.next(last);
+    arcs.push_back({of_edge[i], i, last});
+  }
+  return arcs;
+}
+
+}  // namespace
+
+ClogGeometry clog_geometry(const Eigen::ArrayXd& position, std::span<const Obstacle> obstacles,
+                           double contact_range) {
+  const Polygon polygon{position};
+  const Contacts contacts = find_contacts(polygon, obstacles, contact_range);
+  ClogGeometry geometry;
+  double support = 0, wrapped_support = 0;
+  for (const Touched& touched : contacts.obstacles) {
+    support += std::max(0.0, touched.support);
+    if (!touched.is_wrapped) continue;
+    ++geometry.num_wrapped;
+    wrapped_support += std::max(0.0, touched.support);
+  }
+  if (support > 0) geometry.wrapped_support = wrapped_support / support;
+
+  const std::vector<Arc> arcs = find_arcs(polygon, contacts.of_edge);
+  geometry.num_arcs = static_cast<int>(arcs.size());
+  for (std::size_t i = 0; i < arcs.size(); ++i) {
+    const Arc& from = arcs[i];
+    const Arc& to = arcs[(i + 1) % arcs.size()];
+    if (from.obstacle == to.obstacle) continue;
+    // One side may push across the flow only, or a little downstream, and is a side of the gap all the same.
+    if (std::max(contacts.obstacles[from.obstacle].support, contacts.obstacles[to.obstacle].support) <= 0)
+      continue;
+    // The outward normal of a counter-clockwise contour points downstream where y grows.
+    const double begin_y = polygon.vertex(polygon.next(from.last_edge))[1];
+    const double end_y = polygon.vertex(to.first_edge)[1];
+    geometry.num_gaps += end_y > begin_y;
+  }
+  return geometry;
+}
+
+ClogGeometry clog_geometry(const DropletState& state, const ObstacleArray& array, const DpParameters& dp) {
+  const double contact_range = dp.contact_range.value();
+  const Eigen::ArrayXd interface =
+      dp.wall_contact == WallContact::edge ? refined(state.position) : state.position;
+  const Eigen::Index n = interface.size() / 2;
+  std::vector<Obstacle> obstacles;
+  array.gather({state.frame.origin[0], state.frame.origin[1], interface.head(n).minCoeff(),
+                interface.head(n).maxCoeff(), interface.tail(n).minCoeff(), interface.tail(n).maxCoeff(),
+                contact_range},
+               obstacles);
+  return clog_geometry(interface, obstacles, contact_range);
+}
+
+ClogMechanism ClogGeometry::mechanism() const {
+  if (wrapped_support >= wrapped_above) return ClogMechanism::wrapped;
+  if (wrapped_support > squeezed_below) return ClogMechanism::hybrid;
+  return num_gaps > 0 ? ClogMechanism::squeezed : ClogMechanism::none;
+}
+
+}  // namespace clog

@@ -1,0 +1,71 @@
+#include "clog/core/polygon/dp_droplet.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "clog/core/tools/units.hpp"
+#include "dp_stepper.hpp"
+
+namespace clog {
+namespace {
+
+/// Contact lists, the frame and the stability bound are looked after once in so many steps: at most 32, and
+/// as few as keeps the way possible in between, and with it the lists, short.
+int steps_between_checks(double time_step) {
+  constexpr double longest = 0.04;  // [t0]
+  int steps = 32;
+  while (steps > 1 && steps * time_step > longest) steps /= 2;
+  return steps;
+}
+
+}  // namespace
+
+DpDroplet::DpDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial)
+    : run_(run),
+      forces_(run, obstacles),
+      vertex_mass_(units::droplet_mass / run.dp.vertices),
+      steps_per_check_(steps_between_checks(run.time_step.value())),
+      stepper_(std::make_unique<DpStepper>(run, forces_)) {
+  state_ = std::move(initial);
+  DpDroplet::start_afresh();
+}
+
+DpDroplet::~DpDroplet() = default;
+
+void DpDroplet::start_afresh() {
+  forces_.forget_all_contacts();
+  forces_.update_contacts(state_, state_.possible_travel(steps_per_check_ * run_.time_step.value()));
+}
+
+void DpDroplet::advance(int num_steps) {
+  if (state_.recentre().any()) forces_.forget_contacts();
+  stepper_->load(state_);
+  Work* const work = measures_dissipation_ ? &work_ : nullptr;
+  for (int done = 0; done < num_steps; done += steps_per_check_) {
+    const DpStepper::Edges edges = stepper_->edges();
+    // Its contact lists would take all memory. The run sees it at its next check.
+    if (!(edges.perimeter < burst_perimeter)) break;
+    const int steps = std::min(steps_per_check_, num_steps - done);
+    const Travel travel = state_.possible_travel(steps * run_.time_step.value());
+    forces_.update_contacts(state_, travel);
+    stepper_->look(travel);
+    const int substeps = num_substeps(
+        stiff_modes(run_.dp, *run_.wall_stiffness, edges.perimeter, edges.shortest), run_.time_step.value());
+    stepper_->advance(state_, steps * substeps, run_.time_step.value() / substeps, work);
+    num_integrated_steps_ += static_cast<std::int64_t>(steps) * substeps;
+  }
+  stepper_->finish(state_, work);
+}
+
+Eigen::Array2d DpDroplet::centre() const {
+  return run_.dp.gravity == Gravity::area ? area_centroid(state_.position) : state_.centre();
+}
+
+Eigen::Array2d DpDroplet::centre_velocity() const {
+  return run_.dp.gravity == Gravity::area ? area_centroid_velocity(state_.position, state_.velocity)
+                                          : state_.mean_velocity();
+}
+
+double DpDroplet::kinetic_energy() const { return 0.5 * vertex_mass_ * state_.velocity.square().sum(); }
+
+}  // namespace clog

@@ -1,0 +1,302 @@
+#include "clog/core/polygon/dp_forces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "clog/core/tools/units.hpp"
+#include "dp_kernel.hpp"
+
+namespace clog {
+
+kernel::WedgePlace kernel::place_in(const LocalFrame& frame, const Wedge& wedge) {
+  const Eigen::Array2d centre = wedge.centre() - frame.origin - frame.image.cast<double>() * frame.period;
+  return {.x = centre[0],
+          .y = centre[1],
+          .radius = wedge.radius,
+          .axis_x = wedge.axis[0],
+          .axis_y = wedge.axis[1],
+          .cos = wedge.half_angle.cos,
+          .sin = wedge.half_angle.sin};
+}
+
+DpForces::DpForces(const RunParameters& run, const ObstacleArray& obstacles)
+    : dp_(run.dp),
+      obstacles_(&obstacles),
+      vertex_diameter_(units::regular_edge_length(run.dp.vertices)),
+      contact_stiffness_(clog::contact_stiffness(run.wall_stiffness.value(), vertex_diameter_)),
+      weight_(units::droplet_mass * units::gravity),
+      near_wall_cutoff_(run.drag.near_wall_cutoff),
+      walls_(obstacles, dp_.contact_range.value(),
+             dp_.wall_contact == WallContact::edge ? WallContacts::Keep::touched_by_edge
+                                                   : WallContacts::Keep::touched_by_vertex),
+      nearest_walls_(obstacles, dp_.contact_range.value(), WallContacts::Keep::nearest_to_vertex),
+      adhesive_walls_(obstacles, dp_.contact_range.value() + wetting_width * vertex_diameter_,
+                      WallContacts::Keep::touched_by_vertex),
+      self_(dp_.self_contact_range, vertex_diameter_),
+      edge_x_(dp_.vertices),
+      edge_y_(dp_.vertices),
+      edge_length_(dp_.vertices),
+      pull_(dp_.vertices),
+      centroid_gradient_(Eigen::ArrayXd::Zero(4 * dp_.vertices)),
+      refined_edges_(8 * dp_.vertices),
+      wall_distance_(run.drag.near_wall > 0 ? dp_.vertices : 0) {
+  set_rest_area(units::rest_area);
+}
+
+void DpForces::set_rest_area(double area) {
+  rest_area_ = area;
+  rest_edge_ = units::regular_edge_length(dp_.vertices, area);
+  self_.set_rest_edge(rest_edge_);
+}
+
+void DpForces::update_contacts(const DropletState& state, const Travel& travel) {
+  walls_.update(state, travel);
+  if (wall_distance_.size() > 0) nearest_walls_.update(state, travel);
+  if (wets()) adhesive_walls_.update(state, travel);
+  if (dp_.self_contact == SelfContact::on) self_.update(state, travel);
+}
+
+void DpForces::forget_contacts() {
+  walls_.invalidate();
+  nearest_walls_.invalidate();
+  adhesive_walls_.invalidate();
+}
+
+void DpForces::forget_all_contacts() {
+  forget_contacts();
+  self_.invalidate();
+}
+
+kernel::Interface DpForces::interface(double area, double perimeter) const {
+  const bool has_tension = dp_.perimeter_spring != PerimeterSpring::along;
+  kernel::Interface interface;
+  interface.line_tension = dp_.line_tension;
+  // The springs to the mean length are unloaded on average: their force needs no derivative of the mean.
+  interface.spring = has_tension ? *dp_.perimeter_stiffness * dp_.vertices : 0;
+  interface.spring_length =
+      dp_.perimeter_spring == PerimeterSpring::rest ? rest_edge_ : perimeter / dp_.vertices;
+  interface.spreading = has_tension ? 0 : *dp_.perimeter_stiffness * dp_.vertices;
+  interface.pressure = -dp_.area_stiffness.value() * (area - rest_area_);
+  interface.vertex_weight = dp_.gravity == Gravity::vertex ? weight_ / dp_.vertices : 0;
+  return interface;
+}
+
+void DpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
+  const int n = dp_.vertices;
+  const double* x = state.position.data();
+  const double* y = x + n;
+  double* fx = force.data();
+  double* fy = fx + n;
+
+  const kernel::EdgeArrays edges{edge_x_.data(), edge_y_.data(), edge_length_.data()};
+  const kernel::Sums sums = kernel::measure_edges(n, x, y, edges);
+  shape_ = {sums.area, sums.perimeter};
+  kernel::interface_forces(n, interface(shape_.area, shape_.perimeter), edges, pull_.data(), fx, fy);
+  Eigen::Array2d spread{force.head(n).sum(), force.tail(n).sum()};
+  if (wets()) {
+    const WettingForces wetting = wetting_forces(state);
+    force += wetting.gradient + wetting.spreading;
+    spread += wetting.net_spreading();
+  }
+  if (dp_.gravity == Gravity::area) {
+    // Tension and pressure add up to nothing; springs along the interface have no reaction on their
+    // neighbours, so they push off the liquid inside: the droplet as a whole feels no force from them.
+    const kernel::CentroidGradient gradient = kernel::centroid_gradient(n, centroid_gradient_.data());
+    kernel::measure_centroid_gradient(n, x, y, edges, sums, gradient);
+    kernel::add_body_force(n, weight_ - spread[0], -spread[1], gradient, fx, fy);
+  }
+
+  add_walls(state, force);
+  if (wall_distance_.size() > 0) measure_wall_distance(state);
+  if (dp_.self_contact == SelfContact::on) add_self_contact(state, force);
+}
+
+void DpForces::add_walls(const DropletState& state, Eigen::ArrayXd& force) {
+  const int n = dp_.vertices;
+  const double* x = state.position.data();
+  const double* y = x + n;
+  double* fx = force.data();
+  double* fy = fx + n;
+  const bool meets_edges = dp_.wall_contact == WallContact::edge;
+  const kernel::RefinedEdges edges = kernel::refined_edges(n, refined_edges_.data());
+  if (meets_edges) kernel::refine_edges(n, x, y, edges);
+  for (int s = 0; s < walls_.num_slots(); ++s) {
+    const kernel::WallSlot slot{walls_.slot_x(s), walls_.slot_y(s), walls_.slot_radius(s)};
+    if (meets_edges)
+      kernel::push_off_walls(n, x, y, edges, slot, walls_.range(), contact_stiffness_);
+    else
+      kernel::add_vertex_wall_forces(n, x, y, slot, walls_.range(), contact_stiffness_, fx, fy);
+  }
+  if (meets_edges) kernel::hand_out_pushes(n, edges, fx, fy);
+  for (const Wedge& wedge : obstacles_->wedges())
+    kernel::add_wedge_forces(n, x, y, kernel::place_in(state.frame, wedge), walls_.range(),
+                             contact_stiffness_, fx, fy);
+}
+
+void DpForces::measure_wall_distance(const DropletState& state) {
+  const int n = dp_.vertices;
+  const double* x = state.position.data();
+  const double* y = x + n;
+  double* distance = wall_distance_.data();
+  wall_distance_.setConstant(std::numeric_limits<double>::infinity());
+  for (int s = 0; s < nearest_walls_.num_slots(); ++s)
+    kernel::shrink_to_wall_distance(
+        n, x, y, {nearest_walls_.slot_x(s), nearest_walls_.slot_y(s), nearest_walls_.slot_radius(s)},
+        distance);
+  for (const Wedge& wedge : obstacles_->wedges())
+    kernel::shrink_to_wedge_distance(n, x, y, kernel::place_in(state.frame, wedge), distance);
+  wall_distance_ = wall_distance_.max(near_wall_cutoff_);
+}
+
+/// The tension changes from Gamma, far from a wall, to that of the wetted wall where contact begins: a smooth
+/// step, so that the energy and the force are continuous, and wide enough for the edges to follow its bend.
+DpForces::Wetted DpForces::wetted(const DropletState& state, int vertex) const {
+  const int n = dp_.vertices;
+  const Eigen::Array2d place{state.position[vertex], state.position[n + vertex]};
+  double nearest = std::numeric_limits<double>::infinity();
+  Wetted wetted;
+  for (int s = 0; s < adhesive_walls_.num_slots(); ++s) {
+    const Eigen::Array2d away =
+        place - Eigen::Array2d(adhesive_walls_.slot_x(s)[vertex], adhesive_walls_.slot_y(s)[vertex]);
+    const double r = away.matrix().norm();
+    if (r - adhesive_walls_.slot_radius(s)[vertex] >= nearest) continue;
+    nearest = r - adhesive_walls_.slot_radius(s)[vertex];
+    wetted.normal = away / r;
+  }
+  for (const Wedge& wedge : obstacles_->wedges()) {
+    const kernel::WedgePlace in_frame = kernel::place_in(state.frame, wedge);
+    const auto [distance, normal] = distance_to(wedge, place - Eigen::Array2d(in_frame.x, in_frame.y));
+    if (distance >= nearest) continue;
+    nearest = distance;
+    wetted.normal = normal;
+  }
+  const double width = wetting_width * vertex_diameter_;
+  const double t = std::clamp((adhesive_walls_.range() - nearest) / width, 0.0, 1.0);
+  wetted.share = t * t * t * (10 + t * (6 * t - 15));
+  wetted.slope = -30 * t * t * (1 - t) * (1 - t) / width;
+  return wetted;
+}
+
+/// U_gamma = sum gamma_e l_e, gamma_e = Gamma + (Gamma_wall - Gamma) times the mean share of its two
+/// vertices: the three-tension energy, Cheng et al. Eq. 2, with the tensions of a wetted wall's two sides
+/// taken together. On a smooth interface its gradient has no part along the interface, -d(gamma)/ds from the
+/// edges cancels the pull towards the wall; what a polygon leaves of it is an error of its finite edges.
+DpForces::WettingForces DpForces::wetting_forces(const DropletState& state) const {
+  const int n = dp_.vertices;
+  const auto edge = [&](int i) {
+    const int end = i + 1 < n ? i + 1 : 0;
+    return Eigen::Array2d(state.position[end] - state.position[i],
+                          state.position[n + end] - state.position[n + i]);
+  };
+  WettingForces forces{Eigen::ArrayXd::Zero(2 * n), Eigen::ArrayXd::Zero(2 * n)};
+  Eigen::ArrayXd& gradient = forces.gradient;
+  Wetted before = wetted(state, n - 1);
+  for (int i = 0; i < n; ++i) {
+    const int previous = i > 0 ? i - 1 : n - 1;
+    const Wetted here = wetted(state, i);
+    const Eigen::Array2d along = edge(previous);
+    const double length = along.matrix().norm();
+    const double pull = extra_tension() * (before.share + here.share) / 2 / length;
+    const double push = -extra_tension() * here.slope * (length + edge(i).matrix().norm()) / 2;
+    gradient[previous] += pull * along[0];
+    gradient[n + previous] += pull * along[1];
+    gradient[i] += push * here.normal[0] - pull * along[0];
+    gradient[n + i] += push * here.normal[1] - pull * along[1];
+    before = here;
+  }
+  if (dp_.perimeter_spring != PerimeterSpring::along) return forces;
+  for (int i = 0; i < n; ++i) {
+    const Eigen::Array2d chord = edge(i) + edge(i > 0 ? i - 1 : n - 1);
+    const Eigen::Array2d here{gradient[i], gradient[n + i]};
+    const Eigen::Array2d along = (here * chord).sum() / chord.square().sum() * chord;
+    forces.spreading[i] = -along[0];
+    forces.spreading[n + i] = -along[1];
+  }
+  return forces;
+}
+
+void DpForces::add_self_contact(const DropletState& state, Eigen::ArrayXd& force) const {
+  const int n = dp_.vertices;
+  const double* x = state.position.data();
+  const double* y = x + n;
+  double* fx = force.data();
+  double* fy = fx + n;
+  for (const SelfContacts::Pair& pair : self_.pairs()) {
+    const EdgeContact contact = nearest_point(pair, x, y, n);
+    if (contact.distance >= self_.range() || contact.distance == 0) continue;
+    const double push = contact_stiffness_ * (self_.range() - contact.distance) / contact.distance;
+    const double px = push * contact.dx;
+    const double py = push * contact.dy;
+    const int end = pair.edge + 1 < n ? pair.edge + 1 : 0;
+    fx[pair.vertex] += px;
+    fy[pair.vertex] += py;
+    fx[pair.edge] -= (1 - contact.fraction) * px;
+    fy[pair.edge] -= (1 - contact.fraction) * py;
+    fx[end] -= contact.fraction * px;
+    fy[end] -= contact.fraction * py;
+  }
+}
+
+template <class Visit>
+void DpForces::visit_overlaps(const DropletState& state, Visit visit) const {
+  const int n = dp_.vertices;
+  const auto vertex = [&](int i) { return Eigen::Array2d(state.position[i], state.position[n + i]); };
+  const Eigen::ArrayXd fine = refined(state.position);
+  const auto point = [&](int i) { return Eigen::Array2d(fine[i % (2 * n)], fine[2 * n + i % (2 * n)]); };
+  for (int s = 0; s < walls_.num_slots(); ++s)
+    for (int i = 0; i < n; ++i) {
+      const Eigen::Array2d centre{walls_.slot_x(s)[i], walls_.slot_y(s)[i]};
+      const double reach = walls_.range() + walls_.slot_radius(s)[i];
+      if (dp_.wall_contact == WallContact::vertex) {
+        visit(reach - (vertex(i) - centre).matrix().norm());
+        continue;
+      }
+      visit(reach - distance_to_segment(centre, point(2 * i), point(2 * i + 1)));
+      visit(reach - distance_to_segment(centre, point(2 * i + 1), point(2 * i + 2)));
+    }
+  for (const Wedge& wedge : obstacles_->wedges()) {
+    const kernel::WedgePlace place = kernel::place_in(state.frame, wedge);
+    for (int i = 0; i < n; ++i)
+      visit(walls_.range() - distance_to(wedge, vertex(i) - Eigen::Array2d(place.x, place.y)).distance);
+  }
+}
+
+double DpForces::deepest_overlap(const DropletState& state) const {
+  double deepest = 0;
+  visit_overlaps(state, [&](double overlap) { deepest = std::max(deepest, overlap); });
+  return deepest;
+}
+
+PotentialEnergy DpForces::energy(const DropletState& state) const {
+  const int n = dp_.vertices;
+  const double* x = state.position.data();
+  const double* y = x + n;
+  const PolygonShape shape = polygon_shape(state.position);
+  PotentialEnergy energy;
+  energy.area = 0.5 * dp_.area_stiffness.value() * (shape.area - rest_area_) * (shape.area - rest_area_);
+  energy.line_tension = dp_.line_tension * shape.perimeter;
+  const double height = dp_.gravity == Gravity::vertex ? state.x().mean() : area_centroid(state.position)[0];
+  energy.gravity = -weight_ * height;
+
+  const double reference = dp_.perimeter_spring == PerimeterSpring::rest ? rest_edge_ : shape.perimeter / n;
+  for (int i = 0, j = n - 1; i < n; j = i++) {
+    const double stretch = std::hypot(x[i] - x[j], y[i] - y[j]) - reference;
+    if (dp_.perimeter_spring != PerimeterSpring::along)
+      energy.spring += 0.5 * *dp_.perimeter_stiffness * n * stretch * stretch;
+    if (wets())
+      energy.line_tension += extra_tension() * (wetted(state, i).share + wetted(state, j).share) / 2 *
+                             std::hypot(x[i] - x[j], y[i] - y[j]);
+  }
+  visit_overlaps(state, [&](double overlap) {
+    if (overlap > 0) energy.wall += 0.5 * contact_stiffness_ * overlap * overlap;
+  });
+  if (dp_.self_contact == SelfContact::on)
+    for (const SelfContacts::Pair& pair : self_.pairs()) {
+      const double overlap = std::max(0.0, self_.range() - nearest_point(pair, x, y, n).distance);
+      energy.self_contact += 0.5 * contact_stiffness_ * overlap * overlap;
+    }
+  return energy;
+}
+
+}  // namespace clog

@@ -1,0 +1,31 @@
+#include "dp_step_kernel.hpp"
+
+#include "core/tools/vector_targets.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/polygon/dp_step_kernel.cpp"
+#include <hwy/foreach_target.h>
+// The targets' code follows.
+#include "core/polygon/dp_step_contacts-inl.hpp"
+#include "core/polygon/dp_step_motion-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace clog::kernel::HWY_NAMESPACE {
+
+StepKernel make_kernel(const KickTerms& terms) {
+  return {measure,         circle_gaps,     pair_gaps,           clear_pushes, push,
+          push_off_wedges, near_wall_rates, kick_version(terms), power,        drift_version(terms)};
+}
+
+}  // namespace clog::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace clog::kernel {
+
+HWY_EXPORT(make_kernel);
+
+StepKernel step_kernel(const KickTerms& terms) { return HWY_DYNAMIC_DISPATCH(make_kernel)(terms); }
+
+}  // namespace clog::kernel
+#endif

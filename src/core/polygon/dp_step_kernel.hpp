@@ -1,0 +1,138 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "clog/core/polygon/self_contacts.hpp"
+#include "clog/core/polygon/wall_contacts.hpp"
+#include "dp_kernel.hpp"
+
+/// The step of a deformable polygon as two passes over its vertices, written with vector types and compiled
+/// for several instruction sets. Same equations as dp_kernel.hpp, which stays readable and is what tests
+/// compare this with. In a pass there is no branch per vertex, no call and no allocation; square roots are
+/// Newton iterations where the instruction set has a first guess for them.
+namespace clog::kernel {
+
+/// Contacts are tested for this many consecutive edges at once, whatever the instruction set.
+inline constexpr int edges_per_group = WallContacts::edges_per_group;
+
+/// Arrays of one entry per vertex or edge. Readable from [-1] to [n + edges_per_group - 1]: entries beyond
+/// the ends repeat the contour, the passes see to that.
+struct StepArrays {
+  double *x, *y, *vx, *vy;
+  double *tangent_x, *tangent_y, *length;         ///< of the edges
+  double *push_x, *push_y;                        ///< kick of the vertices by contact
+  double *wetting_x, *wetting_y;                  ///< the part of the kick by wetting that has no energy
+  double *grad_xx, *grad_xy, *grad_yx, *grad_yy;  ///< 6 a times the centroid's gradient
+  double* rate;                                   ///< drag rate of a vertex [1/t0], if it differs
+  double *damping, *kept;                         ///< s and s (1 - h2 r), with the rate; see KickCoefficients
+  double *kicked_x, *kicked_y;                    ///< w, if it is wanted; see KickCoefficients
+};
+inline constexpr int num_step_arrays = 20;
+
+/// A kick is what a force does to a vertex' velocity in half a time step: F below is the force times
+/// h/(M/N_v).
+struct InterfaceKick {
+  double line_tension;  ///< tension where the spring is at length 0
+  double spring;        ///< of springs that carry tension
+  double spreading;     ///< of springs along the interface
+  double half_pressure;
+  double vertex_weight;  ///< along +x
+};
+/// A force on the area, spread over the vertices by the gradient of the area's centroid.
+struct AreaForce {
+  double area;                ///< [sigma^2]
+  double centre_x, centre_y;  ///< of the area [sigma]
+  double x, y;                ///< kick, all but the reaction to the springs along the interface
+};
+/// Coefficients of one kick. With r a vertex's drag rate and s = 1/(1 + h1 r),
+///   w = s (v + kicks F),   q = w (1 - h2 r) + F,   v' = q + weight s (c - G^T a):
+/// w is the velocity kicked by force and own drag, v' the next velocity once c and a are known (see
+/// Coupling). One kick thereby ends a time step and begins the next. q takes the place of the velocity.
+struct KickCoefficients {
+  double kicks;       ///< 1, or 0 where no time step ends
+  double h1, h2;      ///< [t0]
+  double weight;      ///< 2, or 1 where no time step ends or none begins
+  double half_step;   ///< [t0]
+  bool keeps_kicked;  ///< is w wanted afterwards?
+};
+/// Which terms a kick has. The combinations are compiled apart.
+struct KickTerms {
+  bool elastic;                     ///< springs that carry tension; otherwise those along the interface
+  bool on_area;                     ///< weight and mean drag act on the area; they are then coupled
+  bool varying_rate;                ///< drag rates are those of the array; otherwise `rate`
+  bool coupled;                     ///< does any force depend on all velocities?
+  double rate;                      ///< [1/t0]
+  double relative_rate, area_rate;  ///< at which the mean velocities of vertices and area act [1/t0]
+};
+/// Mean velocities, and what they add to those of the vertices.
+struct Coupling {
+  double mean_x = 0, mean_y = 0;  ///< of the vertices
+  double area_x = 0, area_y = 0;  ///< of the area's centroid
+  double c_x = 0, c_y = 0;
+  double a_x = 0, a_y = 0;  ///< with the force on the area, over 6 a
+};
+/// Powers, each for M/N_v = 1.
+struct Power {
+  double drag;                ///< sum r_i v_i^2, the vertices' own share of the dissipation
+  double spreading;           ///< sum F_i v_i of what spreads vertices along the interface, F_i the kick
+  double spread_x, spread_y;  ///< sum F_i
+};
+struct Contact {
+  double stiffness;   ///< k_c as a kick
+  double span;        ///< of walls; 1: edges, 0: their first vertices alone
+  double self_range;  ///< distance below which the interface repels itself [sigma]
+};
+/// What may be nearest to the vertices.
+struct NearWalls {
+  const WallContacts::Item* items;  ///< circles, by group
+  std::size_t num_items;
+  double range;   ///< of the items' reach [sigma]
+  bool alike;     ///< have all circles this radius?
+  double radius;  ///< [sigma]
+  const WedgePlace* wedges;
+  std::size_t num_wedges;
+};
+struct NearWallDrag {
+  double shortest;  ///< distances count as no less [sigma]
+  double relative, near_wall, exponent;
+  double far_rate;  ///< [1/t0]
+};
+
+/// One instruction set's versions of the passes.
+struct StepKernel {
+  /// Edges and sums over them.
+  Sums (*measure)(int n, const StepArrays& arrays);
+  /// How far every item's nearest edge is from contact; negative where it is in contact [sigma].
+  void (*circle_gaps)(const WallContacts::Item* items, std::size_t num_items, const Contact& contact,
+                      const StepArrays& arrays, double* gaps);
+  void (*pair_gaps)(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
+                    const StepArrays& arrays, double* gaps);
+  /// Then contacts, on the groups that the lists name. `clear` empties all groups.
+  void (*clear_pushes)(int n, const StepArrays& arrays);
+  void (*push)(int n, const WallContacts::Item* walls, std::size_t num_walls, const SelfContacts::Item* self,
+               std::size_t num_self, const Contact& contact, const StepArrays& arrays);
+  /// Adds the vertices' contact with wedges' surfaces up to `range` [sigma]; see add_wedge_forces().
+  void (*push_off_wedges)(int n, const WedgePlace* wedges, std::size_t num_wedges, double range,
+                          double stiffness, const StepArrays& arrays);
+  /// rate = far_rate (relative + near_wall (sigma/d)^exponent), d a vertex' distance to the nearest wall; and
+  /// what follows from it for a kick.
+  void (*near_wall_rates)(int n, const NearWalls& walls, const NearWallDrag& drag,
+                          const KickCoefficients& coefficients, const StepArrays& arrays);
+  /// First pass: forces and velocities.
+  Coupling (*kick)(int n, const KickTerms& terms, const InterfaceKick& interface, const AreaForce& force,
+                   const KickCoefficients& coefficients, const StepArrays& arrays);
+  /// Between the passes, if it is wanted: powers at the end of a time step, of which the kick has kept w.
+  Power (*power)(int n, const KickTerms& terms, const InterfaceKick& interface,
+                 const KickCoefficients& coefficients, const Coupling& coupling, const StepArrays& arrays);
+  /// Second pass: v = q + weight s (c - G^T a), x += dt v, and the edges there. Of the sums the perimeter is
+  /// given for elastic droplets only, and moments where forces act on the area.
+  Sums (*drift)(int n, const KickTerms& terms, const KickCoefficients& coefficients, const Coupling& coupling,
+                double dt, const StepArrays& arrays);
+};
+
+/// The kernel for these terms, of the widest instruction set of this processor or of the one that
+/// use_instruction_set() asks for.
+StepKernel step_kernel(const KickTerms& terms);
+
+}  // namespace clog::kernel

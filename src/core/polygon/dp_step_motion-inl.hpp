@@ -1,0 +1,375 @@
+/// Edges, velocities and positions; part of dp_step_kernel.cpp.
+
+#if defined(CLOG_DP_STEP_MOTION) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLOG_DP_STEP_MOTION
+#undef CLOG_DP_STEP_MOTION
+#else
+#define CLOG_DP_STEP_MOTION
+#endif
+
+#include "core/polygon/dp_step_vectors-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace clog::kernel::HWY_NAMESPACE {
+
+/// Fills the edges, a vector at a time, and adds up what is wanted of them.
+template <bool with_perimeter, bool with_moments>
+struct EdgeMeasure {
+  StepArrays a;
+  V perimeter = all(0), twice_area = all(0), moment_x = all(0), moment_y = all(0);
+
+  template <class Keep>
+  HWY_INLINE void add(int i, V x, V y, V next_x, V next_y, Keep keep) {
+    const V ex = hn::Sub(next_x, x), ey = hn::Sub(next_y, y);
+    const V length2 = hn::MulAdd(ex, ex, hn::Mul(ey, ey));
+    const auto [length, inverse_length] = square_root(length2);
+    const V cross = keep(hn::MulSub(x, ey, hn::Mul(y, ex)));
+    store(hn::Mul(ex, inverse_length), a.tangent_x + i);
+    store(hn::Mul(ey, inverse_length), a.tangent_y + i);
+    store(length, a.length + i);
+    twice_area = hn::Add(twice_area, cross);
+    if constexpr (with_perimeter) perimeter = hn::Add(perimeter, keep(length));
+    if constexpr (with_moments) {
+      moment_x = hn::MulAdd(cross, hn::Add(x, next_x), moment_x);
+      moment_y = hn::MulAdd(cross, hn::Add(y, next_y), moment_y);
+    }
+  }
+
+  HWY_INLINE Sums total(int n) const {
+    for (double* p : {a.tangent_x, a.tangent_y, a.length}) p[-1] = p[n - 1];
+    const auto s = sums(twice_area, perimeter, moment_x, moment_y);
+    return {s[0] / 2, s[1], s[2] / 6, s[3] / 6};
+  }
+};
+
+Sums measure(int n, const StepArrays& arrays) {
+  EdgeMeasure<true, true> edges{arrays};
+  const StepArrays& a = arrays;
+  for_vectors(n, [&](int i, auto keep) CLOG_INLINE {
+    edges.add(i, load(a.x + i), load(a.y + i), load_at(a.x + i + 1), load_at(a.y + i + 1), keep);
+  });
+  return edges.total(n);
+}
+
+/// What the coupled drag needs of a kick, G being 6 a times the centroid's gradient and s = 1/(1 + h r).
+struct KickSums {
+  double force_x, force_y;        ///< kick by the force on the area
+  double w_x, w_y;                ///< sum w
+  double gw_x, gw_y;              ///< sum G w
+  double gg_xx, gg_xy, gg_yy;     ///< sum s G G^T
+  double s;                       ///< sum s
+  double g_xx, g_xy, g_yx, g_yy;  ///< sum s G
+};
+
+/// The coupled drag and the force on the area. With s_i = 1/(1 + h r_i) and w_i the velocity kicked by the
+/// force on the vertex and its own drag,
+///   v_i = w_i + s_i (e V - G_i^T (b V_a - R)),  V = mean v_i,  V_a = sum G_i v_i,
+/// e and b half a step's relative and area rate, R the kick by the force on the area: four linear equations
+/// for V and V_a, of which V is eliminated. They are implicit because the area's part is stiff for a
+/// drawn-out droplet, b sum |G_i|^2 growing with the square of its length and perimeter.
+HWY_INLINE Coupling couple(int n, const KickTerms& terms, const AreaForce& force, const KickCoefficients& k,
+                           const KickSums& sums) {
+  const double one_nth = 1.0 / n;
+  const double e = k.h1 * terms.relative_rate;
+  const double feedback = 1 / (1 - e * one_nth * sums.s);
+  const double pull = k.half_step * terms.relative_rate;
+  double mean_x = one_nth * sums.w_x, mean_y = one_nth * sums.w_y;
+  Coupling result;
+  if (terms.on_area) {
+    const double unit = 1 / (6 * force.area);
+    const double b = k.h1 * terms.area_rate * n;
+    const double g_xx = unit * sums.g_xx, g_xy = unit * sums.g_xy;
+    const double g_yx = unit * sums.g_yx, g_yy = unit * sums.g_yy;
+    const double gg_xx = unit * unit * sums.gg_xx, gg_xy = unit * unit * sums.gg_xy;
+    const double gg_yy = unit * unit * sums.gg_yy;
+    const double kick_x = sums.force_x, kick_y = sums.force_y;
+    const double before_x = k.kicks * kick_x, before_y = k.kicks * kick_y;
+    mean_x += one_nth * (g_xx * before_x + g_yx * before_y);
+    mean_y += one_nth * (g_xy * before_x + g_yy * before_y);
+    const double both = e * feedback, both_b = both * b * one_nth;
+    const double right_x =
+        unit * sums.gw_x + (gg_xx * before_x + gg_xy * before_y) + both * (g_xx * mean_x + g_xy * mean_y);
+    const double right_y =
+        unit * sums.gw_y + (gg_xy * before_x + gg_yy * before_y) + both * (g_yx * mean_x + g_yy * mean_y);
+    const double m_xx = 1 + b * gg_xx + both_b * (g_xx * g_xx + g_xy * g_xy);
+    const double m_xy = b * gg_xy + both_b * (g_xx * g_yx + g_xy * g_yy);
+    const double m_yy = 1 + b * gg_yy + both_b * (g_yx * g_yx + g_yy * g_yy);
+    const double inverse = 1 / (m_xx * m_yy - m_xy * m_xy);
+    result.area_x = inverse * (m_yy * right_x - m_xy * right_y);
+    result.area_y = inverse * (m_xx * right_y - m_xy * right_x);
+    const double drag = k.half_step * terms.area_rate * n;
+    result.a_x = unit * (drag * result.area_x - kick_x);
+    result.a_y = unit * (drag * result.area_y - kick_y);
+    mean_x -= b * one_nth * (g_xx * result.area_x + g_yx * result.area_y);
+    mean_y -= b * one_nth * (g_xy * result.area_x + g_yy * result.area_y);
+  }
+  result.mean_x = feedback * mean_x;
+  result.mean_y = feedback * mean_y;
+  result.c_x = pull * result.mean_x;
+  result.c_y = pull * result.mean_y;
+  return result;
+}
+
+/// Kick of a vertex by the springs along the interface, as a multiple of the chord between its neighbours.
+HWY_INLINE V spread_along_chord(V spreading, V length, V length_before, V tx, V tx_before, V ty,
+                                V ty_before) {
+  const V unevenness = hn::Div(hn::Sub(length, length_before), hn::Add(length, length_before));
+  const V cosine = hn::Max(hn::MulAdd(tx, tx_before, hn::Mul(ty, ty_before)), all(0));
+  return hn::Mul(hn::Mul(spreading, hn::Mul(cosine, cosine)), unevenness);
+}
+
+template <bool elastic, bool coupled, bool on_area, bool varying_rate>
+Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface, const AreaForce& force,
+                   const KickCoefficients& coefficients, const StepArrays& arrays) {
+  const StepArrays a = arrays;  // a copy that stores cannot change
+  const V line_tension = all(interface.line_tension);
+  const V spring = all(interface.spring), spreading = all(interface.spreading);
+  const V half_pressure = all(interface.half_pressure), vertex_weight = all(interface.vertex_weight);
+  const V centre_x = all(3 * force.centre_x), centre_y = all(3 * force.centre_y);
+  const V kicks = all(coefficients.kicks);
+  const bool keeps_kicked = coefficients.keeps_kicked;
+  const double one_s = varying_rate ? 1 : 1 / (1 + coefficients.h1 * terms.rate);
+  const V same_s = all(one_s), same_kept = all(one_s * (1 - coefficients.h2 * terms.rate));
+  V spread_x = all(0), spread_y = all(0);
+  V w_x = all(0), w_y = all(0), gw_x = all(0), gw_y = all(0), gg_xx = all(0), gg_xy = all(0), gg_yy = all(0);
+  V s_sum = all(0), g_xx = all(0), g_xy = all(0), g_yx = all(0), g_yy = all(0);
+  V last_length = all(a.length[-1]);
+  V last_tx = all(a.tangent_x[-1]), last_ty = all(a.tangent_y[-1]);
+  for_vectors(n, [&](int i, auto keep) CLOG_INLINE {
+    const V length = load(a.length + i), tx = load(a.tangent_x + i), ty = load(a.tangent_y + i);
+    const V length_before = shifted_back(a.length + i, last_length, length);
+    const V tx_before = shifted_back(a.tangent_x + i, last_tx, tx);
+    const V ty_before = shifted_back(a.tangent_y + i, last_ty, ty);
+    last_length = length;
+    last_tx = tx;
+    last_ty = ty;
+    // What takes long comes first: the processor does not look far ahead.
+    V spread;
+    if constexpr (!elastic)
+      spread = keep(spread_along_chord(spreading, length, length_before, tx, tx_before, ty, ty_before));
+
+    const V ex = hn::Mul(length, tx), ey = hn::Mul(length, ty);
+    const V ex_before = hn::Mul(length_before, tx_before), ey_before = hn::Mul(length_before, ty_before);
+    // The chord between the neighbours. Turned outwards it is (y, -x).
+    const V chord_x = hn::Add(ex, ex_before), chord_y = hn::Add(ey, ey_before);
+    V fx = hn::MulAdd(half_pressure, chord_y, load(a.push_x + i));
+    V fy = hn::NegMulAdd(half_pressure, chord_x, load(a.push_y + i));
+    if constexpr (elastic) {
+      const V pull = hn::MulAdd(spring, length, line_tension);
+      const V pull_before = hn::MulAdd(spring, length_before, line_tension);
+      fx = hn::MulAdd(pull, tx, hn::NegMulAdd(pull_before, tx_before, fx));
+      fy = hn::MulAdd(pull, ty, hn::NegMulAdd(pull_before, ty_before, fy));
+    } else {
+      fx = hn::MulAdd(line_tension, hn::Sub(tx, tx_before), fx);
+      fy = hn::MulAdd(line_tension, hn::Sub(ty, ty_before), fy);
+      fx = hn::MulAdd(spread, chord_x, fx);
+      fy = hn::MulAdd(spread, chord_y, fy);
+      spread_x = hn::MulAdd(spread, chord_x, spread_x);
+      spread_y = hn::MulAdd(spread, chord_y, spread_y);
+    }
+    if constexpr (!on_area) fx = hn::Add(fx, vertex_weight);
+
+    // Where s is the same for all it is left to the end.
+    const V wx = hn::MulAdd(kicks, fx, load(a.vx + i)), wy = hn::MulAdd(kicks, fy, load(a.vy + i));
+    V s = same_s, kept = same_kept;
+    if constexpr (varying_rate) {
+      s = load(a.damping + i);
+      kept = load(a.kept + i);
+    }
+    store(hn::MulAdd(wx, kept, fx), a.vx + i);
+    store(hn::MulAdd(wy, kept, fy), a.vy + i);
+    if (keeps_kicked) {
+      store(hn::Mul(wx, s), a.kicked_x + i);
+      store(hn::Mul(wy, s), a.kicked_y + i);
+    }
+    if constexpr (coupled && varying_rate) {
+      s_sum = hn::Add(s_sum, keep(s));
+      w_x = hn::MulAdd(keep(s), wx, w_x);
+      w_y = hn::MulAdd(keep(s), wy, w_y);
+    } else if constexpr (coupled) {
+      w_x = hn::Add(w_x, keep(wx));
+      w_y = hn::Add(w_y, keep(wy));
+    }
+    if constexpr (on_area) {
+      // A vertex moves the area's centroid by the triangle between it and its neighbours: m n^T + k I, with m
+      // the sum of the three corners relative to the centroid, n the chord turned outwards, k twice the area.
+      const V x = load(a.x + i), y = load(a.y + i);
+      const V minus_corners_x = hn::Add(hn::NegMulAdd(all(3), x, centre_x), hn::Sub(ex_before, ex));
+      const V corners_y = hn::Add(hn::MulSub(all(3), y, centre_y), hn::Sub(ey, ey_before));
+      const V twice_area = hn::MulSub(ex_before, ey, hn::Mul(ey_before, ex));
+      const V gxx = keep(hn::NegMulAdd(minus_corners_x, chord_y, twice_area));
+      const V gxy = keep(hn::Mul(minus_corners_x, chord_x));
+      const V gyx = keep(hn::Mul(corners_y, chord_y));
+      const V gyy = keep(hn::NegMulAdd(corners_y, chord_x, twice_area));
+      store(gxx, a.grad_xx + i);
+      store(gxy, a.grad_xy + i);
+      store(gyx, a.grad_yx + i);
+      store(gyy, a.grad_yy + i);
+      V sxx = gxx, sxy = gxy, syx = gyx, syy = gyy;
+      if constexpr (varying_rate) {
+        sxx = hn::Mul(s, gxx);
+        sxy = hn::Mul(s, gxy);
+        syx = hn::Mul(s, gyx);
+        syy = hn::Mul(s, gyy);
+        g_xx = hn::Add(g_xx, sxx);
+        g_xy = hn::Add(g_xy, sxy);
+        g_yx = hn::Add(g_yx, syx);
+        g_yy = hn::Add(g_yy, syy);
+      }
+      gw_x = hn::MulAdd(sxx, wx, hn::MulAdd(sxy, wy, gw_x));
+      gw_y = hn::MulAdd(syx, wx, hn::MulAdd(syy, wy, gw_y));
+      gg_xx = hn::MulAdd(sxx, gxx, hn::MulAdd(sxy, gxy, gg_xx));
+      gg_xy = hn::MulAdd(sxx, gyx, hn::MulAdd(sxy, gyy, gg_xy));
+      gg_yy = hn::MulAdd(syx, gyx, hn::MulAdd(syy, gyy, gg_yy));
+    }
+  });
+  if constexpr (!coupled) return {};
+  const auto w = sums(w_x, w_y, spread_x, spread_y);
+  const auto gw = sums(gw_x, gw_y, gg_xx, gg_xy);
+  KickSums total{.force_x = force.x - w[2],
+                 .force_y = force.y - w[3],
+                 .w_x = one_s * w[0],
+                 .w_y = one_s * w[1],
+                 .gw_x = one_s * gw[0],
+                 .gw_y = one_s * gw[1],
+                 .gg_xx = one_s * gw[2],
+                 .gg_xy = one_s * gw[3],
+                 .gg_yy = one_s * sum(gg_yy),
+                 .s = n * one_s,
+                 .g_xx = 6 * force.area * one_s,
+                 .g_xy = 0,
+                 .g_yx = 0,
+                 .g_yy = 6 * force.area * one_s};
+  if constexpr (varying_rate) {
+    const auto g = sums(g_xx, g_xy, g_yx, g_yy);
+    total.g_xx = g[0];
+    total.g_xy = g[1];
+    total.g_yx = g[2];
+    total.g_yy = g[3];
+    total.s = sum(s_sum);
+  }
+  return couple(n, terms, force, coefficients, total);
+}
+
+decltype(StepKernel::kick) kick_version(const KickTerms& terms) {
+  constexpr decltype(StepKernel::kick) coupled[2][2][2] = {
+      {{kick_with<false, true, false, false>, kick_with<false, true, false, true>},
+       {kick_with<false, true, true, false>, kick_with<false, true, true, true>}},
+      {{kick_with<true, true, false, false>, kick_with<true, true, false, true>},
+       {kick_with<true, true, true, false>, kick_with<true, true, true, true>}}};
+  constexpr decltype(StepKernel::kick) free[2][2] = {
+      {kick_with<false, false, false, false>, kick_with<false, false, false, true>},
+      {kick_with<true, false, false, false>, kick_with<true, false, false, true>}};
+  return terms.coupled ? coupled[terms.elastic][terms.on_area][terms.varying_rate]
+                       : free[terms.elastic][terms.varying_rate];
+}
+
+Power power(int n, const KickTerms& terms, const InterfaceKick& interface,
+            const KickCoefficients& coefficients, const Coupling& coupling, const StepArrays& arrays) {
+  const StepArrays a = arrays;
+  const bool ends_step = coefficients.kicks > 0;  // otherwise w is the velocity
+  const double one_s = ends_step ? 1 / (1 + coefficients.h1 * terms.rate) : 0;
+  const V cx = all(coupling.c_x), cy = all(coupling.c_y), ax = all(coupling.a_x), ay = all(coupling.a_y);
+  const V spreading = all(interface.spreading);
+  V drag = all(0), spread_power = all(0), spread_x = all(0), spread_y = all(0);
+  for_vectors(n, [&](int i, auto keep) CLOG_INLINE {
+    V s = all(one_s), rate = all(terms.rate);
+    if (terms.varying_rate) {
+      if (ends_step) s = load(a.damping + i);
+      rate = load(a.rate + i);
+    }
+    V pull_x = cx, pull_y = cy;
+    if (terms.on_area) {
+      pull_x = hn::NegMulAdd(load(a.grad_xx + i), ax, hn::NegMulAdd(load(a.grad_yx + i), ay, cx));
+      pull_y = hn::NegMulAdd(load(a.grad_xy + i), ax, hn::NegMulAdd(load(a.grad_yy + i), ay, cy));
+    }
+    const V vx = hn::MulAdd(s, pull_x, load(a.kicked_x + i));
+    const V vy = hn::MulAdd(s, pull_y, load(a.kicked_y + i));
+    drag = hn::Add(drag, keep(hn::Mul(rate, hn::MulAdd(vx, vx, hn::Mul(vy, vy)))));
+    if (terms.elastic) return;
+    const V length = load(a.length + i), length_before = load_at(a.length + i - 1);
+    const V tx = load(a.tangent_x + i), tx_before = load_at(a.tangent_x + i - 1);
+    const V ty = load(a.tangent_y + i), ty_before = load_at(a.tangent_y + i - 1);
+    const V spread = keep(spread_along_chord(spreading, length, length_before, tx, tx_before, ty, ty_before));
+    const V chord_x = hn::MulAdd(length, tx, hn::Mul(length_before, tx_before));
+    const V chord_y = hn::MulAdd(length, ty, hn::Mul(length_before, ty_before));
+    const V fx = hn::MulAdd(spread, chord_x, keep(load(a.wetting_x + i)));
+    const V fy = hn::MulAdd(spread, chord_y, keep(load(a.wetting_y + i)));
+    spread_power = hn::MulAdd(fx, vx, hn::MulAdd(fy, vy, spread_power));
+    spread_x = hn::Add(spread_x, fx);
+    spread_y = hn::Add(spread_y, fy);
+  });
+  const auto s = sums(drag, spread_power, spread_x, spread_y);
+  return {.drag = s[0], .spreading = s[1], .spread_x = s[2], .spread_y = s[3]};
+}
+
+template <bool elastic, bool coupled, bool on_area, bool varying_rate>
+Sums drift_with(int n, const KickTerms& terms, const KickCoefficients& coefficients, const Coupling& coupling,
+                double time_step, const StepArrays& arrays) {
+  const StepArrays a = arrays;
+  const V cx = all(coupling.c_x), cy = all(coupling.c_y), ax = all(coupling.a_x), ay = all(coupling.a_y);
+  const V dt = all(time_step), weight = all(coefficients.weight);
+  const V same = all(coefficients.weight / (1 + coefficients.h1 * terms.rate));
+  struct Point {
+    V x, y;
+  };
+  const auto move = [&](int i) CLOG_INLINE {
+    V vx = load(a.vx + i), vy = load(a.vy + i);
+    if constexpr (coupled) {
+      V share = same;
+      if constexpr (varying_rate) share = hn::Mul(weight, load(a.damping + i));
+      V pull_x = cx, pull_y = cy;
+      if constexpr (on_area) {
+        pull_x = hn::NegMulAdd(load(a.grad_xx + i), ax, hn::NegMulAdd(load(a.grad_yx + i), ay, cx));
+        pull_y = hn::NegMulAdd(load(a.grad_xy + i), ax, hn::NegMulAdd(load(a.grad_yy + i), ay, cy));
+      }
+      vx = hn::MulAdd(share, pull_x, vx);
+      vy = hn::MulAdd(share, pull_y, vy);
+      store(vx, a.vx + i);
+      store(vy, a.vy + i);
+    }
+    const Point to{hn::MulAdd(dt, vx, load(a.x + i)), hn::MulAdd(dt, vy, load(a.y + i))};
+    store(to.x, a.x + i);
+    store(to.y, a.y + i);
+    return to;
+  };
+  EdgeMeasure<elastic, on_area> edges{a};
+  // Edges a vector behind the vertices they need: then the processor works on both at once.
+  const Point first = move(0);
+  Point here = first, next = n > lanes ? move(lanes) : first;
+  int i = 0;
+  const auto measure_behind = [&]() CLOG_INLINE {
+    edges.add(i, here.x, here.y, shifted_forward(here.x, next.x), shifted_forward(here.y, next.y), KeepAll());
+    here = next;
+    i += lanes;
+  };
+  while (i + 2 * lanes < n) {
+    const Point after = move(i + 2 * lanes);
+    measure_behind();
+    next = after;
+  }
+  if (i + lanes < n) measure_behind();
+  close(a.x, n);
+  close(a.y, n);
+  if (i + lanes == n)
+    edges.add(i, here.x, here.y, shifted_forward(here.x, first.x), shifted_forward(here.y, first.y),
+              KeepAll());
+  else
+    edges.add(i, load(a.x + i), load(a.y + i), load_at(a.x + i + 1), load_at(a.y + i + 1), KeepFirst(n - i));
+  return edges.total(n);
+}
+
+decltype(StepKernel::drift) drift_version(const KickTerms& terms) {
+  constexpr decltype(StepKernel::drift) coupled[2][2][2] = {
+      {{drift_with<false, true, false, false>, drift_with<false, true, false, true>},
+       {drift_with<false, true, true, false>, drift_with<false, true, true, true>}},
+      {{drift_with<true, true, false, false>, drift_with<true, true, false, true>},
+       {drift_with<true, true, true, false>, drift_with<true, true, true, true>}}};
+  constexpr decltype(StepKernel::drift) free[2] = {drift_with<false, false, false, false>,
+                                                   drift_with<true, false, false, false>};
+  return terms.coupled ? coupled[terms.elastic][terms.on_area][terms.varying_rate] : free[terms.elastic];
+}
+
+}  // namespace clog::kernel::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,224 @@
+#include "dp_stepper.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "clog/core/tools/units.hpp"
+
+namespace clog {
+
+namespace {
+
+kernel::KickTerms terms_of(const RunParameters& run) {
+  const double far_rate = units::gravity / run.drag.terminal_speed;
+  const bool on_area = run.dp.gravity == Gravity::area;
+  return {.elastic = run.dp.perimeter_spring != PerimeterSpring::along,
+          .on_area = on_area,
+          .varying_rate = run.drag.near_wall > 0,
+          .coupled = on_area || run.drag.relative != 1,
+          .rate = run.drag.near_wall > 0 ? 0 : far_rate * run.drag.relative,
+          .relative_rate = (on_area ? run.drag.relative : run.drag.relative - 1) * far_rate,
+          .area_rate = on_area ? far_rate : 0};
+}
+
+template <class Item>
+void keep_near(const std::vector<Item>& items, const std::vector<double>& gaps, double way,
+               std::vector<Item>& near) {
+  near.clear();
+  for (std::size_t k = 0; k < items.size(); ++k)
+    if (gaps[k] <= way) near.push_back(items[k]);
+}
+
+}  // namespace
+
+DpStepper::DpStepper(const RunParameters& run, const DpForces& forces)
+    : run_(run),
+      forces_(&forces),
+      terms_(terms_of(run)),
+      kernel_(kernel::step_kernel(terms_)),
+      n_(run.dp.vertices) {
+  // Every array on a cache line, with room for an entry before and a group behind it.
+  constexpr int line = 8;
+  const int stride = (n_ + line - 1) / line * line + 3 * line;
+  memory_ = hwy::AllocateAligned<double>(static_cast<std::size_t>(kernel::num_step_arrays) * stride);
+  std::fill_n(memory_.get(), static_cast<std::size_t>(kernel::num_step_arrays) * stride, 0.0);
+  double* next = memory_.get() + line;
+  for (double** array :
+       {&arrays_.x,         &arrays_.y,       &arrays_.vx,      &arrays_.vy,       &arrays_.tangent_x,
+        &arrays_.tangent_y, &arrays_.length,  &arrays_.push_x,  &arrays_.push_y,   &arrays_.wetting_x,
+        &arrays_.wetting_y, &arrays_.grad_xx, &arrays_.grad_xy, &arrays_.grad_yx,  &arrays_.grad_yy,
+        &arrays_.rate,      &arrays_.damping, &arrays_.kept,    &arrays_.kicked_x, &arrays_.kicked_y}) {
+    *array = next;
+    next += stride;
+  }
+  // Edges of the last group that do not exist are divided by as well.
+  std::fill_n(arrays_.length, stride - line, 1.0);
+}
+
+void DpStepper::load(const DropletState& state) {
+  const auto copy = [this](const double* from, double* to) {
+    std::copy_n(from, n_, to);
+    to[-1] = to[n_ - 1];
+    std::copy_n(to, kernel::edges_per_group, to + n_);
+  };
+  copy(state.position.data(), arrays_.x);
+  copy(state.position.data() + n_, arrays_.y);
+  copy(state.velocity.data(), arrays_.vx);
+  copy(state.velocity.data() + n_, arrays_.vy);
+  wedges_.clear();
+  for (const Wedge& wedge : forces_->wedges()) wedges_.push_back(kernel::place_in(state.frame, wedge));
+  sums_ = kernel_.measure(n_, arrays_);
+  open_step_ = 0;
+}
+
+DpStepper::Edges DpStepper::edges() const {
+  const Eigen::Map<const Eigen::ArrayXd> lengths(arrays_.length, n_);
+  return {.perimeter = lengths.sum(), .shortest = lengths.minCoeff()};
+}
+
+void DpStepper::look(const Travel& travel) {
+  kernel_.clear_pushes(n_, arrays_);  // the lists may name other groups than before
+  const auto& walls = forces_->walls().items();
+  const auto& self = forces_->self_contacts().items();
+  wall_gaps_.resize(walls.size());
+  self_gaps_.resize(self.size());
+  kernel_.circle_gaps(walls.data(), walls.size(), contact(0), arrays_, wall_gaps_.data());
+  kernel_.pair_gaps(self.data(), self.size(), contact(0), arrays_, self_gaps_.data());
+  // A contact speeds what is in it up by at most half its depth per step, and for a few steps: `travel` knows
+  // nothing of that.
+  double deepest = 0;
+  for (const double gap : wall_gaps_) deepest = std::max(deepest, -gap);
+  for (const double gap : self_gaps_) deepest = std::max(deepest, -gap);
+  constexpr double thrown = 4;
+  const double unforeseen = 0.1 * forces_->vertex_diameter() + thrown * deepest;
+  keep_near(walls, wall_gaps_, refined_sway * (travel.absolute + unforeseen), near_walls_);
+  keep_near(self, self_gaps_, 2 * (travel.relative + unforeseen), near_self_);
+}
+
+void DpStepper::store(DropletState& state) const {
+  std::copy_n(arrays_.x, n_, state.position.data());
+  std::copy_n(arrays_.y, n_, state.position.data() + n_);
+  std::copy_n(arrays_.vx, n_, state.velocity.data());
+  std::copy_n(arrays_.vy, n_, state.velocity.data() + n_);
+}
+
+void DpStepper::advance(DropletState& state, int steps, double time_step, Droplet::Work* work) {
+  if (open_step_ != 0 && open_step_ != time_step) finish(state, work);
+  const double h = 0.5 * time_step;
+  for (int step = 0; step < steps; ++step) {
+    const bool ends_step = open_step_ != 0;
+    open_step_ = time_step;
+    kick_and_drift(state,
+                   {.kicks = ends_step ? 1.0 : 0.0,
+                    .h1 = ends_step ? h : 0,
+                    .h2 = h,
+                    .weight = ends_step ? 2.0 : 1.0,
+                    .half_step = h,
+                    .keeps_kicked = work != nullptr},
+                   time_step, work);
+  }
+  store(state);
+}
+
+void DpStepper::finish(DropletState& state, Droplet::Work* work) {
+  if (open_step_ == 0) return;
+  const double h = 0.5 * open_step_;
+  kick_and_drift(state, {.kicks = 1, .h1 = h, .h2 = h, .weight = 1, .half_step = h, .keeps_kicked = true}, 0,
+                 work);
+  open_step_ = 0;
+  store(state);
+}
+
+/// One force evaluation, the half kicks on its two sides, and the drift to the next one; without a drift only
+/// the first half kick.
+void DpStepper::kick_and_drift(const DropletState& frame, const kernel::KickCoefficients& coefficients,
+                               double drift_time, Droplet::Work* work) {
+  const double impulse = coefficients.half_step / (units::droplet_mass / n_);
+  push_off_everything(frame, coefficients, impulse);
+  const kernel::Interface at_rest = forces_->interface(sums_.area, sums_.perimeter);
+  const kernel::InterfaceKick interface {
+    .line_tension = impulse * (at_rest.line_tension - at_rest.spring * at_rest.spring_length),
+    .spring = impulse * at_rest.spring, .spreading = impulse * at_rest.spreading,
+    .half_pressure = 0.5 * impulse * at_rest.pressure, .vertex_weight = impulse * at_rest.vertex_weight
+  };
+  const kernel::AreaForce force{.area = sums_.area,
+                                .centre_x = sums_.moment_x / sums_.area,
+                                .centre_y = sums_.moment_y / sums_.area,
+                                .x = impulse * (units::droplet_mass * units::gravity - wetting_spread_[0]),
+                                .y = -impulse * wetting_spread_[1]};
+  const kernel::Coupling coupling = kernel_.kick(n_, terms_, interface, force, coefficients, arrays_);
+  if (work != nullptr) {
+    const Droplet::Work now = power(interface, coefficients, coupling);
+    if (coefficients.kicks != 0) {  // it ends a step
+      work->dissipated += coefficients.h1 * (open_power_.dissipated + now.dissipated);
+      work->spreading += coefficients.h1 * (open_power_.spreading + now.spreading);
+    }
+    open_power_ = now;
+  }
+  if (drift_time == 0) {  // w, to which no second half kick was added, is the velocity
+    std::swap(arrays_.vx, arrays_.kicked_x);
+    std::swap(arrays_.vy, arrays_.kicked_y);
+  }
+  sums_ = kernel_.drift(n_, terms_, coefficients, coupling, drift_time, arrays_);
+}
+
+kernel::Contact DpStepper::contact(double stiffness) const {
+  return {.stiffness = stiffness,
+          .span = run_.dp.wall_contact == WallContact::edge ? 1.0 : 0.0,
+          .self_range = forces_->self_contacts().range()};
+}
+
+void DpStepper::push_off_everything(const DropletState& frame, const kernel::KickCoefficients& coefficients,
+                                    double impulse) {
+  const double stiffness = impulse * forces_->contact_stiffness();
+  if (!wedges_.empty() || forces_->wets()) kernel_.clear_pushes(n_, arrays_);
+  kernel_.push(n_, near_walls_.data(), near_walls_.size(), near_self_.data(), near_self_.size(),
+               contact(stiffness), arrays_);
+  if (!wedges_.empty())
+    kernel_.push_off_wedges(n_, wedges_.data(), wedges_.size(), forces_->walls().range(), stiffness, arrays_);
+  if (forces_->wets()) {
+    DropletState here = frame;
+    store(here);
+    const DpForces::WettingForces wetting = forces_->wetting_forces(here);
+    wetting_spread_ = wetting.net_spreading();
+    for (int i = 0; i < n_; ++i) {
+      arrays_.wetting_x[i] = impulse * wetting.spreading[i];
+      arrays_.wetting_y[i] = impulse * wetting.spreading[n_ + i];
+      arrays_.push_x[i] += impulse * wetting.gradient[i] + arrays_.wetting_x[i];
+      arrays_.push_y[i] += impulse * wetting.gradient[n_ + i] + arrays_.wetting_y[i];
+    }
+  }
+  if (!terms_.varying_rate) return;
+  const WallContacts& nearest = forces_->nearest_walls();
+  kernel_.near_wall_rates(n_,
+                          {.items = nearest.items().data(),
+                           .num_items = nearest.items().size(),
+                           .range = nearest.range(),
+                           .alike = nearest.radii_are_equal(),
+                           .radius = nearest.largest_radius(),
+                           .wedges = wedges_.data(),
+                           .num_wedges = wedges_.size()},
+                          {.shortest = run_.drag.near_wall_cutoff,
+                           .relative = run_.drag.relative,
+                           .near_wall = run_.drag.near_wall,
+                           .exponent = run_.drag.near_wall_exponent,
+                           .far_rate = units::gravity / run_.drag.terminal_speed},
+                          coefficients, arrays_);
+}
+
+/// What drag takes and the springs along the interface give per time, where a time step ends.
+Droplet::Work DpStepper::power(const kernel::InterfaceKick& interface,
+                               const kernel::KickCoefficients& coefficients,
+                               const kernel::Coupling& coupling) const {
+  const kernel::Power vertices = kernel_.power(n_, terms_, interface, coefficients, coupling, arrays_);
+  const double vertex_mass = units::droplet_mass / n_;
+  const double mean2 = coupling.mean_x * coupling.mean_x + coupling.mean_y * coupling.mean_y;
+  const double area2 = coupling.area_x * coupling.area_x + coupling.area_y * coupling.area_y;
+  const double reaction = vertices.spread_x * coupling.area_x + vertices.spread_y * coupling.area_y;
+  return {.dissipated =
+              vertex_mass * (vertices.drag + n_ * (terms_.area_rate * area2 - terms_.relative_rate * mean2)),
+          .spreading = vertex_mass / coefficients.half_step * (vertices.spreading - reaction)};
+}
+
+}  // namespace clog

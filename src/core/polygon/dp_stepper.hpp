@@ -1,0 +1,66 @@
+#pragma once
+
+#include <hwy/aligned_allocator.h>
+
+#include <vector>
+
+#include "clog/core/droplet/droplet.hpp"
+#include "clog/core/polygon/dp_forces.hpp"
+#include "dp_step_kernel.hpp"
+
+namespace clog {
+
+/// Moves a polygon by whole time steps with the vectorised kernel. Between two calls a droplet is its
+/// positions and velocities and nothing else.
+class DpStepper {
+ public:
+  /// @param run     resolved parameters
+  /// @param forces  its contact lists are used; must outlive this object
+  DpStepper(const RunParameters& run, const DpForces& forces);
+
+  /// Takes over a droplet.
+  void load(const DropletState& state);
+  struct Edges {
+    double perimeter, shortest;  ///< [sigma]
+  };
+  /// Of the droplet as it is now.
+  Edges edges() const;
+  /// Takes over what may touch on the way to the next look() from the contact lists, which must hold for it.
+  void look(const Travel& travel);
+  /// `steps` steps of `time_step`. The last half kick is left open: positions are those of the steps' end,
+  /// velocities those of half a step before.
+  /// @param state  the droplet that was loaded
+  /// @param work  if not null, what drag and springs did since the last call is added to it
+  void advance(DropletState& state, int steps, double time_step, Droplet::Work* work);
+  /// The last half kick.
+  void finish(DropletState& state, Droplet::Work* work);
+
+ private:
+  RunParameters run_;
+  const DpForces* forces_;
+  kernel::KickTerms terms_;
+  kernel::StepKernel kernel_;
+  int n_;
+  hwy::AlignedFreeUniquePtr<double[]> memory_;
+  kernel::StepArrays arrays_;
+  // What may touch before the next look, and wedges in the droplet's frame.
+  std::vector<WallContacts::Item> near_walls_;
+  std::vector<SelfContacts::Item> near_self_;
+  std::vector<double> wall_gaps_, self_gaps_;  // of the lists' items at the last look
+  std::vector<kernel::WedgePlace> wedges_;
+  Eigen::Array2d wetting_spread_{0, 0};  // of wetting, see DpForces::wetting_forces()
+  kernel::Sums sums_{};
+  double open_step_ = 0;      // length of the step whose last half kick is to come; 0: none is
+  Droplet::Work open_power_;  // at its beginning
+
+  void store(DropletState& state) const;
+  kernel::Contact contact(double stiffness) const;
+  void kick_and_drift(const DropletState& frame, const kernel::KickCoefficients& coefficients,
+                      double drift_time, Droplet::Work* work);
+  void push_off_everything(const DropletState& frame, const kernel::KickCoefficients& coefficients,
+                           double impulse);
+  Droplet::Work power(const kernel::InterfaceKick& interface, const kernel::KickCoefficients& coefficients,
+                      const kernel::Coupling& coupling) const;
+};
+
+}  // namespace clog

@@ -1,0 +1,43 @@
+#include "clog/core/polygon/stability.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "clog/core/tools/units.hpp"
+
+namespace clog {
+
+StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double perimeter,
+                       double shortest_edge) {
+  const double num_vertices = dp.vertices;
+  const double vertex_mass = units::droplet_mass / num_vertices;
+  const double vertex_diameter = units::regular_edge_length(dp.vertices);
+  const int edges_per_vertex = dp.wall_contact == WallContact::edge ? 2 : 1;
+  const double mean_edge = perimeter / num_vertices;
+  const double edge = std::max(shortest_edge, 0.01 * mean_edge);
+  return {
+      .contact = edges_per_vertex * contact_stiffness(wall_stiffness, vertex_diameter) / vertex_mass,
+      .self_contact = dp.self_contact == SelfContact::on
+                          ? 8 * contact_stiffness(wall_stiffness, vertex_diameter) / vertex_mass
+                          : 0,
+      .area = dp.area_stiffness.value() * perimeter * perimeter / units::droplet_mass,
+      .tension = 4 * dp.line_tension / (edge * vertex_mass),
+      .spring = 4 * dp.perimeter_stiffness.value() * num_vertices / vertex_mass,
+      .wetting = 6 * dp.line_tension * std::abs(dp.wall_tension - 1) * mean_edge /
+                 (wetting_width * wetting_width * vertex_diameter * vertex_diameter * vertex_mass),
+  };
+}
+
+double largest_stable_step(const StiffModes& modes) {
+  return std::sqrt(std::min({max_contact_omega_dt2 / modes.contact, max_area_omega_dt2 / modes.area,
+                             max_total_omega_dt2 / modes.sum(),
+                             max_total_with_self_omega_dt2 / (modes.sum() + modes.self_contact)}));
+}
+
+int num_substeps(const StiffModes& modes, double time_step) {
+  // The tolerance keeps a step that was chosen as exactly the largest stable one from being split.
+  const double parts = std::ceil(time_step / largest_stable_step(modes) - 1e-9);
+  return parts < most_substeps ? std::max(1, static_cast<int>(parts)) : most_substeps;
+}
+
+}  // namespace clog

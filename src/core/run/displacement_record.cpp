@@ -1,0 +1,47 @@
+#include "clog/core/run/displacement_record.hpp"
+
+#include <cmath>
+#include <span>
+
+namespace clog {
+namespace {
+
+constexpr std::size_t capacity = 1024;
+constexpr double arrest_distance = 0.01;  // [sigma]
+constexpr double shortest_travel = 0.5;   // [sigma]
+
+}  // namespace
+
+void DisplacementRecord::add(double time, double displacement) {
+  if (count_++ % stride_ != 0) return;
+  if (samples_.size() == capacity) {
+    for (std::size_t i = 0; i < capacity / 2; ++i) samples_[i] = samples_[2 * i];
+    samples_.resize(capacity / 2);
+    stride_ *= 2;
+    if ((count_ - 1) % stride_ != 0) return;
+  }
+  samples_.push_back({time, displacement});
+}
+
+void DisplacementRecord::save(ByteWriter& bytes) const {
+  bytes.put(samples_);
+  bytes.put(stride_);
+  bytes.put(count_);
+}
+
+void DisplacementRecord::restore(ByteReader& bytes) {
+  bytes.get(samples_);
+  bytes.get(stride_);
+  bytes.get(count_);
+}
+
+TravelSpeed DisplacementRecord::travel_speed() const {
+  std::size_t end = samples_.size();
+  while (end > 0 &&
+         std::abs(samples_[end - 1].displacement - samples_.back().displacement) <= arrest_distance)
+    --end;
+  const TravelSpeed speed = clog::travel_speed(std::span(samples_).first(end));
+  return speed.mean * speed.time < shortest_travel ? TravelSpeed() : speed;
+}
+
+}  // namespace clog

@@ -1,0 +1,190 @@
+#include "clog/core/run/droplet_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "clog/core/disk/sp_droplet.hpp"
+#include "clog/core/polygon/dp_droplet.hpp"
+#include "clog/core/run/equilibrium.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/units.hpp"
+
+namespace clog {
+namespace {
+
+/// A droplet just released is slow; it cannot be told from a clogged one before it had the time to fall.
+constexpr double relaxation_times_before_a_clog = 10;
+
+/// E_k/E_t below which an equilibrium is looked for. The droplet must also be slow enough not to coast, for
+/// V_t/g at its speed, farther than it may be from it.
+double first_search(double terminal_speed) {
+  constexpr double slow = 1e-4;
+  const double coasting = farthest_rest * units::gravity / (terminal_speed * terminal_speed);  // over V_t
+  return std::min(slow, coasting * coasting);
+}
+/// After a search in vain the next one waits until E_k/E_t has fallen by so much again,
+constexpr double fall_between_searches = 0.1;
+/// or, once it has risen above so many times the first search's, until the droplet slows down anew.
+constexpr double rise_of_a_moving_droplet = 10;
+
+/// Changes with what a snapshot holds.
+constexpr std::uint64_t snapshot_kind = 0x636c6f6773000001;
+
+std::unique_ptr<Droplet> make_droplet(const RunParameters& run, const ObstacleArray& obstacles,
+                                      DropletState initial) {
+  if (run.model == Model::dp) return std::make_unique<DpDroplet>(run, obstacles, std::move(initial));
+  return std::make_unique<SpDroplet>(run, obstacles, std::move(initial));
+}
+
+}  // namespace
+
+DropletRun::DropletRun(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
+                       DropletState initial, double end)
+    : run_(run),
+      obstacles_(std::move(obstacles)),
+      droplet_(make_droplet(run_, *obstacles_, std::move(initial))),
+      start_frame_(droplet_->state().frame),
+      start_(droplet_->centre()),
+      end_(end),
+      max_steps_(std::max<std::int64_t>(1, std::llround(run_.max_time / run_.time_step.value()))),
+      first_quiet_time_(relaxation_times_before_a_clog * run_.drag.terminal_speed / units::gravity),
+      next_search_(first_search(run_.drag.terminal_speed)) {}
+
+PotentialEnergy DropletRun::potential_energy() const {
+  PotentialEnergy energy = droplet_->potential_energy();
+  // From the start to the frame's origin.
+  energy.gravity -= units::droplet_mass * units::gravity * displacement_of({0, 0})[0];
+  return energy;
+}
+
+double DropletRun::kinetic_energy_ratio() const {
+  const double terminal = 0.5 * units::droplet_mass * run_.drag.terminal_speed * run_.drag.terminal_speed;
+  return droplet_->kinetic_energy() / terminal;
+}
+
+bool DropletRun::advance(int num_checks) {
+  for (int i = 0; i < num_checks && status_ == RunStatus::running; ++i) {
+    const auto steps = static_cast<int>(std::min<std::int64_t>(steps_per_check, max_steps_ - steps_done_));
+    droplet_->advance(steps);
+    steps_done_ += steps;
+    check();
+    if (status_ == RunStatus::running && steps_done_ % steps_per_snapshot == 0) take_snapshot();
+  }
+  return status_ != RunStatus::running;
+}
+
+void DropletRun::take_snapshot() {
+  droplet_->start_afresh();
+  ByteWriter bytes;
+  bytes.put(snapshot_kind);
+  droplet_->save(bytes);
+  start_frame_.save(bytes);
+  bytes.put(start_);
+  bytes.put(steps_done_);
+  bytes.put(quiet_checks_);
+  bytes.put(next_search_);
+  record_.save(bytes);
+  snapshot_ = bytes.take();
+}
+
+DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
+                              std::span<const std::byte> snapshot, double end) {
+  try {
+    ByteReader bytes(snapshot);
+    std::uint64_t kind = 0;
+    bytes.get(kind);
+    if (kind != snapshot_kind) throw Error("the snapshot is of another version");
+    ByteReader rest = bytes;
+    DropletState state;
+    state.restore(bytes);
+    const Period& period = obstacles->period();
+    if (state.size() != (run.model == Model::dp ? run.dp.vertices : 1) ||
+        state.frame.period[0] != period.along() || state.frame.period[1] != period.across())
+      throw Error("the snapshot is of another run");
+    DropletRun resumed(run, std::move(obstacles), std::move(state), end);
+    resumed.droplet_->restore(rest);
+    resumed.start_frame_.restore(rest);
+    rest.get(resumed.start_);
+    rest.get(resumed.steps_done_);
+    rest.get(resumed.quiet_checks_);
+    rest.get(resumed.next_search_);
+    resumed.record_.restore(rest);
+    if (!rest.at_end()) throw Error("the snapshot is of another run");
+    resumed.snapshot_.assign(snapshot.begin(), snapshot.end());
+    return resumed;
+  } catch (const std::out_of_range&) {
+    throw Error("cannot resume the run (the snapshot is torn); start it anew");
+  } catch (const Error& error) {
+    throw Error(std::string("cannot resume the run (") + error.what() + "); start it anew");
+  }
+}
+
+void DropletRun::check() {
+  const double energy_ratio = kinetic_energy_ratio();
+  const PolygonShape shape = droplet_->shape();
+  const bool is_whole = energy_ratio < diverged_energy_ratio && shape.perimeter < burst_perimeter &&
+                        std::abs(shape.area / units::rest_area - 1) < diverged_area_error;
+  if (!is_whole) {  // also if any of them is not a number
+    std::ostringstream message;
+    message << "diverged at t=" << time() << ": E_k/E_t=" << energy_ratio << ", area=" << shape.area
+            << ", perimeter=" << shape.perimeter << "; try a smaller time-step or terminal-speed";
+    message_ = message.str();
+    status_ = RunStatus::failed;
+    return;
+  }
+  record_.add(time(), displacement()[0]);
+  if (is_quiet(energy_ratio))
+    clogged_by_ = ClogDetection::threshold;
+  else if (run_.clog_detection == ClogDetection::certified && finds_rest(energy_ratio))
+    clogged_by_ = ClogDetection::certified;
+  if (clogged_by_)
+    status_ = RunStatus::clogged;
+  else if (displacement()[0] >= end_)
+    status_ = RunStatus::passed;
+  else if (steps_done_ >= max_steps_)
+    status_ = RunStatus::flowing;
+}
+
+bool DropletRun::is_quiet(double energy_ratio) {
+  const bool is_quiet = energy_ratio < run_.clog_energy && time() > first_quiet_time_;
+  quiet_checks_ = is_quiet ? quiet_checks_ + 1 : 0;
+  return quiet_checks_ >= 2;
+}
+
+bool DropletRun::finds_rest(double energy_ratio) {
+  const double first = first_search(run_.drag.terminal_speed);
+  if (energy_ratio > rise_of_a_moving_droplet * first) next_search_ = first;
+  if (energy_ratio > next_search_ || time() < first_quiet_time_) return false;
+  next_search_ = fall_between_searches * energy_ratio;
+  std::optional<DropletState> rest = find_equilibrium(run_, *obstacles_, droplet_->state());
+  if (rest) at_rest_ = make_droplet(run_, *obstacles_, std::move(*rest));
+  return at_rest_ != nullptr;
+}
+
+RunResult DropletRun::result() const {
+  const Droplet& last = at_rest_ ? *at_rest_ : *droplet_;
+  const Eigen::Array2d displaced = displacement_of(last.centre());
+  ClogGeometry geometry;
+  ClogMechanism mechanism = ClogMechanism::none;
+  if (status_ == RunStatus::clogged && run_.model == Model::sp) mechanism = ClogMechanism::squeezed;
+  if (status_ == RunStatus::clogged && run_.model == Model::dp) {
+    geometry = clog_geometry(last.state(), *obstacles_, run_.dp);
+    mechanism = geometry.mechanism();
+  }
+  return {.status = status_,
+          .clogged_by = clogged_by_,
+          .distance = displaced[0],
+          .lateral = displaced[1],
+          .time = time(),
+          .speed = record_.travel_speed(),
+          .kinetic_energy_ratio = kinetic_energy_ratio(),
+          .shape_parameter = last.shape().shape_parameter(),
+          .mechanism = mechanism,
+          .geometry = geometry,
+          .steps = droplet_->num_integrated_steps(),
+          .message = message_};
+}
+
+}  // namespace clog

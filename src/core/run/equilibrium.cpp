@@ -1,0 +1,214 @@
+#include "clog/core/run/equilibrium.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "clog/core/disk/sp_droplet.hpp"
+#include "clog/core/polygon/dp_forces.hpp"
+#include "clog/core/tools/units.hpp"
+
+namespace clog {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Most searches end within ten.
+constexpr int most_iterations = 30;
+constexpr int most_halvings = 10;
+/// Of the central differences [sigma]: far below a contact's range, far above round-off.
+constexpr double difference_step = 1e-6;
+/// Force on a point over its weight; round-off of the contact forces is 1e-10.
+constexpr double force_tolerance = 1e-7;
+/// Way that is left [sigma].
+constexpr double move_tolerance = 1e-7;
+
+/// Coordinates of a displacement: of every vertex first that normal to the interface, to the chord between
+/// its neighbours, then that along it. Of the soft disk: x, y.
+struct Axes {
+  Eigen::SparseMatrix<double> directions;  ///< orthonormal columns over all x, then all y
+  /// The interface slides around itself: unit vector over the displacements along it, empty where that counts
+  /// as any other motion. After one edge the polygon is the same again, with other names for its vertices:
+  /// the energy only has ripples along this way, from the edges' corners on obstacles, and however far a
+  /// droplet slides, it goes nowhere. So neither the force along it nor the stiffness is asked for. It is the
+  /// last motion to die out, and may stand on top of a ripple now.
+  VectorXd slide;
+};
+
+Axes axes_of(const RunParameters& run, const DropletState& state) {
+  const Index n = state.size();
+  Axes axes{.directions = Eigen::SparseMatrix<double>(2 * n, 2 * n), .slide = VectorXd(n)};
+  if (run.model == Model::sp) {
+    axes.directions.setIdentity();
+    axes.slide.resize(0);
+    return axes;
+  }
+  axes.directions.reserve(Eigen::VectorXi::Constant(2 * n, 2));
+  for (Index i = 0; i < n; ++i) {
+    const Index next = (i + 1) % n;
+    const Index previous = (i + n - 1) % n;
+    const double chord_x = state.x()[next] - state.x()[previous];
+    const double chord_y = state.y()[next] - state.y()[previous];
+    const double length = std::hypot(chord_x, chord_y);
+    axes.directions.insert(i, i) = chord_y / length;
+    axes.directions.insert(n + i, i) = -chord_x / length;
+    axes.directions.insert(i, n + i) = chord_x / length;
+    axes.directions.insert(n + i, n + i) = chord_y / length;
+    axes.slide[i] = length;
+  }
+  axes.slide.normalize();
+  // Springs with an energy leave vertices unevenly spread, ripples are higher, and it pays to follow them to
+  // the end.
+  if (run.dp.perimeter_spring != PerimeterSpring::along) axes.slide.resize(0);
+  return axes;
+}
+
+MatrixXd symmetric(const MatrixXd& matrix) { return (matrix + matrix.transpose()) / 2; }
+
+/// Do all displacements x have x.Kx > bound x.x?
+bool is_definite(double bound, const MatrixXd& k) {
+  MatrixXd shifted = symmetric(k);
+  shifted.diagonal().array() -= bound;
+  return Eigen::LLT<MatrixXd>(shifted).info() == Eigen::Success;
+}
+
+/// Do all of them die out under a drag, dx/dt = -Kx, faster than with this stiffness? True of all that are
+/// definite, which costs less to see. Springs along the interface have no energy: what they do to the shape
+/// makes K a little unsymmetric, and where it is soft it may be stable without being definite.
+bool is_stable(double bound, const MatrixXd& k) {
+  return is_definite(bound, k) ||
+         Eigen::EigenSolver<MatrixXd>(k, false).eigenvalues().real().minCoeff() > bound;
+}
+
+/// K, minus the derivative of the force, in two parts: K_tt, of the vertices along the interface, and the
+/// stiffness of the shape, to which the vertices on it adapt at once: K_nn - K_nt K_tt^-1 K_tn. Were they
+/// held where they are, a droplet that is free to drift aside would seem to be held by its own
+/// discretisation.
+class Stiffness {
+ public:
+  explicit Stiffness(const MatrixXd& k)
+      : size_(k.rows() / 2),
+        normal_along_(k.topRightCorner(size_, size_)),
+        along_(k.bottomRightCorner(size_, size_)),
+        along_factor_(along_),
+        adapting_(along_factor_.solve(k.bottomLeftCorner(size_, size_))),
+        shape_(k.topLeftCorner(size_, size_) - normal_along_ * adapting_),
+        shape_factor_(shape_) {}
+
+  /// Does it resist all displacements by more than `bound`, and let the vertices find their places?
+  bool resists(double bound) const { return is_definite(0, along_) && is_stable(bound, shape_); }
+  VectorXd solve(const VectorXd& force) const {
+    const VectorXd along = along_factor_.solve(force.tail(size_));
+    VectorXd move(2 * size_);
+    move.head(size_) = shape_factor_.solve(force.head(size_) - normal_along_ * along);
+    move.tail(size_) = along - adapting_ * move.head(size_);
+    return move;
+  }
+
+ private:
+  Index size_;
+  MatrixXd normal_along_, along_;
+  Eigen::PartialPivLU<MatrixXd> along_factor_;
+  MatrixXd adapting_, shape_;
+  Eigen::PartialPivLU<MatrixXd> shape_factor_;
+};
+
+/// Forces along given axes, around a state that moves.
+template <class Forces>
+class ForceField {
+ public:
+  ForceField(Forces& forces, DropletState state)
+      : forces_(forces), state_(std::move(state)), force_(state_.position.size()), below_(force_) {}
+
+  const DropletState& state() const { return state_; }
+
+  VectorXd force_at(const ArrayXd& position, const Axes& axes) {
+    state_.position = position;
+    forces_.update_contacts(state_, {.absolute = 2 * difference_step, .relative = 4 * difference_step});
+    forces_.evaluate(state_, force_);
+    VectorXd force = axes.directions.transpose() * force_.matrix();
+    auto along = force.tail(state_.size());
+    if (axes.slide.size() > 0) along -= axes.slide * axes.slide.dot(along);
+    return force;
+  }
+
+  /// At the place of the last force_at().
+  MatrixXd stiffness(const Axes& axes) {
+    const ArrayXd middle = state_.position;
+    MatrixXd stiffness(middle.size(), middle.size());
+    for (Index k = 0; k < middle.size(); ++k) {
+      const ArrayXd step = difference_step * VectorXd(axes.directions.col(k)).array();
+      state_.position = middle + step;
+      forces_.evaluate(state_, force_);
+      state_.position = middle - step;
+      forces_.evaluate(state_, below_);
+      stiffness.col(k) = axes.directions.transpose() * ((below_ - force_) / (2 * difference_step)).matrix();
+    }
+    state_.position = middle;
+    if (axes.slide.size() > 0) hold_slide(axes.slide, stiffness);
+    return stiffness;
+  }
+
+ private:
+  Forces& forces_;
+  DropletState state_;
+  ArrayXd force_, below_;
+
+  static void hold_slide(const VectorXd& slide, MatrixXd& stiffness) {
+    const Index n = slide.size();
+    const double stiffest = stiffness.diagonal().tail(n).maxCoeff();
+    stiffness.rightCols(n) -= (stiffness.rightCols(n) * slide).eval() * slide.transpose();
+    stiffness.bottomRows(n) -= slide * (slide.transpose() * stiffness.bottomRows(n)).eval();
+    stiffness.bottomRightCorner(n, n) += stiffest * slide * slide.transpose();
+  }
+};
+
+/// Newton's method, its steps cut until they shorten what is left of the way, as the stiffness here measures
+/// it (P. Deuflhard's natural monotonicity test). Measured by forces, hardly a step would pass: those of a
+/// contact that opens or closes outweigh all others.
+template <class Forces>
+std::optional<DropletState> relax(Forces& forces, const RunParameters& run, const DropletState& initial) {
+  const double point_weight = units::droplet_mass * units::gravity / static_cast<double>(initial.size());
+  ForceField<Forces> field(forces, initial);
+  ArrayXd position = initial.position;
+  for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    const Axes axes = axes_of(run, field.state());
+    const VectorXd force = field.force_at(position, axes);
+    const Stiffness stiffness(field.stiffness(axes));
+    if (!stiffness.resists(least_stiffness * point_weight)) return std::nullopt;
+    const VectorXd move = stiffness.solve(force);
+    const double longest = move.lpNorm<Eigen::Infinity>();
+    if (longest < move_tolerance && force.lpNorm<Eigen::Infinity>() < force_tolerance * point_weight)
+      return field.state();
+
+    double part = std::min(1.0, farthest_rest / longest);
+    const auto place = [&] { return ArrayXd(position + part * (axes.directions * move).array()); };
+    const auto way_left = [&] { return stiffness.solve(field.force_at(place(), axes)).norm(); };
+    for (int halving = 0; !(way_left() < (1 - part / 4) * move.norm()); ++halving, part /= 2)
+      if (halving == most_halvings) return std::nullopt;
+    position = place();
+    if ((position - initial.position).abs().maxCoeff() > farthest_rest) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<DropletState> find_equilibrium(const RunParameters& run, const ObstacleArray& obstacles,
+                                             const DropletState& state) {
+  if (run.model == Model::sp) {
+    SpForces forces(run, obstacles);
+    return relax(forces, run, state);
+  }
+  DpForces forces(run, obstacles);
+  return relax(forces, run, state);
+}
+
+}  // namespace clog

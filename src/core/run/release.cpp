@@ -1,0 +1,191 @@
+#include "clog/core/run/release.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "clog/core/disk/sp_droplet.hpp"
+#include "clog/core/droplet/shape.hpp"
+#include "clog/core/polygon/dp_forces.hpp"
+#include "clog/core/polygon/stability.hpp"
+#include "clog/core/run/fire.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/portable_math.hpp"
+#include "clog/core/tools/units.hpp"
+
+namespace clog {
+namespace {
+
+constexpr double radius = units::droplet_diameter / 2;
+
+/// Climbs from the centre of the period to the nearest place that is farther from all obstacles than its
+/// surroundings.
+Eigen::Array2d nearest_void(const ObstacleArray& obstacles) {
+  const double enough = 2 * units::droplet_diameter;
+  Eigen::Array2d place{obstacles.period().along() / 2, obstacles.period().across() / 2};
+  double room = clearance(obstacles, place[0], place[1], enough);
+  for (double step = 0.1; step > 1e-4 && room < enough;) {
+    bool climbed = false;
+    for (int direction = 0; direction < 8; ++direction) {
+      const double angle = direction * std::numbers::pi / 4;
+      const Eigen::Array2d trial = place + step * Eigen::Array2d(portable::cos(angle), portable::sin(angle));
+      const double trial_room = clearance(obstacles, trial[0], trial[1], enough);
+      if (trial_room > room) {
+        room = trial_room;
+        place = trial;
+        climbed = true;
+        break;
+      }
+    }
+    if (!climbed) step /= 2;
+  }
+  return place;
+}
+
+LocalFrame frame_around(const Eigen::Array2d& place, const Period& period) {
+  LocalFrame frame{.period = {period.along(), period.across()}};
+  frame.shift(place.floor());
+  return frame;
+}
+
+[[noreturn]] void refuse_release(const std::string& reason, const std::string& remedy) {
+  throw Error("cannot release the droplet (" + reason + ") try " + remedy + ", or another seed");
+}
+
+/// A polygon smaller than the droplet has a smaller perimeter: a stiffer tension mode, a softer area mode.
+FireOptions fire_options(const RunParameters& run, double perimeter) {
+  const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, perimeter, perimeter / run.dp.vertices);
+  return {.mass = units::droplet_mass / run.dp.vertices,
+          .largest_step = 0.5 * largest_stable_step(modes),
+          .max_move = 0.05 * units::regular_edge_length(run.dp.vertices)};
+}
+
+DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles) {
+  const int n = run.dp.vertices;
+  const Eigen::Array2d place = nearest_void(obstacles);
+  // A hundredth less, so that nothing touches.
+  const double room = 0.99 * (clearance(obstacles, place[0], place[1], 2 * radius) - *run.dp.contact_range);
+  const double smallest_radius = 4 * run.dp.self_contact_range / (2 * std::numbers::pi);
+  if (room < smallest_radius)
+    refuse_release("no void near the centre of the box",
+                   "a wider obstacle-gap or a smaller self-contact-range");
+
+  double area = units::rest_area * std::min(1.0, room * room / (radius * radius));
+  DropletState state;
+  state.frame = frame_around(place, obstacles.period());
+  state.position = regular_polygon(n, area);
+  state.velocity = Eigen::ArrayXd::Zero(2 * n);
+  state.x() += place[0] - state.frame.origin[0];
+  state.y() += place[1] - state.frame.origin[1];
+
+  // The droplet grows with every contact, and its vertices are kept evenly spread, whatever its own interface
+  // is: vertices that run together make the interface too stiff for any step, and obstacles slip between
+  // those that are far apart. Springs along the interface have no energy, so they must be gentle for the
+  // minimiser; under a large tension they must not be, since contact then pulls vertices together at the
+  // corners of a squeezed droplet.
+  RunParameters growing = run;
+  growing.dp.perimeter_spring = PerimeterSpring::along;
+  growing.dp.perimeter_stiffness = 0.01 + 0.03 * run.dp.line_tension;
+  growing.dp.wall_contact = WallContact::edge;
+  growing.dp.self_contact = SelfContact::on;
+  growing.dp.gravity = Gravity::vertex;  // without weight: the springs need no reaction on the area yet
+  DpForces forces(growing, obstacles);
+  forces.set_weight(0);
+  const double vertex_weight = units::droplet_mass * units::gravity / n;
+  constexpr double growth = 1.02;  // of the area, per stage
+  while (area < units::rest_area) {
+    area = std::min(units::rest_area, area * growth);
+    forces.set_rest_area(area);
+    FireOptions stage = fire_options(growing, polygon_shape(state.position).perimeter);
+    stage.force_tolerance = vertex_weight;
+    stage.max_iterations = 400;
+    minimize_fire(forces, state, stage);
+    if (state.recentre().any()) forces.forget_contacts();
+  }
+
+  FireOptions options = fire_options(growing, polygon_shape(state.position).perimeter);
+  options.force_tolerance = release_force_tolerance * vertex_weight;
+  options.max_iterations = 100000;
+  FireOptions longer = options;
+  longer.max_iterations = 500000;
+  constexpr double damping_rate = 3;  // near that of the softest modes [1/t0]
+  bool rests = minimize_fire(forces, state, options).converged ||
+               settle(forces, state, longer, damping_rate).converged;
+  // As the springs along the interface have no energy, what is left of its sliding may go round a small cycle
+  // for ever. Weaker springs drive it less.
+  constexpr double weaker = 0.3;
+  constexpr int most_weakenings = 4;
+  for (int i = 0; i < most_weakenings && !rests; ++i) {
+    *growing.dp.perimeter_stiffness *= weaker;
+    DpForces weaker_forces(growing, obstacles);
+    weaker_forces.set_weight(0);
+    rests = settle(weaker_forces, state, longer, damping_rate).converged;
+  }
+  // Then with its own interface; only springs with a tension of their own begin to act with the run.
+  RunParameters own = run;
+  if (own.dp.perimeter_spring != PerimeterSpring::along) {
+    own.dp.perimeter_spring = growing.dp.perimeter_spring;
+    own.dp.perimeter_stiffness = growing.dp.perimeter_stiffness;
+  }
+  DpForces own_forces(own, obstacles);
+  own_forces.set_weight(0);
+  if (rests)
+    rests = settle(own_forces, state, longer, damping_rate).largest_force <=
+            release_sliding_tolerance * vertex_weight;
+  if (!rests) refuse_release("the grown droplet does not come to rest", "a larger line-tension");
+  if (num_enclosed(state, obstacles) > 0)
+    refuse_release("the grown droplet encloses an obstacle", "more vertices");
+  return state;
+}
+
+DropletState release_sp(const RunParameters& run, const ObstacleArray& obstacles) {
+  const Eigen::Array2d place = nearest_void(obstacles);
+  DropletState state;
+  state.frame = frame_around(place, obstacles.period());
+  state.position = place - state.frame.origin;
+  state.velocity = Eigen::ArrayXd::Zero(2);
+  SpForces forces(run, obstacles);
+  forces.set_weight(0);
+  const double weight = units::droplet_mass * units::gravity;
+  const double omega =
+      std::sqrt(contact_stiffness(*run.wall_stiffness, units::droplet_diameter) / units::droplet_mass);
+  const FireOptions options{.mass = units::droplet_mass,
+                            .largest_step = 0.2 / omega,
+                            .force_tolerance = release_force_tolerance * weight,
+                            .max_iterations = 100000,
+                            .max_move = 0.01};
+  if (!minimize_fire(forces, state, options).converged)
+    refuse_release("the soft disk does not come to rest", "a smaller wall-stiffness");
+  return state;
+}
+
+}  // namespace
+
+double clearance(const ObstacleArray& obstacles, double x, double y, double limit) {
+  std::vector<Obstacle> near;
+  obstacles.gather({x, y, 0, 0, 0, 0, limit}, near);
+  double nearest = limit;
+  for (const Obstacle& obstacle : near)
+    nearest = std::min(nearest, std::hypot(obstacle.x, obstacle.y) - obstacle.radius);
+  return nearest;
+}
+
+int num_enclosed(const DropletState& state, const ObstacleArray& obstacles) {
+  std::vector<Obstacle> near;
+  const auto x = state.x();
+  const auto y = state.y();
+  obstacles.gather({state.frame.origin[0], state.frame.origin[1], x.minCoeff(), x.maxCoeff(), y.minCoeff(),
+                    y.maxCoeff(), 0},
+                   near);
+  return static_cast<int>(std::count_if(near.begin(), near.end(), [&](const Obstacle& obstacle) {
+    return encloses(state.position, obstacle.x, obstacle.y);
+  }));
+}
+
+DropletState release_droplet(const RunParameters& run, const ObstacleArray& obstacles) {
+  return run.model == Model::dp ? release_dp(run, obstacles) : release_sp(run, obstacles);
+}
+
+}  // namespace clog

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <boost/random/exponential_distribution.hpp>
+
+#include "clog/core/tools/portable_math.hpp"
+
+/// Lets Boost's exponential distribution compare with a density that is the same on every processor; its own
+/// takes std::exp.
+template <>
+inline double boost::random::detail::unit_exponential_distribution<double>::f(double x) {
+  return clog::portable::exp(-x);
+}

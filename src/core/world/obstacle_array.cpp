@@ -1,0 +1,149 @@
+#include "clog/core/world/obstacle_array.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <sstream>
+#include <utility>
+
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/units.hpp"
+
+namespace clog {
+namespace {
+
+double wrapped(double value, double period) {
+  if (value >= 0 && value < period) return value;
+  const double inside = value - period * std::floor(value / period);
+  return inside < period ? inside : 0.0;  // a tiny negative value rounds up to the period itself
+}
+
+int cells_per_box(double box) { return std::max(1, static_cast<int>(box / units::droplet_diameter)); }
+
+}  // namespace
+
+ObstacleArray::ObstacleArray(const Period& period, std::vector<Obstacle> obstacles, std::vector<Wedge> wedges)
+    : cells_per_box_(cells_per_box(period.box)), wedges_(std::move(wedges)) {
+  binned_.period = period;
+  for (Obstacle& obstacle : obstacles) {
+    if (!(obstacle.radius > 0) || !std::isfinite(obstacle.radius) || !std::isfinite(obstacle.x) ||
+        !std::isfinite(obstacle.y)) {
+      std::ostringstream message;
+      message << "invalid obstacle at x=" << obstacle.x << ", y=" << obstacle.y << " with diameter "
+              << 2 * obstacle.radius << " (must be finite, the diameter positive)";
+      throw Error(message.str());
+    }
+    obstacle.x = wrapped(obstacle.x, period.along());
+    obstacle.y = wrapped(obstacle.y, period.across());
+    binned_.largest_radius = std::max(binned_.largest_radius, obstacle.radius);
+  }
+  struct Memory {
+    std::vector<Obstacle> obstacles;
+    std::vector<std::uint32_t> cell_start;
+  };
+  auto memory = std::make_shared<Memory>();
+  memory->cell_start = bin(obstacles);
+  memory->obstacles = std::move(obstacles);
+  binned_.obstacles = memory->obstacles;
+  binned_.cell_start = memory->cell_start;
+  memory_ = std::move(memory);
+}
+
+ObstacleArray::ObstacleArray(const BinnedObstacles& binned, std::shared_ptr<const void> memory)
+    : binned_(binned), memory_(std::move(memory)), cells_per_box_(cells_per_box(binned.period.box)) {}
+
+std::size_t ObstacleArray::num_cells(const Period& period) {
+  const std::size_t per_side = cells_per_box(period.box);
+  return period.boxes * per_side * per_side;
+}
+
+std::uint32_t ObstacleArray::cell_of(double x, double y) const {
+  const auto index = [this](double value, int num_cells) {
+    return std::min(static_cast<int>(value / period().box * cells_per_box_), num_cells - 1);
+  };
+  return static_cast<std::uint32_t>(index(y, cells_per_box_)) * num_columns() + index(x, num_columns());
+}
+
+std::vector<std::uint32_t> ObstacleArray::bin(std::vector<Obstacle>& obstacles) const {
+  std::vector<std::uint32_t> cell_start(num_cells(period()) + 1, 0);
+  std::vector<std::uint32_t> target(obstacles.size());
+  for (std::size_t i = 0; i < target.size(); ++i) {
+    target[i] = cell_of(obstacles[i].x, obstacles[i].y);
+    ++cell_start[target[i] + 1];
+  }
+  std::partial_sum(cell_start.begin(), cell_start.end(), cell_start.begin());
+  std::vector<std::uint32_t> next(cell_start.begin(), cell_start.end() - 1);
+  for (std::uint32_t& place : target) place = next[place]++;
+  // In place: a second copy would be most of the memory that it takes to build an array.
+  for (std::size_t i = 0; i < target.size(); ++i)
+    while (target[i] != i) {
+      const std::uint32_t place = target[i];
+      std::swap(obstacles[i], obstacles[place]);
+      std::swap(target[i], target[place]);
+    }
+  return cell_start;
+}
+
+template <class Visit>
+void ObstacleArray::visit_window(const Window& window, Visit visit) const {
+  const double reach = window.margin + binned_.largest_radius;
+  const double cells_per_length = cells_per_box_ / period().box;
+  const auto cell_index = [=](double position) {
+    return static_cast<int>(std::floor(position * cells_per_length));
+  };
+  const int column_first = cell_index(window.origin_x + window.x_min - reach);
+  const int column_last = cell_index(window.origin_x + window.x_max + reach);
+  const int row_first = cell_index(window.origin_y + window.y_min - reach);
+  const int row_last = cell_index(window.origin_y + window.y_max + reach);
+  const auto image_of = [](int cell, int num_cells) {
+    return static_cast<int>(std::floor(static_cast<double>(cell) / num_cells));
+  };
+
+  for (int row = row_first; row <= row_last; ++row) {
+    const int image_y = image_of(row, cells_per_box_);
+    for (int column = column_first; column <= column_last; ++column) {
+      const int image_x = image_of(column, num_columns());
+      const std::size_t cell = static_cast<std::size_t>(row - image_y * cells_per_box_) * num_columns() +
+                               (column - image_x * num_columns());
+      for (std::uint32_t k = binned_.cell_start[cell]; k < binned_.cell_start[cell + 1]; ++k) {
+        // Subtract the origin first: within the period this is exact, so forces do not depend on where the
+        // droplet is.
+        const double x = (binned_.obstacles[k].x - window.origin_x) + image_x * period().along();
+        const double y = (binned_.obstacles[k].y - window.origin_y) + image_y * period().across();
+        const double margin = window.margin + binned_.obstacles[k].radius;
+        if (x >= window.x_min - margin && x <= window.x_max + margin && y >= window.y_min - margin &&
+            y <= window.y_max + margin)
+          visit(k, x, y);
+      }
+    }
+  }
+}
+
+void ObstacleArray::gather(const Window& window, std::vector<Obstacle>& out) const {
+  visit_window(window, [&](std::uint32_t k, double x, double y) {
+    out.push_back({x, y, binned_.obstacles[k].radius});
+  });
+}
+
+ObstacleArray::Pair ObstacleArray::closest_pair() const {
+  Pair closest{{}, {}, std::numeric_limits<double>::infinity()};
+  // Pairs nearer than the margin are all seen; widen it until the smallest one found is certain.
+  double margin = 0.125 * units::droplet_diameter;
+  do {
+    margin *= 2;
+    for (std::uint32_t first = 0; first < binned_.obstacles.size(); ++first) {
+      const auto& [origin_x, origin_y, radius] = binned_.obstacles[first];
+      visit_window({origin_x, origin_y, -radius, radius, -radius, radius, margin},
+                   [&, r = radius](std::uint32_t second, double x, double y) {
+                     const double gap = std::hypot(x, y) - r - binned_.obstacles[second].radius;
+                     const bool is_itself = second == first && std::hypot(x, y) < period().box / 2;
+                     if (!is_itself && gap < closest.gap)
+                       closest = {binned_.obstacles[first], binned_.obstacles[second], gap};
+                   });
+    }
+  } while (closest.gap > margin && margin < period().box);
+  return closest;
+}
+
+}  // namespace clog

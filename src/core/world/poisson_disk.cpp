@@ -1,0 +1,465 @@
+#include <Eigen/Core>
+#include <algorithm>
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/uniform_int_distribution.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <numbers>
+#include <random>
+#include <span>
+#include <sstream>
+#include <vector>
+
+#include "clog/core/tools/error.hpp"
+#include "clog/core/world/lattice.hpp"
+#include "clog/core/world/obstacle_array.hpp"
+#include "core/tools/portable_exponential.hpp"
+#include "core/tools/vector_targets.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/world/poisson_disk.cpp"
+#include <hwy/foreach_target.h>
+// The code is plain; Highway compiles it for each of its targets.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace clog::HWY_NAMESPACE {
+namespace {
+
+// This file is compiled without fused multiply-adds: the same array with every instruction set.
+
+/// Places are kept in single precision, relative to a cell; this much more distance makes up for the
+/// rounding.
+constexpr double rounding = 1e-5;
+constexpr float nowhere = 1e6;
+
+struct Point {
+  float x, y;  // from the corner of its cell
+};
+
+// No function here that takes or returns vectors is ever called: all are inlined.
+#pragma GCC diagnostic ignored "-Wpsabi"
+constexpr int lanes = 8;
+using Floats [[gnu::vector_size(lanes * sizeof(float))]] = float;
+using Integers [[gnu::vector_size(lanes * sizeof(float))]] = std::int32_t;
+
+/// The points around a cell whose discs are all of one size. No branch depends on the random pattern of taken
+/// cells: mispredicted ones would cost more than the work itself.
+struct Surroundings {
+  const Point* cell;
+  int row_length;
+  float cell_size;
+  float distance2;
+
+  /// Cells are this part of the distance or larger: whoever is in the lower half of one need not look further
+  /// than two cells down and one up.
+  static constexpr double smallest_cell = 1 / 1.49;
+
+  /// Is a point within the distance of a place in the cell?
+  bool reach(float place_x, float place_y) const {
+    Integers is_near{};
+    visit_points(place_x, place_y, [&](const Floats& x, const Floats& y) {
+      const Floats dx = x - place_x;
+      const Floats dy = y - place_y;
+      is_near |= dx * dx + dy * dy < distance2;
+    });
+    return any(is_near) != 0;
+  }
+
+  /// Which quarters, each of this size, of a square in the cell lie wholly within the distance of one point?
+  /// One bit each: first along x, then along y.
+  std::int32_t cover_quarters(float square_x, float square_y, float size) const {
+    const float half = size / 2;
+    const auto far2 = [half](const Floats& from_corner) {
+      const Floats far = absolute(from_corner - half) + half;
+      return far * far;
+    };
+    Integers is_covered{};
+    visit_points(square_x, square_y, [&](const Floats& x, const Floats& y) {
+      const Floats x0 = far2(x - square_x), x1 = far2(x - (square_x + size));
+      const Floats y0 = far2(y - square_y), y1 = far2(y - (square_y + size));
+      is_covered |= ((x0 + y0 < distance2) & 1) | ((x1 + y0 < distance2) & 2) | ((x0 + y1 < distance2) & 4) |
+                    ((x1 + y1 < distance2) & 8);
+    });
+    return any(is_covered);
+  }
+
+ private:
+  static Floats absolute(const Floats& values) {
+    return reinterpret_cast<Floats>(reinterpret_cast<Integers>(values) & 0x7fffffff);
+  }
+
+  static std::int32_t any(const Integers& values) {
+    std::int32_t bits = 0;
+    for (int lane = 0; lane < lanes; ++lane) bits |= values[lane];
+    return bits;
+  }
+
+  /// Calls visit(x, y), seen from the cell's corner, for the points that can be within the distance of a
+  /// place in the same quarter of the cell, 2 rows of 4 cells at a time.
+  template <class Visit>
+  void visit_points(float place_x, float place_y, Visit visit) const {
+    const int first_column = -1 - static_cast<int>(place_x < cell_size / 2);
+    const int first_row = -1 - static_cast<int>(place_y < cell_size / 2);
+    // In the order that a vector instruction gives.
+    const Floats columns = Floats{0, 1, 0, 1, 2, 3, 2, 3} + static_cast<float>(first_column);
+    const Floats rows = Floats{0, 0, 1, 1, 0, 0, 1, 1} + static_cast<float>(first_row);
+    const Point* points = cell + first_row * row_length + first_column;
+    for (int row = 0; row < 4; row += 2) {
+      Floats lower, upper;
+      std::memcpy(&lower, points + row * row_length, sizeof lower);
+      std::memcpy(&upper, points + (row + 1) * row_length, sizeof upper);
+      const Floats x = __builtin_shufflevector(lower, upper, 0, 2, 8, 10, 4, 6, 12, 14);
+      const Floats y = __builtin_shufflevector(lower, upper, 1, 3, 9, 11, 5, 7, 13, 15);
+      visit(x + columns * cell_size, y + (rows + static_cast<float>(row)) * cell_size);
+    }
+  }
+};
+
+/// Random sequential addition of discs, surfaces at least a gap apart, in a period.
+///
+/// Each arriving disc draws its place and its radius; one that has no room leaves for good. The space it
+/// draws from has three dimensions: the place, and by how much the radius exceeds the smallest one, its
+/// `excess`. Discs of one size are the flat case, excess 0.
+///
+/// Discs arrive in squares that may still have room, at first the cells of a grid, as a Poisson process: in
+/// every round independently in every square. They are made square by square, memory walked in order, and
+/// only those that have room among the points of earlier rounds are taken up one after the other, in random
+/// order. After each round squares without room are dropped and the others cut into quarters; a square comes
+/// with a range of excesses, halved too when it is longer than the square is wide. Room means room for the
+/// smallest disc of the range, so nothing that would be accepted is ever left out.
+class SequentialAddition {
+ public:
+  /// @param distance  between the centres of two of the smallest discs
+  /// @param largest_excess  of a radius over the smallest one
+  SequentialAddition(const Period& period, double distance, double largest_excess, std::uint32_t seed)
+      : distance_(static_cast<float>(distance)),
+        distance2_(static_cast<float>(distance * distance * (1 + rounding))),
+        num_rows_(static_cast<int>(std::ceil(period.box * std::numbers::sqrt2 / distance))),
+        num_columns_(period.boxes * num_rows_),
+        cell_size_(period.box / num_rows_),
+        margin_(static_cast<int>(std::ceil((distance + 2 * largest_excess) / cell_size_))),
+        row_length_(num_columns_ + 2 * margin_),
+        are_alike_(largest_excess == 0 && cell_size_ > Surroundings::smallest_cell * distance),
+        points_(static_cast<std::size_t>(num_rows_ + 2 * margin_) * row_length_, Point{nowhere, nowhere}),
+        excess_(are_alike_ ? 0 : points_.size(), 0.0F),
+        size_(static_cast<float>(cell_size_)),
+        range_(static_cast<float>(largest_excess)),
+        engine_(make_engine(seed)) {
+    const std::size_t num_cells_around = (2 * margin_ + 1) * (2 * margin_ + 1);
+    for (std::vector<float>* near : {&near_x_, &near_y_, &near_excess_}) near->resize(num_cells_around + 1);
+  }
+
+  /// Adds points until there are `target` of them or no room is left.
+  [[gnu::flatten]] void fill(std::size_t target) {
+    for (const double darts_per_cell : first_rounds) {
+      for (int row = 0; row < num_rows_; ++row)
+        throw_darts(num_columns_, darts_per_cell, [&](int column) { return whole(cell_at(row, column)); });
+      take_up_darts(target);
+    }
+    std::vector<Squares> rows(num_rows_);
+    bool is_first = true;
+    for (std::size_t num_squares = 1; num_points_ < target && num_squares > 0; is_first = false) {
+      halve();
+      num_squares = 0;
+      for (int row = 0; row < num_rows_; ++row) {
+        Squares& squares = rows[row];
+        make_space_for_parts(is_first ? num_columns_ : squares.size());
+        if (is_first)
+          for (int column = 0; column < num_columns_; ++column) add_parts(whole(cell_at(row, column)));
+        else
+          for (std::size_t i = 0; i < squares.size(); ++i) add_parts(squares[i]);
+        squares.assign(std::span(parts_).first(num_parts_), range_ > 0);
+        num_squares += squares.size();
+        throw_darts(static_cast<int>(squares.size()), darts_per_square, [&](int i) { return squares[i]; });
+      }
+      take_up_darts(target);
+    }
+    darts_ = std::vector<Square>();
+  }
+
+  std::vector<Obstacle> circles(double smallest_radius) const {
+    std::vector<Obstacle> circles;
+    circles.reserve(num_points_);
+    for (int row = 0; row < num_rows_; ++row)
+      for (int column = 0; column < num_columns_; ++column) {
+        const Cell cell = cell_at(row, column);
+        if (is_taken(cell))
+          circles.push_back({column * cell_size_ + points_[cell].x, row * cell_size_ + points_[cell].y,
+                             smallest_radius + (excess_.empty() ? 0 : excess_[cell])});
+      }
+    return circles;
+  }
+
+ private:
+  /// Few at first, while most of them have room. Any numbers give the same statistics; these are fast.
+  static constexpr double first_rounds[] = {0.125, 0.25, 0.5, 1, 0.5};  // darts per cell
+  static constexpr double darts_per_square = 1;                         // in later rounds
+  /// Number of a cell in the grid, whose margins repeat the opposite side.
+  using Cell = std::int32_t;
+  /// A square that may still have room, or a dart: from the corner of its cell, and the low end of its range
+  /// of excesses.
+  struct Square {
+    float x, y, excess;
+    Cell cell;
+  };
+
+  /// Squares at rest; there are many, and only those of a mixture differ in their excess.
+  class Squares {
+   public:
+    void assign(std::span<const Square> squares, bool have_excess) {
+      // In the same memory: there are fewer and fewer of them.
+      places_.clear();
+      places_.reserve(squares.size());
+      for (const Square& square : squares) places_.push_back({square.x, square.y, square.cell});
+      excess_.clear();
+      if (!have_excess) return;
+      excess_.reserve(squares.size());
+      for (const Square& square : squares) excess_.push_back(square.excess);
+    }
+    std::size_t size() const { return places_.size(); }
+    Square operator[](std::size_t i) const {
+      const Place& place = places_[i];
+      return {place.x, place.y, excess_.empty() ? 0 : excess_[i], place.cell};
+    }
+
+   private:
+    struct Place {
+      float x, y;
+      Cell cell;
+    };
+    std::vector<Place> places_;
+    std::vector<float> excess_;
+  };
+
+  float distance_;
+  float distance2_;
+  int num_rows_;
+  int num_columns_;
+  double cell_size_;
+  int margin_;  // how many cells further a point within the largest distance can lie
+  int row_length_;
+  bool are_alike_;  // the usual discs, of one size
+  /// The points, each from its cell's corner. A cell can hold only one, as its diagonal is not longer than
+  /// the smallest distance.
+  std::vector<Point> points_;
+  std::vector<float> excess_;
+  std::size_t num_points_ = 0;
+  float size_;          // of the squares
+  float range_;         // of their excesses
+  int num_layers_ = 1;  // of excesses that a square was cut into
+  std::vector<Square> parts_;
+  std::ptrdiff_t num_parts_ = 0;
+  std::vector<Square> arriving_, darts_;
+  std::vector<float> near_x_, near_y_, near_excess_;
+  int num_near_ = 0;
+  Cell near_cell_ = -1;
+  boost::random::mt19937_64 engine_;
+  boost::random::exponential_distribution<double> exponential_;
+
+  static boost::random::mt19937_64 make_engine(std::uint32_t seed) {
+    std::seed_seq sequence{seed,
+                           std::uint32_t{0x0b57ac1e}};  // the constant keeps this stream apart from others
+    return boost::random::mt19937_64(sequence);
+  }
+
+  Cell cell_at(int row, int column) const { return (row + margin_) * row_length_ + column + margin_; }
+
+  bool is_taken(Cell cell) const { return points_[cell].x != nowhere; }
+
+  Surroundings around(Cell cell) const {
+    return {&points_[cell], row_length_, static_cast<float>(cell_size_), distance2_};
+  }
+
+  static Square whole(Cell cell) { return {0, 0, 0, cell}; }
+
+  /// Uniform in [0, 1), 24 bits.
+  static float uniform(std::uint64_t bits) {
+    return 0x1p-24F * static_cast<float>(static_cast<int>(bits & 0xffffff));
+  }
+
+  /// Square of the distance that two discs must keep, (distance + both excesses)^2.
+  float reach2(float both_excesses) const {
+    constexpr auto widened = static_cast<float>(1 + rounding);
+    return distance2_ + widened * both_excesses * (2 * distance_ + both_excesses);
+  }
+
+  bool has_room(const Square& dart) const {
+    if (are_alike_) return !around(dart.cell).reach(dart.x, dart.y);
+    const auto cell_size = static_cast<float>(cell_size_);
+    bool is_near = false;
+    for (int row = -margin_; row <= margin_; ++row)
+      for (int column = -margin_; column <= margin_; ++column) {
+        const Cell cell = dart.cell + row * row_length_ + column;
+        const float dx = points_[cell].x + static_cast<float>(column) * cell_size - dart.x;
+        const float dy = points_[cell].y + static_cast<float>(row) * cell_size - dart.y;
+        is_near |= dx * dx + dy * dy < reach2(excess_[cell] + dart.excess);
+      }
+    return !is_near;
+  }
+
+  /// A Poisson process along the squares; keeps the darts that have room so far.
+  /// @param square_at  (index) -> Square
+  template <class SquareAt>
+  void throw_darts(int num_squares, double darts_each, SquareAt square_at) {
+    const double spacing = 1 / darts_each;
+    arriving_.clear();
+    for (double place = spacing * exponential_(engine_); place < num_squares;
+         place += spacing * exponential_(engine_)) {
+      Square dart = square_at(static_cast<int>(place));
+      const std::uint64_t bits = engine_();
+      dart.x += size_ * uniform(bits);
+      dart.y += size_ * uniform(bits >> 24);
+      if (range_ > 0) dart.excess += range_ * uniform(engine_());
+      arriving_.push_back(dart);
+    }
+    auto kept = arriving_.begin();
+    for (const Square dart : arriving_) {  // no branch, as above
+      *kept = dart;
+      kept += has_room(dart);
+    }
+    darts_.insert(darts_.end(), arriving_.begin(), kept);
+  }
+
+  /// Tries the darts one after the other in random order.
+  void take_up_darts(std::size_t target) {
+    for (std::size_t i = 0; i < darts_.size(); ++i) {
+      boost::random::uniform_int_distribution<std::size_t> other(i, darts_.size() - 1);
+      std::swap(darts_[i], darts_[other(engine_)]);
+    }
+    for (std::size_t i = 0; i < darts_.size() && num_points_ < target; ++i) {
+      constexpr std::size_t ahead = 8;  // memory is slow where places are random: ask for it early
+      if (i + ahead < darts_.size()) prefetch_around(darts_[i + ahead].cell);
+      if (has_room(darts_[i])) add_point(darts_[i]);
+    }
+    darts_.clear();
+    near_cell_ = -1;
+  }
+
+  void prefetch_around(Cell cell) const {
+    for (int row = -margin_; row <= margin_; ++row)
+      for (const int column : {-margin_, margin_})
+        __builtin_prefetch(&points_[cell + row * row_length_ + column]);
+  }
+
+  void add_point(const Square& dart) {
+    const int row = dart.cell / row_length_ - margin_;
+    const int column = dart.cell % row_length_ - margin_;
+    const auto on_grid = [&](int index, int num) { return index >= -margin_ && index < num + margin_; };
+    for (const int image_row : {row - num_rows_, row, row + num_rows_}) {
+      if (!on_grid(image_row, num_rows_)) continue;
+      for (const int image_column : {column - num_columns_, column, column + num_columns_}) {
+        if (!on_grid(image_column, num_columns_)) continue;
+        const Cell cell = cell_at(image_row, image_column);
+        points_[cell] = {dart.x, dart.y};
+        if (!excess_.empty()) excess_[cell] = dart.excess;
+      }
+    }
+    ++num_points_;
+  }
+
+  /// Collects the points that may lie within the distance of a place in `cell`.
+  void look_around(Cell cell) {
+    const auto cell_size = static_cast<float>(cell_size_);
+    int num_near = 0;
+    for (int row = -margin_; row <= margin_; ++row)
+      for (int column = -margin_; column <= margin_; ++column) {
+        const Cell near = cell + row * row_length_ + column;
+        near_x_[num_near] = points_[near].x + static_cast<float>(column) * cell_size;
+        near_y_[num_near] = points_[near].y + static_cast<float>(row) * cell_size;
+        near_excess_[num_near] = excess_[near];
+        num_near += is_taken(near);  // no branch, as above
+      }
+    num_near_ = num_near;
+  }
+
+  /// The squares' new size and range of excesses, for add_parts().
+  void halve() {
+    size_ /= 2;
+    num_layers_ = range_ > size_ ? 2 : 1;
+    range_ /= static_cast<float>(num_layers_);
+  }
+
+  void make_space_for_parts(std::size_t num_squares) {
+    parts_.resize(std::max(parts_.size(), 4 * num_layers_ * num_squares));
+    num_parts_ = 0;
+  }
+
+  /// Adds the quarters of a square, in each layer of excesses, that are not wholly within the distance of one
+  /// point. Distances are those of has_room() to the last bit where squares have become as small as numbers
+  /// can tell: then a square has room or is left out.
+  void add_parts(const Square& square) {
+    if (is_taken(square.cell)) return;
+    if (are_alike_) {
+      const std::int32_t covered = around(square.cell).cover_quarters(square.x, square.y, size_);
+      for (int quarter = 0; quarter < 4; ++quarter)
+        add_quarter(square, quarter, 0, (covered >> quarter & 1) == 0);
+      return;
+    }
+    if (square.cell != near_cell_) look_around(near_cell_ = square.cell);
+    using Quarters = Eigen::Array4f;
+    const Quarters x = square.x + size_ * Quarters(0, 1, 0, 1);
+    const Quarters y = square.y + size_ * Quarters(0, 0, 1, 1);
+    const float half = size_ / 2;
+    for (int layer = 0; layer < num_layers_; ++layer) {
+      const float excess = square.excess + static_cast<float>(layer) * range_;
+      Quarters slack = Quarters::Constant(nowhere);
+      for (int i = 0; i < num_near_; ++i) {
+        const Quarters far_x = (near_x_[i] - x - half).abs() + half;
+        const Quarters far_y = (near_y_[i] - y - half).abs() + half;
+        slack = slack.min(far_x * far_x + far_y * far_y - reach2(near_excess_[i] + excess));
+      }
+      for (int quarter = 0; quarter < 4; ++quarter) add_quarter(square, quarter, excess, slack[quarter] >= 0);
+    }
+  }
+
+  void add_quarter(const Square& square, int quarter, float excess, bool has_room) {
+    parts_[num_parts_] = {square.x + size_ * static_cast<float>(quarter & 1),
+                          square.y + size_ * static_cast<float>(quarter >> 1), excess, square.cell};
+    num_parts_ += has_room;  // no branch, as above
+  }
+};
+
+}  // namespace
+
+/// At most `target` discs; what was needed to find them is given back.
+std::vector<Obstacle> add_circles(const ObstacleParameters& parameters, std::size_t target,
+                                  std::uint32_t seed) {
+  const double smallest = parameters.smallest_diameter();
+  SequentialAddition addition(parameters.period(), smallest + parameters.gap,
+                              parameters.diameter_spread * parameters.diameter, seed);
+  addition.fill(target);
+  return addition.circles(smallest / 2);
+}
+
+}  // namespace clog::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace clog {
+
+HWY_EXPORT(add_circles);
+
+ObstacleArray sample_obstacles(const ObstacleParameters& parameters, std::uint32_t seed) {
+  if (parameters.layout == ObstacleLayout::lattice) return lattice_obstacles(parameters, seed);
+  std::size_t target = SIZE_MAX;
+  if (parameters.density)
+    target = static_cast<std::size_t>(std::llround(*parameters.density * parameters.period().area()));
+  std::vector<Obstacle> obstacles = HWY_DYNAMIC_DISPATCH(add_circles)(parameters, target, seed);
+  if (parameters.density && obstacles.size() < target) {
+    std::ostringstream message;
+    message << "invalid obstacle-density=" << *parameters.density << " (no more than "
+            << static_cast<double>(obstacles.size()) / parameters.period().area()
+            << " obstacles per sigma^2 of diameter " << parameters.smallest_diameter();
+    if (parameters.diameter_spread > 0) message << " to " << parameters.largest_diameter();
+    message << " fit with gap " << parameters.gap
+            << ") use a lower density, a smaller gap, or obstacle-density=saturated";
+    throw Error(message.str());
+  }
+  return ObstacleArray(parameters.period(), std::move(obstacles));
+}
+
+}  // namespace clog
+#endif

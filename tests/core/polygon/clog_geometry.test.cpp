@@ -1,0 +1,223 @@
+#include "clog/core/polygon/clog_geometry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "clog/core/droplet/shape.hpp"
+#include "support.hpp"
+
+namespace clog {
+namespace {
+
+constexpr double range = 0.006;
+constexpr double radius = 0.15;  // of the obstacles
+
+struct Scene {
+  Eigen::ArrayXd position;
+  std::vector<Obstacle> obstacles;
+
+  ClogGeometry geometry() const { return clog_geometry(position, obstacles, range); }
+};
+
+/// An obstacle that a disc of diameter 1 around the origin touches, seen from there at an angle [degrees].
+Obstacle against_the_disc(double angle) {
+  const double distance = 0.5 + radius + 0.5 * range;
+  const double t = angle * std::numbers::pi / 180;
+  return {distance * std::cos(t), distance * std::sin(t), radius};
+}
+
+Scene disc_on(const std::vector<double>& angles) {
+  Scene scene{regular_polygon(256, units::rest_area), {}};
+  for (const double angle : angles) scene.obstacles.push_back(against_the_disc(angle));
+  return scene;
+}
+
+/// Corners joined by edges of about 0.01.
+Eigen::ArrayXd with_short_edges(const std::vector<Eigen::Array2d>& corners) {
+  std::vector<Eigen::Array2d> points;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Eigen::Array2d way = corners[(i + 1) % corners.size()] - corners[i];
+    const int pieces = std::max(1, static_cast<int>(std::lround(way.matrix().norm() / 0.01)));
+    for (int k = 0; k < pieces; ++k) points.push_back(corners[i] + way * k / pieces);
+  }
+  const auto n = static_cast<Eigen::Index>(points.size());
+  Eigen::ArrayXd position(2 * n);
+  for (Eigen::Index i = 0; i < n; ++i) position[i] = points[i][0], position[n + i] = points[i][1];
+  return position;
+}
+
+constexpr double inner = radius + 0.5 * range;
+constexpr double outer = 0.45;
+
+/// Hung over an obstacle at the origin: a half ring upstream of it, and a lobe of the given length on either
+/// side.
+Scene horseshoe(double right_lobe, double left_lobe) {
+  std::vector<Eigen::Array2d> corners;
+  const auto add_half_circle = [&](double r, double from, double to) {
+    for (int k = 0; k <= 60; ++k) {
+      const double t = (from + (to - from) * k / 60) * std::numbers::pi / 180;
+      corners.emplace_back(r * std::cos(t), r * std::sin(t));
+    }
+  };
+  corners.emplace_back(right_lobe, inner);
+  corners.emplace_back(right_lobe, outer);
+  add_half_circle(outer, 90, 270);
+  corners.emplace_back(left_lobe, -outer);
+  corners.emplace_back(left_lobe, -inner);
+  add_half_circle(inner, 270, 90);
+  return {with_short_edges(corners), {{0, 0, radius}}};
+}
+
+/// And each lobe stands on two small obstacles.
+Scene horseshoe_with_lobes_in_gaps() {
+  Scene scene = horseshoe(0.4, 0.4);
+  constexpr double small = 0.05, overlap = 1.2 * range;
+  for (const double y : {-0.4, -0.2, 0.2, 0.4})
+    scene.obstacles.push_back({0.4 + small + range - overlap, y, small});
+  return scene;
+}
+
+void expect_counts(const ClogGeometry& geometry, int wrapped, int gaps, int arcs) {
+  EXPECT_EQ(geometry.num_wrapped, wrapped);
+  EXPECT_EQ(geometry.num_gaps, gaps);
+  EXPECT_EQ(geometry.num_arcs, arcs);
+}
+
+TEST(ClogGeometry, ADiscOnTwoObstaclesIsSqueezed) {
+  const ClogGeometry geometry = disc_on({-40, 40}).geometry();
+  expect_counts(geometry, 0, 1, 2);
+  EXPECT_EQ(geometry.wrapped_support, 0);
+  EXPECT_EQ(geometry.mechanism(), ClogMechanism::squeezed);
+}
+
+TEST(ClogGeometry, ADiscWedgedAgainstAnObstacleBesideItIsSqueezed) {
+  // The one beside it pushes across the flow, or a little downstream.
+  for (const double beside : {-90.0, -100.0}) {
+    const ClogGeometry geometry = disc_on({beside, 17}).geometry();
+    expect_counts(geometry, 0, 1, 2);
+    EXPECT_EQ(geometry.mechanism(), ClogMechanism::squeezed) << beside;
+  }
+}
+
+TEST(ClogGeometry, ObstaclesFromBehindMakeNoGap) {
+  expect_counts(disc_on({-40, 40, 150, 210}).geometry(), 0, 1, 4);
+}
+
+TEST(ClogGeometry, ADropletOnOneObstacleIsHeldByNeither) {
+  const ClogGeometry geometry = disc_on({0}).geometry();
+  expect_counts(geometry, 0, 0, 1);
+  EXPECT_EQ(geometry.mechanism(), ClogMechanism::none);
+}
+
+TEST(ClogGeometry, NothingHoldsADropletThatTouchesNothing) {
+  Scene scene = disc_on({});
+  scene.obstacles.push_back({2, 0, radius});
+  const ClogGeometry geometry = scene.geometry();
+  expect_counts(geometry, 0, 0, 0);
+  EXPECT_TRUE(std::isnan(geometry.wrapped_support));
+  EXPECT_EQ(geometry.mechanism(), ClogMechanism::none);
+}
+
+TEST(ClogGeometry, AHorseshoeIsWrapped) {
+  const ClogGeometry geometry = horseshoe(0.4, 0.4).geometry();
+  expect_counts(geometry, 1, 0, 1);
+  EXPECT_EQ(geometry.wrapped_support, 1);
+  EXPECT_EQ(geometry.mechanism(), ClogMechanism::wrapped);
+}
+
+TEST(ClogGeometry, BothLobesMustReachBeyondTheObstacle) {
+  EXPECT_EQ(horseshoe(0.4, radius + 0.01).geometry().num_wrapped, 1);
+  EXPECT_EQ(horseshoe(0.4, radius - 0.01).geometry().num_wrapped, 0);
+  EXPECT_EQ(horseshoe(radius - 0.01, 0.4).geometry().num_wrapped, 0);
+}
+
+TEST(ClogGeometry, APocketThatOpensUpstreamOrSidewaysIsNotWrapped) {
+  Scene scene = horseshoe(0.4, 0.4);
+  const Eigen::Index n = scene.position.size() / 2;
+  Eigen::ArrayXd upstream(2 * n), sideways(2 * n);
+  upstream << -scene.position;
+  sideways << -scene.position.tail(n), scene.position.head(n);
+  scene.position = upstream;
+  EXPECT_EQ(scene.geometry().num_wrapped, 0);
+  scene.position = sideways;
+  EXPECT_EQ(scene.geometry().num_wrapped, 0);
+}
+
+TEST(ClogGeometry, AHorseshoeWhoseLobesStandInGapsIsHybrid) {
+  const ClogGeometry geometry = horseshoe_with_lobes_in_gaps().geometry();
+  EXPECT_EQ(geometry.num_wrapped, 1);
+  EXPECT_EQ(geometry.num_arcs, 5);
+  EXPECT_GE(geometry.num_gaps, 2);
+  EXPECT_GT(geometry.wrapped_support, 0.4);
+  EXPECT_LT(geometry.wrapped_support, 0.6);
+  EXPECT_EQ(geometry.mechanism(), ClogMechanism::hybrid);
+}
+
+/// Two obstacles at angles t1, t2 that the disc overlaps alike support it as cos t1 and cos t2.
+TEST(ClogGeometry, WeighsSupportByTheForceAgainstTheFlow) {
+  Scene scene = horseshoe(0.4, 0.4);
+  scene.obstacles.push_back({0.4 + radius, 0.3, radius});  // under one lobe, overlap: the whole range
+  const double before = horseshoe(0.4, 0.4).geometry().wrapped_support;
+  EXPECT_EQ(before, 1);
+  // The half ring: overlap range/2 along a width of 2 inner. The flat end of the lobe, at the distance of the
+  // radius: overlap range - s^2/(2 radius) at s from the middle, 4/3 sqrt(2 radius range) range in all.
+  const double ring = range / 2 * 2 * inner;
+  const double flat = 4.0 / 3 * std::sqrt(2 * radius * range) * range;
+  EXPECT_NEAR(scene.geometry().wrapped_support, ring / (ring + flat), 0.04);
+}
+
+TEST(ClogGeometry, IsTheSameWhereverTheDropletIs) {
+  const Scene scene = horseshoe_with_lobes_in_gaps();
+  const ClogGeometry expected = scene.geometry();
+  DpParameters as_it_is;  // the polygon's own edges
+  as_it_is.wall_contact = WallContact::vertex;
+  as_it_is.contact_range = range;
+  // Across both borders of the box, too.
+  for (const Eigen::Array2d& place :
+       {Eigen::Array2d(10, 10), Eigen::Array2d(19.9, 10), Eigen::Array2d(0.05, 19.95)}) {
+    std::vector<Obstacle> moved = scene.obstacles;
+    for (Obstacle& obstacle : moved) obstacle.x += place[0], obstacle.y += place[1];
+    const ObstacleArray array(20, moved);
+    DropletState state = test::state_of(scene.position);
+    state.frame.origin = place;
+    const ClogGeometry found = clog_geometry(state, array, as_it_is);
+    expect_counts(found, expected.num_wrapped, expected.num_gaps, expected.num_arcs);
+    EXPECT_NEAR(found.wrapped_support, expected.wrapped_support, 1e-9);
+  }
+}
+
+TEST(ClogGeometry, IsTheSameInAMirror) {
+  for (const Scene& scene : {horseshoe_with_lobes_in_gaps(), disc_on({-30, 45}), horseshoe(0.4, 0.2)}) {
+    const ClogGeometry expected = scene.geometry();
+    Scene mirrored = scene;
+    const Eigen::Index n = scene.position.size() / 2;
+    mirrored.position.head(n) = scene.position.head(n).reverse();
+    mirrored.position.tail(n) = -scene.position.tail(n).reverse();
+    for (Obstacle& obstacle : mirrored.obstacles) obstacle.y *= -1;
+    const ClogGeometry found = mirrored.geometry();
+    expect_counts(found, expected.num_wrapped, expected.num_gaps, expected.num_arcs);
+    EXPECT_NEAR(found.wrapped_support, expected.wrapped_support, 1e-9);
+  }
+}
+
+TEST(ClogGeometry, DoesNotDependOnTheFirstVertex) {
+  const Scene scene = horseshoe_with_lobes_in_gaps();
+  const ClogGeometry expected = scene.geometry();
+  const Eigen::Index n = scene.position.size() / 2;
+  for (const Eigen::Index shift : {Eigen::Index{1}, n / 3, n - 5}) {
+    Scene turned = scene;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      turned.position[i] = scene.position[(i + shift) % n];
+      turned.position[n + i] = scene.position[n + (i + shift) % n];
+    }
+    const ClogGeometry found = turned.geometry();
+    expect_counts(found, expected.num_wrapped, expected.num_gaps, expected.num_arcs);
+    EXPECT_NEAR(found.wrapped_support, expected.wrapped_support, 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace clog

@@ -1,0 +1,248 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "clog/core/polygon/dp_droplet.hpp"
+#include "clog/core/run/resolve.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/instruction_set.hpp"
+#include "support.hpp"
+
+namespace clog {
+namespace {
+
+using namespace test;
+
+/// The step as it is written in the documentation, a line for each formula, on the readable force.
+class ReadableDroplet {
+ public:
+  ReadableDroplet(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& initial)
+      : run_(run), n_(run.dp.vertices), forces_(run, obstacles), state_(initial), force_(2 * n_) {
+    forces_.update_contacts(state_, {.absolute = 0.05, .relative = 0.05});
+    forces_.evaluate(state_, force_);
+  }
+  const DropletState& state() const { return state_; }
+
+  void step() {
+    const double h = *run_.time_step / 2;
+    const double h_over_m = h * n_ / units::droplet_mass;
+    state_.velocity += h_over_m * force_ + h * drag(state_.velocity);
+    state_.position += *run_.time_step * state_.velocity;
+    forces_.evaluate(state_, force_);
+    // The drag of the second half kick is that of its end: by iteration.
+    const Eigen::ArrayXd kicked = state_.velocity + h_over_m * force_;
+    // Averaging keeps the iteration stable next to a wall.
+    for (int i = 0; i < 300; ++i)
+      state_.velocity += 0.4 * (kicked + h * drag(state_.velocity) - state_.velocity);
+  }
+
+ private:
+  RunParameters run_;
+  int n_;
+  DpForces forces_;
+  DropletState state_;
+  Eigen::ArrayXd force_;
+
+  /// Deceleration by drag of vertices with these velocities.
+  Eigen::ArrayXd drag(const Eigen::ArrayXd& v) {
+    const double far = units::gravity / run_.drag.terminal_speed;
+    const bool on_area = run_.dp.gravity == Gravity::area;
+    Eigen::ArrayXd rate = Eigen::ArrayXd::Constant(n_, far * run_.drag.relative);
+    if (run_.drag.near_wall > 0)
+      rate += far * run_.drag.near_wall * forces_.wall_distance().pow(-run_.drag.near_wall_exponent);
+    const double to_mean = far * (on_area ? run_.drag.relative : run_.drag.relative - 1);
+    Eigen::ArrayXd result(2 * n_);
+    result << to_mean * v.head(n_).mean() - rate * v.head(n_),
+        to_mean * v.tail(n_).mean() - rate * v.tail(n_);
+    if (on_area) {
+      const auto g = [this](int k) { return forces_.centroid_gradient().segment(k * n_, n_); };
+      const double area_x = (g(0) * v.head(n_) + g(1) * v.tail(n_)).sum();
+      const double area_y = (g(2) * v.head(n_) + g(3) * v.tail(n_)).sum();
+      result.head(n_) -= far * n_ * (area_x * g(0) + area_y * g(2));
+      result.tail(n_) -= far * n_ * (area_x * g(1) + area_y * g(3));
+    }
+    return result;
+  }
+};
+
+/// Of the nearest vertex.
+double distance_from(const Wedge& wedge, const DropletState& state) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (Eigen::Index i = 0; i < state.size(); ++i)
+    nearest = std::min(
+        nearest, distance_to(wedge, Eigen::Array2d(state.x()[i], state.y()[i]) - wedge.centre()).distance);
+  return nearest;
+}
+
+struct StepCase {
+  std::string name;
+  void (*change)(RunParameters&);
+};
+
+class Step : public testing::TestWithParam<StepCase> {
+ protected:
+  void TearDown() override { use_instruction_set("auto"); }
+
+  static RunParameters parameters(int vertices) {
+    RunParameters run;
+    run.dp.vertices = vertices;
+    run.dp.line_tension = 0.3;
+    run.time_step = 1e-3;
+    // The published ranges: contacts are as large as the films and edges that the tests make.
+    run.dp.contact_range = units::regular_edge_length(vertices) / 2;
+    run.dp.self_contact_range = units::regular_edge_length(vertices);
+    GetParam().change(run);
+    return resolve(run);
+  }
+  /// Of about a droplet's area.
+  static Eigen::ArrayXd full_size_dumbbell(int vertices, double film) {
+    const double thin = units::regular_edge_length(vertices);
+    const double size = std::sqrt(units::rest_area / polygon_shape(dumbbell(vertices, thin)).area);
+    return size * dumbbell(vertices, film / size);
+  }
+};
+
+TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
+  // A droplet with a neck so thin that it touches itself, uneven vertices, an obstacle on the neck and one at
+  // its end, and a wedge on the neck and at the other end.
+  for (const int vertices : {64, 101, 256}) {
+    const RunParameters run = parameters(vertices);
+    const double diameter = units::regular_edge_length(vertices);
+    const double film = 0.98 * diameter;
+    DropletState initial = state_of(shaken(full_size_dumbbell(vertices, film), 0.002 * film));
+    initial.velocity = shaken(Eigen::ArrayXd::Zero(2 * vertices), 0.03, 7);
+    const double end = initial.x().maxCoeff();
+    // A flank of one wedge touches a vertex, and the tip of the other.
+    const double touching = 0.45 * diameter;
+    Eigen::Index left, below;
+    initial.x().minCoeff(&left);
+    (initial.x().abs() + (initial.y() > 0).cast<double>()).minCoeff(&below);
+    const std::vector<Wedge> wedges = {
+        {.tip = {initial.x()[left] - touching, 0.03}, .axis = {-0.6, 0.8}, .half_angle = 1.2, .radius = 0.02},
+        {.tip = {initial.x()[below], initial.y()[below] - touching},
+         .axis = {0, -1},
+         .half_angle = 0.5,
+         .radius = 0.03}};
+    const ObstacleArray walls(
+        20, {{end + 0.15 + touching, 0.02, 0.15}, {0.01, film / 2 + 0.1 + touching, 0.1}}, wedges);
+    for (const Wedge& wedge : wedges) ASSERT_LT(distance_from(wedge, initial), diameter / 2);
+    const auto readable_form = [&] {
+      ReadableDroplet droplet(run, walls, initial);
+      for (int step = 0; step < 3; ++step) droplet.step();
+      return droplet.state();
+    };
+    const auto position_error = [](const DropletState& a, const DropletState& b) {
+      return (a.position - b.position).abs().maxCoeff();
+    };
+    const auto velocity_error = [](const DropletState& a, const DropletState& b) {
+      return (a.velocity - b.velocity).abs().maxCoeff() / b.velocity.abs().maxCoeff();
+    };
+    use_instruction_set(instruction_sets().back());
+    const DropletState baseline = readable_form();
+    for (const std::string& set : instruction_sets()) {
+      use_instruction_set(set);
+      const DropletState readable = readable_form();
+      EXPECT_LT(position_error(readable, baseline), 1e-14) << set << ", " << vertices;
+      EXPECT_LT(velocity_error(readable, baseline), 3e-12) << set << ", " << vertices;
+      DpDroplet droplet(run, walls, initial);
+      ASSERT_GT(droplet.potential_energy().self_contact, 0);
+      if (run.dp.wall_contact == WallContact::edge) {
+        ASSERT_GT(droplet.potential_energy().wall, 0);
+      }
+      droplet.advance(3);
+      ASSERT_EQ(droplet.num_integrated_steps(), 3) << "the reference has no sub-steps";
+      EXPECT_LT(position_error(droplet.state(), readable), 1e-14) << set << ", " << vertices;
+      EXPECT_LT(velocity_error(droplet.state(), readable), 3e-12) << set << ", " << vertices;
+    }
+  }
+}
+
+TEST_P(Step, MeetsContactsThatBeginBetweenTwoLooks) {
+  // A neck that closes within 32 steps and opens again, of which some vertex is the first and some edge the
+  // last.
+  for (const int vertices : {64, 97, 101, 256}) {
+    const RunParameters run = parameters(vertices);
+    const double diameter = units::regular_edge_length(vertices);
+    DropletState initial = state_of(renumbered(
+        shaken(full_size_dumbbell(vertices, 1.03 * diameter), 0.002 * diameter), vertices / 4 + 1));
+    initial.velocity.tail(vertices) =
+        -30 * diameter * initial.y().sign() * (-(initial.x() / 0.2).square()).exp();
+    const ObstacleArray walls(20, {{-1.5, 0, 0.15}});
+    ReadableDroplet readable(run, walls, initial);
+    double deepest = 0;
+    for (int step = 0; step < 40; ++step) {
+      readable.step();
+      deepest = std::max(deepest, DpDroplet(run, walls, readable.state()).potential_energy().self_contact);
+    }
+    ASSERT_GT(deepest, 0);
+    for (const std::string& set : instruction_sets()) {
+      use_instruction_set(set);
+      DpDroplet droplet(run, walls, initial);
+      ASSERT_EQ(droplet.potential_energy().self_contact, 0);
+      droplet.advance(40);
+      ASSERT_EQ(droplet.num_integrated_steps(), 40) << "the reference has no sub-steps";
+      EXPECT_LT((droplet.state().position - readable.state().position).abs().maxCoeff(), 1e-12)
+          << set << ", " << vertices;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Interfaces, Step,
+    testing::Values(StepCase{"robust", [](RunParameters&) {}},
+                    StepCase{"robust_near_walls", [](RunParameters& r) { r.drag.near_wall = 0.1; }},
+                    StepCase{"other_exponent",
+                             [](RunParameters& r) {
+                               r.drag.near_wall = 0.1;
+                               r.drag.near_wall_exponent = 1.1;
+                               r.drag.relative = 3;
+                             }},
+                    StepCase{"mean_springs",
+                             [](RunParameters& r) {
+                               r.dp.perimeter_spring = PerimeterSpring::mean;
+                               r.dp.gravity = Gravity::vertex;
+                             }},
+                    StepCase{"rest_springs_near_walls",
+                             [](RunParameters& r) {
+                               r.dp.perimeter_spring = PerimeterSpring::rest;
+                               r.dp.gravity = Gravity::vertex;
+                               r.drag.near_wall = 0.1;
+                               r.drag.relative = 2;
+                             }},
+                    StepCase{"vertex_contact",
+                             [](RunParameters& r) { r.dp.wall_contact = WallContact::vertex; }},
+                    StepCase{"wetted", [](RunParameters& r) { r.dp.wall_tension = 0.5; }}),
+    [](const auto& tested) { return tested.param.name; });
+
+TEST(InstructionSet, DecidesTheReadableFormToo) {
+  // Other sets add up in another order and round less often: some bit of many differs.
+  RunParameters run;
+  run.dp.line_tension = 0.3;
+  run = resolve(run);
+  const DropletState state = state_of(shaken(dumbbell(256, 0.1), 0.002));
+  const ObstacleArray walls(20, {});
+  const auto force_with = [&](const std::string& set) {
+    use_instruction_set(set);
+    DpForces forces(run, walls);
+    Eigen::ArrayXd force(state.position.size());
+    forces.evaluate(state, force);
+    use_instruction_set("auto");
+    return force;
+  };
+  std::vector<std::string> others = instruction_sets();
+  const Eigen::ArrayXd baseline = force_with(others.back());
+  others.pop_back();
+  for (const std::string& set : others) EXPECT_TRUE((force_with(set) != baseline).any()) << set;
+}
+
+TEST(InstructionSet, OfAnotherProcessorIsRefused) {
+  EXPECT_THROW(use_instruction_set("avx1024"), Error);
+  EXPECT_EQ(instruction_set(), instruction_sets().front());
+}
+
+}  // namespace
+}  // namespace clog

@@ -1,0 +1,212 @@
+#include "clog/core/run/systems.hpp"
+
+#include <gtest/gtest.h>
+
+#include "clog/core/run/resolve.hpp"
+#include "clog/core/tools/error.hpp"
+
+namespace clog {
+namespace {
+
+RunParameters small_run(double line_tension = 1, int vertices = 64) {
+  RunParameters run;
+  run.dp.line_tension = line_tension;
+  run.dp.vertices = vertices;
+  run.obstacles.box = 20;
+  run.max_time = 40;
+  run.seed = 3;
+  return resolve(run);
+}
+
+RunResult result_of(const RunParameters& parameters, int checks_at_a_time) {
+  DropletRun run = run_in_array(parameters);
+  while (!run.advance(checks_at_a_time)) {
+  }
+  return run.result();
+}
+
+void expect_identical(const RunResult& a, const RunResult& b) {
+  EXPECT_EQ(a.status, b.status);
+  EXPECT_EQ(a.distance, b.distance);
+  EXPECT_EQ(a.lateral, b.lateral);
+  EXPECT_EQ(a.time, b.time);
+  EXPECT_EQ(a.kinetic_energy_ratio, b.kinetic_energy_ratio);
+  EXPECT_EQ(a.shape_parameter, b.shape_parameter);
+  EXPECT_EQ(a.steps, b.steps);
+  EXPECT_EQ(a.mechanism, b.mechanism);
+}
+
+void expect_diverged(const RunResult& result) {
+  EXPECT_EQ(result.status, RunStatus::failed);
+  EXPECT_NE(result.message.find("diverged"), std::string::npos) << result.message;
+}
+
+TEST(DropletRun, IsTheSameHoweverItIsSliced) {
+  const RunResult at_once = result_of(small_run(), 100000);
+  expect_identical(at_once, result_of(small_run(), 1));
+  expect_identical(at_once, result_of(small_run(), 7));
+}
+
+/// Short enough for a test, long enough for three snapshots.
+RunParameters long_run(Model model) {
+  RunParameters run;
+  run.obstacles.box = 20;
+  run.obstacles.gap = 0.5;
+  run.time_step = 1e-3;
+  run.max_time = 850;
+  run.model = model;
+  if (model == Model::sp) run.wall_stiffness = 0.3;
+  if (model == Model::dp) run.dp.vertices = 64, run.dp.line_tension = 0.05, run.drag.near_wall = 0.02;
+  return resolve(run);
+}
+
+DropletRun resume_in_array(const RunParameters& run, std::span<const std::byte> snapshot) {
+  return DropletRun::resume(run, std::make_shared<ObstacleArray>(sample_obstacles(run.obstacles, run.seed)),
+                            snapshot);
+}
+
+TEST(DropletRun, GoesOnFromEverySnapshotBitForBit) {
+  for (const Model model : {Model::dp, Model::sp}) {
+    const RunParameters run = long_run(model);
+    DropletRun whole = run_in_array(run);
+    EXPECT_TRUE(whole.snapshot().empty());
+    std::vector<std::vector<std::byte>> snapshots;
+    while (!whole.advance(1))
+      if (!whole.snapshot().empty() && (snapshots.empty() || snapshots.back() != whole.snapshot()))
+        snapshots.push_back(whole.snapshot());
+    ASSERT_EQ(snapshots.size(), 3u);
+    for (const std::vector<std::byte>& snapshot : snapshots) {
+      DropletRun resumed = resume_in_array(run, snapshot);
+      EXPECT_GT(resumed.time(), 200);
+      while (!resumed.advance(7)) {
+      }
+      expect_identical(resumed.result(), whole.result());
+      EXPECT_EQ(resumed.result().speed.mean, whole.result().speed.mean);
+      EXPECT_TRUE((resumed.droplet().state().position == whole.droplet().state().position).all());
+      EXPECT_EQ(resumed.snapshot(), whole.snapshot());
+    }
+  }
+}
+
+TEST(DropletRun, RefusesASnapshotThatIsTornOrOfAnotherRun) {
+  const RunParameters run = long_run(Model::sp);
+  DropletRun whole = run_in_array(run);
+  while (whole.snapshot().empty()) ASSERT_FALSE(whole.advance(100));
+  std::vector<std::byte> bytes = whole.snapshot();
+  EXPECT_THROW(resume_in_array(long_run(Model::dp), bytes), Error);
+  for (const std::size_t size : {bytes.size() - 1, bytes.size() / 2, std::size_t{4}, std::size_t{0}})
+    EXPECT_THROW(resume_in_array(run, std::span(bytes).first(size)), Error) << size;
+  bytes.push_back(std::byte{0});
+  EXPECT_THROW(resume_in_array(run, bytes), Error);
+  bytes.pop_back();
+  bytes[0] = ~bytes[0];
+  EXPECT_THROW(resume_in_array(run, bytes), Error);
+}
+
+TEST(DropletRun, OfAnotherSeedDiffers) {
+  RunParameters other = small_run();
+  other.seed = 4;
+  EXPECT_NE(result_of(small_run(), 100).distance, result_of(other, 100).distance);
+}
+
+TEST(DropletRun, EndsFlowingWhenItsTimeIsUp) {
+  RunParameters parameters = small_run();
+  parameters.obstacles.gap = 1.2;
+  const RunResult result = result_of(parameters, 100);
+  EXPECT_EQ(result.status, RunStatus::flowing);
+  EXPECT_NEAR(result.time, 40, 1e-3);  // a whole number of steps
+  EXPECT_EQ(result.mechanism, ClogMechanism::none);
+  EXPECT_GT(result.distance, 0.5);
+  EXPECT_GT(result.speed.mean, 0.5 * parameters.drag.terminal_speed);
+}
+
+TEST(DropletRun, AStiffDropletInNarrowGapsClogsAndStaysWhereItIs) {
+  RunParameters parameters = small_run(2);
+  parameters.max_time = 5000;
+  parameters.clog_detection = ClogDetection::threshold;
+  DropletRun run = run_in_array(parameters);
+  while (!run.advance(1000)) {
+  }
+  ASSERT_EQ(run.result().status, RunStatus::clogged);
+  EXPECT_LT(run.result().kinetic_energy_ratio, 1e-17);
+  EXPECT_LT(run.result().time, 5000);
+  EXPECT_EQ(run.result().mechanism, ClogMechanism::squeezed);
+  EXPECT_GE(run.result().geometry.num_arcs, 2);
+
+  // Integrating on must not set it free: the same run with a threshold it cannot reach.
+  RunParameters on = parameters;
+  on.clog_energy = 1e-300;
+  on.max_time = 2 * run.result().time + 100;
+  const RunResult later = result_of(on, 1000);
+  EXPECT_EQ(later.status, RunStatus::flowing);
+  EXPECT_NEAR(later.distance, run.result().distance, 1e-6);
+}
+
+TEST(DropletRun, KeepsItsContactsShallowAndItsAreaOnTheWay) {
+  for (const double line_tension : {0.2, 1.0, 10.0}) {
+    DropletRun run = run_in_array(small_run(line_tension, 256));
+    while (!run.advance(50)) {
+      const PolygonShape shape = run.droplet().shape();
+      EXPECT_NEAR(shape.area, 0.7854, 0.02);
+      EXPECT_LT(shape.shape_parameter(), 5);
+    }
+    EXPECT_NE(run.result().status, RunStatus::failed);
+  }
+}
+
+TEST(DropletRun, ADivergedRunIsAResult) {
+  // Unchecked parameters: a soft disk whose contacts no such step resolves.
+  RunParameters parameters = small_run();
+  parameters.model = Model::sp;
+  parameters.wall_stiffness = 1e9;
+  parameters.time_step = 0.5;
+  parameters.drag.terminal_speed = 30;
+  parameters.max_time = 1e5;
+  expect_diverged(result_of(parameters, 100));
+}
+
+TEST(DropletRun, ABurstPolygonIsAResultToo) {
+  // Unchecked parameters: a step that would have to be split more often than is sensible.
+  RunParameters parameters = small_run();
+  parameters.drag.terminal_speed = 100;
+  parameters.time_step = 5;
+  parameters.max_time = 1e6;
+  expect_diverged(result_of(parameters, 10));
+}
+
+TEST(DropletRun, ADropletThatHasNotFallenYetIsNotClogged) {
+  RunParameters parameters = small_run();
+  parameters.obstacles.gap = 1.2;
+  parameters.drag.terminal_speed = 10;
+  parameters.clog_energy = 5e-4;  // it is slower than this at its first checks
+  DropletRun run = run_in_array(parameters);
+  run.advance(5);
+  EXPECT_EQ(run.result().status, RunStatus::running);
+}
+
+TEST(DropletRun, RunsWithSpringsToTheRestLength) {
+  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+    RunParameters parameters;
+    parameters.dp.perimeter_spring = PerimeterSpring::rest;
+    parameters.dp.vertices = 128;
+    parameters.obstacles.box = 20;
+    parameters.max_time = 3;
+    parameters.seed = seed;
+    EXPECT_EQ(result_of(resolve(parameters), 10).status, RunStatus::flowing) << "seed " << seed;
+  }
+}
+
+TEST(DropletRun, FollowsASoftDiskToo) {
+  RunParameters parameters;
+  parameters.model = Model::sp;
+  parameters.wall_stiffness = 5;
+  parameters.obstacles.box = 20;
+  parameters.max_time = 2000;
+  const RunResult result = result_of(resolve(parameters), 1000);
+  EXPECT_EQ(result.status, RunStatus::clogged);
+  EXPECT_EQ(result.shape_parameter, 1);
+  EXPECT_EQ(result.mechanism, ClogMechanism::squeezed);
+}
+
+}  // namespace
+}  // namespace clog

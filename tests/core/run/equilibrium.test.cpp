@@ -1,0 +1,223 @@
+#include "clog/core/run/equilibrium.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string_view>
+#include <vector>
+
+#include "clog/core/run/resolve.hpp"
+#include "clog/core/run/systems.hpp"
+#include "support.hpp"
+
+namespace clog {
+namespace {
+
+using std::numbers::pi;
+
+RunParameters robust(double line_tension = 1) {
+  RunParameters run;
+  run.dp.line_tension = line_tension;
+  run.dp.vertices = 128;
+  run.drag.terminal_speed = 0.1;
+  run.obstacles.box = 20;
+  run.max_time = 1000;
+  return run;
+}
+RunParameters heavy_interface() {
+  RunParameters run = robust();
+  run.dp.perimeter_spring = PerimeterSpring::mean;
+  run.dp.gravity = Gravity::vertex;
+  return run;
+}
+RunParameters soft_disk(double wall_stiffness = 5) {
+  RunParameters run = robust();
+  run.model = Model::sp;
+  run.wall_stiffness = wall_stiffness;
+  return run;
+}
+
+/// At rest, above obstacles around x = 10.
+DropletState droplet_above(const RunParameters& run, double y) {
+  DropletState state = test::state_of(free_droplet(run));
+  state.x() += 9.3;
+  state.y() += y;
+  return state;
+}
+DropletRun falls_onto(RunParameters run, std::vector<Obstacle> obstacles, double y = 10.02) {
+  run = resolve(run);
+  return {run, std::make_shared<ObstacleArray>(20, std::move(obstacles)), droplet_above(run, y), 2.0};
+}
+const std::vector<Obstacle> narrow_gap{{10, 9.6, 0.15}, {10, 10.4, 0.15}};
+const std::vector<Obstacle> single{{10, 10, 0.15}};
+
+/// Of the area; the vertices' mean also moves when the interface slides around itself.
+Eigen::Array2d centre(const DropletState& state) {
+  return state.size() > 1 ? area_centroid(state.position) : state.centre();
+}
+
+RunResult finished(DropletRun run) {
+  while (!run.advance(100)) {
+  }
+  return run.result();
+}
+
+class Certified : public testing::TestWithParam<const char*> {
+ protected:
+  RunParameters parameters() const {
+    const std::string_view model = GetParam();
+    return model == "robust" ? robust() : model == "heavy_interface" ? heavy_interface() : soft_disk();
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Models, Certified, testing::Values("robust", "heavy_interface", "soft_disk"),
+                         [](const auto& model) { return model.param; });
+
+TEST_P(Certified, ADropletInAGapClogsWhereItComesToRest) {
+  RunParameters run = parameters();
+  run.clog_detection = ClogDetection::threshold;
+  const RunResult waited = finished(falls_onto(run, narrow_gap));
+  run.clog_detection = ClogDetection::certified;
+  const RunResult certified = finished(falls_onto(run, narrow_gap));
+  ASSERT_EQ(waited.status, RunStatus::clogged);
+  ASSERT_EQ(certified.status, RunStatus::clogged);
+  EXPECT_EQ(waited.clogged_by, ClogDetection::threshold);
+  EXPECT_EQ(certified.clogged_by, ClogDetection::certified);
+  EXPECT_NEAR(certified.distance, waited.distance, 1e-3);
+  EXPECT_NEAR(certified.lateral, waited.lateral, 1e-3);
+  EXPECT_NEAR(certified.shape_parameter, waited.shape_parameter, 1e-3);
+  EXPECT_LT(certified.steps, 0.6 * static_cast<double>(waited.steps));
+}
+
+TEST_P(Certified, ADropletThatBalancesOnAnObstacleSlipsOff) {
+  RunParameters run = parameters();
+  run.clog_detection = ClogDetection::certified;
+  DropletRun balanced = falls_onto(run, single, 10 + 1e-5);
+  double slowest = 1;
+  while (!balanced.advance(1))
+    if (balanced.time() > 10) slowest = std::min(slowest, balanced.kinetic_energy_ratio());
+  EXPECT_LT(slowest, 5e-5) << "it never looked as if it were at rest";
+  EXPECT_EQ(balanced.result().status, RunStatus::passed);
+}
+
+TEST_P(Certified, TheCourseOfARunDoesNotDependOnIt) {
+  RunParameters run = parameters();
+  run.clog_detection = ClogDetection::certified;
+  DropletRun certified = falls_onto(run, single, 10 + 1e-5);
+  run.clog_detection = ClogDetection::threshold;
+  DropletRun other = falls_onto(run, single, 10 + 1e-5);
+  for (int i = 0; i < 50; ++i) {
+    certified.advance(20);
+    other.advance(20);
+    ASSERT_TRUE((certified.droplet().state().position == other.droplet().state().position).all());
+  }
+}
+
+TEST_P(Certified, RestIsFoundFromNearbyOnly) {
+  RunParameters run = resolve(parameters());
+  run.clog_detection = ClogDetection::threshold;
+  DropletRun droplet = falls_onto(run, narrow_gap);
+  while (droplet.time() < 1 || droplet.kinetic_energy_ratio() > 1e-4) droplet.advance(1);
+  const DropletState slow = droplet.droplet().state();
+  const auto found = find_equilibrium(run, droplet.obstacles(), slow);
+  ASSERT_TRUE(found.has_value());
+  while (!droplet.advance(100)) {
+  }
+  EXPECT_LT((centre(*found) - centre(droplet.droplet().state())).matrix().norm(), 1e-3);
+  DropletState far = slow;
+  far.x() -= 2 * farthest_rest;
+  EXPECT_FALSE(find_equilibrium(run, droplet.obstacles(), far).has_value());
+}
+
+TEST_P(Certified, AFallingDropletHasNoEquilibrium) {
+  const RunParameters run = resolve(parameters());
+  EXPECT_FALSE(find_equilibrium(run, test::no_obstacles(), droplet_above(run, 10)).has_value());
+}
+
+TEST_P(Certified, ADropletOnAFlatWallCouldDriftAside) {
+  RunParameters run = parameters();
+  run.clog_energy = 1e-10;
+  run.clog_detection = ClogDetection::certified;
+  const RunResult result = finished(run_onto_wall(resolve(run)));
+  EXPECT_EQ(result.status, RunStatus::clogged);
+  EXPECT_EQ(result.clogged_by, ClogDetection::threshold);
+}
+
+TEST(Equilibrium, OfASoftDiskInAGapIsWhereTheForcesBalance) {
+  // Two springs k (r - d) at an angle to the flow: 2 k (r - d) (10 - x)/d = M g.
+  const RunParameters run = resolve(soft_disk());
+  const double k = 4 * 5;
+  const auto pull = [&](double x) {
+    const double d = std::hypot(10 - x, 0.4);
+    return pi / 4 - 2 * k * (0.65 - d) * (10 - x) / d;
+  };
+  double low = 9.5, high = 9.7;  // the force pushes it from both towards the balance
+  ASSERT_GT(pull(low), 0);
+  ASSERT_LT(pull(high), 0);
+  while (high - low > 1e-14) (pull((low + high) / 2) > 0 ? low : high) = (low + high) / 2;
+  Eigen::ArrayXd position(2);
+  position << low + 0.01, 10.01;
+  const auto found = find_equilibrium(run, ObstacleArray(20, narrow_gap), test::state_of(position));
+  ASSERT_TRUE(found.has_value());
+  EXPECT_NEAR(found->position[0], low, 1e-8);
+  EXPECT_NEAR(found->position[1], 10, 1e-8);
+}
+
+TEST(Equilibrium, TooFarAwayIsRefused) {
+  // So soft that it is in touch with both obstacles, and the energy convex, all the way.
+  const RunParameters run = resolve(soft_disk(2));
+  const ObstacleArray obstacles(20, narrow_gap);
+  Eigen::ArrayXd position(2);
+  position << 9.7, 10;
+  DropletState state = test::state_of(position);
+  const auto search = [&] { return find_equilibrium(run, obstacles, state); };
+  for (int step = 0; step < 100 && !search(); ++step) state.position[0] -= 0.01;
+  ASSERT_TRUE(search().has_value());
+  const double rest = search()->position[0];
+  state.position[0] = rest - 0.9 * farthest_rest;
+  EXPECT_TRUE(search().has_value());
+  state.position[0] = rest - 1.1 * farthest_rest;
+  EXPECT_FALSE(search().has_value());
+}
+
+TEST(Equilibrium, OnTopOfAnObstacleIsRefused) {
+  const RunParameters run = resolve(soft_disk());
+  Eigen::ArrayXd position(2);
+  position << 10 - 0.65 + pi / (16 * 5), 10;  // no force is left
+  EXPECT_FALSE(find_equilibrium(run, ObstacleArray(20, single), test::state_of(position)).has_value());
+}
+
+/// Near the largest line tension that passes this orifice, about 1.26 with its round tips.
+DropletRun through_orifice(double line_tension, ClogDetection detection) {
+  RunParameters run = robust(line_tension);
+  run.clog_detection = detection;
+  run.time_step = 1e-3;
+  return run_in_channel(resolve(run), {.orifice = 0.7, .tip_radius = 0.1, .start = -0.8, .end = 0.6});
+}
+
+TEST(Equilibrium, IsNotSeenByADropletThatCreepsThroughAnOrifice) {
+  DropletRun droplet = through_orifice(1.25, ClogDetection::certified);
+  double slowest = 1;
+  for (int num_checks = 1; !droplet.advance(1); ++num_checks) {
+    if (droplet.time() > 5) slowest = std::min(slowest, droplet.kinetic_energy_ratio());
+    if (num_checks % 100 == 0) {
+      ASSERT_FALSE(
+          find_equilibrium(droplet.parameters(), droplet.obstacles(), droplet.droplet().state()).has_value());
+    }
+  }
+  EXPECT_LT(slowest, 5e-5) << "it never looked as if it were at rest";
+  EXPECT_EQ(droplet.result().status, RunStatus::passed);
+}
+
+TEST(Equilibrium, IsSeenByOneThatIsHeldThere) {
+  const RunResult certified = finished(through_orifice(1.27, ClogDetection::certified));
+  const RunResult waited = finished(through_orifice(1.27, ClogDetection::threshold));
+  EXPECT_EQ(certified.clogged_by, ClogDetection::certified);
+  EXPECT_EQ(waited.clogged_by, ClogDetection::threshold);
+  EXPECT_NEAR(certified.distance, waited.distance, 1e-3);
+}
+
+}  // namespace
+}  // namespace clog

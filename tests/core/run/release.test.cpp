@@ -1,0 +1,135 @@
+#include "clog/core/run/release.hpp"
+#include "clog/core/run/fire.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <tuple>
+
+#include "clog/core/disk/sp_droplet.hpp"
+#include "clog/core/polygon/dp_droplet.hpp"
+#include "clog/core/run/resolve.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/units.hpp"
+#include "support.hpp"
+
+namespace clog {
+namespace {
+
+RunParameters in_small_box(double line_tension, double gap) {
+  RunParameters run;
+  run.dp.line_tension = line_tension;
+  run.obstacles.gap = gap;
+  run.obstacles.box = 12;
+  return run;
+}
+
+TEST(Release, NeverEnclosesAnObstacleAndStartsAtRest) {
+  for (const double line_tension : {0.2, 1.0, 10.0})
+    for (std::uint32_t seed = 1; seed <= 60; ++seed) {
+      RunParameters run = in_small_box(line_tension, 0.2);
+      run.seed = seed;
+      run = resolve(run);
+      const ObstacleArray obstacles = sample_obstacles(run.obstacles, seed);
+      const DropletState state = release_droplet(run, obstacles);
+      EXPECT_EQ(num_enclosed(state, obstacles), 0) << "seed " << seed;
+
+      DpForces forces(run, obstacles);
+      forces.set_weight(0);
+      forces.update_contacts(state, {});
+      Eigen::ArrayXd force(2 * run.dp.vertices);
+      forces.evaluate(state, force);
+      const double vertex_weight = units::droplet_mass / run.dp.vertices;
+      EXPECT_LE(force.abs().maxCoeff(), 1.01 * release_force_tolerance * vertex_weight) << "seed " << seed;
+      EXPECT_NEAR(forces.shape().area, units::rest_area, 0.02) << "seed " << seed;
+      EXPECT_LT(DpDroplet(run, obstacles, state).deepest_overlap(), 0.6 * forces.vertex_diameter())
+          << "seed " << seed;
+    }
+}
+
+TEST(Release, ComesToRestWhereSpringsKeepTheInterfaceSliding) {
+  // Of the first three the springs it grows with, of the others its own.
+  for (const auto& [vertices, line_tension, seed] :
+       {std::tuple{64, 0.1, 141u}, {64, 0.05, 113u}, {64, 0.05, 141u}, {32, 0.1, 76u}, {32, 0.05, 303u}}) {
+    SCOPED_TRACE(std::to_string(vertices) + " vertices, seed " + std::to_string(seed));
+    RunParameters run = in_small_box(line_tension, 0.2);
+    run.dp.vertices = vertices;
+    run = resolve(run);
+    const ObstacleArray obstacles = sample_obstacles(run.obstacles, seed);
+    const DropletState state = release_droplet(run, obstacles);
+    EXPECT_EQ(num_enclosed(state, obstacles), 0);
+    DpForces forces(run, obstacles);
+    forces.set_weight(0);
+    forces.update_contacts(state, {});
+    Eigen::ArrayXd force(2 * vertices);
+    forces.evaluate(state, force);
+    EXPECT_LE(force.abs().maxCoeff(), 1.01 * release_sliding_tolerance * units::droplet_mass / vertices);
+  }
+}
+
+TEST(Release, StartsAsARegularPolygonWhereThereIsRoom) {
+  RunParameters run = resolve(in_small_box(1, 0.2));
+  const DropletState state = release_droplet(run, test::no_obstacles(12));
+  const Eigen::Array2d centre = state.frame.global(state.centre());
+  EXPECT_NEAR(centre[0], 6, 1e-12);
+  EXPECT_NEAR(centre[1], 6, 1e-12);
+  EXPECT_NEAR(polygon_shape(state.position).shape_parameter(), 1, 1e-3);
+}
+
+TEST(Release, MovesOffAnObstacleInTheMiddle) {
+  RunParameters run = resolve(in_small_box(1, 0.2));
+  const ObstacleArray obstacle(12, {{6, 6, 0.15}});
+  const DropletState state = release_droplet(run, obstacle);
+  EXPECT_EQ(num_enclosed(state, obstacle), 0);
+}
+
+TEST(Release, RefusesWhereThereIsNoVoid) {
+  // A wall of touching circles covers the middle of the box.
+  std::vector<Obstacle> carpet;
+  for (double x = 0; x < 12; x += 0.1)
+    for (double y = 0; y < 12; y += 0.1) carpet.push_back({x, y, 0.08});
+  RunParameters run = resolve(in_small_box(1, 0.2));
+  EXPECT_THROW(release_droplet(run, ObstacleArray(12, carpet)), Error);
+}
+
+TEST(Release, LeavesASoftDiskWithoutForce) {
+  RunParameters run = in_small_box(1, 0.2);
+  run.model = Model::sp;
+  run.wall_stiffness = 10;
+  run = resolve(run);
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    const ObstacleArray obstacles = sample_obstacles(run.obstacles, seed);
+    const DropletState state = release_droplet(run, obstacles);
+    SpForces forces(run, obstacles);
+    forces.set_weight(0);
+    forces.update_contacts(state, {});
+    Eigen::ArrayXd force(2);
+    forces.evaluate(state, force);
+    EXPECT_LE(force.abs().maxCoeff(), 1.01 * release_force_tolerance * units::droplet_mass);
+  }
+}
+
+TEST(Release, TheLiteralPlacementEnclosesObstacles) {
+  // A full-sized polygon put at the box's centre and relaxed does not feel what lies inside it.
+  int num_runs_with_obstacles_inside = 0;
+  for (std::uint32_t seed = 1; seed <= 10; ++seed) {
+    const RunParameters run = test::bare_parameters(64);
+    const ObstacleArray array =
+        sample_obstacles({.gap = 0.4, .diameter = 0.3, .density = {}, .box = 20}, seed);
+    DropletState state = test::state_of(regular_polygon(64, units::rest_area));
+    state.frame.origin = {10, 10};
+    DpForces forces(run, array);
+    forces.set_weight(0);
+    const FireOptions options{.mass = units::droplet_mass / 64,
+                              .largest_step = 5e-4,
+                              .force_tolerance = 1e-6,
+                              .max_iterations = 20000,
+                              .max_move = 1e-3};
+    minimize_fire(forces, state, options);
+    if (num_enclosed(state, array) > 0) ++num_runs_with_obstacles_inside;
+  }
+  EXPECT_GT(num_runs_with_obstacles_inside, 2);
+}
+
+}  // namespace
+}  // namespace clog

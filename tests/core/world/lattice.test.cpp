@@ -1,0 +1,186 @@
+#include "clog/core/world/lattice.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <set>
+#include <vector>
+
+#include "clog/core/run/resolve.hpp"
+#include "clog/core/run/systems.hpp"
+
+namespace clog {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+
+/// Soft disks, nearly rigid, among obstacles with room to pass: spacing 1.5 sigma, obstacles of 0.3 sigma.
+RunParameters soft_disk(double angle, std::uint32_t seed = 1) {
+  RunParameters run;
+  run.model = Model::sp;
+  run.wall_stiffness = 10;
+  run.time_step = 2e-3;
+  run.max_time = 4000;
+  run.obstacles.gap = 1.2;
+  run.obstacles.box = 120;
+  run.obstacles.layout = ObstacleLayout::lattice;
+  run.obstacles.lattice_angle = angle;
+  run.seed = seed;
+  return resolve(run);
+}
+
+RunResult result_of(DropletRun run) {
+  while (!run.advance(1000)) {
+  }
+  return run.result();
+}
+
+double slope(const RunResult& result) { return result.lateral / result.distance; }
+
+TEST(Lattice, HasFourNeighboursAtTheExactGapAcrossItsBox) {
+  for (const double angle : {-31.0, 0.0, 11.0, 45.0}) {
+    const ObstacleParameters used = soft_disk(angle).obstacles;
+    const ObstacleArray array = lattice_obstacles(used, 3);
+    EXPECT_NEAR(static_cast<double>(array.obstacles().size()), used.box * used.box / 2.25, 1e-6);
+    const double t = used.lattice_angle * degree;
+    for (const Obstacle& obstacle : array.obstacles()) {
+      EXPECT_EQ(obstacle.radius, 0.15);
+      std::vector<Obstacle> near;
+      array.gather({obstacle.x, obstacle.y, 0, 0, 0, 0, 1.4}, near);
+      const auto has = [&](double x, double y) {
+        return std::any_of(near.begin(), near.end(), [&](const Obstacle& other) {
+          return std::hypot(other.x - x, other.y - y) < 1e-9;
+        });
+      };
+      EXPECT_TRUE(has(1.5 * std::cos(t), 1.5 * std::sin(t)) && has(-1.5 * std::sin(t), 1.5 * std::cos(t)) &&
+                  has(-1.5 * std::cos(t), -1.5 * std::sin(t)) && has(1.5 * std::sin(t), -1.5 * std::cos(t)))
+          << angle << " at " << obstacle.x << ", " << obstacle.y;
+    }
+  }
+}
+
+TEST(Lattice, IsTheNearestThatIsPeriodic) {
+  // By exhaustion over all boxes.
+  for (const double angle : {0.0, 4.0, -20.0, 33.3, 45.0}) {
+    const auto found = nearest_lattice(0.7, angle, 5, 40);
+    double least = 90;
+    for (int p = 0; p < 80; ++p)
+      for (int q = -80; q < 80; ++q)
+        if (const double box = 0.7 * std::hypot(p, q); box >= 5 && box <= 40)
+          least = std::min(least, std::abs(std::atan2(q, p) / degree - angle));
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(std::abs(found->angle - angle), least, 1e-9);
+  }
+  EXPECT_EQ(nearest_lattice(0.7, 0, 5, 40)->p, 57) << "the largest box of the untilted ones";
+  EXPECT_FALSE(nearest_lattice(0.7, 0, 5, 5.2));
+}
+
+TEST(Lattice, LeavesTheReleaseToTheSeed) {
+  // Uniform in the part of a unit cell where the droplet is free: in the frame of the lattice, both halves of
+  // either coordinate are equally likely. 400 seeds, five standard deviations of a fair coin.
+  const double taken = (0.15 + 0.55) / 1.5;
+  int num_ahead = 0;
+  int num_above = 0;
+  std::set<double> places;
+  for (std::uint32_t seed = 1; seed <= 400; ++seed) {
+    const ObstacleParameters used = soft_disk(11).obstacles;
+    const ObstacleArray array = lattice_obstacles(used, seed);
+    std::vector<Obstacle> near;
+    array.gather({used.box / 2, used.box / 2, 0, 0, 0, 0, 1.2}, near);
+    const Obstacle nearest = *std::min_element(near.begin(), near.end(), [](const auto& a, const auto& b) {
+      return std::hypot(a.x, a.y) < std::hypot(b.x, b.y);
+    });
+    EXPECT_GE(std::hypot(nearest.x, nearest.y) / 1.5, taken - 1e-9);
+    const double t = used.lattice_angle * degree;
+    num_ahead += nearest.x * std::cos(t) + nearest.y * std::sin(t) > 0;
+    num_above += -nearest.x * std::sin(t) + nearest.y * std::cos(t) > 0;
+    places.insert(nearest.x);
+  }
+  EXPECT_NEAR(num_ahead, 200, 50);
+  EXPECT_NEAR(num_above, 200, 50);
+  EXPECT_EQ(places.size(), 400u);
+}
+
+TEST(Lattice, StartsAFreeDropletAtTheCentreOfTheBox) {
+  for (const Model model : {Model::dp, Model::sp}) {
+    RunParameters run = soft_disk(11, 5);
+    run.model = model;
+    if (model == Model::dp) run.dp.vertices = 64;
+    run.wall_stiffness = model == Model::sp ? run.wall_stiffness : std::nullopt;
+    run.time_step = 1e-3;
+    run = resolve(run);
+    const DropletRun started = run_in_array(run);
+    const DropletState& state = started.droplet().state();
+    for (const int axis : {0, 1})
+      EXPECT_NEAR(state.frame.global(state.centre())[axis], run.obstacles.box / 2, 1e-6);
+  }
+}
+
+// A rigid disk that slowly sinks past an obstacle leaves it at a lateral distance b = (sigma + sigma_ob)/2,
+// on the side to which it was pushed. It meets the next one of a row that is tilted by t if a sin t < b, and
+// is then locked to the direction of the row (Frechette and Drazer, J. Fluid Mech. 627, 379 (2009)). Rows of
+// the square lattice have tilts t and spacing a, or t - 45 degrees and spacing sqrt(2) a.
+TEST(Lattice, LeadsADiskAlongItsRows) {
+  for (const double angle : {-20.0, -8.0, 8.0, 20.0})
+    EXPECT_NEAR(slope(result_of(run_in_array(soft_disk(angle)))), std::tan(angle * degree), 0.02) << angle;
+  for (const double angle : {35.0, 40.0})
+    EXPECT_NEAR(slope(result_of(run_in_array(soft_disk(angle)))), std::tan((angle - 45) * degree), 0.02)
+        << angle;
+}
+
+TEST(Lattice, LeadsADiskStraightWhenItIsSymmetric) {
+  for (const double angle : {0.0, 45.0}) {
+    double lateral = 0;
+    double distance = 0;
+    for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+      const RunResult result = result_of(run_in_array(soft_disk(angle, seed)));
+      EXPECT_LE(std::abs(result.lateral), 1.5) << "it stays in its lane, seed " << seed;
+      lateral += result.lateral;
+      distance += result.distance;
+    }
+    EXPECT_LT(std::abs(lateral / distance), 0.005) << angle;
+  }
+}
+
+TEST(Lattice, LeadsADiskThatFeelsNothingStraight) {
+  RunParameters run = soft_disk(11);
+  run.wall_stiffness = 1e-12;
+  const RunResult result = result_of(run_in_array(run));
+  EXPECT_GT(result.distance, 100);
+  EXPECT_NEAR(result.lateral, 0, 1e-8);
+}
+
+TEST(Lattice, LeadsToTheOtherSideInAMirror) {
+  const RunParameters run = soft_disk(13);
+  const ObstacleArray array = lattice_obstacles(run.obstacles, run.seed);
+  std::vector<Obstacle> mirrored(array.obstacles().begin(), array.obstacles().end());
+  for (Obstacle& obstacle : mirrored) obstacle.y = array.period().box - obstacle.y;
+  const RunResult result = result_of(run_in_array(run));
+  const RunResult mirror =
+      result_of(run_in_array(run, std::make_shared<ObstacleArray>(array.period().box, mirrored)));
+  EXPECT_GT(result.lateral, 10);
+  EXPECT_NEAR(mirror.lateral, -result.lateral, 1e-6);
+  EXPECT_NEAR(mirror.distance, result.distance, 1e-6);
+
+  // And the mirror image is the lattice of the opposite tilt, up to a shift.
+  const ObstacleArray opposite = lattice_obstacles(soft_disk(-13).obstacles, run.seed);
+  ASSERT_EQ(opposite.obstacles().size(), mirrored.size());
+  EXPECT_EQ(opposite.period().box, array.period().box);
+  const double dx = opposite.obstacles()[0].x - mirrored[0].x;
+  const double dy = opposite.obstacles()[0].y - mirrored[0].y;
+  for (const Obstacle& obstacle : mirrored) {
+    std::vector<Obstacle> near;
+    const auto inside = [&](double value) {
+      return value - array.period().box * std::floor(value / array.period().box);
+    };
+    opposite.gather({inside(obstacle.x + dx), inside(obstacle.y + dy), 0, 0, 0, 0, 0}, near);
+    ASSERT_EQ(near.size(), 1u);
+    EXPECT_LT(std::hypot(near[0].x, near[0].y), 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace clog
