@@ -118,137 +118,205 @@ HWY_INLINE V spread_along_chord(V spreading, V length, V length_before, V tx, V 
   return hn::Mul(hn::Mul(spreading, hn::Mul(cosine, cosine)), unevenness);
 }
 
+/// Of some vertices, what the edges before and after them say.
+struct Corner {
+  V length, tx, ty, length_before, tx_before, ty_before;
+  V ex, ey, ex_before, ey_before;
+
+  /// In this order, as the compiler may join a product with a sum that follows: the last bits hang on it.
+  HWY_INLINE void multiply() {
+    ex = hn::Mul(length, tx);
+    ey = hn::Mul(length, ty);
+    ex_before = hn::Mul(length_before, tx_before);
+    ey_before = hn::Mul(length_before, ty_before);
+  }
+};
+
+/// What pulls and pushes along the interface, the same for all vertices.
+struct InterfaceVectors {
+  V line_tension, spring, spreading, half_pressure, vertex_weight;
+
+  HWY_INLINE explicit InterfaceVectors(const InterfaceKick& interface)
+      : line_tension(all(interface.line_tension)),
+        spring(all(interface.spring)),
+        spreading(all(interface.spreading)),
+        half_pressure(all(interface.half_pressure)),
+        vertex_weight(all(interface.vertex_weight)) {}
+};
+
+/// Of vertices, a force or a velocity.
+struct PairOfVectors {
+  V x, y;
+};
+
+/// How the area's centroid moves with a vertex, times six times the area.
+struct CentroidGradient {
+  V xx, xy, yx, yy;
+};
+
+/// A vertex moves the area's centroid by the triangle between it and its neighbours: m n^T + k I, with m the
+/// sum of the three corners relative to the centroid, n the chord turned outwards, k twice the area.
+/// @param centre  three times the centroid
+template <class Keep>
+HWY_INLINE CentroidGradient centroid_gradient(const PairOfVectors& place, const PairOfVectors& centre,
+                                              const Corner& corner, const PairOfVectors& chord, Keep keep) {
+  const auto& [x, y] = place;
+  const V minus_corners_x = hn::Add(hn::NegMulAdd(all(3), x, centre.x), hn::Sub(corner.ex_before, corner.ex));
+  const V corners_y = hn::Add(hn::MulSub(all(3), y, centre.y), hn::Sub(corner.ey, corner.ey_before));
+  const V twice_area = hn::MulSub(corner.ex_before, corner.ey, hn::Mul(corner.ey_before, corner.ex));
+  return {keep(hn::NegMulAdd(minus_corners_x, chord.y, twice_area)), keep(hn::Mul(minus_corners_x, chord.x)),
+          keep(hn::Mul(corners_y, chord.y)), keep(hn::NegMulAdd(corners_y, chord.x, twice_area))};
+}
+
+/// Sums over the vertices that couple() needs.
+template <bool varying_rate>
+struct KickVectors {
+  V spread_x = all(0), spread_y = all(0);
+  V w_x = all(0), w_y = all(0), gw_x = all(0), gw_y = all(0), gg_xx = all(0), gg_xy = all(0), gg_yy = all(0);
+  V s_sum = all(0), g_xx = all(0), g_xy = all(0), g_yx = all(0), g_yy = all(0);
+
+  template <class Keep>
+  HWY_INLINE void add_velocity(V s, const PairOfVectors& w, Keep keep) {
+    if constexpr (varying_rate) {
+      s_sum = hn::Add(s_sum, keep(s));
+      w_x = hn::MulAdd(keep(s), w.x, w_x);
+      w_y = hn::MulAdd(keep(s), w.y, w_y);
+    } else {
+      w_x = hn::Add(w_x, keep(w.x));
+      w_y = hn::Add(w_y, keep(w.y));
+    }
+  }
+
+  HWY_INLINE void add_gradient(const CentroidGradient& g, V s, const PairOfVectors& w) {
+    CentroidGradient sg = g;
+    if constexpr (varying_rate) {
+      sg = {hn::Mul(s, g.xx), hn::Mul(s, g.xy), hn::Mul(s, g.yx), hn::Mul(s, g.yy)};
+      g_xx = hn::Add(g_xx, sg.xx);
+      g_xy = hn::Add(g_xy, sg.xy);
+      g_yx = hn::Add(g_yx, sg.yx);
+      g_yy = hn::Add(g_yy, sg.yy);
+    }
+    gw_x = hn::MulAdd(sg.xx, w.x, hn::MulAdd(sg.xy, w.y, gw_x));
+    gw_y = hn::MulAdd(sg.yx, w.x, hn::MulAdd(sg.yy, w.y, gw_y));
+    gg_xx = hn::MulAdd(sg.xx, g.xx, hn::MulAdd(sg.xy, g.xy, gg_xx));
+    gg_xy = hn::MulAdd(sg.xx, g.yx, hn::MulAdd(sg.xy, g.yy, gg_xy));
+    gg_yy = hn::MulAdd(sg.yx, g.yx, hn::MulAdd(sg.yy, g.yy, gg_yy));
+  }
+
+  /// @param one_s  where s is the same for all vertices, it; it has been left out of the sums
+  HWY_INLINE KickSums total(int n, const AreaForce& force, double one_s) const {
+    const auto w = sums(w_x, w_y, spread_x, spread_y);
+    const auto gw = sums(gw_x, gw_y, gg_xx, gg_xy);
+    KickSums total{.force_x = force.x - w[2],
+                   .force_y = force.y - w[3],
+                   .w_x = one_s * w[0],
+                   .w_y = one_s * w[1],
+                   .gw_x = one_s * gw[0],
+                   .gw_y = one_s * gw[1],
+                   .gg_xx = one_s * gw[2],
+                   .gg_xy = one_s * gw[3],
+                   .gg_yy = one_s * sum(gg_yy),
+                   .s = n * one_s,
+                   .g_xx = 6 * force.area * one_s,
+                   .g_xy = 0,
+                   .g_yx = 0,
+                   .g_yy = 6 * force.area * one_s};
+    if constexpr (varying_rate) {
+      const auto g = sums(g_xx, g_xy, g_yx, g_yy);
+      total.g_xx = g[0];
+      total.g_xy = g[1];
+      total.g_yx = g[2];
+      total.g_yy = g[3];
+      total.s = sum(s_sum);
+    }
+    return total;
+  }
+};
+
+/// The force on vertices, without the drag.
+template <bool elastic, bool on_area, bool varying_rate, class Keep>
+HWY_INLINE PairOfVectors kick_force(const Corner& c, const PairOfVectors& chord, const PairOfVectors& push,
+                                    const InterfaceVectors& along, KickVectors<varying_rate>& total,
+                                    Keep keep) {
+  // What takes long comes first: the processor does not look far ahead.
+  V spread;
+  if constexpr (!elastic)
+    spread = keep(
+        spread_along_chord(along.spreading, c.length, c.length_before, c.tx, c.tx_before, c.ty, c.ty_before));
+  V fx = hn::MulAdd(along.half_pressure, chord.y, push.x);
+  V fy = hn::NegMulAdd(along.half_pressure, chord.x, push.y);
+  if constexpr (elastic) {
+    const V pull = hn::MulAdd(along.spring, c.length, along.line_tension);
+    const V pull_before = hn::MulAdd(along.spring, c.length_before, along.line_tension);
+    fx = hn::MulAdd(pull, c.tx, hn::NegMulAdd(pull_before, c.tx_before, fx));
+    fy = hn::MulAdd(pull, c.ty, hn::NegMulAdd(pull_before, c.ty_before, fy));
+  } else {
+    fx = hn::MulAdd(along.line_tension, hn::Sub(c.tx, c.tx_before), fx);
+    fy = hn::MulAdd(along.line_tension, hn::Sub(c.ty, c.ty_before), fy);
+    fx = hn::MulAdd(spread, chord.x, fx);
+    fy = hn::MulAdd(spread, chord.y, fy);
+    total.spread_x = hn::MulAdd(spread, chord.x, total.spread_x);
+    total.spread_y = hn::MulAdd(spread, chord.y, total.spread_y);
+  }
+  if constexpr (!on_area) fx = hn::Add(fx, along.vertex_weight);
+  return {fx, fy};
+}
+
 template <bool elastic, bool coupled, bool on_area, bool varying_rate>
 Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface, const AreaForce& force,
                    const KickCoefficients& coefficients, const StepArrays& arrays) {
   const StepArrays a = arrays;  // a copy that stores cannot change
-  const V line_tension = all(interface.line_tension);
-  const V spring = all(interface.spring), spreading = all(interface.spreading);
-  const V half_pressure = all(interface.half_pressure), vertex_weight = all(interface.vertex_weight);
-  const V centre_x = all(3 * force.centre_x), centre_y = all(3 * force.centre_y);
+  const InterfaceVectors along(interface);
+  const PairOfVectors centre{all(3 * force.centre_x), all(3 * force.centre_y)};
   const V kicks = all(coefficients.kicks);
   const bool keeps_kicked = coefficients.keeps_kicked;
   const double one_s = varying_rate ? 1 : 1 / (1 + coefficients.h1 * terms.rate);
   const V same_s = all(one_s), same_kept = all(one_s * (1 - coefficients.h2 * terms.rate));
-  V spread_x = all(0), spread_y = all(0);
-  V w_x = all(0), w_y = all(0), gw_x = all(0), gw_y = all(0), gg_xx = all(0), gg_xy = all(0), gg_yy = all(0);
-  V s_sum = all(0), g_xx = all(0), g_xy = all(0), g_yx = all(0), g_yy = all(0);
-  V last_length = all(a.length[-1]);
-  V last_tx = all(a.tangent_x[-1]), last_ty = all(a.tangent_y[-1]);
+  KickVectors<varying_rate> total{};  // an aggregate: a constructor would know no instruction set
+  Corner last;
+  last.length = all(a.length[-1]);
+  last.tx = all(a.tangent_x[-1]);
+  last.ty = all(a.tangent_y[-1]);
   for_vectors(n, [&](int i, auto keep) CLOG_INLINE {
-    const V length = load(a.length + i), tx = load(a.tangent_x + i), ty = load(a.tangent_y + i);
-    const V length_before = shifted_back(a.length + i, last_length, length);
-    const V tx_before = shifted_back(a.tangent_x + i, last_tx, tx);
-    const V ty_before = shifted_back(a.tangent_y + i, last_ty, ty);
-    last_length = length;
-    last_tx = tx;
-    last_ty = ty;
-    // What takes long comes first: the processor does not look far ahead.
-    V spread;
-    if constexpr (!elastic)
-      spread = keep(spread_along_chord(spreading, length, length_before, tx, tx_before, ty, ty_before));
-
-    const V ex = hn::Mul(length, tx), ey = hn::Mul(length, ty);
-    const V ex_before = hn::Mul(length_before, tx_before), ey_before = hn::Mul(length_before, ty_before);
+    Corner corner;
+    corner.length = load(a.length + i);
+    corner.tx = load(a.tangent_x + i);
+    corner.ty = load(a.tangent_y + i);
+    corner.length_before = shifted_back(a.length + i, last.length, corner.length);
+    corner.tx_before = shifted_back(a.tangent_x + i, last.tx, corner.tx);
+    corner.ty_before = shifted_back(a.tangent_y + i, last.ty, corner.ty);
+    last = corner;
+    corner.multiply();
     // The chord between the neighbours. Turned outwards it is (y, -x).
-    const V chord_x = hn::Add(ex, ex_before), chord_y = hn::Add(ey, ey_before);
-    V fx = hn::MulAdd(half_pressure, chord_y, load(a.push_x + i));
-    V fy = hn::NegMulAdd(half_pressure, chord_x, load(a.push_y + i));
-    if constexpr (elastic) {
-      const V pull = hn::MulAdd(spring, length, line_tension);
-      const V pull_before = hn::MulAdd(spring, length_before, line_tension);
-      fx = hn::MulAdd(pull, tx, hn::NegMulAdd(pull_before, tx_before, fx));
-      fy = hn::MulAdd(pull, ty, hn::NegMulAdd(pull_before, ty_before, fy));
-    } else {
-      fx = hn::MulAdd(line_tension, hn::Sub(tx, tx_before), fx);
-      fy = hn::MulAdd(line_tension, hn::Sub(ty, ty_before), fy);
-      fx = hn::MulAdd(spread, chord_x, fx);
-      fy = hn::MulAdd(spread, chord_y, fy);
-      spread_x = hn::MulAdd(spread, chord_x, spread_x);
-      spread_y = hn::MulAdd(spread, chord_y, spread_y);
-    }
-    if constexpr (!on_area) fx = hn::Add(fx, vertex_weight);
-
+    const PairOfVectors chord{hn::Add(corner.ex, corner.ex_before), hn::Add(corner.ey, corner.ey_before)};
+    const auto [fx, fy] = kick_force<elastic, on_area>(
+        corner, chord, {load(a.push_x + i), load(a.push_y + i)}, along, total, keep);
     // Where s is the same for all it is left to the end.
-    const V wx = hn::MulAdd(kicks, fx, load(a.vx + i)), wy = hn::MulAdd(kicks, fy, load(a.vy + i));
+    const PairOfVectors w{hn::MulAdd(kicks, fx, load(a.vx + i)), hn::MulAdd(kicks, fy, load(a.vy + i))};
     V s = same_s, kept = same_kept;
     if constexpr (varying_rate) {
       s = load(a.damping + i);
       kept = load(a.kept + i);
     }
-    store(hn::MulAdd(wx, kept, fx), a.vx + i);
-    store(hn::MulAdd(wy, kept, fy), a.vy + i);
+    store(hn::MulAdd(w.x, kept, fx), a.vx + i);
+    store(hn::MulAdd(w.y, kept, fy), a.vy + i);
     if (keeps_kicked) {
-      store(hn::Mul(wx, s), a.kicked_x + i);
-      store(hn::Mul(wy, s), a.kicked_y + i);
+      store(hn::Mul(w.x, s), a.kicked_x + i);
+      store(hn::Mul(w.y, s), a.kicked_y + i);
     }
-    if constexpr (coupled && varying_rate) {
-      s_sum = hn::Add(s_sum, keep(s));
-      w_x = hn::MulAdd(keep(s), wx, w_x);
-      w_y = hn::MulAdd(keep(s), wy, w_y);
-    } else if constexpr (coupled) {
-      w_x = hn::Add(w_x, keep(wx));
-      w_y = hn::Add(w_y, keep(wy));
-    }
+    if constexpr (coupled) total.add_velocity(s, w, keep);
     if constexpr (on_area) {
-      // A vertex moves the area's centroid by the triangle between it and its neighbours: m n^T + k I, with m
-      // the sum of the three corners relative to the centroid, n the chord turned outwards, k twice the area.
-      const V x = load(a.x + i), y = load(a.y + i);
-      const V minus_corners_x = hn::Add(hn::NegMulAdd(all(3), x, centre_x), hn::Sub(ex_before, ex));
-      const V corners_y = hn::Add(hn::MulSub(all(3), y, centre_y), hn::Sub(ey, ey_before));
-      const V twice_area = hn::MulSub(ex_before, ey, hn::Mul(ey_before, ex));
-      const V gxx = keep(hn::NegMulAdd(minus_corners_x, chord_y, twice_area));
-      const V gxy = keep(hn::Mul(minus_corners_x, chord_x));
-      const V gyx = keep(hn::Mul(corners_y, chord_y));
-      const V gyy = keep(hn::NegMulAdd(corners_y, chord_x, twice_area));
-      store(gxx, a.grad_xx + i);
-      store(gxy, a.grad_xy + i);
-      store(gyx, a.grad_yx + i);
-      store(gyy, a.grad_yy + i);
-      V sxx = gxx, sxy = gxy, syx = gyx, syy = gyy;
-      if constexpr (varying_rate) {
-        sxx = hn::Mul(s, gxx);
-        sxy = hn::Mul(s, gxy);
-        syx = hn::Mul(s, gyx);
-        syy = hn::Mul(s, gyy);
-        g_xx = hn::Add(g_xx, sxx);
-        g_xy = hn::Add(g_xy, sxy);
-        g_yx = hn::Add(g_yx, syx);
-        g_yy = hn::Add(g_yy, syy);
-      }
-      gw_x = hn::MulAdd(sxx, wx, hn::MulAdd(sxy, wy, gw_x));
-      gw_y = hn::MulAdd(syx, wx, hn::MulAdd(syy, wy, gw_y));
-      gg_xx = hn::MulAdd(sxx, gxx, hn::MulAdd(sxy, gxy, gg_xx));
-      gg_xy = hn::MulAdd(sxx, gyx, hn::MulAdd(sxy, gyy, gg_xy));
-      gg_yy = hn::MulAdd(syx, gyx, hn::MulAdd(syy, gyy, gg_yy));
+      const CentroidGradient g =
+          centroid_gradient({load(a.x + i), load(a.y + i)}, centre, corner, chord, keep);
+      store(g.xx, a.grad_xx + i);
+      store(g.xy, a.grad_xy + i);
+      store(g.yx, a.grad_yx + i);
+      store(g.yy, a.grad_yy + i);
+      total.add_gradient(g, s, w);
     }
   });
   if constexpr (!coupled) return {};
-  const auto w = sums(w_x, w_y, spread_x, spread_y);
-  const auto gw = sums(gw_x, gw_y, gg_xx, gg_xy);
-  KickSums total{.force_x = force.x - w[2],
-                 .force_y = force.y - w[3],
-                 .w_x = one_s * w[0],
-                 .w_y = one_s * w[1],
-                 .gw_x = one_s * gw[0],
-                 .gw_y = one_s * gw[1],
-                 .gg_xx = one_s * gw[2],
-                 .gg_xy = one_s * gw[3],
-                 .gg_yy = one_s * sum(gg_yy),
-                 .s = n * one_s,
-                 .g_xx = 6 * force.area * one_s,
-                 .g_xy = 0,
-                 .g_yx = 0,
-                 .g_yy = 6 * force.area * one_s};
-  if constexpr (varying_rate) {
-    const auto g = sums(g_xx, g_xy, g_yx, g_yy);
-    total.g_xx = g[0];
-    total.g_xy = g[1];
-    total.g_yx = g[2];
-    total.g_yy = g[3];
-    total.s = sum(s_sum);
-  }
-  return couple(n, terms, force, coefficients, total);
+  return couple(n, terms, force, coefficients, total.total(n, force, one_s));
 }
 
 decltype(StepKernel::kick) kick_version(const KickTerms& terms) {

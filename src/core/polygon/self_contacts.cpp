@@ -42,6 +42,36 @@ void SelfContacts::update(const DropletState& state, const Travel& travel) {
   rebuild(state, std::clamp(2 * travel.relative, usual_skin, widest_skin));
 }
 
+double SelfContacts::measure_edges(const double* x, const double* y, int n) {
+  double longest = 0;
+  along_.assign(1, 0);
+  for (int i = 0; i < n; ++i) {
+    const int end = i + 1 < n ? i + 1 : 0;
+    const double length = std::sqrt((x[end] - x[i]) * (x[end] - x[i]) + (y[end] - y[i]) * (y[end] - y[i]));
+    longest = std::max(longest, length);
+    along_.push_back(along_.back() + length);
+  }
+  return longest;
+}
+
+SelfContacts::Cells SelfContacts::sort_into_cells(const DropletState& state, double size) {
+  const double left = state.x().minCoeff();
+  const double bottom = state.y().minCoeff();
+  // One empty cell all around spares the border checks.
+  const int columns = static_cast<int>((state.x().maxCoeff() - left) / size) + 3;
+  const int rows = static_cast<int>((state.y().maxCoeff() - bottom) / size) + 3;
+  const Cells cells{left, bottom, size, columns};
+  const int n = static_cast<int>(state.size());
+  head_.assign(static_cast<std::size_t>(rows) * columns, -1);
+  next_.resize(n);
+  for (int i = 0; i < n; ++i) {
+    int& head = head_[cells.cell_of(state.x()[i], state.y()[i])];
+    next_[i] = head;
+    head = i;
+  }
+  return cells;
+}
+
 void SelfContacts::rebuild(const DropletState& state, double skin) {
   skin_ = skin;
   const int n = static_cast<int>(state.size());
@@ -56,34 +86,9 @@ void SelfContacts::rebuild(const DropletState& state, double skin) {
   if (!reference_.allFinite()) return;  // a droplet that has diverged; the run will see it at its next check
 
   // The nearest point of an edge within reach lies within half an edge of one of its ends.
-  double longest = 0;
-  along_.assign(1, 0);
-  for (int i = 0; i < n; ++i) {
-    const int end = i + 1 < n ? i + 1 : 0;
-    const double length = std::sqrt((x[end] - x[i]) * (x[end] - x[i]) + (y[end] - y[i]) * (y[end] - y[i]));
-    longest = std::max(longest, length);
-    along_.push_back(along_.back() + length);
-  }
   const double reach = range_ + 2 * skin_;
-  const double end_reach = reach + 0.5 * longest;
-
-  const double left = state.x().minCoeff();
-  const double bottom = state.y().minCoeff();
-  // One empty cell all around spares the border checks.
-  const int columns = static_cast<int>((state.x().maxCoeff() - left) / end_reach) + 3;
-  const int rows = static_cast<int>((state.y().maxCoeff() - bottom) / end_reach) + 3;
-  const auto cell_of = [&](int vertex) {
-    return (static_cast<int>((y[vertex] - bottom) / end_reach) + 1) * columns +
-           static_cast<int>((x[vertex] - left) / end_reach) + 1;
-  };
-  head_.assign(static_cast<std::size_t>(rows) * columns, -1);
-  next_.resize(n);
-  for (int i = 0; i < n; ++i) {
-    int& head = head_[cell_of(i)];
-    next_[i] = head;
-    head = i;
-  }
-
+  const double end_reach = reach + 0.5 * measure_edges(x, y, n);
+  const Cells cells = sort_into_cells(state, end_reach);
   const auto is_near = [&](int a, int b) {
     return (x[a] - x[b]) * (x[a] - x[b]) + (y[a] - y[b]) * (y[a] - y[b]) <= end_reach * end_reach;
   };
@@ -94,10 +99,10 @@ void SelfContacts::rebuild(const DropletState& state, double skin) {
       pairs_.push_back(pair);
   };
   for (int vertex = 0; vertex < n; ++vertex) {
-    const int cell = cell_of(vertex);
+    const int cell = cells.cell_of(x[vertex], y[vertex]);
     for (int row = -1; row <= 1; ++row)
       for (int column = -1; column <= 1; ++column)
-        for (int other = head_[cell + row * columns + column]; other >= 0; other = next_[other]) {
+        for (int other = head_[cell + row * cells.columns + column]; other >= 0; other = next_[other]) {
           if (are_neighbours(vertex, other) || !is_near(vertex, other)) continue;
           add_if_near({vertex, other});
           // The edge that ends here is found from its beginning, if that is near.

@@ -68,6 +68,19 @@ class SelfContacts {
   std::vector<int> item_of_;      // by direction and first vertex
 
   double skin_ = 0;  // of the present pairs
+
+  /// Square cells over the droplet.
+  struct Cells {
+    double left, bottom, size;
+    int columns;
+
+    int cell_of(double x, double y) const {
+      return (static_cast<int>((y - bottom) / size) + 1) * columns + static_cast<int>((x - left) / size) + 1;
+    }
+  };
+  /// Fills along_. Returns the length of the longest edge.
+  double measure_edges(const double* x, const double* y, int n);
+  Cells sort_into_cells(const DropletState& state, double size);
   void rebuild(const DropletState& state, double skin);
   void fill_items(const DropletState& state);
 };
