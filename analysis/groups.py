@@ -6,6 +6,7 @@ Names, symbols, units and defaults of the parameters are clogsweep's own; clogfi
 import math
 
 import style
+from command_line import UserError
 
 
 def tex(unit):
@@ -20,10 +21,17 @@ def number(value):
     return r"\mathrm{saturated}" if value is None else f"{value:.4g}"
 
 
+def refuse_passages(fit):
+    """@raise UserError  for a sweep of channels or walls: there each group is one run, and has no clogging length"""
+    if fit["groups"] and "status" in fit["groups"][0]:
+        raise UserError("cannot draw clogging lengths (these runs were in a channel or on a wall); clogfit prints what came out of them")
+
+
 class Groups:
     """Groups of one sweep that hold runs, drawn over one of its parameters."""
 
     def __init__(self, fit):
+        refuse_passages(fit)
         self.members = [group for group in fit["groups"] if group["runs"] > 0]
         self.confidence = fit["confidence"]
         self.columns = {column["name"]: column for column in fit["columns"]}

@@ -27,7 +27,7 @@ with command_line.needs_modules():
     import stored
     import style
     import survival_curve
-    from groups import Groups
+    from groups import Groups, refuse_passages
     from style import plt
 
 STYLE = """
@@ -217,6 +217,7 @@ def body():
     folder = programs.programs_in(arguments.programs)
     fit = json.loads(programs.run_program(folder / "clogfit", arguments.sweep, "--format", "json"))
     status = json.loads(programs.run_program(folder / "clogsweep", "status", arguments.sweep, "--format", "json"))
+    refuse_passages(fit)
     if not any(group["runs"] > 0 for group in fit["groups"]):
         raise UserError(f"{arguments.sweep} holds no finished runs; let the sweep finish some first")
     rows = stored.read_table(arguments.sweep)

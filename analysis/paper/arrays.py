@@ -161,7 +161,7 @@ def speeds_over_sag(shop):
 @figure("7b", "what the sag is: a soft disk and a polygon on a wall, before and after gravity sets in", [], "1 s")
 def sag_picture(shop):
     line_tension, stiffness = 0.3, 1.0
-    polygon = shop.run("sag", "sag", "trajectory", {"line-tension": line_tension}, ["--polygon-interval", 2])
+    polygon = shop.run("sag", "sag", "channel", {"line-tension": line_tension}, ["--polygon-interval", 2])
     disk_sag = shop.sag("sag-disk", {"model": "sp", "wall-stiffness": f"{stiffness:g}"})[0]["sag"]
     drawing, panels = plt.subplots(1, 2, figsize=(7.2, 4.2), layout="constrained", sharey=True)
     wall = polygon.wedges[0, :2]

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -70,22 +71,11 @@ std::string legend(const std::vector<Group>& groups) {
   return text;
 }
 
-/// Which columns are worth their place.
-struct OptionalColumns {
-  bool mechanisms;  ///< where clogs are not all of one kind, or some are left out
-  bool migration;   ///< in random arrays a droplet goes straight on the average
+/// A column of results in the table for people.
+struct ResultColumn {
+  std::string name;
+  std::function<std::string(const Group&)> cell;
 };
-
-OptionalColumns optional_columns(const std::vector<Group>& groups) {
-  std::set<ClogMechanism> seen;
-  for (const Group& group : groups)
-    for (const Group::Cause& cause : group.causes)
-      if (cause.clogging.num_clogs > 0) seen.insert(cause.mechanism);
-  const bool are_some_left_out =
-      std::any_of(groups.begin(), groups.end(), [](const Group& group) { return group.num_left_out > 0; });
-  return {.mechanisms = seen.size() > 1 || are_some_left_out,
-          .migration = std::any_of(groups.begin(), groups.end(), is_lattice)};
-}
 
 /// Clogs by mechanism, as 3/5/2/0.
 std::string mechanism_counts(const Group& group) {
@@ -97,31 +87,129 @@ std::string mechanism_counts(const Group& group) {
   return counts.empty() ? "-" : counts;
 }
 
-std::vector<std::string> result_cells(const Group& group, OptionalColumns optional) {
+/// Where clogs are not all of one kind, or some are left out, it is said of which kind they are.
+bool are_mechanisms_shown(const std::vector<Group>& groups) {
+  std::set<ClogMechanism> seen;
+  for (const Group& group : groups)
+    for (const Group::Cause& cause : group.causes)
+      if (cause.clogging.num_clogs > 0) seen.insert(cause.mechanism);
+  return seen.size() > 1 ||
+         std::any_of(groups.begin(), groups.end(), [](const Group& group) { return group.num_left_out > 0; });
+}
+
+console::RoundedInterval length_of(const Group& group) {
   const fit::CloggingLength& clogging = group.clogging;
-  const bool bounded = clogging.num_clogs > 0;
-  const console::RoundedInterval length =
-      console::with_interval(clogging.length, clogging.interval.lower, clogging.interval.upper);
-  const console::RoundedError speed =
-      console::with_error(group.relative_speed.mean, group.relative_speed.standard_error);
-  // One or two runs that happened to come far enough to have a speed say little of all.
+  return console::with_interval(clogging.length, clogging.interval.lower, clogging.interval.upper);
+}
+bool has_length(const Group& group) { return group.clogging.num_clogs > 0; }
+
+std::string length_text(const Group& group) {
+  if (has_length(group)) return length_of(group).value;
+  return group.clogging.num_runs == 0 ? "-" : "> " + console::plain(group.clogging.interval.lower);
+}
+std::string interval_text(const Group& group) {
+  const console::RoundedInterval length = length_of(group);
+  return has_length(group) ? length.lower + " .. " + length.upper : "-";
+}
+
+/// One or two runs that happened to come far enough to have a speed say little of all.
+console::RoundedError speed_of(const Group& group) {
   constexpr int fewest_speeds = 3;
-  const bool has_speed = group.relative_speed.num_runs >= fewest_speeds;
-  std::vector<std::string> cells = {std::to_string(clogging.num_runs),
-                                    std::to_string(clogging.num_clogs),
-                                    bounded                  ? length.value
-                                    : clogging.num_runs == 0 ? "-"
-                                                             : "> " + console::plain(clogging.interval.lower),
-                                    bounded ? length.lower + " .. " + length.upper : "-",
-                                    has_speed ? speed.value : "-",
-                                    has_speed ? speed.error : "-"};
-  if (optional.mechanisms) cells.insert(cells.begin() + 2, mechanism_counts(group));
-  if (optional.migration) {
-    const console::RoundedError slope =
-        console::with_error(group.migration.slope, group.migration.standard_error);
-    cells.insert(cells.end(), {slope.value, slope.error});
+  const fit::MeanSpeed& speed = group.relative_speed;
+  if (speed.num_runs < fewest_speeds) return {"-", "-"};
+  return console::with_error(speed.mean, speed.standard_error);
+}
+console::RoundedError slope_of(const Group& group) {
+  return console::with_error(group.migration.slope, group.migration.standard_error);
+}
+
+std::string percents(double share) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%g %%", 100 * share);
+  return text;
+}
+
+std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, double confidence) {
+  std::vector<ResultColumn> columns = {
+      {"runs", [](const Group& group) { return std::to_string(group.clogging.num_runs); }},
+      {"clogs", [](const Group& group) { return std::to_string(group.clogging.num_clogs); }}};
+  if (are_mechanisms_shown(groups)) columns.push_back({"w/s/h/o", mechanism_counts});
+  columns.insert(columns.end(), {{"lambda/sigma", length_text},
+                                 {percents(confidence), interval_text},
+                                 {"<v_g>/v_t", [](const Group& group) { return speed_of(group).value; }},
+                                 {"+-", [](const Group& group) { return speed_of(group).error; }}});
+  // In random arrays a droplet goes straight on the average.
+  if (std::any_of(groups.begin(), groups.end(), is_lattice))
+    columns.insert(columns.end(), {{"lateral/r", [](const Group& group) { return slope_of(group).value; }},
+                                   {"+-", [](const Group& group) { return slope_of(group).error; }}});
+  return columns;
+}
+
+/// A number of the one run that a group has where nothing is random.
+ResultColumn column_of_run(const char* name, double sweep::RunRow::*value) {
+  return {name, [=](const Group& group) { return console::plain(group.first_row.*value, 4); }};
+}
+ResultColumn outcome_column() {
+  return {"outcome", [](const Group& group) { return std::string(name(group.first_row.status)); }};
+}
+
+std::vector<ResultColumn> columns_of_channels() {
+  using sweep::RunRow;
+  return {outcome_column(),
+          column_of_run("largest A", &RunRow::largest_shape_parameter),
+          column_of_run("at h", &RunRow::largest_shape_parameter_at),
+          column_of_run("least v/v_t", &RunRow::smallest_relative_speed),
+          column_of_run("at h", &RunRow::smallest_relative_speed_at),
+          column_of_run("most v/v_t", &RunRow::largest_relative_speed),
+          column_of_run("at h", &RunRow::largest_relative_speed_at)};
+}
+
+std::vector<ResultColumn> columns_of_walls() {
+  using sweep::RunRow;
+  return {{"outcome",
+           [](const Group& group) {
+             const RunStatus status = group.first_row.status;
+             return std::string(status == RunStatus::clogged ? "at rest" : name(status));
+           }},
+          column_of_run("sag", &RunRow::sag),
+          column_of_run("top sag", &RunRow::top_sag),
+          column_of_run("A", &RunRow::shape_parameter)};
+}
+
+std::vector<ResultColumn> result_columns(const std::vector<Group>& groups, double confidence) {
+  const ObstacleLayout layout = groups.front().first_row.parameters.obstacles.layout;
+  std::vector<ResultColumn> columns = layout == ObstacleLayout::channel ? columns_of_channels()
+                                      : layout == ObstacleLayout::wall
+                                          ? columns_of_walls()
+                                          : columns_of_arrays(groups, confidence);
+  if (std::any_of(groups.begin(), groups.end(), [](const Group& group) { return !group.doubts.empty(); }))
+    columns.push_back({"note", [](const Group& group) { return letters(group.doubts); }});
+  return columns;
+}
+
+/// What is not in the table, or not in all of its columns.
+std::string left_out(const std::vector<Group>& groups) {
+  int num_failed = 0, num_damaged = 0, num_interrupted = 0, num_left_out = 0;
+  for (const Group& group : groups) {
+    num_failed += group.num_failed;
+    num_damaged += group.num_damaged;
+    num_interrupted += group.num_interrupted;
+    num_left_out += group.num_left_out;
   }
-  return cells;
+  std::string text;
+  if (are_mechanisms_shown(groups)) text += "w/s/h/o: clogs by wrapping, by squeezing, by both, by neither\n";
+  if (num_left_out > 0)
+    text += "   " + sweep::counted(num_left_out, "run") + " ended before --from-distance, left out of " +
+            "runs, clogs and lambda; <v_g> is still of all runs\n";
+  if (num_interrupted > 0)
+    text +=
+        "   " + sweep::counted(num_interrupted, "run") + (num_interrupted == 1 ? " is" : " are") +
+        " under way or interrupted: lambda holds for the distances reached so far, and the clogs so far are "
+        "the early ones\n";
+  if (num_failed > 0) text += "   " + std::to_string(num_failed) + " failed; the column `message` says why\n";
+  if (num_damaged > 0)
+    text += "   " + std::to_string(num_damaged) + " damaged; clogsweep verify tells which\n";
+  return text;
 }
 
 std::vector<Field> all_fields(const Group& group) {
@@ -147,7 +235,9 @@ std::vector<bool> shown_fields(const std::vector<Group>& groups, const std::vect
   std::vector<bool> shown(first.size(), false);
   for (std::size_t i = 0; i < first.size(); ++i) {
     const std::string_view name = first[i].first;
-    shown[i] = (varies[i] && !group_columns()[i]->may_be_automatic(run)) || name == "obstacle_gap" ||
+    const char* place = run.obstacles.layout == ObstacleLayout::channel ? "orifice" : "obstacle_gap";
+    const bool is_there = !std::holds_alternative<std::monostate>(first[i].second);
+    shown[i] = (varies[i] && !group_columns()[i]->may_be_automatic(run)) || (name == place && is_there) ||
                name == (run.model == Model::sp ? "wall_stiffness" : "line_tension");
   }
   for (std::size_t i = 0; i < first.size(); ++i) {
@@ -191,6 +281,34 @@ std::vector<bool> named_if_shared(const sweep::RunRow& row, SharedParameters sha
   return named;
 }
 
+/// Of what all runs share, what is worth a word.
+std::vector<std::string> shared_words(const sweep::RunRow& row, const std::vector<bool>& varies,
+                                      const std::vector<bool>& shown, SharedParameters shared) {
+  const std::vector<Field> fields = parameter_fields(row);
+  const std::vector<bool> is_named = named_if_shared(row, shared);
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    if (!shown[i] && !varies[i] && is_named[i])
+      words.push_back(std::string(fields[i].first) + "=" + rounded(fields[i].second));
+  return words;
+}
+
+std::vector<std::string> parameter_names(const Group& group) {
+  std::vector<std::string> names;
+  for (const Field& field : parameter_fields(group.first_row)) names.emplace_back(field.first);
+  return names;
+}
+std::vector<std::string> parameter_texts(const Group& group) {
+  std::vector<std::string> texts;
+  for (const Field& field : parameter_fields(group.first_row)) texts.push_back(rounded(field.second));
+  return texts;
+}
+void append_shown(const std::vector<std::string>& texts, const std::vector<bool>& shown,
+                  std::vector<std::string>& line) {
+  for (std::size_t i = 0; i < texts.size(); ++i)
+    if (shown[i]) line.push_back(texts[i]);
+}
+
 /// Words in lines that fit a terminal, each after a space.
 std::string wrapped(const std::vector<std::string>& words) {
   constexpr std::size_t longest_line = 100;
@@ -209,62 +327,20 @@ std::string wrapped(const std::vector<std::string>& words) {
 }  // namespace
 
 std::string to_text(const std::vector<Group>& groups, double confidence, SharedParameters shared) {
-  const std::vector<Field> first = parameter_fields(groups.front().first_row);
   const std::vector<bool> varies = varying_fields(groups);
   const std::vector<bool> shown = shown_fields(groups, varies);
-  const std::vector<bool> is_named = named_if_shared(groups.front().first_row, shared);
-  const auto is_shown = [&](std::size_t i) { return shown[i]; };
-
-  std::vector<std::string> shared_words;
+  std::string text = "all runs:" + wrapped(shared_words(groups.front().first_row, varies, shown, shared));
+  if (shared == SharedParameters::unusual) text += "\n(the rest as by default; --all-parameters names it)";
+  const std::vector<ResultColumn> columns = result_columns(groups, confidence);
   std::vector<std::vector<std::string>> lines(1);
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    if (is_shown(i))
-      lines[0].push_back(first[i].first);
-    else if (!varies[i] && is_named[i])
-      shared_words.push_back(std::string(first[i].first) + "=" + rounded(first[i].second));
-  }
-  char interval[16];
-  std::snprintf(interval, sizeof interval, "%g %%", 100 * confidence);
-  const OptionalColumns optional = optional_columns(groups);
-  lines[0].insert(lines[0].end(), {"runs", "clogs"});
-  if (optional.mechanisms) lines[0].push_back("w/s/h/o");
-  lines[0].insert(lines[0].end(), {"lambda/sigma", interval, "<v_g>/v_t", "+-"});
-  if (optional.migration) lines[0].insert(lines[0].end(), {"lateral/r", "+-"});
-  const bool with_doubts =
-      std::any_of(groups.begin(), groups.end(), [](const Group& group) { return !group.doubts.empty(); });
-  if (with_doubts) lines[0].push_back("note");
-  int num_failed = 0;
-  int num_damaged = 0;
-  int num_interrupted = 0;
-  int num_left_out = 0;
+  append_shown(parameter_names(groups.front()), shown, lines[0]);
+  for (const ResultColumn& column : columns) lines[0].push_back(column.name);
   for (const Group& group : groups) {
     std::vector<std::string>& line = lines.emplace_back();
-    const std::vector<Field> fields = parameter_fields(group.first_row);
-    for (std::size_t i = 0; i < fields.size(); ++i)
-      if (is_shown(i)) line.push_back(rounded(fields[i].second));
-    for (std::string& cell : result_cells(group, optional)) line.push_back(std::move(cell));
-    if (with_doubts) line.push_back(letters(group.doubts));
-    num_failed += group.num_failed;
-    num_damaged += group.num_damaged;
-    num_interrupted += group.num_interrupted;
-    num_left_out += group.num_left_out;
+    append_shown(parameter_texts(group), shown, line);
+    for (const ResultColumn& column : columns) line.push_back(column.cell(group));
   }
-  std::string text = "all runs:" + wrapped(shared_words);
-  if (shared == SharedParameters::unusual) text += "\n(the rest as by default; --all-parameters names it)";
-  text += "\n\n" + aligned(lines) + legend(groups);
-  if (optional.mechanisms) text += "w/s/h/o: clogs by wrapping, by squeezing, by both, by neither\n";
-  if (num_left_out > 0)
-    text += "   " + sweep::counted(num_left_out, "run") + " ended before --from-distance, left out of " +
-            "runs, clogs and lambda; <v_g> is still of all runs\n";
-  if (num_interrupted > 0)
-    text +=
-        "   " + sweep::counted(num_interrupted, "run") + (num_interrupted == 1 ? " is" : " are") +
-        " under way or interrupted: lambda holds for the distances reached so far, and the clogs so far are "
-        "the early ones\n";
-  if (num_failed > 0) text += "   " + std::to_string(num_failed) + " failed; the column `message` says why\n";
-  if (num_damaged > 0)
-    text += "   " + std::to_string(num_damaged) + " damaged; clogsweep verify tells which\n";
-  return text;
+  return text + "\n\n" + aligned(lines) + legend(groups) + left_out(groups);
 }
 
 std::string to_csv(const std::vector<Group>& groups) {

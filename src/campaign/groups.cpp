@@ -35,6 +35,12 @@ bool hangs_on_mesh(const Group& group) {
 std::vector<Doubt> doubts_about(const Group& group) {
   constexpr int few = 5;
   std::vector<Doubt> doubts;
+  if (!has_clogging_length(group.first_row)) {
+    if (group.num_interrupted > 0 || group.num_failed > 0) doubts.push_back(Doubt::incomplete);
+    if (group.num_damaged > 0) doubts.push_back(Doubt::damaged);
+    if (!sweep::unproven_parameters(group.first_row).empty()) doubts.push_back(Doubt::not_proved_sound);
+    return doubts;
+  }
   const bool has_runs = group.clogging.num_runs > 0;  // not if all ended before distances are counted
   if (has_runs && group.clogging.num_clogs < few) doubts.push_back(Doubt::few_clogs);
   if (group.num_flowing > 0) doubts.push_back(Doubt::censored_by_time);
@@ -63,6 +69,17 @@ void doubt_exponentiality(std::vector<Group>& groups) {
     if (tested[i]->weibull.p_value * static_cast<double>(tested.size() - i) >= significant) return;
     tested[i]->doubts.push_back(Doubt::not_exponential);
   }
+}
+
+/// What a run in a channel or on a wall has come to.
+std::vector<Field> fields_of_run(const sweep::RunRow& row) {
+  std::vector<Field> fields;
+  for (const char* name :
+       {"status", "distance", "time", "largest_shape_parameter", "largest_shape_parameter_at",
+        "largest_relative_speed", "largest_relative_speed_at", "smallest_relative_speed",
+        "smallest_relative_speed_at", "sag", "top_sag", "shape_parameter", "mean_speed"})
+    fields.emplace_back(name, sweep::column(name).get(row));
+  return fields;
 }
 
 std::vector<double> censored_distances(std::span<const fit::Observation> runs) {
@@ -137,8 +154,8 @@ std::string_view unit_of(std::string_view field) {
   if (field.starts_with("clogging_length")) return "sigma";
   for (const auto& [name, unit] : units_of_results)
     if (name == field) return unit;
-  for (const sweep::Column* column : group_columns())
-    if (column->name == field) return column->unit;
+  for (const sweep::Column& column : sweep::columns())
+    if (column.name == field) return column.unit;
   return "";
 }
 
@@ -209,6 +226,11 @@ std::vector<Field> parameter_fields(const sweep::RunRow& row) {
   return fields;
 }
 
+bool has_clogging_length(const sweep::RunRow& row) {
+  const ObstacleLayout layout = row.parameters.obstacles.layout;
+  return layout != ObstacleLayout::channel && layout != ObstacleLayout::wall;
+}
+
 std::vector<Field> result_fields(const Group& group) {
   const RunParameters& run = group.first_row.parameters;
   const double line_tension = run.model == Model::dp ? run.dp.line_tension : sweep::RunRow::not_known;
@@ -243,7 +265,13 @@ std::vector<Field> result_fields(const Group& group) {
       {"lateral_slope_error", value_of(group.migration.standard_error)},
       {"doubts", doubts}};
   append_causes(group, fields);
-  return fields;
+  if (has_clogging_length(group.first_row)) return fields;
+  std::vector<Field> of_run = {{"interrupted", value_of(group.num_interrupted)},
+                               {"failed", value_of(group.num_failed)},
+                               {"damaged", value_of(group.num_damaged)},
+                               {"doubts", doubts}};
+  for (Field& field : fields_of_run(group.first_row)) of_run.push_back(std::move(field));
+  return of_run;
 }
 
 }  // namespace clog::campaign

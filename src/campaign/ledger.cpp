@@ -73,6 +73,7 @@ Ledger::Ledger(std::string path, const sweep::Plan& plan, const sweep::Settings&
       attempts_(attempts),
       journal_(store::journal_path(path_)),
       num_wanted_(num_wanted) {
+  for (const auto& [name, circles] : plan.circle_files()) circles_.push_back({name, circles});
   std::string session;
   for (const char* name : {"start_time", "version", "git_hash", "num_ranks", "command_line"})
     session += attribute(provenance_, name) + ' ';
@@ -84,6 +85,7 @@ Ledger::Ledger(std::string path, const sweep::Plan& plan, const sweep::Settings&
     const store::SweepFile file = store::read_sweep(path_);
     caution_ = store::caution(path_, file);
     take_over(file, settings);
+    keep_circles(file);
     for (const sweep::RunRow& row : file.rows) {
       known[sweep::identity(row)] = {row, {}};
       if (sweep::is_result(row.status)) with_results.insert(sweep::identity(row));
@@ -127,6 +129,13 @@ void Ledger::take_over(const store::SweepFile& file, const sweep::Settings& sett
     if (const std::string text = attribute(provenance_, name); !text.empty()) all.emplace_back(name, text);
   }
   provenance_ = std::move(all);
+}
+
+/// Runs that are not of this plan may be among other circles.
+void Ledger::keep_circles(const store::SweepFile& file) {
+  for (const store::CircleFile& one : file.circles)
+    if (std::ranges::none_of(circles_, [&](const auto& known) { return known.circles == one.circles; }))
+      circles_.push_back({"", one.circles});
 }
 
 bool Ledger::is_over(const sweep::RunRow& row) const {
@@ -267,7 +276,7 @@ void Ledger::publish() {
   for (const auto& [task, entry] : runs_) rows.push_back(published(entry.row));
   for (const Entry& entry : other_runs_) rows.push_back(published(entry.row));
   journal_.flush();
-  store::publish_sweep(path_, rows, provenance_);
+  store::publish_sweep(path_, rows, provenance_, circles_);
   is_published_ = true;
 }
 

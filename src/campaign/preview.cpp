@@ -132,7 +132,7 @@ std::vector<std::int64_t> tasks_to_try(const sweep::Plan& plan) {
   std::stable_sort(tasks.begin(), tasks.end(), [&](std::int64_t a, std::int64_t b) {
     const auto array = [&](std::int64_t task) {
       const RunParameters run = plan.task(task);
-      return sweep::array_key(run.obstacles, run.seed);
+      return sweep::array_key(run);
     };
     return array(a) < array(b);
   });

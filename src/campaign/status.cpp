@@ -35,7 +35,7 @@ std::vector<SetTimes> times_of_sets(const std::vector<RunRow>& rows, const sweep
 
 Status status_of(const std::string& path, const store::SweepFile& file, double confidence) {
   Status status;
-  const sweep::Plan plan = stored_plan(path, file.provenance);
+  const sweep::Plan plan = stored_plan(path, file);
   status.runs = stored_num_runs(path, file, plan);
   status.stopping_rule = attribute(file.provenance, "stopping_rule");
   status.is_alive = store::Journal::is_open(store::journal_path(path));

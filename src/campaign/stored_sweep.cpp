@@ -37,8 +37,8 @@ const sweep::RunRow& row_of_task(const store::SweepFile& file, const std::string
 
 }  // namespace
 
-const sweep::RunRow& replayable_row(const store::SweepFile& file, const std::string& task) {
-  const sweep::RunRow& row = row_of_task(file, task);
+sweep::RunRow replayable_row(const store::SweepFile& file, const std::string& task) {
+  sweep::RunRow row = row_of_task(file, task);
   const auto refuse = [&](const std::string& why, const std::string& remedy) {
     throw Error("cannot replay task " + task + " (" + why + "); " + remedy);
   };
@@ -52,6 +52,8 @@ const sweep::RunRow& replayable_row(const store::SweepFile& file, const std::str
                std::to_string(model_version),
            "use the version that wrote the file");
   if (const std::string fault = sweep::fault_of(row); !fault.empty()) refuse(fault, "the row is damaged");
+  for (const store::CircleFile& one : file.circles)
+    if (row.parameters.obstacles.own == one.circles) row.parameters.obstacles.own = one.circles;
   if (row.parameters.model == Model::dp) use_instruction_set(row.instruction_set);
   return row;
 }
@@ -72,9 +74,13 @@ sweep::Settings stored_settings(const std::string& path, const store::Provenance
   return read_attribute(path, provenance, "config", settings_from);
 }
 
-sweep::Plan stored_plan(const std::string& path, const store::Provenance& provenance) {
-  return read_attribute(path, provenance, "config",
-                        [](const std::string& config) { return sweep::Plan(settings_from(config)); });
+sweep::Plan stored_plan(const std::string& path, const store::SweepFile& file) {
+  return read_attribute(path, file.provenance, "config", [&](const std::string& config) {
+    sweep::Settings settings = settings_from(config);
+    for (const store::CircleFile& one : file.circles)
+      if (!one.name.empty()) settings.attach(one.name, one.circles);
+    return sweep::Plan(settings);
+  });
 }
 
 std::vector<std::string> listed_columns(const store::Provenance& provenance) try {

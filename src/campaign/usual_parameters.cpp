@@ -1,6 +1,7 @@
 #include "clog/campaign/usual_parameters.hpp"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "clog/core/parameters/schema.hpp"
@@ -31,11 +32,24 @@ RunParameters with_usual_values(const sweep::RunRow& row) {
   return run;
 }
 
+/// Of a user's own circles a row has the check sum only; automatic values hardly depend on them.
+RunParameters resolved_in_any_layout(RunParameters run) {
+  if (run.obstacles.layout != ObstacleLayout::file) return resolve(run);
+  const ObstacleParameters own = run.obstacles;
+  run.obstacles.layout = ObstacleLayout::random;
+  run.obstacles.own.reset();
+  run.obstacles.release = Release::centre;
+  run.obstacles.density.reset();
+  run = resolve(run);
+  run.obstacles = own;
+  return run;
+}
+
 }  // namespace
 
 std::vector<Field> usual_parameters(const sweep::RunRow& row) try {
-  const auto fields_of = [](const RunParameters& run) {
-    return parameter_fields(sweep::describe(resolve(run)));
+  const auto fields_of = [](RunParameters run) {
+    return parameter_fields(sweep::describe(resolved_in_any_layout(std::move(run))));
   };
   RunParameters run = with_usual_values(row);
   const std::vector<Field> with_usual_step = fields_of(run);

@@ -43,7 +43,7 @@ Verification verify(const std::string& path) {
   const store::Examination found = store::examine_sweep(path);
   const store::SweepFile& file = found.whole;
   RunCount runs;  // not asked for where the file is damaged
-  if (found.damage.empty()) runs = stored_num_runs(path, file, stored_plan(path, file.provenance));
+  if (found.damage.empty()) runs = stored_num_runs(path, file, stored_plan(path, file));
   Verification result{.findings = found.damage};
   for (std::string& fault : faults_of(file.rows)) result.findings.push_back(std::move(fault));
   result.num_faults = static_cast<std::int64_t>(result.findings.size());

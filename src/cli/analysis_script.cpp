@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <sstream>
 #include <system_error>
 
 #include "clog/console/streams.hpp"
@@ -32,6 +33,14 @@ void become_script(const std::string& name, const std::filesystem::path& script,
   execv(script.c_str(), words.data());
   throw Error("cannot run " + script.string() + " (" + std::strerror(errno) +
               "); it needs Debian's python3 with h5py, pandas and matplotlib");
+}
+
+bool is_installed(const std::string& program) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (access((std::filesystem::path(folder) / program).c_str(), X_OK) == 0) return true;
+  return false;
 }
 
 std::filesystem::path own_folder() { return std::filesystem::read_symlink("/proc/self/exe").parent_path(); }

@@ -1,5 +1,7 @@
 #include "clog/cli/command_line.hpp"
 
+#include "clog/cli/obstacle_file.hpp"
+
 #include <algorithm>
 #include <filesystem>
 #include <limits>
@@ -9,6 +11,7 @@
 #include <string_view>
 #include <utility>
 
+#include "clog/console/csv.hpp"
 #include "clog/console/text_file.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/instruction_set.hpp"
@@ -78,6 +81,7 @@ void CommandLine::parse(int argc, const char* const* argv) {
   if (has("config")) read_config(get("config"));
   for (const auto& [name, value] : values_)
     if (is_key(name)) settings_.set(name, value.as<std::string>());
+  for (const std::string& file : settings_.missing_files()) settings_.attach(file, read_circles(file));
 }
 
 bool CommandLine::awaits_value(const std::string& word) const {
@@ -126,8 +130,25 @@ void CommandLine::refuse_unknown(const std::string& word, std::span<const char* 
                             : std::string("; did you mean ") + (has_dashes ? "--" : "") + near + "?"));
 }
 
+/// Boost would find it out, too, but puts the line into a message where it replaces %names%: one with such a
+/// name never ends (Boost 1.74).
+static void refuse_lines_without_value(const std::string& path, const std::string& text) {
+  std::istringstream lines(text);
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    const std::string words = console::trimmed(line.substr(0, line.find('#')));
+    const bool is_section = words.starts_with('[') && words.ends_with(']');
+    if (!words.empty() && !is_section && words.find('=') == std::string::npos)
+      throw Error(path + " line " + std::to_string(number) + ": '" + words.substr(0, 60) +
+                  "' is not key = value; comments start with #");
+  }
+}
+
 void CommandLine::read_config(const std::string& path) {
-  std::istringstream file(console::read_text(path));
+  const std::string text = console::read_text(path);
+  refuse_lines_without_value(path, text);
+  std::istringstream file(text);
   try {
     const po::parsed_options parsed = po::parse_config_file(file, keys_, true);
     std::set<std::string> seen;

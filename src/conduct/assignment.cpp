@@ -13,7 +13,7 @@ namespace clog::conduct {
 
 std::string Assignment::text() const {
   std::ostringstream text;
-  text << report_interval.count() << ' ' << instruction_set << ' ' << is_isolated << '\n' << config;
+  text << report_interval.count() << ' ' << instruction_set << ' ' << is_isolated << '\n' << settings;
   return text.str();
 }
 
@@ -23,14 +23,14 @@ Assignment Assignment::from(const std::string& text) {
   std::istringstream words(text);
   words >> interval >> assignment.instruction_set >> assignment.is_isolated;
   assignment.report_interval = std::chrono::milliseconds(interval);
-  assignment.config = text.substr(text.find('\n') + 1);
+  assignment.settings = text.substr(text.find('\n') + 1);
   return assignment;
 }
 
 sweep::JobFactory assigned_jobs(const std::string& text) {
   const Assignment assignment = Assignment::from(text);
   use_instruction_set(assignment.instruction_set);
-  const auto plan = std::make_shared<sweep::Plan>(sweep::Settings::from_config(assignment.config));
+  const auto plan = std::make_shared<sweep::Plan>(sweep::Settings::from_packed(assignment.settings));
   return [plan, make_job = sweep::run_jobs(*plan)](std::int64_t task, std::span<const std::byte> snapshot) {
     return make_job(task, snapshot);
   };

@@ -7,7 +7,7 @@
 
 #include "clog/console/build_info.hpp"
 #include "clog/core/run/resolve.hpp"
-#include "clog/core/run/systems.hpp"
+#include "clog/core/run/droplet_run.hpp"
 #include "clog/core/tools/instruction_set.hpp"
 #include "clog/host/limits.hpp"
 #include "clog/parallel/communicator.hpp"
@@ -30,7 +30,7 @@ double step_cost(double seconds) {
   parameters.obstacles.box = 20;
   parameters.obstacles.gap = 0.5;
   parameters.max_time = 1e9;
-  DropletRun run = run_in_array(resolve(parameters));
+  DropletRun run(resolve(parameters));
   const auto now = [] { return std::chrono::steady_clock::now(); };
   const auto begin = now();
   std::chrono::duration<double> elapsed{};

@@ -10,6 +10,8 @@
 
 #include "clog/campaign/stored_sweep.hpp"
 #include "clog/console/signals.hpp"
+#include "clog/core/run/droplet_run.hpp"
+#include "clog/core/scene/channel.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/laboratory/progress.hpp"
 #include "clog/sweep/single_run.hpp"
@@ -35,17 +37,17 @@ class UseOfCore {
 /// The simulated droplet's way past the frames.
 class ChannelSimulation {
  public:
-  ChannelSimulation(sweep::Settings settings, ChannelParameters channel, const fit::Profile& measured)
-      : settings_(std::move(settings)), channel_(channel) {
+  ChannelSimulation(sweep::Settings settings, const fit::Profile& measured) : settings_(std::move(settings)) {
     const auto [first, last] = std::minmax_element(
         measured.begin(), measured.end(), [](const fit::Frame& a, const fit::Frame& b) { return a.h < b.h; });
+    const RunParameters usual = sweep::single_run(settings_);
     // Motion is overdamped: half a diameter before the first frame the start is forgotten. The droplet must
     // not touch the channel at the start.
-    channel_.start =
-        std::min({first->h - 0.5, -2.0, last_free_start(sweep::single_run(settings_), channel_) - 0.1});
-    channel_.end = last->h + 0.1;
-    const double terminal_speed = sweep::single_run(settings_).drag.terminal_speed;
-    settings_.set("max-time", sweep::shortest(30 * (channel_.end - channel_.start) / terminal_speed));
+    const double start = std::min({first->h - 0.5, -2.0, last_free_start(usual) - 0.1});
+    const double end = last->h + 0.1;
+    settings_.set("start", sweep::shortest(start));
+    settings_.set("end", sweep::shortest(end));
+    settings_.set("max-time", sweep::shortest(30 * (end - start) / usual.drag.terminal_speed));
   }
 
   /// From several threads at a time, as many as there are cores.
@@ -55,13 +57,13 @@ class ChannelSimulation {
     sweep::Settings settings = settings_;
     settings.set("line-tension", sweep::shortest(line_tension));
     settings.set("near-wall-drag", sweep::shortest(near_wall_drag));
-    const RunParameters parameters = sweep::channel_run(std::move(settings), channel_);
-    DropletRun run = run_in_channel(parameters, channel_);
+    const RunParameters parameters = sweep::single_run(settings);
+    DropletRun run(parameters);
     fit::Profile profile;
     bool is_over = false;
     while (!is_over) {
       if (console::stop_signalled()) throw console::Stopped("stopped by a signal");
-      profile.push_back({channel_.start + run.displacement()[0],
+      profile.push_back({parameters.channel.start + run.displacement()[0],
                          run.droplet().centre_velocity()[0] / parameters.drag.terminal_speed,
                          run.droplet().shape().shape_parameter()});
       is_over = run.advance(1);
@@ -71,45 +73,43 @@ class ChannelSimulation {
 
  private:
   sweep::Settings settings_;
-  ChannelParameters channel_;
 };
 
 /// @throws Error if a simulated passage was through another channel, or at another speed, than is to be
 /// simulated
 void refuse_other_channel(const std::string& file, const store::Provenance& origin,
-                          const ChannelParameters& channel, double terminal_speed) {
+                          const RunParameters& simulated) {
   const auto compare = [&](const std::string& option, double stored, double given) {
     if (stored != given)
       throw Error(file + " was written with " + option + "=" + sweep::shortest(stored) + ", not " +
                   sweep::shortest(given) + "; give " + option + "=" + sweep::shortest(stored));
   };
-  compare("--orifice", sweep::to_number(campaign::attribute(origin, "orifice")), channel.orifice);
-  compare("--wedge-angle", sweep::to_number(campaign::attribute(origin, "wedge_angle")), channel.wedge_angle);
-  compare("--tip-radius", sweep::to_number(campaign::attribute(origin, "tip_radius")), channel.tip_radius);
+  compare("orifice", sweep::to_number(campaign::attribute(origin, "orifice")), simulated.channel.orifice);
+  compare("wedge-angle", sweep::to_number(campaign::attribute(origin, "wedge_angle")), simulated.channel.wedge_angle);
+  compare("tip-radius", sweep::to_number(campaign::attribute(origin, "tip_radius")), simulated.channel.tip_radius);
   compare("terminal-speed", sweep::single_run(campaign::stored_settings(file, origin)).drag.terminal_speed,
-          terminal_speed);
+          simulated.drag.terminal_speed);
 }
 
 }  // namespace
 
 std::vector<Trial> read_trials(const std::vector<std::string>& files, const ProfileScales& scales,
-                               const ChannelParameters& channel, double terminal_speed) {
+                               const RunParameters& simulated) {
   std::vector<Trial> trials;
   for (const std::string& file : files) {
     MeasuredProfile measured = read_measured_profile(file, scales);
-    if (!measured.origin.empty()) refuse_other_channel(file, measured.origin, channel, terminal_speed);
+    if (!measured.origin.empty()) refuse_other_channel(file, measured.origin, simulated);
     trials.push_back({file, std::move(measured.frames)});
   }
   return trials;
 }
 
-std::vector<fit::Calibration> calibrate(const std::vector<Trial>& trials, const sweep::Settings& settings,
-                                        const ChannelParameters& channel) {
+std::vector<fit::Calibration> calibrate(const std::vector<Trial>& trials, const sweep::Settings& settings) {
   CalibrationProgress progress(trials.size());
   const auto calibrate_one = [&](std::size_t trial) {
     const fit::Profile& profile = trials[trial].frames;
     fit::Calibration found =
-        fit::calibrate(profile, ChannelSimulation(settings, channel, profile), {},
+        fit::calibrate(profile, ChannelSimulation(settings, profile), {},
                        [&](const fit::CalibrationAttempt& attempt) { progress.tried(trial, attempt); });
     progress.ended();
     return found;

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "channel_options.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/console/exit_codes.hpp"
@@ -34,9 +33,9 @@ constexpr const char* usage =
 droplet that passes a channel most like a measured one: those that minimise Delta_v, the relative
 root-mean-square deviation of the speeds. One file per trial.
 
-  clogfit calibrate trial1.csv trial2.csv --orifice 0.7 terminal-speed=0.032
-  clogfit calibrate channel.h5 --orifice 0.7 terminal-speed=0.032
-  clogfit calibrate trial*.csv --orifice 0.4 --diameter 3.5mm --speed 7mm/s --angle 28deg
+  clogfit calibrate trial1.csv trial2.csv orifice=0.7 terminal-speed=0.032
+  clogfit calibrate channel.h5 orifice=0.7 terminal-speed=0.032
+  clogfit calibrate trial*.csv orifice=0.4 --diameter 3.5mm --speed 7mm/s --angle 28deg
   ... --tension 10mN/m --other "1.98mm 8.5deg"
 
 A profile is a CSV file with the header h [sigma], v [v_t], A or, with --diameter and --speed, in laboratory units such
@@ -62,9 +61,8 @@ cli::CommandLine parse(int argc, const char* const* argv) {
       "tension", text(), "interfacial, e.g. 10mN/m: for Gamma_exp")(
       "other", text(), "another experiment's diameter and angle, to scale Gamma to")(
       "format", text()->default_value("text"), "text or json");
-  add_channel_options(line);
   line.add_positional("profiles", -1);
-  line.settings().set("seeds", "1");
+  line.settings().set("obstacle-layout", "channel");
   line.parse(argc - 1, argv + 1);
   return line;
 }
@@ -196,13 +194,13 @@ int clogfit_calibrate(int argc, const char* const* argv) {
   std::optional<Experiment> other;
   if (line.has("other")) other = other_experiment(line, lab);
   if (lab.tilt > 0) line.settings().set("terminal-speed", sweep::shortest(lab.reduced_terminal_speed()));
-  const ChannelParameters channel = channel_from(line);
-  const double terminal_speed = sweep::single_run(line.settings()).drag.terminal_speed;
+  const RunParameters usual = sweep::single_run(line.settings());
+  const double terminal_speed = usual.drag.terminal_speed;
   const std::vector<Trial> trials =
-      laboratory::read_trials(files, {lab.diameter, lab.terminal_speed}, channel, terminal_speed);
+      laboratory::read_trials(files, {lab.diameter, lab.terminal_speed}, usual);
 
   console::catch_stop_signals();
-  const std::vector<fit::Calibration> found = laboratory::calibrate(trials, line.settings(), channel);
+  const std::vector<fit::Calibration> found = laboratory::calibrate(trials, line.settings());
   (format == "json" ? print_json : print_text)(files, found, fit::combine(found), lab, terminal_speed, other);
   return console::exit_success;
 }

@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "channel_options.hpp"
 #include "clog/cli/analysis_script.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
@@ -26,8 +25,8 @@ constexpr const char* program = "clogrun";
 constexpr const char* usage = R"(clogrun follows one droplet and writes what happens to it.
 
   clogrun array --output run.h5 line-tension=0.3 obstacle-gap=0.35 seeds=7
-  clogrun array --output run.h5 --obstacles mine.csv box=60 --polygon-interval 1
-  clogrun channel --output run.h5 --orifice 0.7 line-tension=1.08 near-wall-drag=0.07 terminal-speed=0.032
+  clogrun array --output run.h5 obstacles=mine.csv box=60 --polygon-interval 1
+  clogrun channel --output run.h5 orifice=0.7 line-tension=1.08 near-wall-drag=0.07 terminal-speed=0.032
   clogrun array --output run.h5 line-tension=0.3 max-time=3000 --polygon-interval 5 --frames film
   clogrun replay sweep.h5 12 --output run.h5 --polygon-interval 1     a run of a sweep once more
   clogrun sag line-tension=0.1,0.3,1          prints how far the droplet sinks onto a flat wall
@@ -53,12 +52,7 @@ cli::CommandLine parse(int argc, char** argv) {
       "most-frames", text(),
       "film: this many frames at most; a longer one is thinned, or shows the end (600)")(
       "dry-run", "print the config and how long the run takes at most, run nothing")(
-      "obstacles", text(),
-      "array: CSV file x,y[,diameter] to use, with the gap and the density that it has; the droplet starts "
-      "near its centre")("write-obstacles", text(), "array: write the obstacles as a CSV file")(
-      "start", text(), "channel: h at release [sigma] (-10)")("end", text(),
-                                                              "channel: h at the end [sigma] (3)");
-  add_channel_options(line);
+      "write-obstacles", text(), "array: write the obstacles as a CSV file");
   line.add_positional("system", 1);
   if (argc > 1 && std::string_view(argv[1]) == "replay") {
     line.add_positional("file", 1);
@@ -107,6 +101,9 @@ std::filesystem::path film_name(const cli::CommandLine& line) {
     throw Error("cannot write " + name.string() + " (no folder " + name.parent_path().string() +
                 "); make it first");
   for (const std::filesystem::path& film : files_of(line, "frames")) store::refuse_unwritable(film);
+  if (name.extension() == ".mp4" && !cli::is_installed("ffmpeg"))
+    throw Error("cannot write " + name.string() + " (no ffmpeg); install it, or ask for " +
+                std::filesystem::path(name).replace_extension(".gif").string());
   return name;
 }
 
@@ -146,6 +143,8 @@ int body(int argc, char** argv) {
   refuse_same_files(line);
   const std::string system = line.has("system") ? line.get("system") : "";
   if (system != "replay") refuse_options(line, system, {"file", "task", "to-rest"});
+  if (system == "channel") choose_layout(line, "channel");
+  if (system == "sag") choose_layout(line, "wall");
   if (followed_systems.contains(system)) return follow(line, system);
   if (system == "sag") return clogrun_sag(line);
   throw Error((system.empty() ? "missing system" : "unknown system '" + system + "'") +

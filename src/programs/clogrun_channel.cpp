@@ -1,11 +1,10 @@
 #include <algorithm>
 #include <string>
 
-#include "channel_options.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/console/streams.hpp"
-#include "clog/core/run/systems.hpp"
+#include "clog/core/run/droplet_run.hpp"
 #include "clog/sweep/single_run.hpp"
 #include "clogrun_commands.hpp"
 
@@ -23,17 +22,14 @@ void say_what_is_coarse(const RunParameters& run) {
 }  // namespace
 
 int clogrun_channel(cli::CommandLine& line) {
-  refuse_options(line, "channel", array_options);
+  refuse_options(line, "channel", {"write-obstacles"});
   const std::string output = line.require("output");
-  ChannelParameters channel = channel_from(line);
-  channel.start = line.get_number("start", channel.start);
-  channel.end = line.get_number("end", channel.end);
-  const RunParameters parameters = sweep::channel_run(line.settings(), channel);
+  const RunParameters parameters = sweep::single_run(line.settings());
+  const ChannelParameters& channel = parameters.channel;
   const auto often = intervals(line, *parameters.time_step);
-  DropletRun run = run_in_channel(parameters, channel);
   store::refuse_unwritable(output);
 
-  watch::WatchedRun watched(std::move(run), often);
+  watch::WatchedRun watched(DropletRun(parameters), often);
   if (line.has("dry-run"))
     return watch::print_preview(line.settings().to_config(false), watched.measure_cost());
   watched.add_column(
@@ -47,7 +43,7 @@ int clogrun_channel(cli::CommandLine& line) {
   console::catch_stop_signals();
   watched.follow();
   store::Trajectory trajectory =
-      watched.trajectory(row_of_scene(parameters, ObstacleLayout::channel), cli::origin(line));
+      watched.trajectory(sweep::describe(parameters), cli::origin(line));
   for (const auto& [name, value] : {std::pair{"orifice", channel.orifice},
                                     {"wedge_angle", channel.wedge_angle},
                                     {"tip_radius", channel.tip_radius},

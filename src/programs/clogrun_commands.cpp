@@ -25,9 +25,12 @@ void say_what_is_unproven(const sweep::Plan& plan) {
   if (const std::string words = sweep::unproven_parameters(plan); !words.empty()) console::say(words);
 }
 
-sweep::RunRow row_of_scene(RunParameters run, ObstacleLayout layout) {
-  run.obstacles.layout = layout;
-  return sweep::describe(run);
+void choose_layout(cli::CommandLine& line, const std::string& layout) {
+  const std::string key = "obstacle-layout";
+  if (line.has(key) && line.get(key) != layout)
+    throw Error("clogrun " + line.get("system") + " means " + key + "=" + layout + ", not " + line.get(key) +
+                "; leave it out");
+  line.settings().set(key, layout);
 }
 
 }  // namespace clog::programs

@@ -15,19 +15,9 @@ int clogrun_channel(cli::CommandLine& line);
 int clogrun_sag(cli::CommandLine& line);
 int clogrun_replay(cli::CommandLine& line);
 
-/// Keys and options that describe an obstacle array.
-inline constexpr std::initializer_list<const char*> array_options = {"obstacle-gap",
-                                                                     "obstacle-diameter",
-                                                                     "obstacle-diameter-spread",
-                                                                     "obstacle-density",
-                                                                     "obstacle-layout",
-                                                                     "lattice-angle",
-                                                                     "seeds",
-                                                                     "seed",
-                                                                     "box",
-                                                                     "boxes",
-                                                                     "obstacles",
-                                                                     "write-obstacles"};
+/// The command says which obstacle-layout is meant. @throws Error if the user says otherwise
+void choose_layout(cli::CommandLine& line, const std::string& layout);
+
 /// @throws Error if one of these options was given, which have no meaning for the system
 void refuse_options(const cli::CommandLine& line, const std::string& system,
                     std::initializer_list<const char*> options);
@@ -36,7 +26,5 @@ void refuse_options(const cli::CommandLine& line, const std::string& system,
 watch::WatchedRun::Intervals intervals(const cli::CommandLine& line, double time_step);
 /// On the standard error, what of the runs was not proved sound; nothing if all of it was.
 void say_what_is_unproven(const sweep::Plan& plan);
-/// The row of a run that meets no array, or a user's own.
-sweep::RunRow row_of_scene(RunParameters run, ObstacleLayout layout);
 
 }  // namespace clog::programs

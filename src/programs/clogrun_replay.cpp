@@ -3,7 +3,7 @@
 #include "clog/campaign/stored_sweep.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/console/signals.hpp"
-#include "clog/core/run/systems.hpp"
+#include "clog/core/run/droplet_run.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/instruction_set.hpp"
 #include "clog/sweep/settings.hpp"
@@ -23,8 +23,7 @@ void refuse_keys(const cli::CommandLine& line) {
 }  // namespace
 
 int clogrun_replay(cli::CommandLine& line) {
-  refuse_options(line, "replay",
-                 {"orifice", "wedge-angle", "tip-radius", "start", "end", "obstacles", "seed"});
+  refuse_options(line, "replay", {"write-obstacles", "seed"});
   refuse_keys(line);
   if (!line.has("file") || !line.has("task"))
     throw Error("missing sweep file or task; try clogrun replay sweep.h5 0 --output run.h5");
@@ -35,7 +34,7 @@ int clogrun_replay(cli::CommandLine& line) {
   const auto often = intervals(line, *row.parameters.time_step);
   store::refuse_unwritable(output);
 
-  watch::WatchedRun watched(run_in_array(row.parameters), often);
+  watch::WatchedRun watched(DropletRun(row.parameters), often);
   if (line.has("dry-run")) return watch::print_preview("", watched.measure_cost());
   console::catch_stop_signals();
   watched.follow();

@@ -5,7 +5,7 @@
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/console/streams.hpp"
-#include "clog/core/run/systems.hpp"
+#include "clog/core/run/droplet_run.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/single_run.hpp"
@@ -14,38 +14,17 @@
 namespace clog::programs {
 namespace {
 
-/// Lowering of the droplet's parts since it touched the wall [sigma].
-struct Sag {
-  double centre;  ///< area centroid: delta_s
-  double top;
-};
-
-Eigen::Array2d centroid(const DropletState& state) {
-  return state.size() == 1 ? state.centre() : area_centroid(state.position);
-}
-
-Sag sag_of(const DropletRun& run, const Eigen::ArrayXd& before) {
-  const DropletState& state = run.droplet().state();
-  const Eigen::Index n = state.size();
-  // Before gravity the droplet was a circle around its centre, so the centroid was where displacement is
-  // zero.
-  const double top = run.displacement_of({state.x().minCoeff(), 0})[0] - before.head(n).minCoeff();
-  return {.centre = run.displacement_of(centroid(state))[0], .top = top};
-}
-
 int preview(const cli::CommandLine& line, const sweep::Plan& plan, watch::WatchedRun::Intervals often) {
   watch::MostCost cost;
   for (std::int64_t task = 0; task < plan.size(); ++task)
-    cost += watch::WatchedRun(run_onto_wall(plan.task(task)), often).measure_cost();
+    cost += watch::WatchedRun(DropletRun(plan.task(task)), often).measure_cost();
   return watch::print_preview(line.settings().to_config(false), cost);
 }
 
 }  // namespace
 
 int clogrun_sag(cli::CommandLine& line) {
-  refuse_options(line, "sag", array_options);
-  refuse_options(line, "sag",
-                 {"orifice", "wedge-angle", "tip-radius", "start", "end", "frames", "most-frames"});
+  refuse_options(line, "sag", {"write-obstacles", "frames", "most-frames"});
   const sweep::Plan plan(line.settings());
   if (line.has("output")) sweep::single_run(line.settings());
   const auto often = intervals(line, *plan.task(0).time_step);
@@ -58,20 +37,18 @@ int clogrun_sag(cli::CommandLine& line) {
   bool all_at_rest = true;
   for (std::int64_t task = 0; task < plan.size(); ++task) {
     const RunParameters parameters = plan.task(task);
-    watch::WatchedRun watched(run_onto_wall(parameters), often);
+    watch::WatchedRun watched(DropletRun(parameters), often);
     watched.follow();
-    const sweep::RunRow row = row_of_scene(parameters, ObstacleLayout::wall);
     const RunResult result = watched.result();
-    const Sag sag = sag_of(watched.run(), free_droplet(parameters));
     const bool is_polygon = parameters.model == Model::dp;
     std::printf("%s,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%s\n", name(parameters.model),
                 is_polygon ? parameters.dp.line_tension : sweep::RunRow::not_known,
-                *parameters.wall_stiffness, sag.centre, sag.top, result.shape_parameter, result.time,
+                *parameters.wall_stiffness, result.sag.centre, result.sag.top, result.shape_parameter, result.time,
                 result.status == RunStatus::clogged ? "at_rest" : name(result.status));
     console::flush_output();
     if (result.status == RunStatus::failed) throw Error(result.message);
     if (line.has("output"))
-      store::write_trajectory(line.get("output"), watched.trajectory(row, cli::origin(line)));
+      store::write_trajectory(line.get("output"), watched.trajectory(sweep::describe(parameters), cli::origin(line)));
     if (result.status == RunStatus::interrupted) return console::exit_incomplete;
     all_at_rest &= result.status == RunStatus::clogged;
   }

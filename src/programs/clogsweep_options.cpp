@@ -105,7 +105,7 @@ conduct::Assignment assignment(const cli::CommandLine& line, const sweep::Settin
   return {.report_interval = report_interval(line),
           .instruction_set = line.has("instruction-set") ? line.get("instruction-set") : "auto",
           .is_isolated = is_isolated(line),
-          .config = settings.to_config(false)};
+          .settings = settings.packed()};
 }
 
 std::int64_t attempts(const cli::CommandLine& line) {

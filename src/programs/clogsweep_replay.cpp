@@ -26,7 +26,7 @@ that went on under another set than it began with cannot be repeated.
   if (!parse_file_command(line, argc, argv)) return console::exit_success;
   if (!line.has("task")) throw Error("missing task; try clogsweep replay " + line.get("file") + " 0");
   const store::SweepFile file = campaign::read_with_caution(line.get("file"));
-  const sweep::RunRow& row = campaign::replayable_row(file, line.get("task"));
+  const sweep::RunRow row = campaign::replayable_row(file, line.get("task"));
   const auto [again, differing] = campaign::repeat(row);
   std::printf("task %s: %s, distance %.17g, %.3g s\n", line.get("task").c_str(), name(again.status),
               again.distance, again.wall_seconds);

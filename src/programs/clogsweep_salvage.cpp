@@ -36,7 +36,7 @@ int clogsweep_salvage(int argc, const char* const* argv) {
   store::refuse_existing(output);
   const store::Examination found = store::examine_sweep(line.get("file"));
   for (const std::string& damage : found.damage) std::cout << console::printable(damage) << '\n';
-  store::publish_sweep(output, found.whole.rows, found.whole.provenance);
+  store::publish_sweep(output, found.whole.rows, found.whole.provenance, found.whole.circles);
   const auto num_rows = static_cast<std::int64_t>(found.whole.rows.size());
   std::cout << console::printable(output) << ": " << sweep::counted(num_rows, "whole row") << '\n';
   return console::exit_success;

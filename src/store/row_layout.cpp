@@ -18,6 +18,7 @@ Type hdf5_type(const Column& column) {
     case ValueKind::integer:
       return Type(H5Tcopy(H5T_NATIVE_INT64));
     case ValueKind::word:
+    case ValueKind::file:
       break;
   }
   return text_type(column.size);

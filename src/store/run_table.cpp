@@ -14,6 +14,7 @@
 #include <string_view>
 
 #include "check_sum.hpp"
+#include "circle_files.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "file_io.hpp"
@@ -132,15 +133,19 @@ std::string library_version() {
   return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(release);
 }
 
-void publish_sweep(const std::string& path, std::span<const RunRow> rows, const Provenance& provenance) {
-  replace_whole(path, [&](hid_t file) { write_runs(file, file_kind, rows, provenance, path); });
+void publish_sweep(const std::string& path, std::span<const RunRow> rows, const Provenance& provenance,
+                   std::span<const CircleFile> circles) {
+  replace_whole(path, [&](hid_t file) {
+    write_runs(file, file_kind, rows, provenance, path);
+    write_circles(file, circles, path);
+  });
 }
 
 namespace {
 
 /// Columns were added in 3, those of the clog's mechanism and of the speed's error, and in 4, the ranges of
-/// contact and the near-wall drag's cutoff; checksums in 5.
-constexpr std::array<std::string_view, 4> readable_versions = {"2", "3", "4", format_version};
+/// contact and the near-wall drag's cutoff; checksums in 5; in 6 those of channels, walls and circles of one's own.
+constexpr std::array<std::string_view, 5> readable_versions = {"2", "3", "4", "5", format_version};
 
 /// Of an open file that is one of our sweeps. @throws Error if it is not
 std::string version_of(hid_t file, const std::string& path) {
@@ -277,15 +282,17 @@ Checked extent_of_check(bool has_sums, Seal seal) {
 
 Examination examine(std::vector<std::byte>& image, Seal seal, const std::string& path) {
   const File file = open_image(image, path);
-  const bool has_sums = version_of(file, path) == format_version;
-  const PackedTable table =
-      read_table(file, has_sums ? RowLayout::Columns::all : RowLayout::Columns::some, path);
+  const std::string version = version_of(file, path);
+  const bool has_sums = version == format_version || version == "5";
+  const PackedTable table = read_table(
+      file, version == format_version ? RowLayout::Columns::all : RowLayout::Columns::some, path);
   Examination found;
   found.whole.checked = extent_of_check(has_sums, seal);
   if (has_sums) {
     const CheckSums sums = read_check_sums(file, table.num_rows, path);
     compare_rows(table, sums, found);
     compare_attributes(file, sums, found);
+    read_circles(file, found.whole.circles, found.damage);
   } else {
     for (std::size_t i = 0; i < table.num_rows; ++i)
       found.whole.rows.push_back(table.layout.unpack(table.row(i).data()));

@@ -92,7 +92,8 @@ Column member(const char* name, T RunRow::*place, ColumnRole role, const char* u
 Value value_of(const Parameter& parameter, std::size_t place, const RunRow& row) {
   if (!parameter.applies_to(row.parameters)) {
     const bool has_none = std::holds_alternative<std::monostate>(parameter.elsewhere);
-    return has_none && parameter.kind == ValueKind::word ? Value("none") : parameter.elsewhere;
+    const bool is_text = parameter.kind == ValueKind::word || parameter.kind == ValueKind::file;
+    return has_none && is_text ? Value("none") : parameter.elsewhere;
   }
   return row.unknown[place] ? Value() : parameter.get(row.parameters);
 }
@@ -104,14 +105,21 @@ void set_parameter(const Parameter& parameter, std::size_t place, RunRow& row, c
   if (!row.unknown[place]) parameter.set(row.parameters, value);
 }
 
+/// Digits of a check sum stand for what is in a file.
+constexpr std::size_t check_sum_size = 16;
+
 Column parameter_column(const Parameter& parameter, std::size_t place) {
+  const bool is_text = parameter.kind == ValueKind::word || parameter.kind == ValueKind::file;
+  const std::size_t size = parameter.kind == ValueKind::file ? check_sum_size
+                           : is_text                         ? text_size(longest(parameter.words))
+                                                             : number_size;
   return {.name = parameter.column,
           .symbol = parameter.symbol,
           .unit = parameter.unit,
           .meaning = parameter.meaning,
           .role = ColumnRole::parameter,
-          .kind = parameter.kind,
-          .size = parameter.kind == ValueKind::word ? text_size(longest(parameter.words)) : number_size,
+          .kind = is_text ? ValueKind::word : parameter.kind,
+          .size = size,
           .parameter = &parameter,
           .shapes_array = parameter.shapes_array,
           .get = [&parameter, place](const RunRow& row) { return value_of(parameter, place, row); },
@@ -235,6 +243,22 @@ std::vector<Column> make_columns() {
       member("num_gaps", &RunRow::num_gaps, result, "",
              "gaps between supporting obstacles that it looks into; -1: not known"),
       member("num_arcs", &RunRow::num_arcs, result, "", "arcs of contact; -1: not known"),
+      member("largest_shape_parameter", &RunRow::largest_shape_parameter, result, "",
+             "largest A on the way through a channel; NaN elsewhere, as in the next five"),
+      member("largest_shape_parameter_at", &RunRow::largest_shape_parameter_at, result, "sigma",
+             "h at which the droplet had it, from the line through the tips, positive downstream"),
+      member("largest_relative_speed", &RunRow::largest_relative_speed, result, "",
+             "largest v_g/v_t on the way through a channel"),
+      member("largest_relative_speed_at", &RunRow::largest_relative_speed_at, result, "sigma",
+             "h at which the droplet had it"),
+      member("smallest_relative_speed", &RunRow::smallest_relative_speed, result, "",
+             "smallest v_g/v_t on the way through a channel, once the droplet has fallen for ten relaxation "
+             "times V_t/g"),
+      member("smallest_relative_speed_at", &RunRow::smallest_relative_speed_at, result, "sigma",
+             "h at which the droplet had it"),
+      member("sag", &RunRow::sag, result, "sigma",
+             "delta_s, how far the centroid of a droplet on a flat wall has sunk under gravity; NaN elsewhere"),
+      member("top_sag", &RunRow::top_sag, result, "sigma", "the same of its highest point"),
       member("steps", &RunRow::steps, result, "", "integrated steps, sub-steps counted singly"),
       member("wall_seconds", &RunRow::wall_seconds, circumstance, "s",
              "computing time, all sessions together"),

@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "clog/core/parameters/schema.hpp"
+#include "clog/core/scene/scene.hpp"
 #include "clog/sweep/columns.hpp"
 #include "shared_memory.hpp"
 
@@ -32,12 +33,12 @@ double num_places(const ObstacleParameters& parameters) {
 
 /// Names the array to processes of this executable. To others, which may make or lay out arrays otherwise, it
 /// means nothing.
-std::optional<std::string> shared_name(const ObstacleParameters& parameters, std::uint32_t seed) {
+std::optional<std::string> shared_name(const RunParameters& run) {
   struct stat executable;
   if (stat("/proc/self/exe", &executable) != 0) return std::nullopt;
   std::ostringstream name;
   name << "clogsweep-" << std::hex << executable.st_ino << '-' << executable.st_mtim.tv_sec << '-'
-       << executable.st_mtim.tv_nsec << '-' << array_key(parameters, seed);
+       << executable.st_mtim.tv_nsec << '-' << array_key(run);
   return name.str();
 }
 
@@ -70,19 +71,16 @@ ObstacleArray array_over(std::shared_ptr<const SharedMemory> memory) {
 
 }  // namespace
 
-std::string array_key(const ObstacleParameters& parameters, std::uint32_t seed) {
-  RunParameters run;
-  run.obstacles = parameters;
-  run.seed = seed;
+std::string array_key(const RunParameters& run) {
   std::string key;
   for (const Parameter& parameter : parameter_schema())
     if (parameter.shapes_array) key += text_of(parameter.get(run)) + ',';
   return key;
 }
 
-ObstacleArray ObstacleArrays::build(const ObstacleParameters& parameters, std::uint32_t seed) {
+ObstacleArray ObstacleArrays::build(const RunParameters& run) {
   ++num_built_;
-  return sample_obstacles(parameters, seed);
+  return scene_of(run).walls(run);
 }
 
 std::chrono::duration<double> ObstacleArrays::longest_wait(const ObstacleParameters& parameters) {
@@ -93,15 +91,17 @@ std::chrono::duration<double> ObstacleArrays::longest_wait(const ObstacleParamet
   return std::chrono::duration<double>(std::max(10.0, ten_builds * num_places(parameters) * reach * reach));
 }
 
-ObstacleArray ObstacleArrays::find_or_build(const ObstacleParameters& parameters, std::uint32_t seed) {
-  const std::optional<std::string> name = shared_name(parameters, seed);
-  if (!name || num_places(parameters) < fewest_shared) return build(parameters, seed);
+ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
+  const ObstacleLayout layout = run.obstacles.layout;
+  const bool is_sampled = layout == ObstacleLayout::random || layout == ObstacleLayout::lattice;
+  const std::optional<std::string> name = shared_name(run);
+  if (!name || !is_sampled || num_places(run.obstacles) < fewest_shared) return build(run);
   const auto begin = std::chrono::steady_clock::now();
-  const auto end = begin + longest_wait(parameters);
+  const auto end = begin + longest_wait(run.obstacles);
   bool has_waited = false;
   do {
     const NameLock lock(*name);
-    if (lock.state() == NameLock::State::impossible) return build(parameters, seed);
+    if (lock.state() == NameLock::State::impossible) return build(run);
     if (lock.state() == NameLock::State::held) {
       // Nobody makes one meanwhile. Those who wait do not search: that would take the builder's time.
       if (auto memory = SharedMemory::find(*name)) {
@@ -110,26 +110,29 @@ ObstacleArray ObstacleArrays::find_or_build(const ObstacleParameters& parameters
       }
       // The one waited for has been killed, or what it made cannot be seen: it may run in another container.
       if (has_waited) is_waiting_worthwhile_ = false;
-      ObstacleArray array = build(parameters, seed);
+      ObstacleArray array = build(run);
       auto memory = publish(*name, array);
       return memory ? array_over(std::move(memory)) : array;
     }
-    if (!is_waiting_worthwhile_) return build(parameters, seed);
+    if (!is_waiting_worthwhile_) return build(run);
     std::this_thread::sleep_for(pause);
     has_waited = true;
   } while (std::chrono::steady_clock::now() < end);
   // Someone who takes longer is stuck; one's own array is then the quickest.
   is_waiting_worthwhile_ = false;
-  return build(parameters, seed);
+  return build(run);
 }
 
-std::shared_ptr<const ObstacleArray> ObstacleArrays::get(const ObstacleParameters& parameters,
-                                                         std::uint32_t seed) {
-  const std::string key = array_key(parameters, seed);
+std::shared_ptr<const ObstacleArray> ObstacleArrays::get(const RunParameters& run) {
+  // A channel or a wall is made at once, and where it stands hangs on the droplet.
+  const ObstacleLayout layout = run.obstacles.layout;
+  if (layout == ObstacleLayout::channel || layout == ObstacleLayout::wall)
+    return std::make_shared<ObstacleArray>(scene_of(run).walls(run));
+  const std::string key = array_key(run);
   if (key != key_) {
     array_.reset();  // the memory may be needed for the next
     key_.clear();
-    array_ = std::make_shared<ObstacleArray>(find_or_build(parameters, seed));
+    array_ = std::make_shared<ObstacleArray>(find_or_build(run));
     key_ = key;
   }
   return array_;

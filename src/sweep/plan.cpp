@@ -34,6 +34,35 @@ void refuse_contradictions(const Settings& settings) {
                 settings.text("perimeter-stiffness") + " is given as well) leave one of them out");
 }
 
+/// Is it given, and something else than what it would be anyway?
+bool is_changed(const Settings& settings, const char* key) {
+  return settings.is_given(key) && settings.text(key) != find_key(key).default_text;
+}
+
+/// Keys that a scene leaves without effect, beyond those that check_each() knows.
+void refuse_useless_keys(const Settings& settings) {
+  if (const std::vector<std::string> missing = settings.missing_files(); !missing.empty())
+    throw Error("invalid obstacles=" + missing.front() + " (the file has not been read)");
+  const std::string& layout = settings.text("obstacle-layout");
+  if (layout != "file" && settings.text(circles_key) != "none")
+    throw Error("obstacles and obstacle-layout=" + layout + " contradict each other; leave one of them out");
+  if ((layout == "channel" || layout == "wall") && settings.text("seeds") != "1")
+    throw Error("invalid seeds=" + settings.text("seeds") +
+                " (nothing is random with obstacle-layout=" + layout + ") leave it out");
+  if (layout != "file") return;
+  for (const char* key : {"obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "lattice-angle"})
+    if (is_changed(settings, key))
+      throw Error("obstacles and " + std::string(key) + "=" + settings.text(key) +
+                  " contradict each other (the file's own gap, density and layout count); leave it out, or "
+                  "give " +
+                  key + "=" + find_key(key).default_text);
+  if (settings.values("seeds").size() > 1 && settings.text("release") == "centre")
+    throw Error(
+        "invalid seeds=" + settings.text("seeds") +
+        " (the droplet starts at the centre of your circles, whatever the seed) add release=anywhere, "
+        "or give one seed");
+}
+
 /// The parameters of a task. A list like 0,3 may have been meant as 0.3: where one of its values is refused,
 /// the message asks.
 RunParameters checked_task(const Plan& plan, std::int64_t index, const Settings& settings) try {
@@ -49,8 +78,9 @@ RunParameters checked_task(const Plan& plan, std::int64_t index, const Settings&
 
 }  // namespace
 
-Plan::Plan(const Settings& settings) {
+Plan::Plan(const Settings& settings) : circle_files_(settings.circle_files()) {
   refuse_contradictions(settings);
+  refuse_useless_keys(settings);
   for (const Key& key : keys()) {
     const std::vector<std::string>& values = settings.values(key.name);
     axes_.push_back({&key, values});
@@ -83,7 +113,11 @@ RunParameters Plan::task(std::int64_t index) const {
   RunParameters run;
   for (auto axis = axes_.rbegin(); axis != axes_.rend(); ++axis) {
     const auto count = static_cast<std::int64_t>(axis->values.size());
-    axis->key->apply(run, axis->values[index % count]);
+    const std::string& value = axis->values[index % count];
+    if (axis->key->kind == ValueKind::file && value != "none")
+      run.obstacles.own = circle_files_.at(value);
+    else
+      axis->key->apply(run, value);
     index /= count;
   }
   return resolve(run);

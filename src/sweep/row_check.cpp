@@ -20,6 +20,10 @@ namespace {
 /// Round-off of a sum of time steps, and of a polygon's perimeter and area.
 constexpr double round_off = 1e-9;
 
+/// Of a polygon that has neither burst nor lost its area.
+constexpr double most_shape =
+    burst_perimeter * burst_perimeter / (4 * std::numbers::pi * units::rest_area * (1 - diverged_area_error));
+
 bool is_number_below(double value, double bound) { return std::isfinite(value) && std::abs(value) <= bound; }
 
 std::string named(const char* column, double value) { return std::string(column) + '=' + shortest(value); }
@@ -58,8 +62,13 @@ std::string parameter_fault(const RunRow& row) {
   if (row.model_version != model_version) return "";
   for (std::size_t i = 0; i < parameter_schema().size(); ++i)
     if (row.unknown[i]) return std::string(parameter_schema()[i].column) + " is not known";
-  if (!is_sampled(row)) return "";
   try {
+    if (!is_sampled(row)) {
+      // Of a user's own circles the row has the check sum only.
+      const bool has_circles = row.parameters.obstacles.layout == ObstacleLayout::file;
+      has_circles ? check_each(row.parameters) : static_cast<void>(resolve(row.parameters));
+      return "";
+    }
     const double density = density_of(resolved_parameters(row).obstacles);
     const bool agrees = std::isnan(density) ? std::isnan(row.obstacle_density)
                                             : std::abs(row.obstacle_density - density) <= round_off * density;
@@ -137,9 +146,7 @@ std::string shape_fault(const RunRow& row) {
   if (row.steps == 0) return "";
   if (!(row.kinetic_energy_ratio >= 0 && row.kinetic_energy_ratio < diverged_energy_ratio))
     return named("kinetic_energy_ratio", row.kinetic_energy_ratio) + " is that of no run that is whole";
-  const double most = burst_perimeter * burst_perimeter /
-                      (4 * std::numbers::pi * units::rest_area * (1 - diverged_area_error));
-  if (!(row.shape_parameter >= 1 - round_off && row.shape_parameter < most))
+  if (!(row.shape_parameter >= 1 - round_off && row.shape_parameter < most_shape))
     return named("shape_parameter", row.shape_parameter) + " is that of no droplet";
   return "";
 }
@@ -164,9 +171,42 @@ std::string clog_fault(const RunRow& row) {
   return "";
 }
 
+/// What only a channel or a wall gives, and what it cannot be.
+std::string passage_fault(const RunRow& row) {
+  const ObstacleLayout layout = row.parameters.obstacles.layout;
+  const double fastest = std::sqrt(diverged_energy_ratio);
+  const double way = std::abs(row.parameters.channel.start) + farthest_way(row);
+  struct Place {
+    const char* column;
+    double value;
+    ObstacleLayout layout;
+    double least, most;
+  };
+  using enum ObstacleLayout;
+  for (const Place& place :
+       {Place{"largest_shape_parameter", row.largest_shape_parameter, channel, 1 - round_off, most_shape},
+        Place{"largest_shape_parameter_at", row.largest_shape_parameter_at, channel, -way, way},
+        Place{"largest_relative_speed", row.largest_relative_speed, channel, -fastest, fastest},
+        Place{"largest_relative_speed_at", row.largest_relative_speed_at, channel, -way, way},
+        Place{"smallest_relative_speed", row.smallest_relative_speed, channel, -fastest, fastest},
+        Place{"smallest_relative_speed_at", row.smallest_relative_speed_at, channel, -way, way},
+        Place{"sag", row.sag, wall, -units::droplet_diameter, farthest_way(row)},
+        Place{"top_sag", row.top_sag, wall, -units::droplet_diameter, farthest_way(row)}}) {
+    if (std::isnan(place.value)) continue;
+    if (layout != place.layout)
+      return named(place.column, place.value) + ", but there is no " + name(place.layout);
+    if (!(place.value >= place.least && place.value <= place.most))
+      return named(place.column, place.value) + " is that of no droplet";
+  }
+  if (row.smallest_relative_speed > row.largest_relative_speed)
+    return named("smallest_relative_speed", row.smallest_relative_speed) + " is above " +
+           named("largest_relative_speed", row.largest_relative_speed);
+  return "";
+}
+
 std::string result_fault(const RunRow& row) {
   if (row.status == RunStatus::failed) return row.message.empty() ? "failed without a reason" : "";
-  for (const auto check : {time_fault, motion_fault, shape_fault, clog_fault})
+  for (const auto check : {time_fault, motion_fault, shape_fault, clog_fault, passage_fault})
     if (std::string fault = check(row); !fault.empty()) return fault;
   return "";
 }

@@ -14,12 +14,12 @@ constexpr std::chrono::milliseconds slice{5};
 constexpr int checks_per_look_at_the_clock = 8;
 
 DropletRun start(const RunParameters& run, std::span<const std::byte> snapshot, ObstacleArrays& arrays) {
-  std::shared_ptr<const ObstacleArray> obstacles = arrays.get(run.obstacles, run.seed);
+  std::shared_ptr<const ObstacleArray> obstacles = arrays.get(run);
   if (!snapshot.empty()) try {
       return DropletRun::resume(run, obstacles, snapshot);
     } catch (const Error&) {  // of another version: the run is the same from its beginning
     }
-  return run_in_array(run, std::move(obstacles));
+  return DropletRun(run, std::move(obstacles));
 }
 
 }  // namespace

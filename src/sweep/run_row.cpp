@@ -70,6 +70,14 @@ void record(const RunResult& result, RunRow& row) {
   row.num_wrapped = result.geometry.num_wrapped;
   row.num_gaps = result.geometry.num_gaps;
   row.num_arcs = result.geometry.num_arcs;
+  row.largest_shape_parameter = result.passage.largest_shape_parameter.value;
+  row.largest_shape_parameter_at = result.passage.largest_shape_parameter.place;
+  row.largest_relative_speed = result.passage.largest_speed.value;
+  row.largest_relative_speed_at = result.passage.largest_speed.place;
+  row.smallest_relative_speed = result.passage.smallest_speed.value;
+  row.smallest_relative_speed_at = result.passage.smallest_speed.place;
+  row.sag = result.sag.centre;
+  row.top_sag = result.sag.top;
   row.steps = result.steps;
   row.message = result.message;
 }

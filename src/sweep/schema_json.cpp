@@ -15,6 +15,8 @@ const char* name_of(ValueKind kind) {
       return "number";
     case ValueKind::integer:
       return "integer";
+    case ValueKind::file:
+      return "file";
     case ValueKind::word:
       break;
   }

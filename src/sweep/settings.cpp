@@ -112,7 +112,7 @@ const std::vector<Key>& keys() {
 }
 
 void Key::apply(RunParameters& run, const std::string& value) const {
-  if (!parameter) return;  // Settings::set has set the keys behind it
+  if (!parameter || kind == ValueKind::file) return;  // Settings::set has set the keys behind a preset
   if (kind == ValueKind::word)
     parameter->set(run, value);
   else if (std::find(words.begin(), words.end(), value) != words.end())
@@ -177,11 +177,70 @@ Settings Settings::from_config(const std::string& text) {
 void Settings::set(const std::string& name, const std::string& text) {
   assign(name, text);
   given_.insert(name);
+  const auto follow = [&](const char* key, const char* value) {
+    if (!given_.contains(key)) assign(key, value);
+  };
+  if (name == circles_key && text != "none") {
+    follow("obstacle-layout", "file");
+    if (this->text("release") == "centre") follow("seeds", "1");
+  }
+  if (name == "release" && text == "anywhere") follow("seeds", find_key("seeds").default_text.c_str());
+  const Parameter* parameter = find_key(name).parameter;
+  const bool is_of_channel = parameter && parameter->scope->word == std::string_view("channel");
+  if (is_of_channel) follow("obstacle-layout", "channel");
+  if (const std::string& layout = this->text("obstacle-layout"); layout == "channel" || layout == "wall")
+    follow("seeds", "1");
   if (name != "preset") return;
   for (const Preset& preset : presets())
     if (preset.name == text)
-      for (const auto& [key, value] : preset.texts)
-        if (!given_.contains(key)) assign(key, value);
+      for (const auto& [key, value] : preset.texts) follow(key, value);
+}
+
+std::vector<std::string> Settings::missing_files() const {
+  std::vector<std::string> missing;
+  for (const std::string& file : values(circles_key))
+    if (file != "none" && !circle_files_.contains(file)) missing.push_back(file);
+  return missing;
+}
+
+namespace {
+
+// Behind the config, for each file its name and the number of its circles, then a circle a line.
+constexpr const char* file_mark = "#circles ";
+
+}  // namespace
+
+std::string Settings::packed() const {
+  std::string text = to_config(false);
+  for (const auto& [file, circles] : circle_files_) {
+    text += file_mark + file + '\n';
+    for (const Obstacle& circle : circles.circles())
+      text += '#' + shortest(circle.x) + ' ' + shortest(circle.y) + ' ' + shortest(circle.radius) + '\n';
+  }
+  return text;
+}
+
+Settings Settings::from_packed(const std::string& text) {
+  Settings settings = from_config(text);
+  std::istringstream in(text);
+  std::string file;
+  std::vector<Obstacle> circles;
+  const auto finish = [&] {
+    if (!file.empty()) settings.attach(file, OwnCircles(std::exchange(circles, {}), file));
+  };
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with(file_mark)) {
+      finish();
+      file = line.substr(std::string_view(file_mark).size());
+    } else if (line.starts_with('#') && !file.empty()) {
+      std::istringstream numbers(line.substr(1));
+      std::string x, y, radius;
+      numbers >> x >> y >> radius;
+      circles.push_back({to_number(x), to_number(y), to_number(radius)});
+    }
+  }
+  finish();
+  return settings;
 }
 
 void Settings::assign(const std::string& name, const std::string& text) {

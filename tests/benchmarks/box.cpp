@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "clog/core/run/resolve.hpp"
-#include "clog/core/run/systems.hpp"
+#include "clog/core/run/droplet_run.hpp"
 
 namespace {
 
@@ -54,8 +54,8 @@ void compare(const char* name, RunParameters parameters, int num_checks) {
   const auto large_array = tiled(*array);
   std::vector<DropletRun> small, large;
   for (int twin = 0; twin < num_twins; ++twin) {
-    small.push_back(run_in_array(parameters, array));
-    large.push_back(run_in_array(in_large, large_array));
+    small.push_back(DropletRun(parameters, array));
+    large.push_back(DropletRun(in_large, large_array));
   }
   constexpr int num_slices = 7;
   std::vector<double> ratios, twin_ratios;

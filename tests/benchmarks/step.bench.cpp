@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "clog/core/run/droplet_run.hpp"
 #include "clog/core/run/resolve.hpp"
-#include "clog/core/run/systems.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/instruction_set.hpp"
 
@@ -34,7 +34,7 @@ void count_steps(benchmark::State& state, std::int64_t num_steps, int points) {
 }
 
 void advance(benchmark::State& state, const RunParameters& parameters) {
-  DropletRun run = run_in_array(parameters);
+  DropletRun run(parameters);
   run.advance(100);
   const std::int64_t before = run.result().steps;
   for (auto _ : state) run.advance(100);
@@ -124,9 +124,12 @@ BENCHMARK(elastic_polygon)
 void polygon_in_channel(benchmark::State& state) {
   RunParameters run = flowing_droplet(256, 0.01 * static_cast<double>(state.range(0)));
   run.drag.terminal_speed = 0.032;
+  run.obstacles.layout = ObstacleLayout::channel;
+  run.channel.start = -2;
+  run = resolve(run);
   std::int64_t steps = 0;
   for (auto _ : state) {
-    DropletRun passage = run_in_channel(run, {.start = -2});
+    DropletRun passage(run);
     passage.measure_dissipation();
     passage.advance(1'000'000);
     steps += passage.result().steps;

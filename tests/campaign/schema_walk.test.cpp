@@ -29,9 +29,20 @@ class EveryKey : public testing::TestWithParam<Parameter> {};
 sweep::Settings settings_for(const Parameter& parameter) {
   sweep::Settings settings;
   settings.set("seeds", "1");
+  const std::string scope = parameter.scope->word;
+  if (scope == "channel") {
+    settings.set("obstacle-layout", "channel");
+    return settings;
+  }
   settings.set("box", "60");
+  if (scope == "file") {
+    settings.attach("one.csv", OwnCircles({{5, 5, 0.2}, {7, 5.5, 0.3}}));
+    settings.attach("other.csv", OwnCircles({{5, 5, 0.2}, {7, 5.5, 0.4}}));
+    settings.set("obstacles", "one.csv");
+    return settings;
+  }
   settings.set("obstacle-gap", "0.6");
-  if (parameter.scope->word == std::string("lattice")) settings.set("obstacle-layout", "lattice");
+  if (scope == "lattice") settings.set("obstacle-layout", "lattice");
   if (parameter.key == std::string("perimeter-stiffness-ratio")) settings.set("preset", "elastic");
   if (parameter.key == std::string("gravity")) settings.set("preset", "heavy-interface");
   if (parameter.key == std::string("model")) settings.set("wall-stiffness", "1");
@@ -40,6 +51,7 @@ sweep::Settings settings_for(const Parameter& parameter) {
 
 /// Another value than that of the settings, in the text of a config.
 std::string other_value(const Parameter& parameter, const sweep::Settings& settings) {
+  if (parameter.kind == ValueKind::file) return "other.csv";
   const ParameterValue value = parameter.get(sweep::Plan(settings).task(0));
   if (parameter.kind == ValueKind::word)
     return *std::ranges::find_if(parameter.words,
@@ -78,9 +90,7 @@ TEST_P(EveryKey, MakesTwoGroups) {
 
 TEST_P(EveryKey, MakesTwoArraysIfItShapesThem) {
   const auto runs = both_runs(GetParam());
-  EXPECT_EQ(
-      sweep::array_key(runs[0].obstacles, runs[0].seed) != sweep::array_key(runs[1].obstacles, runs[1].seed),
-      GetParam().shapes_array);
+  EXPECT_EQ(sweep::array_key(runs[0]) != sweep::array_key(runs[1]), GetParam().shapes_array);
 }
 
 TEST_P(EveryKey, MakesTwoLinesOfADryRun) {

@@ -8,6 +8,7 @@
 
 #include "clog/core/droplet/shape.hpp"
 #include "clog/core/polygon/dp_forces.hpp"
+#include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/units.hpp"
 #include "clog/core/world/obstacle_array.hpp"
 
@@ -30,6 +31,19 @@ inline RunParameters bare_parameters(int vertices = 64) {
   run.dp.self_contact_range = l0;
   run.obstacles.box = 20;
   return run;
+}
+
+/// The same droplet in another scene, resolved.
+inline RunParameters in_channel(RunParameters run, const ChannelParameters& channel) {
+  run.obstacles = {};
+  run.obstacles.layout = ObstacleLayout::channel;
+  run.channel = channel;
+  return resolve(run);
+}
+inline RunParameters onto_wall(RunParameters run) {
+  run.obstacles = {};
+  run.obstacles.layout = ObstacleLayout::wall;
+  return resolve(run);
 }
 
 inline ObstacleArray no_obstacles(double box = 20) { return ObstacleArray(box, {}); }

@@ -36,7 +36,7 @@ class ProgramTest(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
-    def run_program(self, name, *arguments, ranks=None, timeout=300):
+    def run_program(self, name, *arguments, ranks=None, timeout=300, env=None):
         command = [str(BIN / name), *map(str, arguments)]
         if ranks is not None:
             command = [str(MPIRUN), str(ranks), *command]
@@ -47,10 +47,10 @@ class ProgramTest(unittest.TestCase):
         self.assertEqual(done.returncode, 0, f"{name} {arguments}: {done.stdout}{done.stderr}")
         return done
 
-    def refuse(self, name, *arguments, words):
+    def refuse(self, name, *arguments, words, **options):
         """The program must leave with exit code 2, say each of the words in one line, and write nothing."""
         before = self.snapshot()
-        done = self.run_program(name, *arguments)
+        done = self.run_program(name, *arguments, **options)
         self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
         self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
         self.assertEqual(done.stdout, "")

@@ -141,7 +141,7 @@ class Calibrate(ProgramTest):
         found, = json.loads(self.succeed("clogfit", "deviation", "channel.h5", "channel.h5").stdout)["deviations"]
         self.assertEqual((found["delta_v"], found["delta_a"]), (0, 0))
         for arguments, words in [
-            (["channel.h5", "--orifice=0.7", *keys[2:]], ["channel.h5", "--orifice=0.9, not 0.7"]),
+            (["channel.h5", "--orifice=0.7", *keys[2:]], ["channel.h5", "orifice=0.9, not 0.7"]),
             (["channel.h5", "--orifice=0.9", "terminal-speed=0.03"], ["channel.h5", "terminal-speed=0.3, not 0.03"]),
             (["clogged.h5", "--orifice=0.5", "terminal-speed=0.3"], ["clogged.h5", "it clogged", "give a droplet that passed"]),
             (["array.h5"], ["array.h5", "not a passage"]),

@@ -15,39 +15,49 @@ SURROUNDINGS = {
     "box": ["vertices=64", "max-time=60"],
     "vertices": ["box=20", "max-time=60"],
     "max-time": ["box=20", "vertices=64"],
+    "obstacles": ["box=10", "vertices=64", "max-time=300"],
 }
+# These belong to channels, which have passages and no clogging lengths: test_scenes.
+OF_CHANNELS = {"orifice", "wedge-angle", "tip-radius", "start", "end"}
 VALUES = {"line-tension": "1,3", "wall-stiffness": "0.05,0.08", "obstacle-gap": "0.2,0.3", "obstacle-diameter": "0.3,0.4",
           "obstacle-diameter-spread": "0,0.2", "obstacle-density": "1.5,2", "lattice-angle": "0,10", "seeds": "1..3", "box": "20,25",
           "boxes": "1,2", "max-time": "50,60", "terminal-speed": "0.02,0.03", "near-wall-drag": "0,0.05",
           "near-wall-exponent": "1,1.5", "near-wall-cutoff": "0.006,0.01", "relative-drag": "0.5,1", "vertices": "64,96",
           "time-step": "1e-3,2e-3", "area-stiffness": "5000,6000", "perimeter-stiffness": "0.05,0.1",
           "perimeter-stiffness-ratio": "0.1,0.2", "contact-range": "0,0.01", "wall-tension": "0.5,1",
-          "self-contact-range": "0.01,0.012", "clog-energy": "1e-17,1e-16"}
+          "self-contact-range": "0.01,0.012", "clog-energy": "1e-17,1e-16", "obstacles": "one.csv,other.csv"}
 
 
 class EveryKey(Analysis):
     def keys(self):
         schema = json.loads(self.succeed("clogsweep", "--schema").stdout)
-        return [key for key in schema["keys"] if key["kind"] != "word"]
+        return [key for key in schema["keys"] if key["kind"] != "word" and key["scope"] != "channel"]
 
     def sweep(self, key):
         (self.folder / "s.h5").unlink(missing_ok=True)
-        seeds = [] if key == "seeds" else ["seeds=1..2"]
+        for name, x in [("one.csv", 6.2), ("other.csv", 6.25)]:  # fences
+            (self.folder / name).write_text("x,y,diameter\n" + "".join(f"{x},{i * 10 / 12},0.3\n" for i in range(12)))
+        seeds = [] if key in ("seeds", "obstacles") else ["seeds=1..2"]
         tension = [] if key == "line-tension" else ["line-tension=2"]
         self.succeed("clogsweep", *SURROUNDINGS.get(key, QUICK), *seeds, *tension, f"{key}={VALUES[key]}", "--output", "s.h5")
         return Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
 
     def test_there_is_a_sweep_over_every_number(self):
         self.assertEqual({key["key"] for key in self.keys()}, set(VALUES))
+        schema = json.loads(self.succeed("clogsweep", "--schema").stdout)
+        self.assertEqual({key["key"] for key in schema["keys"] if key["scope"] == "channel"}, OF_CHANNELS)
 
     def test_a_sweep_over_any_key_is_drawn_as_what_it_is(self):
         for key in self.keys():
             with self.subTest(key=key["key"]):
                 groups = self.sweep(key["key"])
                 if key["role"] != "ensemble":
-                    self.assertEqual(groups.abscissa, key["column"])
-                    self.assertEqual([(label, len(members)) for label, members in groups.curves()], [("", 2)])
-                    self.assertIn(key["column"].replace("_", " "), groups.axis_label())
+                    if key["kind"] == "file":  # no axis: a curve each
+                        self.assertEqual([len(members) for _, members in groups.curves()], [1, 1])
+                    else:
+                        self.assertEqual(groups.abscissa, key["column"])
+                        self.assertEqual([(label, len(members)) for label, members in groups.curves()], [("", 2)])
+                        self.assertIn(key["column"].replace("_", " "), groups.axis_label())
                 # Curves and, run once more, a clog.
                 self.assertGreater(sum(group["clogs"] for group in groups.members), 0)
                 self.draw("report.py", "s.h5", "--programs", BIN, "--output", "r.html", "--examples", 1)

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "clog/core/droplet/shape.hpp"
-#include "clog/core/run/release.hpp"
+#include "clog/core/scene/release.hpp"
 #include "clog/core/tools/units.hpp"
 
 namespace clog::soundness {

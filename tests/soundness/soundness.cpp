@@ -23,8 +23,8 @@
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/core/polygon/dp_forces.hpp"
-#include "clog/core/run/release.hpp"
-#include "clog/core/run/systems.hpp"
+#include "clog/core/scene/release.hpp"
+#include "clog/core/run/droplet_run.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/units.hpp"
 #include "clog/sweep/plan.hpp"
@@ -121,7 +121,7 @@ CaseReport run_case(const RunParameters& parameters, double longest) {
   CaseReport report;
   report.run = parameters;
   try {
-    DropletRun run = run_in_array(parameters);
+    DropletRun run(parameters);
     follow(run, longest, report);
     report.result = run.result();
   } catch (const Error& error) {

@@ -68,6 +68,19 @@ TEST_F(RunTableTest, GivesBackEveryRowBitForBit) {
   }
 }
 
+TEST_F(RunTableTest, KeepsCirclesOfAUsersOwn) {
+  const std::vector<CircleFile> circles = {{"one.csv", OwnCircles({{1.0 / 3, 2, 0}, {4, 5, 0.25}})},
+                                           {"", OwnCircles({{1, 2, 3}})}};
+  publish_sweep(path(), some_rows(2), {{"config", "a = 1\n"}}, circles);
+  const SweepFile file = read_sweep(path());
+  EXPECT_EQ(file.checked, Checked::everything);
+  ASSERT_EQ(file.circles.size(), 2u);
+  for (const CircleFile& one : circles)
+    EXPECT_TRUE(std::ranges::any_of(file.circles, [&](const CircleFile& other) {
+      return other.name == one.name && other.circles.circles() == one.circles.circles();
+    })) << one.name;
+}
+
 TEST_F(RunTableTest, KeepsTheProvenance) {
   publish_sweep(path(), {}, {{"version", "1.2.3"}, {"config", "a = 1\nb = 2\n"}});
   const SweepFile file = read_sweep(path());

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "clog/core/run/resolve.hpp"
+#include "clog/core/scene/scene.hpp"
 #include "clog/sweep/run_job.hpp"
 #include "shared_memory.hpp"
 
@@ -29,6 +30,13 @@ namespace {
 /// Large enough to be shared.
 const ObstacleParameters large{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 160};
 const ObstacleParameters small{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 20};
+
+RunParameters run_in(const ObstacleParameters& obstacles, std::uint32_t seed) {
+  RunParameters run;
+  run.obstacles = obstacles;
+  run.seed = seed;
+  return run;
+}
 
 /// That no other test, run at the same time, shares with this one.
 std::uint32_t own_seed() { return static_cast<std::uint32_t>(getpid()); }
@@ -109,9 +117,9 @@ class OtherProcess {
 
 TEST(ObstacleArrays, KeepsTheLastOne) {
   ObstacleArrays arrays;
-  EXPECT_EQ(arrays.get(small, 1), arrays.get(small, 1));
+  EXPECT_EQ(arrays.get(run_in(small, 1)), arrays.get(run_in(small, 1)));
   EXPECT_EQ(arrays.num_built(), 1);
-  arrays.get(small, 2);
+  arrays.get(run_in(small, 2));
   EXPECT_EQ(arrays.num_built(), 2);
 }
 
@@ -121,22 +129,22 @@ TEST(ObstacleArrays, AreTheSameSharedOrNot) {
         ObstacleParameters{.gap = 0.2, .diameter = 0.3, .diameter_spread = 0.3, .density = {}, .box = 160},
         lattice()}) {
     ObstacleArrays builder, reader;
-    const auto built = builder.get(parameters, own_seed());
-    const auto found = reader.get(parameters, own_seed());
+    const auto built = builder.get(run_in(parameters, own_seed()));
+    const auto found = reader.get(run_in(parameters, own_seed()));
     EXPECT_EQ(builder.num_built(), 1);
     EXPECT_EQ(reader.num_built(), 0);
     expect_identical(*found, *built);
-    expect_identical(*found, sample_obstacles(parameters, own_seed()));
+    expect_identical(*found, scene_of(run_in(parameters, 1)).walls(run_in(parameters, own_seed())));
   }
 }
 
 TEST(ObstacleArrays, TakesNoOtherForTheSame) {
   ObstacleArrays builder, reader;
-  const auto built = builder.get(large, own_seed());
-  reader.get(large, own_seed() + 1);
+  const auto built = builder.get(run_in(large, own_seed()));
+  reader.get(run_in(large, own_seed() + 1));
   ObstacleParameters wider = large;
   wider.gap = std::nextafter(wider.gap, 1);
-  reader.get(wider, own_seed());
+  reader.get(run_in(wider, own_seed()));
   EXPECT_EQ(reader.num_built(), 2);
 }
 
@@ -144,7 +152,7 @@ TEST(ObstacleArrays, AreInMemoryOnceForAllProcesses) {
   const auto get = [seed = own_seed()] {
     ObstacleArrays arrays;
     static std::shared_ptr<const ObstacleArray> array;  // kept as long as the process stays
-    array = arrays.get(large, seed);
+    array = arrays.get(run_in(large, seed));
     return std::to_string(arrays.num_built()) + " built, in " + file_behind(array->obstacles().data());
   };
   // All at once: one builds, the others wait for it.
@@ -165,20 +173,20 @@ TEST(ObstacleArrays, StayWhenTheirBuilderIsKilledAndGoWithTheLastReader) {
   ObstacleArrays first, second, third;
   auto builder = std::make_unique<OtherProcess>([seed] {
     static ObstacleArrays arrays;
-    arrays.get(large, seed);
+    arrays.get(run_in(large, seed));
     return std::to_string(arrays.num_built());
   });
   ASSERT_EQ(builder->told(), "1");
-  auto array = first.get(large, seed);
+  auto array = first.get(run_in(large, seed));
   builder.reset();
-  second.get(large, seed);
+  second.get(run_in(large, seed));
   EXPECT_EQ(first.num_built() + second.num_built(), 0);
   expect_identical(*array, sample_obstacles(large, seed));
 
   array.reset();
-  first.get(small, 1);
-  second.get(small, 1);
-  third.get(large, seed);
+  first.get(run_in(small, 1));
+  second.get(run_in(small, 1));
+  third.get(run_in(large, seed));
   EXPECT_EQ(third.num_built(), 1) << "nothing was left of it";
 }
 
@@ -189,7 +197,7 @@ TEST(ObstacleArrays, AreBuiltByTheNextWhenTheirBuilderIsKilledAtWork) {
     const OtherProcess builder([&] {
       if (fork() == 0) {  // tells, and is at work when it is killed
         prctl(PR_SET_PDEATHSIG, SIGKILL);
-        ObstacleArrays().get(slow, seed);
+        ObstacleArrays().get(run_in(slow, seed));
         _exit(0);
       }
       usleep(100'000);
@@ -198,7 +206,7 @@ TEST(ObstacleArrays, AreBuiltByTheNextWhenTheirBuilderIsKilledAtWork) {
     ASSERT_EQ(builder.told(), "at work");
   }
   ObstacleArrays arrays;
-  EXPECT_GT(arrays.get(slow, seed)->obstacles().size(), 900000u);
+  EXPECT_GT(arrays.get(run_in(slow, seed))->obstacles().size(), 900000u);
   EXPECT_EQ(arrays.num_built(), 1);
 }
 
@@ -210,7 +218,7 @@ TEST(ObstacleArrays, AreNotWaitedForAgainAfterAWaitForNothing) {
     if (builder == 0) {
       prctl(PR_SET_PDEATHSIG, SIGKILL);
       ObstacleArrays builds;
-      builds.get(slow, seed);
+      builds.get(run_in(slow, seed));
       for (;;) pause();
     }
     while (num_sockets(builder) <= num_sockets(getpid())) usleep(1000);  // until it has the lock
@@ -222,7 +230,7 @@ TEST(ObstacleArrays, AreNotWaitedForAgainAfterAWaitForNothing) {
       usleep(300'000);
       kill(builder, signal);
     });
-    arrays.get(slow, seed);
+    arrays.get(run_in(slow, seed));
     later.join();
     kill(builder, SIGKILL);
     waitpid(builder, nullptr, 0);
@@ -232,14 +240,14 @@ TEST(ObstacleArrays, AreNotWaitedForAgainAfterAWaitForNothing) {
   EXPECT_EQ(arrays.num_built(), 1);
 
   // The next one would be there in the end, but is not waited for.
-  arrays.get(small, 1);
+  arrays.get(run_in(small, 1));
   get_and_signal(arrays, start_and_stop_builder(), SIGCONT);
   EXPECT_EQ(arrays.num_built(), 3);
 
   // What is there is still found, and then again waited for.
   ObstacleArrays other;
-  other.get(large, seed);
-  arrays.get(large, seed);
+  other.get(run_in(large, seed));
+  arrays.get(run_in(large, seed));
   EXPECT_EQ(arrays.num_built(), 3);
   get_and_signal(arrays, start_and_stop_builder(), SIGCONT);
   EXPECT_EQ(arrays.num_built(), 3);
@@ -261,7 +269,7 @@ TEST(ObstacleArrays, AreWaitedForAsLongAsTheyTake) {
 
 TEST(ObstacleArrays, AreBuiltAtOnceWhereNothingCanBeLocked) {
   ObstacleArrays other;
-  const auto held = other.get(large, own_seed());
+  const auto held = other.get(run_in(large, own_seed()));
   const OtherProcess without_files([seed = own_seed()] {
     rlimit usual;
     getrlimit(RLIMIT_NOFILE, &usual);
@@ -278,7 +286,7 @@ TEST(ObstacleArrays, AreBuiltAtOnceWhereNothingCanBeLocked) {
     setrlimit(RLIMIT_NOFILE, &none);
     const bool is_possible = NameLock("x").state() != NameLock::State::impossible;
     ObstacleArrays arrays;
-    arrays.get(large, seed);
+    arrays.get(run_in(large, seed));
     later.join();
     return std::to_string(is_possible) + " possible, " + std::to_string(arrays.num_built()) + " built";
   });
@@ -306,13 +314,13 @@ TEST(RunJob, GivesTheSameRowInASharedArray) {
   settings.set("seeds", "1");
   const Plan plan(settings);
   ObstacleArrays builder;
-  const auto built = builder.get(plan.task(0).obstacles, plan.task(0).seed);
+  const auto built = builder.get(plan.task(0));
   const auto reader = std::make_shared<ObstacleArrays>();
   RunJob job(plan.task(0), 0, {}, reader);
   while (!job.advance()) {
   }
   EXPECT_EQ(reader->num_built(), 0);
-  DropletRun run = run_in_array(plan.task(0));
+  DropletRun run(plan.task(0));
   while (!run.advance(100)) {
   }
   EXPECT_EQ(job.row().distance, run.result().distance);

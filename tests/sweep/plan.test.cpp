@@ -65,5 +65,70 @@ TEST(Plan, RefusesKeysThatAnotherLeavesWithoutEffect) {
   EXPECT_NO_THROW(Plan(settings_of({{"preset", "elastic"}, {"perimeter-stiffness", "0.3"}})));
 }
 
+TEST(Plan, HasOneSeedWhereNothingIsRandom) {
+  for (const char* layout : {"channel", "wall"}) {
+    Settings settings;
+    settings.set("obstacle-layout", layout);
+    EXPECT_EQ(Plan(settings).size(), 1) << layout;
+    settings.set("seeds", "1..3");
+    EXPECT_THROW(Plan{settings}, Error) << layout;
+  }
+}
+
+TEST(Plan, TakesKeysOfAChannelForAChannel) {
+  Settings settings;
+  settings.set("orifice", "0.6,0.7");
+  EXPECT_EQ(Plan(settings).size(), 2);
+  EXPECT_EQ(Plan(settings).task(0).obstacles.layout, ObstacleLayout::channel);
+  EXPECT_EQ(Plan(Settings::from_config(settings.to_config(false))).size(), 2);
+  EXPECT_EQ(Plan(Settings::from_config(Settings().to_config(false))).task(0).obstacles.layout,
+            ObstacleLayout::random)
+      << "a config has every key";
+}
+
+Settings among_circles() {
+  Settings settings;
+  settings.set("box", "10");
+  settings.set("seeds", "1");
+  settings.set("obstacles", "one.csv");
+  return settings;
+}
+
+TEST(Plan, NeedsTheCirclesThatItsSettingsName) {
+  Settings settings = among_circles();
+  EXPECT_EQ(settings.text("obstacle-layout"), "file");
+  EXPECT_EQ(settings.missing_files(), std::vector<std::string>{"one.csv"});
+  EXPECT_THROW(Plan{settings}, Error);
+  settings.attach("one.csv", OwnCircles({{5, 5, 0.3}, {8, 5, 0.3}}));
+  EXPECT_EQ(Plan(settings).task(0).obstacles.own->circles().size(), 2u);
+  EXPECT_DOUBLE_EQ(Plan(settings).task(0).obstacles.gap, 2.4);
+}
+
+TEST(Plan, TravelsWithItsCircles) {
+  Settings settings = among_circles();
+  settings.attach("one.csv", OwnCircles({{1.0 / 3, 5, 0.1}, {8, 5, 0}}));
+  const Settings again = Settings::from_packed(settings.packed());
+  EXPECT_EQ(again.to_config(false), settings.to_config(false));
+  EXPECT_EQ(again.circle_files().at("one.csv").circles(), settings.circle_files().at("one.csv").circles());
+  EXPECT_EQ(again.packed(), settings.packed());
+}
+
+TEST(Plan, RefusesWhatCirclesOfOnesOwnLeaveWithoutEffect) {
+  const auto with = [](const char* key, const char* value) {
+    Settings settings = among_circles();
+    settings.attach("one.csv", OwnCircles({{5, 5, 0.3}}));
+    settings.set(key, value);
+    return settings;
+  };
+  for (const auto& [key, value] :
+       {std::pair{"obstacle-gap", "0.3"}, std::pair{"obstacle-density", "0.3"},
+        std::pair{"obstacle-diameter-spread", "0.1"}, std::pair{"lattice-angle", "10"},
+        std::pair{"seeds", "1..3"}, std::pair{"obstacle-layout", "lattice"}})
+    EXPECT_THROW(Plan{with(key, value)}, Error) << key;
+  Settings anywhere = with("seeds", "1..3");
+  anywhere.set("release", "anywhere");
+  EXPECT_EQ(Plan(anywhere).size(), 3);
+}
+
 }  // namespace
 }  // namespace clog::sweep

@@ -1,5 +1,8 @@
 #include "clog/sweep/row_check.hpp"
 
+#include "clog/core/run/resolve.hpp"
+#include "clog/sweep/run_job.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -98,10 +101,54 @@ TEST(FaultOf, NoColumnThatAnOlderVersionDidNotHave) {
   EXPECT_EQ(fault_of(row), "");
 }
 
+/// The end of a short run in another scene.
+RunRow row_in(ObstacleLayout layout) {
+  RunParameters run;
+  run.dp.vertices = 64;
+  run.max_time = 1;
+  run.obstacles.layout = layout;
+  if (layout == ObstacleLayout::file) {
+    run.obstacles.own = OwnCircles({{5, 5, 0.2}, {7, 5.5, 0.3}});
+    run.obstacles.box = 10;
+  }
+  RunJob job(resolve(run), 0);
+  while (!job.advance()) continue;
+  return job.row();
+}
+
+/// One to which the column means something.
+const RunRow& row_with(const Column& column) {
+  static const RunRow rows[] = {clogged(), row_in(ObstacleLayout::channel), row_in(ObstacleLayout::wall),
+                                row_in(ObstacleLayout::file)};
+  const auto* row = std::ranges::find_if(rows, [&](const RunRow& one) {
+    const Value value = column.get(one);
+    return value != Value() && value != Value("none");
+  });
+  return row == std::end(rows) ? rows[0] : *row;
+}
+
+TEST(FaultOf, NoRunInAnyScene) {
+  for (const ObstacleLayout layout : {ObstacleLayout::channel, ObstacleLayout::wall, ObstacleLayout::file})
+    EXPECT_EQ(fault_of(row_in(layout)), "") << name(layout);
+}
+
+TEST(FaultOf, NamesWhatBelongsToAnotherScene) {
+  RunRow row = clogged();
+  row.sag = 0.1;
+  EXPECT_EQ(fault_of(row), "sag=0.1, but there is no wall");
+  row = row_in(ObstacleLayout::channel);
+  EXPECT_GE(row.largest_shape_parameter, 1);
+  row.largest_shape_parameter = 0.5;
+  EXPECT_EQ(fault_of(row), "largest_shape_parameter=0.5 is that of no droplet");
+  row = row_in(ObstacleLayout::channel);
+  row.parameters.channel.orifice = 1e-3;
+  EXPECT_NE(fault_of(row).find("invalid orifice=0.001"), std::string::npos);
+}
+
 /// The row after its bytes were read from a file that holds another value in one column.
 template <class T>
 RunRow damaged(const Column& column, T value) {
-  RunRow row = clogged();
+  const RunRow& row = row_with(column);
   std::vector<std::byte> bytes(packed_size());
   pack(row, bytes);
   std::size_t place = 0;
@@ -121,15 +168,27 @@ TEST(FaultOf, NamesEveryWordThatIsUnknown) {
   int num_tried = 0;
   for (const Column& column : columns()) {
     if (column.kind != ValueKind::word || column.role == ColumnRole::circumstance) continue;
-    EXPECT_EQ(fault_of(damaged<std::string>(column, "wrapqed")), column.name + "='wrapqed' is unknown");
+    const char* what = column.name == "obstacles" ? "is no check sum of circles" : "is unknown";
+    EXPECT_EQ(fault_of(damaged<std::string>(column, "wrapqed")), column.name + "='wrapqed' " + what);
     ++num_tried;
   }
-  EXPECT_EQ(num_tried, 11);
+  EXPECT_EQ(num_tried, 13);
 }
 
 TEST(FaultOf, NamesEveryNumberThatIsNone) {
-  const std::set<std::string> may_be_unknown = {"mean_speed", "mean_speed_error", "transient", "travel_time",
-                                                "wrapped_support"};
+  const std::set<std::string> may_be_unknown = {"mean_speed",
+                                                "mean_speed_error",
+                                                "transient",
+                                                "travel_time",
+                                                "wrapped_support",
+                                                "largest_shape_parameter",
+                                                "largest_shape_parameter_at",
+                                                "largest_relative_speed",
+                                                "largest_relative_speed_at",
+                                                "smallest_relative_speed",
+                                                "smallest_relative_speed_at",
+                                                "sag",
+                                                "top_sag"};
   for (const Column& column : columns()) {
     if (column.kind != ValueKind::number) continue;
     const bool means_nothing = column.name == "lattice_angle";  // the array is random

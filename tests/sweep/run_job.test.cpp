@@ -19,7 +19,7 @@ TEST(RunJob, GivesTheRowOfItsRun) {
   RunJob job(plan.task(1), 1);
   while (!job.advance()) {
   }
-  DropletRun run = run_in_array(plan.task(1));
+  DropletRun run(plan.task(1));
   while (!run.advance(100)) {
   }
   const RunRow row = job.row();

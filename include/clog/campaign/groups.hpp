@@ -104,6 +104,9 @@ using Field = std::pair<const char*, Value>;
 std::span<const sweep::Column* const> group_columns();
 /// What a row holds in them.
 std::vector<Field> parameter_fields(const sweep::RunRow& row);
+/// Not in a channel and on a wall, where nothing is random: there each group is one run, and what came out is
+/// in its row.
+bool has_clogging_length(const sweep::RunRow& row);
 /// What came out.
 std::vector<Field> result_fields(const Group& group);
 /// Of a number among them, e.g. "sigma"; empty for one without a unit, counts and words.

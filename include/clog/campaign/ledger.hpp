@@ -70,8 +70,9 @@ class Ledger {
   store::Provenance provenance_;
   std::int64_t attempts_;
   store::Journal journal_;
-  std::map<std::int64_t, Entry> runs_;  // by task; those that have begun
-  std::vector<Entry> other_runs_;       // in the file, but not of this plan
+  std::map<std::int64_t, Entry> runs_;      // by task; those that have begun
+  std::vector<Entry> other_runs_;           // in the file, but not of this plan
+  std::vector<store::CircleFile> circles_;  // that runs are among
   std::int64_t num_wanted_;
   std::int64_t num_faulty_ = 0;
   std::vector<std::int64_t> tasks_left_;
@@ -88,6 +89,7 @@ class Ledger {
 
   bool is_over(const sweep::RunRow& row) const;
   sweep::RunRow new_row(std::int64_t task) const;
+  void keep_circles(const store::SweepFile& file);
   void take_over(const store::SweepFile& file, const sweep::Settings& settings);
   void find_tasks(std::unordered_map<std::string, Entry> known);
   sweep::RunRow published(const sweep::RunRow& row) const;

@@ -20,7 +20,7 @@ store::SweepFile read_with_caution(const std::string& path);
 std::string attribute(const store::Provenance& provenance, const std::string& name);
 /// @throws Error that names the file, as the next two do, if it does not say, or nothing that can be read
 sweep::Settings stored_settings(const std::string& path, const store::Provenance& provenance);
-sweep::Plan stored_plan(const std::string& path, const store::Provenance& provenance);
+sweep::Plan stored_plan(const std::string& path, const store::SweepFile& file);
 /// Columns of the keys that its config has lists for; none if that cannot be read.
 std::vector<std::string> listed_columns(const store::Provenance& provenance);
 /// How many runs are wanted so far: of --until-precision those asked for, otherwise all of the plan.
@@ -39,6 +39,6 @@ RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, 
 /// The row of a task that is to be computed once more; the instruction set that it asks for is in use from
 /// then on.
 /// @throws Error if there is none, it is not over, or this program would come to something else
-const sweep::RunRow& replayable_row(const store::SweepFile& file, const std::string& task);
+sweep::RunRow replayable_row(const store::SweepFile& file, const std::string& task);
 
 }  // namespace clog::campaign

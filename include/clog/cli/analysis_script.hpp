@@ -15,6 +15,9 @@ std::filesystem::path find_analysis_script(const std::string& name);
 [[noreturn]] void become_script(const std::string& name, const std::filesystem::path& script,
                                 std::vector<std::string> arguments);
 
+/// Is there a program of this name in PATH?
+bool is_installed(const std::string& program);
+
 /// The folder this program is in.
 std::filesystem::path own_folder();
 

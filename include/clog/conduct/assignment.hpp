@@ -13,7 +13,7 @@ struct Assignment {
   std::chrono::milliseconds report_interval{10'000};
   std::string instruction_set = "auto";
   bool is_isolated = true;  ///< do tasks run in processes of their own?
-  std::string config;       ///< see sweep::Settings::to_config()
+  std::string settings;     ///< see sweep::Settings::packed()
 
   /// As it travels.
   std::string text() const;

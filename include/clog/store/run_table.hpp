@@ -10,7 +10,7 @@
 namespace clog::store {
 
 /// Version of the file format; see src/store/README.md.
-inline constexpr const char* format_version = "5";
+inline constexpr const char* format_version = "6";
 
 /// Name and text of the attributes at the file's root: where its numbers come from.
 using Provenance = std::vector<std::pair<std::string, std::string>>;
@@ -26,11 +26,18 @@ void refuse_existing(const std::string& path);
 /// To be asked before hours of work. @throws Error if the path exists or no file can be made there
 void refuse_unwritable(const std::string& path);
 
+/// Circles of a user's own, and the file that they were read from; empty of ones that the sweep's last command
+/// does not name.
+struct CircleFile {
+  std::string name;
+  OwnCircles circles;
+};
+
 /// Makes the sweep's file, or replaces it: the path leads to a whole table at every moment, the old or the
 /// new, so readers may come when they like. It is on the disk when this returns. @throws Error, and the old
 /// file stays
-void publish_sweep(const std::string& path, std::span<const sweep::RunRow> rows,
-                   const Provenance& provenance);
+void publish_sweep(const std::string& path, std::span<const sweep::RunRow> rows, const Provenance& provenance,
+                   std::span<const CircleFile> circles = {});
 
 /// What of a file has been compared with a checksum.
 enum class Checked {
@@ -42,6 +49,7 @@ enum class Checked {
 struct SweepFile {
   std::vector<sweep::RunRow> rows;
   Provenance provenance;
+  std::vector<CircleFile> circles;  ///< that rows are among
   Checked checked = Checked::everything;
 };
 /// Files of format version 2 and later: columns that they do not have get the values for "not known".

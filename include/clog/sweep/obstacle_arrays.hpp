@@ -9,17 +9,18 @@
 
 namespace clog::sweep {
 
-/// Two arrays are the same if their keys are: the values of all parameters that shape an array.
-std::string array_key(const ObstacleParameters& parameters, std::uint32_t seed);
+/// The walls of two runs are the same if their keys are: the values of all parameters that shape them.
+std::string array_key(const RunParameters& run);
 
-/// The obstacle arrays of a sweep. The last one is kept: a sweep asks for the same one many times in a row.
+/// The walls of a sweep's runs, obstacle arrays mostly. The last one is kept: a sweep asks for the same one many times in a row.
 /// Large ones are shared by all processes of the same user and executable on a machine: each is built by one
 /// of them, while the others wait, and is in memory once. Where sharing fails every process waits in vain
 /// once, and builds its own; nothing else depends on it.
 class ObstacleArrays {
  public:
-  /// @throws Error as sample_obstacles()
-  std::shared_ptr<const ObstacleArray> get(const ObstacleParameters& parameters, std::uint32_t seed);
+  /// @param run  resolved
+  /// @throws Error as Scene::walls()
+  std::shared_ptr<const ObstacleArray> get(const RunParameters& run);
 
   /// How many of the arrays so far were built here.
   int num_built() const { return num_built_; }
@@ -34,8 +35,8 @@ class ObstacleArrays {
   int num_built_ = 0;
   bool is_waiting_worthwhile_ = true;  ///< until a wait was for nothing, and again once another's is found
 
-  ObstacleArray build(const ObstacleParameters& parameters, std::uint32_t seed);
-  ObstacleArray find_or_build(const ObstacleParameters& parameters, std::uint32_t seed);
+  ObstacleArray build(const RunParameters& run);
+  ObstacleArray find_or_build(const RunParameters& run);
 };
 
 }  // namespace clog::sweep

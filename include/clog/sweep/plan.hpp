@@ -20,6 +20,8 @@ class Plan {
   std::int64_t size() const { return size_; }
   /// Resolved parameters of task `index`, 0 <= index < size().
   RunParameters task(std::int64_t index) const;
+  /// Circles that its tasks are among.
+  const CircleFiles& circle_files() const { return circle_files_; }
   /// Number of parameter sets without the seeds.
   std::int64_t num_groups() const;
 
@@ -29,6 +31,7 @@ class Plan {
     std::vector<std::string> values;
   };
   std::vector<Axis> axes_;  // the first varies slowest
+  CircleFiles circle_files_;
   std::int64_t size_ = 1;
 };
 

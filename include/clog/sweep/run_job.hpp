@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "clog/core/run/systems.hpp"
+#include "clog/core/run/droplet_run.hpp"
 #include "clog/sweep/job.hpp"
 #include "clog/sweep/obstacle_arrays.hpp"
 #include "clog/sweep/plan.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "clog/core/parameters/parameters.hpp"
-#include "clog/core/run/systems.hpp"
+#include "clog/core/run/droplet_run.hpp"
 
 namespace clog::sweep {
 
@@ -60,6 +60,14 @@ struct RunRow {
   std::int64_t num_wrapped = -1;  ///< -1: not known
   std::int64_t num_gaps = -1;
   std::int64_t num_arcs = -1;
+  double largest_shape_parameter = not_known;  ///< of a passage through a channel; so the next
+  double largest_shape_parameter_at = not_known;
+  double largest_relative_speed = not_known;
+  double largest_relative_speed_at = not_known;
+  double smallest_relative_speed = not_known;
+  double smallest_relative_speed_at = not_known;
+  double sag = not_known;  ///< on a flat wall
+  double top_sag = not_known;
   std::int64_t steps = 0;
 
   double wall_seconds = 0;

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "clog/core/parameters/circles.hpp"
 #include "clog/core/parameters/schema.hpp"
 #include "clog/sweep/value_list.hpp"
 
@@ -21,9 +22,14 @@ struct Key {
   std::string help;            ///< meaning and unit
   const Parameter* parameter;  ///< nullptr: preset
 
+  /// Not of the key obstacles, whose values name files: Plan knows what is in these.
   /// @throws Error, without the key's name, if the value cannot be read or is out of the type's range
   void apply(RunParameters& run, const std::string& value) const;
 };
+
+/// Circles by the name of their file, as a value of the key obstacles has it.
+using CircleFiles = std::map<std::string, OwnCircles>;
+inline constexpr const char* circles_key = "obstacles";
 
 /// Every key, in the order in which they are shown. The one place that knows them.
 const std::vector<Key>& keys();
@@ -44,7 +50,9 @@ class Settings {
   /// From the text that to_config() wrote. @throws Error as set(), or if a line is not one of a config
   static Settings from_config(const std::string& text);
 
-  /// A preset sets the keys that have not been given themselves, before or after it.
+  /// A preset sets the keys that have not been given themselves, before or after it. So does what leaves no
+  /// choice: a channel or a wall, where nothing is random, the seed; keys of a channel and circles of one's own
+  /// the layout.
   /// @throws Error if there is no such key or its list cannot be read
   void set(const std::string& name, const std::string& text);
   /// By set(), not by a preset or default.
@@ -52,6 +60,16 @@ class Settings {
   const std::string& text(const std::string& name) const { return texts_.at(name); }
   /// The expanded values of a key.
   const std::vector<std::string>& values(const std::string& name) const { return values_.at(name); }
+
+  /// What is in the files that the key obstacles names. Nothing is read here: whoever sets the key does that.
+  const CircleFiles& circle_files() const { return circle_files_; }
+  void attach(const std::string& file, OwnCircles circles) { circle_files_.insert_or_assign(file, circles); }
+  /// Files that are named and not attached.
+  std::vector<std::string> missing_files() const;
+
+  /// Everything, circles included, as text that travels; and the way back. @throws Error
+  std::string packed() const;
+  static Settings from_packed(const std::string& text);
 
   /// All keys as a config file, each with its meaning as a comment if wanted. Reads back as the same
   /// settings.
@@ -61,6 +79,7 @@ class Settings {
   std::set<std::string> given_;
   std::map<std::string, std::string> texts_;
   std::map<std::string, std::vector<std::string>> values_;
+  CircleFiles circle_files_;
 
   void assign(const std::string& name, const std::string& text);
 };

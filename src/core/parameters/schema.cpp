@@ -20,6 +20,12 @@ constexpr ParameterScope arrays = {
     "arrays", "there is no array of obstacles", "leave it out", [](const RunParameters& run) {
       return run.obstacles.layout != ObstacleLayout::channel && run.obstacles.layout != ObstacleLayout::wall;
     }};
+constexpr ParameterScope own_circles = {
+    "file", "there are no circles of a user's own", "add obstacles=FILE.csv, or leave it out",
+    [](const RunParameters& run) { return run.obstacles.layout == ObstacleLayout::file; }};
+constexpr ParameterScope channels = {
+    "channel", "there is no channel", "add obstacle-layout=channel, or leave it out",
+    [](const RunParameters& run) { return run.obstacles.layout == ObstacleLayout::channel; }};
 constexpr ParameterScope lattices = {
     "lattice", "a random array has no rows", "add obstacle-layout=lattice",
     [](const RunParameters& run) { return run.obstacles.layout == ObstacleLayout::lattice; }};
@@ -74,6 +80,19 @@ struct Outside<Enum> {
     const std::string& word = std::get<std::string>(value);
     if (const std::optional<Enum> meant = meant_by<Enum>(word)) return *meant;
     throw Error("is unknown");
+  }
+};
+
+template <>
+struct Outside<std::optional<OwnCircles>> {
+  static constexpr ValueKind kind = ValueKind::file;
+  static std::vector<std::string> words() { return {"none"}; }
+  static ParameterValue get(const std::optional<OwnCircles>& value) {
+    return value ? ParameterValue(value->check_sum()) : ParameterValue();
+  }
+  static std::optional<OwnCircles> set(const ParameterValue& value) {
+    const auto* text = std::get_if<std::string>(&value);
+    return text ? std::optional(OwnCircles::from_check_sum(*text)) : std::nullopt;
   }
 };
 
@@ -190,10 +209,61 @@ std::vector<Parameter> make_schema() {
             {.column = "obstacle_filling",
              .meaning =
                  "random: sequential addition, lattice: square, obstacle-gap + obstacle-diameter from centre "
-                 "to centre",
+                 "to centre, file: circles of your own (obstacles), channel: between two wedges, wall: onto "
+                 "a flat one",
              .has_own_column = false,
-             .shapes_array = true,
-             .words = {"random", "lattice"}}),
+             .shapes_array = true}),
+      entry("obstacles", [](auto& run) -> auto& { return run.obstacles.own; },
+            {.column = "obstacles",
+             .meaning = "CSV file of circles of your own: x, y and, if it is another than obstacle-diameter, "
+                        "the diameter; the result holds them, too, and each row their check sum",
+             .scope = &own_circles,
+             .shapes_array = true}),
+      entry("release", [](auto& run) -> auto& { return run.obstacles.release; },
+            {.column = "release",
+             .meaning = "among circles of your own the droplet starts near the centre of the array, or, with "
+                        "anywhere, near a place that follows from the seed",
+             .scope = &own_circles,
+             .shapes_array = true}),
+      entry("orifice", [](auto& run) -> auto& { return run.channel.orifice; },
+            {.column = "orifice",
+             .symbol = "w",
+             .unit = "sigma",
+             .meaning = "w, distance between the tips of the channel's wedges",
+             .scope = &channels,
+             .range = {positive, to(20, "the droplet would not feel the wedges", "try 0.7")},
+             .shapes_array = true}),
+      entry("wedge-angle", [](auto& run) -> auto& { return run.channel.wedge_angle; },
+            {.column = "wedge_angle",
+             .symbol = R"(\beta)",
+             .unit = "degrees",
+             .meaning = "of the wedges' flanks against the flow; 0: parallel walls",
+             .scope = &channels,
+             .range = {from(0, "an angle against the flow", "use 5..85, or 0 for parallel walls"),
+                       to(85, "an angle against the flow", "use 5..85, or 0 for parallel walls")},
+             .shapes_array = true}),
+      entry("tip-radius", [](auto& run) -> auto& { return run.channel.tip_radius; },
+            {.column = "tip_radius",
+             .symbol = "r_t",
+             .unit = "sigma",
+             .meaning = "of the wedges' rounded tips",
+             .scope = &channels,
+             .range = {not_negative, to(10, "such tips are flat for a droplet", "try 0.03")},
+             .shapes_array = true}),
+      entry("start", [](auto& run) -> auto& { return run.channel.start; },
+            {.column = "start",
+             .symbol = "h_0",
+             .unit = "sigma",
+             .meaning = "h of the droplet's centre at release, from the line through the tips, negative upstream",
+             .scope = &channels,
+             .range = {from(-100, "the way to the orifice would take most of the time", "try -10"), {}}}),
+      entry("end", [](auto& run) -> auto& { return run.channel.end; },
+            {.column = "end",
+             .symbol = "h_1",
+             .unit = "sigma",
+             .meaning = "h at which the droplet has passed",
+             .scope = &channels,
+             .range = {{}, to(100, "the way behind the orifice would take most of the time", "try 3")}}),
       entry("lattice-angle", [](auto& run) -> auto& { return run.obstacles.lattice_angle; },
             {.column = "lattice_angle",
              .symbol = R"(\theta)",

@@ -6,8 +6,11 @@
 #include <utility>
 
 #include "clog/core/disk/sp_droplet.hpp"
+#include "clog/core/droplet/shape.hpp"
 #include "clog/core/polygon/dp_droplet.hpp"
 #include "clog/core/run/equilibrium.hpp"
+#include "clog/core/scene/release.hpp"
+#include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/units.hpp"
 
@@ -40,14 +43,20 @@ std::unique_ptr<Droplet> make_droplet(const RunParameters& run, const ObstacleAr
 
 }  // namespace
 
+DropletRun::DropletRun(const RunParameters& run)
+    : DropletRun(run, std::make_shared<ObstacleArray>(scene_of(run).walls(run))) {}
+
+DropletRun::DropletRun(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles)
+    : DropletRun(run, obstacles, scene_of(run).release(run, *obstacles), scene_of(run).way(run)) {}
+
 DropletRun::DropletRun(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
-                       DropletState initial, double end)
+                       DropletState initial, double way)
     : run_(run),
       obstacles_(std::move(obstacles)),
       droplet_(make_droplet(run_, *obstacles_, std::move(initial))),
       start_frame_(droplet_->state().frame),
       start_(droplet_->centre()),
-      end_(end),
+      end_(way),
       max_steps_(std::max<std::int64_t>(1, std::llround(run_.max_time / run_.time_step.value()))),
       first_quiet_time_(relaxation_times_before_a_clog * run_.drag.terminal_speed / units::gravity),
       next_search_(first_search(run_.drag.terminal_speed)) {}
@@ -86,11 +95,12 @@ void DropletRun::take_snapshot() {
   bytes.put(quiet_checks_);
   bytes.put(next_search_);
   record_.save(bytes);
+  if (is_in_channel()) passage_.save(bytes);
   snapshot_ = bytes.take();
 }
 
 DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
-                              std::span<const std::byte> snapshot, double end) {
+                              std::span<const std::byte> snapshot) {
   try {
     ByteReader bytes(snapshot);
     std::uint64_t kind = 0;
@@ -103,7 +113,7 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
     if (state.size() != (run.model == Model::dp ? run.dp.vertices : 1) ||
         state.frame.period[0] != period.along() || state.frame.period[1] != period.across())
       throw Error("the snapshot is of another run");
-    DropletRun resumed(run, std::move(obstacles), std::move(state), end);
+    DropletRun resumed(run, std::move(obstacles), std::move(state), scene_of(run).way(run));
     resumed.droplet_->restore(rest);
     resumed.start_frame_.restore(rest);
     rest.get(resumed.start_);
@@ -111,6 +121,7 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
     rest.get(resumed.quiet_checks_);
     rest.get(resumed.next_search_);
     resumed.record_.restore(rest);
+    if (resumed.is_in_channel()) resumed.passage_.restore(rest);
     if (!rest.at_end()) throw Error("the snapshot is of another run");
     resumed.snapshot_.assign(snapshot.begin(), snapshot.end());
     return resumed;
@@ -135,6 +146,9 @@ void DropletRun::check() {
     return;
   }
   record_.add(time(), displacement()[0]);
+  if (is_in_channel())
+    passage_.add(run_.channel.start + displacement()[0], shape.shape_parameter(),
+                 droplet_->centre_velocity()[0] / run_.drag.terminal_speed, has_fallen());
   if (is_quiet(energy_ratio))
     clogged_by_ = ClogDetection::threshold;
   else if (run_.clog_detection == ClogDetection::certified && finds_rest(energy_ratio))
@@ -148,7 +162,7 @@ void DropletRun::check() {
 }
 
 bool DropletRun::is_quiet(double energy_ratio) {
-  const bool is_quiet = energy_ratio < run_.clog_energy && time() > first_quiet_time_;
+  const bool is_quiet = energy_ratio < run_.clog_energy && has_fallen();
   quiet_checks_ = is_quiet ? quiet_checks_ + 1 : 0;
   return quiet_checks_ >= 2;
 }
@@ -161,6 +175,15 @@ bool DropletRun::finds_rest(double energy_ratio) {
   std::optional<DropletState> rest = find_equilibrium(run_, *obstacles_, droplet_->state());
   if (rest) at_rest_ = make_droplet(run_, *obstacles_, std::move(*rest));
   return at_rest_ != nullptr;
+}
+
+Sag DropletRun::sag(const DropletState& state) const {
+  // Before gravity the droplet was a circle around its centre, so the centroid was where displacement is
+  // zero.
+  const Eigen::ArrayXd before = free_droplet(run_);
+  const Eigen::Array2d centre = run_.model == Model::sp ? state.centre() : area_centroid(state.position);
+  const double top = displacement_of({state.x().minCoeff(), 0})[0] - before.head(state.size()).minCoeff();
+  return {.centre = displacement_of(centre)[0], .top = top};
 }
 
 RunResult DropletRun::result() const {
@@ -183,6 +206,8 @@ RunResult DropletRun::result() const {
           .shape_parameter = last.shape().shape_parameter(),
           .mechanism = mechanism,
           .geometry = geometry,
+          .passage = passage_,
+          .sag = run_.obstacles.layout == ObstacleLayout::wall ? sag(last.state()) : Sag(),
           .steps = droplet_->num_integrated_steps(),
           .message = message_};
 }

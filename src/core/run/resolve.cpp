@@ -2,122 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <concepts>
 #include <numbers>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/polygon/stability.hpp"
 #include "clog/core/tools/error.hpp"
-#include "clog/core/tools/number_text.hpp"
-#include "clog/core/tools/portable_math.hpp"
 #include "clog/core/tools/units.hpp"
-#include "clog/core/world/jamming.hpp"
-#include "clog/core/world/lattice.hpp"
+#include "clog/core/scene/scene.hpp"
+#include "core/scene/refusal.hpp"
 
 namespace clog {
 namespace {
-
-[[noreturn]] void refuse(const char* key, double value, const std::string& reason_and_remedy) {
-  throw Error(std::string("invalid ") + key + '=' + shortest(value) + " (" + reason_and_remedy);
-}
-
-void require(bool holds, const char* key, double value, const char* reason_and_remedy) {
-  if (!holds) refuse(key, value, reason_and_remedy);
-}
-/// @param reason_and_remedy  makes the text, only where it is needed: numbers in it would take most of the
-/// time of a large sweep's plan
-template <std::invocable Words>
-void require(bool holds, const char* key, double value, const Words& reason_and_remedy) {
-  if (!holds) refuse(key, value, reason_and_remedy());
-}
-
-std::string text(double value, int digits = 3) {
-  std::ostringstream out;
-  out.precision(digits);
-  out << value;
-  return out.str();
-}
-
-double rounded_down(double value, int digits = 2) {
-  const double scale = portable::pow(10, digits - 1 - std::floor(portable::log10(value)));
-  return std::floor(value * scale * (1 + 1e-12)) / scale;
-}
-
-void validate_obstacles(const ObstacleParameters& obstacles, int vertices, Model model) {
-  const double spread = obstacles.diameter_spread;
-  const double spacing = obstacles.smallest_diameter() + obstacles.gap;
-  const double widest_spacing = obstacles.largest_diameter() + obstacles.gap;
-  require(widest_spacing <= 5 * spacing, "obstacle-diameter-spread", spread, [&] {
-    return "the largest two obstacles keep " + text(widest_spacing / spacing) +
-           " times the distance of the smallest two: sampling would take hours) use " +
-           text(0.999 * 2 / 3 * (1 + obstacles.gap / obstacles.diameter)) +
-           " or less, or a wider obstacle-gap";
-  });
-  require(widest_spacing <= obstacles.box / 2, "box", obstacles.box, [&] {
-    return "holds no two obstacles of diameter " + text(obstacles.largest_diameter()) + " with gap " +
-           text(obstacles.gap) + ") use at least " + text(2 * widest_spacing);
-  });
-  const double largest_box = 1e4 * spacing / std::sqrt(obstacles.boxes);
-  require(obstacles.box <= largest_box, "box", obstacles.box, [&] {
-    return "the array would need more than ten gigabytes) use at most " + text(largest_box) +
-           "; the array is periodic";
-  });
-  if (model == Model::dp) {
-    const double vertex_diameter = units::regular_edge_length(vertices);
-    require(obstacles.gap > vertex_diameter, "obstacle-gap", obstacles.gap, [&] {
-      return "not wider than an edge is long, " + text(vertex_diameter) +
-             " sigma: nothing of the passage would be resolved) widen the gap or use more vertices";
-    });
-  }
-}
-
-/// Whether a density comes out must not depend on the seed: a sweep would find out row by row.
-void validate_density(const ObstacleParameters& obstacles) {
-  if (!obstacles.density) return;
-  const double largest = largest_density(obstacles);
-  // The value in the message, rounded, may be the least bit larger.
-  require(*obstacles.density <= (1 + 1e-9) * largest, "obstacle-density", *obstacles.density, [&] {
-    return "more than every seed finds room for, with obstacle-gap=" + text(obstacles.gap) +
-           " and box=" + text(obstacles.box) + ") use at most " + text(rounded_down(largest, 4), 4) +
-           ", or saturated: as many as fit";
-  });
-}
-
-/// Replaces box and angle of a lattice by those of the nearest one that is periodic.
-void resolve_layout(ObstacleParameters& obstacles) {
-  const double angle = obstacles.lattice_angle;
-  if (obstacles.layout == ObstacleLayout::random) {
-    validate_density(obstacles);
-    return;
-  }
-  if (obstacles.density)
-    refuse("obstacle-density", *obstacles.density,
-           "a lattice has one obstacle per (obstacle-gap + obstacle-diameter)^2) leave it out, or use "
-           "obstacle-layout=random");
-  require(obstacles.boxes == 1, "boxes", obstacles.boxes,
-          "a lattice repeats in each of them) leave it out, or use obstacle-layout=random");
-  require(obstacles.diameter_spread == 0, "obstacle-diameter-spread", obstacles.diameter_spread,
-          "the obstacles of a lattice are alike) leave it out, or use obstacle-layout=random");
-  const double spacing = obstacles.diameter + obstacles.gap;
-  const double narrowest = std::max(parameter("box").range.lower->value, 2 * spacing);
-  const auto is_near = [=](const std::optional<CommensurateLattice>& lattice) {
-    return lattice && std::abs(lattice->angle - angle) <= largest_angle_error;
-  };
-  auto lattice = nearest_lattice(spacing, angle, narrowest, obstacles.box);
-  if (!is_near(lattice)) {
-    double box = obstacles.box;
-    while (!is_near(lattice)) lattice = nearest_lattice(spacing, angle, narrowest, box += spacing);
-    refuse("lattice-angle", angle,
-           "no lattice of spacing " + text(spacing) + " within " + text(largest_angle_error) +
-               " degrees of it has a period of box=" + text(obstacles.box) + " or less) use box=" +
-               std::to_string(static_cast<long>(std::ceil(lattice->box))) + " or more");
-  }
-  obstacles.box = lattice->box;
-  obstacles.lattice_angle = lattice->angle;
-}
 
 StiffModes stiff_modes_of_circle(const DpParameters& dp, double wall_stiffness) {
   const double circumference = std::numbers::pi * units::droplet_diameter;
@@ -170,19 +67,19 @@ void choose_time_step(RunParameters& run) {
   if (*run.time_step >= parameter("time-step").range.lower->value) return;
   const Rate rate = fastest_rate(run);
   refuse(rate.key, rate.value,
-         "would need a time-step of " + text(*run.time_step) + ") use a value nearer to the usual ones");
+         "would need a time-step of " + rounded_text(*run.time_step) + ") use a value nearer to the usual ones");
 }
 
 void resolve_time_step(RunParameters& run) {
   if (!run.time_step) choose_time_step(run);
   const double time_step = *run.time_step;
   require(run.max_time >= time_step, "max-time", run.max_time,
-          [&] { return "shorter than one time-step) use at least " + text(time_step); });
+          [&] { return "shorter than one time-step) use at least " + rounded_text(time_step); });
   require(run.max_time / time_step <= 1e15, "max-time", run.max_time,
-          [&] { return "more than 1e15 steps) use at most " + text(1e15 * time_step); });
+          [&] { return "more than 1e15 steps) use at most " + rounded_text(1e15 * time_step); });
   require(time_step <= run.drag.terminal_speed, "time-step", time_step, [&] {
-    return "does not resolve the drag's relaxation time, terminal-speed=" + text(run.drag.terminal_speed) +
-           ") try " + text(0.1 * run.drag.terminal_speed);
+    return "does not resolve the drag's relaxation time, terminal-speed=" + rounded_text(run.drag.terminal_speed) +
+           ") try " + rounded_text(0.1 * run.drag.terminal_speed);
   });
 }
 
@@ -195,10 +92,10 @@ void validate_compression(const DpParameters& dp, bool automatic_area) {
     require(*dp.area_stiffness >= softest, "line-tension", dp.line_tension, [&] {
       return "would compress the droplet by more than 5 %, with the stiffest automatic "
              "area-stiffness) use at most " +
-             text(rounded_down(*dp.area_stiffness / softest_per_tension)) + ", or give area-stiffness";
+             rounded_text(rounded_down(*dp.area_stiffness / softest_per_tension)) + ", or give area-stiffness";
     });
   require(*dp.area_stiffness >= softest, "area-stiffness", *dp.area_stiffness, [&] {
-    return "the line tension would compress the droplet by more than 5 %) use at least " + text(softest);
+    return "the line tension would compress the droplet by more than 5 %) use at least " + rounded_text(softest);
   });
 }
 
@@ -229,8 +126,8 @@ void resolve_dp(RunParameters& run) {
   const double largest = automatic ? largest_step_with_automatic_contact(dp) : largest_stable_step(modes);
   const double stiffest_omega_dt = std::sqrt(modes.sum()) * time_step;
   require(num_substeps(modes, time_step) == 1, "time-step", time_step, [&] {
-    return "contact, area, tension and spring modes together have omega*dt = " + text(stiffest_omega_dt) +
-           ", wall-stiffness=" + text(*run.wall_stiffness) + ") try " + text(0.99 * largest);
+    return "contact, area, tension and spring modes together have omega*dt = " + rounded_text(stiffest_omega_dt) +
+           ", wall-stiffness=" + rounded_text(*run.wall_stiffness) + ") try " + rounded_text(0.99 * largest);
   });
   // A contact too soft to carry the droplet lets obstacles sink into it: demand that a weight of M g on
   // the vertices of an eighth of the circumference leaves less than half the contact range.
@@ -238,7 +135,7 @@ void resolve_dp(RunParameters& run) {
   require(contact_stiffness(*run.wall_stiffness, vertex_diameter) >= softest, "wall-stiffness",
           *run.wall_stiffness, [&] {
             return "too soft to hold the droplet's weight off an obstacle) use at least " +
-                   text(wall_stiffness(softest, vertex_diameter)) + " or a smaller time-step";
+                   rounded_text(wall_stiffness(softest, vertex_diameter)) + " or a smaller time-step";
           });
 }
 
@@ -252,7 +149,7 @@ void resolve_sp(RunParameters& run) {
   // Up to a dozen obstacles of a saturated array overlap a soft disk at once.
   const double largest = std::sqrt(max_total_omega_dt2 / 12) / omega;
   require(*run.time_step <= largest, "time-step", *run.time_step, [&] {
-    return "contact has omega*dt = " + text(omega * *run.time_step) + ") try " + text(0.99 * largest);
+    return "contact has omega*dt = " + rounded_text(omega * *run.time_step) + ") try " + rounded_text(0.99 * largest);
   });
 }
 
@@ -273,7 +170,7 @@ double automatic_perimeter_stiffness(const RunParameters& run) {
 }
 
 double expected_pressure(const RunParameters& run) {
-  const double bend = run.obstacles.smallest_diameter() / 2 + run.dp.contact_range.value();
+  const double bend = scene_of(run).sharpest_bend(run) / 2 + run.dp.contact_range.value();
   return run.dp.line_tension * (2 / units::droplet_diameter + 1 / bend) +
          units::gravity * units::droplet_diameter;
 }
@@ -301,13 +198,13 @@ double automatic_time_step(const RunParameters& run) {
 
 RunParameters resolve(RunParameters run) {
   check_each(run);
-  // First, as automatic values follow from the obstacles.
-  validate_obstacles(run.obstacles, run.dp.vertices, run.model);
+  const Scene& scene = scene_of(run);
+  scene.check(run);
   if (run.model == Model::dp)
     resolve_dp(run);
   else
     resolve_sp(run);
-  resolve_layout(run.obstacles);
+  scene.resolve(run);
   return run;
 }
 

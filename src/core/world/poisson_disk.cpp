@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "clog/core/tools/error.hpp"
-#include "clog/core/world/lattice.hpp"
 #include "clog/core/world/obstacle_array.hpp"
 #include "core/tools/portable_exponential.hpp"
 #include "core/tools/vector_targets.hpp"
@@ -443,7 +442,6 @@ namespace clog {
 HWY_EXPORT(add_circles);
 
 ObstacleArray sample_obstacles(const ObstacleParameters& parameters, std::uint32_t seed) {
-  if (parameters.layout == ObstacleLayout::lattice) return lattice_obstacles(parameters, seed);
   std::size_t target = SIZE_MAX;
   if (parameters.density)
     target = static_cast<std::size_t>(std::llround(*parameters.density * parameters.period().area()));

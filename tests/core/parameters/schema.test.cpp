@@ -23,7 +23,8 @@ class EveryParameter : public testing::TestWithParam<Parameter> {};
 /// A run to which the parameter means something.
 RunParameters run_with(const Parameter& parameter) {
   RunParameters run;
-  if (!parameter.applies_to(run)) run.obstacles.layout = ObstacleLayout::lattice;
+  for (const auto& [layout, word] : Words<ObstacleLayout>::all)
+    if (!parameter.applies_to(run)) run.obstacles.layout = layout;
   return run;
 }
 
@@ -42,6 +43,8 @@ TEST_P(EveryParameter, IsDescribed) {
   EXPECT_TRUE(parameter.applies_to(run_with(parameter)));
   if (parameter.kind == ValueKind::word) {
     EXPECT_GE(parameter.words.size(), 2u);
+  } else if (parameter.kind == ValueKind::file) {
+    EXPECT_EQ(parameter.words, std::vector<std::string>{"none"});
   } else if (parameter.role != ParameterRole::ensemble) {
     EXPECT_GT(std::strlen(parameter.symbol), 0u);
     EXPECT_NE(text_of(parameter.range), "");
@@ -58,6 +61,7 @@ TEST_P(EveryParameter, GivesBackWhatIsSet) {
   if (auto* number = std::get_if<double>(&other)) *number += 0.25;
   if (auto* integer = std::get_if<std::int64_t>(&other)) *integer += 1;
   if (std::holds_alternative<std::monostate>(other)) other = 0.25;
+  if (parameter.kind == ValueKind::file) other = OwnCircles({{1, 2, 3}}).check_sum();
   if (parameter.kind == ValueKind::word)
     other = *std::ranges::find_if(parameter.words,
                                   [&](const auto& word) { return ParameterValue(word) != value; });
@@ -70,7 +74,7 @@ TEST_P(EveryParameter, GivesBackWhatIsSet) {
 
 TEST_P(EveryParameter, IsRefusedBeyondItsRange) {
   const Parameter& parameter = GetParam();
-  if (parameter.kind == ValueKind::word) {
+  if (parameter.kind == ValueKind::word || parameter.kind == ValueKind::file) {
     RunParameters run;
     EXPECT_THROW(parameter.set(run, "no such word"), Error);
     return;
@@ -114,6 +118,8 @@ TEST_P(EveryParameter, MayNotBeGivenWhereItMeansNothing) {
     parameter.set(run, parameter.words.back() == std::get<std::string>(parameter.get(run))
                            ? parameter.words.front()
                            : parameter.words.back());
+  else if (parameter.kind == ValueKind::file)
+    parameter.set(run, OwnCircles({{1, 2, 3}}).check_sum());
   else if (parameter.kind == ValueKind::integer)
     parameter.set(run, std::get<std::int64_t>(parameter.get(run)) + 1);
   else

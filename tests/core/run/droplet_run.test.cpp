@@ -1,4 +1,4 @@
-#include "clog/core/run/systems.hpp"
+#include "clog/core/run/droplet_run.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ RunParameters small_run(double line_tension = 1, int vertices = 64) {
 }
 
 RunResult result_of(const RunParameters& parameters, int checks_at_a_time) {
-  DropletRun run = run_in_array(parameters);
+  DropletRun run(parameters);
   while (!run.advance(checks_at_a_time)) {
   }
   return run.result();
@@ -68,7 +68,7 @@ DropletRun resume_in_array(const RunParameters& run, std::span<const std::byte> 
 TEST(DropletRun, GoesOnFromEverySnapshotBitForBit) {
   for (const Model model : {Model::dp, Model::sp}) {
     const RunParameters run = long_run(model);
-    DropletRun whole = run_in_array(run);
+    DropletRun whole(run);
     EXPECT_TRUE(whole.snapshot().empty());
     std::vector<std::vector<std::byte>> snapshots;
     while (!whole.advance(1))
@@ -90,7 +90,7 @@ TEST(DropletRun, GoesOnFromEverySnapshotBitForBit) {
 
 TEST(DropletRun, RefusesASnapshotThatIsTornOrOfAnotherRun) {
   const RunParameters run = long_run(Model::sp);
-  DropletRun whole = run_in_array(run);
+  DropletRun whole(run);
   while (whole.snapshot().empty()) ASSERT_FALSE(whole.advance(100));
   std::vector<std::byte> bytes = whole.snapshot();
   EXPECT_THROW(resume_in_array(long_run(Model::dp), bytes), Error);
@@ -124,7 +124,7 @@ TEST(DropletRun, AStiffDropletInNarrowGapsClogsAndStaysWhereItIs) {
   RunParameters parameters = small_run(2);
   parameters.max_time = 5000;
   parameters.clog_detection = ClogDetection::threshold;
-  DropletRun run = run_in_array(parameters);
+  DropletRun run(parameters);
   while (!run.advance(1000)) {
   }
   ASSERT_EQ(run.result().status, RunStatus::clogged);
@@ -144,7 +144,7 @@ TEST(DropletRun, AStiffDropletInNarrowGapsClogsAndStaysWhereItIs) {
 
 TEST(DropletRun, KeepsItsContactsShallowAndItsAreaOnTheWay) {
   for (const double line_tension : {0.2, 1.0, 10.0}) {
-    DropletRun run = run_in_array(small_run(line_tension, 256));
+    DropletRun run(small_run(line_tension, 256));
     while (!run.advance(50)) {
       const PolygonShape shape = run.droplet().shape();
       EXPECT_NEAR(shape.area, 0.7854, 0.02);
@@ -179,7 +179,7 @@ TEST(DropletRun, ADropletThatHasNotFallenYetIsNotClogged) {
   parameters.obstacles.gap = 1.2;
   parameters.drag.terminal_speed = 10;
   parameters.clog_energy = 5e-4;  // it is slower than this at its first checks
-  DropletRun run = run_in_array(parameters);
+  DropletRun run(parameters);
   run.advance(5);
   EXPECT_EQ(run.result().status, RunStatus::running);
 }

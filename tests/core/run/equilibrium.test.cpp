@@ -1,5 +1,7 @@
 #include "clog/core/run/equilibrium.hpp"
 
+#include "clog/core/scene/release.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
+#include "clog/core/run/droplet_run.hpp"
 #include "clog/core/run/resolve.hpp"
-#include "clog/core/run/systems.hpp"
 #include "support.hpp"
 
 namespace clog {
@@ -140,7 +142,7 @@ TEST_P(Certified, ADropletOnAFlatWallCouldDriftAside) {
   RunParameters run = parameters();
   run.clog_energy = 1e-10;
   run.clog_detection = ClogDetection::certified;
-  const RunResult result = finished(run_onto_wall(resolve(run)));
+  const RunResult result = finished(DropletRun(test::onto_wall(run)));
   EXPECT_EQ(result.status, RunStatus::clogged);
   EXPECT_EQ(result.clogged_by, ClogDetection::threshold);
 }
@@ -194,7 +196,7 @@ DropletRun through_orifice(double line_tension, ClogDetection detection) {
   RunParameters run = robust(line_tension);
   run.clog_detection = detection;
   run.time_step = 1e-3;
-  return run_in_channel(resolve(run), {.orifice = 0.7, .tip_radius = 0.1, .start = -0.8, .end = 0.6});
+  return DropletRun(test::in_channel(run, {.orifice = 0.7, .tip_radius = 0.1, .start = -0.8, .end = 0.6}));
 }
 
 TEST(Equilibrium, IsNotSeenByADropletThatCreepsThroughAnOrifice) {

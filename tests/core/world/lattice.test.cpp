@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "clog/core/run/resolve.hpp"
-#include "clog/core/run/systems.hpp"
+#include "clog/core/run/droplet_run.hpp"
 
 namespace clog {
 namespace {
@@ -112,7 +112,7 @@ TEST(Lattice, StartsAFreeDropletAtTheCentreOfTheBox) {
     run.wall_stiffness = model == Model::sp ? run.wall_stiffness : std::nullopt;
     run.time_step = 1e-3;
     run = resolve(run);
-    const DropletRun started = run_in_array(run);
+    const DropletRun started(run);
     const DropletState& state = started.droplet().state();
     for (const int axis : {0, 1})
       EXPECT_NEAR(state.frame.global(state.centre())[axis], run.obstacles.box / 2, 1e-6);
@@ -125,9 +125,9 @@ TEST(Lattice, StartsAFreeDropletAtTheCentreOfTheBox) {
 // the square lattice have tilts t and spacing a, or t - 45 degrees and spacing sqrt(2) a.
 TEST(Lattice, LeadsADiskAlongItsRows) {
   for (const double angle : {-20.0, -8.0, 8.0, 20.0})
-    EXPECT_NEAR(slope(result_of(run_in_array(soft_disk(angle)))), std::tan(angle * degree), 0.02) << angle;
+    EXPECT_NEAR(slope(result_of(DropletRun(soft_disk(angle)))), std::tan(angle * degree), 0.02) << angle;
   for (const double angle : {35.0, 40.0})
-    EXPECT_NEAR(slope(result_of(run_in_array(soft_disk(angle)))), std::tan((angle - 45) * degree), 0.02)
+    EXPECT_NEAR(slope(result_of(DropletRun(soft_disk(angle)))), std::tan((angle - 45) * degree), 0.02)
         << angle;
 }
 
@@ -136,7 +136,7 @@ TEST(Lattice, LeadsADiskStraightWhenItIsSymmetric) {
     double lateral = 0;
     double distance = 0;
     for (std::uint32_t seed = 1; seed <= 6; ++seed) {
-      const RunResult result = result_of(run_in_array(soft_disk(angle, seed)));
+      const RunResult result = result_of(DropletRun(soft_disk(angle, seed)));
       EXPECT_LE(std::abs(result.lateral), 1.5) << "it stays in its lane, seed " << seed;
       lateral += result.lateral;
       distance += result.distance;
@@ -148,7 +148,7 @@ TEST(Lattice, LeadsADiskStraightWhenItIsSymmetric) {
 TEST(Lattice, LeadsADiskThatFeelsNothingStraight) {
   RunParameters run = soft_disk(11);
   run.wall_stiffness = 1e-12;
-  const RunResult result = result_of(run_in_array(run));
+  const RunResult result = result_of(DropletRun(run));
   EXPECT_GT(result.distance, 100);
   EXPECT_NEAR(result.lateral, 0, 1e-8);
 }
@@ -158,9 +158,9 @@ TEST(Lattice, LeadsToTheOtherSideInAMirror) {
   const ObstacleArray array = lattice_obstacles(run.obstacles, run.seed);
   std::vector<Obstacle> mirrored(array.obstacles().begin(), array.obstacles().end());
   for (Obstacle& obstacle : mirrored) obstacle.y = array.period().box - obstacle.y;
-  const RunResult result = result_of(run_in_array(run));
+  const RunResult result = result_of(DropletRun(run));
   const RunResult mirror =
-      result_of(run_in_array(run, std::make_shared<ObstacleArray>(array.period().box, mirrored)));
+      result_of(DropletRun(run, std::make_shared<ObstacleArray>(array.period().box, mirrored)));
   EXPECT_GT(result.lateral, 10);
   EXPECT_NEAR(mirror.lateral, -result.lateral, 1e-6);
   EXPECT_NEAR(mirror.distance, result.distance, 1e-6);

@@ -1,8 +1,7 @@
-/// Obstacle files, as for clogrun --obstacles.
-
-#include <cmath>
+/// Files of a user's own circles.
 
 #include "clog/cli/obstacle_file.hpp"
+#include "clog/core/run/resolve.hpp"
 #include "fuzz.hpp"
 #include "memory_file.hpp"
 
@@ -11,10 +10,11 @@ using namespace clog;
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const MemoryFile file({data, size});
   may_be_refused([&] {
-    const double box = 10;
-    const ObstacleArray array =
-        cli::read_obstacles(file.path(), {.period = box, .default_diameter = 0.3, .narrowest_gap = 0.02});
-    require(array.closest_pair().gap > 0);
+    RunParameters run;
+    run.obstacles.layout = ObstacleLayout::file;
+    run.obstacles.own = cli::read_circles(file.path());
+    run.obstacles.box = 10;
+    require(resolve(run).obstacles.gap > 0);
   });
   return 0;
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "clog/core/parameters/circles.hpp"
 #include "clog/core/tools/words.hpp"
 
 namespace clog {
@@ -53,6 +54,13 @@ struct Words<ObstacleLayout> {
                                                    {ObstacleLayout::file, "file"},
                                                    {ObstacleLayout::channel, "channel"},
                                                    {ObstacleLayout::wall, "wall"}};
+};
+/// Where among a user's own circles a droplet starts: in the void nearest to the centre of the array, or to a
+/// place that is drawn from the seed.
+enum class Release { centre, anywhere };
+template <>
+struct Words<Release> {
+  static constexpr Worded<Release> all[] = {{Release::centre, "centre"}, {Release::anywhere, "anywhere"}};
 };
 /// What it takes for a droplet to count as clogged: kinetic energy below a threshold, or else, long before
 /// that, proof that a stable equilibrium is at hand (equilibrium.hpp).
@@ -112,19 +120,31 @@ struct Period {
 
 /// Periodic array of circular obstacles, Cheng et al., "Geometry".
 struct ObstacleParameters {
-  double gap = 0.2;               ///< w_ob, smallest surface-to-surface distance [sigma]
-  double diameter = 0.3;          ///< sigma_ob, of a mixture the mean of the arriving ones [sigma]
-  double diameter_spread = 0;     ///< diameters are uniform in diameter (1 -+ spread)
-  std::optional<double> density;  ///< obstacles per sigma^2; empty: saturated, or given by the lattice
-  double box = 500;               ///< period L across the flow [sigma]
-  int boxes = 1;                  ///< period along the flow over that across it
+  double gap = 0.2;                    ///< w_ob, smallest surface-to-surface distance [sigma]
+  double diameter = 0.3;               ///< sigma_ob, of a mixture the mean of the arriving ones [sigma]
+  double diameter_spread = 0;          ///< diameters are uniform in diameter (1 -+ spread)
+  std::optional<double> density = {};  ///< obstacles per sigma^2; empty: saturated, or given by the lattice
+  double box = 500;                    ///< period L across the flow [sigma]
+  int boxes = 1;                       ///< period along the flow over that across it
   ObstacleLayout layout = ObstacleLayout::random;
-  double lattice_angle = 0;  ///< of the lattice's rows from +x to +y [degrees]
+  double lattice_angle = 0;            ///< of the lattice's rows from +x to +y [degrees]
+  std::optional<OwnCircles> own = {};  ///< of layout file; gap and density are then theirs
+  Release release = Release::centre;
 
   double smallest_diameter() const { return diameter * (1 - diameter_spread); }
   double largest_diameter() const { return diameter * (1 + diameter_spread); }
   Period period() const { return {box, boxes}; }
   bool operator==(const ObstacleParameters&) const = default;
+};
+
+/// Two wedges, tip to tip across the flow (Cheng et al., Fig. 1a). h is the distance of the centre of mass
+/// from the line through the tips, positive downstream.
+struct ChannelParameters {
+  double orifice = 0.7;     ///< w, distance between the tips [sigma]
+  double wedge_angle = 45;  ///< of the wedges' flanks against the flow direction [degrees]; 0: parallel walls
+  double tip_radius = 0.03;  ///< of the wedges' rounded tips [sigma]
+  double start = -10;        ///< h at release [sigma]
+  double end = 3;            ///< h at which the run is over [sigma]
 };
 
 /// Drag on a vertex: -(zeta v + (c - 1) b_inf (v - v_cm))/N_v, zeta = b_inf (1 + (b_0/b_inf)
@@ -143,6 +163,7 @@ struct RunParameters {
   DpParameters dp;
   std::optional<double> wall_stiffness;  ///< E_w [g rho sigma^3]; empty: stiffest stable value (dp only)
   ObstacleParameters obstacles;
+  ChannelParameters channel;  ///< of layout channel
   DragParameters drag;
   std::optional<double> time_step;  ///< [t0]; empty: automatic
   double max_time = 2e5;            ///< [t0]

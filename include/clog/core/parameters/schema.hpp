@@ -18,7 +18,8 @@ namespace clog {
 /// The value of a parameter. Nothing: an automatic value, or one that means nothing to the run.
 using ParameterValue = std::variant<std::monostate, double, std::int64_t, std::string>;
 
-enum class ValueKind { number, integer, word };
+/// `file`: the key has the name of a file, the parameter what stands in it.
+enum class ValueKind { number, integer, word, file };
 
 /// What a parameter is there for.
 enum class ParameterRole {

@@ -12,6 +12,7 @@
 #include "clog/core/parameters/parameters.hpp"
 #include "clog/core/polygon/clog_geometry.hpp"
 #include "clog/core/run/displacement_record.hpp"
+#include "clog/core/run/passage.hpp"
 #include "clog/core/world/obstacle_array.hpp"
 
 namespace clog {
@@ -31,6 +32,13 @@ inline constexpr double diverged_energy_ratio = 1e8;
 /// Relative error of the area, likewise: compressibility and line tension keep a droplet far within it.
 inline constexpr double diverged_area_error = 0.5;
 
+/// How far a droplet on a flat wall has sunk since it touched it, under no weight then [sigma]; NaN
+/// elsewhere.
+struct Sag {
+  double centre = std::numeric_limits<double>::quiet_NaN();  ///< delta_s, of the area's centroid
+  double top = std::numeric_limits<double>::quiet_NaN();
+};
+
 /// What one run found out.
 struct RunResult {
   RunStatus status = RunStatus::running;
@@ -43,12 +51,13 @@ struct RunResult {
   double shape_parameter = 0;       ///< A at the end, certified: at rest
   ClogMechanism mechanism = ClogMechanism::none;  ///< what holds it; a soft disk is always squeezed
   ClogGeometry geometry;                          ///< of a clogged polygon, certified: at rest
+  Passage passage;                                ///< through a channel; NaN elsewhere
+  Sag sag;                                        ///< certified: at rest
   std::int64_t steps = 0;                         ///< integrated steps, sub-steps counted singly
   std::string message;                            ///< why it failed
 };
 
-/// One droplet followed from its release until it clogs, passes the end of its way, or its time is up. Where
-/// it runs (an array, a channel, onto a wall) is made in systems.hpp.
+/// One droplet followed from its release until it clogs, passes the end of its way, or its time is up.
 ///
 /// The droplet counts as clogged when E_k/E_t (E_t: kinetic energy at terminal speed) has been below
 /// clog-energy at two checks in a row, not before it had ten relaxation times V_t/g to fall. With
@@ -60,20 +69,22 @@ class DropletRun {
   static constexpr int steps_per_check = 64;
   /// A snapshot is taken once in so many steps; a quarter of a second apart for 256 vertices.
   static constexpr std::int64_t steps_per_snapshot = 4096 * steps_per_check;
-  static constexpr double no_end = std::numeric_limits<double>::infinity();
 
-  /// @param run       resolved parameters
+  /// Released where its scene says. @param run  resolved parameters, here and below
+  explicit DropletRun(const RunParameters& run);
+  /// The same between walls that are at hand.
+  DropletRun(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles);
   /// @param initial   the droplet at its release
-  /// @param end       displacement along the flow at which the run is over, status `passed` [sigma]
+  /// @param way       displacement along the flow at which the run is over, status `passed` [sigma]
   DropletRun(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles, DropletState initial,
-             double end = no_end);
+             double way = std::numeric_limits<double>::infinity());
 
   /// A run restored from a snapshot() goes on bit for bit like the one that it was taken of, since that one,
   /// too, starts afresh there: contact lists are made anew.
-  /// @param run, obstacles, end  as in that one
+  /// @param run, obstacles  as in that one
   /// @throws Error if the bytes are no snapshot of such a run
   static DropletRun resume(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
-                           std::span<const std::byte> snapshot, double end = no_end);
+                           std::span<const std::byte> snapshot);
   /// The last one; empty before the first.
   const std::vector<std::byte>& snapshot() const { return snapshot_; }
 
@@ -115,9 +126,13 @@ class DropletRun {
   std::unique_ptr<Droplet> at_rest_;  // of a certified clog
   std::string message_;
   DisplacementRecord record_;
+  Passage passage_;  // through a channel
   std::vector<std::byte> snapshot_;
 
+  bool is_in_channel() const { return run_.obstacles.layout == ObstacleLayout::channel; }
+  bool has_fallen() const { return time() > first_quiet_time_; }
   void check();
+  Sag sag(const DropletState& state) const;
   void take_snapshot();
   bool is_quiet(double energy_ratio);
   bool finds_rest(double energy_ratio);

@@ -10,15 +10,6 @@
 
 namespace clog {
 
-/// Circular obstacle: centre and radius [sigma].
-struct Obstacle {
-  double x = 0;
-  double y = 0;
-  double radius = 0;
-
-  bool operator==(const Obstacle&) const = default;
-};
-
 /// Circles sorted into the square cells of a grid, row by row.
 struct BinnedObstacles {
   Period period;
@@ -83,8 +74,7 @@ class ObstacleArray {
   void visit_window(const Window& window, Visit visit) const;
 };
 
-/// The array that the parameters describe: a lattice (lattice.hpp) or a Poisson-disk sample by random
-/// sequential addition. There, discs arrive one by one, with a diameter uniform in diameter (1 -+ spread) at
+/// A Poisson-disk sample by random sequential addition. Discs arrive one by one, with a diameter uniform in diameter (1 -+ spread) at
 /// a uniform place (periodic), and stay if all earlier surfaces are at least `gap` away: in a dense mixture
 /// small ones are more frequent than among the arriving ones. With a density, stops at round(density * area)
 /// obstacles; without, goes on until not even one of the smallest fits ("saturated", the jamming limit: discs

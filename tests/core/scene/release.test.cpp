@@ -1,5 +1,5 @@
-#include "clog/core/run/release.hpp"
-#include "clog/core/run/fire.hpp"
+#include "clog/core/scene/release.hpp"
+#include "clog/core/scene/fire.hpp"
 
 #include <gtest/gtest.h>
 

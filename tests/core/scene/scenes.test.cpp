@@ -1,4 +1,5 @@
-#include "clog/core/run/systems.hpp"
+#include "clog/core/run/droplet_run.hpp"
+#include "clog/core/scene/release.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +12,7 @@
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/units.hpp"
+#include "support.hpp"
 
 namespace clog {
 namespace {
@@ -27,7 +29,7 @@ RunParameters parameters(double line_tension, int vertices = 256) {
 }
 
 DropletRun at_rest_on_a_wall(const RunParameters& run) {
-  DropletRun droplet = run_onto_wall(resolve(run));
+  DropletRun droplet(test::onto_wall(run));
   while (!droplet.advance(100)) {
   }
   EXPECT_EQ(droplet.result().status, RunStatus::clogged);
@@ -151,7 +153,7 @@ TEST(OnAWall, VerticesStayEvenlySpreadWhereThoseOfTheLiteralModelSlideDown) {
   RunParameters run = parameters(1.0);
   run.max_time = 60;
   const auto ratio_after = [](const RunParameters& parameters) {
-    DropletRun droplet = run_onto_wall(resolve(parameters));
+    DropletRun droplet(test::onto_wall(parameters));
     while (!droplet.advance(100)) {
     }
     return edge_ratio(droplet.droplet().state());
@@ -219,8 +221,8 @@ constexpr double tip_radius = 0.03;
 
 double largest_shape_parameter(RunParameters run, double orifice) {
   run.drag.terminal_speed = 0.02;
-  DropletRun droplet =
-      run_in_channel(resolve(run), {.orifice = orifice, .tip_radius = tip_radius, .start = -0.8, .end = 0.6});
+  DropletRun droplet(
+      test::in_channel(run, {.orifice = orifice, .tip_radius = tip_radius, .start = -0.8, .end = 0.6}));
   double largest = 0;
   while (!droplet.advance(1)) largest = std::max(largest, droplet.droplet().shape().shape_parameter());
   EXPECT_EQ(droplet.result().status, RunStatus::passed);
@@ -298,7 +300,7 @@ TEST(InAChannel, ADropletPassesUpToTheLineTensionThatStaticsAllows) {
     RunParameters run = parameters(part * limit);
     run.drag.terminal_speed = 0.1;
     run.max_time = 150;
-    DropletRun droplet = run_in_channel(resolve(run), {.orifice = 0.7, .start = -0.8, .end = 0.6});
+    DropletRun droplet(test::in_channel(run, {.orifice = 0.7, .start = -0.8, .end = 0.6}));
     while (!droplet.advance(100)) {
     }
     EXPECT_EQ(droplet.result().status == RunStatus::passed, part < 1) << part;
@@ -315,8 +317,8 @@ TEST(InAChannel, ParallelWallsSlowACircleByTheMeanDragOfItsVertices) {
   run.dp.gravity = Gravity::vertex;
   run.dp.perimeter_stiffness = 1;
   for (const double distance : {0.1, 1.0}) {
-    DropletRun droplet =
-        run_in_channel(resolve(run), {.orifice = 1 + 2 * distance, .wedge_angle = 0, .start = 0, .end = 0.6});
+    DropletRun droplet(
+        test::in_channel(run, {.orifice = 1 + 2 * distance, .wedge_angle = 0, .start = 0, .end = 0.6}));
     while (!droplet.advance(100)) {
     }
     double mean = 0;
@@ -330,13 +332,13 @@ TEST(InAChannel, ParallelWallsSlowACircleByTheMeanDragOfItsVertices) {
 }
 
 TEST(InAChannel, RefusesWhatCannotBe) {
-  const RunParameters run = resolve(parameters(1));
+  const RunParameters run = parameters(1);
   for (const ChannelParameters& channel :
        {ChannelParameters{.orifice = 0.02}, ChannelParameters{.orifice = std::nan("")},
         ChannelParameters{.orifice = 0.99, .wedge_angle = 0}, ChannelParameters{.wedge_angle = 3},
         ChannelParameters{.tip_radius = -1}, ChannelParameters{.start = -0.2}, ChannelParameters{.start = 1},
         ChannelParameters{.end = -11}})
-    EXPECT_THROW(run_in_channel(run, channel), Error);
+    EXPECT_THROW(test::in_channel(run, channel), Error);
 }
 
 TEST(FreeDroplet, IsInEquilibrium) {

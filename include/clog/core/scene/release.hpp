@@ -15,6 +15,13 @@ namespace clog {
 /// @throws Error if there is no room for a droplet near the centre, or it does not relax
 DropletState release_droplet(const RunParameters& run, const ObstacleArray& obstacles);
 
+/// The droplet without walls and weight, around the origin: the regular polygon in which area pressure
+/// balances line tension and springs, a little smaller than a_0 (for sp, the point).
+Eigen::ArrayXd free_droplet(const RunParameters& run);
+
+/// Distance from a free droplet's centre at which a wall begins to push it [sigma].
+double reach(const RunParameters& run, const Eigen::ArrayXd& droplet);
+
 /// Distance from a point of the box to the nearest obstacle surface, at most `limit` [sigma].
 double clearance(const ObstacleArray& obstacles, double x, double y, double limit);
 

@@ -1,16 +1,17 @@
-#include "clog/core/run/release.hpp"
+#include "clog/core/scene/release.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "clog/core/disk/sp_droplet.hpp"
 #include "clog/core/droplet/shape.hpp"
 #include "clog/core/polygon/dp_forces.hpp"
 #include "clog/core/polygon/stability.hpp"
-#include "clog/core/run/fire.hpp"
+#include "clog/core/scene/fire.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/portable_math.hpp"
 #include "clog/core/tools/units.hpp"
@@ -62,7 +63,12 @@ FireOptions fire_options(const RunParameters& run, double perimeter) {
           .max_move = 0.05 * units::regular_edge_length(run.dp.vertices)};
 }
 
-DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles) {
+/// A small circle in the nearest void, at rest, and its area.
+struct Seed {
+  DropletState state;
+  double area;
+};
+Seed seed_polygon(const RunParameters& run, const ObstacleArray& obstacles) {
   const int n = run.dp.vertices;
   const Eigen::Array2d place = nearest_void(obstacles);
   // A hundredth less, so that nothing touches.
@@ -71,46 +77,60 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
   if (room < smallest_radius)
     refuse_release("no void near the centre of the box",
                    "a wider obstacle-gap or a smaller self-contact-range");
-
-  double area = units::rest_area * std::min(1.0, room * room / (radius * radius));
+  const double area = units::rest_area * std::min(1.0, room * room / (radius * radius));
   DropletState state;
   state.frame = frame_around(place, obstacles.period());
   state.position = regular_polygon(n, area);
   state.velocity = Eigen::ArrayXd::Zero(2 * n);
   state.x() += place[0] - state.frame.origin[0];
   state.y() += place[1] - state.frame.origin[1];
+  return {std::move(state), area};
+}
 
-  // The droplet grows with every contact, and its vertices are kept evenly spread, whatever its own interface
-  // is: vertices that run together make the interface too stiff for any step, and obstacles slip between
-  // those that are far apart. Springs along the interface have no energy, so they must be gentle for the
-  // minimiser; under a large tension they must not be, since contact then pulls vertices together at the
-  // corners of a squeezed droplet.
-  RunParameters growing = run;
-  growing.dp.perimeter_spring = PerimeterSpring::along;
-  growing.dp.perimeter_stiffness = 0.01 + 0.03 * run.dp.line_tension;
-  growing.dp.wall_contact = WallContact::edge;
-  growing.dp.self_contact = SelfContact::on;
-  growing.dp.gravity = Gravity::vertex;  // without weight: the springs need no reaction on the area yet
-  DpForces forces(growing, obstacles);
+/// The droplet grows with every contact, and its vertices are kept evenly spread, whatever its own interface
+/// is: vertices that run together make the interface too stiff for any step, and obstacles slip between those
+/// that are far apart. Springs along the interface have no energy, so they must be gentle for the minimiser;
+/// under a large tension they must not be, since contact then pulls vertices together at the corners of a
+/// squeezed droplet.
+RunParameters with_growing_interface(RunParameters run) {
+  run.dp.perimeter_spring = PerimeterSpring::along;
+  run.dp.perimeter_stiffness = 0.01 + 0.03 * run.dp.line_tension;
+  run.dp.wall_contact = WallContact::edge;
+  run.dp.self_contact = SelfContact::on;
+  run.dp.gravity = Gravity::vertex;  // without weight: the springs need no reaction on the area yet
+  return run;
+}
+
+double vertex_weight(const RunParameters& run) {
+  return units::droplet_mass * units::gravity / run.dp.vertices;
+}
+
+DpForces weightless_forces(const RunParameters& run, const ObstacleArray& obstacles) {
+  DpForces forces(run, obstacles);
   forces.set_weight(0);
-  const double vertex_weight = units::droplet_mass * units::gravity / n;
+  return forces;
+}
+
+/// In stages, to its full area.
+/// @param area  that it has
+void grow(const RunParameters& growing, double area, DpForces& forces, DropletState& state) {
   constexpr double growth = 1.02;  // of the area, per stage
   while (area < units::rest_area) {
     area = std::min(units::rest_area, area * growth);
     forces.set_rest_area(area);
     FireOptions stage = fire_options(growing, polygon_shape(state.position).perimeter);
-    stage.force_tolerance = vertex_weight;
+    stage.force_tolerance = vertex_weight(growing);
     stage.max_iterations = 400;
     minimize_fire(forces, state, stage);
     if (state.recentre().any()) forces.forget_contacts();
   }
+}
 
-  FireOptions options = fire_options(growing, polygon_shape(state.position).perimeter);
-  options.force_tolerance = release_force_tolerance * vertex_weight;
-  options.max_iterations = 100000;
-  FireOptions longer = options;
-  longer.max_iterations = 500000;
-  constexpr double damping_rate = 3;  // near that of the softest modes [1/t0]
+constexpr double damping_rate = 3;  // near that of the softest modes [1/t0]
+
+/// Returns whether it does.
+bool comes_to_rest(RunParameters& growing, const ObstacleArray& obstacles, DpForces& forces,
+                   const FireOptions& options, const FireOptions& longer, DropletState& state) {
   bool rests = minimize_fire(forces, state, options).converged ||
                settle(forces, state, longer, damping_rate).converged;
   // As the springs along the interface have no energy, what is left of its sliding may go round a small cycle
@@ -119,21 +139,34 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
   constexpr int most_weakenings = 4;
   for (int i = 0; i < most_weakenings && !rests; ++i) {
     *growing.dp.perimeter_stiffness *= weaker;
-    DpForces weaker_forces(growing, obstacles);
-    weaker_forces.set_weight(0);
+    DpForces weaker_forces = weightless_forces(growing, obstacles);
     rests = settle(weaker_forces, state, longer, damping_rate).converged;
   }
+  return rests;
+}
+
+DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles) {
+  auto [state, area] = seed_polygon(run, obstacles);
+  RunParameters growing = with_growing_interface(run);
+  DpForces forces = weightless_forces(growing, obstacles);
+  grow(growing, area, forces, state);
+
+  FireOptions options = fire_options(growing, polygon_shape(state.position).perimeter);
+  options.force_tolerance = release_force_tolerance * vertex_weight(run);
+  options.max_iterations = 100000;
+  FireOptions longer = options;
+  longer.max_iterations = 500000;
+  bool rests = comes_to_rest(growing, obstacles, forces, options, longer, state);
   // Then with its own interface; only springs with a tension of their own begin to act with the run.
   RunParameters own = run;
   if (own.dp.perimeter_spring != PerimeterSpring::along) {
     own.dp.perimeter_spring = growing.dp.perimeter_spring;
     own.dp.perimeter_stiffness = growing.dp.perimeter_stiffness;
   }
-  DpForces own_forces(own, obstacles);
-  own_forces.set_weight(0);
+  DpForces own_forces = weightless_forces(own, obstacles);
   if (rests)
     rests = settle(own_forces, state, longer, damping_rate).largest_force <=
-            release_sliding_tolerance * vertex_weight;
+            release_sliding_tolerance * vertex_weight(run);
   if (!rests) refuse_release("the grown droplet does not come to rest", "a larger line-tension");
   if (num_enclosed(state, obstacles) > 0)
     refuse_release("the grown droplet encloses an obstacle", "more vertices");
@@ -182,6 +215,30 @@ int num_enclosed(const DropletState& state, const ObstacleArray& obstacles) {
   return static_cast<int>(std::count_if(near.begin(), near.end(), [&](const Obstacle& obstacle) {
     return encloses(state.position, obstacle.x, obstacle.y);
   }));
+}
+
+Eigen::ArrayXd free_droplet(const RunParameters& run) {
+  if (run.model == Model::sp) return Eigen::ArrayXd::Zero(2);
+  const int n = run.dp.vertices;
+  const double spring =
+      run.dp.perimeter_spring == PerimeterSpring::rest ? run.dp.perimeter_stiffness.value() * n : 0;
+  const double rest_edge = units::regular_edge_length(n);
+  // K_a (a_0 - a) = T dP/da, T the tension of an edge; dP/da = P/(2a). The correction is small, so iterating
+  // converges at once; a droplet that is no stiffer than its tension has no such state, and keeps half of
+  // a_0.
+  double area = units::rest_area;
+  for (int i = 0; i < 50; ++i) {
+    const double edge = units::regular_edge_length(n, area);
+    const double tension = run.dp.line_tension + spring * (edge - rest_edge);
+    area = std::max(units::rest_area / 2,
+                    units::rest_area - tension * n * edge / (2 * area) / *run.dp.area_stiffness);
+  }
+  return regular_polygon(n, area);
+}
+
+double reach(const RunParameters& run, const Eigen::ArrayXd& droplet) {
+  if (run.model == Model::sp) return units::droplet_diameter / 2;
+  return droplet.head(droplet.size() / 2).maxCoeff() + run.dp.contact_range.value();
 }
 
 DropletState release_droplet(const RunParameters& run, const ObstacleArray& obstacles) {

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace clog {
+
+/// Circular obstacle: centre and radius [sigma].
+struct Obstacle {
+  double x = 0;
+  double y = 0;
+  double radius = 0;
+
+  bool operator==(const Obstacle&) const = default;
+};
+
+/// Circles of a user's own, told apart by what they are, not by the name of a file. A row of a result holds
+/// their check sum only.
+class OwnCircles {
+ public:
+  /// @param circles  a radius of 0 stands for half of obstacle-diameter
+  /// @param source   where they are from, for messages
+  explicit OwnCircles(std::vector<Obstacle> circles, std::string source = "");
+  /// Circles of which no more is known. @throws Error if it is not one that check_sum() has written
+  static OwnCircles from_check_sum(std::string_view text);
+
+  /// CRC-64/XZ of the circles' coordinates and radii, in their order: 16 hexadecimal digits.
+  std::string check_sum() const;
+  const std::string& source() const { return source_; }
+  bool are_known() const { return circles_ != nullptr; }
+  /// @throws Error if only their check sum is known
+  const std::vector<Obstacle>& circles() const;
+
+  bool operator==(const OwnCircles& other) const { return check_sum_ == other.check_sum_; }
+
+ private:
+  std::uint64_t check_sum_;
+  std::shared_ptr<const std::vector<Obstacle>> circles_;
+  std::string source_;
+
+  explicit OwnCircles(std::uint64_t check_sum) : check_sum_(check_sum) {}
+};
+
+}  // namespace clog

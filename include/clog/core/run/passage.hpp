@@ -1,0 +1,27 @@
+#pragma once
+
+#include <limits>
+
+#include "clog/core/tools/byte_archive.hpp"
+
+namespace clog {
+
+/// A value, and the place h where the droplet had it [sigma]; NaN while there is none.
+struct Extreme {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  double place = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// What is kept of a passage through a channel.
+struct Passage {
+  Extreme largest_shape_parameter;
+  Extreme largest_speed;   ///< along the flow [V_t]
+  Extreme smallest_speed;  ///< the same; not of the beginning, when the droplet falls from rest
+
+  /// @param is_falling  has it had the time to come to its speed?
+  void add(double place, double shape_parameter, double speed, bool is_falling);
+  void save(ByteWriter& bytes) const { bytes.put(*this); }
+  void restore(ByteReader& bytes) { bytes.get(*this); }
+};
+
+}  // namespace clog

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/parameters/parameters.hpp"
+#include "clog/core/world/obstacle_array.hpp"
+
+namespace clog {
+
+/// What a droplet meets, where it starts, and where its way ends. There is one scene for each ObstacleLayout:
+/// a new one is a word of that, a file beside these with a scene of its own, and a line in scene.cpp.
+struct Scene {
+  /// Refuses what cannot be, before any automatic value is known: of each parameter alone, check_each() has
+  /// looked at it. @throws Error
+  void (*check)(const RunParameters& run);
+  /// Replaces what follows from the others, and refuses what cannot be once these are known. @throws Error
+  void (*resolve)(RunParameters& run);
+  /// Of the sharpest bend that the interface is expected to take, as a diameter [sigma].
+  double (*sharpest_bend)(const RunParameters& run);
+
+  // Of resolved parameters:
+  ObstacleArray (*walls)(const RunParameters& run);
+  /// A droplet at rest. @throws Error if there is no room for it
+  DropletState (*release)(const RunParameters& run, const ObstacleArray& walls);
+  /// Displacement along the flow after which the droplet has passed [sigma]; infinite where it never has.
+  double (*way)(const RunParameters& run);
+};
+
+const Scene& scene_of(const RunParameters& run);
+
+extern const Scene random_array_scene, lattice_scene, own_circles_scene, channel_scene, wall_scene;
+
+}  // namespace clog

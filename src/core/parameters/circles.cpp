@@ -1,0 +1,53 @@
+#include "clog/core/parameters/circles.hpp"
+
+#include <boost/crc.hpp>
+#include <charconv>
+#include <cinttypes>
+#include <cstdio>
+#include <utility>
+
+#include "clog/core/tools/error.hpp"
+
+namespace clog {
+namespace {
+
+using Crc64Xz =
+    boost::crc_optimal<64, 0x42F0E1EBA9EA3693, 0xFFFFFFFFFFFFFFFF, 0xFFFFFFFFFFFFFFFF, true, true>;
+
+std::uint64_t check_sum_of(const std::vector<Obstacle>& circles) {
+  static_assert(sizeof(Obstacle) == 3 * sizeof(double));
+  Crc64Xz sum;
+  sum.process_bytes(circles.data(), circles.size() * sizeof(Obstacle));
+  return sum.checksum();
+}
+
+}  // namespace
+
+OwnCircles::OwnCircles(std::vector<Obstacle> circles, std::string source)
+    : check_sum_(check_sum_of(circles)),
+      circles_(std::make_shared<const std::vector<Obstacle>>(std::move(circles))),
+      source_(std::move(source)) {}
+
+OwnCircles OwnCircles::from_check_sum(std::string_view text) {
+  std::uint64_t sum = 0;
+  const char* end = text.data() + text.size();
+  constexpr std::size_t num_digits = 16;
+  if (text.size() != num_digits || std::from_chars(text.data(), end, sum, 16).ptr != end)
+    throw Error("is no check sum of circles");
+  return OwnCircles(sum);
+}
+
+std::string OwnCircles::check_sum() const {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016" PRIx64, check_sum_);
+  return text;
+}
+
+const std::vector<Obstacle>& OwnCircles::circles() const {
+  if (!circles_)
+    throw Error("of the obstacles " + check_sum() +
+                " only the check sum is known; give the file that they are from");
+  return *circles_;
+}
+
+}  // namespace clog

@@ -1,0 +1,91 @@
+#include "clog/core/scene/channel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "clog/core/scene/release.hpp"
+#include "clog/core/scene/scene.hpp"
+#include "clog/core/tools/portable_math.hpp"
+#include "clog/core/tools/units.hpp"
+#include "core/scene/open_box.hpp"
+#include "core/scene/refusal.hpp"
+
+namespace clog {
+
+double last_free_start(const RunParameters& run) {
+  const ChannelParameters& channel = run.channel;
+  const double droplet_reach = reach(run, free_droplet(run));
+  constexpr double everywhere = std::numeric_limits<double>::infinity();
+  if (channel.wedge_angle == 0) return everywhere;
+  const double angle = channel.wedge_angle * std::numbers::pi / 180;
+  const double last = ((channel.orifice / 2 + channel.tip_radius) * portable::cos(angle) -
+                       channel.tip_radius - droplet_reach) /
+                      portable::sin(angle);
+  return last > 0 ? everywhere : last;
+}
+
+namespace {
+
+void nothing_to_check(const RunParameters&) {}
+
+void check_clearance(RunParameters& run) {
+  const ChannelParameters& channel = run.channel;
+  const double droplet_reach = reach(run, free_droplet(run));
+  const double narrowest = run.model == Model::dp ? 2 * units::regular_edge_length(run.dp.vertices) : 0;
+  if (!(channel.orifice > narrowest))
+    refuse("orifice", channel.orifice,
+           "not wider than two vertex diameters, " + rounded_text(narrowest) + " sigma) try 0.7");
+  const bool is_parallel = channel.wedge_angle == 0;
+  if (!is_parallel && !(channel.wedge_angle >= 5))
+    refuse("wedge-angle", channel.wedge_angle,
+           "the wedges would be too slender to be met) use 5..85 degrees, or 0 for parallel walls");
+  if (is_parallel && !(channel.orifice / 2 > droplet_reach))
+    refuse("orifice", channel.orifice,
+           "parallel walls must leave the droplet free) use more than " + rounded_text(2 * droplet_reach));
+  const double last_start = last_free_start(run);
+  const bool is_free = std::isinf(last_start) ? channel.start < 100 : channel.start <= last_start;
+  if (!is_free)
+    refuse("start", channel.start,
+           "the droplet must be upstream, clear of the wedges) use at most " + rounded_text(last_start));
+  if (channel.end == ChannelParameters{}.end && channel.start >= channel.end)
+    refuse("start", channel.start,
+           "must lie upstream of the end, " + rounded_text(channel.end) + " by default) give end, too");
+  if (!(channel.end > channel.start)) refuse("end", channel.end, "must lie downstream of the start) try 3");
+}
+
+/// What the interface bends around are the tips.
+double tip_diameter(const RunParameters& run) {
+  constexpr double sharpest = 1e-3;
+  return std::max(2 * run.channel.tip_radius, sharpest);
+}
+
+ObstacleArray wedges(const RunParameters& run) {
+  const ChannelParameters& channel = run.channel;
+  const double half_angle = std::numbers::pi / 2 - channel.wedge_angle * std::numbers::pi / 180;
+  std::vector<Wedge> both;
+  for (const double side : {-1.0, 1.0})
+    both.push_back({.tip = middle_of_open_box() + Eigen::Array2d(0, side * channel.orifice / 2),
+                    .axis = {0, side},
+                    .half_angle = half_angle,
+                    .radius = channel.tip_radius});
+  return ObstacleArray(open_box, {}, std::move(both));
+}
+
+/// On the channel's axis.
+DropletState release_upstream(const RunParameters& run, const ObstacleArray&) {
+  return at_rest(free_droplet(run), middle_of_open_box() + Eigen::Array2d(run.channel.start, 0));
+}
+
+double way_to_end(const RunParameters& run) { return run.channel.end - run.channel.start; }
+
+}  // namespace
+
+const Scene channel_scene = {nothing_to_check, check_clearance,  tip_diameter,
+                             wedges,           release_upstream, way_to_end};
+
+}  // namespace clog

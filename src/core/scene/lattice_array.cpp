@@ -1,0 +1,65 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "clog/core/parameters/schema.hpp"
+#include "clog/core/scene/release.hpp"
+#include "clog/core/scene/scene.hpp"
+#include "clog/core/tools/units.hpp"
+#include "clog/core/world/lattice.hpp"
+#include "core/scene/refusal.hpp"
+#include "core/scene/sampled_arrays.hpp"
+
+namespace clog {
+namespace {
+
+/// Replaces box and angle of a lattice by those of the nearest one that is periodic.
+void find_period(RunParameters& run) {
+  ObstacleParameters& obstacles = run.obstacles;
+  const double angle = obstacles.lattice_angle;
+  if (obstacles.density)
+    refuse("obstacle-density", *obstacles.density,
+           "a lattice has one obstacle per (obstacle-gap + obstacle-diameter)^2) leave it out, or use "
+           "obstacle-layout=random");
+  require(obstacles.boxes == 1, "boxes", obstacles.boxes,
+          "a lattice repeats in each of them) leave it out, or use obstacle-layout=random");
+  require(obstacles.diameter_spread == 0, "obstacle-diameter-spread", obstacles.diameter_spread,
+          "the obstacles of a lattice are alike) leave it out, or use obstacle-layout=random");
+  const double spacing = obstacles.diameter + obstacles.gap;
+  const double narrowest = std::max(parameter("box").range.lower->value, 2 * spacing);
+  const auto is_near = [=](const std::optional<CommensurateLattice>& lattice) {
+    return lattice && std::abs(lattice->angle - angle) <= largest_angle_error;
+  };
+  auto lattice = nearest_lattice(spacing, angle, narrowest, obstacles.box);
+  if (!is_near(lattice)) {
+    double box = obstacles.box;
+    while (!is_near(lattice)) lattice = nearest_lattice(spacing, angle, narrowest, box += spacing);
+    refuse("lattice-angle", angle,
+           "no lattice of spacing " + rounded_text(spacing) + " within " + rounded_text(largest_angle_error) +
+               " degrees of it has a period of box=" + rounded_text(obstacles.box) + " or less) use box=" +
+               std::to_string(static_cast<long>(std::ceil(lattice->box))) + " or more");
+  }
+  obstacles.box = lattice->box;
+  obstacles.lattice_angle = lattice->angle;
+}
+
+double diameter(const RunParameters& run) { return run.obstacles.smallest_diameter(); }
+
+ObstacleArray lattice(const RunParameters& run) { return lattice_obstacles(run.obstacles, run.seed); }
+
+/// In a lattice all voids are alike, so where in one a droplet starts is up to the seed (lattice_obstacles):
+/// if it touches nothing at the box's centre it starts right there, as if there were no obstacles.
+DropletState release_in_lattice(const RunParameters& run, const ObstacleArray& obstacles) {
+  const double centre = obstacles.period().box / 2;
+  const bool starts_free =
+      clearance(obstacles, centre, centre, 2 * units::droplet_diameter) > reach(run, free_droplet(run));
+  return starts_free ? release_droplet(run, ObstacleArray(obstacles.period(), {}))
+                     : release_droplet(run, obstacles);
+}
+
+}  // namespace
+
+const Scene lattice_scene = {check_spacing, find_period, diameter, lattice, release_in_lattice, endless_way};
+
+}  // namespace clog

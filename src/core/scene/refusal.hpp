@@ -1,0 +1,31 @@
+#pragma once
+
+#include <concepts>
+#include <string>
+
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/number_text.hpp"
+
+namespace clog {
+
+[[noreturn]] inline void refuse(const char* key, double value, const std::string& reason_and_remedy) {
+  throw Error(std::string("invalid ") + key + '=' + shortest(value) + " (" + reason_and_remedy);
+}
+
+inline void require(bool holds, const char* key, double value, const char* reason_and_remedy) {
+  if (!holds) refuse(key, value, reason_and_remedy);
+}
+/// @param reason_and_remedy  makes the text, only where it is needed: numbers in it would take most of the
+/// time of a large sweep's plan
+template <std::invocable Words>
+void require(bool holds, const char* key, double value, const Words& reason_and_remedy) {
+  if (!holds) refuse(key, value, reason_and_remedy());
+}
+
+/// A number in a message.
+std::string rounded_text(double value, int digits = 3);
+
+/// To so many digits.
+double rounded_down(double value, int digits = 2);
+
+}  // namespace clog

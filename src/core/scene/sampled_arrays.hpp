@@ -1,0 +1,13 @@
+#pragma once
+
+#include "clog/core/parameters/parameters.hpp"
+
+namespace clog {
+
+/// What both arrays that follow from a gap and a diameter have in common. @throws Error
+void check_spacing(const RunParameters& run);
+
+/// A droplet never comes to the end of a periodic array.
+double endless_way(const RunParameters& run);
+
+}  // namespace clog

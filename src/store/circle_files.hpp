@@ -1,0 +1,21 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "clog/store/run_table.hpp"
+#include "hdf5.hpp"
+
+/// Circles of a user's own in the file of a sweep: the group /obstacles has a table x, y, radius for each, by
+/// the name of their check sum.
+namespace clog::store {
+
+/// @throws Error naming the path
+void write_circles(hid_t file, std::span<const CircleFile> circles, const std::string& path);
+
+/// Appends what is as it was written to `whole`, a sentence for each of the others to `damage`.
+void read_circles(hid_t file, std::vector<CircleFile>& whole,
+                  std::vector<std::string>& damage);
+
+}  // namespace clog::store

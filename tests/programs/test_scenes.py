@@ -1,0 +1,199 @@
+"""Sweeps of channels, flat walls and circles of one's own: the same keys as for one run, one row for each."""
+
+import json
+import unittest
+
+import h5py
+import numpy as np
+
+from support import ProgramTest, table
+
+CHANNEL = ["obstacle-layout=channel", "orifice=0.7", "near-wall-drag=0.07", "terminal-speed=0.05", "start=-1.5", "end=1", "vertices=64"]
+CIRCLES = "# posts\nx,y,diameter\n2,5,0.5\n3.2,4.4\n3.4,5.9,0.4\n5,5.1,0.6\n7,4.2,0.3\n8.5,6.4,1\n"
+OWN = ["obstacles=posts.csv", "box=10", "vertices=64", "max-time=60"]
+
+
+def read_rows(path):
+    """The table's rows, with the columns as attributes."""
+    return list(table(path).itertuples(index=False))
+
+
+class Channels(ProgramTest):
+    def test_a_row_has_what_the_run_itself_shows(self):
+        self.succeed("clogsweep", *CHANNEL, "line-tension=0.3,0.6,5", "--output", "s.h5")
+        rows = read_rows(self.folder / "s.h5")
+        self.assertEqual([row.status for row in rows], ["passed", "passed", "clogged"])
+        row = rows[1]
+        self.succeed("clogrun", "channel", *CHANNEL, "line-tension=0.6", "--sample-interval", 0.001, "--output", "r.h5")
+        with h5py.File(self.folder / "r.h5") as file:
+            samples = file["trajectory"][1:]  # the row's are those of the checks, not of the release
+        largest = np.argmax(samples["shape_parameter"])
+        self.assertEqual(row.largest_shape_parameter, samples["shape_parameter"][largest])
+        self.assertEqual(row.largest_shape_parameter_at, samples["h"][largest])
+        fastest = np.argmax(samples["speed_ratio"])
+        self.assertEqual((row.largest_relative_speed, row.largest_relative_speed_at), (samples["speed_ratio"][fastest], samples["h"][fastest]))
+        fallen = samples[samples["time"] > 10 * 0.05]
+        slowest = np.argmin(fallen["speed_ratio"])
+        self.assertEqual((row.smallest_relative_speed, row.smallest_relative_speed_at), (fallen["speed_ratio"][slowest], fallen["h"][slowest]))
+        self.assertTrue(np.isnan(row.sag))
+        # Two caps on rounded tips have 1.0952: tests/core/scene. The widest shape is in the orifice.
+        self.assertAlmostEqual(row.largest_shape_parameter, 1.0952, delta=0.01)
+        self.assertLess(abs(row.largest_shape_parameter_at), 0.05)
+
+    def test_every_key_of_the_channel_is_swept(self):
+        for key, values, column in [("orifice", "0.7,0.8", "orifice"), ("wedge-angle", "30,45", "wedge_angle"), ("tip-radius", "0.03,0.1", "tip_radius"),
+                                    ("start", "-1.5,-1.2", "start"), ("end", "0.5,1", "end")]:
+            keys = [word for word in CHANNEL if not word.startswith(f"{key}=")]
+            self.succeed("clogsweep", *keys, "line-tension=0.3", "max-time=10", f"{key}={values}", "--output", f"{key}.h5")
+            rows = read_rows(self.folder / f"{key}.h5")
+            self.assertEqual([getattr(row, column) for row in rows], [float(value) for value in values.split(",")])
+            fits = json.loads(self.succeed("clogfit", f"{key}.h5", "--format", "json").stdout)
+            self.assertEqual([group[column] for group in fits["groups"]], [float(value) for value in values.split(",")])
+
+    def test_it_is_told_as_passages_not_as_lengths(self):
+        self.succeed("clogsweep", *CHANNEL, "line-tension=0.3,5", "--output", "s.h5")
+        text = self.succeed("clogfit", "s.h5").stdout
+        self.assertIn("largest A", text)
+        self.assertNotIn("lambda", text)
+        self.assertIn("passed", text)
+        self.assertIn("largest A", self.succeed("clogsweep", "status", "s.h5").stdout)
+        group, _ = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
+        self.assertEqual(group["status"], "passed")
+        self.assertNotIn("clogging_length", group)
+        self.succeed("clogsweep", "verify", "s.h5")
+        self.succeed("clogsweep", "replay", "s.h5", 0)
+        self.succeed("clogrun", "replay", "s.h5", 1, "--output", "again.h5")
+        self.refuse("clogfit", "report", "s.h5", "--output", "r.html", words=["in a channel", "clogfit prints"])
+
+    def test_what_stops_goes_on(self):
+        keys = [*CHANNEL[:-1], "line-tension=0.3,0.6,1", "vertices=256"]
+        self.succeed("clogsweep", *keys, "--output", "whole.h5")
+        self.run_program("clogsweep", *keys, "--max-hours", 0.0001, "--output", "parts.h5")
+        self.succeed("clogsweep", *keys, "--output", "parts.h5")
+        for whole, parts in zip(read_rows(self.folder / "whole.h5"), read_rows(self.folder / "parts.h5"), strict=True):
+            self.assertEqual((whole.distance, whole.smallest_relative_speed, whole.largest_shape_parameter_at),
+                             (parts.distance, parts.smallest_relative_speed, parts.largest_shape_parameter_at))
+
+    def test_what_means_nothing_is_refused(self):
+        for words, told in [(["obstacle-gap=0.3"], ["obstacle-gap", "no array"]), (["seeds=1..5"], ["seeds=1..5", "nothing is random"]),
+                            (["obstacles=none", "box=20"], ["box", "no array"]), (["start=-0.1"], ["start", "clear of the wedges"]),
+                            (["end=-3"], ["end", "downstream"]), (["orifice=0"], ["orifice"])]:
+            names = [word.split("=")[0] for word in words]
+            keys = [word for word in CHANNEL if word.split("=")[0] not in names]
+            self.refuse("clogsweep", *keys, "line-tension=1", *words, "--output", "s.h5", words=told)
+        self.refuse("clogsweep", "orifice=0.6", "obstacle-layout=random", "--output", "s.h5", words=["orifice=0.6", "obstacle-layout=channel"])
+        self.succeed("clogsweep", "orifice=0.7", "vertices=64", "max-time=1", "--output", "s.h5")  # means a channel
+        self.assertEqual([row.obstacle_filling for row in read_rows(self.folder / "s.h5")], ["channel"])
+        self.refuse("clogrun", "channel", "obstacle-layout=wall", "--output", "r.h5", words=["obstacle-layout=channel"])
+        self.refuse("clogrun", "array", "obstacle-layout=channel", "--output", "r.h5", words=["clogrun channel"])
+
+
+class Walls(ProgramTest):
+    def test_a_sweep_has_the_sags_that_clogrun_prints(self):
+        keys = ["line-tension=0.1,1", "vertices=64"]
+        self.succeed("clogsweep", "obstacle-layout=wall", *keys, "--output", "s.h5")
+        printed = [line.split(",") for line in self.succeed("clogrun", "sag", *keys).stdout.splitlines()[1:]]
+        rows = read_rows(self.folder / "s.h5")
+        self.assertEqual([f"{row.sag:.6g}" for row in rows], [words[3] for words in printed])
+        self.assertEqual([f"{row.top_sag:.6g}" for row in rows], [words[4] for words in printed])
+        self.assertIn("at rest", self.succeed("clogfit", "s.h5").stdout)
+
+    def test_a_soft_disk_sags_as_its_spring_says(self):
+        self.succeed("clogsweep", "obstacle-layout=wall", "model=sp", "wall-stiffness=0.5,5", "--output", "s.h5")
+        for row, stiffness in zip(read_rows(self.folder / "s.h5"), [0.5, 5], strict=True):
+            self.assertAlmostEqual(row.sag, np.pi / (16 * stiffness), delta=1e-5)
+
+
+class OwnCircles(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        (self.folder / "posts.csv").write_text(CIRCLES)
+
+    def circles(self, name):
+        with h5py.File(self.folder / name) as file:
+            return {key: (table.attrs["file"].decode(), table[:]) for key, table in file["obstacles"].items()}
+
+    def test_rows_name_the_circles_and_the_file_holds_them(self):
+        self.succeed("clogsweep", *OWN, "line-tension=0.3,1", "--output", "s.h5")
+        rows = read_rows(self.folder / "s.h5")
+        (key, (name, table)), = self.circles("s.h5").items()
+        self.assertEqual({row.obstacles for row in rows}, {key})
+        self.assertEqual((name, len(table)), ("posts.csv", 6))
+        self.assertEqual(table["radius"].tolist(), [0.25, 0, 0.2, 0.3, 0.15, 0.5])  # 0: obstacle-diameter
+        self.assertEqual({row.obstacle_filling for row in rows}, {"file"})
+        self.assertEqual({row.obstacle_density for row in rows}, {0.06})
+        self.assertAlmostEqual(rows[0].obstacle_gap, np.hypot(1.2, 0.6) - 0.4)
+        # The same run as clogrun's.
+        self.succeed("clogrun", "array", *OWN, "line-tension=1", "--output", "r.h5")
+        run, = read_rows(self.folder / "r.h5")
+        self.assertEqual((run.distance, run.lateral_displacement, run.obstacles), (rows[1].distance, rows[1].lateral_displacement, key))
+
+    def test_the_table_is_enough(self):
+        self.succeed("clogsweep", *OWN, "release=anywhere", "seeds=1..3", "--output", "s.h5")
+        (self.folder / "posts.csv").unlink()
+        for command in (["verify", "s.h5"], ["status", "s.h5"], ["replay", "s.h5", 2], ["salvage", "s.h5", "--output", "copy.h5"]):
+            self.succeed("clogsweep", *command)
+        self.assertEqual(self.circles("copy.h5").keys(), self.circles("s.h5").keys())
+        self.succeed("clogrun", "replay", "s.h5", 1, "--output", "r.h5")
+        self.assertEqual(read_rows(self.folder / "r.h5")[0].distance, read_rows(self.folder / "s.h5")[1].distance)
+        self.refuse("clogsweep", *OWN, "--output", "s.h5", words=["posts.csv"])
+
+    def test_seeds_release_it_anywhere(self):
+        # No lane is free.
+        (self.folder / "dense.csv").write_text("x,y,diameter\n" + "".join(f"{3 * i % 10},{1.25 * i + 0.6},0.5\n" for i in range(8)))
+        keys = ["obstacles=dense.csv", *OWN[1:-1], "line-tension=0.1", "max-time=400", "release=anywhere"]
+        self.succeed("clogsweep", *keys, "seeds=1..4", "--output", "s.h5")
+        self.assertEqual(len({row.lateral_displacement for row in read_rows(self.folder / "s.h5")}), 4)
+        self.succeed("clogsweep", *OWN[:-1], "max-time=1", "release=anywhere", "--output", "ten.h5")
+        self.assertEqual(len(read_rows(self.folder / "ten.h5")), 10)
+        self.refuse("clogsweep", *OWN, "seeds=1..4", "--output", "t.h5", words=["seeds=1..4", "release=anywhere"])
+        self.refuse("clogsweep", "release=anywhere", "--output", "t.h5", words=["release=anywhere", "obstacles=FILE.csv"])
+
+    def test_other_circles_are_other_runs(self):
+        self.succeed("clogsweep", *OWN, "--output", "s.h5")
+        (self.folder / "posts.csv").write_text("# the same, said otherwise\n" + CIRCLES.replace("2,5,0.5", " 2.0 , 5.0 , 0.50 "))
+        self.succeed("clogsweep", *OWN, "--output", "s.h5")
+        self.assertEqual(len(read_rows(self.folder / "s.h5")), 1)
+        (self.folder / "posts.csv").write_text(CIRCLES.replace("2,5,0.5", "2,5,0.55"))
+        self.succeed("clogsweep", *OWN, "--output", "s.h5")
+        first, second = read_rows(self.folder / "s.h5")
+        self.assertNotEqual(first.obstacles, second.obstacles)
+        names = {key: name for key, (name, _) in self.circles("s.h5").items()}
+        self.assertEqual(names, {first.obstacles: "posts.csv", second.obstacles: ""})  # that of the last command first
+        self.succeed("clogsweep", "replay", "s.h5", 1)
+        self.succeed("clogsweep", "verify", "s.h5")
+
+    def test_two_arrays_are_one_sweep(self):
+        (self.folder / "few.csv").write_text("x,y,diameter\n5,7,1\n")
+        self.succeed("clogsweep", "obstacles=posts.csv,few.csv", *OWN[1:], "--output", "s.h5")
+        self.assertEqual(len({row.obstacles for row in read_rows(self.folder / "s.h5")}), 2)
+        fits = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)
+        self.assertEqual(len(fits["groups"]), 2)
+        self.assertEqual(fits["lists"], ["obstacles"])
+
+    def test_ranks_and_helpers_are_told_of_them(self):
+        keys = [*OWN, "release=anywhere", "seeds=1..6"]
+        self.succeed("clogsweep", *keys, "--output", "one.h5")
+        self.succeed("clogsweep", *keys, "--isolate=no", "--output", "bare.h5")
+        self.succeed("clogsweep", *keys, "--output", "two.h5", ranks=2)
+        places = [[(row.distance, row.lateral_displacement) for row in read_rows(self.folder / name)] for name in ("one.h5", "bare.h5", "two.h5")]
+        self.assertEqual(places[0], places[1])
+        self.assertEqual(places[0], places[2])
+
+    def test_damage_to_them_is_noticed(self):
+        self.succeed("clogsweep", *OWN, "--output", "s.h5")
+        bytes_ = bytearray((self.folder / "s.h5").read_bytes())
+        place = bytes(bytes_).index(np.array([3.4, 5.9, 0.2]).tobytes())
+        bytes_[place + 3] ^= 4
+        (self.folder / "s.h5").write_bytes(bytes_)
+        told = self.run_program("clogsweep", "verify", "s.h5")
+        self.assertEqual(told.returncode, 1)
+        self.assertIn("its obstacles", told.stdout)
+        for command in (["clogfit", "s.h5"], ["clogsweep", "status", "s.h5"], ["clogsweep", *OWN, "--output", "s.h5"]):
+            done = self.run_program(*command)
+            self.assertEqual(done.returncode, 2, done.stdout)
+            self.assertIn("damaged", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
