@@ -19,9 +19,7 @@ namespace {
 namespace po = boost::program_options;
 
 bool is_key(const std::string& name) {
-  for (const sweep::Key& key : sweep::keys())
-    if (key.name == name) return true;
-  return false;
+  return std::ranges::any_of(sweep::keys(), [&](const sweep::Key& key) { return key.name == name; });
 }
 
 /// Takes the words for which there is no other place; no name that can be typed as an option.
@@ -106,7 +104,9 @@ void CommandLine::refuse_surplus_words() const {
     if (sweep_keys_ == SweepKeys::accepted && is_key(key))
       throw Error("no place for '" + word + "'; did you mean " + key +
                   (equals < word.size() ? word.substr(equals) : "=VALUE") + "?");
-    all += (all.empty() ? "'" : ", '") + word + "'";
+    all += all.empty() ? "'" : ", '";
+    all += word;
+    all += "'";
   }
   throw Error("no place for " + all + " (" + surplus_remedy_ + "); see " + program_ + " --help");
 }
