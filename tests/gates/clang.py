@@ -11,6 +11,7 @@ import hashlib
 import json
 import os
 import pathlib
+import re
 import shlex
 import subprocess
 import sys
@@ -18,6 +19,8 @@ import sys
 import known
 
 BUILD = known.ROOT / "build/gates"
+# Before the line that a finding begins with.
+FINDING = re.compile(r"^(?=[^\s:]+:\d+:\d+: (?:warning|error):)", re.MULTILINE)
 
 
 def configure():
@@ -105,12 +108,13 @@ def main():
         for source, code, words in pool.map(lambda name: ask(name, commands[name]), sources):
             if code != 0:
                 faulty.append(source)
-            # A header's fault comes once, not with every source that includes it.
-            if words.strip() and words not in told:
-                told.add(words)
-                print(words.rstrip(), flush=True)
+            # A header's fault is told once, not with every source that includes it.
+            for finding in FINDING.split(words):
+                if finding.strip() and finding not in told:
+                    told.add(finding)
+                    print(finding.rstrip(), flush=True)
     if faulty:
-        sys.exit(f"{len(faulty)} of {len(sources)} sources: " + " ".join(faulty))
+        sys.exit(f"there is something to mend in {len(faulty)} of {len(sources)} sources: " + " ".join(faulty))
     print(f"{len(sources)} sources are clean")
 
 
