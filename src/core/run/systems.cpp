@@ -68,7 +68,8 @@ double last_free_start(const ChannelParameters& channel, double reach) {
   const double last =
       ((channel.orifice / 2 + channel.tip_radius) * portable::cos(angle) - channel.tip_radius - reach) /
       portable::sin(angle);
-  return last > 0 ? everywhere : last;
+  if (last > 0) return everywhere;
+  return last;
 }
 
 void validate(const RunParameters& run, const ChannelParameters& channel, double reach) {
