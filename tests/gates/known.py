@@ -35,9 +35,11 @@ def base():
     head = (git("rev-parse", "HEAD") or "").strip()
     for branch in ["origin/HEAD", "origin/main", "origin/master"]:
         fork = (git("merge-base", branch, "HEAD") or "").strip()
-        if fork and fork != head:
+        if fork == head:
+            break  # on the default branch itself
+        if fork:
             return fork, f"the fork from {branch}"
-    # On the default branch itself. A shallow clone may hold fewer commits, or one.
+    # A shallow clone may hold fewer commits, or one.
     for back in range(LAST_COMMITS, 0, -1):
         commit = git("rev-parse", "--verify", "--quiet", f"HEAD~{back}^{{commit}}")
         if commit:
