@@ -104,9 +104,7 @@ void CommandLine::refuse_surplus_words() const {
     if (sweep_keys_ == SweepKeys::accepted && is_key(key))
       throw Error("no place for '" + word + "'; did you mean " + key +
                   (equals < word.size() ? word.substr(equals) : "=VALUE") + "?");
-    all += all.empty() ? "'" : ", '";
-    all += word;
-    all += "'";
+    all += (all.empty() ? "'" : ", '") + word + "'";
   }
   throw Error("no place for " + all + " (" + surplus_remedy_ + "); see " + program_ + " --help");
 }
