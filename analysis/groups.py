@@ -3,7 +3,6 @@
 Names, symbols, units and defaults of the parameters are clogsweep's own; clogfit hands them on (`columns` of its JSON).
 """
 
-import math
 
 import style
 from command_line import UserError

@@ -6,8 +6,8 @@ import matplotlib
 import rounded
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-from matplotlib.lines import Line2D
+import matplotlib.pyplot as plt  # noqa: E402, with the backend chosen above
+from matplotlib.lines import Line2D  # noqa: E402
 
 # Okabe and Ito's palette, safe for colour-blind readers; a marker of its own for every curve besides.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]

@@ -1,10 +1,12 @@
 # Sourced by the scripts for batch systems.
+# shellcheck shell=bash
 
 # run_sweep PROGRAM ARGS...: runs it by mpirun. A warning of the batch system (SIGUSR1, or SIGTERM) goes on to the ranks as SIGUSR1:
 # Open MPI forwards that one and leaves them the time to write what they have. Returns the sweep's exit code, 75 when it
 # is not complete and the same command goes on; was_cancelled is 1 if SIGTERM came, which is no warning but the end.
 run_sweep() {
   local code warned=0 sweep
+  # shellcheck disable=SC2034  # the scripts that source this one read it
   was_cancelled=0
   # Set before the sweep begins, since a warning may come at any time: either $! is there, or the sweep sees `warned`.
   trap 'warned=1; kill -USR1 "${!:-}" 2>/dev/null || true' USR1

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
 # Installs what is missing of the Debian 12 packages that clogsweep needs. Does nothing when all are there.
+# With the argument `gates`: those, too, that look at its sources (tests/gates/README.md).
 set -euo pipefail
 packages=(
   g++ cmake ninja-build git                          # to build
@@ -12,6 +13,11 @@ packages=(
   procps iproute2                                    # tests that kill ranks, and join two hosts
   python3 python3-h5py python3-pandas python3-tables python3-matplotlib  # figures, and readers for the tests
 )
+case ${1:-} in
+  "") ;;
+  gates) packages+=(clang clang-format clang-tidy aspell aspell-en shellcheck flake8) ;;
+  *) echo "usage: install-dependencies.sh [gates]" >&2; exit 2 ;;
+esac
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")

@@ -1,4 +1,5 @@
 # Sourced by the scripts that call mpirun: Open MPI settings that let them run anywhere.
+# shellcheck shell=bash
 # Containers run as root, which Open MPI refuses unless told twice that it is meant.
 export OMPI_ALLOW_RUN_AS_ROOT=1
 export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1

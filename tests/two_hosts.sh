@@ -24,7 +24,9 @@ if [ "$kind" = namespaces ]; then
   hosts=10.77.0.1:$num_ranks,10.77.0.2:$num_ranks
   hostname host1
   ip link set lo up
+  # shellcheck disable=SC2034  # second is the name that coproc gives
   coproc second { exec unshare --net --uts cat; }  # until this script is gone, however it goes
+  # shellcheck disable=SC2154  # coproc sets second_PID
   until [ "$(readlink "/proc/$second_PID/ns/net")" != "$(readlink /proc/self/ns/net)" ]; do sleep 0.02; done
   ip link add cable type veth peer name cable netns "$second_PID"
   ip address add 10.77.0.1/24 dev cable

@@ -172,7 +172,8 @@ Sample tried_sample(const sweep::Plan& plan) {
 SweepCost tried_cost(const sweep::Plan& plan, const Sample& sample) {
   double all_work = 0;
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) all_work += longest_work(plan.task(group));
-  all_work *= static_cast<double>(plan.size() / plan.num_groups());
+  const std::int64_t num_seeds = plan.size() / plan.num_groups();
+  all_work *= static_cast<double>(num_seeds);
   return sweep_cost(sample.costs, all_work, plan.size());
 }
 

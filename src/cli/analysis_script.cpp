@@ -14,7 +14,7 @@
 namespace clog::cli {
 
 std::filesystem::path find_analysis_script(const std::string& name) {
-  const std::filesystem::path script = std::filesystem::path(CLOG_ANALYSIS_FOLDER) / name;
+  std::filesystem::path script = std::filesystem::path(CLOG_ANALYSIS_FOLDER) / name;
   std::error_code error;
   if (!std::filesystem::exists(script, error))
     throw Error("cannot draw without " + script.string() + ", which was there when " + own_folder().string() +
@@ -28,6 +28,7 @@ void become_script(const std::string& name, const std::filesystem::path& script,
   setenv("CLOG_CALLED_AS", name.c_str(), 1);
   arguments.insert(arguments.begin(), script.string());
   std::vector<char*> words;
+  words.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) words.push_back(argument.data());
   words.push_back(nullptr);
   execv(script.c_str(), words.data());

@@ -22,9 +22,7 @@ namespace {
 namespace po = boost::program_options;
 
 bool is_key(const std::string& name) {
-  for (const sweep::Key& key : sweep::keys())
-    if (key.name == name) return true;
-  return false;
+  return std::ranges::any_of(sweep::keys(), [&](const sweep::Key& key) { return key.name == name; });
 }
 
 /// Takes the words for which there is no other place; no name that can be typed as an option.

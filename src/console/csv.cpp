@@ -10,7 +10,7 @@ namespace clog::console {
 std::string trimmed(std::string_view text) {
   constexpr std::string_view blanks = " \t\r";
   const auto first = text.find_first_not_of(blanks);
-  if (first == text.npos) return "";
+  if (first == std::string_view::npos) return "";
   return std::string(text.substr(first, text.find_last_not_of(blanks) - first + 1));
 }
 

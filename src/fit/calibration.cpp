@@ -108,9 +108,11 @@ template <class Function>
 auto for_all(const std::vector<Place>& places, Function function) {
   using Result = std::invoke_result_t<Function&, Place>;
   std::vector<std::future<Result>> running;
+  running.reserve(places.size());
   for (const Place& place : places)
     running.push_back(std::async(std::launch::async, [&function, place] { return function(place); }));
   std::vector<Result> found;
+  found.reserve(places.size());
   for (std::future<Result>& result : running) found.push_back(result.get());
   return found;
 }

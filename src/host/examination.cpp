@@ -107,6 +107,7 @@ Finding memory(const std::string& host, const std::vector<const RankFacts*>& ran
 Finding speed(const std::vector<RankFacts>& ranks) {
   constexpr double much_slower = 1.5;
   std::vector<double> costs;
+  costs.reserve(ranks.size());
   for (const RankFacts& rank : ranks) costs.push_back(rank.nanoseconds_per_step);
   std::sort(costs.begin(), costs.end());
   const double median = costs[(costs.size() - 1) / 2];

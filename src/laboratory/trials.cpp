@@ -136,18 +136,18 @@ std::vector<fit::Calibration> calibrate(const std::vector<Trial>& trials, const 
 std::vector<std::string> warnings(const fit::Calibration& found) {
   std::vector<std::string> all;
   if (!found.is_converged)
-    all.push_back("the search did not converge: another place may have a smaller Delta_v");
-  if (found.is_at_bound) all.push_back("the best is at the end of what was searched, and may lie beyond");
+    all.emplace_back("the search did not converge: another place may have a smaller Delta_v");
+  if (found.is_at_bound) all.emplace_back("the best is at the end of what was searched, and may lie beyond");
   if (found.num_never_reached > 0)
     all.push_back("no simulated droplet comes to " + std::to_string(found.num_never_reached) +
                   " of the frames: look at --orifice, at the units and at h");
   if (std::isnan(found.line_tension_error))
-    all.push_back(
+    all.emplace_back(
         "no errors: the frames do not determine both, or the droplet clogs at a line tension beside this "
         "one");
   constexpr double good = 0.2;  // speeds that agree within a fifth
   if (found.deviation.speed > good)
-    all.push_back(
+    all.emplace_back(
         "Delta_v is large: no simulated droplet moves like this one; look at --orifice, units, vertices");
   constexpr double near = 1.1;
   if (found.clogging_tension < near * found.line_tension) {
@@ -155,7 +155,7 @@ std::vector<std::string> warnings(const fit::Calibration& found) {
     std::snprintf(text, sizeof text,
                   "close to a clog: simulated droplets of Gamma = %.4g and more do not pass",
                   found.clogging_tension);
-    all.push_back(text);
+    all.emplace_back(text);
   }
   return all;
 }

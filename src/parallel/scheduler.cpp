@@ -19,7 +19,6 @@ namespace {
 
 using sweep::Job;
 using sweep::JobFactory;
-using sweep::RunRow;
 using Clock = std::chrono::steady_clock;
 
 enum Tag : int {

@@ -57,6 +57,7 @@ std::int64_t TaskOrder::take(double now) {
       longest = expected;
     }
   }
+  assert(next);  // num_left_ counts those that wait
   const std::int64_t task = next->waiting.front();
   next->waiting.pop_front();
   --num_left_;

@@ -90,7 +90,7 @@ void refuse_same_files(const cli::CommandLine& line) {
 
 /// Name of a film, as the script wants it. @throws Error  where none could be written
 std::filesystem::path film_name(const cli::CommandLine& line) {
-  const std::filesystem::path name = line.get("frames");
+  std::filesystem::path name = line.get("frames");
   if (!line.has("polygon-interval"))
     throw Error(
         "--frames has nothing to show without --polygon-interval; give the time between frames [t0], e.g. "

@@ -60,6 +60,7 @@ int clogsweep_doctor(const parallel::Communicator& ranks, int argc, const char* 
       ranks.gather(to_text(host::find_rank_facts(ranks.rank(), seconds_of_steps)));
   if (ranks.rank() != 0) return console::exit_success;
   std::vector<RankFacts> facts;
+  facts.reserve(texts.size());
   for (const std::string& text : texts) facts.push_back(host::rank_facts_from(text));
   return cli::run_program(program, [&] { return print(host::examine(facts, line.get("output"))); });
 }

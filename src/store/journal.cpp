@@ -145,7 +145,7 @@ std::optional<Journal::Contents> Journal::look(const std::string& path) {
   return parse(bytes);
 }
 
-Journal::Journal(std::string path) : path_(require_regular(follow_links(path))) {
+Journal::Journal(const std::string& path) : path_(require_regular(follow_links(path))) {
   try {
     open_and_lock();
     remove_stale_drafts(path_, journal_mark);

@@ -49,7 +49,7 @@ void write_columns(hid_t file, const std::vector<TrajectoryColumn>& columns) {
   check(table.valid() && H5Dwrite(table, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) >= 0 &&
             H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0,
         "write", "dataset trajectory");
-  for (const TrajectoryColumn& column : columns) write_attribute(table, column.name.c_str(), column.meaning);
+  for (const TrajectoryColumn& column : columns) write_attribute(table, column.name, column.meaning);
 }
 
 void write_polygons(hid_t file, const std::vector<PolygonFrame>& frames) {

@@ -65,7 +65,7 @@ std::vector<std::string> expand_spaced(std::string_view item, ValueKind kind) {
     // Twelve digits are what a person would write for such a value, and spare the file 0.30000000000000004.
     if (i > 0 && i < count - 1) {
       char digits[32];
-      const auto end =
+      const char* const end =
           std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 12).ptr;
       value = to_number({digits, static_cast<std::size_t>(end - digits)});
     }
@@ -138,8 +138,8 @@ std::string with_decimal_point(std::string_view text) {
   if (comma == 0 || comma == std::string_view::npos || comma + 1 == text.size()) return "";
   const std::string_view whole = text.substr(0, comma);
   const std::string_view fraction = text.substr(comma + 1);
-  if (whole.find_first_not_of(digits) != whole.npos || fraction.find_first_not_of(digits) != fraction.npos)
-    return "";
+  constexpr auto none = std::string_view::npos;
+  if (whole.find_first_not_of(digits) != none || fraction.find_first_not_of(digits) != none) return "";
   return std::string(whole) + '.' + std::string(fraction);
 }
 
@@ -168,10 +168,10 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
   const auto distance = [](std::string_view a, std::string_view b) {  // Levenshtein
     std::vector<std::size_t> row(b.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < a.size(); ++i) {
+    for (const char letter : a) {
       std::size_t diagonal = row[0]++;
       for (std::size_t j = 0; j < b.size(); ++j) {
-        const std::size_t substituted = diagonal + (a[i] != b[j]);
+        const std::size_t substituted = diagonal + (letter != b[j]);
         diagonal = row[j + 1];
         row[j + 1] = std::min({row[j] + 1, row[j + 1] + 1, substituted});
       }

@@ -293,6 +293,7 @@ class Pictures(Analysis):
         groups = Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
         for group, doubts in zip(groups.members, (["below_spacing"], ["below_spacing", "not_proved_sound"])):
             self.assertEqual(style.reasons_for_open_marker(group), doubts)
+
         def open_places():
             """With the caption."""
             axes = clogging_length.draw(groups).axes[0]

@@ -252,6 +252,7 @@ class Resumed(SweepTest):
                      "--output", "s.h5")
         for task in range(4):
             self.assertIn("the same bits", self.succeed("clogsweep", "replay", "s.h5", task).stdout)
+
         def edit(rows):
             rows["distance"][2] = np.nextafter(rows["distance"][2], 1)
             rows["time"][3] = -1

@@ -68,5 +68,6 @@ class EveryKey(Analysis):
         groups = Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
         self.assertEqual([(label, len(members)) for label, members in groups.curves()], [("$c = 0.5$", 3), ("$c = 1$", 3)])
 
+
 if __name__ == "__main__":
     unittest.main()

@@ -10,7 +10,7 @@ namespace clog::host {
 /// One thing looked at: what is so, and what to do if it is not well.
 struct Finding {
   std::string what;
-  std::string remedy = "";  ///< empty if all is well
+  std::string remedy = {};  ///< empty if all is well
 };
 
 /// Would a sweep on these ranks, that writes to `output`, go well?

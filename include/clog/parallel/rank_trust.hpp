@@ -56,7 +56,7 @@ class RankTrust {
   bool has_let_go_ = false;
 
   bool is_on_hold(int rank) const;
-  bool has_many_failures(const Record& record) const { return record.held_against.size() >= most_failures; }
+  static bool has_many_failures(const Record& record) { return record.held_against.size() >= most_failures; }
   bool set_aside_if_due(Record& record);
 };
 

@@ -34,7 +34,7 @@ class Journal {
 
   /// Opens or makes the file. @throws Error if it is open elsewhere, of another version, something else, or
   /// cannot be written
-  explicit Journal(std::string path);
+  explicit Journal(const std::string& path);
   Journal(Journal&&) = delete;
   ~Journal();
 

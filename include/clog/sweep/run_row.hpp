@@ -96,7 +96,8 @@ std::string identity(const RunRow& row);
 /// there are none.
 double density_of(const ObstacleParameters& obstacles);
 /// The columns that say what was run.
-RunRow describe(const RunParameters& resolved);
+/// @param run  resolved
+RunRow describe(const RunParameters& run);
 /// Fills the columns that say what came out.
 void record(const RunResult& result, RunRow& row);
 

@@ -43,7 +43,7 @@ void SpForces::visit_wedges(const Eigen::Array2d& place, const LocalFrame& frame
   }
 }
 
-Eigen::Array2d SpForces::wedge_force(Eigen::Array2d place, const LocalFrame& frame) const {
+Eigen::Array2d SpForces::wedge_force(const Eigen::Array2d& place, const LocalFrame& frame) const {
   const double stiffness = contact_stiffness(wall_stiffness_, units::droplet_diameter);
   Eigen::Array2d force(0, 0);
   visit_wedges(place, frame, [&](double distance, const Eigen::Array2d& normal) {

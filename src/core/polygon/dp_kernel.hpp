@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "clog/core/droplet/droplet_state.hpp"
 #include "clog/core/droplet/shape.hpp"
 #include "clog/core/world/wedge.hpp"
@@ -32,7 +34,7 @@ struct CentroidGradient {
   double* yx;
   double* yy;
 };
-inline CentroidGradient centroid_gradient(int n, double* four_arrays) {
+inline CentroidGradient centroid_gradient(std::ptrdiff_t n, double* four_arrays) {
   return {four_arrays, four_arrays + n, four_arrays + 2 * n, four_arrays + 3 * n};
 }
 void measure_centroid_gradient(int n, const double* x, const double* y, EdgeArrays edges, const Sums& sums,
@@ -66,7 +68,7 @@ struct RefinedEdges {
   double *middle_push_x, *middle_push_y;
   double *end_push_x, *end_push_y;
 };
-inline RefinedEdges refined_edges(int n, double* eight_arrays) {
+inline RefinedEdges refined_edges(std::ptrdiff_t n, double* eight_arrays) {
   const auto array = [=](int k) { return eight_arrays + k * n; };
   return {array(0), array(1), array(2), array(3), array(4), array(5), array(6), array(7)};
 }

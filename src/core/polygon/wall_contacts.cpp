@@ -121,7 +121,8 @@ void WallContacts::rebuild(const DropletState& state, double skin) {
 void WallContacts::fill_slots() {
   // Out of reach, yet finite: distances to it stay ordinary numbers.
   constexpr double nowhere = 1e8;
-  slots_.setZero(3 * num_slots_ * num_points_ + edges_per_group);  // whole vectors may be read at the end
+  // Whole vectors may be read at the end.
+  slots_.setZero(Eigen::Index{3} * num_slots_ * num_points_ + edges_per_group);
   for (int s = 0; s < num_slots_; ++s)
     for (Eigen::Index i = 0; i < num_points_; ++i) {
       const bool used = s < static_cast<int>(candidates_[i].size());

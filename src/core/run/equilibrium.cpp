@@ -68,7 +68,7 @@ Axes axes_of(const RunParameters& run, const DropletState& state) {
   // the end.
   if (run.dp.perimeter_spring != PerimeterSpring::along) axes.slide.resize(0);
   return axes;
-}
+}  // NOLINT(clang-analyzer-unix.Malloc): the matrix takes its memory along
 
 MatrixXd symmetric(const MatrixXd& matrix) { return (matrix + matrix.transpose()) / 2; }
 

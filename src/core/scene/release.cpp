@@ -81,7 +81,7 @@ Seed seed_polygon(const RunParameters& run, const ObstacleArray& obstacles) {
   DropletState state;
   state.frame = frame_around(place, obstacles.period());
   state.position = regular_polygon(n, area);
-  state.velocity = Eigen::ArrayXd::Zero(2 * n);
+  state.velocity = Eigen::ArrayXd::Zero(Eigen::Index{2} * n);
   state.x() += place[0] - state.frame.origin[0];
   state.y() += place[1] - state.frame.origin[1];
   return {std::move(state), area};

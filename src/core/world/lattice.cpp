@@ -92,7 +92,7 @@ ObstacleArray lattice_obstacles(const ObstacleParameters& parameters, std::uint3
         obstacles.push_back({shift_x + static_cast<double>(x) * unit, shift_y + static_cast<double>(y) * unit,
                              parameters.diameter / 2});
     }
-  return ObstacleArray(parameters.box, std::move(obstacles));
+  return {parameters.box, std::move(obstacles)};
 }
 
 }  // namespace clog

@@ -48,7 +48,7 @@ using Integers [[gnu::vector_size(lanes * sizeof(float))]] = std::int32_t;
 /// cells: mispredicted ones would cost more than the work itself.
 struct Surroundings {
   const Point* cell;
-  int row_length;
+  std::ptrdiff_t row_length;
   float cell_size;
   float distance2;
 
@@ -147,7 +147,8 @@ class SequentialAddition {
         size_(static_cast<float>(cell_size_)),
         range_(static_cast<float>(largest_excess)),
         engine_(make_engine(seed)) {
-    const std::size_t num_cells_around = (2 * margin_ + 1) * (2 * margin_ + 1);
+    const auto width = static_cast<std::size_t>(2 * margin_ + 1);
+    const std::size_t num_cells_around = width * width;
     for (std::vector<float>* near : {&near_x_, &near_y_, &near_excess_}) near->resize(num_cells_around + 1);
   }
 
@@ -305,14 +306,15 @@ class SequentialAddition {
   void throw_darts(int num_squares, double darts_each, SquareAt square_at) {
     const double spacing = 1 / darts_each;
     arriving_.clear();
-    for (double place = spacing * exponential_(engine_); place < num_squares;
-         place += spacing * exponential_(engine_)) {
+    double place = spacing * exponential_(engine_);
+    while (place < num_squares) {
       Square dart = square_at(static_cast<int>(place));
       const std::uint64_t bits = engine_();
       dart.x += size_ * uniform(bits);
       dart.y += size_ * uniform(bits >> 24);
       if (range_ > 0) dart.excess += range_ * uniform(engine_());
       arriving_.push_back(dart);
+      place += spacing * exponential_(engine_);
     }
     auto kept = arriving_.begin();
     for (const Square dart : arriving_) {  // no branch, as above
@@ -382,7 +384,7 @@ class SequentialAddition {
   }
 
   void make_space_for_parts(std::size_t num_squares) {
-    parts_.resize(std::max(parts_.size(), 4 * num_layers_ * num_squares));
+    parts_.resize(std::max(parts_.size(), 4 * num_squares * num_layers_));
     num_parts_ = 0;
   }
 
@@ -456,7 +458,7 @@ ObstacleArray sample_obstacles(const ObstacleParameters& parameters, std::uint32
             << ") use a lower density, a smaller gap, or obstacle-density=saturated";
     throw Error(message.str());
   }
-  return ObstacleArray(parameters.period(), std::move(obstacles));
+  return {parameters.period(), std::move(obstacles)};
 }
 
 }  // namespace clog

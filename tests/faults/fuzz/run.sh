@@ -6,7 +6,10 @@ cd "$(dirname "$0")/../../.."
 seconds=${1:?usage: run.sh SECONDS [TARGET...]}
 shift
 seeds=tests/faults/fuzz/corpus
-if [ $# -eq 0 ]; then set -- $(ls "$seeds"); fi
+if [ $# -eq 0 ]; then
+  set -- "$seeds"/*
+  set -- "${@##*/}"
+fi
 
 code=0
 for target in "$@"; do

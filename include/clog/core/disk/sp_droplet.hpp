@@ -36,7 +36,7 @@ class SpForces {
   Eigen::Array2d reference_{0, 0};
   std::vector<Obstacle> near_;
 
-  Eigen::Array2d wedge_force(Eigen::Array2d place, const LocalFrame& frame) const;
+  Eigen::Array2d wedge_force(const Eigen::Array2d& place, const LocalFrame& frame) const;
   /// Calls visit(distance, normal) for every wedge.
   template <class Visit>
   void visit_wedges(const Eigen::Array2d& place, const LocalFrame& frame, Visit visit) const;

@@ -99,7 +99,7 @@ struct DropletState {
   Eigen::Array2d recentre() {
     const Eigen::Array2d centre_now = centre();
     if ((centre_now.abs() <= 1).all()) return {0, 0};
-    const Eigen::Array2d step = centre_now.round();
+    Eigen::Array2d step = centre_now.round();
     x() -= step[0];
     y() -= step[1];
     frame.shift(step);

@@ -68,7 +68,7 @@ class DropletRun {
   /// Clogging and the end of the run are looked for, and r(t) is recorded, once in so many steps.
   static constexpr int steps_per_check = 64;
   /// A snapshot is taken once in so many steps; a quarter of a second apart for 256 vertices.
-  static constexpr std::int64_t steps_per_snapshot = 4096 * steps_per_check;
+  static constexpr std::int64_t steps_per_snapshot = std::int64_t{4096} * steps_per_check;
 
   /// Released where its scene says. @param run  resolved parameters, here and below
   explicit DropletRun(const RunParameters& run);

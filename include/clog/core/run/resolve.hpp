@@ -7,7 +7,7 @@ namespace clog {
 /// Replaces every `auto` (empty optional), and box and angle of a lattice, by the value that will be used,
 /// then validates.
 /// @throws Error naming the field, its value, the reason and a remedy
-RunParameters resolve(RunParameters parameters);
+RunParameters resolve(RunParameters run);
 
 /// The published range of contact [sigma].
 double half_vertex_diameter(const DpParameters& dp);
