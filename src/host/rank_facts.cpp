@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "clog/console/build_info.hpp"
-#include "clog/core/run/resolve.hpp"
 #include "clog/core/run/droplet_run.hpp"
+#include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/instruction_set.hpp"
 #include "clog/host/limits.hpp"
 #include "clog/parallel/communicator.hpp"

@@ -85,8 +85,10 @@ void refuse_other_channel(const std::string& file, const store::Provenance& orig
                   sweep::shortest(given) + "; give " + option + "=" + sweep::shortest(stored));
   };
   compare("orifice", sweep::to_number(campaign::attribute(origin, "orifice")), simulated.channel.orifice);
-  compare("wedge-angle", sweep::to_number(campaign::attribute(origin, "wedge_angle")), simulated.channel.wedge_angle);
-  compare("tip-radius", sweep::to_number(campaign::attribute(origin, "tip_radius")), simulated.channel.tip_radius);
+  compare("wedge-angle", sweep::to_number(campaign::attribute(origin, "wedge_angle")),
+          simulated.channel.wedge_angle);
+  compare("tip-radius", sweep::to_number(campaign::attribute(origin, "tip_radius")),
+          simulated.channel.tip_radius);
   compare("terminal-speed", sweep::single_run(campaign::stored_settings(file, origin)).drag.terminal_speed,
           simulated.drag.terminal_speed);
 }

@@ -196,8 +196,7 @@ int clogfit_calibrate(int argc, const char* const* argv) {
   if (lab.tilt > 0) line.settings().set("terminal-speed", sweep::shortest(lab.reduced_terminal_speed()));
   const RunParameters usual = sweep::single_run(line.settings());
   const double terminal_speed = usual.drag.terminal_speed;
-  const std::vector<Trial> trials =
-      laboratory::read_trials(files, {lab.diameter, lab.terminal_speed}, usual);
+  const std::vector<Trial> trials = laboratory::read_trials(files, {lab.diameter, lab.terminal_speed}, usual);
 
   console::catch_stop_signals();
   const std::vector<fit::Calibration> found = laboratory::calibrate(trials, line.settings());

@@ -42,8 +42,7 @@ int clogrun_channel(cli::CommandLine& line) {
   say_what_is_coarse(parameters);
   console::catch_stop_signals();
   watched.follow();
-  store::Trajectory trajectory =
-      watched.trajectory(sweep::describe(parameters), cli::origin(line));
+  store::Trajectory trajectory = watched.trajectory(sweep::describe(parameters), cli::origin(line));
   for (const auto& [name, value] : {std::pair{"orifice", channel.orifice},
                                     {"wedge_angle", channel.wedge_angle},
                                     {"tip_radius", channel.tip_radius},

@@ -43,12 +43,13 @@ int clogrun_sag(cli::CommandLine& line) {
     const bool is_polygon = parameters.model == Model::dp;
     std::printf("%s,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%s\n", name(parameters.model),
                 is_polygon ? parameters.dp.line_tension : sweep::RunRow::not_known,
-                *parameters.wall_stiffness, result.sag.centre, result.sag.top, result.shape_parameter, result.time,
-                result.status == RunStatus::clogged ? "at_rest" : name(result.status));
+                *parameters.wall_stiffness, result.sag.centre, result.sag.top, result.shape_parameter,
+                result.time, result.status == RunStatus::clogged ? "at_rest" : name(result.status));
     console::flush_output();
     if (result.status == RunStatus::failed) throw Error(result.message);
     if (line.has("output"))
-      store::write_trajectory(line.get("output"), watched.trajectory(sweep::describe(parameters), cli::origin(line)));
+      store::write_trajectory(line.get("output"),
+                              watched.trajectory(sweep::describe(parameters), cli::origin(line)));
     if (result.status == RunStatus::interrupted) return console::exit_incomplete;
     all_at_rest &= result.status == RunStatus::clogged;
   }

@@ -39,7 +39,8 @@ void write_one(hid_t group, const CircleFile& file, const std::string& path) {
   check(table.valid() && H5Dwrite(table, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, circles.data()) >= 0,
         "write the obstacles to", path);
   write_attribute(table, "file", file.name);
-  write_attribute(table, "meaning", "centres and radii [sigma]; radius 0: half of the row's obstacle_diameter");
+  write_attribute(table, "meaning",
+                  "centres and radii [sigma]; radius 0: half of the row's obstacle_diameter");
 }
 
 /// Nothing if it is not one that write_one() has written.
@@ -84,8 +85,7 @@ void write_circles(hid_t file, std::span<const CircleFile> circles, const std::s
   for (const CircleFile& one : circles) write_one(group, one, path);
 }
 
-void read_circles(hid_t file, std::vector<CircleFile>& whole,
-                  std::vector<std::string>& damage) {
+void read_circles(hid_t file, std::vector<CircleFile>& whole, std::vector<std::string>& damage) {
   if (H5Lexists(file, group_name, H5P_DEFAULT) <= 0) return;
   const Group group(H5Gopen2(file, group_name, H5P_DEFAULT));
   if (!group.valid()) {

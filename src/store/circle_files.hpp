@@ -15,7 +15,6 @@ namespace clog::store {
 void write_circles(hid_t file, std::span<const CircleFile> circles, const std::string& path);
 
 /// Appends what is as it was written to `whole`, a sentence for each of the others to `damage`.
-void read_circles(hid_t file, std::vector<CircleFile>& whole,
-                  std::vector<std::string>& damage);
+void read_circles(hid_t file, std::vector<CircleFile>& whole, std::vector<std::string>& damage);
 
 }  // namespace clog::store

@@ -144,7 +144,8 @@ void publish_sweep(const std::string& path, std::span<const RunRow> rows, const 
 namespace {
 
 /// Columns were added in 3, those of the clog's mechanism and of the speed's error, and in 4, the ranges of
-/// contact and the near-wall drag's cutoff; checksums in 5; in 6 those of channels, walls and circles of one's own.
+/// contact and the near-wall drag's cutoff; checksums in 5; in 6 those of channels, walls and circles of
+/// one's own.
 constexpr std::array<std::string_view, 5> readable_versions = {"2", "3", "4", "5", format_version};
 
 /// Of an open file that is one of our sweeps. @throws Error if it is not
@@ -284,8 +285,8 @@ Examination examine(std::vector<std::byte>& image, Seal seal, const std::string&
   const File file = open_image(image, path);
   const std::string version = version_of(file, path);
   const bool has_sums = version == format_version || version == "5";
-  const PackedTable table = read_table(
-      file, version == format_version ? RowLayout::Columns::all : RowLayout::Columns::some, path);
+  const PackedTable table =
+      read_table(file, version == format_version ? RowLayout::Columns::all : RowLayout::Columns::some, path);
   Examination found;
   found.whole.checked = extent_of_check(has_sums, seal);
   if (has_sums) {

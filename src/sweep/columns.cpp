@@ -256,8 +256,9 @@ std::vector<Column> make_columns() {
              "times V_t/g"),
       member("smallest_relative_speed_at", &RunRow::smallest_relative_speed_at, result, "sigma",
              "h at which the droplet had it"),
-      member("sag", &RunRow::sag, result, "sigma",
-             "delta_s, how far the centroid of a droplet on a flat wall has sunk under gravity; NaN elsewhere"),
+      member(
+          "sag", &RunRow::sag, result, "sigma",
+          "delta_s, how far the centroid of a droplet on a flat wall has sunk under gravity; NaN elsewhere"),
       member("top_sag", &RunRow::top_sag, result, "sigma", "the same of its highest point"),
       member("steps", &RunRow::steps, result, "", "integrated steps, sub-steps counted singly"),
       member("wall_seconds", &RunRow::wall_seconds, circumstance, "s",

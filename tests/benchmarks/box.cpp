@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
-#include "clog/core/run/resolve.hpp"
 #include "clog/core/run/droplet_run.hpp"
+#include "clog/core/run/resolve.hpp"
 
 namespace {
 

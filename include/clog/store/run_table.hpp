@@ -26,8 +26,8 @@ void refuse_existing(const std::string& path);
 /// To be asked before hours of work. @throws Error if the path exists or no file can be made there
 void refuse_unwritable(const std::string& path);
 
-/// Circles of a user's own, and the file that they were read from; empty of ones that the sweep's last command
-/// does not name.
+/// Circles of a user's own, and the file that they were read from; empty of ones that the sweep's last
+/// command does not name.
 struct CircleFile {
   std::string name;
   OwnCircles circles;

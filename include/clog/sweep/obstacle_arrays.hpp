@@ -12,10 +12,10 @@ namespace clog::sweep {
 /// The walls of two runs are the same if their keys are: the values of all parameters that shape them.
 std::string array_key(const RunParameters& run);
 
-/// The walls of a sweep's runs, obstacle arrays mostly. The last one is kept: a sweep asks for the same one many times in a row.
-/// Large ones are shared by all processes of the same user and executable on a machine: each is built by one
-/// of them, while the others wait, and is in memory once. Where sharing fails every process waits in vain
-/// once, and builds its own; nothing else depends on it.
+/// The walls of a sweep's runs, obstacle arrays mostly. The last one is kept: a sweep asks for the same one
+/// many times in a row. Large ones are shared by all processes of the same user and executable on a machine:
+/// each is built by one of them, while the others wait, and is in memory once. Where sharing fails every
+/// process waits in vain once, and builds its own; nothing else depends on it.
 class ObstacleArrays {
  public:
   /// @param run  resolved

@@ -254,7 +254,8 @@ std::vector<Parameter> make_schema() {
             {.column = "start",
              .symbol = "h_0",
              .unit = "sigma",
-             .meaning = "h of the droplet's centre at release, from the line through the tips, negative upstream",
+             .meaning =
+                 "h of the droplet's centre at release, from the line through the tips, negative upstream",
              .scope = &channels,
              .range = {from(-100, "the way to the orifice would take most of the time", "try -10"), {}}}),
       entry("end", [](auto& run) -> auto& { return run.channel.end; },

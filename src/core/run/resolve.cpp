@@ -8,9 +8,9 @@
 
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/polygon/stability.hpp"
+#include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/units.hpp"
-#include "clog/core/scene/scene.hpp"
 #include "core/scene/refusal.hpp"
 
 namespace clog {
@@ -66,8 +66,9 @@ void choose_time_step(RunParameters& run) {
   run.time_step = automatic_time_step(run);
   if (*run.time_step >= parameter("time-step").range.lower->value) return;
   const Rate rate = fastest_rate(run);
-  refuse(rate.key, rate.value,
-         "would need a time-step of " + rounded_text(*run.time_step) + ") use a value nearer to the usual ones");
+  refuse(
+      rate.key, rate.value,
+      "would need a time-step of " + rounded_text(*run.time_step) + ") use a value nearer to the usual ones");
 }
 
 void resolve_time_step(RunParameters& run) {
@@ -78,8 +79,8 @@ void resolve_time_step(RunParameters& run) {
   require(run.max_time / time_step <= 1e15, "max-time", run.max_time,
           [&] { return "more than 1e15 steps) use at most " + rounded_text(1e15 * time_step); });
   require(time_step <= run.drag.terminal_speed, "time-step", time_step, [&] {
-    return "does not resolve the drag's relaxation time, terminal-speed=" + rounded_text(run.drag.terminal_speed) +
-           ") try " + rounded_text(0.1 * run.drag.terminal_speed);
+    return "does not resolve the drag's relaxation time, terminal-speed=" +
+           rounded_text(run.drag.terminal_speed) + ") try " + rounded_text(0.1 * run.drag.terminal_speed);
   });
 }
 
@@ -92,10 +93,12 @@ void validate_compression(const DpParameters& dp, bool automatic_area) {
     require(*dp.area_stiffness >= softest, "line-tension", dp.line_tension, [&] {
       return "would compress the droplet by more than 5 %, with the stiffest automatic "
              "area-stiffness) use at most " +
-             rounded_text(rounded_down(*dp.area_stiffness / softest_per_tension)) + ", or give area-stiffness";
+             rounded_text(rounded_down(*dp.area_stiffness / softest_per_tension)) +
+             ", or give area-stiffness";
     });
   require(*dp.area_stiffness >= softest, "area-stiffness", *dp.area_stiffness, [&] {
-    return "the line tension would compress the droplet by more than 5 %) use at least " + rounded_text(softest);
+    return "the line tension would compress the droplet by more than 5 %) use at least " +
+           rounded_text(softest);
   });
 }
 
@@ -126,8 +129,9 @@ void resolve_dp(RunParameters& run) {
   const double largest = automatic ? largest_step_with_automatic_contact(dp) : largest_stable_step(modes);
   const double stiffest_omega_dt = std::sqrt(modes.sum()) * time_step;
   require(num_substeps(modes, time_step) == 1, "time-step", time_step, [&] {
-    return "contact, area, tension and spring modes together have omega*dt = " + rounded_text(stiffest_omega_dt) +
-           ", wall-stiffness=" + rounded_text(*run.wall_stiffness) + ") try " + rounded_text(0.99 * largest);
+    return "contact, area, tension and spring modes together have omega*dt = " +
+           rounded_text(stiffest_omega_dt) + ", wall-stiffness=" + rounded_text(*run.wall_stiffness) +
+           ") try " + rounded_text(0.99 * largest);
   });
   // A contact too soft to carry the droplet lets obstacles sink into it: demand that a weight of M g on
   // the vertices of an eighth of the circumference leaves less than half the contact range.
@@ -149,7 +153,8 @@ void resolve_sp(RunParameters& run) {
   // Up to a dozen obstacles of a saturated array overlap a soft disk at once.
   const double largest = std::sqrt(max_total_omega_dt2 / 12) / omega;
   require(*run.time_step <= largest, "time-step", *run.time_step, [&] {
-    return "contact has omega*dt = " + rounded_text(omega * *run.time_step) + ") try " + rounded_text(0.99 * largest);
+    return "contact has omega*dt = " + rounded_text(omega * *run.time_step) + ") try " +
+           rounded_text(0.99 * largest);
   });
 }
 

@@ -9,8 +9,8 @@
 #include <set>
 #include <vector>
 
-#include "clog/core/run/resolve.hpp"
 #include "clog/core/run/droplet_run.hpp"
+#include "clog/core/run/resolve.hpp"
 
 namespace clog {
 namespace {
