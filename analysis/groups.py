@@ -20,6 +20,20 @@ def number(value):
     return r"\mathrm{saturated}" if value is None else f"{value:.4g}"
 
 
+def symbol(column):
+    """Of a parameter as clogsweep describes it, with its unit, so that what follows is a pure number; for words the name itself."""
+    if not column["symbol"]:
+        return rf"\mathrm{{{column['name'].replace('_', ' ')}}}".replace(" ", r"\ ")
+    return column["symbol"] + (f"/({tex(column['unit'])})" if " " in column["unit"] else f"/{tex(column['unit'])}" if column["unit"] else "")
+
+
+def said(column, value):
+    """A parameter and its value in words, e.g. $N_v = 128$."""
+    if isinstance(value, str):
+        return f"{column['name'].replace('_', ' ')} {value}"
+    return f"${symbol(column)} = {number(value)}$"
+
+
 def refuse_passages(fit):
     """@raise UserError  for a sweep of channels or walls: there each group is one run, and has no clogging length"""
     if fit["groups"] and "status" in fit["groups"][0]:
@@ -83,17 +97,10 @@ class Groups:
         return told
 
     def symbol(self, name):
-        """With its unit, so that what follows is a pure number; for words the name itself."""
-        column = self.columns[name]
-        if not column["symbol"]:
-            return rf"\mathrm{{{name.replace('_', ' ')}}}".replace(" ", r"\ ")
-        return column["symbol"] + (f"/({tex(column['unit'])})" if " " in column["unit"] else f"/{tex(column['unit'])}" if column["unit"] else "")
+        return symbol(self.columns[name])
 
     def said(self, name, value):
-        """A parameter and its value in words, e.g. $N_v = 128$."""
-        if isinstance(value, str):
-            return f"{name.replace('_', ' ')} {value}"
-        return f"${self.symbol(name)} = {number(value)}$"
+        return said(self.columns[name], value)
 
     def axis_label(self):
         if self.abscissa in style.AXES:

@@ -9,19 +9,20 @@ import survival_curve
 import trajectory
 from paper.plate import Plate, figure, interface_of
 from command_line import UserError
+from groups import said
 from style import plt
 
-SYMBOLS = {"obstacle_gap": r"w_\mathrm{ob}/\sigma", "obstacle_diameter": r"\sigma_\mathrm{ob}/\sigma",
-           "near_wall_drag": r"b_0/b_\infty"}
+# Of what all points have in common, a caption names these.
+NAMED = ("obstacle_gap", "obstacle_diameter", "near_wall_drag")
 
 
-def describe(groups, without=()):
-    """What all points have in common."""
+def describe(columns, groups, without=()):
+    """What all points have in common. @param columns  see Workshop.columns()"""
     first = groups[0]
     words = []
-    for name, symbol in SYMBOLS.items():
+    for name in NAMED:
         if name not in without and len({group[name] for group in groups}) == 1:
-            words.append(f"${symbol} = {first[name]:g}$")
+            words.append(said(columns[name], first[name]))
     words.append("saturated arrays" if first["obstacle_filling"] == "saturated" else rf"$\rho_\mathrm{{ob}}\sigma^2 = {first['obstacle_density']:g}$")
     words += [f"$V_t = {first['terminal_speed']:g}$", f"$T = {first['max_time']:g}\\,t_0$", f"$L = {first['box']:g}\\sigma$"]
     line = style.runs_a_point(groups)
@@ -54,7 +55,7 @@ def curves(shop, config, abscissa, parameter, quantity):
     families = by(groups, parameter)
     places = [] if abscissa == "capillary_number" else [group[abscissa] for group in groups]
     for index, (value, members) in enumerate(families):
-        label = f"${SYMBOLS[parameter]} = {value:g}$"
+        label = said(shop.columns(config)[parameter], value)
         shift = style.side_by_side(index, len(families), places) if places else 1
         members = [group for group in members if group[abscissa] is not None]
         draw = style.draw_lengths if quantity == "length" else style.draw_speeds
@@ -68,7 +69,7 @@ def curves(shop, config, abscissa, parameter, quantity):
     style.grid(axes)
     style.legend(axes, groups if quantity == "length" else ())
     note = style.length_note(groups, shop.confidence(config)) if quantity == "length" else "bars: standard error"
-    style.caption(axes, f"{describe(groups, [parameter])}\n{note}")
+    style.caption(axes, f"{describe(shop.columns(config), groups, [parameter])}\n{note}")
     return Plate(drawing, data)
 
 
@@ -132,7 +133,7 @@ def over_sag(shop, configs, gap, quantity):
         label = "deformable polygon" if groups[0]["model"] == "dp" else "soft disk"
         (style.draw_lengths if quantity == "length" else style.draw_speeds)(axes, places, groups, index, label)
         data += numbers(groups, label, sag=places)
-        captions.append(describe(groups))
+        captions.append(describe(shop.columns(config), groups))
         drawn += groups
     style.logarithmic_abscissa(axes)
     if quantity == "length":
@@ -347,7 +348,7 @@ def survival(shop):
     axes.set_ylabel(r"probability of not having clogged $P(r)$")
     style.grid(axes)
     axes.legend(frameon=False)
-    style.caption(axes, rf"$\Gamma = {group['line_tension']:g}$, {describe([group])}" f"\nexponential? Weibull shape {group['weibull_shape']:.2f}, p = {group['weibull_p_value']:.2f}")
+    style.caption(axes, rf"$\Gamma = {group['line_tension']:g}$, {describe(shop.columns('survival'), [group])}" f"\nexponential? Weibull shape {group['weibull_shape']:.2f}, p = {group['weibull_p_value']:.2f}")
     names = ["distance", "probability", "standard_error", "lower", "upper"]
     return Plate(drawing, [{"distance": 0.0, "probability": 1.0}] + [{name: step[name] for name in names} for step in group["survival"]]
                  + [{"censored_distance": distance} for distance in group["censored_distances"]]

@@ -104,6 +104,10 @@ class Workshop:
         self._note_sweep(name)
         return [group for group in fit["groups"] if group["runs"] > 0]
 
+    def columns(self, name):
+        """What the parameters of a sweep that sweep() has run are called: see clogfit's JSON, by name."""
+        return {column["name"]: column for column in self._fits[name]["columns"]}
+
     def confidence(self, name):
         """Of the intervals of a sweep that sweep() has run."""
         return self._fits[name]["confidence"]
