@@ -1,8 +1,5 @@
 #include "clog/sweep/row_check.hpp"
 
-#include "clog/core/run/resolve.hpp"
-#include "clog/sweep/run_job.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "clog/core/run/resolve.hpp"
 #include "clog/sweep/columns.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/run_job.hpp"

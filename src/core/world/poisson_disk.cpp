@@ -147,7 +147,7 @@ class SequentialAddition {
         size_(static_cast<float>(cell_size_)),
         range_(static_cast<float>(largest_excess)),
         engine_(make_engine(seed)) {
-    const auto width = static_cast<std::size_t>(2 * margin_ + 1);
+    const auto width = 2 * static_cast<std::size_t>(margin_) + 1;
     const std::size_t num_cells_around = width * width;
     for (std::vector<float>* near : {&near_x_, &near_y_, &near_excess_}) near->resize(num_cells_around + 1);
   }

@@ -6,6 +6,7 @@
 #include "memory_file.hpp"
 
 using namespace clog;
+using namespace clog::laboratory;
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const MemoryFile file({data, size});
