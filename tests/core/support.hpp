@@ -32,7 +32,7 @@ inline RunParameters bare_parameters(int vertices = 64) {
   return run;
 }
 
-inline ObstacleArray no_obstacles(double box = 20) { return ObstacleArray(box, {}); }
+inline ObstacleArray no_obstacles(double box = 20) { return {box, {}}; }
 
 inline DropletState state_of(const Eigen::ArrayXd& position, double box = 20) {
   DropletState state;
