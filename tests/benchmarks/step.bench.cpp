@@ -37,7 +37,7 @@ void advance(benchmark::State& state, const RunParameters& parameters) {
   DropletRun run(parameters);
   run.advance(100);
   const std::int64_t before = run.result().steps;
-  for (auto _ : state) run.advance(100);
+  for ([[maybe_unused]] auto _ : state) run.advance(100);
   count_steps(state, run.result().steps - before, parameters.model == Model::dp ? parameters.dp.vertices : 1);
 }
 
@@ -128,7 +128,7 @@ void polygon_in_channel(benchmark::State& state) {
   run.channel.start = -2;
   run = resolve(run);
   std::int64_t steps = 0;
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     DropletRun passage(run);
     passage.measure_dissipation();
     passage.advance(1'000'000);
@@ -156,7 +156,7 @@ void sample_saturated_array(benchmark::State& state) {
   const ObstacleParameters parameters{
       .gap = 0.2, .diameter = 0.3, .density = {}, .box = static_cast<double>(state.range(0))};
   std::uint32_t seed = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(sample_obstacles(parameters, ++seed));
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(sample_obstacles(parameters, ++seed));
 }
 BENCHMARK(sample_saturated_array)->ArgName("box")->Arg(100)->Arg(500)->Unit(benchmark::kMillisecond);
 

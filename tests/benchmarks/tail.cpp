@@ -96,6 +96,6 @@ int main(int argc, char** argv) {
   std::printf(
       "%lld runs, %d workers, time to the end over the least possible: as planned %.3f, "
       "longest expected first %.3f, lengths known beforehand %.3f\n",
-      static_cast<long long>(num_seeds * num_groups), num_workers, median(planned), median(expected),
+      static_cast<long long>(num_seeds) * num_groups, num_workers, median(planned), median(expected),
       median(known));
 }

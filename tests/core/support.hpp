@@ -46,7 +46,7 @@ inline RunParameters onto_wall(RunParameters run) {
   return resolve(run);
 }
 
-inline ObstacleArray no_obstacles(double box = 20) { return ObstacleArray(box, {}); }
+inline ObstacleArray no_obstacles(double box = 20) { return {box, {}}; }
 
 inline DropletState state_of(const Eigen::ArrayXd& position, double box = 20) {
   DropletState state;

@@ -77,7 +77,7 @@ TEST(Refined, HasTheVerticesAndTheMiddlesOfCubics) {
   }
   const Eigen::ArrayXd fine = refined(position);
   ASSERT_EQ(fine.size(), 4 * 16);
-  for (int i = 0; i < 16; ++i) {
+  for (Eigen::Index i = 0; i < 16; ++i) {
     EXPECT_EQ(fine[2 * i], position[i]);
     EXPECT_EQ(fine[32 + 2 * i], position[16 + i]);
   }

@@ -41,7 +41,7 @@ Eigen::ArrayXd with_short_edges(const std::vector<Eigen::Array2d>& corners) {
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Eigen::Array2d way = corners[(i + 1) % corners.size()] - corners[i];
     const int pieces = std::max(1, static_cast<int>(std::lround(way.matrix().norm() / 0.01)));
-    for (int k = 0; k < pieces; ++k) points.push_back(corners[i] + way * k / pieces);
+    for (int k = 0; k < pieces; ++k) points.emplace_back(corners[i] + way * k / pieces);
   }
   const auto n = static_cast<Eigen::Index>(points.size());
   Eigen::ArrayXd position(2 * n);

@@ -210,7 +210,8 @@ TEST_P(ContactLists, MissNothingWhileTheDropletMoves) {
     Eigen::Array<double, 64, 1> nearest = Eigen::Array<double, 64, 1>::Constant(1e9);
     for (const Obstacle& obstacle : array.obstacles())
       for (int image = 0; image < 9; ++image) {
-        const Eigen::Array2d centre(obstacle.x + 12.5 * (image % 3 - 1), obstacle.y + 12.5 * (image / 3 - 1));
+        const int column = image % 3 - 1, row = image / 3 - 1;
+        const Eigen::Array2d centre(obstacle.x + 12.5 * column, obstacle.y + 12.5 * row);
         for (int i = 0; i < 64; ++i) {
           const int next = (i + 1) % 64;
           const auto vertex = [&](int k) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "clog/core/polygon/dp_droplet.hpp"
@@ -20,8 +21,8 @@ using namespace test;
 /// The step as it is written in the documentation, a line for each formula, on the readable force.
 class ReadableDroplet {
  public:
-  ReadableDroplet(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& initial)
-      : run_(run), n_(run.dp.vertices), forces_(run, obstacles), state_(initial), force_(2 * n_) {
+  ReadableDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial)
+      : run_(run), n_(run.dp.vertices), forces_(run, obstacles), state_(std::move(initial)), force_(2 * n_) {
     forces_.update_contacts(state_, {.absolute = 0.05, .relative = 0.05});
     forces_.evaluate(state_, force_);
   }
@@ -59,7 +60,7 @@ class ReadableDroplet {
     result << to_mean * v.head(n_).mean() - rate * v.head(n_),
         to_mean * v.tail(n_).mean() - rate * v.tail(n_);
     if (on_area) {
-      const auto g = [this](int k) { return forces_.centroid_gradient().segment(k * n_, n_); };
+      const auto g = [this](Eigen::Index k) { return forces_.centroid_gradient().segment(k * n_, n_); };
       const double area_x = (g(0) * v.head(n_) + g(1) * v.tail(n_)).sum();
       const double area_y = (g(2) * v.head(n_) + g(3) * v.tail(n_)).sum();
       result.head(n_) -= far * n_ * (area_x * g(0) + area_y * g(2));
@@ -114,7 +115,7 @@ TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
     const double diameter = units::regular_edge_length(vertices);
     const double film = 0.98 * diameter;
     DropletState initial = state_of(shaken(full_size_dumbbell(vertices, film), 0.002 * film));
-    initial.velocity = shaken(Eigen::ArrayXd::Zero(2 * vertices), 0.03, 7);
+    initial.velocity = shaken(Eigen::ArrayXd::Zero(initial.position.size()), 0.03, 7);
     const double end = initial.x().maxCoeff();
     // A flank of one wedge touches a vertex, and the tip of the other.
     const double touching = 0.45 * diameter;

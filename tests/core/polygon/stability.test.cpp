@@ -19,7 +19,7 @@ double stiffest_omega2(const RunParameters& run, const Eigen::ArrayXd& position,
   forces.set_rest_area(polygon_shape(position).area);
   DropletState state = state_of(position);
   forces.update_contacts(state, {});
-  Eigen::ArrayXd direction = shaken(Eigen::ArrayXd::Zero(2 * n), 1.0, 5);
+  Eigen::ArrayXd direction = shaken(Eigen::ArrayXd::Zero(position.size()), 1.0, 5);
   Eigen::ArrayXd above(2 * n), below(2 * n);
   constexpr double h = 1e-7;
   double stiffness = 0;

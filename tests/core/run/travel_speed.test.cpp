@@ -82,8 +82,8 @@ TEST(TransientLength, DoesNotLookForStructureInRoundOff) {
 }
 
 TEST(TransientLength, IsNotKnownWhileTheSpeedStillRises) {
-  std::vector<double> speeds;
-  for (int i = 0; i < 300; ++i) speeds.push_back(1 - std::exp(-i / 300.0));
+  std::vector<double> speeds(300);
+  for (int i = 0; i < 300; ++i) speeds[i] = 1 - std::exp(-i / 300.0);
   EXPECT_EQ(transient_length(speeds), std::nullopt);
   const TravelSpeed speed = travel_speed(integrated(speeds, 0.2));
   EXPECT_TRUE(std::isnan(speed.mean));
