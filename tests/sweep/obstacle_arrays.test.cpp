@@ -148,9 +148,10 @@ TEST(ObstacleArrays, AreInMemoryOnceForAllProcesses) {
     return std::to_string(arrays.num_built()) + " built, in " + file_behind(array->obstacles().data());
   };
   // All at once: one builds, the others wait for it.
-  std::vector<std::unique_ptr<OtherProcess>> others;
-  for (int i = 0; i < 4; ++i) others.push_back(std::make_unique<OtherProcess>(get));
+  std::vector<std::unique_ptr<OtherProcess>> others(4);
+  for (auto& other : others) other = std::make_unique<OtherProcess>(get);
   std::vector<std::string> told;
+  told.reserve(others.size());
   for (const auto& other : others) told.push_back(other->told());
   std::ranges::sort(told);
   EXPECT_EQ(told[0].substr(0, 2), "0 ");

@@ -101,7 +101,7 @@ TEST(FaultOf, NoColumnThatAnOlderVersionDidNotHave) {
 /// The row after its bytes were read from a file that holds another value in one column.
 template <class T>
 RunRow damaged(const Column& column, T value) {
-  RunRow row = clogged();
+  const RunRow& row = clogged();
   std::vector<std::byte> bytes(packed_size());
   pack(row, bytes);
   std::size_t place = 0;
