@@ -100,10 +100,11 @@ TEST(CloggingLength, IntervalsCoverTheTruthAsOftenAsTheyClaim) {
   std::exponential_distribution<double> distance(1.0 / 7.0);
   int num_covered = 0;
   for (int sample = 0; sample < 4000; ++sample) {
-    std::vector<double> distances;
-    for (int i = 0; i < 20; ++i) distances.push_back(distance(engine));
+    std::vector<double> distances(20);
+    for (double& one : distances) one = distance(engine);
     std::sort(distances.begin(), distances.end());
     std::vector<Observation> runs;
+    runs.reserve(distances.size());
     for (int i = 0; i < 20; ++i) runs.push_back({std::min(distances[i], distances[7]), i <= 7});
     const CloggingLength fit = fit_clogging_length(runs);
     num_covered += fit.interval.lower <= 7 && 7 <= fit.interval.upper;
@@ -138,6 +139,7 @@ TEST(CloggingLength, IntervalsCoverTheTruthWhereRunsAreCensoredAfterSomeDistance
 TEST(LeastSquaresLength, FindsTheLengthOfManyRuns) {
   std::vector<Observation> runs;
   constexpr int num_runs = 1000;
+  runs.reserve(num_runs);
   for (int i = 0; i < num_runs; ++i) runs.push_back({-3 * std::log((i + 0.5) / num_runs), true});
   EXPECT_NEAR(least_squares_length(runs), 3, 0.01);
   for (Observation& run : runs)

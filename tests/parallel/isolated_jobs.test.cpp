@@ -150,6 +150,7 @@ void a_stopped_task_goes_on_from_its_snapshot(const parallel::Communicator& rank
       run_once(ranks, parallel::TaskOrder(tasks, 1), make_job, events, true, std::chrono::milliseconds(1));
   expect(ranks.rank() != 0 || end == parallel::SweepEnd::stopped, "a stop stops");
   std::vector<std::int64_t> left;
+  left.reserve(stopped.size());
   for (const auto& [task, report] : stopped) left.push_back(task);
   std::size_t num_ended = 0;
   events = parallel::SweepEvents();

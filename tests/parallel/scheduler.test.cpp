@@ -81,6 +81,7 @@ void running_tasks_report_and_go_on_from_there(const parallel::Communicator& ran
   run_once(ranks, parallel::TaskOrder(1000), make_synthetic_job, events, true, std::chrono::milliseconds(2));
   expect(ranks.rank() != 0 || num_reports > 0, "running tasks report");
   std::vector<std::int64_t> left;
+  left.reserve(snapshots.size());
   for (const auto& [task, snapshot] : snapshots) left.push_back(task);
   int num_ended = 0;
   events.stop_requested = [] { return false; };

@@ -34,7 +34,6 @@
 namespace {
 
 using namespace clog;
-using soundness::Ending;
 using soundness::Findings;
 using soundness::Tail;
 

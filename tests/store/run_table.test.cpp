@@ -52,6 +52,7 @@ std::string refusal(const std::string& path) {
 
 std::vector<sweep::RunRow> some_rows(int number) {
   std::vector<sweep::RunRow> rows;
+  rows.reserve(number);
   for (int task = 0; task < number; ++task) rows.push_back(some_row(task));
   return rows;
 }

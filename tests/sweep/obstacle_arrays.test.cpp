@@ -38,8 +38,8 @@ RunParameters run_in(const ObstacleParameters& obstacles, std::uint32_t seed) {
   return run;
 }
 
-/// That no other test, run at the same time, shares with this one.
-std::uint32_t own_seed() { return static_cast<std::uint32_t>(getpid()); }
+/// That no other test, run at the same time, shares with this one, nor the odd one after it.
+std::uint32_t own_seed() { return 2 * static_cast<std::uint32_t>(getpid()); }
 
 ObstacleParameters lattice() {
   RunParameters run;
@@ -156,9 +156,10 @@ TEST(ObstacleArrays, AreInMemoryOnceForAllProcesses) {
     return std::to_string(arrays.num_built()) + " built, in " + file_behind(array->obstacles().data());
   };
   // All at once: one builds, the others wait for it.
-  std::vector<std::unique_ptr<OtherProcess>> others;
-  for (int i = 0; i < 4; ++i) others.push_back(std::make_unique<OtherProcess>(get));
+  std::vector<std::unique_ptr<OtherProcess>> others(4);
+  for (auto& other : others) other = std::make_unique<OtherProcess>(get);
   std::vector<std::string> told;
+  told.reserve(others.size());
   for (const auto& other : others) told.push_back(other->told());
   std::ranges::sort(told);
   EXPECT_EQ(told[0].substr(0, 2), "0 ");

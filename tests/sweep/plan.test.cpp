@@ -47,7 +47,7 @@ TEST(Plan, ChecksEverySetBeforeAnythingRuns) {
 
 TEST(Plan, RefusesKeysThatASoftDiskWouldIgnore) {
   try {
-    Plan(settings_of({{"model", "sp"}, {"wall-stiffness", "1"}, {"line-tension", "1,2"}}));
+    const Plan plan(settings_of({{"model", "sp"}, {"wall-stiffness", "1"}, {"line-tension", "1,2"}}));
     FAIL();
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("model=sp does not depend on it"), std::string::npos)

@@ -10,7 +10,7 @@ using namespace clog::laboratory;
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const MemoryFile file({data, size});
-  const ProfileScales scales{.diameter = 3e-3, .terminal_speed = 1e-3};
+  const laboratory::ProfileScales scales{.diameter = 3e-3, .terminal_speed = 1e-3};
   may_be_refused([&] { require(read_profile(file.path(), scales).size() >= 3); });
   may_be_refused([&] { read_near_wall_speeds(file.path(), scales); });
   return 0;
