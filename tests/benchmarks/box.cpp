@@ -54,8 +54,8 @@ void compare(const char* name, RunParameters parameters, int num_checks) {
   const auto large_array = tiled(*array);
   std::vector<DropletRun> small, large;
   for (int twin = 0; twin < num_twins; ++twin) {
-    small.push_back(DropletRun(parameters, array));
-    large.push_back(DropletRun(in_large, large_array));
+    small.emplace_back(parameters, array);
+    large.emplace_back(in_large, large_array);
   }
   constexpr int num_slices = 7;
   std::vector<double> ratios, twin_ratios;

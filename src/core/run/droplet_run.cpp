@@ -46,12 +46,12 @@ std::unique_ptr<Droplet> make_droplet(const RunParameters& run, const ObstacleAr
 DropletRun::DropletRun(const RunParameters& run)
     : DropletRun(run, std::make_shared<ObstacleArray>(scene_of(run).walls(run))) {}
 
-DropletRun::DropletRun(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles)
+DropletRun::DropletRun(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles)
     : DropletRun(run, obstacles, scene_of(run).release(run, *obstacles), scene_of(run).way(run)) {}
 
-DropletRun::DropletRun(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles,
+DropletRun::DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> obstacles,
                        DropletState initial, double way)
-    : run_(run),
+    : run_(std::move(run)),
       obstacles_(std::move(obstacles)),
       droplet_(make_droplet(run_, *obstacles_, std::move(initial))),
       start_frame_(droplet_->state().frame),

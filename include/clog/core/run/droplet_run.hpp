@@ -73,10 +73,10 @@ class DropletRun {
   /// Released where its scene says. @param run  resolved parameters, here and below
   explicit DropletRun(const RunParameters& run);
   /// The same between walls that are at hand.
-  DropletRun(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles);
+  DropletRun(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles);
   /// @param initial   the droplet at its release
   /// @param way       displacement along the flow at which the run is over, status `passed` [sigma]
-  DropletRun(const RunParameters& run, std::shared_ptr<const ObstacleArray> obstacles, DropletState initial,
+  DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> obstacles, DropletState initial,
              double way = std::numeric_limits<double>::infinity());
 
   /// A run restored from a snapshot() goes on bit for bit like the one that it was taken of, since that one,
