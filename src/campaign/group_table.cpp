@@ -12,6 +12,9 @@
 
 #include "clog/campaign/usual_parameters.hpp"
 #include "clog/console/rounded.hpp"
+#include "clog/core/model/model.hpp"
+#include "clog/core/parameters/schema.hpp"
+#include "clog/core/scene/scene.hpp"
 #include "clog/sweep/schema_json.hpp"
 #include "clog/sweep/settings.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -176,12 +179,20 @@ std::vector<ResultColumn> columns_of_walls() {
           column_of_run("A", &RunRow::shape_parameter)};
 }
 
+std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, double confidence) {
+  switch (scene_of(groups.front().first_row.parameters).finding) {
+    case Finding::clogging_length:
+      return columns_of_arrays(groups, confidence);
+    case Finding::passage:
+      return columns_of_channels();
+    case Finding::sag:
+      return columns_of_walls();
+  }
+  throw std::logic_error("a finding without columns");
+}
+
 std::vector<ResultColumn> result_columns(const std::vector<Group>& groups, double confidence) {
-  const ObstacleLayout layout = groups.front().first_row.parameters.obstacles.layout;
-  std::vector<ResultColumn> columns = layout == ObstacleLayout::channel ? columns_of_channels()
-                                      : layout == ObstacleLayout::wall
-                                          ? columns_of_walls()
-                                          : columns_of_arrays(groups, confidence);
+  std::vector<ResultColumn> columns = columns_of_findings(groups, confidence);
   if (std::any_of(groups.begin(), groups.end(), [](const Group& group) { return !group.doubts.empty(); }))
     columns.push_back({"note", [](const Group& group) { return letters(group.doubts); }});
   return columns;
@@ -234,11 +245,12 @@ std::vector<bool> shown_fields(const std::vector<Group>& groups, const std::vect
   const RunParameters& run = groups.front().first_row.parameters;
   std::vector<bool> shown(first.size(), false);
   for (std::size_t i = 0; i < first.size(); ++i) {
-    const std::string_view name = first[i].first;
-    const char* place = run.obstacles.layout == ObstacleLayout::channel ? "orifice" : "obstacle_gap";
+    const auto is_of = [&](const char* key) {
+      return key && std::string_view(first[i].first) == parameter(key).column;
+    };
     const bool is_there = !std::holds_alternative<std::monostate>(first[i].second);
-    shown[i] = (varies[i] && !group_columns()[i]->may_be_automatic(run)) || (name == place && is_there) ||
-               name == (run.model == Model::sp ? "wall_stiffness" : "line_tension");
+    shown[i] = (varies[i] && !group_columns()[i]->may_be_automatic(run)) ||
+               (is_there && is_of(scene_of(run).gap_key)) || is_of(model_of(run).stiffness_key);
   }
   for (std::size_t i = 0; i < first.size(); ++i) {
     if (!varies[i] || shown[i]) continue;

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 
+#include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/units.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/row_limits.hpp"
@@ -227,8 +228,7 @@ std::vector<Field> parameter_fields(const sweep::RunRow& row) {
 }
 
 bool has_clogging_length(const sweep::RunRow& row) {
-  const ObstacleLayout layout = row.parameters.obstacles.layout;
-  return layout != ObstacleLayout::channel && layout != ObstacleLayout::wall;
+  return scene_of(row.parameters).finding == Finding::clogging_length;
 }
 
 std::vector<Field> result_fields(const Group& group) {

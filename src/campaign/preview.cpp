@@ -16,6 +16,7 @@
 #include "clog/console/printable.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/console/streams.hpp"
+#include "clog/core/model/model.hpp"
 #include "clog/sweep/columns.hpp"
 #include "clog/sweep/obstacle_arrays.hpp"
 #include "clog/sweep/row_check.hpp"
@@ -62,7 +63,7 @@ void print_task(const sweep::Plan& plan, std::int64_t task,
   std::cout << '\n';
 }
 
-double work_per_step(const RunParameters& run) { return run.model == Model::dp ? run.dp.vertices : 1; }
+double work_per_step(const RunParameters& run) { return model_of(run).num_points(run); }
 double longest_work(const RunParameters& run) { return run.max_time / *run.time_step * work_per_step(run); }
 
 /// Runs of a sweep that say what it costs.

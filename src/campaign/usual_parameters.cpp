@@ -6,6 +6,7 @@
 
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/run/resolve.hpp"
+#include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/sweep/settings.hpp"
 
@@ -34,7 +35,7 @@ RunParameters with_usual_values(const sweep::RunRow& row) {
 
 /// Of a user's own circles a row has the check sum only; automatic values hardly depend on them.
 RunParameters resolved_in_any_layout(RunParameters run) {
-  if (run.obstacles.layout != ObstacleLayout::file) return resolve(run);
+  if (scene_of(run).walls_from != WallsFrom::circles) return resolve(run);
   const ObstacleParameters own = run.obstacles;
   run.obstacles.layout = ObstacleLayout::random;
   run.obstacles.own.reset();

@@ -92,8 +92,7 @@ std::chrono::duration<double> ObstacleArrays::longest_wait(const ObstacleParamet
 }
 
 ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
-  const ObstacleLayout layout = run.obstacles.layout;
-  const bool is_sampled = layout == ObstacleLayout::random || layout == ObstacleLayout::lattice;
+  const bool is_sampled = scene_of(run).walls_from == WallsFrom::parameters;
   const std::optional<std::string> name = shared_name(run);
   if (!name || !is_sampled || num_places(run.obstacles) < fewest_shared) return build(run);
   const auto begin = std::chrono::steady_clock::now();
@@ -124,10 +123,8 @@ ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
 }
 
 std::shared_ptr<const ObstacleArray> ObstacleArrays::get(const RunParameters& run) {
-  // A channel or a wall is made at once, and where it stands hangs on the droplet.
-  const ObstacleLayout layout = run.obstacles.layout;
-  if (layout == ObstacleLayout::channel || layout == ObstacleLayout::wall)
-    return std::make_shared<ObstacleArray>(scene_of(run).walls(run));
+  const Scene& scene = scene_of(run);
+  if (scene.walls_from == WallsFrom::droplet) return std::make_shared<ObstacleArray>(scene.walls(run));
   const std::string key = array_key(run);
   if (key != key_) {
     array_.reset();  // the memory may be needed for the next

@@ -10,6 +10,7 @@
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/polygon/stability.hpp"
 #include "clog/core/run/resolve.hpp"
+#include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/units.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -29,11 +30,6 @@ bool is_number_below(double value, double bound) { return std::isfinite(value) &
 std::string named(const char* column, double value) { return std::string(column) + '=' + shortest(value); }
 std::string named(const char* column, std::string_view word) {
   return std::string(column) + "='" + std::string(word) + "'";
-}
-
-bool is_sampled(const RunRow& row) {
-  const ObstacleLayout layout = row.parameters.obstacles.layout;
-  return layout == ObstacleLayout::random || layout == ObstacleLayout::lattice;
 }
 
 std::string unreadable_column(const RunRow& row) { return row.unreadable; }
@@ -63,13 +59,13 @@ std::string parameter_fault(const RunRow& row) {
   for (std::size_t i = 0; i < parameter_schema().size(); ++i)
     if (row.unknown[i]) return std::string(parameter_schema()[i].column) + " is not known";
   try {
-    if (!is_sampled(row)) {
+    const Scene& scene = scene_of(run);
+    if (scene.walls_from != WallsFrom::parameters) {
       // Of a user's own circles the row has the check sum only.
-      const bool has_circles = row.parameters.obstacles.layout == ObstacleLayout::file;
-      has_circles ? check_each(row.parameters) : static_cast<void>(resolve(row.parameters));
+      scene.walls_from == WallsFrom::circles ? check_each(run) : static_cast<void>(resolve(run));
       return "";
     }
-    const double density = density_of(resolved_parameters(row).obstacles);
+    const double density = scene.density(resolved_parameters(row).obstacles);
     const bool agrees = std::isnan(density) ? std::isnan(row.obstacle_density)
                                             : std::abs(row.obstacle_density - density) <= round_off * density;
     return agrees ? "" : named("obstacle_density", row.obstacle_density) + " is not that of its array";
@@ -173,28 +169,29 @@ std::string clog_fault(const RunRow& row) {
 
 /// What only a channel or a wall gives, and what it cannot be.
 std::string passage_fault(const RunRow& row) {
-  const ObstacleLayout layout = row.parameters.obstacles.layout;
+  const Finding finding = scene_of(row.parameters).finding;
   const double fastest = std::sqrt(diverged_energy_ratio);
   const double way = std::abs(row.parameters.channel.start) + farthest_way(row);
   struct Place {
     const char* column;
     double value;
-    ObstacleLayout layout;
+    Finding finding;
     double least, most;
   };
-  using enum ObstacleLayout;
+  using enum Finding;
   for (const Place& place :
-       {Place{"largest_shape_parameter", row.largest_shape_parameter, channel, 1 - round_off, most_shape},
-        Place{"largest_shape_parameter_at", row.largest_shape_parameter_at, channel, -way, way},
-        Place{"largest_relative_speed", row.largest_relative_speed, channel, -fastest, fastest},
-        Place{"largest_relative_speed_at", row.largest_relative_speed_at, channel, -way, way},
-        Place{"smallest_relative_speed", row.smallest_relative_speed, channel, -fastest, fastest},
-        Place{"smallest_relative_speed_at", row.smallest_relative_speed_at, channel, -way, way},
-        Place{"sag", row.sag, wall, -units::droplet_diameter, farthest_way(row)},
-        Place{"top_sag", row.top_sag, wall, -units::droplet_diameter, farthest_way(row)}}) {
+       {Place{"largest_shape_parameter", row.largest_shape_parameter, passage, 1 - round_off, most_shape},
+        Place{"largest_shape_parameter_at", row.largest_shape_parameter_at, passage, -way, way},
+        Place{"largest_relative_speed", row.largest_relative_speed, passage, -fastest, fastest},
+        Place{"largest_relative_speed_at", row.largest_relative_speed_at, passage, -way, way},
+        Place{"smallest_relative_speed", row.smallest_relative_speed, passage, -fastest, fastest},
+        Place{"smallest_relative_speed_at", row.smallest_relative_speed_at, passage, -way, way},
+        Place{"sag", row.sag, Finding::sag, -units::droplet_diameter, farthest_way(row)},
+        Place{"top_sag", row.top_sag, Finding::sag, -units::droplet_diameter, farthest_way(row)}}) {
     if (std::isnan(place.value)) continue;
-    if (layout != place.layout)
-      return named(place.column, place.value) + ", but there is no " + name(place.layout);
+    if (finding != place.finding)
+      return named(place.column, place.value) + ", but there is no " +
+             (place.finding == passage ? "channel" : "wall");
     if (!(place.value >= place.least && place.value <= place.most))
       return named(place.column, place.value) + " is that of no droplet";
   }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string_view>
 
+#include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/units.hpp"
 #include "clog/sweep/value_list.hpp"
 
@@ -55,9 +56,8 @@ std::string unproven_vertices(const DpParameters& dp) {
 /// Needles slip through the interface: then the droplet encloses them, at its release or on its way. Seen
 /// with obstacles as thick as an edge is long and thinner ones, the more often the more of them there are.
 std::string unproven_diameter(const RunParameters& run) {
-  constexpr double thinnest = 2;  // over the length of an edge, with a margin
-  if (run.obstacles.layout == ObstacleLayout::channel || run.obstacles.layout == ObstacleLayout::wall)
-    return "";
+  constexpr double thinnest = 2;                                  // over the length of an edge, with a margin
+  if (scene_of(run).walls_from == WallsFrom::droplet) return "";  // there are no obstacles
   const double edge = units::regular_edge_length(run.dp.vertices);
   if (!(run.obstacles.smallest_diameter() < thinnest * edge)) return "";
   return "obstacle-diameter=" + shortest(run.obstacles.diameter) + " (obstacles thinner than two edges, " +
@@ -91,9 +91,7 @@ std::string unproven_parameters(const Plan& plan) {
 
 double repetition_length(const RunRow& row) {
   const ObstacleParameters& obstacles = row.parameters.obstacles;
-  const bool is_random =
-      obstacles.layout == ObstacleLayout::random || obstacles.layout == ObstacleLayout::file;
-  return is_random ? obstacles.period().along() : std::numeric_limits<double>::infinity();
+  return scene_of(obstacles).is_random ? obstacles.period().along() : std::numeric_limits<double>::infinity();
 }
 
 bool has_met_repetition(const RunRow& row) { return row.distance > repetition_length(row); }

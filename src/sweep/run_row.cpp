@@ -2,8 +2,8 @@
 
 #include <cassert>
 
+#include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/instruction_set.hpp"
-#include "clog/core/world/jamming.hpp"
 #include "clog/sweep/columns.hpp"
 #include "clog/sweep/settings.hpp"
 
@@ -16,22 +16,6 @@ FoundBy found_by(const std::optional<ClogDetection>& detection) {
 }
 
 }  // namespace
-
-double density_of(const ObstacleParameters& obstacles) {
-  switch (obstacles.layout) {
-    case ObstacleLayout::lattice:
-      return 1 / ((obstacles.diameter + obstacles.gap) * (obstacles.diameter + obstacles.gap));
-    case ObstacleLayout::random:
-      if (!obstacles.density && obstacles.diameter_spread > 0) return RunRow::not_known;
-      return obstacles.density.value_or(saturated_density(obstacles.diameter, obstacles.gap));
-    case ObstacleLayout::file:
-      return obstacles.density.value_or(RunRow::not_known);
-    case ObstacleLayout::channel:
-    case ObstacleLayout::wall:
-      break;
-  }
-  return RunRow::not_known;
-}
 
 std::string identity(const RunRow& row) {
   std::string bytes;
@@ -46,7 +30,7 @@ std::string identity(const RunRow& row) {
 RunRow describe(const RunParameters& run) {
   RunRow row;
   row.parameters = run;
-  row.obstacle_density = density_of(run.obstacles);
+  row.obstacle_density = scene_of(run).density(run.obstacles);
   row.preset = run.model == Model::dp ? preset_name(run) : "none";
   row.instruction_set = run.model == Model::dp ? instruction_set() : "none";
   row.model_version = model_version;
@@ -65,11 +49,11 @@ void record(const RunResult& result, RunRow& row) {
   row.travel_time = result.speed.time;
   row.kinetic_energy_ratio = result.kinetic_energy_ratio;
   row.shape_parameter = result.shape_parameter;
-  row.mechanism = result.mechanism;
-  row.wrapped_support = result.geometry.wrapped_support;
-  row.num_wrapped = result.geometry.num_wrapped;
-  row.num_gaps = result.geometry.num_gaps;
-  row.num_arcs = result.geometry.num_arcs;
+  row.mechanism = result.hold.mechanism;
+  row.wrapped_support = result.hold.geometry.wrapped_support;
+  row.num_wrapped = result.hold.geometry.num_wrapped;
+  row.num_gaps = result.hold.geometry.num_gaps;
+  row.num_arcs = result.hold.geometry.num_arcs;
   row.largest_shape_parameter = result.passage.largest_shape_parameter.value;
   row.largest_shape_parameter_at = result.passage.largest_shape_parameter.place;
   row.largest_relative_speed = result.passage.largest_speed.value;

@@ -4,6 +4,7 @@
 #include <sstream>
 #include <utility>
 
+#include "clog/core/polygon/automatic_values.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
 

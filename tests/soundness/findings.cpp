@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
+#include "clog/core/droplet/release.hpp"
 #include "clog/core/droplet/shape.hpp"
-#include "clog/core/scene/release.hpp"
 #include "clog/core/tools/units.hpp"
 
 namespace clog::soundness {

@@ -22,9 +22,10 @@
 #include "clog/cli/program.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/signals.hpp"
+#include "clog/core/droplet/release.hpp"
+#include "clog/core/model/model.hpp"
 #include "clog/core/polygon/dp_forces.hpp"
 #include "clog/core/run/droplet_run.hpp"
-#include "clog/core/scene/release.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/units.hpp"
 #include "clog/sweep/plan.hpp"
@@ -137,7 +138,7 @@ CaseReport release_case(const RunParameters& parameters) {
   const double begin = cpu_seconds();
   try {
     const ObstacleArray obstacles = sample_obstacles(parameters.obstacles, parameters.seed);
-    const DropletState state = release_droplet(parameters, obstacles);
+    const DropletState state = model_of(parameters).release(parameters, obstacles);
     report.worst = soundness::look_at(state, obstacles);
     DpForces forces(parameters, obstacles);
     forces.set_weight(0);

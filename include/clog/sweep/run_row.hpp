@@ -40,7 +40,7 @@ struct RunRow {
 
   RunParameters parameters;  ///< resolved
   std::bitset<64> unknown;   ///< by place in parameter_schema(): parameters that the row's file does not have
-  double obstacle_density = 0;     ///< of a saturated array the jamming limit, see density_of()
+  double obstacle_density = 0;     ///< of a saturated array the jamming limit, see Scene
   std::string preset;              ///< the one that the interface agrees with, "custom", or "none" for sp
   std::int64_t model_version = 0;  ///< see parameters.hpp
 
@@ -92,9 +92,6 @@ inline bool is_unfinished(RunStatus status) {
 /// What was run, seed included, as bytes: equal for equal runs, whatever their place in a sweep.
 std::string identity(const RunRow& row);
 
-/// Obstacles per sigma^2; NaN for a saturated mixture, whose jamming limit is not known beforehand, and where
-/// there are none.
-double density_of(const ObstacleParameters& obstacles);
 /// The columns that say what was run.
 /// @param run  resolved
 RunRow describe(const RunParameters& run);

@@ -9,10 +9,6 @@
 namespace clog {
 namespace {
 
-/// Shares of the support below and above which one mechanism alone holds the droplet.
-constexpr double squeezed_below = 1.0 / 3;
-constexpr double wrapped_above = 2.0 / 3;
-
 struct Polygon {
   const Eigen::ArrayXd& position;
 
@@ -149,12 +145,6 @@ ClogGeometry clog_geometry(const DropletState& state, const ObstacleArray& array
                 contact_range},
                obstacles);
   return clog_geometry(interface, obstacles, contact_range);
-}
-
-ClogMechanism ClogGeometry::mechanism() const {
-  if (wrapped_support >= wrapped_above) return ClogMechanism::wrapped;
-  if (wrapped_support > squeezed_below) return ClogMechanism::hybrid;
-  return num_gaps > 0 ? ClogMechanism::squeezed : ClogMechanism::none;
 }
 
 }  // namespace clog

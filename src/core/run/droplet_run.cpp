@@ -5,11 +5,9 @@
 #include <sstream>
 #include <utility>
 
-#include "clog/core/disk/sp_droplet.hpp"
+#include "clog/core/droplet/equilibrium.hpp"
 #include "clog/core/droplet/shape.hpp"
-#include "clog/core/polygon/dp_droplet.hpp"
-#include "clog/core/run/equilibrium.hpp"
-#include "clog/core/scene/release.hpp"
+#include "clog/core/model/model.hpp"
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/units.hpp"
@@ -35,12 +33,6 @@ constexpr double rise_of_a_moving_droplet = 10;
 /// Changes with what a snapshot holds.
 constexpr std::uint64_t snapshot_kind = 0x636c6f6773000001;
 
-std::unique_ptr<Droplet> make_droplet(const RunParameters& run, const ObstacleArray& obstacles,
-                                      DropletState initial) {
-  if (run.model == Model::dp) return std::make_unique<DpDroplet>(run, obstacles, std::move(initial));
-  return std::make_unique<SpDroplet>(run, obstacles, std::move(initial));
-}
-
 }  // namespace
 
 DropletRun::DropletRun(const RunParameters& run)
@@ -53,7 +45,7 @@ DropletRun::DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> o
                        DropletState initial, double way)
     : run_(std::move(run)),
       obstacles_(std::move(obstacles)),
-      droplet_(make_droplet(run_, *obstacles_, std::move(initial))),
+      droplet_(model_of(run_).make(run_, *obstacles_, std::move(initial))),
       start_frame_(droplet_->state().frame),
       start_(droplet_->centre()),
       end_(way),
@@ -95,7 +87,7 @@ void DropletRun::take_snapshot() {
   bytes.put(quiet_checks_);
   bytes.put(next_search_);
   record_.save(bytes);
-  if (is_in_channel()) passage_.save(bytes);
+  if (is_passage()) passage_.save(bytes);
   snapshot_ = bytes.take();
 }
 
@@ -110,8 +102,8 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
     DropletState state;
     state.restore(bytes);
     const Period& period = obstacles->period();
-    if (state.size() != (run.model == Model::dp ? run.dp.vertices : 1) ||
-        state.frame.period[0] != period.along() || state.frame.period[1] != period.across())
+    if (state.size() != model_of(run).num_points(run) || state.frame.period[0] != period.along() ||
+        state.frame.period[1] != period.across())
       throw Error("the snapshot is of another run");
     DropletRun resumed(run, std::move(obstacles), std::move(state), scene_of(run).way(run));
     resumed.droplet_->restore(rest);
@@ -121,7 +113,7 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
     rest.get(resumed.quiet_checks_);
     rest.get(resumed.next_search_);
     resumed.record_.restore(rest);
-    if (resumed.is_in_channel()) resumed.passage_.restore(rest);
+    if (resumed.is_passage()) resumed.passage_.restore(rest);
     if (!rest.at_end()) throw Error("the snapshot is of another run");
     resumed.snapshot_.assign(snapshot.begin(), snapshot.end());
     return resumed;
@@ -146,7 +138,7 @@ void DropletRun::check() {
     return;
   }
   record_.add(time(), displacement()[0]);
-  if (is_in_channel())
+  if (is_passage())
     passage_.add(run_.channel.start + displacement()[0], shape.shape_parameter(),
                  droplet_->centre_velocity()[0] / run_.drag.terminal_speed, has_fallen());
   if (is_quiet(energy_ratio))
@@ -161,6 +153,8 @@ void DropletRun::check() {
     status_ = RunStatus::flowing;
 }
 
+bool DropletRun::is_passage() const { return scene_of(run_).finding == Finding::passage; }
+
 bool DropletRun::is_quiet(double energy_ratio) {
   const bool is_quiet = energy_ratio < run_.clog_energy && has_fallen();
   quiet_checks_ = is_quiet ? quiet_checks_ + 1 : 0;
@@ -172,30 +166,26 @@ bool DropletRun::finds_rest(double energy_ratio) {
   if (energy_ratio > rise_of_a_moving_droplet * first) next_search_ = first;
   if (energy_ratio > next_search_ || time() < first_quiet_time_) return false;
   next_search_ = fall_between_searches * energy_ratio;
-  std::optional<DropletState> rest = find_equilibrium(run_, *obstacles_, droplet_->state());
-  if (rest) at_rest_ = make_droplet(run_, *obstacles_, std::move(*rest));
+  const DropletModel& model = model_of(run_);
+  std::optional<DropletState> rest = model.equilibrium(run_, *obstacles_, droplet_->state());
+  if (rest) at_rest_ = model.make(run_, *obstacles_, std::move(*rest));
   return at_rest_ != nullptr;
 }
 
-Sag DropletRun::sag(const DropletState& state) const {
+Sag DropletRun::sag(const Droplet& droplet) const {
   // Before gravity the droplet was a circle around its centre, so the centroid was where displacement is
   // zero.
-  const Eigen::ArrayXd before = free_droplet(run_);
-  const Eigen::Array2d centre = run_.model == Model::sp ? state.centre() : area_centroid(state.position);
+  const DropletState& state = droplet.state();
+  const Eigen::ArrayXd before = model_of(run_).free_shape(run_);
   const double top = displacement_of({state.x().minCoeff(), 0})[0] - before.head(state.size()).minCoeff();
-  return {.centre = displacement_of(centre)[0], .top = top};
+  return {.centre = displacement_of(droplet.area_centre())[0], .top = top};
 }
 
 RunResult DropletRun::result() const {
   const Droplet& last = at_rest_ ? *at_rest_ : *droplet_;
   const Eigen::Array2d displaced = displacement_of(last.centre());
-  ClogGeometry geometry;
-  ClogMechanism mechanism = ClogMechanism::none;
-  if (status_ == RunStatus::clogged && run_.model == Model::sp) mechanism = ClogMechanism::squeezed;
-  if (status_ == RunStatus::clogged && run_.model == Model::dp) {
-    geometry = clog_geometry(last.state(), *obstacles_, run_.dp);
-    mechanism = geometry.mechanism();
-  }
+  Hold hold;
+  if (status_ == RunStatus::clogged) hold = model_of(run_).hold(run_, *obstacles_, last.state());
   return {.status = status_,
           .clogged_by = clogged_by_,
           .distance = displaced[0],
@@ -204,10 +194,9 @@ RunResult DropletRun::result() const {
           .speed = record_.travel_speed(),
           .kinetic_energy_ratio = kinetic_energy_ratio(),
           .shape_parameter = last.shape().shape_parameter(),
-          .mechanism = mechanism,
-          .geometry = geometry,
+          .hold = hold,
           .passage = passage_,
-          .sag = run_.obstacles.layout == ObstacleLayout::wall ? sag(last.state()) : Sag(),
+          .sag = scene_of(run_).finding == Finding::sag ? sag(last) : Sag(),
           .steps = droplet_->num_integrated_steps(),
           .message = message_};
 }

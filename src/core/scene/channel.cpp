@@ -1,4 +1,7 @@
 #include "clog/core/scene/channel.hpp"
+#include "clog/core/droplet/release.hpp"
+#include "clog/core/model/model.hpp"
+#include "core/parameters/refusal.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,18 +11,16 @@
 #include <utility>
 #include <vector>
 
-#include "clog/core/scene/release.hpp"
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/portable_math.hpp"
 #include "clog/core/tools/units.hpp"
 #include "core/scene/open_box.hpp"
-#include "core/scene/refusal.hpp"
 
 namespace clog {
 
 double last_free_start(const RunParameters& run) {
   const ChannelParameters& channel = run.channel;
-  const double droplet_reach = reach(run, free_droplet(run));
+  const double droplet_reach = model_of(run).reach(run);
   constexpr double everywhere = std::numeric_limits<double>::infinity();
   if (channel.wedge_angle == 0) return everywhere;
   const double angle = channel.wedge_angle * std::numbers::pi / 180;
@@ -35,8 +36,8 @@ void nothing_to_check(const RunParameters&) {}
 
 void check_clearance(RunParameters& run) {
   const ChannelParameters& channel = run.channel;
-  const double droplet_reach = reach(run, free_droplet(run));
-  const double narrowest = run.model == Model::dp ? 2 * units::regular_edge_length(run.dp.vertices) : 0;
+  const double droplet_reach = model_of(run).reach(run);
+  const double narrowest = 2 * model_of(run).narrowest(run);
   if (!(channel.orifice > narrowest))
     refuse("orifice", channel.orifice,
            "not wider than two vertex diameters, " + rounded_text(narrowest) + " sigma) try 0.7");
@@ -73,19 +74,29 @@ ObstacleArray wedges(const RunParameters& run) {
                     .axis = {0, side},
                     .half_angle = half_angle,
                     .radius = channel.tip_radius});
-  return ObstacleArray(open_box, {}, std::move(both));
+  return {open_box, {}, std::move(both)};
 }
 
 /// On the channel's axis.
 DropletState release_upstream(const RunParameters& run, const ObstacleArray&) {
-  return at_rest(free_droplet(run), middle_of_open_box() + Eigen::Array2d(run.channel.start, 0));
+  return state_at_rest(model_of(run).free_shape(run),
+                       middle_of_open_box() + Eigen::Array2d(run.channel.start, 0), period_of_open_box());
 }
 
 double way_to_end(const RunParameters& run) { return run.channel.end - run.channel.start; }
 
 }  // namespace
 
-const Scene channel_scene = {nothing_to_check, check_clearance,  tip_diameter,
-                             wedges,           release_upstream, way_to_end};
+const Scene channel_scene = {.finding = Finding::passage,
+                             .walls_from = WallsFrom::droplet,
+                             .is_random = false,
+                             .gap_key = "orifice",
+                             .check = nothing_to_check,
+                             .resolve = check_clearance,
+                             .sharpest_bend = tip_diameter,
+                             .density = no_density,
+                             .walls = wedges,
+                             .release = release_upstream,
+                             .way = way_to_end};
 
 }  // namespace clog

@@ -3,13 +3,14 @@
 #include <optional>
 #include <string>
 
+#include "clog/core/droplet/release.hpp"
+#include "clog/core/model/model.hpp"
 #include "clog/core/parameters/schema.hpp"
-#include "clog/core/scene/release.hpp"
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/units.hpp"
 #include "clog/core/world/lattice.hpp"
-#include "core/scene/refusal.hpp"
-#include "core/scene/sampled_arrays.hpp"
+#include "core/parameters/refusal.hpp"
+#include "core/scene/arrays.hpp"
 
 namespace clog {
 namespace {
@@ -44,22 +45,35 @@ void find_period(RunParameters& run) {
   obstacles.lattice_angle = lattice->angle;
 }
 
-double diameter(const RunParameters& run) { return run.obstacles.smallest_diameter(); }
+double density(const ObstacleParameters& obstacles) {
+  return 1 / ((obstacles.diameter + obstacles.gap) * (obstacles.diameter + obstacles.gap));
+}
 
 ObstacleArray lattice(const RunParameters& run) { return lattice_obstacles(run.obstacles, run.seed); }
 
 /// In a lattice all voids are alike, so where in one a droplet starts is up to the seed (lattice_obstacles):
 /// if it touches nothing at the box's centre it starts right there, as if there were no obstacles.
 DropletState release_in_lattice(const RunParameters& run, const ObstacleArray& obstacles) {
+  const DropletModel& model = model_of(run);
   const double centre = obstacles.period().box / 2;
   const bool starts_free =
-      clearance(obstacles, centre, centre, 2 * units::droplet_diameter) > reach(run, free_droplet(run));
-  return starts_free ? release_droplet(run, ObstacleArray(obstacles.period(), {}))
-                     : release_droplet(run, obstacles);
+      clearance(obstacles, centre, centre, 2 * units::droplet_diameter) > model.reach(run);
+  return starts_free ? model.release(run, ObstacleArray(obstacles.period(), {}))
+                     : model.release(run, obstacles);
 }
 
 }  // namespace
 
-const Scene lattice_scene = {check_spacing, find_period, diameter, lattice, release_in_lattice, endless_way};
+const Scene lattice_scene = {.finding = Finding::clogging_length,
+                             .walls_from = WallsFrom::parameters,
+                             .is_random = false,
+                             .gap_key = "obstacle-gap",
+                             .check = check_spacing,
+                             .resolve = find_period,
+                             .sharpest_bend = smallest_diameter,
+                             .density = density,
+                             .walls = lattice,
+                             .release = release_in_lattice,
+                             .way = endless_way};
 
 }  // namespace clog

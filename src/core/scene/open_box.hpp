@@ -1,18 +1,18 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 
-#include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/parameters/parameters.hpp"
 
 namespace clog {
 
 /// Channels and walls have no periodic images: the box is only where their coordinates live [sigma].
 inline constexpr double open_box = 256;
 inline Eigen::Array2d middle_of_open_box() { return {open_box / 2, open_box / 2}; }
+inline Eigen::Array2d period_of_open_box() { return {open_box, open_box}; }
 
-/// A droplet at rest.
-/// @param droplet  around the origin
-/// @param place    of its centre
-DropletState at_rest(Eigen::ArrayXd droplet, const Eigen::Array2d& place);
+/// There are no circles to be counted.
+inline double no_density(const ObstacleParameters&) { return std::numeric_limits<double>::quiet_NaN(); }
 
 }  // namespace clog

@@ -1,17 +1,18 @@
 #include <algorithm>
 #include <boost/random/uniform_01.hpp>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <random>
 #include <string>
 #include <tuple>
 #include <vector>
 
-#include "clog/core/scene/release.hpp"
+#include "clog/core/model/model.hpp"
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/units.hpp"
-#include "core/scene/refusal.hpp"
-#include "core/scene/sampled_arrays.hpp"
+#include "core/parameters/refusal.hpp"
+#include "core/scene/arrays.hpp"
 
 namespace clog {
 namespace {
@@ -32,7 +33,7 @@ std::vector<Obstacle> circles_of(const ObstacleParameters& obstacles) {
   return circles;
 }
 
-double smallest_diameter(const RunParameters& run) {
+double smallest_circle(const RunParameters& run) {
   if (!run.obstacles.own || !run.obstacles.own->are_known()) return run.obstacles.diameter;
   const std::vector<Obstacle> circles = circles_of(run.obstacles);
   const auto smallest =
@@ -84,7 +85,7 @@ void check_circles(const RunParameters& run) {
     refuse_circles(*obstacles.own,
                    both + " touch or overlap, by " + rounded_text(-pair.gap) +
                        " sigma, across the border of the box too) move them apart or make them smaller");
-  const double edge = run.model == Model::dp ? units::regular_edge_length(run.dp.vertices) : 0;
+  const double edge = model_of(run).narrowest(run);
   if (pair.gap <= edge)
     refuse_circles(*obstacles.own, both + " leave a gap of " + rounded_text(pair.gap) +
                                        " sigma, not wider than an edge, " + rounded_text(edge) +
@@ -115,12 +116,29 @@ ObstacleArray shifted_circles(const RunParameters& run) {
       circle.y += y;
     }
   }
-  return ObstacleArray(period, std::move(circles));
+  return {period, std::move(circles)};
+}
+
+double density(const ObstacleParameters& obstacles) {
+  return obstacles.density.value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+DropletState release_among_circles(const RunParameters& run, const ObstacleArray& obstacles) {
+  return model_of(run).release(run, obstacles);
 }
 
 }  // namespace
 
-const Scene own_circles_scene = {check_circles,   find_gap_and_density, smallest_diameter,
-                                 shifted_circles, release_droplet,      endless_way};
+const Scene own_circles_scene = {.finding = Finding::clogging_length,
+                                 .walls_from = WallsFrom::circles,
+                                 .is_random = true,
+                                 .gap_key = "obstacle-gap",
+                                 .check = check_circles,
+                                 .resolve = find_gap_and_density,
+                                 .sharpest_bend = smallest_circle,
+                                 .density = density,
+                                 .walls = shifted_circles,
+                                 .release = release_among_circles,
+                                 .way = endless_way};
 
 }  // namespace clog

@@ -4,8 +4,8 @@
 
 namespace clog {
 
-const Scene& scene_of(const RunParameters& run) {
-  switch (run.obstacles.layout) {
+const Scene& scene_of(const ObstacleParameters& obstacles) {
+  switch (obstacles.layout) {
     case ObstacleLayout::random:
       return random_array_scene;
     case ObstacleLayout::lattice:
@@ -19,5 +19,7 @@ const Scene& scene_of(const RunParameters& run) {
   }
   throw std::logic_error("a layout without a scene");
 }
+
+const Scene& scene_of(const RunParameters& run) { return scene_of(run.obstacles); }
 
 }  // namespace clog

@@ -33,7 +33,7 @@ void expect_identical(const RunResult& a, const RunResult& b) {
   EXPECT_EQ(a.kinetic_energy_ratio, b.kinetic_energy_ratio);
   EXPECT_EQ(a.shape_parameter, b.shape_parameter);
   EXPECT_EQ(a.steps, b.steps);
-  EXPECT_EQ(a.mechanism, b.mechanism);
+  EXPECT_EQ(a.hold.mechanism, b.hold.mechanism);
 }
 
 void expect_diverged(const RunResult& result) {
@@ -115,7 +115,7 @@ TEST(DropletRun, EndsFlowingWhenItsTimeIsUp) {
   const RunResult result = result_of(parameters, 100);
   EXPECT_EQ(result.status, RunStatus::flowing);
   EXPECT_NEAR(result.time, 40, 1e-3);  // a whole number of steps
-  EXPECT_EQ(result.mechanism, ClogMechanism::none);
+  EXPECT_EQ(result.hold.mechanism, ClogMechanism::none);
   EXPECT_GT(result.distance, 0.5);
   EXPECT_GT(result.speed.mean, 0.5 * parameters.drag.terminal_speed);
 }
@@ -130,8 +130,8 @@ TEST(DropletRun, AStiffDropletInNarrowGapsClogsAndStaysWhereItIs) {
   ASSERT_EQ(run.result().status, RunStatus::clogged);
   EXPECT_LT(run.result().kinetic_energy_ratio, 1e-17);
   EXPECT_LT(run.result().time, 5000);
-  EXPECT_EQ(run.result().mechanism, ClogMechanism::squeezed);
-  EXPECT_GE(run.result().geometry.num_arcs, 2);
+  EXPECT_EQ(run.result().hold.mechanism, ClogMechanism::squeezed);
+  EXPECT_GE(run.result().hold.geometry.num_arcs, 2);
 
   // Integrating on must not set it free: the same run with a threshold it cannot reach.
   RunParameters on = parameters;
@@ -205,7 +205,7 @@ TEST(DropletRun, FollowsASoftDiskToo) {
   const RunResult result = result_of(resolve(parameters), 1000);
   EXPECT_EQ(result.status, RunStatus::clogged);
   EXPECT_EQ(result.shape_parameter, 1);
-  EXPECT_EQ(result.mechanism, ClogMechanism::squeezed);
+  EXPECT_EQ(result.hold.mechanism, ClogMechanism::squeezed);
 }
 
 }  // namespace

@@ -9,8 +9,10 @@
 #include <ostream>
 #include <string>
 
+#include "clog/core/polygon/automatic_values.hpp"
 #include "clog/core/polygon/stability.hpp"
 #include "clog/core/run/resolve.hpp"
+#include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/units.hpp"
 #include "clog/core/world/lattice.hpp"
@@ -167,7 +169,8 @@ TEST(Resolve, FillsInTheLargestStepThatHolds) {
         EXPECT_LE(*resolved.time_step, 0.1 * terminal_speed);
         // Two digits are kept of the smallest of its bounds.
         const double vertex_mass = units::droplet_mass / vertices;
-        const double contact = std::sqrt(0.01 * vertex_mass / expected_pressure(resolved));
+        const double contact = std::sqrt(
+            0.01 * vertex_mass / expected_pressure(resolved, scene_of(resolved).sharpest_bend(resolved)));
         RunParameters larger = resolved;
         larger.wall_stiffness.reset();
         larger.time_step = *resolved.time_step * 1.1 / std::sqrt(auto_step_margin);
@@ -181,7 +184,9 @@ TEST(Resolve, FillsInTheSoftestAreaThatKeepsItsSize) {
   RunParameters run;
   run.dp.line_tension = 0.3;
   const RunParameters soft = resolve(run);
-  EXPECT_NEAR(expected_pressure(soft) / *soft.dp.area_stiffness / units::rest_area, 2e-3, 1e-4);
+  EXPECT_NEAR(expected_pressure(soft, scene_of(soft).sharpest_bend(soft)) / *soft.dp.area_stiffness /
+                  units::rest_area,
+              2e-3, 1e-4);
   run.dp.line_tension = 10;
   EXPECT_EQ(resolve(run).dp.area_stiffness, 1e4);  // the published one
 }

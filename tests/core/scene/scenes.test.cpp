@@ -1,5 +1,6 @@
+#include "clog/core/droplet/release.hpp"
+#include "clog/core/model/model.hpp"
 #include "clog/core/run/droplet_run.hpp"
-#include "clog/core/scene/release.hpp"
 
 #include <gtest/gtest.h>
 
@@ -343,7 +344,7 @@ TEST(InAChannel, RefusesWhatCannotBe) {
 
 TEST(FreeDroplet, IsInEquilibrium) {
   const RunParameters run = resolve(parameters(10));
-  const double area = polygon_shape(free_droplet(run)).area;
+  const double area = polygon_shape(model_of(run).free_shape(run)).area;
   // K_a (a_0 - a) = Gamma/R.
   EXPECT_NEAR(*run.dp.area_stiffness * (units::rest_area - area), 10 / std::sqrt(area / pi), 1e-2);
 }

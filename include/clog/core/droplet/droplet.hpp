@@ -35,6 +35,8 @@ class Droplet {
   virtual PotentialEnergy potential_energy() const = 0;
   /// Centre of mass: of the area where the weight acts on it, otherwise the vertices' mean [sigma], local.
   virtual Eigen::Array2d centre() const { return state_.centre(); }
+  /// The area's centroid, wherever the weight acts [sigma], local.
+  virtual Eigen::Array2d area_centre() const { return state_.centre(); }
   /// [sqrt(sigma g)]
   virtual Eigen::Array2d centre_velocity() const { return state_.mean_velocity(); }
   /// Area, perimeter; those of the undeformed disk for the soft disk.

@@ -27,6 +27,7 @@ class DpDroplet final : public Droplet {
   void start_afresh() override;
   double kinetic_energy() const override;
   Eigen::Array2d centre() const override;
+  Eigen::Array2d area_centre() const override { return area_centroid(state_.position); }
   Eigen::Array2d centre_velocity() const override;
   PolygonShape shape() const override { return polygon_shape(state_.position); }
   PotentialEnergy potential_energy() const override { return forces_.energy(state_); }

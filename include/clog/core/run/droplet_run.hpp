@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "clog/core/droplet/droplet.hpp"
+#include "clog/core/droplet/hold.hpp"
 #include "clog/core/parameters/parameters.hpp"
-#include "clog/core/polygon/clog_geometry.hpp"
 #include "clog/core/run/displacement_record.hpp"
 #include "clog/core/run/passage.hpp"
 #include "clog/core/world/obstacle_array.hpp"
@@ -49,12 +49,11 @@ struct RunResult {
   TravelSpeed speed;                ///< of the way so far
   double kinetic_energy_ratio = 0;  ///< E_k/E_t at the end
   double shape_parameter = 0;       ///< A at the end, certified: at rest
-  ClogMechanism mechanism = ClogMechanism::none;  ///< what holds it; a soft disk is always squeezed
-  ClogGeometry geometry;                          ///< of a clogged polygon, certified: at rest
-  Passage passage;                                ///< through a channel; NaN elsewhere
-  Sag sag;                                        ///< certified: at rest
-  std::int64_t steps = 0;                         ///< integrated steps, sub-steps counted singly
-  std::string message;                            ///< why it failed
+  Hold hold;                        ///< of a clogged droplet, certified: at rest
+  Passage passage;                  ///< through a channel; NaN elsewhere
+  Sag sag;                          ///< certified: at rest
+  std::int64_t steps = 0;           ///< integrated steps, sub-steps counted singly
+  std::string message;              ///< why it failed
 };
 
 /// One droplet followed from its release until it clogs, passes the end of its way, or its time is up.
@@ -129,10 +128,10 @@ class DropletRun {
   Passage passage_;  // through a channel
   std::vector<std::byte> snapshot_;
 
-  bool is_in_channel() const { return run_.obstacles.layout == ObstacleLayout::channel; }
+  bool is_passage() const;
   bool has_fallen() const { return time() > first_quiet_time_; }
   void check();
-  Sag sag(const DropletState& state) const;
+  Sag sag(const Droplet& droplet) const;
   void take_snapshot();
   bool is_quiet(double energy_ratio);
   bool finds_rest(double energy_ratio);

@@ -6,9 +6,26 @@
 
 namespace clog {
 
+/// What runs in a scene are there to tell.
+enum class Finding { clogging_length, passage, sag };
+
+/// What walls follow from.
+enum class WallsFrom {
+  parameters,  ///< of the obstacles alone; they may take long to sample
+  circles,     ///< that a user gave
+  droplet      ///< where they stand depends on it; they are made at once
+};
+
 /// What a droplet meets, where it starts, and where its way ends. There is one scene for each ObstacleLayout:
 /// a new one is a word of that, a file beside these with a scene of its own, and a line in scene.cpp.
 struct Scene {
+  Finding finding;
+  WallsFrom walls_from;
+  /// Is an array random, so that a droplet that has travelled a period meets what it met before?
+  bool is_random;
+  /// Key of the parameter that says how narrow it is; nullptr without any.
+  const char* gap_key;
+
   /// Refuses what cannot be, before any automatic value is known: of each parameter alone, check_each() has
   /// looked at it. @throws Error
   void (*check)(const RunParameters& run);
@@ -16,6 +33,8 @@ struct Scene {
   void (*resolve)(RunParameters& run);
   /// Of the sharpest bend that the interface is expected to take, as a diameter [sigma].
   double (*sharpest_bend)(const RunParameters& run);
+  /// Obstacles per area [1/sigma^2]; NaN if there are none, or only the array itself could tell.
+  double (*density)(const ObstacleParameters& obstacles);
 
   // Of resolved parameters:
   ObstacleArray (*walls)(const RunParameters& run);
@@ -26,6 +45,7 @@ struct Scene {
 };
 
 const Scene& scene_of(const RunParameters& run);
+const Scene& scene_of(const ObstacleParameters& obstacles);
 
 extern const Scene random_array_scene, lattice_scene, own_circles_scene, channel_scene, wall_scene;
 

@@ -1,4 +1,4 @@
-#include "core/scene/refusal.hpp"
+#include "core/parameters/refusal.hpp"
 
 #include <cmath>
 #include <sstream>

@@ -1,5 +1,6 @@
-#include "clog/core/scene/release.hpp"
-#include "clog/core/scene/fire.hpp"
+#include "clog/core/droplet/release.hpp"
+#include "clog/core/droplet/fire.hpp"
+#include "clog/core/model/model.hpp"
 
 #include <gtest/gtest.h>
 
@@ -31,7 +32,7 @@ TEST(Release, NeverEnclosesAnObstacleAndStartsAtRest) {
       run.seed = seed;
       run = resolve(run);
       const ObstacleArray obstacles = sample_obstacles(run.obstacles, seed);
-      const DropletState state = release_droplet(run, obstacles);
+      const DropletState state = model_of(run).release(run, obstacles);
       EXPECT_EQ(num_enclosed(state, obstacles), 0) << "seed " << seed;
 
       DpForces forces(run, obstacles);
@@ -56,7 +57,7 @@ TEST(Release, ComesToRestWhereSpringsKeepTheInterfaceSliding) {
     run.dp.vertices = vertices;
     run = resolve(run);
     const ObstacleArray obstacles = sample_obstacles(run.obstacles, seed);
-    const DropletState state = release_droplet(run, obstacles);
+    const DropletState state = model_of(run).release(run, obstacles);
     EXPECT_EQ(num_enclosed(state, obstacles), 0);
     DpForces forces(run, obstacles);
     forces.set_weight(0);
@@ -69,7 +70,7 @@ TEST(Release, ComesToRestWhereSpringsKeepTheInterfaceSliding) {
 
 TEST(Release, StartsAsARegularPolygonWhereThereIsRoom) {
   RunParameters run = resolve(in_small_box(1, 0.2));
-  const DropletState state = release_droplet(run, test::no_obstacles(12));
+  const DropletState state = model_of(run).release(run, test::no_obstacles(12));
   const Eigen::Array2d centre = state.frame.global(state.centre());
   EXPECT_NEAR(centre[0], 6, 1e-12);
   EXPECT_NEAR(centre[1], 6, 1e-12);
@@ -79,7 +80,7 @@ TEST(Release, StartsAsARegularPolygonWhereThereIsRoom) {
 TEST(Release, MovesOffAnObstacleInTheMiddle) {
   RunParameters run = resolve(in_small_box(1, 0.2));
   const ObstacleArray obstacle(12, {{6, 6, 0.15}});
-  const DropletState state = release_droplet(run, obstacle);
+  const DropletState state = model_of(run).release(run, obstacle);
   EXPECT_EQ(num_enclosed(state, obstacle), 0);
 }
 
@@ -89,7 +90,7 @@ TEST(Release, RefusesWhereThereIsNoVoid) {
   for (double x = 0; x < 12; x += 0.1)
     for (double y = 0; y < 12; y += 0.1) carpet.push_back({x, y, 0.08});
   RunParameters run = resolve(in_small_box(1, 0.2));
-  EXPECT_THROW(release_droplet(run, ObstacleArray(12, carpet)), Error);
+  EXPECT_THROW(model_of(run).release(run, ObstacleArray(12, carpet)), Error);
 }
 
 TEST(Release, LeavesASoftDiskWithoutForce) {
@@ -99,7 +100,7 @@ TEST(Release, LeavesASoftDiskWithoutForce) {
   run = resolve(run);
   for (std::uint32_t seed = 1; seed <= 10; ++seed) {
     const ObstacleArray obstacles = sample_obstacles(run.obstacles, seed);
-    const DropletState state = release_droplet(run, obstacles);
+    const DropletState state = model_of(run).release(run, obstacles);
     SpForces forces(run, obstacles);
     forces.set_weight(0);
     forces.update_contacts(state, {});

@@ -1,59 +1,20 @@
-#include "clog/core/scene/release.hpp"
+#include "core/polygon/polygon_release.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include "clog/core/disk/sp_droplet.hpp"
+#include "clog/core/droplet/fire.hpp"
+#include "clog/core/droplet/release.hpp"
 #include "clog/core/droplet/shape.hpp"
 #include "clog/core/polygon/dp_forces.hpp"
 #include "clog/core/polygon/stability.hpp"
-#include "clog/core/scene/fire.hpp"
-#include "clog/core/tools/error.hpp"
-#include "clog/core/tools/portable_math.hpp"
 #include "clog/core/tools/units.hpp"
 
 namespace clog {
 namespace {
 
 constexpr double radius = units::droplet_diameter / 2;
-
-/// Climbs from the centre of the period to the nearest place that is farther from all obstacles than its
-/// surroundings.
-Eigen::Array2d nearest_void(const ObstacleArray& obstacles) {
-  const double enough = 2 * units::droplet_diameter;
-  Eigen::Array2d place{obstacles.period().along() / 2, obstacles.period().across() / 2};
-  double room = clearance(obstacles, place[0], place[1], enough);
-  for (double step = 0.1; step > 1e-4 && room < enough;) {
-    bool climbed = false;
-    for (int direction = 0; direction < 8; ++direction) {
-      const double angle = direction * std::numbers::pi / 4;
-      const Eigen::Array2d trial = place + step * Eigen::Array2d(portable::cos(angle), portable::sin(angle));
-      const double trial_room = clearance(obstacles, trial[0], trial[1], enough);
-      if (trial_room > room) {
-        room = trial_room;
-        place = trial;
-        climbed = true;
-        break;
-      }
-    }
-    if (!climbed) step /= 2;
-  }
-  return place;
-}
-
-LocalFrame frame_around(const Eigen::Array2d& place, const Period& period) {
-  LocalFrame frame{.period = {period.along(), period.across()}};
-  frame.shift(place.floor());
-  return frame;
-}
-
-[[noreturn]] void refuse_release(const std::string& reason, const std::string& remedy) {
-  throw Error("cannot release the droplet (" + reason + ") try " + remedy + ", or another seed");
-}
 
 /// A polygon smaller than the droplet has a smaller perimeter: a stiffer tension mode, a softer area mode.
 FireOptions fire_options(const RunParameters& run, double perimeter) {
@@ -78,13 +39,8 @@ Seed seed_polygon(const RunParameters& run, const ObstacleArray& obstacles) {
     refuse_release("no void near the centre of the box",
                    "a wider obstacle-gap or a smaller self-contact-range");
   const double area = units::rest_area * std::min(1.0, room * room / (radius * radius));
-  DropletState state;
-  state.frame = frame_around(place, obstacles.period());
-  state.position = regular_polygon(n, area);
-  state.velocity = Eigen::ArrayXd::Zero(Eigen::Index{2} * n);
-  state.x() += place[0] - state.frame.origin[0];
-  state.y() += place[1] - state.frame.origin[1];
-  return {std::move(state), area};
+  const Period& period = obstacles.period();
+  return {state_at_rest(regular_polygon(n, area), place, {period.along(), period.across()}), area};
 }
 
 /// The droplet grows with every contact, and its vertices are kept evenly spread, whatever its own interface
@@ -145,7 +101,9 @@ bool comes_to_rest(RunParameters& growing, const ObstacleArray& obstacles, DpFor
   return rests;
 }
 
-DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles) {
+}  // namespace
+
+DropletState release_polygon(const RunParameters& run, const ObstacleArray& obstacles) {
   auto [state, area] = seed_polygon(run, obstacles);
   RunParameters growing = with_growing_interface(run);
   DpForces forces = weightless_forces(growing, obstacles);
@@ -171,78 +129,6 @@ DropletState release_dp(const RunParameters& run, const ObstacleArray& obstacles
   if (num_enclosed(state, obstacles) > 0)
     refuse_release("the grown droplet encloses an obstacle", "more vertices");
   return state;
-}
-
-DropletState release_sp(const RunParameters& run, const ObstacleArray& obstacles) {
-  const Eigen::Array2d place = nearest_void(obstacles);
-  DropletState state;
-  state.frame = frame_around(place, obstacles.period());
-  state.position = place - state.frame.origin;
-  state.velocity = Eigen::ArrayXd::Zero(2);
-  SpForces forces(run, obstacles);
-  forces.set_weight(0);
-  const double weight = units::droplet_mass * units::gravity;
-  const double omega =
-      std::sqrt(contact_stiffness(*run.wall_stiffness, units::droplet_diameter) / units::droplet_mass);
-  const FireOptions options{.mass = units::droplet_mass,
-                            .largest_step = 0.2 / omega,
-                            .force_tolerance = release_force_tolerance * weight,
-                            .max_iterations = 100000,
-                            .max_move = 0.01};
-  if (!minimize_fire(forces, state, options).converged)
-    refuse_release("the soft disk does not come to rest", "a smaller wall-stiffness");
-  return state;
-}
-
-}  // namespace
-
-double clearance(const ObstacleArray& obstacles, double x, double y, double limit) {
-  std::vector<Obstacle> near;
-  obstacles.gather({x, y, 0, 0, 0, 0, limit}, near);
-  double nearest = limit;
-  for (const Obstacle& obstacle : near)
-    nearest = std::min(nearest, std::hypot(obstacle.x, obstacle.y) - obstacle.radius);
-  return nearest;
-}
-
-int num_enclosed(const DropletState& state, const ObstacleArray& obstacles) {
-  std::vector<Obstacle> near;
-  const auto x = state.x();
-  const auto y = state.y();
-  obstacles.gather({state.frame.origin[0], state.frame.origin[1], x.minCoeff(), x.maxCoeff(), y.minCoeff(),
-                    y.maxCoeff(), 0},
-                   near);
-  return static_cast<int>(std::count_if(near.begin(), near.end(), [&](const Obstacle& obstacle) {
-    return encloses(state.position, obstacle.x, obstacle.y);
-  }));
-}
-
-Eigen::ArrayXd free_droplet(const RunParameters& run) {
-  if (run.model == Model::sp) return Eigen::ArrayXd::Zero(2);
-  const int n = run.dp.vertices;
-  const double spring =
-      run.dp.perimeter_spring == PerimeterSpring::rest ? run.dp.perimeter_stiffness.value() * n : 0;
-  const double rest_edge = units::regular_edge_length(n);
-  // K_a (a_0 - a) = T dP/da, T the tension of an edge; dP/da = P/(2a). The correction is small, so iterating
-  // converges at once; a droplet that is no stiffer than its tension has no such state, and keeps half of
-  // a_0.
-  double area = units::rest_area;
-  for (int i = 0; i < 50; ++i) {
-    const double edge = units::regular_edge_length(n, area);
-    const double tension = run.dp.line_tension + spring * (edge - rest_edge);
-    area = std::max(units::rest_area / 2,
-                    units::rest_area - tension * n * edge / (2 * area) / *run.dp.area_stiffness);
-  }
-  return regular_polygon(n, area);
-}
-
-double reach(const RunParameters& run, const Eigen::ArrayXd& droplet) {
-  if (run.model == Model::sp) return units::droplet_diameter / 2;
-  return droplet.head(droplet.size() / 2).maxCoeff() + run.dp.contact_range.value();
-}
-
-DropletState release_droplet(const RunParameters& run, const ObstacleArray& obstacles) {
-  return run.model == Model::dp ? release_dp(run, obstacles) : release_sp(run, obstacles);
 }
 
 }  // namespace clog

@@ -1,6 +1,7 @@
-#include "clog/core/run/equilibrium.hpp"
+#include "clog/core/droplet/equilibrium.hpp"
+#include "clog/core/model/model.hpp"
 
-#include "clog/core/scene/release.hpp"
+#include "clog/core/droplet/release.hpp"
 
 #include <gtest/gtest.h>
 
@@ -44,7 +45,7 @@ RunParameters soft_disk(double wall_stiffness = 5) {
 
 /// At rest, above obstacles around x = 10.
 DropletState droplet_above(const RunParameters& run, double y) {
-  DropletState state = test::state_of(free_droplet(run));
+  DropletState state = test::state_of(model_of(run).free_shape(run));
   state.x() += 9.3;
   state.y() += y;
   return state;
@@ -123,19 +124,19 @@ TEST_P(Certified, RestIsFoundFromNearbyOnly) {
   DropletRun droplet = falls_onto(run, narrow_gap);
   while (droplet.time() < 1 || droplet.kinetic_energy_ratio() > 1e-4) droplet.advance(1);
   const DropletState slow = droplet.droplet().state();
-  const auto found = find_equilibrium(run, droplet.obstacles(), slow);
+  const auto found = model_of(run).equilibrium(run, droplet.obstacles(), slow);
   ASSERT_TRUE(found.has_value());
   while (!droplet.advance(100)) {
   }
   EXPECT_LT((centre(*found) - centre(droplet.droplet().state())).matrix().norm(), 1e-3);
   DropletState far = slow;
   far.x() -= 2 * farthest_rest;
-  EXPECT_FALSE(find_equilibrium(run, droplet.obstacles(), far).has_value());
+  EXPECT_FALSE(model_of(run).equilibrium(run, droplet.obstacles(), far).has_value());
 }
 
 TEST_P(Certified, AFallingDropletHasNoEquilibrium) {
   const RunParameters run = resolve(parameters());
-  EXPECT_FALSE(find_equilibrium(run, test::no_obstacles(), droplet_above(run, 10)).has_value());
+  EXPECT_FALSE(model_of(run).equilibrium(run, test::no_obstacles(), droplet_above(run, 10)).has_value());
 }
 
 TEST_P(Certified, ADropletOnAFlatWallCouldDriftAside) {
@@ -161,7 +162,7 @@ TEST(Equilibrium, OfASoftDiskInAGapIsWhereTheForcesBalance) {
   while (high - low > 1e-14) (pull((low + high) / 2) > 0 ? low : high) = (low + high) / 2;
   Eigen::ArrayXd position(2);
   position << low + 0.01, 10.01;
-  const auto found = find_equilibrium(run, ObstacleArray(20, narrow_gap), test::state_of(position));
+  const auto found = model_of(run).equilibrium(run, ObstacleArray(20, narrow_gap), test::state_of(position));
   ASSERT_TRUE(found.has_value());
   EXPECT_NEAR(found->position[0], low, 1e-8);
   EXPECT_NEAR(found->position[1], 10, 1e-8);
@@ -174,7 +175,7 @@ TEST(Equilibrium, TooFarAwayIsRefused) {
   Eigen::ArrayXd position(2);
   position << 9.7, 10;
   DropletState state = test::state_of(position);
-  const auto search = [&] { return find_equilibrium(run, obstacles, state); };
+  const auto search = [&] { return model_of(run).equilibrium(run, obstacles, state); };
   for (int step = 0; step < 100 && !search(); ++step) state.position[0] -= 0.01;
   ASSERT_TRUE(search().has_value());
   const double rest = search()->position[0];
@@ -188,7 +189,8 @@ TEST(Equilibrium, OnTopOfAnObstacleIsRefused) {
   const RunParameters run = resolve(soft_disk());
   Eigen::ArrayXd position(2);
   position << 10 - 0.65 + pi / (16 * 5), 10;  // no force is left
-  EXPECT_FALSE(find_equilibrium(run, ObstacleArray(20, single), test::state_of(position)).has_value());
+  EXPECT_FALSE(
+      model_of(run).equilibrium(run, ObstacleArray(20, single), test::state_of(position)).has_value());
 }
 
 /// Near the largest line tension that passes this orifice, about 1.26 with its round tips.
@@ -205,8 +207,9 @@ TEST(Equilibrium, IsNotSeenByADropletThatCreepsThroughAnOrifice) {
   for (int num_checks = 1; !droplet.advance(1); ++num_checks) {
     if (droplet.time() > 5) slowest = std::min(slowest, droplet.kinetic_energy_ratio());
     if (num_checks % 100 == 0) {
-      ASSERT_FALSE(
-          find_equilibrium(droplet.parameters(), droplet.obstacles(), droplet.droplet().state()).has_value());
+      ASSERT_FALSE(model_of(droplet.parameters())
+                       .equilibrium(droplet.parameters(), droplet.obstacles(), droplet.droplet().state())
+                       .has_value());
     }
   }
   EXPECT_LT(slowest, 5e-5) << "it never looked as if it were at rest";

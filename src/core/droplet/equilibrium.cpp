@@ -1,4 +1,4 @@
-#include "clog/core/run/equilibrium.hpp"
+#include "clog/core/droplet/equilibrium.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -8,8 +8,6 @@
 #include <cmath>
 #include <utility>
 
-#include "clog/core/disk/sp_droplet.hpp"
-#include "clog/core/polygon/dp_forces.hpp"
 #include "clog/core/tools/units.hpp"
 
 namespace clog {
@@ -29,46 +27,6 @@ constexpr double difference_step = 1e-6;
 constexpr double force_tolerance = 1e-7;
 /// Way that is left [sigma].
 constexpr double move_tolerance = 1e-7;
-
-/// Coordinates of a displacement: of every vertex first that normal to the interface, to the chord between
-/// its neighbours, then that along it. Of the soft disk: x, y.
-struct Axes {
-  Eigen::SparseMatrix<double> directions;  ///< orthonormal columns over all x, then all y
-  /// The interface slides around itself: unit vector over the displacements along it, empty where that counts
-  /// as any other motion. After one edge the polygon is the same again, with other names for its vertices:
-  /// the energy only has ripples along this way, from the edges' corners on obstacles, and however far a
-  /// droplet slides, it goes nowhere. So neither the force along it nor the stiffness is asked for. It is the
-  /// last motion to die out, and may stand on top of a ripple now.
-  VectorXd slide;
-};
-
-Axes axes_of(const RunParameters& run, const DropletState& state) {
-  const Index n = state.size();
-  Axes axes{.directions = Eigen::SparseMatrix<double>(2 * n, 2 * n), .slide = VectorXd(n)};
-  if (run.model == Model::sp) {
-    axes.directions.setIdentity();
-    axes.slide.resize(0);
-    return axes;
-  }
-  axes.directions.reserve(Eigen::VectorXi::Constant(2 * n, 2));
-  for (Index i = 0; i < n; ++i) {
-    const Index next = (i + 1) % n;
-    const Index previous = (i + n - 1) % n;
-    const double chord_x = state.x()[next] - state.x()[previous];
-    const double chord_y = state.y()[next] - state.y()[previous];
-    const double length = std::hypot(chord_x, chord_y);
-    axes.directions.insert(i, i) = chord_y / length;
-    axes.directions.insert(n + i, i) = -chord_x / length;
-    axes.directions.insert(i, n + i) = chord_x / length;
-    axes.directions.insert(n + i, n + i) = chord_y / length;
-    axes.slide[i] = length;
-  }
-  axes.slide.normalize();
-  // Springs with an energy leave vertices unevenly spread, ripples are higher, and it pays to follow them to
-  // the end.
-  if (run.dp.perimeter_spring != PerimeterSpring::along) axes.slide.resize(0);
-  return axes;
-}  // NOLINT(clang-analyzer-unix.Malloc): the matrix takes its memory along
 
 MatrixXd symmetric(const MatrixXd& matrix) { return (matrix + matrix.transpose()) / 2; }
 
@@ -121,10 +79,9 @@ class Stiffness {
 };
 
 /// Forces along given axes, around a state that moves.
-template <class Forces>
 class ForceField {
  public:
-  ForceField(Forces& forces, DropletState state)
+  ForceField(const EquilibriumForces& forces, DropletState state)
       : forces_(forces), state_(std::move(state)), force_(state_.position.size()), below_(force_) {}
 
   const DropletState& state() const { return state_; }
@@ -157,7 +114,7 @@ class ForceField {
   }
 
  private:
-  Forces& forces_;
+  const EquilibriumForces& forces_;
   DropletState state_;
   ArrayXd force_, below_;
 
@@ -170,16 +127,17 @@ class ForceField {
   }
 };
 
+}  // namespace
+
 /// Newton's method, its steps cut until they shorten what is left of the way, as the stiffness here measures
 /// it (P. Deuflhard's natural monotonicity test). Measured by forces, hardly a step would pass: those of a
 /// contact that opens or closes outweigh all others.
-template <class Forces>
-std::optional<DropletState> relax(Forces& forces, const RunParameters& run, const DropletState& initial) {
+std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, const DropletState& initial) {
   const double point_weight = units::droplet_mass * units::gravity / static_cast<double>(initial.size());
-  ForceField<Forces> field(forces, initial);
+  ForceField field(forces, initial);
   ArrayXd position = initial.position;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    const Axes axes = axes_of(run, field.state());
+    const Axes axes = forces.axes(field.state());
     const VectorXd force = field.force_at(position, axes);
     const Stiffness stiffness(field.stiffness(axes));
     if (!stiffness.resists(least_stiffness * point_weight)) return std::nullopt;
@@ -197,18 +155,6 @@ std::optional<DropletState> relax(Forces& forces, const RunParameters& run, cons
     if ((position - initial.position).abs().maxCoeff() > farthest_rest) return std::nullopt;
   }
   return std::nullopt;
-}
-
-}  // namespace
-
-std::optional<DropletState> find_equilibrium(const RunParameters& run, const ObstacleArray& obstacles,
-                                             const DropletState& state) {
-  if (run.model == Model::sp) {
-    SpForces forces(run, obstacles);
-    return relax(forces, run, state);
-  }
-  DpForces forces(run, obstacles);
-  return relax(forces, run, state);
 }
 
 }  // namespace clog

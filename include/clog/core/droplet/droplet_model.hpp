@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+
+#include "clog/core/droplet/droplet.hpp"
+#include "clog/core/droplet/hold.hpp"
+#include "clog/core/parameters/parameters.hpp"
+#include "clog/core/world/obstacle_array.hpp"
+
+namespace clog {
+
+/// What a droplet is. There is one for each Model: a new one is a word of that, a folder beside `polygon` and
+/// `disk` with an object of its own, and a line in model.cpp.
+struct DropletModel {
+  /// Key of the parameter that says how stiff a droplet is.
+  const char* stiffness_key;
+
+  /// Of the points that move [1].
+  int (*num_points)(const RunParameters& run);
+  /// Of a passage that the droplet's points resolve: it has to be wider [sigma].
+  double (*narrowest)(const RunParameters& run);
+  /// Replaces automatic values by those that will be used, and refuses what cannot be once they are known.
+  /// @param sharpest_bend  see Scene  @throws Error
+  void (*resolve)(RunParameters& run, double sharpest_bend);
+
+  // Of resolved parameters:
+  /// The droplet without walls and weight, around the origin: all x, then all y [sigma].
+  Eigen::ArrayXd (*free_shape)(const RunParameters& run);
+  /// Distance from a free droplet's centre at which a wall begins to push it [sigma].
+  double (*reach)(const RunParameters& run);
+  /// A droplet at rest, without weight, near the centre of the box.
+  /// @throws Error if there is no room for it, or it does not relax
+  DropletState (*release)(const RunParameters& run, const ObstacleArray& obstacles);
+  /// One that moves. The obstacles must outlive it.
+  std::unique_ptr<Droplet> (*make)(const RunParameters& run, const ObstacleArray& obstacles,
+                                   DropletState initial);
+  /// Where it is about to come to rest, see find_equilibrium().
+  std::optional<DropletState> (*equilibrium)(const RunParameters& run, const ObstacleArray& obstacles,
+                                             const DropletState& state);
+  /// What holds a droplet that has clogged.
+  Hold (*hold)(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state);
+};
+
+extern const DropletModel deformable_polygon, soft_disk;
+
+}  // namespace clog

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+
+#include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/world/obstacle_array.hpp"
+
+namespace clog {
+
+/// Climbs from the centre of the period to the nearest place that is farther from all obstacles than its
+/// surroundings [sigma].
+Eigen::Array2d nearest_void(const ObstacleArray& obstacles);
+
+/// Distance from a point of the box to the nearest obstacle surface, at most `limit` [sigma].
+double clearance(const ObstacleArray& obstacles, double x, double y, double limit);
+
+/// A droplet at rest.
+/// @param droplet  around the origin: all x, then all y [sigma]
+/// @param place    of its centre [sigma]
+/// @param period   along and across the flow [sigma]
+DropletState state_at_rest(const Eigen::ArrayXd& droplet, const Eigen::Array2d& place,
+                           const Eigen::Array2d& period);
+
+/// Number of obstacles whose centre lies inside the polygon.
+int num_enclosed(const DropletState& state, const ObstacleArray& obstacles);
+
+/// @throws Error that tells both
+[[noreturn]] void refuse_release(const std::string& reason, const std::string& remedy);
+
+/// Largest force component, without weight and springs, that a droplet may be released with: relative to the
+/// weight of one vertex (DP), to its own weight (SP).
+inline constexpr double release_force_tolerance = 1e-4;
+/// The same for an interface that springs along it, which have no energy, keep sliding for ever: it goes
+/// round a cycle of 1e-3 sigma, and no force has been seen to exceed 0.01; the droplet as a whole stays where
+/// it is.
+inline constexpr double release_sliding_tolerance = 0.02;
+
+}  // namespace clog

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "clog/core/parameters/parameters.hpp"
+
+namespace clog {
+
+/// What of a droplet the step has to follow: a key, and how fast what it stands for would be [1/t0^2].
+struct Rate {
+  const char* key;
+  double value;
+  double squared;
+};
+
+/// Resolves the drag's relaxation time ten times [t0].
+double drag_time_step(const RunParameters& run);
+
+/// Takes this automatic step.
+/// @param rates  beside that of the drag
+/// @throws Error naming the key of the fastest rate if the step is too small to be of any use
+void choose_time_step(RunParameters& run, double time_step, std::vector<Rate> rates);
+
+/// Holds of every model: max-time and the drag's relaxation time are several steps. @throws Error
+void check_time_step(const RunParameters& run);
+
+}  // namespace clog

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "clog/core/parameters/parameters.hpp"
+
+namespace clog {
+
+/// The published range of contact [sigma].
+double half_vertex_diameter(const DpParameters& dp);
+
+/// K_l where none is given [g rho sigma]: a fraction of Gamma for springs to the rest length; 1 for those to
+/// the mean length; 0.003/V_t for those along the interface, which even out vertices at a rate of (2 pi)^2
+/// K_l V_t/M = 0.15/t0. Stiffer ones have been seen to flutter where the drag is weak, as they have no
+/// energy.
+double automatic_perimeter_stiffness(const RunParameters& run);
+
+/// Greatest pressure difference over the interface of a droplet held by obstacles that can be expected [g rho
+/// sigma]: that of its own curvature, of the sharpest bend (see Scene), and of a column of liquid one
+/// diameter tall.
+double expected_pressure(const RunParameters& run, double sharpest_bend);
+
+/// K_a where none is given [g rho / sigma]: the expected pressure changes the area by two thousandths, but at
+/// most the published 1e4, which soft droplets do not need and which would cost them steps.
+double automatic_area_stiffness(const RunParameters& run, double sharpest_bend);
+
+/// DropletModel::resolve of the polygon. The automatic step resolves the drag's relaxation time ten times;
+/// every stiff mode of a circle stays within auto_step_margin of its bound (stability.hpp), and an automatic
+/// contact, whose stiffness goes with the step, is so stiff that the expected pressure pushes an obstacle
+/// into the interface by a fiftieth of a vertex diameter. Rounded down to two digits.
+void resolve_polygon(RunParameters& run, double sharpest_bend);
+
+}  // namespace clog

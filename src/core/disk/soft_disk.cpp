@@ -1,0 +1,110 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "clog/core/disk/sp_droplet.hpp"
+#include "clog/core/droplet/droplet_model.hpp"
+#include "clog/core/droplet/equilibrium.hpp"
+#include "clog/core/droplet/fire.hpp"
+#include "clog/core/droplet/release.hpp"
+#include "clog/core/droplet/time_step.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/units.hpp"
+#include "core/parameters/refusal.hpp"
+
+namespace clog {
+namespace {
+
+/// Up to a dozen obstacles of a saturated array overlap a soft disk at once; (omega dt)^2 of all their
+/// contacts together is bounded as that of the polygon's modes is.
+constexpr double most_contacts = 12;
+constexpr double max_omega_dt2 = 3.0;
+
+int one_point(const RunParameters&) { return 1; }
+double no_width(const RunParameters&) { return 0; }
+
+/// On one obstacle [1/t0].
+double frequency(const RunParameters& run) {
+  return std::sqrt(contact_stiffness(*run.wall_stiffness, units::droplet_diameter) / units::droplet_mass);
+}
+
+/// The automatic step resolves the contact's period sixty times.
+void resolve_disk(RunParameters& run, double) {
+  if (!run.wall_stiffness)
+    throw Error(
+        "missing wall-stiffness (E_w is the parameter of model=sp, there is no automatic value) "
+        "give for example wall-stiffness=1");
+  const double omega = frequency(run);
+  if (!run.time_step)
+    choose_time_step(run, rounded_down(std::min(drag_time_step(run), 0.1 / omega)),
+                     {{"wall-stiffness", *run.wall_stiffness, 100 * omega * omega}});
+  check_time_step(run);
+  const double largest = std::sqrt(max_omega_dt2 / most_contacts) / omega;
+  require(*run.time_step <= largest, "time-step", *run.time_step, [&] {
+    return "contact has omega*dt = " + rounded_text(omega * *run.time_step) + ") try " +
+           rounded_text(0.99 * largest);
+  });
+}
+
+Eigen::ArrayXd centre_alone(const RunParameters&) { return Eigen::ArrayXd::Zero(2); }
+double radius(const RunParameters&) { return units::droplet_diameter / 2; }
+
+/// Relaxes from the void nearest to the centre.
+DropletState release_disk(const RunParameters& run, const ObstacleArray& obstacles) {
+  const Period& period = obstacles.period();
+  DropletState state =
+      state_at_rest(centre_alone(run), nearest_void(obstacles), {period.along(), period.across()});
+  SpForces forces(run, obstacles);
+  forces.set_weight(0);
+  const double weight = units::droplet_mass * units::gravity;
+  const FireOptions options{.mass = units::droplet_mass,
+                            .largest_step = 0.2 / frequency(run),
+                            .force_tolerance = release_force_tolerance * weight,
+                            .max_iterations = 100000,
+                            .max_move = 0.01};
+  if (!minimize_fire(forces, state, options).converged)
+    refuse_release("the soft disk does not come to rest", "a smaller wall-stiffness");
+  return state;
+}
+
+std::unique_ptr<Droplet> make_disk(const RunParameters& run, const ObstacleArray& obstacles,
+                                   DropletState initial) {
+  return std::make_unique<SpDroplet>(run, obstacles, std::move(initial));
+}
+
+Axes x_and_y(const DropletState& state) {
+  Axes axes{.directions = Eigen::SparseMatrix<double>(2 * state.size(), 2 * state.size()), .slide = {}};
+  axes.directions.setIdentity();
+  return axes;
+}
+
+std::optional<DropletState> equilibrium_of_disk(const RunParameters& run, const ObstacleArray& obstacles,
+                                                const DropletState& state) {
+  SpForces forces(run, obstacles);
+  return find_equilibrium(
+      {.update_contacts = [&](const auto& at, const Travel& travel) { forces.update_contacts(at, travel); },
+       .evaluate = [&](const auto& at, Eigen::ArrayXd& force) { forces.evaluate(at, force); },
+       .axes = x_and_y},
+      state);
+}
+
+/// It cannot hang over an obstacle.
+Hold hold_of_disk(const RunParameters&, const ObstacleArray&, const DropletState&) {
+  return {.mechanism = ClogMechanism::squeezed, .geometry = {}};
+}
+
+}  // namespace
+
+const DropletModel soft_disk = {.stiffness_key = "wall-stiffness",
+                                .num_points = one_point,
+                                .narrowest = no_width,
+                                .resolve = resolve_disk,
+                                .free_shape = centre_alone,
+                                .reach = radius,
+                                .release = release_disk,
+                                .make = make_disk,
+                                .equilibrium = equilibrium_of_disk,
+                                .hold = hold_of_disk};
+
+}  // namespace clog

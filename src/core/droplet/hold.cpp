@@ -1,0 +1,18 @@
+#include "clog/core/droplet/hold.hpp"
+
+namespace clog {
+namespace {
+
+/// Shares of the support below and above which one mechanism alone holds the droplet.
+constexpr double squeezed_below = 1.0 / 3;
+constexpr double wrapped_above = 2.0 / 3;
+
+}  // namespace
+
+ClogMechanism ClogGeometry::mechanism() const {
+  if (wrapped_support >= wrapped_above) return ClogMechanism::wrapped;
+  if (wrapped_support > squeezed_below) return ClogMechanism::hybrid;
+  return num_gaps > 0 ? ClogMechanism::squeezed : ClogMechanism::none;
+}
+
+}  // namespace clog

@@ -1,0 +1,75 @@
+#include "clog/core/droplet/release.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "clog/core/droplet/shape.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/portable_math.hpp"
+#include "clog/core/tools/units.hpp"
+
+namespace clog {
+
+Eigen::Array2d nearest_void(const ObstacleArray& obstacles) {
+  const double enough = 2 * units::droplet_diameter;
+  Eigen::Array2d place{obstacles.period().along() / 2, obstacles.period().across() / 2};
+  double room = clearance(obstacles, place[0], place[1], enough);
+  for (double step = 0.1; step > 1e-4 && room < enough;) {
+    bool climbed = false;
+    for (int direction = 0; direction < 8; ++direction) {
+      const double angle = direction * std::numbers::pi / 4;
+      const Eigen::Array2d trial = place + step * Eigen::Array2d(portable::cos(angle), portable::sin(angle));
+      const double trial_room = clearance(obstacles, trial[0], trial[1], enough);
+      if (trial_room > room) {
+        room = trial_room;
+        place = trial;
+        climbed = true;
+        break;
+      }
+    }
+    if (!climbed) step /= 2;
+  }
+  return place;
+}
+
+double clearance(const ObstacleArray& obstacles, double x, double y, double limit) {
+  std::vector<Obstacle> near;
+  obstacles.gather({x, y, 0, 0, 0, 0, limit}, near);
+  double nearest = limit;
+  for (const Obstacle& obstacle : near)
+    nearest = std::min(nearest, std::hypot(obstacle.x, obstacle.y) - obstacle.radius);
+  return nearest;
+}
+
+int num_enclosed(const DropletState& state, const ObstacleArray& obstacles) {
+  std::vector<Obstacle> near;
+  const auto x = state.x();
+  const auto y = state.y();
+  obstacles.gather({state.frame.origin[0], state.frame.origin[1], x.minCoeff(), x.maxCoeff(), y.minCoeff(),
+                    y.maxCoeff(), 0},
+                   near);
+  return static_cast<int>(std::count_if(near.begin(), near.end(), [&](const Obstacle& obstacle) {
+    return encloses(state.position, obstacle.x, obstacle.y);
+  }));
+}
+
+DropletState state_at_rest(const Eigen::ArrayXd& droplet, const Eigen::Array2d& place,
+                           const Eigen::Array2d& period) {
+  DropletState state;
+  state.frame.period = period;
+  state.frame.shift(place.floor());
+  state.position = droplet;
+  state.velocity = Eigen::ArrayXd::Zero(droplet.size());
+  state.x() += place[0] - state.frame.origin[0];
+  state.y() += place[1] - state.frame.origin[1];
+  return state;
+}
+
+void refuse_release(const std::string& reason, const std::string& remedy) {
+  throw Error("cannot release the droplet (" + reason + ") try " + remedy + ", or another seed");
+}
+
+}  // namespace clog

@@ -1,0 +1,145 @@
+#include "clog/core/polygon/automatic_values.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "clog/core/droplet/time_step.hpp"
+#include "clog/core/polygon/stability.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/units.hpp"
+#include "core/parameters/refusal.hpp"
+
+namespace clog {
+namespace {
+
+StiffModes stiff_modes_of_circle(const DpParameters& dp, double wall_stiffness) {
+  const double circumference = std::numbers::pi * units::droplet_diameter;
+  return stiff_modes(dp, wall_stiffness, circumference, circumference / dp.vertices);
+}
+
+/// An automatic contact follows the step; only the other modes limit it then.
+double largest_step_with_automatic_contact(const DpParameters& dp) {
+  const StiffModes modes = stiff_modes_of_circle(dp, 1);
+  const double others = modes.sum() - modes.contact;
+  const double self_part = auto_contact_omega_dt2 * modes.self_contact / modes.contact;
+  return std::sqrt(
+      std::min({max_area_omega_dt2 / modes.area, (max_total_omega_dt2 - auto_contact_omega_dt2) / others,
+                (max_total_with_self_omega_dt2 - auto_contact_omega_dt2 - self_part) / others}));
+}
+
+std::vector<Rate> polygon_rates(const RunParameters& run) {
+  const DpParameters& dp = run.dp;
+  const StiffModes modes = stiff_modes_of_circle(dp, run.wall_stiffness.value_or(0));
+  return {{"line-tension", dp.line_tension, modes.tension},
+          {"area-stiffness", *dp.area_stiffness, modes.area},
+          {"perimeter-stiffness", *dp.perimeter_stiffness, modes.spring},
+          {"wall-stiffness", run.wall_stiffness.value_or(0), modes.contact}};
+}
+
+/// Where none is given [t0], K_a and K_l are.
+double automatic_time_step(const RunParameters& run, double sharpest_bend) {
+  const double drag = drag_time_step(run);
+  constexpr double depth = 0.02;  // of an obstacle in the contact range, over the vertex diameter
+  const double vertex_mass = units::droplet_mass / run.dp.vertices;
+  if (run.wall_stiffness)
+    return rounded_down(
+        std::min(drag, std::sqrt(auto_step_margin) *
+                           largest_stable_step(stiff_modes_of_circle(run.dp, *run.wall_stiffness))));
+  const double stable = std::sqrt(auto_step_margin) * largest_step_with_automatic_contact(run.dp);
+  const double stiff_contact =
+      std::sqrt(depth * auto_contact_omega_dt2 * vertex_mass / expected_pressure(run, sharpest_bend));
+  return rounded_down(std::min({drag, stable, stiff_contact}));
+}
+
+/// The droplet keeps its area under its own line tension.
+void validate_compression(const DpParameters& dp, bool automatic_area) {
+  constexpr double largest = 0.05;
+  const double softest_per_tension = 1 / (units::droplet_diameter / 2) / (largest * units::rest_area);
+  const double softest = dp.line_tension * softest_per_tension;
+  if (automatic_area)
+    require(*dp.area_stiffness >= softest, "line-tension", dp.line_tension, [&] {
+      return "would compress the droplet by more than 5 %, with the stiffest automatic "
+             "area-stiffness) use at most " +
+             rounded_text(rounded_down(*dp.area_stiffness / softest_per_tension)) +
+             ", or give area-stiffness";
+    });
+  require(*dp.area_stiffness >= softest, "area-stiffness", *dp.area_stiffness, [&] {
+    return "the line tension would compress the droplet by more than 5 %) use at least " +
+           rounded_text(softest);
+  });
+}
+
+}  // namespace
+
+double half_vertex_diameter(const DpParameters& dp) { return units::regular_edge_length(dp.vertices) / 2; }
+
+double automatic_perimeter_stiffness(const RunParameters& run) {
+  switch (run.dp.perimeter_spring) {
+    case PerimeterSpring::rest:
+      return run.dp.perimeter_stiffness_ratio * run.dp.line_tension;
+    case PerimeterSpring::mean:
+      return 1;
+    case PerimeterSpring::along:
+      return 0.003 / run.drag.terminal_speed;
+  }
+  return 0;
+}
+
+double expected_pressure(const RunParameters& run, double sharpest_bend) {
+  const double bend = sharpest_bend / 2 + run.dp.contact_range.value();
+  return run.dp.line_tension * (2 / units::droplet_diameter + 1 / bend) +
+         units::gravity * units::droplet_diameter;
+}
+
+double automatic_area_stiffness(const RunParameters& run, double sharpest_bend) {
+  constexpr double published = 1e4;
+  constexpr double compression = 2e-3;
+  return std::min(published,
+                  rounded_down(expected_pressure(run, sharpest_bend) / (compression * units::rest_area)));
+}
+
+void resolve_polygon(RunParameters& run, double sharpest_bend) {
+  DpParameters& dp = run.dp;
+  if (!dp.contact_range) dp.contact_range = half_vertex_diameter(dp);
+  if (!dp.perimeter_stiffness) dp.perimeter_stiffness = automatic_perimeter_stiffness(run);
+  const bool automatic_area = !dp.area_stiffness;
+  if (automatic_area) dp.area_stiffness = automatic_area_stiffness(run, sharpest_bend);
+  validate_compression(dp, automatic_area);
+
+  if (dp.perimeter_spring == PerimeterSpring::along && dp.gravity == Gravity::vertex)
+    throw Error(
+        "perimeter-spring=along contradicts gravity=vertex (springs without tension cannot carry the weight "
+        "of vertices) use gravity=area, or perimeter-spring=mean");
+
+  const double vertex_mass = units::droplet_mass / dp.vertices;
+  const double vertex_diameter = units::regular_edge_length(dp.vertices);
+  const bool automatic = !run.wall_stiffness;
+  if (!run.time_step) choose_time_step(run, automatic_time_step(run, sharpest_bend), polygon_rates(run));
+  check_time_step(run);
+  const double time_step = *run.time_step;
+  if (automatic) {
+    const double stiffest = auto_contact_omega_dt2 / 2 * vertex_mass / (time_step * time_step);
+    run.wall_stiffness = wall_stiffness(stiffest, vertex_diameter);
+  }
+  const StiffModes modes = stiff_modes_of_circle(dp, *run.wall_stiffness);
+  const double largest = automatic ? largest_step_with_automatic_contact(dp) : largest_stable_step(modes);
+  const double stiffest_omega_dt = std::sqrt(modes.sum()) * time_step;
+  require(num_substeps(modes, time_step) == 1, "time-step", time_step, [&] {
+    return "contact, area, tension and spring modes together have omega*dt = " +
+           rounded_text(stiffest_omega_dt) + ", wall-stiffness=" + rounded_text(*run.wall_stiffness) +
+           ") try " + rounded_text(0.99 * largest);
+  });
+  // A contact too soft to carry the droplet lets obstacles sink into it: demand that a weight of M g on
+  // the vertices of an eighth of the circumference leaves less than half the contact range.
+  const double softest = units::droplet_mass / (dp.vertices / 8.0) / (vertex_diameter / 4);
+  require(contact_stiffness(*run.wall_stiffness, vertex_diameter) >= softest, "wall-stiffness",
+          *run.wall_stiffness, [&] {
+            return "too soft to hold the droplet's weight off an obstacle) use at least " +
+                   rounded_text(wall_stiffness(softest, vertex_diameter)) + " or a smaller time-step";
+          });
+}
+
+}  // namespace clog

@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "clog/core/droplet/droplet_model.hpp"
+#include "clog/core/droplet/equilibrium.hpp"
+#include "clog/core/droplet/shape.hpp"
+#include "clog/core/polygon/automatic_values.hpp"
+#include "clog/core/polygon/clog_geometry.hpp"
+#include "clog/core/polygon/dp_droplet.hpp"
+#include "clog/core/polygon/dp_forces.hpp"
+#include "clog/core/tools/units.hpp"
+#include "core/polygon/polygon_release.hpp"
+
+namespace clog {
+namespace {
+
+int num_vertices(const RunParameters& run) { return run.dp.vertices; }
+
+/// As wide as an edge is long at rest.
+double edge_length(const RunParameters& run) { return units::regular_edge_length(run.dp.vertices); }
+
+/// The regular polygon in which area pressure balances line tension and springs, a little smaller than a_0.
+Eigen::ArrayXd free_polygon(const RunParameters& run) {
+  const int n = run.dp.vertices;
+  const double spring =
+      run.dp.perimeter_spring == PerimeterSpring::rest ? run.dp.perimeter_stiffness.value() * n : 0;
+  const double rest_edge = units::regular_edge_length(n);
+  // K_a (a_0 - a) = T dP/da, T the tension of an edge; dP/da = P/(2a). The correction is small, so iterating
+  // converges at once; a droplet that is no stiffer than its tension has no such state, and keeps half of
+  // a_0.
+  double area = units::rest_area;
+  for (int i = 0; i < 50; ++i) {
+    const double edge = units::regular_edge_length(n, area);
+    const double tension = run.dp.line_tension + spring * (edge - rest_edge);
+    area = std::max(units::rest_area / 2,
+                    units::rest_area - tension * n * edge / (2 * area) / *run.dp.area_stiffness);
+  }
+  return regular_polygon(n, area);
+}
+
+double reach_of_polygon(const RunParameters& run) {
+  return free_polygon(run).head(run.dp.vertices).maxCoeff() + run.dp.contact_range.value();
+}
+
+std::unique_ptr<Droplet> make_polygon(const RunParameters& run, const ObstacleArray& obstacles,
+                                      DropletState initial) {
+  return std::make_unique<DpDroplet>(run, obstacles, std::move(initial));
+}
+
+/// Normal to the interface at each vertex, to the chord between its neighbours, then along it.
+Axes axes_of_interface(const DpParameters& dp, const DropletState& state) {
+  using Eigen::Index;
+  const Index n = state.size();
+  Axes axes{.directions = Eigen::SparseMatrix<double>(2 * n, 2 * n), .slide = Eigen::VectorXd(n)};
+  axes.directions.reserve(Eigen::VectorXi::Constant(2 * n, 2));
+  for (Index i = 0; i < n; ++i) {
+    const Index next = (i + 1) % n;
+    const Index previous = (i + n - 1) % n;
+    const double chord_x = state.x()[next] - state.x()[previous];
+    const double chord_y = state.y()[next] - state.y()[previous];
+    const double length = std::hypot(chord_x, chord_y);
+    axes.directions.insert(i, i) = chord_y / length;
+    axes.directions.insert(n + i, i) = -chord_x / length;
+    axes.directions.insert(i, n + i) = chord_x / length;
+    axes.directions.insert(n + i, n + i) = chord_y / length;
+    axes.slide[i] = length;
+  }
+  axes.slide.normalize();
+  // Springs with an energy leave vertices unevenly spread, ripples are higher, and it pays to follow them to
+  // the end.
+  if (dp.perimeter_spring != PerimeterSpring::along) axes.slide.resize(0);
+  return axes;
+}  // NOLINT(clang-analyzer-unix.Malloc): the matrix takes its memory along
+
+std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, const ObstacleArray& obstacles,
+                                                   const DropletState& state) {
+  DpForces forces(run, obstacles);
+  return find_equilibrium(
+      {.update_contacts = [&](const auto& at, const Travel& travel) { forces.update_contacts(at, travel); },
+       .evaluate = [&](const auto& at, Eigen::ArrayXd& force) { forces.evaluate(at, force); },
+       .axes = [&](const auto& at) { return axes_of_interface(run.dp, at); }},
+      state);
+}
+
+Hold hold_of_polygon(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state) {
+  const ClogGeometry geometry = clog_geometry(state, obstacles, run.dp);
+  return {.mechanism = geometry.mechanism(), .geometry = geometry};
+}
+
+}  // namespace
+
+const DropletModel deformable_polygon = {.stiffness_key = "line-tension",
+                                         .num_points = num_vertices,
+                                         .narrowest = edge_length,
+                                         .resolve = resolve_polygon,
+                                         .free_shape = free_polygon,
+                                         .reach = reach_of_polygon,
+                                         .release = release_polygon,
+                                         .make = make_polygon,
+                                         .equilibrium = equilibrium_of_polygon,
+                                         .hold = hold_of_polygon};
+
+}  // namespace clog

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/parameters/parameters.hpp"
+#include "clog/core/world/obstacle_array.hpp"
+
+namespace clog {
+
+/// A small circle is put into the void nearest to the centre and grown to full size, relaxing as it grows, so
+/// that no obstacle is ever inside (energy minimisation cannot see an obstacle that touches no vertex).
+/// @param run  resolved
+/// @throws Error if there is no room, or the droplet does not relax
+DropletState release_polygon(const RunParameters& run, const ObstacleArray& obstacles);
+
+}  // namespace clog
