@@ -9,6 +9,7 @@
 #include "clog/core/droplet/droplet.hpp"
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/polygon/stability.hpp"
+#include "clog/core/model/model.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
@@ -99,22 +100,6 @@ std::string time_fault(const RunRow& row) {
         integrated <= most_substeps * ((1 + round_off) * steps + 0.5)))
     return std::to_string(row.steps) + " steps do not make " + named("time", row.time);
   return "";
-}
-
-/// What a droplet may have been released with [g rho sigma^3], beyond what it has when it is free.
-double released_energy(const RunParameters& run) {
-  if (run.model == Model::sp) {
-    // As many obstacles as find room in its reach, each pushed in by no more than its centre.
-    const double spacing = run.obstacles.smallest_diameter() + run.obstacles.gap;
-    const double across = (units::droplet_diameter + run.obstacles.diameter + spacing) / spacing;
-    return std::isnan(across) ? 0 : across * across * run.wall_stiffness.value() / 2;
-  }
-  // The interface of a droplet released among obstacles is longer than a circle; it gets hardly twice as
-  // long.
-  constexpr double excess_perimeter = 20;  // [sigma]
-  const double spring =
-      run.dp.perimeter_spring == PerimeterSpring::along ? 0 : run.dp.perimeter_stiffness.value_or(0);
-  return excess_perimeter * (run.dp.line_tension + spring * excess_perimeter / 2);
 }
 
 std::string motion_fault(const RunRow& row) {
@@ -214,7 +199,8 @@ double farthest_way(const RunRow& row) {
   // Springs along the interface have no energy; a tenth more is for the little work that they do.
   constexpr double margin = 1.1;
   const double weight = units::droplet_mass * units::gravity;
-  return margin * (row.parameters.drag.terminal_speed * row.time + released_energy(row.parameters) / weight);
+  const RunParameters& run = row.parameters;
+  return margin * (run.drag.terminal_speed * row.time + model_of(run).most_energy_at_release(run) / weight);
 }
 
 std::string fault_of(const RunRow& row) {

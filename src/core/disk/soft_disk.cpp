@@ -68,6 +68,13 @@ DropletState release_disk(const RunParameters& run, const ObstacleArray& obstacl
   return state;
 }
 
+/// As many obstacles as find room in its reach, each pushed in by no more than its centre.
+double energy_of_overlaps(const RunParameters& run) {
+  const double spacing = run.obstacles.smallest_diameter() + run.obstacles.gap;
+  const double across = (units::droplet_diameter + run.obstacles.diameter + spacing) / spacing;
+  return std::isnan(across) ? 0 : across * across * run.wall_stiffness.value() / 2;
+}
+
 std::unique_ptr<Droplet> make_disk(const RunParameters& run, const ObstacleArray& obstacles,
                                    DropletState initial) {
   return std::make_unique<SpDroplet>(run, obstacles, std::move(initial));
@@ -103,6 +110,7 @@ const DropletModel soft_disk = {.stiffness_key = "wall-stiffness",
                                 .free_shape = centre_alone,
                                 .reach = radius,
                                 .release = release_disk,
+                                .most_energy_at_release = energy_of_overlaps,
                                 .make = make_disk,
                                 .equilibrium = equilibrium_of_disk,
                                 .hold = hold_of_disk};

@@ -115,7 +115,7 @@ struct Facts {
 
 /// @param Member  stateless: from the parameters of a run, const or not, to a reference to the member
 template <class Member>
-Parameter entry(const char* key, Member, const Facts& facts) {
+Parameter entry(const char* key, Member, Facts facts) {
   using T = std::remove_cvref_t<decltype(Member{}(std::declval<RunParameters&>()))>;
   return {
       .key = key,

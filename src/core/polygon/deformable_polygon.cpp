@@ -44,6 +44,14 @@ double reach_of_polygon(const RunParameters& run) {
   return free_polygon(run).head(run.dp.vertices).maxCoeff() + run.dp.contact_range.value();
 }
 
+/// The interface of a droplet released among obstacles is longer than a circle; it gets hardly twice as long.
+double energy_of_interface(const RunParameters& run) {
+  constexpr double excess_perimeter = 20;  // [sigma]
+  const double spring =
+      run.dp.perimeter_spring == PerimeterSpring::along ? 0 : run.dp.perimeter_stiffness.value_or(0);
+  return excess_perimeter * (run.dp.line_tension + spring * excess_perimeter / 2);
+}
+
 std::unique_ptr<Droplet> make_polygon(const RunParameters& run, const ObstacleArray& obstacles,
                                       DropletState initial) {
   return std::make_unique<DpDroplet>(run, obstacles, std::move(initial));
@@ -98,6 +106,7 @@ const DropletModel deformable_polygon = {.stiffness_key = "line-tension",
                                          .free_shape = free_polygon,
                                          .reach = reach_of_polygon,
                                          .release = release_polygon,
+                                         .most_energy_at_release = energy_of_interface,
                                          .make = make_polygon,
                                          .equilibrium = equilibrium_of_polygon,
                                          .hold = hold_of_polygon};

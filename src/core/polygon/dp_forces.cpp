@@ -38,7 +38,7 @@ DpForces::DpForces(const RunParameters& run, const ObstacleArray& obstacles)
       edge_y_(dp_.vertices),
       edge_length_(dp_.vertices),
       pull_(dp_.vertices),
-      centroid_gradient_(Eigen::ArrayXd::Zero(4 * dp_.vertices)),
+      centroid_gradient_(Eigen::ArrayXd::Zero(Eigen::Index{4} * dp_.vertices)),
       refined_edges_(8 * dp_.vertices),
       wall_distance_(run.drag.near_wall > 0 ? dp_.vertices : 0) {
   set_rest_area(units::rest_area);
@@ -189,7 +189,8 @@ DpForces::WettingForces DpForces::wetting_forces(const DropletState& state) cons
     return Eigen::Array2d(state.position[end] - state.position[i],
                           state.position[n + end] - state.position[n + i]);
   };
-  WettingForces forces{Eigen::ArrayXd::Zero(2 * n), Eigen::ArrayXd::Zero(2 * n)};
+  const Eigen::ArrayXd none = Eigen::ArrayXd::Zero(Eigen::Index{2} * n);
+  WettingForces forces{none, none};
   Eigen::ArrayXd& gradient = forces.gradient;
   Wetted before = wetted(state, n - 1);
   for (int i = 0; i < n; ++i) {

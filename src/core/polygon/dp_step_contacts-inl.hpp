@@ -17,12 +17,14 @@
 #include "core/polygon/dp_step_vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
+// NOLINTBEGIN(misc-definitions-in-headers): part of one source, which compiles it once for each instruction set
 namespace clog::kernel::HWY_NAMESPACE {
 
 void clear_group(int group, const StepArrays& a) {
+  const std::ptrdiff_t first = std::ptrdiff_t{group} * edges_per_group;
   for (int lane = 0; lane < edges_per_group; lane += lanes) {
-    store(all(0), a.push_x + group * edges_per_group + lane);
-    store(all(0), a.push_y + group * edges_per_group + lane);
+    store(all(0), a.push_x + first + lane);
+    store(all(0), a.push_y + first + lane);
   }
 }
 
@@ -206,7 +208,7 @@ void push_off_circles(const WallContacts::Item* items, std::size_t num_items, co
 
 /// The lanes from the first to the last, twice, and the other way round.
 constexpr auto orders = [] {
-  std::array<std::array<std::int64_t, 2 * lanes>, 2> order{};
+  std::array<std::array<std::int64_t, std::size_t{2} * lanes>, 2> order{};
   for (int k = 0; k < 2 * lanes; ++k) {
     order[0][k] = k % lanes;
     order[1][k] = lanes - 1 - k % lanes;
@@ -484,5 +486,6 @@ void near_wall_rates(int n, const NearWalls& walls, const NearWallDrag& drag,
 }
 
 }  // namespace clog::kernel::HWY_NAMESPACE
+// NOLINTEND(misc-definitions-in-headers)
 HWY_AFTER_NAMESPACE();
 #endif

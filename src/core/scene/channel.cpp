@@ -27,7 +27,8 @@ double last_free_start(const RunParameters& run) {
   const double last = ((channel.orifice / 2 + channel.tip_radius) * portable::cos(angle) -
                        channel.tip_radius - droplet_reach) /
                       portable::sin(angle);
-  return last > 0 ? everywhere : last;
+  if (last > 0) return everywhere;
+  return last;
 }
 
 namespace {

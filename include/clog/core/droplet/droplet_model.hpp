@@ -33,6 +33,8 @@ struct DropletModel {
   /// A droplet at rest, without weight, near the centre of the box.
   /// @throws Error if there is no room for it, or it does not relax
   DropletState (*release)(const RunParameters& run, const ObstacleArray& obstacles);
+  /// What it may have been released with, beyond what it has when it is free [g rho sigma^3].
+  double (*most_energy_at_release)(const RunParameters& run);
   /// One that moves. The obstacles must outlive it.
   std::unique_ptr<Droplet> (*make)(const RunParameters& run, const ObstacleArray& obstacles,
                                    DropletState initial);
