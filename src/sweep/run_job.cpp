@@ -14,19 +14,19 @@ constexpr std::chrono::milliseconds slice{5};
 constexpr int checks_per_look_at_the_clock = 8;
 
 DropletRun start(const RunParameters& run, std::span<const std::byte> snapshot, ObstacleArrays& arrays) {
-  std::shared_ptr<const ObstacleArray> obstacles = arrays.get(run);
+  const std::shared_ptr<const ObstacleArray> obstacles = arrays.get(run);
   if (!snapshot.empty()) try {
       return DropletRun::resume(run, obstacles, snapshot);
     } catch (const Error&) {  // of another version: the run is the same from its beginning
     }
-  return DropletRun(run, std::move(obstacles));
+  return {run, obstacles};
 }
 
 }  // namespace
 
-RunJob::RunJob(const RunParameters& run, std::int64_t task, std::span<const std::byte> snapshot,
+RunJob::RunJob(RunParameters run, std::int64_t task, std::span<const std::byte> snapshot,
                std::shared_ptr<ObstacleArrays> arrays)
-    : run_parameters_(run),
+    : run_parameters_(std::move(run)),
       snapshot_(snapshot.begin(), snapshot.end()),
       arrays_(std::move(arrays)),
       row_(describe(run_parameters_)) {

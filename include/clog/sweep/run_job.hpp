@@ -15,7 +15,7 @@ class RunJob final : public Job {
   /// @param run       resolved
   /// @param snapshot  of the same task; where it cannot be read the run starts anew
   /// @param arrays    from which the run's obstacles come
-  RunJob(const RunParameters& run, std::int64_t task, std::span<const std::byte> snapshot = {},
+  RunJob(RunParameters run, std::int64_t task, std::span<const std::byte> snapshot = {},
          std::shared_ptr<ObstacleArrays> arrays = std::make_shared<ObstacleArrays>());
 
   bool advance() override;

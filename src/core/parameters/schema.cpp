@@ -115,7 +115,7 @@ struct Facts {
 
 /// @param Member  stateless: from the parameters of a run, const or not, to a reference to the member
 template <class Member>
-Parameter entry(const char* key, Member, Facts facts) {
+Parameter entry(const char* key, Member, const Facts& facts) {
   using T = std::remove_cvref_t<decltype(Member{}(std::declval<RunParameters&>()))>;
   return {
       .key = key,
@@ -129,10 +129,10 @@ Parameter entry(const char* key, Member, Facts facts) {
       .range = facts.range,
       .has_own_column = facts.has_own_column,
       .shapes_array = facts.shapes_array,
-      .elsewhere = std::move(facts.elsewhere),
-      .before = std::move(facts.before),
+      .elsewhere = facts.elsewhere,
+      .before = facts.before,
       .kind = Outside<T>::kind,
-      .words = facts.words.empty() ? Outside<T>::words() : std::move(facts.words),
+      .words = facts.words.empty() ? Outside<T>::words() : facts.words,
       .get = [](const RunParameters& run) { return Outside<T>::get(Member{}(run)); },
       .set = [](RunParameters& run, const ParameterValue& value) { Member{}(run) = Outside<T>::set(value); }};
 }
