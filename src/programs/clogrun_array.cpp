@@ -12,10 +12,10 @@ namespace clog::programs {
 int clogrun_array(cli::CommandLine& line) {
   // Everything that can be wrong is found before anything is computed or written.
   const std::string output = line.require("output");
-  const std::string layout = line.settings().text("obstacle-layout");
-  if (layout == "channel" || layout == "wall")
-    throw Error("obstacle-layout=" + layout + " is no array; use clogrun " +
-                (layout == "wall" ? "sag" : "channel"));
+  const Scene* scene = line.settings().scene();
+  if (scene && scene->finding != Finding::clogging_length)
+    throw Error("obstacle-layout=" + line.settings().text("obstacle-layout") + " is no array; use clogrun " +
+                (scene->finding == Finding::sag ? "sag" : "channel"));
   const RunParameters parameters = sweep::single_run(line.settings());
   const auto often = intervals(line, *parameters.time_step);
   store::refuse_unwritable(output);

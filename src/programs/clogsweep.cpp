@@ -1,7 +1,6 @@
 /// clogsweep: many independent runs, handed out to MPI ranks, gathered into one table.
 
 #include <iostream>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -137,14 +136,10 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, parallel::IsolatedJo
 
 int main(int argc, char** argv) {
   console::prepare_streams();
-  // What needs no ranks.
-  const std::map<std::string_view, int (*)(int, const char* const*)> reports = {
-      {"status", clogsweep_status},
-      {"verify", clogsweep_verify},
-      {"replay", clogsweep_replay},
-      {"salvage", clogsweep_salvage}};
-  if (const auto report = argc > 1 ? reports.find(argv[1]) : reports.end(); report != reports.end())
-    return cli::run_program(std::string(program) + ' ' + argv[1], [&] { return report->second(argc, argv); });
+  for (const FileCommand& command : file_commands)
+    if (argc > 1 && std::string_view(argv[1]) == command.name)
+      return cli::run_program(std::string(program) + ' ' + command.name,
+                              [&] { return command.call(argc, argv); });
   console::catch_stop_signals();  // one that comes before the sweep begins stops it then
   std::optional<parallel::IsolatedJobs> isolated;
   const int exit_code = cli::run_program(program, [&] {

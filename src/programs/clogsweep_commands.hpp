@@ -11,6 +11,15 @@ int clogsweep_verify(int argc, const char* const* argv);
 int clogsweep_salvage(int argc, const char* const* argv);
 int clogsweep_replay(int argc, const char* const* argv);
 
+struct FileCommand {
+  const char* name;
+  int (*call)(int argc, const char* const* argv);
+};
+inline constexpr FileCommand file_commands[] = {{"status", clogsweep_status},
+                                                {"verify", clogsweep_verify},
+                                                {"salvage", clogsweep_salvage},
+                                                {"replay", clogsweep_replay}};
+
 /// `clogsweep doctor`, on one rank or under mpirun. Collective. Returns the exit code on rank 0, 1 if there
 /// is something to mend. @throws Error
 int clogsweep_doctor(const parallel::Communicator& ranks, int argc, const char* const* argv);

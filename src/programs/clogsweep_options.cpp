@@ -4,9 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "clog/core/tools/error.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "clogsweep_commands.hpp"
 
 namespace clog::programs {
 namespace {
@@ -87,7 +90,9 @@ void parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
       "isolate", po::value<std::string>()->default_value("yes"),
       "tasks run in processes of their own, so that a crash costs one task and not the sweep: yes, no")(
       "verbose", "a line for every task that starts or ends")("quiet", "errors only");
-  line.add_commands({"status", "verify", "replay", "salvage", "doctor"});
+  std::vector<std::string> commands = {"doctor"};
+  for (const FileCommand& command : file_commands) commands.emplace_back(command.name);
+  line.add_commands(std::move(commands));
   line.explain_surplus_words(
       "--output names the file of a sweep, and clogsweep status FILE tells how far it is");
   line.parse(argc, argv);

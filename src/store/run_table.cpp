@@ -148,6 +148,11 @@ namespace {
 /// one's own.
 constexpr std::array<std::string_view, 5> readable_versions = {"2", "3", "4", "5", format_version};
 
+bool has_check_sums(std::string_view version) {
+  constexpr std::array<std::string_view, 3> without = {"2", "3", "4"};
+  return std::ranges::find(without, version) == without.end();
+}
+
 /// Of an open file that is one of our sweeps. @throws Error if it is not
 std::string version_of(hid_t file, const std::string& path) {
   if (read_attribute(file, "kind") != file_kind || H5Lexists(file, table_name, H5P_DEFAULT) <= 0)
@@ -284,7 +289,7 @@ Checked extent_of_check(bool has_sums, Seal seal) {
 Examination examine(std::vector<std::byte>& image, Seal seal, const std::string& path) {
   const File file = open_image(image, path);
   const std::string version = version_of(file, path);
-  const bool has_sums = version == format_version || version == "5";
+  const bool has_sums = has_check_sums(version);
   const PackedTable table =
       read_table(file, version == format_version ? RowLayout::Columns::all : RowLayout::Columns::some, path);
   Examination found;

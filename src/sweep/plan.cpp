@@ -46,7 +46,8 @@ void refuse_useless_keys(const Settings& settings) {
   const std::string& layout = settings.text("obstacle-layout");
   if (layout != "file" && settings.text(circles_key) != "none")
     throw Error("obstacles and obstacle-layout=" + layout + " contradict each other; leave one of them out");
-  if ((layout == "channel" || layout == "wall") && settings.text("seeds") != "1")
+  const Scene* scene = settings.scene();
+  if (scene && scene->walls_from == WallsFrom::droplet && settings.text("seeds") != "1")
     throw Error("invalid seeds=" + settings.text("seeds") +
                 " (nothing is random with obstacle-layout=" + layout + ") leave it out");
   if (layout != "file") return;

@@ -7,9 +7,9 @@
 #include <string_view>
 
 #include "clog/core/droplet/droplet.hpp"
+#include "clog/core/model/model.hpp"
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/polygon/stability.hpp"
-#include "clog/core/model/model.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
@@ -35,19 +35,6 @@ std::string named(const char* column, std::string_view word) {
 
 std::string unreadable_column(const RunRow& row) { return row.unreadable; }
 
-/// Refuses a row whose parameters cannot be run: resolve() knows which can. @throws Error
-RunParameters resolved_parameters(const RunRow& row) {
-  RunParameters run = row.parameters;
-  // A lattice's box and angle are those used; to look for the nearest lattice once more would take long.
-  const ObstacleParameters used = run.obstacles;
-  check_each(run);
-  run.obstacles.layout = ObstacleLayout::random;
-  run.obstacles.lattice_angle = 0;
-  run = resolve(run);
-  run.obstacles = used;
-  return run;
-}
-
 /// Rules are those of this program's model.
 std::string parameter_fault(const RunRow& row) {
   const RunParameters& run = row.parameters;
@@ -61,12 +48,11 @@ std::string parameter_fault(const RunRow& row) {
     if (row.unknown[i]) return std::string(parameter_schema()[i].column) + " is not known";
   try {
     const Scene& scene = scene_of(run);
-    if (scene.walls_from != WallsFrom::parameters) {
-      // Of a user's own circles the row has the check sum only.
-      scene.walls_from == WallsFrom::circles ? check_each(run) : static_cast<void>(resolve(run));
+    if (scene.walls_from == WallsFrom::circles) {
+      check_each(run);  // the row has the check sum only
       return "";
     }
-    const double density = scene.density(resolved_parameters(row).obstacles);
+    const double density = scene.density(resolve(run).obstacles);
     const bool agrees = std::isnan(density) ? std::isnan(row.obstacle_density)
                                             : std::abs(row.obstacle_density - density) <= round_off * density;
     return agrees ? "" : named("obstacle_density", row.obstacle_density) + " is not that of its array";

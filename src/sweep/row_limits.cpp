@@ -91,7 +91,8 @@ std::string unproven_parameters(const Plan& plan) {
 
 double repetition_length(const RunRow& row) {
   const ObstacleParameters& obstacles = row.parameters.obstacles;
-  return scene_of(obstacles).is_random ? obstacles.period().along() : std::numeric_limits<double>::infinity();
+  return scene_of(row.parameters).is_random ? obstacles.period().along()
+                                            : std::numeric_limits<double>::infinity();
 }
 
 bool has_met_repetition(const RunRow& row) { return row.distance > repetition_length(row); }

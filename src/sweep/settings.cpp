@@ -189,12 +189,16 @@ void Settings::set(const std::string& name, const std::string& text) {
   const Parameter* parameter = find_key(name).parameter;
   const bool is_of_channel = parameter && parameter->scope->word == std::string_view("channel");
   if (is_of_channel) follow("obstacle-layout", "channel");
-  if (const std::string& layout = this->text("obstacle-layout"); layout == "channel" || layout == "wall")
-    follow("seeds", "1");
+  if (const Scene* one = scene(); one && one->walls_from == WallsFrom::droplet) follow("seeds", "1");
   if (name != "preset") return;
   for (const Preset& preset : presets())
     if (preset.name == text)
       for (const auto& [key, value] : preset.texts) follow(key, value);
+}
+
+const Scene* Settings::scene() const {
+  const std::optional<ObstacleLayout> layout = meant_by<ObstacleLayout>(text("obstacle-layout"));
+  return layout ? &scene_of(*layout) : nullptr;
 }
 
 std::vector<std::string> Settings::missing_files() const {

@@ -8,6 +8,7 @@
 
 #include "clog/core/parameters/circles.hpp"
 #include "clog/core/parameters/schema.hpp"
+#include "clog/core/scene/scene.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {
@@ -60,6 +61,8 @@ class Settings {
   const std::string& text(const std::string& name) const { return texts_.at(name); }
   /// The expanded values of a key.
   const std::vector<std::string>& values(const std::string& name) const { return values_.at(name); }
+  /// Of all runs; nullptr if there are several.
+  const Scene* scene() const;
 
   /// What is in the files that the key obstacles names. Nothing is read here: whoever sets the key does that.
   const CircleFiles& circle_files() const { return circle_files_; }

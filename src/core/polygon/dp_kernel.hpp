@@ -6,7 +6,8 @@
 #include "clog/core/droplet/shape.hpp"
 #include "clog/core/world/wedge.hpp"
 
-/// The loops over vertices that a DP step consists of. Plain arrays of length n (one entry per vertex or
+/// The loops over vertices behind DpForces, in readable form; the step has passes of its own
+/// (dp_step_kernel.hpp). Plain arrays of length n (one entry per vertex or
 /// edge), no branch, no allocation. Each is compiled for several instruction sets, and use_instruction_set()
 /// chooses. Edge i joins vertices i and i + 1, the last one closes the contour.
 namespace clog::kernel {

@@ -17,7 +17,7 @@
 #include "core/polygon/dp_step_vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-// NOLINTBEGIN(misc-definitions-in-headers): part of one source, which compiles it once for each instruction set
+// NOLINTBEGIN(misc-definitions-in-headers): part of one source, compiled for each instruction set
 namespace clog::kernel::HWY_NAMESPACE {
 
 void clear_group(int group, const StepArrays& a) {

@@ -4,8 +4,8 @@
 
 namespace clog {
 
-const Scene& scene_of(const ObstacleParameters& obstacles) {
-  switch (obstacles.layout) {
+const Scene& scene_of(ObstacleLayout layout) {
+  switch (layout) {
     case ObstacleLayout::random:
       return random_array_scene;
     case ObstacleLayout::lattice:
@@ -20,6 +20,6 @@ const Scene& scene_of(const ObstacleParameters& obstacles) {
   throw std::logic_error("a layout without a scene");
 }
 
-const Scene& scene_of(const RunParameters& run) { return scene_of(run.obstacles); }
+const Scene& scene_of(const RunParameters& run) { return scene_of(run.obstacles.layout); }
 
 }  // namespace clog

@@ -25,6 +25,18 @@ CommensurateLattice lattice(double spacing, int p, int q) {
   return {p, q, spacing * std::hypot(p, q), portable::atan2(q, p) / degree};
 }
 
+/// The one of this angle and box, if there is one: where all that is asked for fits, nothing need be looked
+/// for.
+std::optional<CommensurateLattice> lattice_with(double spacing, double angle, double box) {
+  const auto p = std::lround(box / spacing * portable::cos(angle * degree));
+  const auto q = std::lround(box / spacing * portable::sin(angle * degree));
+  if (p < 1) return std::nullopt;
+  const CommensurateLattice fitting = lattice(spacing, static_cast<int>(p), static_cast<int>(q));
+  const bool fits =
+      std::abs(fitting.box / box - 1) <= box_rounding && std::abs(fitting.angle - angle) <= same_angle;
+  return fits ? std::optional(fitting) : std::nullopt;
+}
+
 /// A place in the unit cell [-1/2, 1/2]^2, in spacings: uniform where a droplet is free of the obstacle at
 /// (0, 0).
 struct CellPlace {
@@ -50,6 +62,7 @@ CellPlace free_place(const ObstacleParameters& parameters, std::uint32_t seed) {
 
 std::optional<CommensurateLattice> nearest_lattice(double spacing, double angle, double smallest_box,
                                                    double largest_box) {
+  if (const auto fitting = lattice_with(spacing, angle, largest_box)) return fitting;
   std::optional<CommensurateLattice> nearest;
   const double longest = largest_box * (1 + box_rounding);
   for (int p = 1; p * spacing <= longest; ++p) {

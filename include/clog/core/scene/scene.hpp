@@ -17,7 +17,8 @@ enum class WallsFrom {
 };
 
 /// What a droplet meets, where it starts, and where its way ends. There is one scene for each ObstacleLayout:
-/// a new one is a word of that, a file beside these with a scene of its own, and a line in scene.cpp.
+/// a new one is a word of that, a file with a scene of its own, a line in scene.cpp, and what src/README.md
+/// says besides.
 struct Scene {
   Finding finding;
   WallsFrom walls_from;
@@ -44,8 +45,8 @@ struct Scene {
   double (*way)(const RunParameters& run);
 };
 
+const Scene& scene_of(ObstacleLayout layout);
 const Scene& scene_of(const RunParameters& run);
-const Scene& scene_of(const ObstacleParameters& obstacles);
 
 extern const Scene random_array_scene, lattice_scene, own_circles_scene, channel_scene, wall_scene;
 
