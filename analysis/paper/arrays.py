@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import rounded
+import stored
 import style
 import survival_curve
 import trajectory
@@ -164,7 +165,7 @@ def sag_picture(shop):
     line_tension, stiffness = 0.3, 1.0
     on_wall = {"obstacle-layout": "wall"}
     row, = shop.runs("sag-polygon", "channel", {**on_wall, "line-tension": line_tension})
-    polygon, = shop.replays("sag-polygon", [row["task"]], 1, 2)
+    polygon, = shop.ways("sag-polygon", [row], 1, 2)
     disk, = shop.runs("sag-disk", None, {**on_wall, "model": "sp", "wall-stiffness": stiffness})
     disk_sag, polygon_sag = disk["sag"], row["sag"]
     drawing, panels = plt.subplots(1, 2, figsize=(7.2, 4.2), layout="constrained", sharey=True)
@@ -213,7 +214,8 @@ def example(shop, mechanism):
     else:
         travelled = clogs[clogs.distance >= 0.5]
         row = (clogs if travelled.empty else travelled).sort_values(["line_tension", "task"]).iloc[-1]
-    run, = shop.replays("clogging", [row.task], 1, max(0.5, row.time / 400))
+    stored_row = [one for one in stored.read_rows(shop.sweep_file("clogging")) if one["task"] == row.task]
+    run, = shop.ways("clogging", stored_row, 1, max(0.5, row.time / 400))
     return run, row
 
 
@@ -232,8 +234,7 @@ def snapshot(shop, mechanism):
     drawing, axes = plt.subplots(figsize=(5.6, 5.4), layout="constrained")
     shape = run.polygons[-1]
     centre = shape.mean(axis=1)
-    trajectory.draw_surroundings(axes, run, centre)
-    axes.fill(*(shape - centre[:, None]), facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1)
+    trajectory.draw_droplet(axes, run, -1, centre)
     half = 0.6 + np.abs(shape - centre[:, None]).max()
     trajectory.frame_limits(axes, (-half, -half), (half, half))
     axes.annotate("flow", (0.22, 0.94), (0.04, 0.94), xycoords="axes fraction", va="center",
@@ -268,8 +269,7 @@ def two_ways(shop):
         shown = run.polygons[chosen]
         low, high = shown.min(axis=(0, 2)) - 0.3, shown.max(axis=(0, 2)) + 0.3
         for axes, frame in zip(line, chosen):
-            trajectory.draw_surroundings(axes, run)
-            axes.fill(*run.polygons[frame], facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=0.8)
+            trajectory.draw_droplet(axes, run, frame)
             half = max(high - low) / 2
             trajectory.frame_limits(axes, (low + high) / 2 - half, (low + high) / 2 + half)
             axes.set_xticks([]), axes.set_yticks([])
@@ -290,7 +290,7 @@ def kinetic_energy(shop):
     data = []
     gaps = [0.3, 1.1]
     rows = shop.runs("energy", "trajectory", {"seeds": 1, "line-tension": 0.5, "obstacle-gap": gaps, "clog-detection": "threshold"})
-    for index, (gap, run) in enumerate(zip(gaps, shop.replays("energy", [row["task"] for row in rows], 1))):
+    for index, (gap, run) in enumerate(zip(gaps, shop.ways("energy", rows, 1))):
         energy = np.where(run.table["kinetic_energy_ratio"] > 0, run.table["kinetic_energy_ratio"], math.nan)
         label = rf"$w_\mathrm{{ob}} = {gap}\sigma$: {run.word('status')} at $r = {run.row['distance']:.2f}\sigma$"
         axes.plot(run.table["time"], energy, color=style.COLOURS[index], linewidth=0.9, label=label)
@@ -360,7 +360,7 @@ def displacement(shop):
     data = []
     line_tensions = [0.04, 0.1, 0.2, 0.5, 1.0]
     rows = shop.runs("displacement", "trajectory", {"seeds": 1, "line-tension": line_tensions, "obstacle-gap": 1.1, "preset": "elastic"})
-    for index, (line_tension, run) in enumerate(zip(line_tensions, shop.replays("displacement", [row["task"] for row in rows], 2))):
+    for index, (line_tension, run) in enumerate(zip(line_tensions, shop.ways("displacement", rows, 2))):
         speed = run.row["mean_speed"] / run.row["terminal_speed"]
         label = rf"$\Gamma = {line_tension:g}$" + (rf": $v_g = {speed:.2f}\,v_t$" if math.isfinite(speed) else "") + (
             ", clogged" if run.word("status") == "clogged" else "")

@@ -23,12 +23,7 @@ def profiles(shop, name, outlines=False, **keys):
     rows = passages(shop, name, **keys)
     # Frames a fiftieth of a diameter apart, samples a fifth of that.
     frame = 0.02 / rows[0]["terminal_speed"]
-    return shop.replays(name, [row["task"] for row in rows], frame / 5, frame if outlines else None)
-
-
-def middle_of(channel):
-    """Where h = 0 and the axis are in the coordinates of the polygons."""
-    return channel.wedges[:, :2].mean(axis=0)
+    return shop.ways(name, rows, frame / 5, frame if outlines else None)
 
 
 def parameters(run, orifice):
@@ -42,7 +37,7 @@ def ending(run):
     return "" if run.word("status") == "passed" else f" (stops at $h = {run.table['h'][-1]:.2f}$)"
 
 
-def draw_profile(axes, run, column, index, label, marker=False):
+def draw_profile(axes, run, column, index, label):
     style_of = style.curve_style(index)
     axes.plot(run.table["h"], run.table[column], color=style_of["color"], linewidth=1.4, label=label)
     if run.word("status") != "passed":
@@ -89,13 +84,11 @@ def narrow(shop):
 def geometry(shop):
     channel = narrow(shop)
     released, = shop.runs("geometry", "trajectory", {"seeds": 1, "line-tension": 0.3, "obstacle-gap": 1.0, "max-time": 300.0})
-    array, = shop.replays("geometry", [released["task"]], 1, 4)
+    array, = shop.ways("geometry", [released], 1, 4)
     drawing, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.4), layout="constrained", width_ratios=[1, 1.5])
-    middle = middle_of(channel)
+    middle = channel.middle
     frame = channel.frame_at("h", -0.75)
-    trajectory.draw_surroundings(left, channel, middle)
-    x, y = channel.polygons[frame] - middle[:, None]
-    left.fill(x, y, facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1)
+    trajectory.draw_droplet(left, channel, frame, middle)
     left.annotate("", (0.0, 0.2), (0.0, -0.2), arrowprops={"arrowstyle": "<->"})
     left.text(0.06, 0, "$w$", va="center")
     left.annotate("", (1.2, 0), (0.75, 0), arrowprops={"arrowstyle": "-|>", "color": "black"})
@@ -104,11 +97,9 @@ def geometry(shop):
     style.caption(left, f"(a) {parameters(channel, 0.4)}".replace(", $b_0", ",\n$b_0"))
     start = array.polygons[0].mean(axis=1)
     centres = array.polygons.mean(axis=2) - start
-    trajectory.draw_surroundings(right, array, start)
     right.plot(*centres.T, "o", color="black", markerfacecolor="none", markersize=3.5, markeredgewidth=0.6)
     shown = int(np.argmin(np.abs(centres[:, 0] - 0.5 * centres[-1, 0])))
-    x, y = array.polygons[shown] - start[:, None]
-    right.fill(x, y, facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1)
+    trajectory.draw_droplet(right, array, shown, start)
     middle_y = (centres[:, 1].min() + centres[:, 1].max()) / 2
     half = max(2.4, (centres[:, 1].max() - centres[:, 1].min()) / 2 + 1.5)
     trajectory.frame_limits(right, (-1, middle_y - half), (centres[-1, 0] + 1, middle_y + half))
@@ -127,12 +118,10 @@ def squeezing(shop):
     run = narrow(shop)
     drawing = plt.figure(figsize=(9.6, 6.2), layout="constrained")
     top, bottom = drawing.subfigures(2, 1, height_ratios=[1, 2.4])
-    middle = middle_of(run)
+    middle = run.middle
     for axes, h in zip(top.subplots(1, 6), [-1.0, -0.5, -0.25, 0.0, 0.25, 0.5]):
         frame = run.frame_at("h", h)
-        trajectory.draw_surroundings(axes, run, middle)
-        x, y = run.polygons[frame] - middle[:, None]
-        axes.fill(x, y, facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=0.8)
+        trajectory.draw_droplet(axes, run, frame, middle)
         trajectory.frame_limits(axes, (-1.55, -0.85), (1.15, 0.85))
         axes.set_xticks([]), axes.set_yticks([])
         reached = np.interp(run.times[frame], run.table["time"], run.table["h"])
@@ -167,9 +156,7 @@ def two_orifices(shop):
         # The most deformed outline, where nothing else is drawn.
         inset = panels[line][0].inset_axes([0.68, 0.5, 0.3, 0.47])
         frame = run.frame_at("h", run.row["largest_shape_parameter_at"])
-        trajectory.draw_surroundings(inset, run, middle_of(run))
-        x, y = run.polygons[frame] - middle_of(run)[:, None]
-        inset.fill(x, y, facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=0.8)
+        trajectory.draw_droplet(inset, run, frame, run.middle)
         trajectory.frame_limits(inset, (-0.8, -0.8), (0.8, 0.8))
         inset.set_xticks([]), inset.set_yticks([])
         inset.set_xlabel(rf"$\mathcal{{A}}_\mathrm{{max}} = {run.row['largest_shape_parameter']:.3f}$", fontsize=8)

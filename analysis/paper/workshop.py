@@ -1,22 +1,16 @@
 """Runs what a figure needs with clogsweep, clogrun and clogfit, once, and remembers where every number came from."""
 
-import concurrent.futures
 import csv
 import dataclasses
 import itertools
 import json
-import os
 import pathlib
 import shlex
-import tempfile
 
+import replays
 import stored
-import trajectory
 from command_line import UserError
 from programs import ROOT, run_program
-
-# What may differ between a row and the same run once more.
-CIRCUMSTANCES = {"task", "wall_seconds", "rank", "host", "attempt"}
 
 CONFIGS = ROOT / "jobs" / "figures"
 
@@ -174,42 +168,19 @@ class Workshop:
 
     # Ways of single droplets
 
-    def replays(self, name, tasks, samples, outlines=None):
-        """Rows of a sweep run once more for what is not in them; reused where a file holds the same already.
-
-        @param samples, outlines  time between two of them [t0]
-        """
-        rows = {row["task"]: row for row in stored.read_rows(self.sweep_file(name))}
-        options = ["--sample-interval", f"{samples:.3g}", *(["--polygon-interval", f"{outlines:.3g}"] if outlines else [])]
-        with concurrent.futures.ThreadPoolExecutor(self.ranks) as pool:
-            ways = list(pool.map(lambda task: self._replay(name, rows[task], options), tasks))
+    def ways(self, name, rows, samples, outlines=None):
+        """Rows of a sweep run once more, see replays.follow_all(); reused where a file holds the same already."""
+        folder = self.folder / "runs"
+        if not self.draw_only:
+            print(f"ways of {name}: {folder}", flush=True)
+            folder.mkdir(parents=True, exist_ok=True)
+        clogrun = None if self.draw_only else self.programs / "clogrun"
+        ways = replays.follow_all(clogrun, self.sweep_file(name), rows, folder, self.ranks, samples, outlines)
         for way in ways:
             self._sources.append(
                 f"{way.attributes['command_line']}\n    {way.word('status')} at t = {way.row['time']:.6g}; "
                 f"clogrun {way.attributes['version']}, git {way.attributes['git_hash']}, {way.attributes['start_time']}; file {way.path}")
         return ways
-
-    def _replay(self, name, row, options):
-        file = self.folder / "runs" / f"{name}-{row['task']}.h5"
-        known = trajectory.read(file, needs_frames=False) if file.exists() else None
-        if known is not None and self._is_of(known, row, options):
-            return known
-        if self.draw_only:
-            raise UserError(f"{file} is {'not there' if known is None else 'another run'}; leave out --draw-only")
-        file.parent.mkdir(parents=True, exist_ok=True)
-        print(f"run {name}, task {row['task']}: {file}", flush=True)
-        # clogrun never overwrites; the old one goes when the new one is whole. Another figures.py may do the same run.
-        with tempfile.TemporaryDirectory(prefix=f"{file.stem}-", dir=file.parent) as folder:
-            fresh = pathlib.Path(folder) / file.name
-            self._call("clogrun", "replay", self.sweep_file(name), row["task"], *options, "--output", fresh)
-            os.replace(fresh, file)
-        return trajectory.read(file, needs_frames=False)
-
-    @staticmethod
-    def _is_of(known, row, options):
-        """Is it what this row's run gives with these options?"""
-        return shlex.split(known.attributes["command_line"])[4:-2] == options and known.row.dtype == row.dtype and all(
-            known.row[column].tobytes() == row[column].tobytes() for column in set(row.dtype.names) - CIRCUMSTANCES)
 
     # Fits of tables
 
