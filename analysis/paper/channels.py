@@ -5,6 +5,7 @@ import math
 import numpy as np
 import style
 import trajectory
+from command_line import UserError
 from paper.plate import Plate, figure, interface_of
 from paper.workshop import measured
 from style import plt
@@ -194,6 +195,8 @@ def near_wall_drag(shop):
     rows = passages(shop, "walls", start=-1.5, end=1.5, wedge_angle=0, orifice=[1 + 2 * distance for distance in distances],
                     line_tension=1, near_wall_drag=0.07, terminal_speed=0.03)
     speeds = [row["mean_speed"] / row["terminal_speed"] for row in rows]
+    if not np.isfinite(speeds).all():
+        raise UserError(f"droplets of {shop.sweep_file('walls')} went too short a way for a mean speed; raise max-time, e.g. --set channel:max-time=3000")
     data = [{"distance": distance, "speed_ratio": speed, "ratio": speed / (1 - speed)} for distance, speed in zip(distances, speeds)]
     row = rows[0]
     fit = shop.fit("drag", shop.table("walls", ["d [sigma]", "v [v_t]"], zip(distances, speeds)), "--format", "json")
