@@ -23,6 +23,7 @@ class Kind:
     about: str
 
 
+
 CHANNEL = Kind(
     "Passages", "passed", {"passed": "passed", "clogged": "clogged", "flowing": "under way at the end"},
     {"largest_shape_parameter": r"largest shape parameter $\mathcal{A}$", "smallest_relative_speed": r"smallest speed $v_g/v_t$",

@@ -160,7 +160,7 @@ def speeds_over_sag(shop):
     return over_sag(shop, ["speed", "speed-sp"], 1.1, "speed")
 
 
-@figure("7b", "what the sag is: a soft disk and a polygon on a wall, before and after gravity sets in", [], "1 s")
+@figure("7b", "what the sag is: a soft disk and a polygon on a wall, before and after gravity sets in", ["channel"], "1 s")
 def sag_picture(shop):
     line_tension, stiffness = 0.3, 1.0
     on_wall = {"obstacle-layout": "wall"}

@@ -234,7 +234,7 @@ def vertices(shop):
     runs = profiles(shop, "vertices", orifice=0.7, line_tension=line_tension, near_wall_drag=0.07, terminal_speed=0.032, vertices=counts)
     for index, (count, run) in enumerate(zip(counts, runs)):
         for panel in (axes, inset):
-            draw_profile(panel, run, "speed_ratio", index, rf"$N_v = {count}$, slowest ${run.row['smallest_relative_speed']:.3f}\,v_t$" + ending(run))
+            draw_profile(panel, run, "speed_ratio", index, rf"$N_v = {count}$, slowest ${round(run.row['smallest_relative_speed'], 3) + 0.0:.3f}\,v_t$" + ending(run))
         data += [*profile_rows(run, f"N_v={count}"), extremes(run, f"N_v={count}")]
     finish(axes, "profile")
     inset.set_xlim(-0.4, -0.1)
