@@ -10,6 +10,7 @@ import trajectory
 from groups import FINISHED
 from style import plt
 
+
 @dataclasses.dataclass(frozen=True)
 class Kind:
     """What is told of droplets in a channel, or on a wall."""
@@ -21,7 +22,6 @@ class Kind:
     columns: dict  # headings of the table, by column
     outline: str
     about: str
-
 
 
 CHANNEL = Kind(

@@ -199,7 +199,8 @@ def of_lengths(groups, sweep, count, clogrun):
 def of_passages(groups, sweep, count, clogrun):
     """The same of droplets in a channel or on a wall. @param count  outlines to show"""
     kind = passages.kind_of(groups)
-    curves = "".join(picture(passages.draw_curves(groups, column), column.replace("_", " ")) for column in kind.curves)
+    curves = "".join(picture(passages.draw_curves(groups, column), column.replace("_", " ")) for column in kind.curves
+                     if groups.are_polygons or column != "largest_shape_parameter")  # a soft disk stays a circle
     with tempfile.TemporaryDirectory(prefix="clogsweep-report-") as folder:
         drawn = passages.draw_outlines(groups, passages.examples(stored.read_rows(sweep), count), clogrun, sweep, folder)
     outlines = "".join(picture(figure, f"outline {kind.outline}") for figure in drawn)

@@ -7,6 +7,7 @@ import h5py
 import numpy as np
 from matplotlib import pyplot
 
+import stored_rows
 from scripts import Analysis
 from support import BIN, ProgramTest, table
 
@@ -104,6 +105,29 @@ class Channels(Analysis):
         self.assertEqual(drawn, [(group["line_tension"], group["largest_shape_parameter"], {"passed": "o", "clogged": "X"}[group["status"]])
                                  for group in fit["groups"]])
         pyplot.close("all")
+
+    def test_a_report_of_soft_disks_has_no_shapes(self):
+        self.succeed("clogsweep", "model=sp", "orifice=0.7", "wall-stiffness=1,50", "start=-1.5", "end=1", "max-time=2000", "--output", "s.h5")
+        self.succeed("clogfit", "report", "s.h5", "--output", "r.html")
+        page = (self.folder / "r.html").read_text()
+        self.assertEqual(page.count("<img"), 2)
+        self.assertIn("<li>1 of 2 passed</li>", page)
+
+    def test_a_report_leaves_out_what_is_not_over(self):
+        self.succeed("clogsweep", *CHANNEL, "line-tension=0.5,0.6", "--output", "s.h5")
+
+        def interrupt(*tasks):
+            stored_rows.change(self.folder / "s.h5", lambda rows: rows["status"].__setitem__(list(tasks), b"interrupted"))
+
+        interrupt(1)
+        self.succeed("clogfit", "report", "s.h5", "--output", "r.html")
+        page = (self.folder / "r.html").read_text()
+        self.assertIn("<li>1 of 1 passed</li>", page)
+        self.assertIn("<td>0.5</td><td>passed</td>", page)
+        self.assertNotIn("<td>0.6</td>", page)
+        self.assertEqual(page.count("<img"), 3 + 1)
+        interrupt(0, 1)
+        self.refuse("clogfit", "report", "s.h5", "--output", "s.html", words=["no finished runs"])
 
     def test_an_outline_of_a_report_is_the_most_deformed(self):
         self.succeed("clogsweep", *CHANNEL, "line-tension=0.3,5", "--output", "s.h5")
