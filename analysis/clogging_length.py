@@ -64,6 +64,7 @@ def body():
     output = arguments.output or command_line.beside(arguments.sweep, "clogging-length")
     command_line.refuse_unwritable_picture(output, arguments.sweep)
     groups = read_fit(arguments.sweep, arguments.programs)
+    groups.refuse_passages()
     if not groups.members:
         raise UserError(f"{arguments.sweep} holds no finished runs")
     style.save(draw(groups), output)

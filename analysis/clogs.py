@@ -33,6 +33,8 @@ def read_clogs(path):
     """Rows of the polygons that have clogged."""
     with stored.opened(path, stored.SWEEP) as file:
         rows = file["runs"][:]
+    if len(rows) > 0 and rows["obstacle_filling"][0] in (b"channel", b"wall"):
+        raise UserError(f"cannot draw clogs of {path} (its droplets were in a channel or on a wall); clogfit report draws what came out of them")
     return [row for row in rows if row["status"] == b"clogged" and row["model"] == b"dp"]
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Regenerates a figure of the paper from runs of our own: sweeps or single runs, clogfit, picture.
+"""Regenerates a figure of the paper from runs of our own: sweeps, clogfit, picture.
 
     analysis/figures.py list
     analysis/figures.py 6c 7c
@@ -74,13 +74,13 @@ def parse():
     parser = command_line.Parser(__doc__)
     parser.add_argument("names", nargs="+", metavar="NAME", help="of figures, or list, or all")
     parser.add_argument("--size", choices=["reduced", "full"], default="reduced", help="reduced: minutes on two cores; full: as published")
-    parser.add_argument("--ranks", type=command_line.whole(1), default=2, help="MPI ranks of the sweeps (2)")
+    parser.add_argument("--ranks", type=command_line.whole(1), default=2, help="MPI ranks of the sweeps, and runs at a time (2)")
     parser.add_argument("-o", "--output", type=pathlib.Path, default=ROOT / "results" / "figures", help="folder (results/figures)")
     parser.add_argument("--draw-only", action="store_true", help="run nothing, draw from what is there")
     parser.add_argument("--profile", type=pathlib.Path, action="append", default=[], metavar="FILE.csv",
                         help="measured passage h [sigma], v [v_t], A to draw in 2, 3 (twice: w = 0.9, 0.7), 4, or to compare with in B2")
     parser.add_argument("--set", action="append", default=[], metavar="[CONFIG:]KEY=VALUE",
-                        help="another value than the config's, e.g. clogging:seeds=1..50; keys that a figure itself varies in single runs stay")
+                        help="another value than the config's, e.g. clogging:seeds=1..50; keys that a figure itself sets stay")
     programs.add_option(parser)
     return parser.parse_args()
 

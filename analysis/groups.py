@@ -34,22 +34,25 @@ def said(column, value):
     return f"${symbol(column)} = {number(value)}$"
 
 
-def refuse_passages(fit):
-    """@raise UserError  for a sweep of channels or walls: there each group is one run, and has no clogging length"""
-    if fit["groups"] and "status" in fit["groups"][0]:
-        raise UserError("cannot draw clogging lengths (these runs were in a channel or on a wall); clogfit prints what came out of them")
+FINISHED = ("passed", "clogged", "flowing")
 
 
 class Groups:
     """Groups of one sweep that hold runs, drawn over one of its parameters."""
 
     def __init__(self, fit):
-        refuse_passages(fit)
-        self.members = [group for group in fit["groups"] if group["runs"] > 0]
+        # In a channel and on a wall nothing is random: a group is one run, which has a status.
+        self.are_passages = any("status" in group for group in fit["groups"])
+        self.members = [group for group in fit["groups"] if (group["status"] in FINISHED if self.are_passages else group["runs"] > 0)]
         self.confidence = fit["confidence"]
         self.columns = {column["name"]: column for column in fit["columns"]}
         self.lists = fit["lists"]
         self.abscissa = self._choose_abscissa() if self.members else None
+
+    def refuse_passages(self):
+        """@raise UserError  for a sweep of channels or walls, which has no clogging lengths"""
+        if self.are_passages:
+            raise UserError("cannot draw clogging lengths (these droplets were in a channel or on a wall); clogfit report draws what came out of them")
 
     @property
     def are_polygons(self):
@@ -142,7 +145,8 @@ class Groups:
             words.append("saturated arrays")
         if first["obstacle_filling"] == "lattice":
             words.append("square lattice")
-        words.append(style.runs_a_point(self.members))
+        if not self.are_passages:
+            words.append(style.runs_a_point(self.members))
         return ", ".join(words)
 
     def _is_worth_a_word(self, name, value):

@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""One page about a sweep: curves, table, example clogs, doubts, where the numbers came from. Opens offline in any browser.
+"""One page about a sweep: curves, table, example clogs or outlines, doubts, where the numbers came from. Opens offline in any browser.
 
     clogfit report sweep.h5 --output report.html      # is analysis/report.py
 
-Every number comes from clogfit. Example clogs are run once more by clogrun, until they rest, in a temporary folder.
+Every number comes from clogfit. Example clogs are run once more by clogrun, until they rest, in a temporary folder. Of
+droplets in a channel or on a wall it shows the passage or the sag over what the sweep varies, and some outlines.
 """
 
 import base64
@@ -22,12 +23,13 @@ with command_line.needs_modules():
     import clogging_length
     import clogs
     import numpy as np
+    import passages
     import programs
     import rounded
     import stored
     import style
     import survival_curve
-    from groups import Groups, refuse_passages
+    from groups import Groups
     from style import plt
 
 STYLE = """
@@ -109,9 +111,9 @@ def length(group):
     return rounded.with_interval(group["clogging_length"], *ends) if group["clogs"] > 0 else f"&gt; {rounded.plain(ends[0])}"
 
 
-def value(cell):
+def value(cell, digits=6):
     """Of a parameter, as a table shows it."""
-    return "-" if cell is None else cell if isinstance(cell, str) else f"{cell:g}"
+    return "-" if cell is None else cell if isinstance(cell, str) else f"{cell:.{digits}g}"
 
 
 def table(groups):
@@ -179,28 +181,48 @@ def progress_of(status, rows):
     return f"{status['over']} of {rounded.counted(status['runs'], 'run')} finished ({counts})"
 
 
-def page(path, fit, status, rows, about, pictures):
-    groups = Groups(fit)
+LENGTHS = "&lambda; is the way after which 1/e of the droplets have not clogged, in droplet diameters; v<sub>t</sub> is the speed of a free droplet."
+
+
+def of_lengths(groups, sweep, count, clogrun):
+    """What is told of droplets among obstacles. @param count  clogs to show. @return contents by title, the table"""
     curves = picture(clogging_length.draw(groups), "clogging length")
     if any(group["relative_speed"] is not None for group in groups.members):
         curves += picture(speeds(groups), "mean speed over terminal speed")
     survivals = "".join(picture(survival(groups, label, members), "P(r), to the longest way") for label, members in groups.curves()
                         if any(group["survival"] for group in members))
     ends = "".join(picture(causes(groups, label, members), "clogs by mechanism") for label, members in groups.curves())
+    return {"Curves": side_by_side(curves), "How far droplets get": side_by_side(survivals), "What becomes of them": side_by_side(ends),
+            "Example clogs": example_pictures(examples(clogs.read_clogs(sweep), count), sweep, clogrun)}, table(groups)
+
+
+def of_passages(groups, sweep, count, clogrun):
+    """The same of droplets in a channel or on a wall. @param count  outlines to show"""
+    kind = passages.kind_of(groups)
+    curves = "".join(picture(passages.draw_curves(groups, column), column.replace("_", " ")) for column in kind.curves
+                     if groups.are_polygons or column != "largest_shape_parameter")  # a soft disk stays a circle
+    with tempfile.TemporaryDirectory(prefix="clogsweep-report-") as folder:
+        drawn = passages.draw_outlines(groups, passages.examples(stored.read_rows(sweep), count), clogrun, sweep, folder)
+    outlines = "".join(picture(figure, f"outline {kind.outline}") for figure in drawn)
+    return {kind.heading: passages.shares(groups, value) + side_by_side(curves), "Outlines": side_by_side(outlines) or "<p>None.</p>"}, passages.table(groups, value)
+
+
+def side_by_side(pictures):
+    return f'<div class="pictures">{pictures}</div>' if pictures else ""
+
+
+def page(path, groups, sections, progress, about):
+    """@param sections  contents by title"""
     provenance = "\n".join([f"{key}: {about[key]}" for key in ("command_line", "version", "git_hash", "compiler", "mpi_version", "hdf5_version", "start_time", "num_ranks")
                             if key in about])
+    meaning = passages.kind_of(groups).about if groups.are_passages else LENGTHS
+    told = "".join(f"<h2>{title}</h2>{content}\n" for title, content in sections.items())
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>{html.escape(path.name)}</title><style>{STYLE}</style></head><body>
 <h1>Sweep {html.escape(path.name)}</h1>
-<p class="about">{html.escape(progress_of(status, rows))}, {rounded.counted(len(groups.members), "point")}.
-&lambda; is the way after which 1/e of the droplets have not clogged, in droplet diameters; v<sub>t</sub> is the speed of a free droplet.</p>
-<h2>Curves</h2><div class="pictures">{curves}</div>
-<h2>How far droplets get</h2><div class="pictures">{survivals}</div>
-<h2>What becomes of them</h2><div class="pictures">{ends}</div>
-<h2>What may spoil these numbers</h2>{doubts(groups.members, fit["doubts"], rows)}
-<h2>Example clogs</h2>{pictures}
-<h2>Table</h2>{table(groups)}
-<h2>Where they come from</h2><pre>{html.escape(provenance)}</pre><details><summary>All settings</summary><pre>{html.escape(about.get("config", ""))}</pre></details>
+<p class="about">{html.escape(progress)}, {rounded.counted(len(groups.members), "point")}.
+{meaning}</p>
+{told}<h2>Where they come from</h2><pre>{html.escape(provenance)}</pre><details><summary>All settings</summary><pre>{html.escape(about.get("config", ""))}</pre></details>
 </body></html>
 """
 
@@ -209,7 +231,7 @@ def body():
     parser = command_line.Parser(__doc__)
     parser.add_argument("sweep", type=pathlib.Path, help="output of clogsweep")
     command_line.add_output(parser, "HTML file to write (SWEEP-report.html)")
-    parser.add_argument("--examples", type=command_line.whole(0), default=4, help="clogs to show (4); 0 runs nothing")
+    parser.add_argument("--examples", type=command_line.whole(0), default=4, help="clogs or outlines to show (4); 0 runs nothing")
     programs.add_option(parser)
     arguments = parser.parse_args()
     output = arguments.output or command_line.beside(arguments.sweep, "report.html")
@@ -217,15 +239,17 @@ def body():
     folder = programs.programs_in(arguments.programs)
     fit = json.loads(programs.run_program(folder / "clogfit", arguments.sweep, "--format", "json"))
     status = json.loads(programs.run_program(folder / "clogsweep", "status", arguments.sweep, "--format", "json"))
-    refuse_passages(fit)
-    if not any(group["runs"] > 0 for group in fit["groups"]):
+    groups = Groups(fit)
+    if not groups.members:
         raise UserError(f"{arguments.sweep} holds no finished runs; let the sweep finish some first")
     rows = stored.read_table(arguments.sweep)
     with stored.opened(arguments.sweep) as file:
         about = stored.attributes(file)
-    pictures = example_pictures(examples(clogs.read_clogs(arguments.sweep), arguments.examples), arguments.sweep, folder / "clogrun")
+    tell = of_passages if groups.are_passages else of_lengths
+    sections, numbers = tell(groups, arguments.sweep, arguments.examples, folder / "clogrun")
+    sections |= {"What may spoil these numbers": doubts(groups.members, fit["doubts"], rows), "Table": numbers}
     try:
-        output.write_text(page(arguments.sweep, fit, status, rows, about, pictures))
+        output.write_text(page(arguments.sweep, groups, sections, progress_of(status, rows), about))
     except OSError as error:
         raise UserError(f"cannot write {output} ({error.strerror}); give another --output") from error
     print(output)

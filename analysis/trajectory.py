@@ -37,6 +37,11 @@ class Trajectory:
         at_frames = np.interp(self.times, self.table["time"], self.table[column])
         return int(np.argmin(np.abs(at_frames - value)))
 
+    @property
+    def middle(self):
+        """Where h = 0 and the axis of a channel are in the coordinates of the polygons; of a wall, a point on it."""
+        return self.wedges[:, :2].mean(axis=0)
+
 
 def refined(polygons, row):
     """Polygons with the middles of their edges, by the four-point rule (src/core/README.md): walls meet these. Those of
@@ -105,6 +110,12 @@ def draw_surroundings(axes, trajectory, origin=(0.0, 0.0)):
     circles = [Circle((x - shift[0], y - shift[1]), diameter / 2) for x, y, diameter in trajectory.obstacles]
     axes.add_collection(PatchCollection(circles, facecolor=style.OBSTACLE, edgecolor="none"))
     draw_walls(axes, trajectory, shift)
+
+
+def draw_droplet(axes, trajectory, frame, origin=(0.0, 0.0)):
+    """One outline among its surroundings."""
+    draw_surroundings(axes, trajectory, origin)
+    axes.fill(*(trajectory.polygons[frame] - np.asarray(origin)[:, None]), facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1)
 
 
 def draw_walls(axes, trajectory, shift=0.0):

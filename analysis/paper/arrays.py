@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import rounded
+import stored
 import style
 import survival_curve
 import trajectory
@@ -111,15 +112,15 @@ def speeds_by_drag(shop):
 # Both models over the sag
 
 def sags(shop, config, groups):
-    """delta_s for each group, from one clogrun sag with all its line tensions or stiffnesses."""
+    """delta_s for each group, from one sweep of walls with all its line tensions or stiffnesses."""
     is_polygon = groups[0]["model"] == "dp"
     column, key = ("line_tension", "line-tension") if is_polygon else ("wall_stiffness", "wall-stiffness")
     keys = shop.keys(config)
     settings = {name: keys[name] for name in ("model", "preset", "vertices") if name in keys}
-    settings[key] = ",".join(f"{value:g}" for value in sorted({group[column] for group in groups}))
-    rows = shop.sag(f"sag-{config}", settings)
-    known = {f"{row[column]:.6g}": row["sag"] for row in rows}
-    return [known[f"{group[column]:.6g}"] for group in groups]
+    values = sorted({group[column] for group in groups})
+    rows = shop.runs(f"sag-{config}", None, {"obstacle-layout": "wall", **settings, key: values})
+    known = dict(zip(values, rows, strict=True))
+    return [known[group[column]]["sag"] for group in groups]
 
 
 def over_sag(shop, configs, gap, quantity):
@@ -159,19 +160,20 @@ def speeds_over_sag(shop):
     return over_sag(shop, ["speed", "speed-sp"], 1.1, "speed")
 
 
-@figure("7b", "what the sag is: a soft disk and a polygon on a wall, before and after gravity sets in", [], "1 s")
+@figure("7b", "what the sag is: a soft disk and a polygon on a wall, before and after gravity sets in", ["channel"], "1 s")
 def sag_picture(shop):
     line_tension, stiffness = 0.3, 1.0
-    polygon = shop.run("sag", "sag", "channel", {"line-tension": line_tension}, ["--polygon-interval", 2])
-    disk_sag = shop.sag("sag-disk", {"model": "sp", "wall-stiffness": f"{stiffness:g}"})[0]["sag"]
+    on_wall = {"obstacle-layout": "wall"}
+    row, = shop.runs("sag-polygon", "channel", {**on_wall, "line-tension": line_tension})
+    polygon, = shop.ways("sag-polygon", [row], 1, 2)
+    disk, = shop.runs("sag-disk", None, {**on_wall, "model": "sp", "wall-stiffness": stiffness})
+    disk_sag, polygon_sag = disk["sag"], row["sag"]
     drawing, panels = plt.subplots(1, 2, figsize=(7.2, 4.2), layout="constrained", sharey=True)
     wall = polygon.wedges[0, :2]
     # Gravity points along +x in the model; here it points down.
     outlines = [(shape[1] - wall[1], wall[0] - shape[0]) for shape in polygon.polygons]
     angle = np.linspace(0, 2 * math.pi, 200)
     circle = np.array([0.5 * np.cos(angle), 0.5 + 0.5 * np.sin(angle)])
-    polygon_sag = shop.sag("sag-polygon", {"model": "dp", "line-tension": f"{line_tension:g}", "vertices": str(polygon.row["vertices"]),
-                                           "preset": polygon.word("preset")})[0]["sag"]
     for axes, before, after, sag, title in [
         (panels[0], circle, circle - np.array([[0], [disk_sag]]), disk_sag, rf"soft disk, $E_w = {stiffness:g}$"),
         (panels[1], outlines[0], outlines[-1], polygon_sag, rf"deformable polygon, $\Gamma = {line_tension:g}$"),
@@ -212,9 +214,8 @@ def example(shop, mechanism):
     else:
         travelled = clogs[clogs.distance >= 0.5]
         row = (clogs if travelled.empty else travelled).sort_values(["line_tension", "task"]).iloc[-1]
-    run = shop.run(f"clog-{mechanism}", "array", "clogging",
-                   {"line-tension": float(row.line_tension), "obstacle-gap": float(row.obstacle_gap), "seeds": int(row.seed)},
-                   ["--polygon-interval", f"{max(0.5, row.time / 400):.3g}"])
+    stored_row = [one for one in stored.read_rows(shop.sweep_file("clogging")) if one["task"] == row.task]
+    run, = shop.ways("clogging", stored_row, 1, max(0.5, row.time / 400))
     return run, row
 
 
@@ -233,8 +234,7 @@ def snapshot(shop, mechanism):
     drawing, axes = plt.subplots(figsize=(5.6, 5.4), layout="constrained")
     shape = run.polygons[-1]
     centre = shape.mean(axis=1)
-    trajectory.draw_surroundings(axes, run, centre)
-    axes.fill(*(shape - centre[:, None]), facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1)
+    trajectory.draw_droplet(axes, run, -1, centre)
     half = 0.6 + np.abs(shape - centre[:, None]).max()
     trajectory.frame_limits(axes, (-half, -half), (half, half))
     axes.annotate("flow", (0.22, 0.94), (0.04, 0.94), xycoords="axes fraction", va="center",
@@ -269,8 +269,7 @@ def two_ways(shop):
         shown = run.polygons[chosen]
         low, high = shown.min(axis=(0, 2)) - 0.3, shown.max(axis=(0, 2)) + 0.3
         for axes, frame in zip(line, chosen):
-            trajectory.draw_surroundings(axes, run)
-            axes.fill(*run.polygons[frame], facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=0.8)
+            trajectory.draw_droplet(axes, run, frame)
             half = max(high - low) / 2
             trajectory.frame_limits(axes, (low + high) / 2 - half, (low + high) / 2 + half)
             axes.set_xticks([]), axes.set_yticks([])
@@ -289,9 +288,9 @@ def two_ways(shop):
 def kinetic_energy(shop):
     drawing, axes = plt.subplots(figsize=(7.2, 4.8), layout="constrained")
     data = []
-    for index, gap in enumerate([0.3, 1.1]):
-        run = shop.run(f"energy-{gap}", "array", "trajectory", {"line-tension": 0.5, "obstacle-gap": gap, "clog-detection": "threshold"},
-                       ["--sample-interval", 1])
+    gaps = [0.3, 1.1]
+    rows = shop.runs("energy", "trajectory", {"seeds": 1, "line-tension": 0.5, "obstacle-gap": gaps, "clog-detection": "threshold"})
+    for index, (gap, run) in enumerate(zip(gaps, shop.ways("energy", rows, 1))):
         energy = np.where(run.table["kinetic_energy_ratio"] > 0, run.table["kinetic_energy_ratio"], math.nan)
         label = rf"$w_\mathrm{{ob}} = {gap}\sigma$: {run.word('status')} at $r = {run.row['distance']:.2f}\sigma$"
         axes.plot(run.table["time"], energy, color=style.COLOURS[index], linewidth=0.9, label=label)
@@ -359,9 +358,9 @@ def survival(shop):
 def displacement(shop):
     drawing, axes = plt.subplots(figsize=(6.8, 5.0), layout="constrained")
     data = []
-    for index, line_tension in enumerate([0.04, 0.1, 0.2, 0.5, 1.0]):
-        run = shop.run(f"displacement-{line_tension:g}", "array", "trajectory",
-                       {"line-tension": line_tension, "obstacle-gap": 1.1, "preset": "elastic"}, ["--sample-interval", 2])
+    line_tensions = [0.04, 0.1, 0.2, 0.5, 1.0]
+    rows = shop.runs("displacement", "trajectory", {"seeds": 1, "line-tension": line_tensions, "obstacle-gap": 1.1, "preset": "elastic"})
+    for index, (line_tension, run) in enumerate(zip(line_tensions, shop.ways("displacement", rows, 2))):
         speed = run.row["mean_speed"] / run.row["terminal_speed"]
         label = rf"$\Gamma = {line_tension:g}$" + (rf": $v_g = {speed:.2f}\,v_t$" if math.isfinite(speed) else "") + (
             ", clogged" if run.word("status") == "clogged" else "")

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import style
 import trajectory
+from command_line import UserError
 from paper.plate import Plate, figure, interface_of
 from paper.workshop import measured
 from style import plt
@@ -12,20 +13,18 @@ from style import plt
 SMOOTH = 512  # vertices from which on a passage of w = 0.4 shows no ripple
 
 
-def in_channel(shop, name, orifice, line_tension, near_wall_drag, terminal_speed, **keys):
-    # Frames a fiftieth of a diameter apart, samples a fifth of that.
-    frame = 0.02 / terminal_speed
+def passages(shop, name, **keys):
+    """Rows of a sweep of channels. @param keys  as of Workshop.runs(), with _ for -"""
     start, end = (-10, 3) if shop.size == "full" else (-2, 2)
-    return shop.run(
-        name, "channel", "channel",
-        {"line-tension": line_tension, "near-wall-drag": near_wall_drag, "terminal-speed": terminal_speed, **keys},
-        ["--orifice", orifice, "--start", start, "--end", end, "--sample-interval", f"{frame / 5:.3g}", "--polygon-interval", f"{frame:.3g}"],
-    )
+    return shop.runs(name, "channel", {"obstacle-layout": "channel", "start": start, "end": end} | {key.replace("_", "-"): value for key, value in keys.items()})
 
 
-def middle_of(channel):
-    """Where h = 0 and the axis are in the coordinates of the polygons."""
-    return channel.wedges[:, :2].mean(axis=0)
+def profiles(shop, name, outlines=False, **keys):
+    """The same with h, v and A on the way, and outlines."""
+    rows = passages(shop, name, **keys)
+    # Frames a fiftieth of a diameter apart, samples a fifth of that.
+    frame = 0.02 / rows[0]["terminal_speed"]
+    return shop.ways(name, rows, frame / 5, frame if outlines else None)
 
 
 def parameters(run, orifice):
@@ -39,7 +38,7 @@ def ending(run):
     return "" if run.word("status") == "passed" else f" (stops at $h = {run.table['h'][-1]:.2f}$)"
 
 
-def draw_profile(axes, run, column, index, label, marker=False):
+def draw_profile(axes, run, column, index, label):
     style_of = style.curve_style(index)
     axes.plot(run.table["h"], run.table[column], color=style_of["color"], linewidth=1.4, label=label)
     if run.word("status") != "passed":
@@ -65,6 +64,12 @@ def finish(axes, ordinate, reach=1.6):
     style.grid(axes)
 
 
+def extremes(run, label):
+    """What the row says of the passage."""
+    return {"curve": label} | {f"{extreme}{at}": run.row[f"{extreme}{at}"] for at in ("", "_at")
+                               for extreme in ("largest_shape_parameter", "smallest_relative_speed", "largest_relative_speed")}
+
+
 def profile_rows(run, label):
     step = max(1, len(run.table) // 400)
     return [{"curve": label, "h": frame["h"], "speed_ratio": frame["speed_ratio"], "shape_parameter": frame["shape_parameter"]}
@@ -73,20 +78,18 @@ def profile_rows(run, label):
 
 def narrow(shop):
     """The passage of Figs. 1 and 2."""
-    return in_channel(shop, "channel-0.4", 0.4, 0.16, 0.064, 0.08)
+    return profiles(shop, "channel-0.4", outlines=True, orifice=0.4, line_tension=0.16, near_wall_drag=0.064, terminal_speed=0.08)[0]
 
 
 @figure("1", "geometry: a droplet in a narrow channel, and one among obstacles with its trajectory", ["channel", "trajectory"], "1 s")
 def geometry(shop):
     channel = narrow(shop)
-    array = shop.run("geometry", "array", "trajectory", {"line-tension": 0.3, "obstacle-gap": 1.0, "max-time": 300.0},
-                     ["--polygon-interval", 4])
+    released, = shop.runs("geometry", "trajectory", {"seeds": 1, "line-tension": 0.3, "obstacle-gap": 1.0, "max-time": 300.0})
+    array, = shop.ways("geometry", [released], 1, 4)
     drawing, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.4), layout="constrained", width_ratios=[1, 1.5])
-    middle = middle_of(channel)
+    middle = channel.middle
     frame = channel.frame_at("h", -0.75)
-    trajectory.draw_surroundings(left, channel, middle)
-    x, y = channel.polygons[frame] - middle[:, None]
-    left.fill(x, y, facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1)
+    trajectory.draw_droplet(left, channel, frame, middle)
     left.annotate("", (0.0, 0.2), (0.0, -0.2), arrowprops={"arrowstyle": "<->"})
     left.text(0.06, 0, "$w$", va="center")
     left.annotate("", (1.2, 0), (0.75, 0), arrowprops={"arrowstyle": "-|>", "color": "black"})
@@ -95,11 +98,9 @@ def geometry(shop):
     style.caption(left, f"(a) {parameters(channel, 0.4)}".replace(", $b_0", ",\n$b_0"))
     start = array.polygons[0].mean(axis=1)
     centres = array.polygons.mean(axis=2) - start
-    trajectory.draw_surroundings(right, array, start)
     right.plot(*centres.T, "o", color="black", markerfacecolor="none", markersize=3.5, markeredgewidth=0.6)
     shown = int(np.argmin(np.abs(centres[:, 0] - 0.5 * centres[-1, 0])))
-    x, y = array.polygons[shown] - start[:, None]
-    right.fill(x, y, facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1)
+    trajectory.draw_droplet(right, array, shown, start)
     middle_y = (centres[:, 1].min() + centres[:, 1].max()) / 2
     half = max(2.4, (centres[:, 1].max() - centres[:, 1].min()) / 2 + 1.5)
     trajectory.frame_limits(right, (-1, middle_y - half), (centres[-1, 0] + 1, middle_y + half))
@@ -118,12 +119,10 @@ def squeezing(shop):
     run = narrow(shop)
     drawing = plt.figure(figsize=(9.6, 6.2), layout="constrained")
     top, bottom = drawing.subfigures(2, 1, height_ratios=[1, 2.4])
-    middle = middle_of(run)
+    middle = run.middle
     for axes, h in zip(top.subplots(1, 6), [-1.0, -0.5, -0.25, 0.0, 0.25, 0.5]):
         frame = run.frame_at("h", h)
-        trajectory.draw_surroundings(axes, run, middle)
-        x, y = run.polygons[frame] - middle[:, None]
-        axes.fill(x, y, facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=0.8)
+        trajectory.draw_droplet(axes, run, frame, middle)
         trajectory.frame_limits(axes, (-1.55, -0.85), (1.15, 0.85))
         axes.set_xticks([]), axes.set_yticks([])
         reached = np.interp(run.times[frame], run.table["time"], run.table["h"])
@@ -146,26 +145,23 @@ def two_orifices(shop):
     drawing, panels = plt.subplots(2, 2, figsize=(9.0, 6.8), layout="constrained", sharex=True)
     data = []
     for line, (orifice, line_tension, drag, speed) in enumerate([(0.9, 1.7, 0.21, 0.028), (0.7, 1.08, 0.07, 0.032)]):
-        run = in_channel(shop, f"channel-{orifice}", orifice, line_tension, drag, speed)
+        run, = profiles(shop, f"channel-{orifice}", outlines=True, orifice=orifice, line_tension=line_tension, near_wall_drag=drag, terminal_speed=speed)
         for place, (column, ordinate) in enumerate([("shape_parameter", "shape"), ("speed_ratio", "profile")]):
             axes = panels[line][place]
             draw_profile(axes, run, column, line, "simulation" + ending(run))
             finish(axes, ordinate)
             if run.word("status") != "passed":
                 axes.legend(frameon=False)
-        largest = int(np.argmax(run.table["shape_parameter"]))
         style.caption(panels[line][0], parameters(run, orifice))
         style.caption(panels[line][1], f"interface: {interface_of(run.word('preset'))}")
         # The most deformed outline, where nothing else is drawn.
         inset = panels[line][0].inset_axes([0.68, 0.5, 0.3, 0.47])
-        frame = int(np.argmin(np.abs(run.times - run.table["time"][largest])))
-        trajectory.draw_surroundings(inset, run, middle_of(run))
-        x, y = run.polygons[frame] - middle_of(run)[:, None]
-        inset.fill(x, y, facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=0.8)
+        frame = run.frame_at("h", run.row["largest_shape_parameter_at"])
+        trajectory.draw_droplet(inset, run, frame, run.middle)
         trajectory.frame_limits(inset, (-0.8, -0.8), (0.8, 0.8))
         inset.set_xticks([]), inset.set_yticks([])
-        inset.set_xlabel(rf"$\mathcal{{A}}_\mathrm{{max}} = {run.table['shape_parameter'][largest]:.3f}$", fontsize=8)
-        data += profile_rows(run, f"w={orifice}")
+        inset.set_xlabel(rf"$\mathcal{{A}}_\mathrm{{max}} = {run.row['largest_shape_parameter']:.3f}$", fontsize=8)
+        data += [*profile_rows(run, f"w={orifice}"), extremes(run, f"w={orifice}")]
     for number, path in enumerate(shop.profiles[:2]):
         table = measured(path)
         for place, column in enumerate(["A", "v"]):
@@ -179,8 +175,9 @@ def overshoot(shop):
     drawing, panels = plt.subplots(1, 2, figsize=(9.6, 4.6), layout="constrained")
     data = []
     for axes, (orifice, drag) in zip(panels, [(0.7, 0.02), (0.8, 0.0)]):
-        for index, line_tension in enumerate([1.85, 1.11, 0.83]):
-            run = in_channel(shop, f"overshoot-{orifice}-{line_tension}", orifice, line_tension, drag, 0.032)
+        line_tensions = [1.85, 1.11, 0.83]
+        runs = profiles(shop, f"overshoot-{orifice}", orifice=orifice, line_tension=line_tensions, near_wall_drag=drag, terminal_speed=0.032)
+        for index, (line_tension, run) in enumerate(zip(line_tensions, runs)):
             draw_profile(axes, run, "speed_ratio", index, rf"$\Gamma = {line_tension:g}$" + ending(run))
             data += profile_rows(run, f"w={orifice} b_0={drag:g} Gamma={line_tension:g}")
         finish(axes, "profile")
@@ -195,23 +192,24 @@ def overshoot(shop):
 @figure("A1", "near-wall drag: speed between parallel walls against the distance from them, and its exponent", ["channel"], "3 s")
 def near_wall_drag(shop):
     distances = [0.03, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2]
-    speeds, data = [], []
-    for distance in distances:
-        run = shop.run(f"walls-{distance:g}", "channel", "channel", {"line-tension": 1, "near-wall-drag": 0.07, "terminal-speed": 0.03},
-                       ["--orifice", f"{1 + 2 * distance:g}", "--wedge-angle", 0, "--start", -1.5, "--end", 1.5, "--sample-interval", 0.5])
-        speeds.append(run.table["speed_ratio"][-1])
-        data.append({"distance": distance, "speed_ratio": speeds[-1], "ratio": speeds[-1] / (1 - speeds[-1])})
+    rows = passages(shop, "walls", start=-1.5, end=1.5, wedge_angle=0, orifice=[1 + 2 * distance for distance in distances],
+                    line_tension=1, near_wall_drag=0.07, terminal_speed=0.03)
+    speeds = [row["mean_speed"] / row["terminal_speed"] for row in rows]
+    if not np.isfinite(speeds).all():
+        raise UserError(f"droplets of {shop.sweep_file('walls')} went too short a way for a mean speed; raise max-time, e.g. --set channel:max-time=3000")
+    data = [{"distance": distance, "speed_ratio": speed, "ratio": speed / (1 - speed)} for distance, speed in zip(distances, speeds)]
+    row = rows[0]
     fit = shop.fit("drag", shop.table("walls", ["d [sigma]", "v [v_t]"], zip(distances, speeds)), "--format", "json")
     drawing, axes = plt.subplots(figsize=(6.4, 4.8), layout="constrained")
-    ratio = np.array([row["ratio"] for row in data])
+    ratio = np.array([point["ratio"] for point in data])
     axes.plot(distances, ratio, "o", color=style.COLOURS[0], label="droplet midway between two walls")
     d = np.geomspace(0.02, 5, 100)
     alpha, strength = fit["near_wall_exponent"], fit["near_wall_drag"]
     axes.plot(d, d**alpha / strength, color=style.COLOURS[0], linewidth=1,
               label=rf"fit: $\alpha = {alpha:.2f}\pm{fit['near_wall_exponent_error'] or math.nan:.2f}$")
     # A circle whose vertices feel the drag each: b_0/b_inf times the mean of d_i^-alpha over them.
-    exponent, height = run.row["near_wall_exponent"], 0.5 * (1 - np.abs(np.sin(np.linspace(0, 2 * np.pi, run.row["vertices"], endpoint=False))))
-    circle = 1 / (run.row["near_wall_drag"] * np.mean((d[:, None] + height) ** -exponent, axis=1))
+    exponent, height = row["near_wall_exponent"], 0.5 * (1 - np.abs(np.sin(np.linspace(0, 2 * np.pi, row["vertices"], endpoint=False))))
+    circle = 1 / (row["near_wall_drag"] * np.mean((d[:, None] + height) ** -exponent, axis=1))
     axes.plot(d, circle, ":", color="black", linewidth=1, label="a circle whose every vertex feels it")
     axes.plot(d, ratio[-1] * (d / distances[-1]) ** exponent, "--", color="0.4", linewidth=1, label=rf"slope {exponent:.3g}, of every vertex")
     style.logarithmic_abscissa(axes)
@@ -220,7 +218,7 @@ def near_wall_drag(shop):
     axes.set_ylabel(r"$v_g/(v_t - v_g)$")
     style.grid(axes)
     axes.legend(frameon=False)
-    style.caption(axes, rf"$\Gamma = 1$, $b_0/b_\infty = 0.07$, $V_t = 0.03$, $N_v = {run.row['vertices']}$, no error bars: one run a point" "\n"
+    style.caption(axes, rf"$\Gamma = 1$, $b_0/b_\infty = 0.07$, $V_t = 0.03$, $N_v = {row['vertices']}$, no error bars: one run a point" "\n"
                   "near a wall only the nearest vertices feel it: the exponent of the whole droplet is smaller than theirs")
     return Plate(drawing, data)
 
@@ -233,11 +231,11 @@ def vertices(shop):
     drawing, axes = plt.subplots(figsize=(7.2, 5.0), layout="constrained")
     inset = axes.inset_axes([0.74, 0.1, 0.25, 0.36])
     data = []
-    for index, count in enumerate(counts):
-        run = in_channel(shop, f"vertices-{count}", 0.7, line_tension, 0.07, 0.032, vertices=count)
+    runs = profiles(shop, "vertices", orifice=0.7, line_tension=line_tension, near_wall_drag=0.07, terminal_speed=0.032, vertices=counts)
+    for index, (count, run) in enumerate(zip(counts, runs)):
         for panel in (axes, inset):
-            draw_profile(panel, run, "speed_ratio", index, f"$N_v = {count}$" + ending(run))
-        data += profile_rows(run, f"N_v={count}")
+            draw_profile(panel, run, "speed_ratio", index, rf"$N_v = {count}$, slowest ${round(run.row['smallest_relative_speed'], 3) + 0.0:.3f}\,v_t$" + ending(run))
+        data += [*profile_rows(run, f"N_v={count}"), extremes(run, f"N_v={count}")]
     finish(axes, "profile")
     inset.set_xlim(-0.4, -0.1)
     inset.set_ylim(0, 0.5)
@@ -254,10 +252,10 @@ def perimeter_springs(shop):
     ratios = [1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0]
     data = []
     for index, preset in enumerate(["elastic", "literal"]):
+        runs = profiles(shop, f"springs-{preset}", orifice=0.9, line_tension=1.7, near_wall_drag=0.21, terminal_speed=0.028, preset=preset,
+                        perimeter_spring="rest", perimeter_stiffness_ratio=ratios)
         files = []
-        for ratio in ratios:
-            run = in_channel(shop, f"springs-{preset}-{ratio:g}", 0.9, 1.7, 0.21, 0.028, preset=preset,
-                             **{"perimeter-spring": "rest", "perimeter-stiffness-ratio": ratio})
+        for ratio, run in zip(ratios, runs):
             frames = run.table[np.abs(run.table["h"]) < 1.2]
             files.append(shop.table(f"springs-{preset}-{ratio:g}", ["h [sigma]", "v [v_t]", "A"],
                                     zip(frames["h"], frames["speed_ratio"], frames["shape_parameter"])))

@@ -2,15 +2,13 @@
 
 import csv
 import dataclasses
-import io
+import itertools
 import json
-import os
 import pathlib
 import shlex
-import tempfile
 
+import replays
 import stored
-import trajectory
 from command_line import UserError
 from programs import ROOT, run_program
 
@@ -26,6 +24,19 @@ def config_keys(path):
             key, value = line.split("=", 1)
             keys[key.strip()] = value.strip()
     return keys
+
+
+def as_text(value):
+    """Of a key."""
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def in_row(row, key, otherwise):
+    """The text of a key's value in a row, and that of a key that has no column of numbers."""
+    if key == "perimeter-stiffness-ratio":
+        return as_text(row["perimeter_stiffness"] / row["line_tension"])
+    column = key.replace("-", "_")
+    return as_text(row[column]) if column in row.dtype.names and not isinstance(row[column], bytes) else otherwise
 
 
 @dataclasses.dataclass(frozen=True)
@@ -56,6 +67,7 @@ class Workshop:
     draw_only: bool = False
 
     def __post_init__(self):
+        self._complete_sweeps = set()
         self._fits = {}
         self._sources = []
 
@@ -72,11 +84,13 @@ class Workshop:
             keys |= {override.key: override.value for override in self.overrides if override.config == config}
         return keys
 
-    def _arguments(self, name, own_keys=None):
+    def _arguments(self, name, own_keys):
         """The config and what differs from it: first --set, then the figure's own keys, which have the last word."""
-        keys = self.keys(name) | {key: f"{value:g}" if isinstance(value, float) else str(value)
-                                  for key, value in (own_keys or {}).items()}
         in_file = config_keys(self.config(name))
+        keys = self.keys(name) | own_keys
+        if own_keys.get("obstacle-layout") in ("channel", "wall"):
+            # Nothing is random or periodic there: such a --set is meant for the others.
+            keys = {key: value for key, value in keys.items() if key not in ("seeds", "box")}
         return ["--config", str(self.config(name)), *(f"{key}={value}" for key, value in keys.items() if in_file.get(key) != value)]
 
     # Programs
@@ -89,20 +103,47 @@ class Workshop:
     def sweep_file(self, name):
         return self.folder / "sweeps" / f"{name}.h5"
 
-    def sweep(self, name):
-        """Runs what is missing of a sweep. @return clogfit's groups"""
-        if name not in self._fits:
-            file = self.sweep_file(name)
-            if self.draw_only and not file.exists():
-                raise UserError(f"{file} is not there; leave out --draw-only, or run clogsweep with {self.config(name)}")
-            if not self.draw_only:
-                file.parent.mkdir(parents=True, exist_ok=True)
-                print(f"sweep {name}: {file}", flush=True)
-                self._call("clogsweep", "--output", file, *self._arguments(name), ranks=self.ranks)
-            self._fits[name] = json.loads(self._call("clogfit", file, "--format", "json"))
-        fit = self._fits[name]
+    def _complete(self, name, arguments, ranks):
+        """Runs what is missing of a sweep, once."""
+        file = self.sweep_file(name)
+        if self.draw_only and not file.exists():
+            raise UserError(f"{file} is not there; leave out --draw-only, or run clogsweep {shlex.join(arguments)}")
+        if not self.draw_only and name not in self._complete_sweeps:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            print(f"sweep {name}: {file}", flush=True)
+            self._call("clogsweep", "--output", file, *arguments, ranks=ranks)
+            self._complete_sweeps.add(name)
         self._note_sweep(name)
-        return [group for group in fit["groups"] if group["runs"] > 0]
+
+    def sweep(self, name):
+        """Runs what is missing of a config's sweep. @return clogfit's groups"""
+        self._complete(name, self._arguments(name, {}), self.ranks)
+        if name not in self._fits:
+            self._fits[name] = json.loads(self._call("clogfit", self.sweep_file(name), "--format", "json"))
+        return [group for group in self._fits[name]["groups"] if group["runs"] > 0]
+
+    def runs(self, name, config, keys):
+        """Runs what is missing of a sweep of a figure's own keys.
+
+        @param config  whose keys hold where these say nothing, or None for the defaults
+        @param keys  a value or a list of them for each, e.g. {"line-tension": [0.3, 1]}
+        @return the rows, in the order of the lists, the last of which goes fastest
+        """
+        lists = {key: [as_text(value) for value in (values if isinstance(values, list) else [values])] for key, values in keys.items()}
+        words = {key: ",".join(values) for key, values in lists.items()}
+        wanted = list(itertools.product(*lists.values()))
+        self._complete(name, self._arguments(config, words) if config else [f"{key}={word}" for key, word in words.items()],
+                       min(self.ranks, len(wanted)))
+        # The file may hold others beside them. What has no column is the same in all of them.
+        known = {tuple(in_row(row, key, values[0]) for key, values in lists.items()): row for row in stored.read_rows(self.sweep_file(name))}
+        if missing := [values for values in wanted if values not in known]:
+            which = ", ".join(map("=".join, zip(lists, missing[0])))
+            raise UserError(f"{self.sweep_file(name)} holds no run of {which}; leave out --draw-only, or give another --output")
+        found = [known[values] for values in wanted]
+        for row in found:
+            if row["status"] == b"failed":
+                raise UserError(f"task {row['task']} of {self.sweep_file(name)} failed ({row['message'].decode()}); clogrun replay shows how far it came")
+        return found
 
     def columns(self, name):
         """What the parameters of a sweep that sweep() has run are called: see clogfit's JSON, by name."""
@@ -125,71 +166,21 @@ class Workshop:
             f"{about['command_line']}\n    {finished} of {len(rows)} runs finished, rows 0 to {len(rows) - 1}, "
             f"seeds {seeds[0]} to {seeds[-1]}; clogsweep {about['version']}, git {about['git_hash']}, begun {about['start_time']}")
 
-    # Single droplets
+    # Ways of single droplets
 
-    def run(self, name, system, config, keys, options=()):
-        """One droplet's way by clogrun, reused if the same command has written it before.
-
-        @param keys  of the config file, e.g. {"line-tension": 0.3}; @param options  e.g. ["--orifice", 0.7]
-        """
-        file = self.folder / "runs" / f"{name}.h5"
-        if system == "array":
-            keys = {"seeds": 1} | keys
-        command = [system, *map(str, options), *self._arguments(config, keys)]
-        if system != "array":
-            # Nothing is random or periodic in a channel or on a wall: such a --set is meant for the others.
-            command = [word for word in command if not word.startswith(("seeds=", "box="))]
-        known = trajectory.read(file, needs_frames=False) if file.exists() else None
-        if self.draw_only and known is None:
-            raise UserError(f"{file} is not there; leave out --draw-only")
-        if self.draw_only:
-            self._refuse_others(file, known, keys)
-        if not self.draw_only and (known is None or not self._is_from(known, command)):
-            file.parent.mkdir(parents=True, exist_ok=True)
-            print(f"run {name}: {file}", flush=True)
-            # clogrun never overwrites; the old one goes when the new one is whole. Another figures.py may do the same run.
-            with tempfile.TemporaryDirectory(prefix=f"{name}-", dir=file.parent) as folder:
-                fresh = pathlib.Path(folder) / file.name
-                self._call("clogrun", *command, "--output", fresh)
-                os.replace(fresh, file)
-            known = trajectory.read(file, needs_frames=False)
-        self._sources.append(
-            f"{known.attributes['command_line']}\n    {known.word('status')} at t = {known.row['time']:.6g}; "
-            f"clogrun {known.attributes['version']}, git {known.attributes['git_hash']}, {known.attributes['start_time']}; file {file}")
-        return known
-
-    @staticmethod
-    def _refuse_others(file, known, keys):
-        """A run kept from before may be of another droplet than the figure wants now; the keys it sets itself tell."""
-        for key, value in keys.items():
-            column = "seed" if key == "seeds" else key.replace("-", "_")
-            if column not in known.row.dtype.names:
-                continue
-            there = known.row[column]
-            if (there.decode() != str(value)) if isinstance(there, bytes) else (there != value):
-                raise UserError(f"{file} is another run ({column} is {there}, the figure needs {value}); leave out --draw-only")
-
-    @staticmethod
-    def _is_from(known, command):
-        words = shlex.split(known.attributes["command_line"])[1:]
-        place = words.index("--output") if "--output" in words else len(words)
-        return words[:place] + words[place + 2:] == command and known.word("status") not in ("interrupted", "running")
-
-    def sag(self, name, keys, options=()):
-        """How far droplets sink onto a flat wall, by clogrun sag. @return rows of its table, numbers as float"""
-        file = self.folder / "runs" / f"{name}.csv"
-        arguments = ["sag", *map(str, options), *(f"{key}={value}" for key, value in keys.items())]
-        if self.draw_only:
-            if not file.exists():
-                raise UserError(f"{file} is not there; leave out --draw-only")
-            text = file.read_text()
-        else:
-            text = self._call("clogrun", *arguments)
-            file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text(text)
-        self._sources.append("clogrun " + shlex.join(arguments))
-        return [{key: value if key in ("model", "status") else float(value) for key, value in row.items()}
-                for row in csv.DictReader(io.StringIO(text))]
+    def ways(self, name, rows, samples, outlines=None):
+        """Rows of a sweep run once more, see replays.follow_all(); reused where a file holds the same already."""
+        folder = self.folder / "runs"
+        if not self.draw_only:
+            print(f"ways of {name}: {folder}", flush=True)
+            folder.mkdir(parents=True, exist_ok=True)
+        clogrun = None if self.draw_only else self.programs / "clogrun"
+        ways = replays.follow_all(clogrun, self.sweep_file(name), rows, folder, self.ranks, samples, outlines)
+        for way in ways:
+            self._sources.append(
+                f"{way.attributes['command_line']}\n    {way.word('status')} at t = {way.row['time']:.6g}; "
+                f"clogrun {way.attributes['version']}, git {way.attributes['git_hash']}, {way.attributes['start_time']}; file {way.path}")
+        return ways
 
     # Fits of tables
 

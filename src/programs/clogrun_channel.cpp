@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <string>
 
 #include "clog/cli/program.hpp"
@@ -25,31 +24,17 @@ int clogrun_channel(cli::CommandLine& line) {
   refuse_options(line, "channel", {"write-obstacles"});
   const std::string output = line.require("output");
   const RunParameters parameters = sweep::single_run(line.settings());
-  const ChannelParameters& channel = parameters.channel;
   const auto often = intervals(line, *parameters.time_step);
   store::refuse_unwritable(output);
 
   watch::WatchedRun watched(DropletRun(parameters), often);
   if (line.has("dry-run"))
     return watch::print_preview(line.settings().to_config(false), watched.measure_cost());
-  watched.add_column(
-      "h", "distance of the centre of mass from the orifice, positive downstream [sigma]",
-      [start = channel.start](const DropletRun& now) { return start + now.displacement()[0]; });
-  watched.add_column("speed_ratio", "v_g/v_t", [](const DropletRun& now) {
-    return now.droplet().centre_velocity()[0] / now.parameters().drag.terminal_speed;
-  });
   say_what_is_unproven(sweep::Plan(line.settings()));
   say_what_is_coarse(parameters);
   console::catch_stop_signals();
   watched.follow();
-  store::Trajectory trajectory = watched.trajectory(sweep::describe(parameters), cli::origin(line));
-  for (const auto& [name, value] : {std::pair{"orifice", channel.orifice},
-                                    {"wedge_angle", channel.wedge_angle},
-                                    {"tip_radius", channel.tip_radius},
-                                    {"start_h", channel.start},
-                                    {"end_h", channel.end}})
-    trajectory.provenance.emplace_back(name, sweep::shortest(value));
-  store::write_trajectory(output, trajectory);
+  store::write_trajectory(output, watched.trajectory(sweep::describe(parameters), cli::origin(line)));
   return watched.report();
 }
 

@@ -45,6 +45,20 @@ std::int64_t in_checks(double interval, double time_step) {
   return std::llround(std::clamp(interval / (DropletRun::steps_per_check * time_step), 1.0, never));
 }
 
+bool is_in_channel(const DropletRun& run) {
+  return run.parameters().obstacles.layout == ObstacleLayout::channel;
+}
+
+/// The channel in the attributes of a file.
+void append_channel(const ChannelParameters& channel, store::Provenance& provenance) {
+  for (const auto& [name, value] : {std::pair{"orifice", channel.orifice},
+                                    {"wedge_angle", channel.wedge_angle},
+                                    {"tip_radius", channel.tip_radius},
+                                    {"start_h", channel.start},
+                                    {"end_h", channel.end}})
+    provenance.emplace_back(name, sweep::shortest(value));
+}
+
 }  // namespace
 
 WatchedRun::Intervals WatchedRun::every(double samples, std::optional<double> polygons, double time_step) {
@@ -55,6 +69,7 @@ WatchedRun::Intervals WatchedRun::every(double samples, std::optional<double> po
 WatchedRun::WatchedRun(DropletRun run, Intervals intervals) : run_(std::move(run)), intervals_(intervals) {
   run_.measure_dissipation();
   add_common_columns();
+  if (is_in_channel(run_)) add_columns_of_channel();
 }
 
 void WatchedRun::add_common_columns() {
@@ -89,6 +104,16 @@ void WatchedRun::add_common_columns() {
   add_column("wall_energy", "of the contact with walls", [](Run run) { return run.potential_energy().wall; });
   add_column("self_contact_energy", "of the interface's contact with itself",
              [](Run run) { return run.potential_energy().self_contact; });
+}
+
+void WatchedRun::add_columns_of_channel() {
+  add_column("h", "distance of the centre of mass from the orifice, positive downstream [sigma]",
+             [start = run_.parameters().channel.start](const DropletRun& run) {
+               return start + run.displacement()[0];
+             });
+  add_column("speed_ratio", "v_g/v_t", [](const DropletRun& run) {
+    return run.droplet().centre_velocity()[0] / run.parameters().drag.terminal_speed;
+  });
 }
 
 void WatchedRun::take_sample() {
@@ -162,6 +187,7 @@ store::Trajectory WatchedRun::trajectory(sweep::RunRow row, store::Provenance or
   trajectory.row = row;
   trajectory.provenance = std::move(origin);
   trajectory.provenance.emplace_back("hdf5_version", store::library_version());
+  if (is_in_channel(run_)) append_channel(run_.parameters().channel, trajectory.provenance);
   return trajectory;
 }
 

@@ -42,7 +42,7 @@ TINY = {
     "trajectory": ["vertices=32"],
 }
 SETTINGS = [f"{name}:{key}" for name, keys in TINY.items() for key in [*keys, "box=20", "seeds=1..2"]]
-SET = [word for setting in [*SETTINGS, "max-time=40", "channel:vertices=64", "channel:max-time=150", "trajectory:max-time=150"] for word in ("--set", setting)]
+SET = [word for setting in [*SETTINGS, "max-time=40", "channel:vertices=64", "channel:max-time=300", "trajectory:max-time=150"] for word in ("--set", setting)]
 
 
 class Survival(unittest.TestCase):
@@ -145,12 +145,14 @@ class Figures(Analysis):
             self.assert_picture(f"{self.PLACE}/figure-{name}")
         wrapped, squeezed = self.drawn("6a")[0], self.drawn("6b")[0]
         self.assertEqual([wrapped["mechanism"], squeezed["mechanism"]], ["wrapped", "squeezed"])
-        self.assertEqual(float(wrapped["distance"]), before.distance[before.status == "clogged"].iloc[-1])
-        with h5py.File(sweep.parent.parent / "runs" / "clog-wrapped.h5") as file:
+        clogs = before[before.status == "clogged"]
+        self.assertEqual(float(wrapped["distance"]), clogs.distance.iloc[-1])
+        task = clogs.task.iloc[-1]
+        with h5py.File(sweep.parent.parent / "runs" / f"clogging-{task}.h5") as file:
             self.assertEqual(file["runs"]["distance"][0], float(wrapped["distance"]), "the same run, bit for bit")
         # What is drawn from files alone is not labelled as another droplet.
         self.call_wrapped(sweep, 0)
-        self.refuse_analysis("figures.py", "6a", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["another run"])
+        self.refuse_analysis("figures.py", "6a", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["clogging-", "leave out --draw-only"])
 
     def make_report(self, sweep):
         self.succeed("clogfit", "report", sweep, "--output", "report.html", "--examples", 2)
@@ -172,12 +174,12 @@ class Figures(Analysis):
         names = ["1", "2", "3", "4", "7b", "A1", "B1", "B2", "C1", "C2", "D"]
         done = self.figures(*names, "--profile", "measured.csv")
         # 1 and 2 share it.
-        self.assertEqual(done.stdout.count("run channel-0.4:"), 1)
+        self.assertEqual(done.stdout.count("sweep channel-0.4:"), 1)
         for name in names:
             with self.subTest(figure=name):
                 self.assert_picture(f"{self.PLACE}/figure-{name}")
                 self.assertIn("clog", (self.folder / self.PLACE / f"figure-{name}.txt").read_text())
-        with h5py.File(self.folder / self.PLACE / "runs" / "channel-0.4.h5") as file:
+        with h5py.File(self.folder / self.PLACE / "runs" / "channel-0.4-0.h5") as file:
             trajectory = file["trajectory"][:]
         points = self.drawn("2")
         self.assertEqual(float(points[0]["h"]), trajectory["h"][0])
@@ -187,14 +189,34 @@ class Figures(Analysis):
             drawn = [float(point[name]) if point[name] else None for point in points[1:1 + len(group["survival"])]]
             self.assertEqual(drawn, [step[name] for step in group["survival"]])
         self.assertEqual([float(point["censored_distance"]) for point in points if point.get("censored_distance")], group["censored_distances"])
-        # Drawn from what is there, whatever the settings; else a run with others takes its place.
-        file = self.folder / self.PLACE / "runs" / "sag.h5"
-        before = file.stat().st_mtime_ns
-        self.figures("7b", "--draw-only", "--set", "channel:max-time=200")
-        self.assertEqual(file.stat().st_mtime_ns, before)
-        self.figures("7b", "--set", "channel:max-time=200", "--set", "seeds=1..3")
-        with h5py.File(file) as changed:
-            self.assertEqual(changed["runs"]["max_time"][0], 200)
+        # Drawn from what is there, whatever the settings; nothing runs again.
+        before = {path: path.stat().st_mtime_ns for path in (self.folder / self.PLACE / "runs").iterdir() if path.suffix == ".h5"}
+        self.assertEqual(len(before), 1 + 1 + 2 + 6 + 1 + 3 + 14 + 2 + 5)  # of 1 to D; A1 needs none
+        self.figures("3", "7b", "B2", "--draw-only", "--set", "channel:max-time=200")
+        self.figures(*names, "--set", "seeds=1..3")
+        self.assertEqual({path: path.stat().st_mtime_ns for path in before}, before)
+        # Other settings than the sweep's are refused by clogsweep, in its words.
+        self.refuse_analysis("figures.py", "7b", "--output", ".", "--programs", BIN, *SET, "--set", "channel:max-time=200", words=["max-time"])
+
+    def test_channels_are_sweeps_and_what_their_rows_say_is_drawn(self):
+        self.figures("3", "A1", "B1", "--ranks", 2)
+        rows = {name: table(self.folder / self.PLACE / "sweeps" / f"{name}.h5") for name in ("channel-0.7", "walls", "vertices")}
+        self.assertEqual({name: len(those) for name, those in rows.items()}, {"channel-0.7": 1, "walls": 8, "vertices": 3})
+        for point, (_, row) in zip(self.drawn("A1"), rows["walls"].iterrows(), strict=True):
+            self.assertEqual(float(point["speed_ratio"]), row.mean_speed / row.terminal_speed)
+            self.assertAlmostEqual(row.orifice, 1 + 2 * float(point["distance"]))
+        for name, sweep in (("3", "channel-0.7"), ("B1", "vertices")):
+            drawn = [point for point in self.drawn(name) if point["smallest_relative_speed"]]
+            for point, (_, row) in zip(drawn[-len(rows[sweep]):], rows[sweep].iterrows(), strict=True):
+                for column in ("largest_shape_parameter", "largest_shape_parameter_at", "smallest_relative_speed", "largest_relative_speed"):
+                    self.assertEqual(float(point[column]), row[column])
+        # A way of another row than the sweep's is run again, and not drawn without that.
+        way = self.folder / self.PLACE / "runs" / "vertices-1.h5"
+        way.with_name("vertices-0.h5").replace(way)
+        self.refuse_analysis("figures.py", "B1", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["vertices-0.h5", "not there"])
+        self.figures("B1")
+        with h5py.File(way) as file:
+            self.assertEqual(file["runs"]["vertices"][0], 64)
 
     def test_mistakes_get_one_line(self):
         for arguments, words in [

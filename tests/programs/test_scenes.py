@@ -5,9 +5,18 @@ import unittest
 
 import h5py
 import numpy as np
+from matplotlib import pyplot
 
-from support import ProgramTest, table
+import stored_rows
+from scripts import Analysis
+from support import BIN, ProgramTest, table
 
+import passages
+import stored
+import style
+from groups import Groups
+
+EXTREMES = [f"{extreme}{at}" for extreme in ("largest_shape_parameter", "smallest_relative_speed", "largest_relative_speed") for at in ("", "_at")]
 CHANNEL = ["obstacle-layout=channel", "orifice=0.7", "near-wall-drag=0.07", "terminal-speed=0.05", "start=-1.5", "end=1", "vertices=64"]
 CIRCLES = "# posts\nx,y,diameter\n2,5,0.5\n3.2,4.4\n3.4,5.9,0.4\n5,5.1,0.6\n7,4.2,0.3\n8.5,6.4,1\n"
 OWN = ["obstacles=posts.csv", "box=10", "vertices=64", "max-time=60"]
@@ -18,7 +27,7 @@ def read_rows(path):
     return list(table(path).itertuples(index=False))
 
 
-class Channels(ProgramTest):
+class Channels(Analysis):
     def test_a_row_has_what_the_run_itself_shows(self):
         self.succeed("clogsweep", *CHANNEL, "line-tension=0.3,0.6,5", "--output", "s.h5")
         rows = read_rows(self.folder / "s.h5")
@@ -62,8 +71,77 @@ class Channels(ProgramTest):
         self.assertNotIn("clogging_length", group)
         self.succeed("clogsweep", "verify", "s.h5")
         self.succeed("clogsweep", "replay", "s.h5", 0)
-        self.succeed("clogrun", "replay", "s.h5", 1, "--output", "again.h5")
-        self.refuse("clogfit", "report", "s.h5", "--output", "r.html", words=["in a channel", "clogfit prints"])
+        self.succeed("clogrun", "replay", "s.h5", 0, "--sample-interval", 0.5, "--output", "again.h5")
+        self.succeed("clogrun", "channel", *CHANNEL, "line-tension=0.3", "--sample-interval", 0.5, "--output", "same.h5")
+        again, same = (h5py.File(self.folder / name) for name in ("again.h5", "same.h5"))
+        np.testing.assert_array_equal(again["trajectory"][:], same["trajectory"][:])
+        self.assertIn("speed_ratio", again["trajectory"].dtype.names)
+        for name in ("orifice", "wedge_angle", "tip_radius", "start_h", "end_h"):
+            self.assertEqual(again.attrs[name], same.attrs[name])
+        self.refuse_analysis("clogging_length.py", "s.h5", "--programs", BIN, words=["in a channel", "clogfit report"])
+        self.refuse_analysis("clogs.py", "s.h5", "--programs", BIN, words=["in a channel", "clogfit report"])
+
+    def test_a_report_shows_what_came_out_of_them(self):
+        self.succeed("clogsweep", *CHANNEL[:1], *CHANNEL[2:], "orifice=0.6,0.7", "line-tension=0.3,0.6,5", "--output", "s.h5")
+        fit = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)
+        self.succeed("clogfit", "report", "s.h5", "--output", "r.html", "--examples", 2)
+        page = (self.folder / "r.html").read_text()
+        for group in fit["groups"]:
+            cells = [f"{group['orifice']:g}", f"{group['line_tension']:g}", group["status"], *(f"{group[name]:.4g}" for name in EXTREMES)]
+            self.assertIn("".join(f"<td>{cell}</td>" for cell in cells), page)
+        for orifice in (0.6, 0.7):
+            passed = sum(group["status"] == "passed" for group in fit["groups"] if group["orifice"] == orifice)
+            self.assertTrue(0 < passed < 3)
+            self.assertIn(f"<li>orifice {orifice}: {passed} of 3 passed</li>", page)
+        self.assertNotIn("lambda", page)
+        self.assertEqual(page.count("<img"), 3 + 2)
+        self.succeed("clogfit", "report", "s.h5", "--output", "r.html", "--examples", 0)
+        self.assertEqual((self.folder / "r.html").read_text().count("<img"), 3)
+
+        # Each point is a group's number, and each marker says how its run ended.
+        axes = passages.draw_curves(Groups(fit), "largest_shape_parameter").axes[0]
+        self.assertEqual(axes.get_xlabel(), style.AXES["line_tension"])
+        drawn = [(line.get_xdata()[0], line.get_ydata()[0], line.get_marker()) for line in axes.lines if len(line.get_xdata()) == 1]
+        self.assertEqual(drawn, [(group["line_tension"], group["largest_shape_parameter"], {"passed": "o", "clogged": "X"}[group["status"]])
+                                 for group in fit["groups"]])
+        pyplot.close("all")
+
+    def test_a_report_of_soft_disks_has_no_shapes(self):
+        self.succeed("clogsweep", "model=sp", "orifice=0.7", "wall-stiffness=1,50", "start=-1.5", "end=1", "max-time=2000", "--output", "s.h5")
+        self.succeed("clogfit", "report", "s.h5", "--output", "r.html")
+        page = (self.folder / "r.html").read_text()
+        self.assertEqual(page.count("<img"), 2)
+        self.assertIn("<li>1 of 2 passed</li>", page)
+
+    def test_a_report_leaves_out_what_is_not_over(self):
+        self.succeed("clogsweep", *CHANNEL, "line-tension=0.5,0.6", "--output", "s.h5")
+
+        def interrupt(*tasks):
+            stored_rows.change(self.folder / "s.h5", lambda rows: rows["status"].__setitem__(list(tasks), b"interrupted"))
+
+        interrupt(1)
+        self.succeed("clogfit", "report", "s.h5", "--output", "r.html")
+        page = (self.folder / "r.html").read_text()
+        self.assertIn("<li>1 of 1 passed</li>", page)
+        self.assertIn("<td>0.5</td><td>passed</td>", page)
+        self.assertNotIn("<td>0.6</td>", page)
+        self.assertEqual(page.count("<img"), 3 + 1)
+        interrupt(0, 1)
+        self.refuse("clogfit", "report", "s.h5", "--output", "s.html", words=["no finished runs"])
+
+    def test_an_outline_of_a_report_is_the_most_deformed(self):
+        self.succeed("clogsweep", *CHANNEL, "line-tension=0.3,5", "--output", "s.h5")
+        groups = Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
+        rows = passages.examples(stored.read_rows(self.folder / "s.h5"), 5)
+        self.assertEqual([row["task"] for row in rows], [0, 1])
+        for row, figure in zip(rows, passages.draw_outlines(groups, rows, BIN / "clogrun", self.folder / "s.h5", self.folder), strict=True):
+            outline = max((patch.get_path().vertices[:-1].T for patch in figure.axes[0].patches), key=lambda points: points.shape[1])
+            x, y = outline
+            after_x, after_y = np.roll(outline, -1, axis=1)
+            perimeter, area = np.hypot(after_x - x, after_y - y).sum(), abs((x * after_y - after_x * y).sum()) / 2
+            self.assertAlmostEqual(perimeter**2 / (4 * np.pi * area), row["largest_shape_parameter"], delta=0.003)
+            self.assertIn(row["status"].decode(), figure.axes[0].get_title())
+        pyplot.close("all")
 
     def test_what_stops_goes_on(self):
         keys = [*CHANNEL[:-1], "line-tension=0.3,0.6,1", "vertices=256"]
@@ -88,7 +166,7 @@ class Channels(ProgramTest):
         self.refuse("clogrun", "array", "obstacle-layout=channel", "--output", "r.h5", words=["clogrun channel"])
 
 
-class Walls(ProgramTest):
+class Walls(Analysis):
     def test_a_sweep_has_the_sags_that_clogrun_prints(self):
         keys = ["line-tension=0.1,1", "vertices=64"]
         self.succeed("clogsweep", "obstacle-layout=wall", *keys, "--output", "s.h5")
@@ -97,11 +175,22 @@ class Walls(ProgramTest):
         self.assertEqual([f"{row.sag:.6g}" for row in rows], [words[3] for words in printed])
         self.assertEqual([f"{row.top_sag:.6g}" for row in rows], [words[4] for words in printed])
         self.assertIn("at rest", self.succeed("clogfit", "s.h5").stdout)
+        self.succeed("clogfit", "report", "s.h5", "--output", "r.html")
+        page = (self.folder / "r.html").read_text()
+        for row in rows:
+            cells = [f"{row.line_tension:g}", "at rest", *(f"{value:.4g}" for value in (row.sag, row.top_sag, row.shape_parameter))]
+            self.assertIn("".join(f"<td>{cell}</td>" for cell in cells), page)
+        self.assertIn("<li>2 of 2 at rest</li>", page)
+        self.assertEqual(page.count("<img"), 2 + 2)
+        self.refuse_analysis("clogging_length.py", "s.h5", "--programs", BIN, words=["on a wall", "clogfit report"])
 
     def test_a_soft_disk_sags_as_its_spring_says(self):
         self.succeed("clogsweep", "obstacle-layout=wall", "model=sp", "wall-stiffness=0.5,5", "--output", "s.h5")
         for row, stiffness in zip(read_rows(self.folder / "s.h5"), [0.5, 5], strict=True):
             self.assertAlmostEqual(row.sag, np.pi / (16 * stiffness), delta=1e-5)
+        # A disk has no outline to show.
+        self.succeed("clogfit", "report", "s.h5", "--output", "r.html")
+        self.assertEqual((self.folder / "r.html").read_text().count("<img"), 2)
 
 
 class OwnCircles(ProgramTest):

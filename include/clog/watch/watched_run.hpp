@@ -26,11 +26,6 @@ class WatchedRun {
 
   WatchedRun(DropletRun run, Intervals intervals);
 
-  /// A column of the table beside those that every run has.
-  template <class Value>
-  void add_column(std::string name, std::string meaning, Value value) {
-    columns_.push_back({{std::move(name), std::move(meaning), {}}, value});
-  }
   void follow();
   /// Advances the run by a short piece, to see what a step costs. The run is good for nothing else then.
   MostCost measure_cost();
@@ -57,7 +52,11 @@ class WatchedRun {
   bool interrupted_ = false;
   double seconds_ = 0;
 
+  void add_column(std::string name, std::string meaning, std::function<double(const DropletRun&)> measure) {
+    columns_.push_back({{std::move(name), std::move(meaning), {}}, std::move(measure)});
+  }
   void add_common_columns();
+  void add_columns_of_channel();
   void take_sample();
   void take_polygon();
 };
