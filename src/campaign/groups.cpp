@@ -107,8 +107,10 @@ void fit_clogging(Group& group, std::span<const sweep::RunRow* const> runs, doub
   group.clogging = fit::fit_clogging_length(all, confidence);
   group.least_squares_length = fit::least_squares_length(all);
   group.weibull = fit::test_exponentiality(all);
-  group.survival = fit::survival_curve(all, confidence);
-  group.censored_distances = censored_distances(all);
+  if (has_clogging_length(group.first_row)) {
+    group.survival = fit::survival_curve(all, confidence);
+    group.censored_distances = censored_distances(all);
+  }
   if (std::any_of(runs.begin(), runs.end(),
                   [](const auto* run) { return is_clogged(*run) && !run->mechanism; }))
     return;
