@@ -34,8 +34,8 @@ TEST(Plain, IsADashWithoutANumber) {
 TEST(RoundedInterval, HasTwoFiguresOfTheNarrowerSide) {
   const RoundedInterval wide = with_interval(233.4, 106.1, 610.9);
   EXPECT_EQ(wide.value + " " + wide.lower + " " + wide.upper, "233 106 611");
-  const RoundedInterval narrow = with_interval(233.4, 233.3, 610.9);
-  EXPECT_EQ(narrow.value + " " + narrow.lower + " " + narrow.upper, "233.40 233.30 610.90");
+  const RoundedInterval narrow = with_interval(233.4, 233.25, 610.9);
+  EXPECT_EQ(narrow.value + " " + narrow.lower + " " + narrow.upper, "233.40 233.25 610.90");
 }
 
 TEST(RoundedError, GivesItsPlacesToTheValue) {
