@@ -25,7 +25,8 @@ endif()
 function(clog_layer name)
   cmake_parse_arguments(LAYER "" "" "SOURCES;USES;USES_PRIVATE" ${ARGN})
   add_library(clog_${name} STATIC ${LAYER_SOURCES})
-  target_link_libraries(clog_${name} PUBLIC clog_flags ${LAYER_USES} PRIVATE ${LAYER_USES_PRIVATE})
+  # Text is put together by fmt, everywhere, but in no header: src/README.md.
+  target_link_libraries(clog_${name} PUBLIC clog_flags ${LAYER_USES} PRIVATE fmt::fmt ${LAYER_USES_PRIVATE})
 endfunction()
 
 # clog_program(<name> <files...> USES <libraries...>): <name>.cpp has the main.
@@ -33,5 +34,5 @@ function(clog_program name)
   cmake_parse_arguments(PROGRAM "" "" "USES" ${ARGN})
   list(TRANSFORM PROGRAM_UNPARSED_ARGUMENTS PREPEND "programs/")
   add_executable(${name} programs/${name}.cpp ${PROGRAM_UNPARSED_ARGUMENTS})
-  target_link_libraries(${name} PRIVATE ${PROGRAM_USES})
+  target_link_libraries(${name} PRIVATE fmt::fmt ${PROGRAM_USES})
 endfunction()

@@ -9,6 +9,7 @@ packages=(
   libeigen3-dev libhwy-dev                           # arrays; vector instructions
   libboost-dev libboost-program-options-dev          # random numbers and statistics; command line
   nlohmann-json3-dev libnlopt-cxx-dev                # JSON; the optimiser of clogfit calibrate
+  libfmt-dev                                         # text with numbers in it
   libgtest-dev libbenchmark-dev                      # tests and benchmarks
   procps iproute2                                    # tests that kill ranks, and join two hosts
   python3 python3-h5py python3-pandas python3-tables python3-matplotlib  # figures, and readers for the tests

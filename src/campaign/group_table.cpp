@@ -1,13 +1,13 @@
 #include "clog/campaign/group_table.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 #include <variant>
 
 #include "clog/campaign/usual_parameters.hpp"
@@ -15,6 +15,7 @@
 #include "clog/core/model/model.hpp"
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/scene/scene.hpp"
+#include "clog/core/tools/joined.hpp"
 #include "clog/sweep/schema_json.hpp"
 #include "clog/sweep/settings.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -23,11 +24,7 @@ namespace clog::campaign {
 namespace {
 
 std::string rounded(const Value& value) {
-  if (const auto* number = std::get_if<double>(&value)) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g", *number);
-    return text;
-  }
+  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{:.4g}", *number);
   const std::string text = sweep::text_of(value);
   return text.empty() ? "-" : text;
 }
@@ -47,7 +44,7 @@ std::string aligned(const std::vector<std::vector<std::string>>& lines) {
   std::string text;
   for (const auto& line : lines) {
     for (std::size_t i = 0; i < line.size(); ++i)
-      text += std::string(widths[i] - line[i].size() + (i > 0 ? 2 : 0), ' ') + line[i];
+      text += fmt::format("{:>{}}", line[i], widths[i] + (i > 0 ? 2 : 0));
     text += '\n';
   }
   return text;
@@ -70,7 +67,7 @@ std::string legend(const std::vector<Group>& groups) {
     if (std::any_of(groups.begin(), groups.end(), [&](const Group& group) {
           return letters(group.doubts).find(doubt.letter) != std::string::npos;
         }))
-      text += std::string(text.empty() ? "\n" : "") + doubt.letter + ": " + doubt.sentence + '\n';
+      text += fmt::format("{}{}: {}\n", text.empty() ? "\n" : "", doubt.letter, doubt.sentence);
   return text;
 }
 
@@ -82,12 +79,9 @@ struct ResultColumn {
 
 /// Clogs by mechanism, as 3/5/2/0.
 std::string mechanism_counts(const Group& group) {
-  std::string counts;
-  for (const Group::Cause& cause : group.causes) {
-    if (!counts.empty()) counts += '/';
-    counts += std::to_string(cause.clogging.num_clogs);
-  }
-  return counts.empty() ? "-" : counts;
+  std::vector<std::string> counts;
+  for (const Group::Cause& cause : group.causes) counts.push_back(std::to_string(cause.clogging.num_clogs));
+  return counts.empty() ? "-" : joined(counts, "/");
 }
 
 /// Where clogs are not all of one kind, or some are left out, it is said of which kind they are.
@@ -126,19 +120,13 @@ console::RoundedError slope_of(const Group& group) {
   return console::with_error(group.migration.slope, group.migration.standard_error);
 }
 
-std::string percents(double share) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%g %%", 100 * share);
-  return text;
-}
-
 std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, double confidence) {
   std::vector<ResultColumn> columns = {
       {"runs", [](const Group& group) { return std::to_string(group.clogging.num_runs); }},
       {"clogs", [](const Group& group) { return std::to_string(group.clogging.num_clogs); }}};
   if (are_mechanisms_shown(groups)) columns.push_back({"w/s/h/o", mechanism_counts});
   columns.insert(columns.end(), {{"lambda/sigma", length_text},
-                                 {percents(confidence), interval_text},
+                                 {fmt::format("{:g} %", 100 * confidence), interval_text},
                                  {"<v_g>/v_t", [](const Group& group) { return speed_of(group).value; }},
                                  {"+-", [](const Group& group) { return speed_of(group).error; }}});
   // In random arrays a droplet goes straight on the average.
@@ -210,16 +198,17 @@ std::string left_out(const std::vector<Group>& groups) {
   std::string text;
   if (are_mechanisms_shown(groups)) text += "w/s/h/o: clogs by wrapping, by squeezing, by both, by neither\n";
   if (num_left_out > 0)
-    text += "   " + sweep::counted(num_left_out, "run") + " ended before --from-distance, left out of " +
-            "runs, clogs and lambda; <v_g> is still of all runs\n";
+    text += fmt::format(
+        "   {} ended before --from-distance, left out of runs, clogs and lambda; <v_g> is still of all "
+        "runs\n",
+        sweep::counted(num_left_out, "run"));
   if (num_interrupted > 0)
-    text +=
-        "   " + sweep::counted(num_interrupted, "run") + (num_interrupted == 1 ? " is" : " are") +
-        " under way or interrupted: lambda holds for the distances reached so far, and the clogs so far are "
-        "the early ones\n";
-  if (num_failed > 0) text += "   " + std::to_string(num_failed) + " failed; the column `message` says why\n";
-  if (num_damaged > 0)
-    text += "   " + std::to_string(num_damaged) + " damaged; clogsweep verify tells which\n";
+    text += fmt::format(
+        "   {} {} under way or interrupted: lambda holds for the distances reached so far, and the clogs so "
+        "far are the early ones\n",
+        sweep::counted(num_interrupted, "run"), num_interrupted == 1 ? "is" : "are");
+  if (num_failed > 0) text += fmt::format("   {} failed; the column `message` says why\n", num_failed);
+  if (num_damaged > 0) text += fmt::format("   {} damaged; clogsweep verify tells which\n", num_damaged);
   return text;
 }
 
@@ -301,7 +290,7 @@ std::vector<std::string> shared_words(const sweep::RunRow& row, const std::vecto
   std::vector<std::string> words;
   for (std::size_t i = 0; i < fields.size(); ++i)
     if (!shown[i] && !varies[i] && is_named[i])
-      words.push_back(std::string(fields[i].first) + "=" + rounded(fields[i].second));
+      words.push_back(fmt::format("{}={}", fields[i].first, rounded(fields[i].second)));
   return words;
 }
 
@@ -356,17 +345,17 @@ std::string to_text(const std::vector<Group>& groups, double confidence, SharedP
 }
 
 std::string to_csv(const std::vector<Group>& groups) {
-  std::ostringstream out;
+  std::string table;
   for (const Group& group : groups) {
-    const std::vector<Field> fields = all_fields(group);
-    if (&group == &groups.front())
-      for (std::size_t i = 0; i < fields.size(); ++i) out << (i > 0 ? "," : "") << fields[i].first;
-    out << '\n';
-    for (std::size_t i = 0; i < fields.size(); ++i)
-      out << (i > 0 ? "," : "") << sweep::text_of(fields[i].second);
+    std::vector<std::string> names, cells;
+    for (const auto& [name, value] : all_fields(group)) {
+      names.emplace_back(name);
+      cells.push_back(sweep::text_of(value));
+    }
+    if (table.empty()) table = joined(names, ",") + '\n';
+    table += joined(cells, ",") + '\n';
   }
-  out << '\n';
-  return out.str();
+  return table;
 }
 
 std::string to_json(const std::vector<Group>& groups, double confidence,

@@ -1,5 +1,7 @@
 #include "clog/campaign/ledger.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <limits>
@@ -116,13 +118,14 @@ void Ledger::take_over(const store::SweepFile& file, const sweep::Settings& sett
   const std::string remedy = "; give another --output";
   for (const sweep::RunRow& row : file.rows)
     if (row.model_version != model_version)
-      throw Error("cannot continue with " + path_ + " (its runs are of model version " +
-                  std::to_string(row.model_version) + ", this program's is " + std::to_string(model_version) +
-                  ": the same parameters would give other results)" + remedy);
+      throw Error(
+          fmt::format("cannot continue with {} (its runs are of model version {}, this program's is {}: the "
+                      "same parameters would give other results){}",
+                      path_, row.model_version, model_version, remedy));
   const std::string differing = differing_keys(stored_settings(path_, file.provenance), settings);
   if (!differing.empty())
-    throw Error("cannot continue with " + path_ + " (it holds runs with other settings: " + differing + ")" +
-                remedy);
+    throw Error(fmt::format("cannot continue with {} (it holds runs with other settings: {}){}", path_,
+                            differing, remedy));
   store::Provenance all = file.provenance;
   for (const char* name : {"config", "stopping_rule", "num_wanted"}) {
     std::erase_if(all, [&](const auto& attribute) { return attribute.first == name; });

@@ -1,8 +1,9 @@
 #include "clog/campaign/preview.hpp"
 
+#include <fmt/ostream.h>
+
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -164,9 +165,7 @@ Sample tried_sample(const sweep::Plan& plan) {
     else if (sample.failure.empty())
       sample.failure = row.message;
   }
-  char source[48];
-  std::snprintf(source, sizeof source, "tried for %.2g s in all", elapsed());
-  sample.source = source;
+  sample.source = fmt::format("tried for {:.2g} s in all", elapsed());
   return sample;
 }
 
@@ -197,16 +196,15 @@ void print_tasks(const sweep::Plan& plan) {
   std::cout << '\n';
   for (std::int64_t task = 0; task < plan.size() && !console::stop_signalled(); ++task) {
     if (num_skipped > 0 && task == lines_at_an_end) {
-      std::cout << "# ... " << num_skipped << " more ...\n";
+      fmt::print(std::cout, "# ... {} more ...\n", num_skipped);
       task += num_skipped;
     }
     print_task(plan, task, columns);
   }
   if (console::stop_signalled()) return;
   const std::int64_t seeds = plan.size() / plan.num_groups();
-  std::cout << "# " << sweep::counted(plan.size(), "task") << ": "
-            << sweep::counted(plan.num_groups(), "parameter set") << ", " << sweep::counted(seeds, "seed")
-            << " each\n";
+  fmt::print(std::cout, "# {}: {}, {} each\n", sweep::counted(plan.size(), "task"),
+             sweep::counted(plan.num_groups(), "parameter set"), sweep::counted(seeds, "seed"));
 }
 
 void print_limits(const sweep::Plan& plan) {
@@ -216,9 +214,8 @@ void print_limits(const sweep::Plan& plan) {
 int print_cost(const sweep::Plan& plan, const std::string& output) {
   const Stored stored = stored_runs(plan, output);
   if (stored.num_done == plan.size()) {
-    std::printf("# %s has all %s, which took %.2g core-hours; nothing is left to do\n",
-                console::printable(output).c_str(), sweep::counted(plan.size(), "task").c_str(),
-                stored.seconds / hour);
+    fmt::print(std::cout, "# {} has all {}, which took {:.2g} core-hours; nothing is left to do\n",
+               console::printable(output), sweep::counted(plan.size(), "task"), stored.seconds / hour);
     return console::exit_success;
   }
   const bool knows_enough = stored.sample.costs.size() >= fewest_stored_runs;
@@ -232,21 +229,22 @@ int print_cost(const sweep::Plan& plan, const std::string& output) {
       knows_enough ? plus(cost_left(sample.costs, stored.waiting), stored.seconds) : tried_cost(plan, sample);
   const SweepCost left = plus(cost, -stored.seconds);
   const double us_per_step = 1e6 * cost.seconds_per_work * work_per_step(plan.task(0));
-  std::printf(
-      "# at most %.3g core-hours on this machine, %.3g us per step measured; runs that clog end sooner\n",
+  fmt::print(
+      std::cout,
+      "# at most {:.3g} core-hours on this machine, {:.3g} us per step measured; runs that clog end sooner\n",
       cost.bound / hour, us_per_step);
   const auto num_over =
       std::count_if(sample.costs.begin(), sample.costs.end(), [](const RunCost& run) { return run.is_over; });
   const auto num_runs = static_cast<std::int64_t>(sample.costs.size());
-  std::printf("# expected %.2g core-hours (95 %%: %.2g to %.2g), from %s %s, %td of them over\n",
-              cost.expected / hour, cost.lower / hour, cost.upper / hour,
-              sweep::counted(num_runs, "run").c_str(), sample.source.c_str(), num_over);
+  fmt::print(std::cout,
+             "# expected {:.2g} core-hours (95 %: {:.2g} to {:.2g}), from {} {}, {} of them over\n",
+             cost.expected / hour, cost.lower / hour, cost.upper / hour, sweep::counted(num_runs, "run"),
+             sample.source, num_over);
   if (stored.seconds == 0) return console::exit_success;
-  std::printf("# %s has %lld of %s; %lld to go: expected %.2g core-hours more (95 %%: %.2g to %.2g)\n",
-              console::printable(output).c_str(), static_cast<long long>(stored.num_done),
-              sweep::counted(plan.size(), "task").c_str(),
-              static_cast<long long>(plan.size() - stored.num_done), left.expected / hour, left.lower / hour,
-              left.upper / hour);
+  fmt::print(std::cout,
+             "# {} has {} of {}; {} to go: expected {:.2g} core-hours more (95 %: {:.2g} to {:.2g})\n",
+             console::printable(output), stored.num_done, sweep::counted(plan.size(), "task"),
+             plan.size() - stored.num_done, left.expected / hour, left.lower / hour, left.upper / hour);
   return console::exit_success;
 }
 
@@ -256,7 +254,7 @@ void print_config(const sweep::Settings& settings, const sweep::Plan& plan) {
   for (const Parameter& parameter : parameter_schema())
     if (parameter.may_be_automatic(first))
       if (const ParameterValue value = parameter.get(first); value != ParameterValue())
-        std::cout << "# " << parameter.key << " = " << sweep::text_of(value) << '\n';
+        fmt::print(std::cout, "# {} = {}\n", parameter.key, sweep::text_of(value));
 }
 
 }  // namespace clog::campaign

@@ -1,7 +1,8 @@
 #include "clog/campaign/progress.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <vector>
 
 #include "clog/console/duration.hpp"
@@ -59,21 +60,16 @@ std::string Progress::line() const {
     const auto found = ended_by_status_.find(status);
     return found == ended_by_status_.end() ? std::int64_t{0} : found->second;
   };
-  const auto counted = [&](RunStatus status) { return std::to_string(count(status)) + ' ' + name(status); };
-  std::string text =
-      std::to_string(num_before_ + num_ended_) + "/" + std::to_string(num_before_ + num_tasks_) + " done, ";
-  if (num_before_ > 0) text += std::to_string(num_before_) + " of them before; now ";
-  text += std::to_string(running_.size()) + " running, " + counted(RunStatus::clogged) + ", " +
-          counted(RunStatus::flowing);
+  std::string text = fmt::format("{}/{} done, ", num_before_ + num_ended_, num_before_ + num_tasks_);
+  if (num_before_ > 0) text += fmt::format("{} of them before; now ", num_before_);
+  text += fmt::format("{} running, {} clogged, {} flowing", running_.size(), count(RunStatus::clogged),
+                      count(RunStatus::flowing));
   for (const RunStatus status : {RunStatus::passed, RunStatus::failed, RunStatus::interrupted})
-    if (count(status) != 0) text += ", " + counted(status);
+    if (count(status) != 0) text += fmt::format(", {} {}", count(status), name(status));
   const double elapsed = seconds_since(begin_);
-  if (num_ended_ > 0) {
-    char rate[48];
-    std::snprintf(rate, sizeof rate, ", %.3g runs/min", 60 * static_cast<double>(num_ended_) / elapsed);
-    text += rate;
-  }
-  return text + ", " + console::readable_duration(elapsed) + " so far" + time_left();
+  if (num_ended_ > 0)
+    text += fmt::format(", {:.3g} runs/min", 60 * static_cast<double>(num_ended_) / elapsed);
+  return fmt::format("{}, {} so far{}", text, console::readable_duration(elapsed), time_left());
 }
 
 std::string Progress::time_left() const {

@@ -1,5 +1,7 @@
 #include "clog/campaign/seed_rule.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -54,9 +56,10 @@ std::vector<std::int64_t> SeedRule::next_round(const std::function<bool(std::int
 }
 
 std::string SeedRule::text() const {
-  return "seeds are added, in rounds, to every parameter set with fewer than " +
-         std::to_string(clogs_needed(precision_)) + " clogs (a 95 % interval of lambda within +-" +
-         sweep::shortest(100 * precision_) + " %), up to " + sweep::counted(most_seeds_, "seed");
+  return fmt::format(
+      "seeds are added, in rounds, to every parameter set with fewer than {} clogs (a 95 % interval of "
+      "lambda within +-{} %), up to {}",
+      clogs_needed(precision_), sweep::shortest(100 * precision_), sweep::counted(most_seeds_, "seed"));
 }
 
 GrowingSweep growing_sweep(const sweep::Settings& settings, double precision, std::int64_t most_seeds) {
@@ -69,11 +72,11 @@ GrowingSweep growing_sweep(const sweep::Settings& settings, double precision, st
   for (const std::string& seed : seeds) last = std::max(last, sweep::to_integer(seed));
   constexpr long long largest_seed = 4'294'967'295;
   if (last + most_seeds - first_seeds > largest_seed)
-    throw Error("invalid --most-seeds=" + std::to_string(most_seeds) + " (seeds after " +
-                std::to_string(last) + " would exceed " + std::to_string(largest_seed) +
-                ") begin with smaller seeds");
-  sweep.settings.set("seeds", settings.text("seeds") + "," + std::to_string(last + 1) + ".." +
-                                  std::to_string(last + most_seeds - first_seeds));
+    throw Error(
+        fmt::format("invalid --most-seeds={} (seeds after {} would exceed {}) begin with smaller seeds",
+                    most_seeds, last, largest_seed));
+  sweep.settings.set(
+      "seeds", fmt::format("{},{}..{}", settings.text("seeds"), last + 1, last + most_seeds - first_seeds));
   return sweep;
 }
 

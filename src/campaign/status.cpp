@@ -1,7 +1,8 @@
 #include "clog/campaign/status.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "clog/console/printable.hpp"
@@ -52,17 +53,13 @@ Status status_of(const std::string& path, const store::SweepFile& file, double c
 
 std::string to_text(const std::string& path, const Status& status, double confidence,
                     SharedParameters shared) {
-  const auto number = [](std::int64_t value) { return std::to_string(value); };
-  std::string text = console::printable(path) + ": " + number(status.num_over()) + " of " +
-                     sweep::counted(status.runs.num_runs, "run") + " over" + status.runs.text_of_beyond() +
-                     ", " + number(status.count(RunStatus::clogged)) + " clogged, " +
-                     number(status.count(RunStatus::flowing)) + " flowing, " +
-                     number(status.count(RunStatus::failed)) + " failed";
+  std::string text = fmt::format(
+      "{}: {} of {} over{}, {} clogged, {} flowing, {} failed", console::printable(path), status.num_over(),
+      sweep::counted(status.runs.num_runs, "run"), status.runs.text_of_beyond(),
+      status.count(RunStatus::clogged), status.count(RunStatus::flowing), status.count(RunStatus::failed));
   if (const std::int64_t under_way = status.num_under_way(); under_way > 0)
-    text += "; " + number(under_way) + (status.is_alive ? " running" : " interrupted");
-  char hours[64];
-  std::snprintf(hours, sizeof hours, "; %.3g core-hours", status.core_hours);
-  text += hours;
+    text += fmt::format("; {} {}", under_way, status.is_alive ? "running" : "interrupted");
+  text += fmt::format("; {:.3g} core-hours", status.core_hours);
   if (status.num_over() == status.runs.num_runs)
     text += "; complete";
   else if (!status.is_alive)

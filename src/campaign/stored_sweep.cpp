@@ -1,5 +1,7 @@
 #include "clog/campaign/stored_sweep.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 #include "clog/console/streams.hpp"
@@ -18,8 +20,9 @@ auto read_attribute(const std::string& path, const store::Provenance& provenance
   try {
     return read(attribute(provenance, name));
   } catch (const Error& error) {
-    throw Error("cannot read " + path + " (its attribute " + name + ": " + error.what() +
-                "); the file is damaged, or of another version of the program");
+    throw Error(fmt::format(
+        "cannot read {} (its attribute {}: {}); the file is damaged, or of another version of the program",
+        path, name, error.what()));
   }
 }
 
@@ -40,7 +43,7 @@ const sweep::RunRow& row_of_task(const store::SweepFile& file, const std::string
 sweep::RunRow replayable_row(const store::SweepFile& file, const std::string& task) {
   sweep::RunRow row = row_of_task(file, task);
   const auto refuse = [&](const std::string& why, const std::string& remedy) {
-    throw Error("cannot replay task " + task + " (" + why + "); " + remedy);
+    throw Error(fmt::format("cannot replay task {} ({}); {}", task, why, remedy));
   };
   if (sweep::is_unfinished(row.status))
     throw Error("task " + task + " is not over; let the sweep go on first");
@@ -48,8 +51,7 @@ sweep::RunRow replayable_row(const store::SweepFile& file, const std::string& ta
     refuse("it was interrupted and went on under another instruction set, it is not known at which step",
            "--instruction-set pins one for all sessions of a sweep");
   if (row.model_version != model_version)
-    refuse("it is of model version " + std::to_string(row.model_version) + ", this program's is " +
-               std::to_string(model_version),
+    refuse(fmt::format("it is of model version {}, this program's is {}", row.model_version, model_version),
            "use the version that wrote the file");
   if (const std::string fault = sweep::fault_of(row); !fault.empty()) refuse(fault, "the row is damaged");
   for (const store::CircleFile& one : file.circles)
@@ -111,7 +113,7 @@ RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, 
 }
 
 std::string RunCount::text_of_beyond() const {
-  return num_beyond == 0 ? "" : " (" + std::to_string(num_beyond) + " beyond the lists of its last command)";
+  return num_beyond == 0 ? "" : fmt::format(" ({} beyond the lists of its last command)", num_beyond);
 }
 
 }  // namespace clog::campaign

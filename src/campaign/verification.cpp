@@ -1,5 +1,7 @@
 #include "clog/campaign/verification.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <unordered_map>
 
@@ -15,13 +17,12 @@ namespace {
 std::string to_text(const store::Journal::Contents& journal, bool is_alive) {
   const auto num_snapshots = std::count_if(journal.entries.begin(), journal.entries.end(),
                                            [](const auto& entry) { return !entry.snapshot.empty(); });
-  std::string text = sweep::counted(static_cast<std::int64_t>(journal.entries.size()), "record") + ", " +
-                     std::to_string(num_snapshots) + " of them with snapshots, ";
-  text +=
-      journal.num_unreadable == 0 ? "all whole" : std::to_string(journal.num_unreadable) + " more damaged";
+  const std::string text = fmt::format(
+      "{}, {} of them with snapshots, {}",
+      sweep::counted(static_cast<std::int64_t>(journal.entries.size()), "record"), num_snapshots,
+      journal.num_unreadable == 0 ? "all whole" : fmt::format("{} more damaged", journal.num_unreadable));
   if (is_alive) return text + "; a sweep is writing to it";
-  if (journal.has_torn_end) text += "; the last one is torn, as after a kill, and will be dropped";
-  return text;
+  return text + (journal.has_torn_end ? "; the last one is torn, as after a kill, and will be dropped" : "");
 }
 
 /// What is wrong with the rows themselves, a line for each.
@@ -31,8 +32,8 @@ std::vector<std::string> faults_of(const std::vector<sweep::RunRow>& rows) {
   for (const sweep::RunRow& row : rows) {
     std::string fault = sweep::fault_of(row);
     const auto [first, is_new] = seen.emplace(sweep::identity(row), row.task);
-    if (fault.empty() && !is_new) fault = "the same run as task " + std::to_string(first->second);
-    if (!fault.empty()) faults.push_back("task " + std::to_string(row.task) + ": " + fault);
+    if (fault.empty() && !is_new) fault = fmt::format("the same run as task {}", first->second);
+    if (!fault.empty()) faults.push_back(fmt::format("task {}: {}", row.task, fault));
   }
   return faults;
 }
@@ -49,11 +50,10 @@ Verification verify(const std::string& path) {
   result.num_faults = static_cast<std::int64_t>(result.findings.size());
   const auto num_rows = static_cast<std::int64_t>(file.rows.size());
   result.findings.push_back(
-      path + ": " +
-      (result.num_faults == 0
-           ? sweep::counted(num_rows, "row") + " of " + sweep::counted(runs.num_runs, "run") +
-                 runs.text_of_beyond() + ", all whole"
-           : sweep::counted(num_rows, "whole row") + ", " + sweep::counted(result.num_faults, "fault")));
+      result.num_faults == 0 ? fmt::format("{}: {} of {}{}, all whole", path, sweep::counted(num_rows, "row"),
+                                           sweep::counted(runs.num_runs, "run"), runs.text_of_beyond())
+                             : fmt::format("{}: {}, {}", path, sweep::counted(num_rows, "whole row"),
+                                           sweep::counted(result.num_faults, "fault")));
   if (std::string words = store::caution(path, file); !words.empty())
     result.findings.push_back(std::move(words));
   const std::string journal = store::journal_path(path);

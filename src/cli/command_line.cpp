@@ -1,5 +1,7 @@
 #include "clog/cli/command_line.hpp"
 
+#include <fmt/core.h>
+
 #include "clog/cli/obstacle_file.hpp"
 
 #include <algorithm>
@@ -95,7 +97,7 @@ void CommandLine::refuse_misspelt_command(const std::string& word) const {
   const bool is_command = std::find(commands_.begin(), commands_.end(), word) != commands_.end();
   if (is_command || word.starts_with('-') || std::filesystem::exists(word)) return;
   if (const std::string near = sweep::did_you_mean(word, commands_); !near.empty())
-    throw Error("unknown command '" + word + "'; did you mean " + program_ + " " + near + "?");
+    throw Error(fmt::format("unknown command '{}'; did you mean {} {}?", word, program_, near));
 }
 
 void CommandLine::refuse_surplus_words() const {
@@ -106,11 +108,11 @@ void CommandLine::refuse_surplus_words() const {
     std::string key = word.substr(0, equals);
     std::replace(key.begin(), key.end(), '_', '-');
     if (sweep_keys_ == SweepKeys::accepted && is_key(key))
-      throw Error("no place for '" + word + "'; did you mean " + key +
-                  (equals < word.size() ? word.substr(equals) : "=VALUE") + "?");
+      throw Error(fmt::format("no place for '{}'; did you mean {}{}?", word, key,
+                              equals < word.size() ? word.substr(equals) : "=VALUE"));
     all += (all.empty() ? "'" : ", '") + word + "'";
   }
-  throw Error("no place for " + all + " (" + surplus_remedy_ + "); see " + program_ + " --help");
+  throw Error(fmt::format("no place for {} ({}); see {} --help", all, surplus_remedy_, program_));
 }
 
 void CommandLine::refuse_unknown(const std::string& word, std::span<const char* const> typed) const {
@@ -124,8 +126,8 @@ void CommandLine::refuse_unknown(const std::string& word, std::span<const char* 
       std::any_of(typed.begin(), typed.end(), [&](std::string_view one) { return one.starts_with(option); });
   const std::string near = sweep::did_you_mean(bare, names);
   throw Error((has_dashes ? "unknown option " + option : "unknown key " + bare) +
-              (near.empty() ? "; " + program_ + " --help lists the options"
-                            : std::string("; did you mean ") + (has_dashes ? "--" : "") + near + "?"));
+              (near.empty() ? fmt::format("; {} --help lists the options", program_)
+                            : fmt::format("; did you mean {}{}?", has_dashes ? "--" : "", near)));
 }
 
 /// Boost would find it out, too, but puts the line into a message where it replaces %names%: one with such a
@@ -138,8 +140,8 @@ static void refuse_lines_without_value(const std::string& path, const std::strin
     const std::string words = console::trimmed(line.substr(0, line.find('#')));
     const bool is_section = words.starts_with('[') && words.ends_with(']');
     if (!words.empty() && !is_section && words.find('=') == std::string::npos)
-      throw Error(path + " line " + std::to_string(number) + ": '" + words.substr(0, 60) +
-                  "' is not key = value; comments start with #");
+      throw Error(fmt::format("{} line {}: '{}' is not key = value; comments start with #", path, number,
+                              words.substr(0, 60)));
   }
 }
 
@@ -169,13 +171,13 @@ std::vector<std::string> CommandLine::get_all(const std::string& option) const {
 }
 
 std::string CommandLine::require(const std::string& option) const {
-  if (!has(option)) throw Error("missing --" + option + "; see " + program_ + " --help");
+  if (!has(option)) throw Error(fmt::format("missing --{}; see {} --help", option, program_));
   return get(option);
 }
 
 double CommandLine::get_positive(const std::string& option) const {
   if (const double value = number(option); value > 0) return value;
-  throw Error("invalid --" + option + "=" + get(option) + " (must be a positive number)");
+  throw Error(fmt::format("invalid --{}={} (must be a positive number)", option, get(option)));
 }
 
 double CommandLine::get_number(const std::string& option, double fallback) const {
@@ -186,7 +188,7 @@ double CommandLine::number(const std::string& option) const {
   try {
     return sweep::to_number(get(option));
   } catch (const Error& error) {
-    throw Error("invalid --" + option + "=" + get(option) + " (" + error.what() + ")");
+    throw Error(fmt::format("invalid --{}={} ({})", option, get(option), error.what()));
   }
 }
 

@@ -1,5 +1,7 @@
 #include "clog/cli/program.hpp"
 
+#include <fmt/ostream.h>
+
 #include <ctime>
 #include <exception>
 #include <filesystem>
@@ -45,14 +47,14 @@ int run_program(const std::string& program, const std::function<int()>& body) {
     say(program + ": cannot write the output; the disk may be full");
     return exit_user_fault;
   } catch (const std::filesystem::filesystem_error& error) {
-    say(program + ": cannot use " + error.path1().string() + " (" + error.code().message() +
-        "); check the name and the permissions");
+    say(fmt::format("{}: cannot use {} ({}); check the name and the permissions", program,
+                    error.path1().string(), error.code().message()));
     return exit_user_fault;
   } catch (const std::bad_alloc&) {
     say(program + ": out of memory; a smaller box or more memory per rank helps");
     return exit_user_fault;
   } catch (const std::exception& error) {
-    say(program + ": internal fault: " + error.what() + "; please report it");
+    say(fmt::format("{}: internal fault: {}; please report it", program, error.what()));
     return exit_internal_fault;
   }
 }
@@ -64,9 +66,9 @@ bool answer_help_or_version(const CommandLine& line, const NamedTexts& libraries
   }
   if (!line.has("version")) return false;
   const BuildInfo build = build_info();
-  std::cout << line.program() << ' ' << build.version << " (git " << build.git_hash
-            << ")\ncompiler: " << build.compiler << ", " << build.build_type << '\n';
-  for (const auto& [name, version] : libraries) std::cout << name << ": " << version << '\n';
+  fmt::print(std::cout, "{} {} (git {})\ncompiler: {}, {}\n", line.program(), build.version, build.git_hash,
+             build.compiler, build.build_type);
+  for (const auto& [name, version] : libraries) fmt::print(std::cout, "{}: {}\n", name, version);
   return true;
 }
 

@@ -1,5 +1,7 @@
 #include "clog/conduct/assignment.hpp"
 
+#include <fmt/core.h>
+
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -12,9 +14,7 @@
 namespace clog::conduct {
 
 std::string Assignment::text() const {
-  std::ostringstream text;
-  text << report_interval.count() << ' ' << instruction_set << ' ' << is_isolated << '\n' << settings;
-  return text.str();
+  return fmt::format("{} {} {:d}\n{}", report_interval.count(), instruction_set, is_isolated, settings);
 }
 
 Assignment Assignment::from(const std::string& text) {

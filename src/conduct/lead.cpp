@@ -1,5 +1,7 @@
 #include "clog/conduct/lead.hpp"
 
+#include <fmt/core.h>
+
 #include <chrono>
 #include <cstdint>
 #include <iostream>
@@ -32,26 +34,26 @@ void announce(const std::string& output, const sweep::Plan& plan, const campaign
   const auto num_left = static_cast<std::int64_t>(ledger.tasks_left().size());
   if (!ledger.caution().empty()) console::say(ledger.caution());
   if (num_left < num_runs)
-    console::say(output + " has " + std::to_string(num_runs - num_left) + " of " +
-                 sweep::counted(num_runs, "run") +
-                 (num_left == 0 && !may_grow ? "; there is nothing left to do" : ""));
+    console::say(fmt::format("{} has {} of {}{}", output, num_runs - num_left,
+                             sweep::counted(num_runs, "run"),
+                             num_left == 0 && !may_grow ? "; there is nothing left to do" : ""));
   if (ledger.num_beyond() > 0)
-    console::say(output + " holds " + sweep::counted(ledger.num_beyond(), "run") +
-                 " beyond the lists of this command; what it has of them stays");
-  if (ledger.num_faulty() > 0)
-    console::say(output + ": " + std::to_string(ledger.num_faulty()) +
-                 (ledger.num_faulty() == 1 ? " row holds" : " rows hold") +
-                 " what cannot be; what the sweep has of these runs is computed again");
-  if (ledger.num_unreadable() > 0)
-    console::say(store::journal_path(output) + ": " + std::to_string(ledger.num_unreadable()) +
-                 (ledger.num_unreadable() == 1 ? " record is" : " records are") +
-                 " damaged; what was in there is computed again");
+    console::say(fmt::format("{} holds {} beyond the lists of this command; what it has of them stays",
+                             output, sweep::counted(ledger.num_beyond(), "run")));
+  if (const std::int64_t number = ledger.num_faulty(); number > 0)
+    console::say(fmt::format("{}: {} what cannot be; what the sweep has of these runs is computed again",
+                             output, number == 1 ? "1 row holds" : fmt::format("{} rows hold", number)));
+  if (const std::int64_t number = ledger.num_unreadable(); number > 0)
+    console::say(fmt::format("{}: {} damaged; what was in there is computed again",
+                             store::journal_path(output),
+                             number == 1 ? "1 record is" : fmt::format("{} records are", number)));
   if (const std::int64_t number = ledger.num_resumed(); number > 0)
-    console::say(std::to_string(number) + (number == 1 ? " goes on where it was" : " go on where they were"));
+    console::say(
+        fmt::format("{} {}", number, number == 1 ? "goes on where it was" : "go on where they were"));
   if (num_left == 0) return;
   for (const std::string& words : sweep::limits_of_results(plan)) console::say(words);
-  console::say(sweep::counted(num_left, "run") + " on " + sweep::counted(num_ranks, "computing rank") +
-               ", results go to " + output);
+  console::say(fmt::format("{} on {}, results go to {}", sweep::counted(num_left, "run"),
+                           sweep::counted(num_ranks, "computing rank"), output));
 }
 
 campaign::Progress::Screen screen(Log::Level level) {
@@ -177,18 +179,19 @@ int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, 
   }
   lead.finish();
   if (is_complete && rule && options.log != Log::Level::quiet)
-    console::say(std::to_string(rule->num_reached()) + " of " +
-                 sweep::counted(rule->num_groups(), "parameter set") + " reached --until-precision");
+    console::say(fmt::format("{} of {} reached --until-precision", rule->num_reached(),
+                             sweep::counted(rule->num_groups(), "parameter set")));
   if (const sweep::RunRow* first = is_complete ? ledger.first_if_all_failed() : nullptr) {
     console::say("clogsweep: every run has failed, the first one: " + first->message);
     return console::exit_internal_fault;
   }
   if (is_complete) return console::exit_success;
   const bool no_rank_left = end == parallel::SweepEnd::no_rank_left;
-  console::say("clogsweep: " +
-               (no_rank_left ? std::string("every rank was set aside, see above; look after these machines")
-                             : std::string("stopped by ") + lead.reason_to_stop()) +
-               "; the same command goes on. Finished rows and the distances so far are in " + options.output);
+  console::say(
+      fmt::format("clogsweep: {}; the same command goes on. Finished rows and the distances so far are in {}",
+                  no_rank_left ? "every rank was set aside, see above; look after these machines"
+                               : fmt::format("stopped by {}", lead.reason_to_stop()),
+                  options.output));
   return no_rank_left ? console::exit_internal_fault : console::exit_incomplete;
 }
 

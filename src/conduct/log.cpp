@@ -1,6 +1,7 @@
 #include "clog/conduct/log.hpp"
 
-#include <cstdio>
+#include <fmt/core.h>
+
 #include <ctime>
 
 #include "clog/console/printable.hpp"
@@ -16,26 +17,19 @@ std::string time_of_day() {
   return {text, std::strftime(text, sizeof text, "%H:%M:%S", &parts)};
 }
 
-std::string short_number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
-
-std::string who(const sweep::RunRow& row) {
-  return "task " + std::to_string(row.task) + " rank " + std::to_string(row.rank) + ": ";
-}
+std::string who(const sweep::RunRow& row) { return fmt::format("task {} rank {}: ", row.task, row.rank); }
 
 /// The parameters that most sweeps go along.
 std::string what(const sweep::RunRow& row) {
   const RunParameters& run = row.parameters;
-  return (run.model == Model::dp ? " (Gamma=" + short_number(run.dp.line_tension)
-                                 : " (E_w=" + short_number(run.wall_stiffness.value())) +
-         ", gap=" + short_number(run.obstacles.gap) + ", seed " + std::to_string(run.seed) + ')';
+  const bool is_polygon = run.model == Model::dp;
+  return fmt::format(" ({}={:.4g}, gap={:.4g}, seed {})", is_polygon ? "Gamma" : "E_w",
+                     is_polygon ? run.dp.line_tension : run.wall_stiffness.value(), run.obstacles.gap,
+                     run.seed);
 }
 
 std::string where(const sweep::RunRow& row) {
-  return " at " + short_number(row.distance) + " sigma after " + short_number(row.time) + " t0";
+  return fmt::format(" at {:.4g} sigma after {:.4g} t0", row.distance, row.time);
 }
 
 }  // namespace
@@ -45,7 +39,7 @@ void Log::say(const std::string& text) { progress_.say(time_of_day() + ' ' + con
 void Log::started(const sweep::RunRow& row, From from) {
   if (level_ < Level::verbose) return;
   say(who(row) + (from == From::release ? "starts" : "goes on" + where(row)) +
-      (row.attempt > 1 ? ", attempt " + std::to_string(row.attempt) : "") + what(row));
+      (row.attempt > 1 ? fmt::format(", attempt {}", row.attempt) : "") + what(row));
 }
 
 void Log::ended(const sweep::RunRow& row) {
@@ -59,19 +53,20 @@ void Log::ended(const sweep::RunRow& row) {
 
 void Log::failed(const sweep::RunRow& row, Then then) {
   if (level_ < Level::normal) return;
-  say(who(row) + "failed, attempt " + std::to_string(row.attempt) +
-      (then == Then::tried_again ? ", will be tried again: " : ": ") + row.message + what(row));
+  say(fmt::format("{}failed, attempt {}{}: {}{}", who(row), row.attempt,
+                  then == Then::tried_again ? ", will be tried again" : "", row.message, what(row)));
 }
 
 void Log::failure_withdrawn(const sweep::RunRow& row) {
   if (level_ < Level::normal) return;
-  say(who(row) + "the rank itself may be at fault; attempt " + std::to_string(row.attempt) +
-      " does not count" + what(row));
+  say(fmt::format("{}the rank itself may be at fault; attempt {} does not count{}", who(row), row.attempt,
+                  what(row)));
 }
 
 void Log::set_aside(const sweep::RunRow& failed) {
-  say("rank " + std::to_string(failed.rank) + " on " + failed.host +
-      " is set aside: task after task fails there, and not elsewhere; the last one said: " + failed.message);
+  say(fmt::format(
+      "rank {} on {} is set aside: task after task fails there, and not elsewhere; the last one said: {}",
+      failed.rank, failed.host, failed.message));
 }
 
 void Log::stopping(const std::string& reason) {

@@ -1,5 +1,7 @@
 #include "clog/console/csv.hpp"
 
+#include <fmt/core.h>
+
 #include <sstream>
 
 #include "clog/console/text_file.hpp"
@@ -27,7 +29,7 @@ void read_csv(const std::string& path,
     try {
       each(number, cells);
     } catch (const Error& error) {
-      throw Error(path + " line " + std::to_string(number) + ": " + error.what());
+      throw Error(fmt::format("{} line {}: {}", path, number, error.what()));
     }
   }
 }

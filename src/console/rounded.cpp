@@ -1,8 +1,9 @@
 #include "clog/console/rounded.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 
 namespace clog::console {
@@ -10,13 +11,8 @@ namespace {
 
 constexpr int most_figures = 8;
 
-std::string formatted(const char* format, int digits, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, digits, value);
-  return text;
-}
-
-std::string scientific(double value, int figures) { return formatted("%.*e", figures - 1, value); }
+std::string scientific(double value, int figures) { return fmt::format("{:.{}e}", value, figures - 1); }
+std::string fixed(double value, int decimals) { return fmt::format("{:.{}f}", value, decimals); }
 
 /// As it is when it is printed.
 double rounded(double value, int figures) { return std::strtod(scientific(value, figures).c_str(), nullptr); }
@@ -33,7 +29,7 @@ std::string plain(double value, int figures) {
   const double shown = rounded(value, figures);
   const bool is_readable = shown == 0 || (exponent(shown) > -5 && exponent(shown) < 6);
   if (!is_readable) return scientific(value, figures);
-  return formatted("%.*f", std::max(0, figures - 1 - exponent(shown)), shown);
+  return fixed(shown, std::max(0, figures - 1 - exponent(shown)));
 }
 
 RoundedInterval with_interval(double value, double lower, double upper) {
@@ -47,7 +43,7 @@ RoundedError with_error(double value, double error) {
   if (!std::isfinite(value) || !std::isfinite(error) || error <= 0) return {plain(value), plain(error)};
   constexpr int error_figures = 2;
   const int decimals = std::max(0, error_figures - 1 - exponent(rounded(error, error_figures)));
-  return {formatted("%.*f", decimals, value), formatted("%.*f", decimals, error)};
+  return {fixed(value, decimals), fixed(error, decimals)};
 }
 
 }  // namespace clog::console

@@ -1,13 +1,13 @@
 #include "clog/host/examination.hpp"
 
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -15,22 +15,11 @@
 #include <set>
 
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/joined.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::host {
 namespace {
-
-std::string formatted(const char* format, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-std::string joined(const std::set<std::string>& words) {
-  std::string all;
-  for (const std::string& word : words) all += (all.empty() ? "" : ", ") + word;
-  return all;
-}
 
 std::string counted(std::size_t number, const char* noun) {
   return sweep::counted(static_cast<std::int64_t>(number), noun);
@@ -45,9 +34,9 @@ bool lacks_its_ranks(int num_ranks) {
 
 Finding launcher(int num_ranks) {
   if (lacks_its_ranks(num_ranks))
-    return {std::string("one rank in a Slurm allocation of ") + std::getenv("SLURM_NTASKS") + " tasks",
+    return {fmt::format("one rank in a Slurm allocation of {} tasks", std::getenv("SLURM_NTASKS")),
             "srun cannot start this MPI's ranks together: use mpirun, as jobs/slurm.sh does"};
-  if (num_ranks > 1) return {std::to_string(num_ranks) + " ranks, started together"};
+  if (num_ranks > 1) return {fmt::format("{} ranks, started together", num_ranks)};
   if (geteuid() == 0 && !(is_set("OMPI_ALLOW_RUN_AS_ROOT") && is_set("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM")))
     return {"one rank; mpirun will refuse to start more for root",
             "in a container: source jobs/mpi-settings.sh first; elsewhere use an account of your own"};
@@ -57,7 +46,8 @@ Finding launcher(int num_ranks) {
 Finding versions(const std::vector<RankFacts>& ranks) {
   std::set<std::string> all;
   for (const RankFacts& rank : ranks) all.insert(rank.version);
-  if (all.size() == 1) return {"clogsweep " + *all.begin() + (ranks.size() > 1 ? " on all ranks" : "")};
+  if (all.size() == 1)
+    return {fmt::format("clogsweep {}{}", *all.begin(), ranks.size() > 1 ? " on all ranks" : "")};
   return {"the ranks run different programs: " + joined(all),
           "install one build on all hosts, or on a shared file system"};
 }
@@ -79,19 +69,20 @@ Finding cores(const std::string& host, const std::vector<const RankFacts*>& rank
     all.insert(rank->cores.begin(), rank->cores.end());
   }
   const double granted = ranks.front()->cores_granted;
-  const std::string where = host + ": " + counted(ranks.size(), "rank") + ", " + counted(all.size(), "core");
+  const std::string where =
+      fmt::format("{}: {}, {}", host, counted(ranks.size(), "rank"), counted(all.size(), "core"));
   if (ranks.size() > all.size())
-    return {where,
-            "one rank per core is as fast: mpirun -np " + std::to_string(all.size()) +
-                "; if there are more cores, ranks are bound: set OMPI_MCA_hwloc_base_binding_policy=none"};
+    return {where, fmt::format("one rank per core is as fast: mpirun -np {}; if there are more cores, ranks "
+                               "are bound: set OMPI_MCA_hwloc_base_binding_policy=none",
+                               all.size())};
   if (granted > 0 && granted < static_cast<double>(ranks.size()))
-    return {where + ", of which " + formatted("%.3g", granted) + " are granted (cpu.max of a control group)",
+    return {fmt::format("{}, of which {:.3g} are granted (cpu.max of a control group)", where, granted),
             "ask for more cores, or start fewer ranks"};
   for (const auto& [set, number] : ranks_by_cores)
     if (static_cast<std::size_t>(number) > set.size())
-      return {where + ", but " + std::to_string(number) + " ranks are bound to " +
-                  (set.size() == 1 ? "one core (" + std::to_string(set.front()) + ")"
-                                   : std::to_string(set.size()) + " of them"),
+      return {fmt::format("{}, but {} ranks are bound to {}", where, number,
+                          set.size() == 1 ? fmt::format("one core ({})", set.front())
+                                          : fmt::format("{} of them", set.size())),
               "set OMPI_MCA_hwloc_base_binding_policy=none, or core where the host is yours alone"};
   return {where};
 }
@@ -99,7 +90,7 @@ Finding cores(const std::string& host, const std::vector<const RankFacts*>& rank
 Finding memory(const std::string& host, const std::vector<const RankFacts*>& ranks) {
   constexpr double needed = 100e6;  // of a rank with an array of 500 sigma, generously
   const double available = ranks.front()->memory / static_cast<double>(ranks.size());
-  const std::string what = host + ": " + formatted("%.3g GB of memory per rank", available / 1e9);
+  const std::string what = fmt::format("{}: {:.3g} GB of memory per rank", host, available / 1e9);
   if (available < needed) return {what, "start fewer ranks per host, or take a smaller box"};
   return {what};
 }
@@ -111,13 +102,12 @@ Finding speed(const std::vector<RankFacts>& ranks) {
   for (const RankFacts& rank : ranks) costs.push_back(rank.nanoseconds_per_step);
   std::sort(costs.begin(), costs.end());
   const double median = costs[(costs.size() - 1) / 2];
-  const std::string what = "a step takes " + formatted("%.3g", costs.front()) +
-                           (costs.size() > 1 ? " to " + formatted("%.3g", costs.back()) : "") +
-                           " ns per vertex";
+  const std::string what = fmt::format("a step takes {:.3g}{} ns per vertex", costs.front(),
+                                       costs.size() > 1 ? fmt::format(" to {:.3g}", costs.back()) : "");
   std::set<std::string> slow;
   for (const RankFacts& rank : ranks)
     if (rank.nanoseconds_per_step > much_slower * median)
-      slow.insert("rank " + std::to_string(rank.rank) + " on " + rank.host);
+      slow.insert(fmt::format("rank {} on {}", rank.rank, rank.host));
   if (slow.empty()) return {what};
   return {what + "; much slower than the median: " + joined(slow),
           "look for other programs on those cores, and for bound ranks"};
@@ -131,7 +121,7 @@ Finding folder(const std::string& output) {
   std::string name = (fs::path(place) / "clogsweep-doctor.XXXXXX").string();
   const int file = mkstemp(name.data());
   if (file < 0)
-    return {"cannot write in " + place + " (" + std::strerror(errno) + ")",
+    return {fmt::format("cannot write in {} ({})", place, std::strerror(errno)),
             "give a folder of yours that exists: --output FOLDER/sweep.h5"};
   const std::string renamed = name + ".h5";
   const std::vector<char> bytes(1 << 20, 'x');
@@ -145,8 +135,9 @@ Finding folder(const std::string& output) {
   unlink(is_renamed ? renamed.c_str() : name.c_str());
   std::error_code ignored;
   const double free = static_cast<double>(fs::space(place, ignored).available);
-  const std::string what = "folder " + place + ": " + formatted("%.3g GB free", free / 1e9) +
-                           formatted(", a megabyte takes %.3g ms to reach the disk", elapsed.count());
+  const std::string what =
+      fmt::format("folder {}: {:.3g} GB free, a megabyte takes {:.3g} ms to reach the disk", place,
+                  free / 1e9, elapsed.count());
   if (!is_written) return {what + ", cannot be written to", "make room, or give another --output"};
   if (!is_locked)
     return {what + ", files cannot be locked (flock)",
@@ -173,9 +164,10 @@ std::vector<Finding> examine(const std::vector<RankFacts>& ranks, const std::str
 
 void refuse_to_be_alone(int num_ranks) {
   if (!lacks_its_ranks(num_ranks)) return;
-  throw Error(std::string("one rank in a Slurm allocation of ") + std::getenv("SLURM_NTASKS") +
-              " tasks (srun cannot start this MPI's ranks together); use mpirun as jobs/slurm.sh does, or "
-              "mpirun -np 1 if one is meant");
+  throw Error(
+      fmt::format("one rank in a Slurm allocation of {} tasks (srun cannot start this MPI's ranks together); "
+                  "use mpirun as jobs/slurm.sh does, or mpirun -np 1 if one is meant",
+                  std::getenv("SLURM_NTASKS")));
 }
 
 }  // namespace clog::host

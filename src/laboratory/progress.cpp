@@ -1,8 +1,9 @@
 #include "clog/laboratory/progress.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iostream>
 #include <limits>
 
@@ -19,10 +20,8 @@ bool is_nearer(const fit::CalibrationAttempt& a, const fit::CalibrationAttempt& 
 
 std::string text_of(const fit::CalibrationAttempt& best) {
   if (!std::isfinite(best.delta)) return "no simulation is over";
-  char text[96];
-  std::snprintf(text, sizeof text, "Delta_v down to %.3g, with Gamma = %.4g, b_0/b_inf = %.4g", best.delta,
-                best.line_tension, best.near_wall_drag);
-  return text;
+  return fmt::format("Delta_v down to {:.3g}, with Gamma = {:.4g}, b_0/b_inf = {:.4g}", best.delta,
+                     best.line_tension, best.near_wall_drag);
 }
 
 }  // namespace
@@ -50,12 +49,11 @@ std::string CalibrationProgress::best(std::size_t trial) const {
 
 std::string CalibrationProgress::line() const {
   std::string text = sweep::counted(num_simulations_, "simulation");
-  if (best_.size() > 1)
-    text += ", " + std::to_string(num_ended_) + "/" + std::to_string(best_.size()) + " trials done";
+  if (best_.size() > 1) text += fmt::format(", {}/{} trials done", num_ended_, best_.size());
   const fit::CalibrationAttempt& worst = *std::max_element(best_.begin(), best_.end(), is_nearer);
   if (std::isfinite(worst.delta)) text += ", " + text_of(worst);
   const double elapsed = std::chrono::duration<double>(Clock::now() - begin_).count();
-  return text + ", " + console::readable_duration(elapsed) + " so far";
+  return fmt::format("{}, {} so far", text, console::readable_duration(elapsed));
 }
 
 }  // namespace clog::laboratory

@@ -1,8 +1,9 @@
 #include "clog/laboratory/trials.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <future>
 #include <semaphore>
 #include <thread>
@@ -81,8 +82,8 @@ void refuse_other_channel(const std::string& file, const store::Provenance& orig
                           const RunParameters& simulated) {
   const auto compare = [&](const std::string& option, double stored, double given) {
     if (stored != given)
-      throw Error(file + " was written with " + option + "=" + sweep::shortest(stored) + ", not " +
-                  sweep::shortest(given) + "; give " + option + "=" + sweep::shortest(stored));
+      throw Error(fmt::format("{0} was written with {1}={2}, not {3}; give {1}={2}", file, option,
+                              sweep::shortest(stored), sweep::shortest(given)));
   };
   compare("orifice", sweep::to_number(campaign::attribute(origin, "orifice")), simulated.channel.orifice);
   compare("wedge-angle", sweep::to_number(campaign::attribute(origin, "wedge_angle")),
@@ -128,7 +129,7 @@ std::vector<fit::Calibration> calibrate(const std::vector<Trial>& trials, const 
     progress.finish();
     std::string words = stop.what();
     for (std::size_t trial = 0; trial < trials.size(); ++trial)
-      words += "; " + trials[trial].file + ": " + progress.best(trial);
+      words += fmt::format("; {}: {}", trials[trial].file, progress.best(trial));
     throw console::Stopped(words);
   }
   progress.finish();
@@ -141,8 +142,9 @@ std::vector<std::string> warnings(const fit::Calibration& found) {
     all.emplace_back("the search did not converge: another place may have a smaller Delta_v");
   if (found.is_at_bound) all.emplace_back("the best is at the end of what was searched, and may lie beyond");
   if (found.num_never_reached > 0)
-    all.push_back("no simulated droplet comes to " + std::to_string(found.num_never_reached) +
-                  " of the frames: look at --orifice, at the units and at h");
+    all.push_back(fmt::format(
+        "no simulated droplet comes to {} of the frames: look at --orifice, at the units and at h",
+        found.num_never_reached));
   if (std::isnan(found.line_tension_error))
     all.emplace_back(
         "no errors: the frames do not determine both, or the droplet clogs at a line tension beside this "
@@ -152,13 +154,9 @@ std::vector<std::string> warnings(const fit::Calibration& found) {
     all.emplace_back(
         "Delta_v is large: no simulated droplet moves like this one; look at --orifice, units, vertices");
   constexpr double near = 1.1;
-  if (found.clogging_tension < near * found.line_tension) {
-    char text[96];
-    std::snprintf(text, sizeof text,
-                  "close to a clog: simulated droplets of Gamma = %.4g and more do not pass",
-                  found.clogging_tension);
-    all.emplace_back(text);
-  }
+  if (found.clogging_tension < near * found.line_tension)
+    all.push_back(fmt::format("close to a clog: simulated droplets of Gamma = {:.4g} and more do not pass",
+                              found.clogging_tension));
   return all;
 }
 

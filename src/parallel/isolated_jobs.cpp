@@ -1,5 +1,6 @@
 #include "clog/parallel/isolated_jobs.hpp"
 
+#include <fmt/core.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -51,14 +52,14 @@ struct Ending {
 
 std::string describe(const Ending& ending) {
   if (ending.fork_error != 0)
-    return std::string("no process could be started for it: ") + std::strerror(ending.fork_error);
-  if (ending.code == CLD_EXITED) return "its process left with exit code " + std::to_string(ending.status);
+    return fmt::format("no process could be started for it: {}", std::strerror(ending.fork_error));
+  if (ending.code == CLD_EXITED) return fmt::format("its process left with exit code {}", ending.status);
   const int signal = ending.status;
   const char* name = sigabbrev_np(signal);
   const char* meaning = sigdescr_np(signal);
-  return "its process was ended by SIG" + std::string(name ? name : std::to_string(signal)) + " (" +
-         (meaning ? meaning : "unknown signal") +
-         (signal == SIGKILL ? ", as the kernel does when memory runs out)" : ")");
+  return fmt::format("its process was ended by SIG{} ({}{})", name ? name : std::to_string(signal),
+                     meaning ? meaning : "unknown signal",
+                     signal == SIGKILL ? ", as the kernel does when memory runs out" : "");
 }
 
 /// The process dies when the one that forked it does. Signals that stop a sweep are the rank's business.

@@ -1,7 +1,8 @@
 #include "clogfit_calibrate.hpp"
 
+#include <fmt/ostream.h>
+
 #include <cmath>
-#include <cstdio>
 #include <iostream>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -74,7 +75,7 @@ std::optional<double> quantity(const cli::CommandLine& line, const char* option,
     if (value > 0) return value;
     throw Error("must be positive");
   } catch (const Error& error) {
-    throw Error("invalid --" + Text(option) + "=" + line.get(option) + " (" + error.what() + ")");
+    throw Error(fmt::format("invalid --{}={} ({})", option, line.get(option), error.what()));
   }
 }
 
@@ -115,33 +116,32 @@ void print_text(const std::vector<Text>& files, const std::vector<fit::Calibrati
                 const std::optional<Experiment>& other) {
   std::size_t width = 7;
   for (const Text& file : files) width = std::max(width, file.size());
-  const int w = static_cast<int>(width);
-  std::printf("%-*s  %8s  %8s  %9s  %8s  %8s  %8s\n", w, "profile", "Gamma*", "+-", "b_0/b_inf", "+-",
-              "Delta_v", "Delta_A");
+  fmt::print(std::cout, "{:{}}    Gamma*        +-  b_0/b_inf        +-   Delta_v   Delta_A\n", "profile",
+             width);
   for (std::size_t i = 0; i < files.size(); ++i)
-    std::printf("%-*s  %8.4g  %8.2g  %9.4g  %8.2g  %8.3g  %8.3g\n", w, files[i].c_str(),
-                found[i].line_tension, found[i].line_tension_error, found[i].near_wall_drag,
-                found[i].near_wall_drag_error, found[i].deviation.speed, found[i].deviation.shape);
+    fmt::print(std::cout, "{:{}}  {:>8.4g}  {:>8.2g}  {:>9.4g}  {:>8.2g}  {:>8.3g}  {:>8.3g}\n", files[i],
+               width, found[i].line_tension, found[i].line_tension_error, found[i].near_wall_drag,
+               found[i].near_wall_drag_error, found[i].deviation.speed, found[i].deviation.shape);
   for (std::size_t i = 0; i < files.size(); ++i)
     for (const Text& warning : laboratory::warnings(found[i]))
-      std::printf("note: %s: %s\n", files[i].c_str(), warning.c_str());
+      fmt::print(std::cout, "note: {}: {}\n", files[i], warning);
   if (found.size() > 1)
-    std::printf(
-        "\nmean of %zu trials and their standard deviation: Gamma* = %.3g +- %.2g, b_0*/b_inf = %.3g +- "
-        "%.2g\n",
-        found.size(), all.line_tension, all.line_tension_deviation, all.near_wall_drag,
-        all.near_wall_drag_deviation);
+    fmt::print(std::cout,
+               "\nmean of {} trials and their standard deviation: Gamma* = {:.3g} +- {:.2g}, b_0*/b_inf = "
+               "{:.3g} +- {:.2g}\n",
+               found.size(), all.line_tension, all.line_tension_deviation, all.near_wall_drag,
+               all.near_wall_drag_deviation);
   else
-    std::printf("\none trial: errors are from the scatter of its frames\n");
-  std::printf("b_inf: V_t = %.4g\n", terminal_speed);
-  if (lab.tilt > 0) std::printf("g_exp = %.3g m/s^2\n", lab.gravity());
+    std::cout << "\none trial: errors are from the scatter of its frames\n";
+  fmt::print(std::cout, "b_inf: V_t = {:.4g}\n", terminal_speed);
+  if (lab.tilt > 0) fmt::print(std::cout, "g_exp = {:.3g} m/s^2\n", lab.gravity());
   if (!std::isnan(lab.interfacial_tension))
-    std::printf("Gamma_exp = %.3g, Gamma*/Gamma_exp = %.3g\n", lab.line_tension(),
-                all.line_tension / lab.line_tension());
+    fmt::print(std::cout, "Gamma_exp = {:.3g}, Gamma*/Gamma_exp = {:.3g}\n", lab.line_tension(),
+               all.line_tension / lab.line_tension());
   if (other)
-    std::printf("Gamma** = %.3g for a droplet of %.3g mm at %.3g degrees\n",
-                laboratory::scaled_line_tension(all.line_tension, lab, *other), 1e3 * other->diameter,
-                other->tilt * 180 / std::numbers::pi);
+    fmt::print(std::cout, "Gamma** = {:.3g} for a droplet of {:.3g} mm at {:.3g} degrees\n",
+               laboratory::scaled_line_tension(all.line_tension, lab, *other), 1e3 * other->diameter,
+               other->tilt * 180 / std::numbers::pi);
 }
 
 nlohmann::ordered_json number(double value) {
@@ -184,7 +184,7 @@ int clogfit_calibrate(int argc, const char* const* argv) {
   const std::vector<Text> files = line.get_all("profiles");
   if (files.empty()) throw Error("missing profile; try clogfit calibrate trial.csv --orifice 0.7");
   for (const char* key : {"line-tension", "near-wall-drag"})
-    if (line.has(key)) throw Error("--" + Text(key) + " is what " + program + " finds; leave it out");
+    if (line.has(key)) throw Error(fmt::format("--{} is what {} finds; leave it out", key, program));
   if (line.has("angle") && line.has("terminal-speed"))
     throw Error("--angle and terminal-speed contradict each other; give one of them");
   const Text format = line.get("format");

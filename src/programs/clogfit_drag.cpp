@@ -1,7 +1,8 @@
 #include "clogfit_drag.hpp"
 
+#include <fmt/ostream.h>
+
 #include <cmath>
-#include <cstdio>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -36,7 +37,7 @@ double scale(const cli::CommandLine& line, const char* option, const char* units
     if (value > 0) return value;
     throw Error("must be positive");
   } catch (const Error& error) {
-    throw Error("invalid --" + std::string(option) + "=" + line.get(option) + " (" + error.what() + ")");
+    throw Error(fmt::format("invalid --{}={} ({})", option, line.get(option), error.what()));
   }
 }
 
@@ -44,7 +45,7 @@ fit::NearWallDrag fit_file(const std::string& path, const std::vector<fit::NearW
   try {
     return fit::fit_near_wall_drag(speeds);
   } catch (const std::invalid_argument& error) {
-    throw Error(path + " cannot be fitted (" + error.what() + ")");
+    throw Error(fmt::format("{} cannot be fitted ({})", path, error.what()));
   }
 }
 
@@ -71,8 +72,8 @@ int clogfit_drag(int argc, const char* const* argv) {
       path, {scale(line, "diameter", "length"), scale(line, "speed", "speed")});
   const fit::NearWallDrag fit = fit_file(path, speeds);
   if (format == "text") {
-    std::printf("alpha = %.4g +- %.2g, b_0/b_inf = %.4g +- %.2g, from %zu speeds\n", fit.exponent,
-                fit.exponent_error, fit.drag, fit.drag_error, speeds.size());
+    fmt::print(std::cout, "alpha = {:.4g} +- {:.2g}, b_0/b_inf = {:.4g} +- {:.2g}, from {} speeds\n",
+               fit.exponent, fit.exponent_error, fit.drag, fit.drag_error, speeds.size());
     return console::exit_success;
   }
   const auto number = [](double value) {

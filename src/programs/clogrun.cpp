@@ -1,5 +1,7 @@
 /// clogrun: one droplet, watched closely.
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -83,8 +85,8 @@ void refuse_same_files(const cli::CommandLine& line) {
       const auto [first, is_new] =
           options.emplace(std::filesystem::weakly_canonical(std::filesystem::absolute(file)), option);
       if (!is_new)
-        throw Error("--" + first->second + " and --" + option + " name the same file, " + file.string() +
-                    "; give two names");
+        throw Error(fmt::format("--{} and --{} name the same file, {}; give two names", first->second, option,
+                                file.string()));
     }
 }
 
@@ -98,12 +100,12 @@ std::filesystem::path film_name(const cli::CommandLine& line) {
   if (!name.has_filename())
     throw Error("invalid --frames=" + name.string() + " (names no file); try --frames film");
   if (name.has_parent_path() && !std::filesystem::is_directory(name.parent_path()))
-    throw Error("cannot write " + name.string() + " (no folder " + name.parent_path().string() +
-                "); make it first");
+    throw Error(fmt::format("cannot write {} (no folder {}); make it first", name.string(),
+                            name.parent_path().string()));
   for (const std::filesystem::path& film : files_of(line, "frames")) store::refuse_unwritable(film);
   if (name.extension() == ".mp4" && !cli::is_installed("ffmpeg"))
-    throw Error("cannot write " + name.string() + " (no ffmpeg); install it, or ask for " +
-                std::filesystem::path(name).replace_extension(".gif").string());
+    throw Error(fmt::format("cannot write {} (no ffmpeg); install it, or ask for {}", name.string(),
+                            std::filesystem::path(name).replace_extension(".gif").string()));
   return name;
 }
 
@@ -112,8 +114,8 @@ std::vector<std::string> film_options(const cli::CommandLine& line) {
   std::vector<std::string> options = {line.require("output"), "--output=" + film_name(line).string(),
                                       "--film"};
   if (line.has("most-frames"))
-    options.push_back("--most-frames=" +
-                      std::to_string(std::llround(std::clamp(line.get_positive("most-frames"), 1.0, 1e9))));
+    options.push_back(fmt::format("--most-frames={:.0f}",
+                                  std::clamp(std::round(line.get_positive("most-frames")), 1.0, 1e9)));
   return options;
 }
 
@@ -131,8 +133,9 @@ int follow(cli::CommandLine& line, const std::string& system) {
   const std::filesystem::path script = cli::find_analysis_script("droplet.py");
   const int exit_code = run(line);
   if (exit_code == console::exit_incomplete)
-    console::say("clogrun: stopped before its end, so no film is drawn; " + script.string() + " " +
-                 options[0] + " " + options[1] + " --film draws what there is");
+    console::say(fmt::format(
+        "clogrun: stopped before its end, so no film is drawn; {} {} {} --film draws what there is",
+        script.string(), options[0], options[1]));
   if (exit_code != console::exit_success || line.has("dry-run")) return exit_code;
   cli::become_script("clogrun", script, options);
 }

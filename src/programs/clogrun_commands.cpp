@@ -1,5 +1,7 @@
 #include "clogrun_commands.hpp"
 
+#include <fmt/core.h>
+
 #include <optional>
 
 #include "clog/console/streams.hpp"
@@ -12,7 +14,7 @@ void refuse_options(const cli::CommandLine& line, const std::string& system,
                     std::initializer_list<const char*> options) {
   for (const char* option : options)
     if (line.has(option))
-      throw Error(std::string("--") + option + " has no meaning for clogrun " + system + "; leave it out");
+      throw Error(fmt::format("--{} has no meaning for clogrun {}; leave it out", option, system));
 }
 
 watch::WatchedRun::Intervals intervals(const cli::CommandLine& line, double time_step) {
@@ -28,8 +30,8 @@ void say_what_is_unproven(const sweep::Plan& plan) {
 void choose_layout(cli::CommandLine& line, const std::string& layout) {
   const std::string key = "obstacle-layout";
   if (line.has(key) && line.get(key) != layout)
-    throw Error("clogrun " + line.get("system") + " means " + key + "=" + layout + ", not " + line.get(key) +
-                "; leave it out");
+    throw Error(fmt::format("clogrun {} means {}={}, not {}; leave it out", line.get("system"), key, layout,
+                            line.get(key)));
   line.settings().set(key, layout);
 }
 

@@ -1,4 +1,6 @@
-#include <cstdio>
+#include <fmt/ostream.h>
+
+#include <iostream>
 #include <string>
 
 #include "clog/cli/program.hpp"
@@ -33,7 +35,7 @@ int clogrun_sag(cli::CommandLine& line) {
 
   say_what_is_unproven(plan);
   console::catch_stop_signals();
-  std::printf("model,line_tension,wall_stiffness,sag,top_sag,shape_parameter,time,status\n");
+  std::cout << "model,line_tension,wall_stiffness,sag,top_sag,shape_parameter,time,status\n";
   bool all_at_rest = true;
   for (std::int64_t task = 0; task < plan.size(); ++task) {
     const RunParameters parameters = plan.task(task);
@@ -41,10 +43,10 @@ int clogrun_sag(cli::CommandLine& line) {
     watched.follow();
     const RunResult result = watched.result();
     const bool is_polygon = parameters.model == Model::dp;
-    std::printf("%s,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%s\n", name(parameters.model),
-                is_polygon ? parameters.dp.line_tension : sweep::RunRow::not_known,
-                *parameters.wall_stiffness, result.sag.centre, result.sag.top, result.shape_parameter,
-                result.time, result.status == RunStatus::clogged ? "at_rest" : name(result.status));
+    fmt::print(std::cout, "{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", name(parameters.model),
+               is_polygon ? parameters.dp.line_tension : sweep::RunRow::not_known, *parameters.wall_stiffness,
+               result.sag.centre, result.sag.top, result.shape_parameter, result.time,
+               result.status == RunStatus::clogged ? "at_rest" : name(result.status));
     console::flush_output();
     if (result.status == RunStatus::failed) throw Error(result.message);
     if (line.has("output"))

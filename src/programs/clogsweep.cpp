@@ -1,5 +1,7 @@
 /// clogsweep: many independent runs, handed out to MPI ranks, gathered into one table.
 
+#include <fmt/core.h>
+
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -117,7 +119,7 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, parallel::IsolatedJo
       word = assignment(line, led->growing ? led->growing->settings : line.settings()).text();
       return console::exit_success;
     });
-    if (!led || exit_code != console::exit_success) word = "exit " + std::to_string(exit_code);
+    if (!led || exit_code != console::exit_success) word = fmt::format("exit {}", exit_code);
   }
   word = ranks.broadcast(word);
   if (word.starts_with("exit ")) return std::stoi(word.substr(5));
@@ -153,8 +155,8 @@ int main(int argc, char** argv) {
     return sweep_on_all_ranks(ranks, *isolated, argc, argv);
   } catch (const std::exception& error) {
     // Once the sweep runs, ranks wait for each other: a fault of one must end all.
-    console::say(std::string(program) + ": rank " + std::to_string(ranks.rank()) + " on " +
-                 parallel::Communicator::host_name() + ": " + error.what());
+    console::say(fmt::format("{}: rank {} on {}: {}", program, ranks.rank(),
+                             parallel::Communicator::host_name(), error.what()));
     if (ranks.size() > 1)
       ranks.abort(dynamic_cast<const Error*>(&error) ? console::exit_user_fault
                                                      : console::exit_internal_fault);

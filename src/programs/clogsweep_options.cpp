@@ -1,5 +1,7 @@
 #include "clogsweep_options.hpp"
 
+#include <fmt/core.h>
+
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -64,8 +66,9 @@ double precision(const cli::CommandLine& line) {
 std::int64_t most_seeds(const cli::CommandLine& line, std::int64_t first_seeds) {
   const double number = line.get_number("most-seeds", static_cast<double>(20 * first_seeds));
   if (!(number >= static_cast<double>(first_seeds) && number <= 1e5 && number == std::floor(number)))
-    throw Error("invalid --most-seeds=" + line.get("most-seeds") + " (must be a whole number from " +
-                std::to_string(first_seeds) + ", the number of `seeds`, to 1e5)");
+    throw Error(
+        fmt::format("invalid --most-seeds={} (must be a whole number from {}, the number of `seeds`, to 1e5)",
+                    line.get("most-seeds"), first_seeds));
   return static_cast<std::int64_t>(number);
 }
 

@@ -1,10 +1,13 @@
-#include <cstdio>
+#include <fmt/ostream.h>
+
+#include <iostream>
 #include <string>
 
 #include "clog/campaign/repetition.hpp"
 #include "clog/campaign/stored_sweep.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/joined.hpp"
 #include "clogsweep_commands.hpp"
 #include "file_command.hpp"
 
@@ -28,15 +31,14 @@ that went on under another set than it began with cannot be repeated.
   const store::SweepFile file = campaign::read_with_caution(line.get("file"));
   const sweep::RunRow row = campaign::replayable_row(file, line.get("task"));
   const auto [again, differing] = campaign::repeat(row);
-  std::printf("task %s: %s, distance %.17g, %.3g s\n", line.get("task").c_str(), name(again.status),
-              again.distance, again.wall_seconds);
+  fmt::print(std::cout, "task {}: {}, distance {:.17g}, {:.3g} s\n", line.get("task"), name(again.status),
+             again.distance, again.wall_seconds);
   if (differing.empty()) {
-    std::printf("the same bits as the row's\n");
+    std::cout << "the same bits as the row's\n";
     return console::exit_success;
   }
-  std::printf("differs from the row in:");
-  for (const std::string& name : differing) std::printf(" %s", name.c_str());
-  std::printf("\nthe row has %s, distance %.17g\n", name(row.status), row.distance);
+  fmt::print(std::cout, "differs from the row in: {}\nthe row has {}, distance {:.17g}\n",
+             joined(differing, " "), name(row.status), row.distance);
   return console::exit_internal_fault;
 }
 

@@ -1,13 +1,13 @@
 #include "clog/store/run_table.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
-#include <cinttypes>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <optional>
 #include <span>
 #include <sstream>
@@ -102,12 +102,10 @@ void write_check_sums(hid_t file, const CheckSums& sums, const std::string& path
 constexpr const char* list_name = "checksums";
 
 std::string line_of(std::uint32_t sum, const std::string& name) {
-  char digits[16];
-  std::snprintf(digits, sizeof digits, "%08" PRIx32 " ", sum);
-  return digits + name + '\n';
+  return fmt::format("{:08x} {}\n", sum, name);
 }
 
-std::string name_of_rows(std::size_t num_rows) { return std::to_string(num_rows) + " rows"; }
+std::string name_of_rows(std::size_t num_rows) { return fmt::format("{} rows", num_rows); }
 
 }  // namespace
 
@@ -130,7 +128,7 @@ std::string library_version() {
   prepare_library();
   unsigned major = 0, minor = 0, release = 0;
   H5get_libversion(&major, &minor, &release);
-  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(release);
+  return fmt::format("{}.{}.{}", major, minor, release);
 }
 
 void publish_sweep(const std::string& path, std::span<const RunRow> rows, const Provenance& provenance,
@@ -161,14 +159,15 @@ std::string version_of(hid_t file, const std::string& path) {
                 "by clogsweep --output");
   std::string version = read_attribute(file, "format_version");
   if (std::ranges::find(readable_versions, version) == readable_versions.end())
-    throw Error("cannot read " + path + " (format version " + version + ", this program reads " +
-                std::string(readable_versions.front()) + " to " + format_version +
-                "); use the program that wrote it");
+    throw Error(fmt::format(
+        "cannot read {} (format version {}, this program reads {} to {}); use the program that wrote it",
+        path, version, readable_versions.front(), format_version));
   return version;
 }
 
 [[noreturn]] void refuse_table(const std::string& path, const std::string& what) {
-  throw Error("cannot read " + path + " (damaged: " + what + "); put a copy in its place, or begin anew");
+  throw Error(
+      fmt::format("cannot read {} (damaged: {}); put a copy in its place, or begin anew", path, what));
 }
 
 /// How long a dataset is; a size that cannot be is not believed.
@@ -198,7 +197,7 @@ std::vector<std::byte> packed_rows(hid_t table, const RowLayout& layout, std::si
   for_each_block(num_rows, [&](std::size_t first, std::size_t number) {
     if (H5Dread(table, layout.type(), space_of(number), select_rows(table, first, number), unchecked,
                 packed.data() + first * layout.size()) < 0)
-      refuse_table(path, "rows from " + std::to_string(first) + " on cannot be read");
+      refuse_table(path, fmt::format("rows from {} on cannot be read", first));
   });
   return packed;
 }
@@ -255,8 +254,7 @@ void compare_rows(const PackedTable& table, const CheckSums& sums, Examination& 
     if (check_sum(table.row(i)) == sums[i])
       found.whole.rows.push_back(row);
     else
-      found.damage.push_back("row " + std::to_string(i) + " (task " + std::to_string(row.task) +
-                             ") is not as it was written");
+      found.damage.push_back(fmt::format("row {} (task {}) is not as it was written", i, row.task));
   }
 }
 
@@ -325,9 +323,10 @@ SweepFile read_sweep(const std::string& path) {
   Examination found = examine_sweep(path);
   if (found.damage.empty()) return std::move(found.whole);
   const std::size_t num_others = found.damage.size() - 1;
-  throw Error("cannot trust " + path + " (damaged: " + found.damage.front() +
-              (num_others > 0 ? ", and " + std::to_string(num_others) + " more" : "") +
-              "); `clogsweep verify` names all, `clogsweep salvage` keeps what is whole");
+  throw Error(fmt::format(
+      "cannot trust {} (damaged: {}{}); `clogsweep verify` names all, `clogsweep salvage` keeps what is "
+      "whole",
+      path, found.damage.front(), num_others > 0 ? fmt::format(", and {} more", num_others) : ""));
 }
 
 std::string caution(const std::string& path, const SweepFile& file) {

@@ -1,8 +1,7 @@
 #include "seal.hpp"
 
-#include <cinttypes>
-#include <cstdint>
-#include <cstdio>
+#include <fmt/core.h>
+
 #include <string_view>
 
 #include "check_sum.hpp"
@@ -16,10 +15,7 @@ constexpr std::size_t seal_size = 64;
 }  // namespace
 
 std::string seal_of(std::span<const std::byte> content) {
-  char text[seal_size + 1];
-  const int written = std::snprintf(text, sizeof text, "%s%08" PRIx32 " of %020" PRIu64 " bytes\n",
-                                    seal_mark.data(), check_sum(content), std::uint64_t{content.size()});
-  return {text, static_cast<std::size_t>(written)};
+  return fmt::format("{}{:08x} of {:020} bytes\n", seal_mark, check_sum(content), content.size());
 }
 
 Seal look_at_seal(std::span<const std::byte> file) {

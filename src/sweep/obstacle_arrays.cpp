@@ -1,15 +1,14 @@
 #include "clog/sweep/obstacle_arrays.hpp"
 
+#include <fmt/core.h>
 #include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstring>
-#include <ios>
 #include <optional>
 #include <span>
-#include <sstream>
 #include <string>
 #include <thread>
 
@@ -36,10 +35,8 @@ double num_places(const ObstacleParameters& parameters) {
 std::optional<std::string> shared_name(const RunParameters& run) {
   struct stat executable;
   if (stat("/proc/self/exe", &executable) != 0) return std::nullopt;
-  std::ostringstream name;
-  name << "clogsweep-" << std::hex << executable.st_ino << '-' << executable.st_mtim.tv_sec << '-'
-       << executable.st_mtim.tv_nsec << '-' << array_key(run);
-  return name.str();
+  return fmt::format("clogsweep-{:x}-{:x}-{:x}-{}", executable.st_ino, executable.st_mtim.tv_sec,
+                     executable.st_mtim.tv_nsec, array_key(run));
 }
 
 /// What precedes the obstacles and the starts of the cells.

@@ -1,5 +1,7 @@
 #include "clog/sweep/plan.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cassert>
 #include <string>
@@ -26,12 +28,13 @@ void refuse_contradictions(const Settings& settings) {
   const std::string ratio = "perimeter-stiffness-ratio";
   if (!settings.is_given(ratio) || settings.text(ratio) == find_key(ratio).default_text) return;
   if (settings.text("perimeter-spring") != "rest")
-    throw Error("invalid " + ratio + "=" + settings.text(ratio) +
-                " (it belongs to perimeter-spring=rest, not to " + settings.text("perimeter-spring") +
-                ") give perimeter-stiffness, or add perimeter-spring=rest");
+    throw Error(
+        fmt::format("invalid {}={} (it belongs to perimeter-spring=rest, not to {}) give "
+                    "perimeter-stiffness, or add perimeter-spring=rest",
+                    ratio, settings.text(ratio), settings.text("perimeter-spring")));
   if (settings.text("perimeter-stiffness") != "auto")
-    throw Error("invalid " + ratio + "=" + settings.text(ratio) + " (perimeter-stiffness=" +
-                settings.text("perimeter-stiffness") + " is given as well) leave one of them out");
+    throw Error(fmt::format("invalid {}={} (perimeter-stiffness={} is given as well) leave one of them out",
+                            ratio, settings.text(ratio), settings.text("perimeter-stiffness")));
 }
 
 /// Is it given, and something else than what it would be anyway?
@@ -48,20 +51,20 @@ void refuse_useless_keys(const Settings& settings) {
     throw Error("obstacles and obstacle-layout=" + layout + " contradict each other; leave one of them out");
   const Scene* scene = settings.scene();
   if (scene && scene->walls_from == WallsFrom::droplet && settings.text("seeds") != "1")
-    throw Error("invalid seeds=" + settings.text("seeds") +
-                " (nothing is random with obstacle-layout=" + layout + ") leave it out");
+    throw Error(fmt::format("invalid seeds={} (nothing is random with obstacle-layout={}) leave it out",
+                            settings.text("seeds"), layout));
   if (layout != "file") return;
   for (const char* key : {"obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "lattice-angle"})
     if (is_changed(settings, key))
-      throw Error("obstacles and " + std::string(key) + "=" + settings.text(key) +
-                  " contradict each other (the file's own gap, density and layout count); leave it out, or "
-                  "give " +
-                  key + "=" + find_key(key).default_text);
+      throw Error(
+          fmt::format("obstacles and {0}={1} contradict each other (the file's own gap, density and layout "
+                      "count); leave it out, or give {0}={2}",
+                      key, settings.text(key), find_key(key).default_text));
   if (settings.values("seeds").size() > 1 && settings.text("release") == "centre")
     throw Error(
-        "invalid seeds=" + settings.text("seeds") +
-        " (the droplet starts at the centre of your circles, whatever the seed) add release=anywhere, "
-        "or give one seed");
+        fmt::format("invalid seeds={} (the droplet starts at the centre of your circles, whatever the seed) "
+                    "add release=anywhere, or give one seed",
+                    settings.text("seeds")));
 }
 
 /// The parameters of a task. A list like 0,3 may have been meant as 0.3: where one of its values is refused,
@@ -73,7 +76,8 @@ RunParameters checked_task(const Plan& plan, std::int64_t index, const Settings&
   for (const Key& key : keys())
     if (const std::string meant = with_decimal_point(settings.text(key.name));
         !meant.empty() && message.starts_with("invalid " + key.name + "="))
-      throw Error(message + "; " + settings.text(key.name) + " are two values: did you mean " + meant + "?");
+      throw Error(
+          fmt::format("{}; {} are two values: did you mean {}?", message, settings.text(key.name), meant));
   throw;
 }
 
@@ -99,9 +103,10 @@ Plan::Plan(const Settings& settings) : circle_files_(settings.circle_files()) {
     const auto [first, is_new] =
         seen.emplace(identity(describe(checked_task(*this, index, settings))), index);
     if (!is_new)
-      throw Error("the sweep's lists lead to the same run twice (parameter sets " +
-                  std::to_string(first->second) + " and " + std::to_string(index) +
-                  " mean the same); leave one of them out");
+      throw Error(
+          fmt::format("the sweep's lists lead to the same run twice (parameter sets {} and {} mean the "
+                      "same); leave one of them out",
+                      first->second, index));
   }
 }
 

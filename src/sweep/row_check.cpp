@@ -1,5 +1,7 @@
 #include "clog/sweep/row_check.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -28,10 +30,8 @@ constexpr double most_shape =
 
 bool is_number_below(double value, double bound) { return std::isfinite(value) && std::abs(value) <= bound; }
 
-std::string named(const char* column, double value) { return std::string(column) + '=' + shortest(value); }
-std::string named(const char* column, std::string_view word) {
-  return std::string(column) + "='" + std::string(word) + "'";
-}
+std::string named(const char* column, double value) { return fmt::format("{}={}", column, shortest(value)); }
+std::string named(const char* column, std::string_view word) { return fmt::format("{}='{}'", column, word); }
 
 std::string unreadable_column(const RunRow& row) { return row.unreadable; }
 
@@ -84,15 +84,16 @@ std::string time_fault(const RunRow& row) {
   const auto integrated = static_cast<double>(row.steps);
   if (!(integrated >= (1 - round_off) * steps - 0.5 &&
         integrated <= most_substeps * ((1 + round_off) * steps + 0.5)))
-    return std::to_string(row.steps) + " steps do not make " + named("time", row.time);
+    return fmt::format("{} steps do not make {}", row.steps, named("time", row.time));
   return "";
 }
 
 std::string motion_fault(const RunRow& row) {
   const double farthest = farthest_way(row);
   if (!is_number_below(std::hypot(row.distance, row.lateral_displacement), farthest))
-    return named("distance", row.distance) + ", " + named("lateral_displacement", row.lateral_displacement) +
-           ": no droplet gets farther than " + shortest(farthest) + " in " + named("time", row.time);
+    return fmt::format("{}, {}: no droplet gets farther than {} in {}", named("distance", row.distance),
+                       named("lateral_displacement", row.lateral_displacement), shortest(farthest),
+                       named("time", row.time));
   const double slightly_more = (1 + round_off) * row.time;
   if (!std::isnan(row.transient) && !(row.transient >= 0 && row.transient <= slightly_more))
     return named("transient", row.transient) + " is not within the run";

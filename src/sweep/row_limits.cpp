@@ -1,13 +1,15 @@
 #include "clog/sweep/row_limits.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <limits>
 #include <string_view>
 
 #include "clog/core/scene/scene.hpp"
+#include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/units.hpp"
 #include "clog/sweep/value_list.hpp"
 
@@ -26,12 +28,6 @@ struct SoundPreset {
 constexpr SoundPreset sound_presets[] = {
     {"robust", 0.01, 0.02}, {"heavy-interface", 0.05, 0.05}, {"elastic", 0.03, 0.03}};
 
-std::string rounded(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
-
 std::string unproven_tension(const std::string& preset_name, const DpParameters& dp) {
   const auto* preset = std::find_if(std::begin(sound_presets), std::end(sound_presets),
                                     [&](const SoundPreset& one) { return one.name == preset_name; });
@@ -42,15 +38,14 @@ std::string unproven_tension(const std::string& preset_name, const DpParameters&
   constexpr int fine = 128;
   const double smallest = dp.vertices >= fine ? preset->smallest_tension : preset->smallest_tension_coarse;
   if (dp.line_tension >= smallest && dp.line_tension <= largest_tension) return "";
-  return "line-tension=" + shortest(dp.line_tension) + " (" + std::string(preset->name) +
-         (dp.vertices >= fine ? "" : " of less than 128 vertices") + " is sound from " + shortest(smallest) +
-         " to " + shortest(largest_tension) + ")";
+  return fmt::format("line-tension={} ({}{} is sound from {} to {})", shortest(dp.line_tension), preset->name,
+                     dp.vertices >= fine ? "" : " of less than 128 vertices", shortest(smallest),
+                     shortest(largest_tension));
 }
 
 std::string unproven_vertices(const DpParameters& dp) {
   if (dp.vertices >= fewest_vertices && dp.vertices <= most_vertices) return "";
-  return "vertices=" + std::to_string(dp.vertices) + " (" + std::to_string(fewest_vertices) + " to " +
-         std::to_string(most_vertices) + " were looked at)";
+  return fmt::format("vertices={} ({} to {} were looked at)", dp.vertices, fewest_vertices, most_vertices);
 }
 
 /// Needles slip through the interface: then the droplet encloses them, at its release or on its way. Seen
@@ -60,8 +55,10 @@ std::string unproven_diameter(const RunParameters& run) {
   if (scene_of(run).walls_from == WallsFrom::droplet) return "";  // there are no obstacles
   const double edge = units::regular_edge_length(run.dp.vertices);
   if (!(run.obstacles.smallest_diameter() < thinnest * edge)) return "";
-  return "obstacle-diameter=" + shortest(run.obstacles.diameter) + " (obstacles thinner than two edges, " +
-         rounded(thinnest * edge) + ", slip into the droplet; use more vertices)";
+  return fmt::format(
+      "obstacle-diameter={} (obstacles thinner than two edges, {:.4g}, slip into the droplet; use more "
+      "vertices)",
+      shortest(run.obstacles.diameter), thinnest * edge);
 }
 
 }  // namespace
@@ -83,10 +80,12 @@ std::string unproven_parameters(const Plan& plan) {
       if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
   if (all.empty()) return "";
   constexpr std::size_t most_named = 4;
-  std::string text = "not proved sound (tests/soundness/README.md): ";
-  for (std::size_t i = 0; i < std::min(all.size(), most_named); ++i) text += (i > 0 ? ", " : "") + all[i];
-  if (all.size() > most_named) text += ", and " + std::to_string(all.size() - most_named) + " more";
-  return text;
+  if (all.size() > most_named) {
+    const std::string others = fmt::format("and {} more", all.size() - most_named);
+    all.resize(most_named);
+    all.push_back(others);
+  }
+  return "not proved sound (tests/soundness/README.md): " + joined(all);
 }
 
 double repetition_length(const RunRow& row) {
@@ -112,11 +111,11 @@ std::string possible_repetition(const Plan& plan) {
     most_boxes = way / run.obstacles.box;
   }
   if (num_groups == 0) return "";
-  return "droplets of " + std::to_string(num_groups) + " of " + counted(plan.num_groups(), "parameter set") +
-         " may come farther than their array is long and meet the same obstacles again: "
-         "terminal-speed*max-time is up to " +
-         rounded(farthest) + ", boxes*box " + rounded(shortest_length) +
-         "; boxes=" + rounded(std::ceil(most_boxes)) + " is long enough";
+  return fmt::format(
+      "droplets of {} of {} may come farther than their array is long and meet the same obstacles again: "
+      "terminal-speed*max-time is up to {:.4g}, boxes*box {:.4g}; boxes={:.4g} is long enough",
+      num_groups, counted(plan.num_groups(), "parameter set"), farthest, shortest_length,
+      std::ceil(most_boxes));
 }
 
 std::vector<std::string> limits_of_results(const Plan& plan) {

@@ -1,5 +1,7 @@
 #include "clog/sweep/settings.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <sstream>
 #include <utility>
@@ -75,7 +77,7 @@ std::string written(const ParameterValue& value, const Parameter& parameter) {
 
 Key key_of(const Parameter& parameter) {
   const bool is_ensemble = parameter.role == ParameterRole::ensemble;
-  const std::string unit = *parameter.unit ? " [" + std::string(parameter.unit) + "]" : "";
+  const std::string unit = *parameter.unit ? fmt::format(" [{}]", parameter.unit) : "";
   return {.name = parameter.key,
           .kind = parameter.kind,
           .words = parameter.words,
@@ -130,8 +132,8 @@ const Key& find_key(std::string_view name) {
   std::vector<std::string> names;
   for (const Key& k : keys()) names.push_back(k.name);
   const std::string near = did_you_mean(name, names);
-  throw Error("unknown key '" + std::string(name) + "'" +
-              (near.empty() ? "; --help lists the keys" : "; did you mean " + near + "?"));
+  throw Error(near.empty() ? fmt::format("unknown key '{}'; --help lists the keys", name)
+                           : fmt::format("unknown key '{}'; did you mean {}?", name, near));
 }
 
 bool is_same_value(const std::string& a, const std::string& b) {
@@ -220,7 +222,7 @@ std::string Settings::packed() const {
   for (const auto& [file, circles] : circle_files_) {
     text += file_mark + file + '\n';
     for (const Obstacle& circle : circles.circles())
-      text += '#' + shortest(circle.x) + ' ' + shortest(circle.y) + ' ' + shortest(circle.radius) + '\n';
+      text += fmt::format("#{} {} {}\n", shortest(circle.x), shortest(circle.y), shortest(circle.radius));
   }
   return text;
 }
@@ -262,19 +264,19 @@ void Settings::assign(const std::string& name, const std::string& text) {
     if (key.kind == ValueKind::word && values.size() > 1) throw Error("takes one value, not a list");
   } catch (const Error& error) {
     const std::string shown = text.size() > 60 ? text.substr(0, 60) + "..." : text;
-    throw Error("invalid " + name + "=" + shown + " (" + error.what() + ")");
+    throw Error(fmt::format("invalid {}={} ({})", name, shown, error.what()));
   }
   texts_[name] = text;
   values_[name] = std::move(values);
 }
 
 std::string Settings::to_config(bool with_comments) const {
-  std::ostringstream out;
+  std::string config;
   for (const Key& key : keys()) {
-    if (with_comments) out << "# " << key.help << '\n';
-    out << key.name << " = " << text(key.name) << '\n';
+    if (with_comments) config += fmt::format("# {}\n", key.help);
+    config += fmt::format("{} = {}\n", key.name, text(key.name));
   }
-  return out.str();
+  return config;
 }
 
 }  // namespace clog::sweep

@@ -1,6 +1,7 @@
 #include "shared_memory.hpp"
 
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -95,8 +96,7 @@ NameLock::NameLock(const std::string& name) : socket_(socket(AF_UNIX, SOCK_STREA
   // An abstract address, known to this machine only as long as the socket exists. No one ever connects to it.
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
-  const std::string text =
-      "clogsweep-" + std::to_string(geteuid()) + '-' + std::to_string(std::hash<std::string>{}(name));
+  const std::string text = fmt::format("clogsweep-{}-{}", geteuid(), std::hash<std::string>{}(name));
   std::memcpy(address.sun_path + 1, text.data(), text.size());
   const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + text.size());
   if (bind(socket_, reinterpret_cast<const sockaddr*>(&address), length) == 0)

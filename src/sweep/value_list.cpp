@@ -1,11 +1,14 @@
 #include "clog/sweep/value_list.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numeric>
 
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/portable_math.hpp"
 
 namespace clog::sweep {
@@ -38,7 +41,7 @@ std::vector<std::string_view> split(std::string_view text) {
 }
 
 [[noreturn]] void refuse(std::string_view item, const std::string& why) {
-  throw Error("'" + std::string(item) + "' " + why);
+  throw Error(fmt::format("'{}' {}", item, why));
 }
 
 void check_length(std::string_view item, long long length) {
@@ -89,12 +92,6 @@ std::vector<std::string> expand_range(std::string_view item, std::size_t dots) {
   return values;
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
 std::vector<std::string> expand_item(std::string_view item, ValueKind kind,
                                      const std::vector<std::string>& words) {
   if (item.empty()) throw Error("has an empty value");
@@ -104,8 +101,9 @@ std::vector<std::string> expand_item(std::string_view item, ValueKind kind,
   if (item.starts_with("lin(") || item.starts_with("log(")) return expand_spaced(item, kind);
   if (const auto dots = item.find(".."); dots != std::string_view::npos) {
     if (kind == ValueKind::integer) return expand_range(item, dots);
-    refuse(item, "is a range of integers, but the key takes any number; give how many, e.g. lin(" +
-                     std::string(item.substr(0, dots)) + "," + std::string(item.substr(dots + 2)) + ",5)");
+    refuse(item, fmt::format(
+                     "is a range of integers, but the key takes any number; give how many, e.g. lin({},{},5)",
+                     item.substr(0, dots), item.substr(dots + 2)));
   }
   if (kind == ValueKind::integer) return {std::to_string(to_integer(item))};
   return {shortest(to_number(item))};
@@ -113,7 +111,7 @@ std::vector<std::string> expand_item(std::string_view item, ValueKind kind,
 
 std::string question_of_comma(std::string_view text) {
   const std::string meant = with_decimal_point(text);
-  return meant.empty() ? "" : "; did you mean " + meant + "?";
+  return meant.empty() ? "" : fmt::format("; did you mean {}?", meant);
 }
 
 }  // namespace
@@ -140,11 +138,11 @@ std::string with_decimal_point(std::string_view text) {
   const std::string_view fraction = text.substr(comma + 1);
   constexpr auto none = std::string_view::npos;
   if (whole.find_first_not_of(digits) != none || fraction.find_first_not_of(digits) != none) return "";
-  return std::string(whole) + '.' + std::string(fraction);
+  return fmt::format("{}.{}", whole, fraction);
 }
 
 std::string counted(std::int64_t number, const std::string& noun) {
-  return std::to_string(number) + ' ' + noun + (number == 1 ? "" : "s");
+  return fmt::format("{} {}{}", number, noun, number == 1 ? "" : "s");
 }
 
 double to_number(std::string_view text) {

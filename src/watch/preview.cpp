@@ -1,7 +1,8 @@
 #include "clog/watch/preview.hpp"
 
+#include <fmt/ostream.h>
+
 #include <cmath>
-#include <cstdio>
 #include <iostream>
 
 #include "clog/console/duration.hpp"
@@ -23,13 +24,15 @@ MostCost& MostCost::operator+=(const MostCost& other) {
 int print_preview(const std::string& config, const MostCost& cost) {
   std::cout << config;
   const std::string duration = cost.seconds < 1 ? "below 1 s" : console::readable_duration(cost.seconds);
-  std::printf("# at most %.4g t0 in %.4g steps: %s on this machine; one that clogs or passes ends sooner\n",
-              cost.time, cost.steps, duration.c_str());
-  std::printf("# at most %s", sweep::counted(std::llround(cost.samples), "sample").c_str());
+  fmt::print(
+      std::cout,
+      "# at most {:.4g} t0 in {:.4g} steps: {} on this machine; one that clogs or passes ends sooner\n",
+      cost.time, cost.steps, duration);
+  fmt::print(std::cout, "# at most {}", sweep::counted(std::llround(cost.samples), "sample"));
   if (cost.polygons > 0)
-    std::printf(" and %s (%.3g MB)", sweep::counted(std::llround(cost.polygons), "polygon").c_str(),
-                cost.polygon_bytes / 1e6);
-  std::printf("\n");
+    fmt::print(std::cout, " and {} ({:.3g} MB)", sweep::counted(std::llround(cost.polygons), "polygon"),
+               cost.polygon_bytes / 1e6);
+  std::cout << '\n';
   return console::exit_success;
 }
 

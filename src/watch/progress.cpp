@@ -1,6 +1,7 @@
 #include "clog/watch/progress.hpp"
 
-#include <cstdio>
+#include <fmt/core.h>
+
 #include <iostream>
 
 #include "clog/console/duration.hpp"
@@ -17,13 +18,12 @@ void RunProgress::tick(const DropletRun& run) {
 std::string RunProgress::line(const DropletRun& run) const {
   const double elapsed = std::chrono::duration<double>(Clock::now() - begin_).count();
   const double max_time = run.parameters().max_time;
-  char place[96];
-  std::snprintf(place, sizeof place, "r = %.3g sigma, t = %.4g of at most %.4g t0, ", run.displacement()[0],
-                run.time(), max_time);
-  std::string text = place + console::readable_duration(elapsed) + " so far";
-  if (run.time() > 0)
-    text += ", at most " + console::readable_duration(elapsed * (max_time / run.time() - 1)) + " left";
-  return text;
+  const std::string text =
+      fmt::format("r = {:.3g} sigma, t = {:.4g} of at most {:.4g} t0, {} so far", run.displacement()[0],
+                  run.time(), max_time, console::readable_duration(elapsed));
+  if (run.time() == 0) return text;
+  const double most_left = elapsed * (max_time / run.time() - 1);
+  return fmt::format("{}, at most {} left", text, console::readable_duration(most_left));
 }
 
 }  // namespace clog::watch

@@ -1,9 +1,11 @@
 #include "clog/watch/watched_run.hpp"
 
+#include <fmt/ostream.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
+#include <iostream>
 #include <limits>
 #include <utility>
 
@@ -193,13 +195,14 @@ store::Trajectory WatchedRun::trajectory(sweep::RunRow row, store::Provenance or
 
 int WatchedRun::report() const {
   const RunResult result = this->result();
-  std::printf("%s after r = %.4f sigma, t = %.4g t0, E_k/E_t = %.2g, A = %.4f\n", name(result.status),
-              result.distance, result.time, result.kinetic_energy_ratio, result.shape_parameter);
-  if (!result.message.empty()) std::printf("%s\n", result.message.c_str());
+  fmt::print(std::cout, "{} after r = {:.4f} sigma, t = {:.4g} t0, E_k/E_t = {:.2g}, A = {:.4f}\n",
+             name(result.status), result.distance, result.time, result.kinetic_energy_ratio,
+             result.shape_parameter);
+  if (!result.message.empty()) std::cout << result.message << '\n';
   const double vertex_steps =
       static_cast<double>(result.steps) * static_cast<double>(run_.droplet().state().size());
-  std::printf("%s, %.3f s, %.2f ns per vertex-step\n", sweep::counted(result.steps, "step").c_str(), seconds_,
-              1e9 * seconds_ / vertex_steps);
+  fmt::print(std::cout, "{}, {:.3f} s, {:.2f} ns per vertex-step\n", sweep::counted(result.steps, "step"),
+             seconds_, 1e9 * seconds_ / vertex_steps);
   return result.status == RunStatus::interrupted ? console::exit_incomplete
          : result.status == RunStatus::failed    ? console::exit_internal_fault
                                                  : console::exit_success;

@@ -1,4 +1,5 @@
-"""A room includes the rooms that its line in src/README.md names, and no others; some libraries belong to one room.
+"""A room includes the rooms that its line in src/README.md names, and no others; some libraries belong to one room, fmt to
+no header.
 
 The rooms inside core have lines of their own: core/world and so on.
 
@@ -57,6 +58,8 @@ def faults(root):
         owner = OWN_LIBRARY.get(target)
         if owner not in (None, room) and not (room == "programs" and owner == "cli"):
             yield f"{path}:{number}: only {owner} includes <{target}>"
+        if target.startswith("fmt/") and path.suffix == ".hpp":
+            yield f"{path}:{number}: no header includes <{target}>: it takes long to compile"
     for room in uses.keys() - {"core"}:
         for other in sorted(uses[room] - used[room] - {"programs", room}):
             if room != "programs":

@@ -2,6 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <iomanip>
+#include <random>
+#include <sstream>
+#include <utility>
+
 #include "clog/core/tools/error.hpp"
 
 namespace clog::sweep {
@@ -93,9 +102,57 @@ TEST(Lists, OfAnyNumbersHaveNoRanges) {
   }
 }
 
+/// Of all magnitudes, of both signs; half of them have few digits.
+std::vector<double> numbers_of_all_kinds() {
+  std::mt19937_64 random(1);
+  std::vector<double> numbers;
+  while (numbers.size() < 20'000) {
+    const auto any = std::bit_cast<double>(random());
+    if (std::isfinite(any)) numbers.push_back(any);
+    numbers.push_back(static_cast<double>(random() % 10'000) *
+                      std::pow(10, static_cast<int>(random() % 40) - 20));
+  }
+  return numbers;
+}
+
 TEST(Shortest, ReadsBackExactly) {
-  for (const double value : {0.1, 1.0 / 3, 1e-17, 2e5, 0.02887829511489174})
-    EXPECT_EQ(to_number(shortest(value)), value);
+  for (const double value : numbers_of_all_kinds()) ASSERT_EQ(to_number(shortest(value)), value);
+}
+
+TEST(Shortest, IsNoLongerThanAnyTextThatReadsBack) {
+  for (const double value : numbers_of_all_kinds()) {
+    std::ostringstream other;
+    other << std::setprecision(15) << value;
+    if (std::strtod(other.str().c_str(), nullptr) == value)
+      ASSERT_LE(shortest(value).size(), other.str().size()) << other.str();
+  }
+}
+
+/// These texts are in the rows' identity: other ones would be other runs.
+TEST(Shortest, IsWrittenAsPeopleDo) {
+  const std::pair<double, const char*> texts[] = {{0, "0"},
+                                                  {-0.0, "-0"},
+                                                  {1, "1"},
+                                                  {-2.5, "-2.5"},
+                                                  {0.1, "0.1"},
+                                                  {1.0 / 3, "0.3333333333333333"},
+                                                  {0.001, "0.001"},
+                                                  {0.0001, "1e-4"},
+                                                  {0.00012, "0.00012"},
+                                                  {0.0000123, "1.23e-5"},
+                                                  {1e-17, "1e-17"},
+                                                  {10'000, "10000"},
+                                                  {100'000, "1e5"},
+                                                  {200'000, "2e5"},
+                                                  {120'000, "120000"},
+                                                  {123'456'789, "123456789"},
+                                                  {1e15, "1e15"},
+                                                  {1e22, "1e22"},
+                                                  {-8119132263947012096.0, "-8119132263947012096"},
+                                                  {1e100, "1e100"},
+                                                  {5e-324, "5e-324"},
+                                                  {-1.7976931348623157e308, "-1.7976931348623157e308"}};
+  for (const auto& [value, text] : texts) EXPECT_EQ(shortest(value), text);
 }
 
 TEST(DidYouMean, FindsNearWordsOnly) {

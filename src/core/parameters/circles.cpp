@@ -1,9 +1,9 @@
 #include "clog/core/parameters/circles.hpp"
 
+#include <fmt/core.h>
+
 #include <boost/crc.hpp>
 #include <charconv>
-#include <cinttypes>
-#include <cstdio>
 #include <utility>
 
 #include "clog/core/tools/error.hpp"
@@ -37,11 +37,7 @@ OwnCircles OwnCircles::from_check_sum(std::string_view text) {
   return OwnCircles(sum);
 }
 
-std::string OwnCircles::check_sum() const {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016" PRIx64, check_sum_);
-  return text;
-}
+std::string OwnCircles::check_sum() const { return fmt::format("{:016x}", check_sum_); }
 
 const std::vector<Obstacle>& OwnCircles::circles() const {
   if (!circles_)

@@ -1,5 +1,7 @@
 #include "clog/core/parameters/schema.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -484,7 +486,7 @@ std::string text_of(const ParameterValue& value) {
 
 [[noreturn]] void refuse(const Parameter& parameter, const ParameterValue& value, const char* reason,
                          const char* remedy) {
-  throw Error("invalid " + std::string(parameter.key) + "=" + text_of(value) + " (" + reason + ") " + remedy);
+  throw Error(fmt::format("invalid {}={} ({}) {}", parameter.key, text_of(value), reason, remedy));
 }
 
 bool is_beyond(const Bound& bound, double excess) { return bound.is_allowed ? excess < 0 : excess <= 0; }

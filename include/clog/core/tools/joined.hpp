@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace clog {
+
+/// Words in one line. (g++ 12 with -O3 takes fmt::join for a write beyond an array.)
+template <class Words>
+std::string joined(const Words& words, std::string_view between = ", ") {
+  std::string text;
+  for (const std::string& word : words) {
+    if (&word != &*words.begin()) text += between;
+    text += word;
+  }
+  return text;
+}
+
+}  // namespace clog

@@ -1,0 +1,19 @@
+#include "clog/console/duration.hpp"
+
+#include <gtest/gtest.h>
+
+namespace clog::console {
+namespace {
+
+TEST(Duration, IsInTheUnitThatSuitsIt) {
+  EXPECT_EQ(readable_duration(0), "0 s");
+  EXPECT_EQ(readable_duration(89.4), "89 s");
+  EXPECT_EQ(readable_duration(90), "2 min");
+  EXPECT_EQ(readable_duration(5399), "90 min");
+  EXPECT_EQ(readable_duration(5400), "1.5 h");
+  EXPECT_EQ(readable_duration(172'799), "48.0 h");
+  EXPECT_EQ(readable_duration(172'800), "2.0 days");
+}
+
+}  // namespace
+}  // namespace clog::console
