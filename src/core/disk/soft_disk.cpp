@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -42,8 +44,7 @@ void resolve_disk(RunParameters& run, double) {
   check_time_step(run);
   const double largest = std::sqrt(max_omega_dt2 / most_contacts) / omega;
   require(*run.time_step <= largest, "time-step", *run.time_step, [&] {
-    return "contact has omega*dt = " + rounded_text(omega * *run.time_step) + ") try " +
-           rounded_text(0.99 * largest);
+    return fmt::format("contact has omega*dt = {:.3g}) try {:.3g}", omega * *run.time_step, 0.99 * largest);
   });
 }
 

@@ -1,5 +1,7 @@
 #include "clog/core/droplet/time_step.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 #include "clog/core/parameters/schema.hpp"
@@ -18,18 +20,18 @@ void choose_time_step(RunParameters& run, double time_step, std::vector<Rate> ra
   const Rate& fastest = *std::max_element(rates.begin(), rates.end(),
                                           [](const Rate& a, const Rate& b) { return a.squared < b.squared; });
   refuse(fastest.key, fastest.value,
-         "would need a time-step of " + rounded_text(time_step) + ") use a value nearer to the usual ones");
+         fmt::format("would need a time-step of {:.3g}) use a value nearer to the usual ones", time_step));
 }
 
 void check_time_step(const RunParameters& run) {
   const double time_step = run.time_step.value();
   require(run.max_time >= time_step, "max-time", run.max_time,
-          [&] { return "shorter than one time-step) use at least " + rounded_text(time_step); });
+          [&] { return fmt::format("shorter than one time-step) use at least {:.3g}", time_step); });
   require(run.max_time / time_step <= 1e15, "max-time", run.max_time,
-          [&] { return "more than 1e15 steps) use at most " + rounded_text(1e15 * time_step); });
+          [&] { return fmt::format("more than 1e15 steps) use at most {:.3g}", 1e15 * time_step); });
   require(time_step <= run.drag.terminal_speed, "time-step", time_step, [&] {
-    return "does not resolve the drag's relaxation time, terminal-speed=" +
-           rounded_text(run.drag.terminal_speed) + ") try " + rounded_text(0.1 * run.drag.terminal_speed);
+    return fmt::format("does not resolve the drag's relaxation time, terminal-speed={:.3g}) try {:.3g}",
+                       run.drag.terminal_speed, 0.1 * run.drag.terminal_speed);
   });
 }
 

@@ -1,18 +1,10 @@
 #include "core/parameters/refusal.hpp"
 
 #include <cmath>
-#include <sstream>
 
 #include "clog/core/tools/portable_math.hpp"
 
 namespace clog {
-
-std::string rounded_text(double value, int digits) {
-  std::ostringstream out;
-  out.precision(digits);
-  out << value;
-  return out.str();
-}
 
 double rounded_down(double value, int digits) {
   const double scale = portable::pow(10, digits - 1 - std::floor(portable::log10(value)));

@@ -22,9 +22,6 @@ void require(bool holds, const char* key, double value, const Words& reason_and_
   if (!holds) refuse(key, value, reason_and_remedy());
 }
 
-/// A number in a message.
-std::string rounded_text(double value, int digits = 3);
-
 /// To so many digits.
 double rounded_down(double value, int digits = 2);
 

@@ -1,9 +1,10 @@
 #include "clog/core/polygon/automatic_values.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <string>
 #include <vector>
 
 #include "clog/core/droplet/time_step.hpp"
@@ -61,14 +62,14 @@ void validate_compression(const DpParameters& dp, bool automatic_area) {
   const double softest = dp.line_tension * softest_per_tension;
   if (automatic_area)
     require(*dp.area_stiffness >= softest, "line-tension", dp.line_tension, [&] {
-      return "would compress the droplet by more than 5 %, with the stiffest automatic "
-             "area-stiffness) use at most " +
-             rounded_text(rounded_down(*dp.area_stiffness / softest_per_tension)) +
-             ", or give area-stiffness";
+      return fmt::format(
+          "would compress the droplet by more than 5 %, with the stiffest automatic area-stiffness) "
+          "use at most {:.3g}, or give area-stiffness",
+          rounded_down(*dp.area_stiffness / softest_per_tension));
     });
   require(*dp.area_stiffness >= softest, "area-stiffness", *dp.area_stiffness, [&] {
-    return "the line tension would compress the droplet by more than 5 %) use at least " +
-           rounded_text(softest);
+    return fmt::format("the line tension would compress the droplet by more than 5 %) use at least {:.3g}",
+                       softest);
   });
 }
 
@@ -128,17 +129,20 @@ void resolve_polygon(RunParameters& run, double sharpest_bend) {
   const double largest = automatic ? largest_step_with_automatic_contact(dp) : largest_stable_step(modes);
   const double stiffest_omega_dt = std::sqrt(modes.sum()) * time_step;
   require(num_substeps(modes, time_step) == 1, "time-step", time_step, [&] {
-    return "contact, area, tension and spring modes together have omega*dt = " +
-           rounded_text(stiffest_omega_dt) + ", wall-stiffness=" + rounded_text(*run.wall_stiffness) +
-           ") try " + rounded_text(0.99 * largest);
+    return fmt::format(
+        "contact, area, tension and spring modes together have omega*dt = {:.3g}, "
+        "wall-stiffness={:.3g}) try {:.3g}",
+        stiffest_omega_dt, *run.wall_stiffness, 0.99 * largest);
   });
   // A contact too soft to carry the droplet lets obstacles sink into it: demand that a weight of M g on
   // the vertices of an eighth of the circumference leaves less than half the contact range.
   const double softest = units::droplet_mass / (dp.vertices / 8.0) / (vertex_diameter / 4);
   require(contact_stiffness(*run.wall_stiffness, vertex_diameter) >= softest, "wall-stiffness",
           *run.wall_stiffness, [&] {
-            return "too soft to hold the droplet's weight off an obstacle) use at least " +
-                   rounded_text(wall_stiffness(softest, vertex_diameter)) + " or a smaller time-step";
+            return fmt::format(
+                "too soft to hold the droplet's weight off an obstacle) use at least {:.3g} or a "
+                "smaller time-step",
+                wall_stiffness(softest, vertex_diameter));
           });
 }
 

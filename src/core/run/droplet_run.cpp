@@ -1,8 +1,9 @@
 #include "clog/core/run/droplet_run.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <utility>
 
 #include "clog/core/droplet/equilibrium.hpp"
@@ -130,10 +131,10 @@ void DropletRun::check() {
   const bool is_whole = energy_ratio < diverged_energy_ratio && shape.perimeter < burst_perimeter &&
                         std::abs(shape.area / units::rest_area - 1) < diverged_area_error;
   if (!is_whole) {  // also if any of them is not a number
-    std::ostringstream message;
-    message << "diverged at t=" << time() << ": E_k/E_t=" << energy_ratio << ", area=" << shape.area
-            << ", perimeter=" << shape.perimeter << "; try a smaller time-step or terminal-speed";
-    message_ = message.str();
+    message_ = fmt::format(
+        "diverged at t={:.6g}: E_k/E_t={:.6g}, area={:.6g}, perimeter={:.6g}; try a smaller time-step or "
+        "terminal-speed",
+        time(), energy_ratio, shape.area, shape.perimeter);
     status_ = RunStatus::failed;
     return;
   }

@@ -1,5 +1,7 @@
 #include "core/scene/arrays.hpp"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <limits>
 
@@ -14,24 +16,27 @@ void check_spacing(const RunParameters& run) {
   const double spacing = obstacles.smallest_diameter() + obstacles.gap;
   const double widest_spacing = obstacles.largest_diameter() + obstacles.gap;
   require(widest_spacing <= 5 * spacing, "obstacle-diameter-spread", spread, [&] {
-    return "the largest two obstacles keep " + rounded_text(widest_spacing / spacing) +
-           " times the distance of the smallest two: sampling would take hours) use " +
-           rounded_text(0.999 * 2 / 3 * (1 + obstacles.gap / obstacles.diameter)) +
-           " or less, or a wider obstacle-gap";
+    return fmt::format(
+        "the largest two obstacles keep {:.3g} times the distance of the smallest two: sampling would "
+        "take hours) use {:.3g} or less, or a wider obstacle-gap",
+        widest_spacing / spacing, 0.999 * 2 / 3 * (1 + obstacles.gap / obstacles.diameter));
   });
   require(widest_spacing <= obstacles.box / 2, "box", obstacles.box, [&] {
-    return "holds no two obstacles of diameter " + rounded_text(obstacles.largest_diameter()) + " with gap " +
-           rounded_text(obstacles.gap) + ") use at least " + rounded_text(2 * widest_spacing);
+    return fmt::format("holds no two obstacles of diameter {:.3g} with gap {:.3g}) use at least {:.3g}",
+                       obstacles.largest_diameter(), obstacles.gap, 2 * widest_spacing);
   });
   const double largest_box = 1e4 * spacing / std::sqrt(obstacles.boxes);
   require(obstacles.box <= largest_box, "box", obstacles.box, [&] {
-    return "the array would need more than ten gigabytes) use at most " + rounded_text(largest_box) +
-           "; the array is periodic";
+    return fmt::format(
+        "the array would need more than ten gigabytes) use at most {:.3g}; the array is periodic",
+        largest_box);
   });
   const double narrowest = model_of(run).narrowest(run);
   require(obstacles.gap > narrowest, "obstacle-gap", obstacles.gap, [&] {
-    return "not wider than an edge is long, " + rounded_text(narrowest) +
-           " sigma: nothing of the passage would be resolved) widen the gap or use more vertices";
+    return fmt::format(
+        "not wider than an edge is long, {:.3g} sigma: nothing of the passage would be resolved) "
+        "widen the gap or use more vertices",
+        narrowest);
   });
 }
 

@@ -1,4 +1,6 @@
 #include "clog/core/scene/channel.hpp"
+
+#include <fmt/core.h>
 #include "clog/core/droplet/release.hpp"
 #include "clog/core/model/model.hpp"
 #include "core/parameters/refusal.hpp"
@@ -7,7 +9,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -41,22 +42,23 @@ void check_clearance(RunParameters& run) {
   const double narrowest = 2 * model_of(run).narrowest(run);
   if (!(channel.orifice > narrowest))
     refuse("orifice", channel.orifice,
-           "not wider than two vertex diameters, " + rounded_text(narrowest) + " sigma) try 0.7");
+           fmt::format("not wider than two vertex diameters, {:.3g} sigma) try 0.7", narrowest));
   const bool is_parallel = channel.wedge_angle == 0;
   if (!is_parallel && !(channel.wedge_angle >= 5))
     refuse("wedge-angle", channel.wedge_angle,
            "the wedges would be too slender to be met) use 5..85 degrees, or 0 for parallel walls");
   if (is_parallel && !(channel.orifice / 2 > droplet_reach))
-    refuse("orifice", channel.orifice,
-           "parallel walls must leave the droplet free) use more than " + rounded_text(2 * droplet_reach));
+    refuse(
+        "orifice", channel.orifice,
+        fmt::format("parallel walls must leave the droplet free) use more than {:.3g}", 2 * droplet_reach));
   const double last_start = last_free_start(run);
   const bool is_free = std::isinf(last_start) ? channel.start < 100 : channel.start <= last_start;
   if (!is_free)
     refuse("start", channel.start,
-           "the droplet must be upstream, clear of the wedges) use at most " + rounded_text(last_start));
+           fmt::format("the droplet must be upstream, clear of the wedges) use at most {:.3g}", last_start));
   if (channel.end == ChannelParameters{}.end && channel.start >= channel.end)
     refuse("start", channel.start,
-           "must lie upstream of the end, " + rounded_text(channel.end) + " by default) give end, too");
+           fmt::format("must lie upstream of the end, {:.3g} by default) give end, too", channel.end));
   if (!(channel.end > channel.start)) refuse("end", channel.end, "must lie downstream of the start) try 3");
 }
 

@@ -1,7 +1,8 @@
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <string>
 
 #include "clog/core/droplet/release.hpp"
 #include "clog/core/model/model.hpp"
@@ -37,9 +38,10 @@ void find_period(RunParameters& run) {
     double box = obstacles.box;
     while (!is_near(lattice)) lattice = nearest_lattice(spacing, angle, narrowest, box += spacing);
     refuse("lattice-angle", angle,
-           "no lattice of spacing " + rounded_text(spacing) + " within " + rounded_text(largest_angle_error) +
-               " degrees of it has a period of box=" + rounded_text(obstacles.box) + " or less) use box=" +
-               std::to_string(static_cast<long>(std::ceil(lattice->box))) + " or more");
+           fmt::format(
+               "no lattice of spacing {:.3g} within {:.3g} degrees of it has a period of box={:.3g} or less) "
+               "use box={} or more",
+               spacing, largest_angle_error, obstacles.box, std::lround(std::ceil(lattice->box))));
   }
   obstacles.box = lattice->box;
   obstacles.lattice_angle = lattice->angle;

@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <boost/random/uniform_01.hpp>
 #include <cmath>
@@ -21,9 +23,7 @@ namespace {
   throw Error("invalid obstacles=" + circles.source() + " (" + reason_and_remedy);
 }
 
-std::string place_of(const Obstacle& circle) {
-  return "x=" + rounded_text(circle.x, 6) + ", y=" + rounded_text(circle.y, 6);
-}
+std::string place_of(const Obstacle& circle) { return fmt::format("x={:.6g}, y={:.6g}", circle.x, circle.y); }
 
 /// With radii of their own, all of them.
 std::vector<Obstacle> circles_of(const ObstacleParameters& obstacles) {
@@ -45,12 +45,15 @@ double smallest_circle(const RunParameters& run) {
 void check_place(const Obstacle& circle, const ObstacleParameters& obstacles) {
   const Period period = obstacles.period();
   if (2 * circle.radius >= period.box)
-    refuse_circles(*obstacles.own, "the one at " + place_of(circle) +
-                                       " meets its own periodic image) use a box larger than its diameter");
+    refuse_circles(*obstacles.own, fmt::format("the one at {} meets its own periodic image) use a box larger "
+                                               "than its diameter",
+                                               place_of(circle)));
   if (!(circle.x >= 0 && circle.x < period.along() && circle.y >= 0 && circle.y < period.across()))
-    refuse_circles(*obstacles.own,
-                   "the one at " + place_of(circle) + " lies outside the array) x runs from 0 to boxes*box=" +
-                       shortest(period.along()) + ", y from 0 to box=" + shortest(period.across()));
+    refuse_circles(
+        *obstacles.own,
+        fmt::format("the one at {} lies outside the array) x runs from 0 to boxes*box={}, y from 0 to "
+                    "box={}",
+                    place_of(circle), shortest(period.along()), shortest(period.across())));
 }
 
 /// Of all circles in their period. Every task of a plan asks for it, mostly of the same circles.
@@ -80,16 +83,19 @@ void check_circles(const RunParameters& run) {
   require(obstacles.diameter_spread == 0, "obstacle-diameter-spread", obstacles.diameter_spread,
           "circles of your own have diameters of their own) leave it out");
   const ObstacleArray::Pair pair = closest_pair(obstacles);
-  const std::string both = "those at " + place_of(pair.first) + " and " + place_of(pair.second);
+  const std::string both = fmt::format("those at {} and {}", place_of(pair.first), place_of(pair.second));
   if (pair.gap <= 0)
     refuse_circles(*obstacles.own,
-                   both + " touch or overlap, by " + rounded_text(-pair.gap) +
-                       " sigma, across the border of the box too) move them apart or make them smaller");
+                   fmt::format("{} touch or overlap, by {:.3g} sigma, across the border of the box too) move "
+                               "them apart or make them smaller",
+                               both, -pair.gap));
   const double edge = model_of(run).narrowest(run);
   if (pair.gap <= edge)
-    refuse_circles(*obstacles.own, both + " leave a gap of " + rounded_text(pair.gap) +
-                                       " sigma, not wider than an edge, " + rounded_text(edge) +
-                                       " sigma) widen the gap or use more vertices");
+    refuse_circles(
+        *obstacles.own,
+        fmt::format("{} leave a gap of {:.3g} sigma, not wider than an edge, {:.3g} sigma) widen the "
+                    "gap or use more vertices",
+                    both, pair.gap, edge));
 }
 
 void find_gap_and_density(RunParameters& run) {

@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <cmath>
 #include <limits>
 
@@ -19,9 +21,10 @@ void check_density(RunParameters& run) {
   const double largest = largest_density(obstacles);
   // The value in the message, rounded, may be the least bit larger.
   require(*obstacles.density <= (1 + 1e-9) * largest, "obstacle-density", *obstacles.density, [&] {
-    return "more than every seed finds room for, with obstacle-gap=" + rounded_text(obstacles.gap) +
-           " and box=" + rounded_text(obstacles.box) + ") use at most " +
-           rounded_text(rounded_down(largest, 4), 4) + ", or saturated: as many as fit";
+    return fmt::format(
+        "more than every seed finds room for, with obstacle-gap={:.3g} and box={:.3g}) use at most "
+        "{:.4g}, or saturated: as many as fit",
+        obstacles.gap, obstacles.box, rounded_down(largest, 4));
   });
 }
 

@@ -1,10 +1,11 @@
 #include "clog/core/world/obstacle_array.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <sstream>
 #include <utility>
 
 #include "clog/core/tools/error.hpp"
@@ -28,12 +29,11 @@ ObstacleArray::ObstacleArray(const Period& period, std::vector<Obstacle> obstacl
   binned_.period = period;
   for (Obstacle& obstacle : obstacles) {
     if (!(obstacle.radius > 0) || !std::isfinite(obstacle.radius) || !std::isfinite(obstacle.x) ||
-        !std::isfinite(obstacle.y)) {
-      std::ostringstream message;
-      message << "invalid obstacle at x=" << obstacle.x << ", y=" << obstacle.y << " with diameter "
-              << 2 * obstacle.radius << " (must be finite, the diameter positive)";
-      throw Error(message.str());
-    }
+        !std::isfinite(obstacle.y))
+      throw Error(
+          fmt::format("invalid obstacle at x={:.6g}, y={:.6g} with diameter {:.6g} (must be finite, the "
+                      "diameter positive)",
+                      obstacle.x, obstacle.y, 2 * obstacle.radius));
     obstacle.x = wrapped(obstacle.x, period.along());
     obstacle.y = wrapped(obstacle.y, period.across());
     binned_.largest_radius = std::max(binned_.largest_radius, obstacle.radius);

@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <Eigen/Core>
 #include <algorithm>
 #include <boost/random/mersenne_twister.hpp>
@@ -9,7 +11,6 @@
 #include <numbers>
 #include <random>
 #include <span>
-#include <sstream>
 #include <vector>
 
 #include "clog/core/tools/error.hpp"
@@ -449,14 +450,14 @@ ObstacleArray sample_obstacles(const ObstacleParameters& parameters, std::uint32
     target = static_cast<std::size_t>(std::llround(*parameters.density * parameters.period().area()));
   std::vector<Obstacle> obstacles = HWY_DYNAMIC_DISPATCH(add_circles)(parameters, target, seed);
   if (parameters.density && obstacles.size() < target) {
-    std::ostringstream message;
-    message << "invalid obstacle-density=" << *parameters.density << " (no more than "
-            << static_cast<double>(obstacles.size()) / parameters.period().area()
-            << " obstacles per sigma^2 of diameter " << parameters.smallest_diameter();
-    if (parameters.diameter_spread > 0) message << " to " << parameters.largest_diameter();
-    message << " fit with gap " << parameters.gap
-            << ") use a lower density, a smaller gap, or obstacle-density=saturated";
-    throw Error(message.str());
+    const double reached = static_cast<double>(obstacles.size()) / parameters.period().area();
+    const std::string largest =
+        parameters.diameter_spread > 0 ? fmt::format(" to {:.6g}", parameters.largest_diameter()) : "";
+    throw Error(
+        fmt::format("invalid obstacle-density={:.6g} (no more than {:.6g} obstacles per sigma^2 of diameter "
+                    "{:.6g}{} fit with gap "
+                    "{:.6g}) use a lower density, a smaller gap, or obstacle-density=saturated",
+                    *parameters.density, reached, parameters.smallest_diameter(), largest, parameters.gap));
   }
   return {parameters.period(), std::move(obstacles)};
 }
