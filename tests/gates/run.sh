@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 every=(format width spelling scripts warnings tidy)
-limits=(--changed --most 20)
+limits=(--changed --most 40)
 if [ "${1:-}" = --all ]; then
   limits=()
   shift

@@ -123,8 +123,9 @@ TEST(Shortest, IsNoLongerThanAnyTextThatReadsBack) {
   for (const double value : numbers_of_all_kinds()) {
     std::ostringstream other;
     other << std::setprecision(15) << value;
-    if (std::strtod(other.str().c_str(), nullptr) == value)
+    if (std::strtod(other.str().c_str(), nullptr) == value) {
       ASSERT_LE(shortest(value).size(), other.str().size()) << other.str();
+    }
   }
 }
 
