@@ -18,7 +18,7 @@ void RunProgress::tick(const DropletRun& run) {
 std::string RunProgress::line(const DropletRun& run) const {
   const double elapsed = std::chrono::duration<double>(Clock::now() - begin_).count();
   const double max_time = run.parameters().max_time;
-  const std::string text =
+  std::string text =
       fmt::format("r = {:.3g} sigma, t = {:.4g} of at most {:.4g} t0, {} so far", run.displacement()[0],
                   run.time(), max_time, console::readable_duration(elapsed));
   if (run.time() == 0) return text;

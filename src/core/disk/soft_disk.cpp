@@ -85,7 +85,7 @@ Axes x_and_y(const DropletState& state) {
   Axes axes{.directions = Eigen::SparseMatrix<double>(2 * state.size(), 2 * state.size()), .slide = {}};
   axes.directions.setIdentity();
   return axes;
-}
+}  // NOLINT(clang-analyzer-unix.Malloc): the matrix takes its memory along
 
 std::optional<DropletState> equilibrium_of_disk(const RunParameters& run, const ObstacleArray& obstacles,
                                                 const DropletState& state) {

@@ -43,7 +43,7 @@ struct EquilibriumForces {
 /// one: then both lie in one basin. A droplet that balances on an obstacle, that could drift aside freely, or
 /// that creeps past a place where there is no equilibrium is refused.
 ///
-/// @param state  of the droplet; its velocities do not count
-std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, const DropletState& state);
+/// @param initial  the droplet; its velocities do not count
+std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, const DropletState& initial);
 
 }  // namespace clog
