@@ -273,7 +273,7 @@ class Isolated(ProgramTest):
         return process
 
     def children_of(self, pid):
-        # Read, not asked of pgrep: on a busy machine a run might be over before that had looked.
+        # Read, not asked of `pgrep`: on a busy machine a run might be over before that had looked.
         return [int(child) for thread in pathlib.Path(f"/proc/{pid}/task").glob("*/children") for child in thread.read_text().split()]
 
     def computing_process(self, rank):
