@@ -4,8 +4,8 @@ import signal
 import subprocess
 import time
 
-from processes import are_gone, descend, kill, send
-from launch import WALL_SECONDS, command, limit_time, run
+from launch import command, run
+from processes import Hung, are_gone, descend, kill, send, wait_for
 from samples import FILE, check_complete, finished_rows, stored_rows
 from support import SMALL, TIMING
 
@@ -40,7 +40,7 @@ class Faults:
 
     def disturb(self, case):
         """Starts the sweep, or goes on with it, and sends signals to one or two of its processes."""
-        process = subprocess.Popen(command("clogsweep", *SWEEP, ranks=RANKS), cwd=case.folder, preexec_fn=limit_time,
+        process = subprocess.Popen(command("clogsweep", *SWEEP, ranks=RANKS), cwd=case.folder,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
         time.sleep(case.chance.uniform(0, self.duration))
         generations = descend(process.pid)
@@ -72,9 +72,11 @@ class Faults:
         """Who was not killed ends by himself, with the code that the README names."""
         is_killed = any(number == signal.SIGKILL for _, number in sent)
         try:
-            code = process.wait(timeout=PATIENCE if is_killed else WALL_SECONDS)
+            code = process.wait(timeout=PATIENCE) if is_killed else wait_for(process.pid, process.wait)
         except subprocess.TimeoutExpired:
-            case.expect(is_killed, f"a sweep goes on for {WALL_SECONDS} s after {sent}")
+            return
+        except Hung as hung:
+            case.findings.append(f"a sweep after {sent}: {hung}")
             return
         if len(sent) == 1 and sent[0][0] == "mpirun":
             number = sent[0][1]

@@ -2,22 +2,17 @@
 
 import dataclasses
 import os
-import resource
 import shlex
 import signal
 import subprocess
 
-from processes import descend, kill
+from processes import Hung, descend, kill, wait_for
 from support import BIN, MPIRUN
 
 EXIT_CODES = {0, 1, 2, 75}  # README.md
 READER_GONE = 141  # of a program whose output nobody reads any more
 SUBCOMMANDS = {"status", "verify", "replay", "salvage", "doctor", "array", "channel", "sag", "calibrate", "deviation",
                "drag", "report"}
-# A program that computes or spins is ended by the first limit, on a busy machine as on an idle one. The other is for
-# those that wait for what never comes: so long that no load makes a program of a second last so long.
-CPU_SECONDS = 20
-WALL_SECONDS = 300
 # What a program says that met a fault of its own.
 SIGNS_OF_FAULTS = {
     b"Traceback (most recent call last)": "a traceback",
@@ -33,6 +28,7 @@ class Outcome:
     code: int | None  # None: it did not end
     output: bytes
     error: bytes
+    hung: str | None = None  # why it was ended
 
     @property
     def is_over(self):
@@ -45,32 +41,24 @@ def command(name, *arguments, ranks=None):
     return [*launcher, str(BIN / name), *arguments]
 
 
-def limit_time():
-    resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS + 5))
-
-
 def run(case, name, *arguments, prepare=None, ranks=None, exit_codes=EXIT_CODES, **streams):
     """Runs one of the programs in the case's folder, notes what it must not do, and returns its outcome.
 
     @param prepare  called in the new process before the program begins
     @param streams  stdin, stdout, stderr as subprocess has them; nothing, and pipes that are read
     """
-    def begin():
-        limit_time()
-        if prepare:
-            prepare()
-
     streams = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **streams}
-    process = subprocess.Popen(command(name, *arguments, ranks=ranks), cwd=case.folder, preexec_fn=begin,
+    process = subprocess.Popen(command(name, *arguments, ranks=ranks), cwd=case.folder, preexec_fn=prepare,
                                start_new_session=True, **streams)
+    hung = None
     try:
-        output, error = process.communicate(timeout=WALL_SECONDS)
-        code = process.returncode
-    except subprocess.TimeoutExpired:
+        output, error = wait_for(process.pid, process.communicate)
+    except Hung as exception:
+        hung = str(exception)
         kill([pid for generation in descend(process.pid) for pid in generation])
         output, error = process.communicate()
-        code = None
-    outcome = Outcome(title(name, arguments), code, output or b"", error or b"")
+    code = None if hung else process.returncode
+    outcome = Outcome(title(name, arguments), code, output or b"", error or b"", hung)
     found = list(wrongs(outcome, exit_codes))
     if found:
         case.note(f"{outcome.name} says: {outcome.error[-300:].decode('utf-8', 'replace').strip()}")
@@ -86,10 +74,8 @@ def title(name, arguments):
 
 def wrongs(outcome, exit_codes=EXIT_CODES):
     """What no program may do."""
-    if outcome.code is None:
-        yield f"{outcome.name}: did not end within {WALL_SECONDS} s"
-    elif outcome.code in (-signal.SIGXCPU, -signal.SIGKILL):
-        yield f"{outcome.name}: did not end within {CPU_SECONDS} s of processor time"
+    if outcome.hung:
+        yield f"{outcome.name}: {outcome.hung}"
     elif outcome.code < 0:
         yield f"{outcome.name}: died of {signal.Signals(-outcome.code).name}"
     elif outcome.code not in exit_codes:

@@ -1,5 +1,6 @@
 """What describes the rows of a sweep's file is damaged, or the journal of one that was stopped."""
 
+import itertools
 import shutil
 import subprocess
 
@@ -10,7 +11,10 @@ from samples import (FILE, REPORTS, VERIFY, check_complete, check_readers, check
 from support import SMALL
 
 JOURNAL = FILE + ".journal"
-STOPPED = [*SMALL, "obstacle-gap=0.4", "line-tension=0.05,0.5", "max-time=1500", "seeds=1", "--output", FILE]
+# The first run has 10^6 steps, and a snapshot after every 2^18 of them.
+STOPPED = [*SMALL, "obstacle-gap=0.4", "line-tension=0.05,0.5", "max-time=3000", "seeds=1", "--output", FILE]
+# After how long it is stopped: the slower the machine, or the busier, the later there is a snapshot.
+HOURS = [1e-4 * 1.5**n for n in range(16)]
 
 
 class Stopped:
@@ -18,10 +22,12 @@ class Stopped:
 
     def __init__(self, folder):
         self.folder = folder / "stopped"
-        while not self.has_snapshot():
-            shutil.rmtree(self.folder, ignore_errors=True)
+        for hours in itertools.cycle(HOURS):
             self.folder.mkdir()
-            self.sweep("--max-hours=1e-4")
+            self.sweep(f"--max-hours={hours}")
+            if self.has_snapshot():
+                break
+            shutil.rmtree(self.folder)
         self.files = {name: (self.folder / name).read_bytes() for name in (FILE, JOURNAL)}
         self.sweep()
         self.rows = stored_rows(self.folder / FILE)

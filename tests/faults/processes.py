@@ -1,12 +1,19 @@
 """The processes of a program: mpirun, its ranks, their helpers, the processes that compute."""
 
 import os
+import pathlib
 import signal
+import subprocess
 import time
 
 from support import children_of
 
-GONE_SECONDS = 60  # killed processes are gone at once; a machine may be busy
+# No load of the machine changes either.
+CPU_SECONDS = 100  # of all processes of a program together; a sweep under the sanitizers needs some 30
+IDLE_SECONDS = 100  # in which all of them wait for something else than the machine
+LOOK_SECONDS = 1
+BUSY = {"R", "D"}  # states of who runs, or waits for a processor or a disk
+TICKS = os.sysconf("SC_CLK_TCK")
 
 
 def descend(pid):
@@ -29,19 +36,70 @@ def kill(pids):
         send(pid, signal.SIGKILL)
 
 
-def is_alive(pid):
+def status(folder):
+    """State of a process or a thread, and its processor time with that of ended children; Z and 0 if it is gone."""
     try:
-        with open(f"/proc/{pid}/stat") as file:
-            return file.read().rpartition(")")[2].split()[0] != "Z"
+        fields = (folder / "stat").read_text().rpartition(")")[2].split()
     except (FileNotFoundError, ProcessLookupError):
-        return False
+        return "Z", 0
+    return fields[0], sum(map(int, fields[11:15])) / TICKS
+
+
+def threads(folder):
+    try:
+        return list((folder / "task").iterdir())
+    except (FileNotFoundError, ProcessLookupError):
+        return []  # the process has ended
+
+
+def is_alive(pid):
+    return status(pathlib.Path(f"/proc/{pid}"))[0] != "Z"
+
+
+class Limits:
+    """Tells processes that hang from those that a busy machine makes slow. Of the slow ones one always has work."""
+
+    def __init__(self):
+        self.idle_seconds = 0
+
+    def exceeded_by(self, pids, seconds):
+        """Looks at processes so many seconds after the last look. @return what is wrong with them, if anything is"""
+        folders = [pathlib.Path(f"/proc/{pid}") for pid in pids]
+        if not any(status(thread)[0] in BUSY for folder in folders for thread in threads(folder)):
+            self.idle_seconds += seconds
+        if self.idle_seconds > IDLE_SECONDS:
+            return f"waits for what never comes: it was idle for {IDLE_SECONDS} s"
+        if sum(status(folder)[1] for folder in folders) > CPU_SECONDS:
+            return f"did not end within {CPU_SECONDS} s of processor time"
+        return None
+
+
+class Hung(Exception):
+    """A program that does not end by itself; says how that was noticed."""
+
+
+def wait_for(pid, wait):
+    """Waits until a program ends by itself, however long a busy machine needs for it.
+
+    @param wait  waits for the end, or for so many seconds, as subprocess does
+    @return what it returns
+    """
+    limits = Limits()
+    while True:
+        try:
+            return wait(timeout=LOOK_SECONDS)
+        except subprocess.TimeoutExpired:
+            pids = [pid for generation in descend(pid) for pid in generation]
+            wrong = limits.exceeded_by(pids, LOOK_SECONDS)
+        if wrong:
+            raise Hung(wrong)
 
 
 def are_gone(pids):
-    """Have all of them ended, or do they at once?"""
-    deadline = time.monotonic() + GONE_SECONDS
-    while any(map(is_alive, pids)):
-        if time.monotonic() > deadline:
+    """Have all of them ended, or do they soon?"""
+    limits = Limits()
+    while alive := [pid for pid in pids if is_alive(pid)]:
+        if limits.exceeded_by(alive, 0.05):
             return False
         time.sleep(0.05)
     return True

@@ -7,7 +7,8 @@ import subprocess
 import h5py
 import stored
 from command_line import UserError
-from launch import CPU_SECONDS, command, run
+from launch import command, run
+from processes import CPU_SECONDS
 from support import BLOCKED, QUICK, TIMING
 
 FILE = "s.h5"
