@@ -73,12 +73,12 @@ def main_mechanism(group):
     return max(MECHANISM_MARKERS, key=lambda name: group[name])
 
 
-def legend(axes, groups=()):
+def legend(axes, groups=(), other="other clogs"):
     """Of the curves if they have names, and of the markers that draw_lengths() gave these groups. That of many curves is
-    beside the axes, in a figure that is as much wider."""
+    beside the axes, in a figure that is as much wider. @param other  what clogs are called that are of no mechanism"""
     curves = [(handle, label) for handle, label in zip(*axes.get_legend_handles_labels()) if label]
     names = {main_mechanism(group) for group in groups if group["clogs"] > 0}
-    markers = [(Line2D([], [], color="0.4", marker=marker, linestyle="none"), f"most clogs {name}" if name != "other" else "other clogs")
+    markers = [(Line2D([], [], color="0.4", marker=marker, linestyle="none"), f"most clogs {name}" if name != "other" else other)
                for name, marker in MECHANISM_MARKERS.items() if name in names]
     entries = [*curves, *markers]
     if len(curves) > len(COLOURS):

@@ -16,6 +16,7 @@
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/number_text.hpp"
 #include "clog/sweep/schema_json.hpp"
 #include "clog/sweep/settings.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -196,7 +197,9 @@ std::string left_out(const std::vector<Group>& groups) {
     num_left_out += group.num_left_out;
   }
   std::string text;
-  if (are_mechanisms_shown(groups)) text += "w/s/h/o: clogs by wrapping, by squeezing, by both, by neither\n";
+  if (are_mechanisms_shown(groups))
+    text += fmt::format("w/s/h/o: clogs by wrapping, by squeezing, by both, by neither{}\n",
+                        std::ranges::any_of(groups, is_dwell_possible) ? " or droplets that went on" : "");
   if (num_left_out > 0)
     text += fmt::format(
         "   {} ended before --from-distance, left out of runs, clogs and lambda; <v_g> is still of all "
@@ -325,6 +328,21 @@ std::string wrapped(const std::vector<std::string>& words) {
   return text;
 }
 
+/// What counts as a clog, if that is more than clogs.
+std::string definition_of_clogs(const std::vector<Group>& groups) {
+  const double dwell = groups.front().dwell;
+  if (std::isinf(dwell)) return "";
+  const auto num_possible = std::ranges::count_if(groups, is_dwell_possible);
+  if (num_possible == 0)
+    return fmt::format("\nno run is longer than --dwell={}: this is the usual fit", shortest(dwell));
+  std::set<std::string> lengths;
+  for (const Group& group : groups) lengths.insert(shortest(group.first_row.parameters.dwell_length));
+  std::string text = fmt::format("\nclogged: has not moved by {} sigma for {} t0",
+                                 lengths.size() > 1 ? "dwell_length" : *lengths.begin(), shortest(dwell));
+  if (num_possible < std::ssize(groups)) text += "; where max_time is not longer, this is the usual fit";
+  return text;
+}
+
 }  // namespace
 
 std::string to_text(const std::vector<Group>& groups, double confidence, SharedParameters shared) {
@@ -332,6 +350,7 @@ std::string to_text(const std::vector<Group>& groups, double confidence, SharedP
   const std::vector<bool> shown = shown_fields(groups, varies);
   std::string text = "all runs:" + wrapped(shared_words(groups.front().first_row, varies, shown, shared));
   if (shared == SharedParameters::unusual) text += "\n(the rest as by default; --all-parameters names it)";
+  text += definition_of_clogs(groups);
   const std::vector<ResultColumn> columns = result_columns(groups, confidence);
   std::vector<std::vector<std::string>> lines(1);
   append_shown(parameter_names(groups.front()), shown, lines[0]);

@@ -1,14 +1,20 @@
 #include "clog/campaign/groups.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <optional>
 
 #include "clog/core/scene/scene.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/number_text.hpp"
 #include "clog/core/tools/units.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/row_limits.hpp"
+#include "clog/sweep/value_list.hpp"
 
 namespace clog::campaign {
 namespace {
@@ -91,19 +97,71 @@ std::vector<double> censored_distances(std::span<const fit::Observation> runs) {
   return distances;
 }
 
-bool is_clogged(const sweep::RunRow& run) { return run.status == RunStatus::clogged; }
+/// How far a run got, and what it says about clogging.
+struct Ending {
+  double distance;  ///< [sigma]
+  bool is_clog;
+  std::optional<ClogMechanism> mechanism;  ///< of a clog, if it is known
+};
+
+/// May the run have dwells as long as this? One that has not begun has none.
+bool has_dwells_to_tell(const sweep::RunRow& run, double dwell) {
+  return dwell < run.parameters.max_time && run.steps > 0;
+}
+
+/// @param dwell  see group_runs()
+Ending ending_of(const sweep::RunRow& run, double dwell) {
+  const bool is_clogged = run.status == RunStatus::clogged;
+  const Ending last = {run.distance, is_clogged, run.mechanism};
+  if (!has_dwells_to_tell(run, dwell)) return last;
+  // What held a droplet that went on is not known: it counts among the other mechanisms.
+  if (const Dwell* first = run.dwells.first_longer(dwell))
+    return {first->distance, true, ClogMechanism::none};
+  return is_clogged ? last : Ending{run.dwells.last_distance, false, {}};
+}
+
+/// The later of two times; not known if one of them is not.
+double later(double one, double other) { return std::isnan(one) || one > other ? one : other; }
+
+/// Three figures, not less than the number, for people to type.
+std::string rounded_up(double number) {
+  const double unit = std::pow(10, std::floor(std::log10(number)) - 2);
+  return fmt::format("{:.3g}", std::ceil(number / unit) * unit);
+}
+
+/// @throws Error if rows that are sound do not tell which droplets stood for so long
+void require_dwells(std::span<const sweep::RunRow> rows, double dwell) {
+  int num_unknown = 0;
+  double known_from = 0;
+  for (const sweep::RunRow& row : rows) {
+    if (!has_dwells_to_tell(row, dwell) || dwell >= row.dwells.known_from) continue;
+    if (row.status == RunStatus::failed || !sweep::fault_of(row).empty()) continue;  // left out
+    num_unknown += std::isnan(row.dwells.known_from);
+    if (row.dwells.known_from > known_from) known_from = row.dwells.known_from;
+  }
+  if (num_unknown > 0)
+    throw Error(fmt::format(
+        "cannot fit --dwell={} ({} of a version that did not look for dwells); compute the sweep anew, into "
+        "another file",
+        shortest(dwell), sweep::counted(num_unknown, "row")));
+  if (known_from > 0)
+    throw Error(
+        fmt::format("cannot fit --dwell={} (the rows do not hold all dwells as short as that; column "
+                    "dwells_known_from) use "
+                    "{} or more",
+                    shortest(dwell), rounded_up(known_from)));
+}
 
 /// Clogging lengths of runs that are sound and reached the distance from which they count.
-void fit_clogging(Group& group, std::span<const sweep::RunRow* const> runs, double confidence,
-                  double from_distance) {
+void fit_clogging(Group& group, std::span<const Ending> runs, double confidence, double from_distance) {
   // Observations in which only some of the clogs are such, the other runs being censored where they ended.
   const auto observe = [&](auto is_end) {
     std::vector<fit::Observation> observations;
-    for (const sweep::RunRow* run : runs)
-      observations.push_back({run->distance - from_distance, is_clogged(*run) && is_end(*run)});
+    for (const Ending& run : runs)
+      observations.push_back({run.distance - from_distance, run.is_clog && is_end(run)});
     return observations;
   };
-  const std::vector<fit::Observation> all = observe([](const sweep::RunRow&) { return true; });
+  const std::vector<fit::Observation> all = observe([](const Ending&) { return true; });
   group.clogging = fit::fit_clogging_length(all, confidence);
   group.least_squares_length = fit::least_squares_length(all);
   group.weibull = fit::test_exponentiality(all);
@@ -111,13 +169,12 @@ void fit_clogging(Group& group, std::span<const sweep::RunRow* const> runs, doub
     group.survival = fit::survival_curve(all, confidence);
     group.censored_distances = censored_distances(all);
   }
-  if (std::any_of(runs.begin(), runs.end(),
-                  [](const auto* run) { return is_clogged(*run) && !run->mechanism; }))
+  if (std::any_of(runs.begin(), runs.end(), [](const Ending& run) { return run.is_clog && !run.mechanism; }))
     return;
   for (const ClogMechanism cause : causes)
     group.causes.push_back(
-        {cause, fit::fit_clogging_length(
-                    observe([=](const sweep::RunRow& run) { return run.mechanism == cause; }), confidence)});
+        {cause, fit::fit_clogging_length(observe([=](const Ending& run) { return run.mechanism == cause; }),
+                                         confidence)});
 }
 
 /// Counts by mechanism and their lengths; without values where they are not known.
@@ -145,6 +202,7 @@ void append_causes(const Group& group, std::vector<Field>& fields) {
 }
 
 constexpr std::pair<std::string_view, std::string_view> units_of_results[] = {
+    {"dwell", "t0"},
     {"total_distance", "sigma"},
     {"relative_speed", "v_t"},
     {"relative_speed_error", "v_t"},
@@ -167,7 +225,11 @@ const DoubtText& text_of(Doubt doubt) {
                        [=](const DoubtText& text) { return text.doubt == doubt; });
 }
 
-std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence, double from_distance) {
+bool is_dwell_possible(const Group& group) { return group.dwell < group.first_row.parameters.max_time; }
+
+std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence, double from_distance,
+                              double dwell) {
+  require_dwells(rows, dwell);
   std::map<std::vector<Field>, std::vector<const sweep::RunRow*>> members;
   for (const sweep::RunRow& row : rows) {
     std::vector<Field> fields = parameter_fields(row);
@@ -177,7 +239,8 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
   for (const auto& [fields, runs] : members) {
     Group group;
     group.first_row = *runs.front();
-    std::vector<const sweep::RunRow*> counted;
+    group.dwell = dwell;
+    std::vector<Ending> counted;
     std::vector<double> speeds;
     std::vector<fit::Travel> travels;
     std::vector<fit::Displacement> displacements;
@@ -187,12 +250,14 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
       group.num_damaged += is_damaged;
       group.num_failed += is_failed;
       if (is_damaged || is_failed) continue;
-      group.num_interrupted += sweep::is_unfinished(run->status);
+      const Ending ending = ending_of(*run, dwell);
+      group.num_interrupted += sweep::is_unfinished(run->status) && !ending.is_clog;
+      if (run->steps > 0) group.dwells_known_from = later(group.dwells_known_from, run->dwells.known_from);
       group.num_repeating += sweep::has_met_repetition(*run);
-      const bool is_left_out = std::max(run->distance, 0.0) < from_distance;
+      const bool is_left_out = std::max(ending.distance, 0.0) < from_distance;
       group.num_left_out += is_left_out;
-      if (!is_left_out) counted.push_back(run);
-      group.num_flowing += !is_left_out && run->status == RunStatus::flowing;
+      if (!is_left_out) counted.push_back(ending);
+      group.num_flowing += !is_left_out && !ending.is_clog && run->status == RunStatus::flowing;
       const double relative_speed = run->mean_speed / run->parameters.drag.terminal_speed;
       speeds.push_back(relative_speed);
       travels.push_back({relative_speed * run->travel_time, run->travel_time});
@@ -247,6 +312,8 @@ std::vector<Field> result_fields(const Group& group) {
       {"failed", value_of(group.num_failed)},
       {"damaged", value_of(group.num_damaged)},
       {"left_out", value_of(group.num_left_out)},
+      {"dwell", is_dwell_possible(group) ? value_of(group.dwell) : Value()},
+      {"dwells_known_from", value_of(group.dwells_known_from)},
       {"repeating", value_of(group.num_repeating)},
       {"total_distance", value_of(group.clogging.total_distance)},
       {"clogging_length", value_of(group.clogging.length)},

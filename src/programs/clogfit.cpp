@@ -1,6 +1,7 @@
 /// clogfit: from the table of runs to clogging lengths and mean speeds.
 
 #include <iostream>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -41,6 +42,10 @@ bound. Letters in the last column name what may spoil a length. The mean speed i
 error comes from the scatter between runs. For lattices, lateral/r is the lateral displacement per distance travelled, the
 tangent of the migration angle, positive towards +y. csv and json have more: intervals by profile likelihood, the
 published least squares (biased), Weibull's shape with its p-value, capillary numbers; json also P(r).
+
+What an experiment calls clogged has not moved for a while. With --dwell so does clogfit: a droplet that stood for
+longer, which is to say that it came no farther than dwell-length (0.05 sigma by default), counts as clogged where it
+did so first, even if it went on.
 )";
 
 int body(int argc, char** argv) {
@@ -51,7 +56,8 @@ int body(int argc, char** argv) {
       "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals")(
       "all-parameters", "name in the text also what all runs have as by default")(
       "from-distance", po::value<std::string>(),
-      "count lambda from this distance on; runs that ended before are left out [sigma]");
+      "count lambda from this distance on; runs that ended before are left out [sigma]")(
+      "dwell", po::value<std::string>(), "droplets that have not moved for so long count as clogged [t0]");
   line.add_positional("file", 1);
   line.add_commands({"calibrate", "deviation", "drag", "report"});
   line.explain_surplus_words("one sweep file is read at a time; call clogfit for each");
@@ -67,9 +73,16 @@ int body(int argc, char** argv) {
 
   const double from_distance = line.has("from-distance") ? line.get_positive("from-distance") : 0;
 
+  const double dwell =
+      line.has("dwell") ? line.get_positive("dwell") : std::numeric_limits<double>::infinity();
+
   const store::SweepFile sweep = campaign::read_with_caution(line.get("file"));
   if (sweep.rows.empty()) throw Error(line.get("file") + " has no runs yet; let the sweep finish some first");
-  const std::vector<campaign::Group> groups = campaign::group_runs(sweep.rows, confidence, from_distance);
+  if (line.has("dwell") && !campaign::has_clogging_length(sweep.rows.front()))
+    throw Error(
+        "no place for --dwell (droplets in a channel or on a wall have no clogging length) leave it out");
+  const std::vector<campaign::Group> groups =
+      campaign::group_runs(sweep.rows, confidence, from_distance, dwell);
   std::cout << (format == "csv" ? campaign::to_csv(groups)
                 : format == "json"
                     ? campaign::to_json(groups, confidence, campaign::listed_columns(sweep.provenance))

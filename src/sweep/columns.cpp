@@ -89,6 +89,23 @@ Column member(const char* name, T RunRow::*place, ColumnRole role, const char* u
           .set_unknown = [=](RunRow& row) { row.*place = RunRow().*place; }};
 }
 
+/// A number that is part of a member. @param place  from a row, const or not, to a reference to it
+template <class Place>
+Column number_in(const std::string& name, Place place, const char* unit, const std::string& meaning) {
+  return {.name = name,
+          .symbol = "",
+          .unit = unit,
+          .meaning = meaning,
+          .role = ColumnRole::result,
+          .kind = ValueKind::number,
+          .size = number_size,
+          .parameter = nullptr,
+          .shapes_array = false,
+          .get = [=](const RunRow& row) { return outside(place(row)); },
+          .set = [=](RunRow& row, const Value& value) { take(value, place(row)); },
+          .set_unknown = [=](RunRow& row) { place(row) = RunRow::not_known; }};
+}
+
 Value value_of(const Parameter& parameter, std::size_t place, const RunRow& row) {
   if (!parameter.applies_to(row.parameters)) {
     const bool has_none = std::holds_alternative<std::monostate>(parameter.elsewhere);
@@ -191,6 +208,39 @@ Column preset_column() {
   return column;
 }
 
+std::vector<Column> columns_of_dwells() {
+  std::vector<Column> all;
+  for (std::size_t i = 0; i < Dwells::most; ++i) {
+    const std::string name = dwell_column(i);
+    const std::string meaning =
+        i == 0
+            ? "longest time in which the droplet came no farther than dwell_length; one under way at the end "
+              "as long as it is by then, but not that of a clog, which has no end; NaN: none above ten "
+              "times dwell_length/V_t"
+            : "the longest before " + dwell_column(i - 1) + " began; NaN likewise";
+    all.push_back(number_in(
+        name, [i](auto& row) -> auto& { return row.dwells.longest[i].length; }, "t0", meaning));
+    all.push_back(number_in(
+        name + "_at", [i](auto& row) -> auto& { return row.dwells.longest[i].distance; }, "sigma",
+        "distance at which it began"));
+    all.push_back(number_in(
+        name + "_from", [i](auto& row) -> auto& { return row.dwells.longest[i].begin; }, "t0",
+        "time at which it began"));
+  }
+  all.push_back(number_in(
+      "dwells_known_from", [](auto& row) -> auto& { return row.dwells.known_from; }, "t0",
+      "of any time from this on these columns tell the first dwell that was longer: of "
+      "those that are, the earliest"));
+  all.push_back(number_in(
+      "last_dwell_at", [](auto& row) -> auto& { return row.dwells.last_distance; }, "sigma",
+      "distance at which the last dwell began, however short: the one under way at the "
+      "end, or the clog"));
+  all.push_back(number_in(
+      "last_dwell_from", [](auto& row) -> auto& { return row.dwells.last_begin; }, "t0",
+      "time at which it began"));
+  return all;
+}
+
 std::vector<Column> make_columns() {
   using enum ColumnRole;
   std::vector<Column> all = {
@@ -275,6 +325,9 @@ std::vector<Column> make_columns() {
       member("message", &RunRow::message, circumstance, "", "why the run failed", 256),
   };
   all.insert(all.end(), others.begin(), others.end());
+  const std::vector<Column> dwells = columns_of_dwells();
+  const auto speed_ends = std::ranges::find(all, "kinetic_energy_ratio", &Column::name);
+  all.insert(speed_ends, dwells.begin(), dwells.end());
   return all;
 }
 
@@ -283,6 +336,10 @@ std::vector<Column> make_columns() {
 std::span<const Column> columns() {
   static const std::vector<Column> all = make_columns();
   return all;
+}
+
+std::string dwell_column(std::size_t place) {
+  return place == 0 ? "longest_dwell" : "earlier_dwell_" + std::to_string(place);
 }
 
 const Column& column(std::string_view name) {

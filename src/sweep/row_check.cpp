@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <numbers>
 #include <string_view>
 
@@ -16,6 +17,7 @@
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/units.hpp"
+#include "clog/sweep/columns.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {
@@ -109,6 +111,50 @@ std::string motion_fault(const RunRow& row) {
   return "";
 }
 
+/// A dwell begins on the way and in the time of the run.
+std::string dwell_begin_fault(const RunRow& row, const std::string& column, double distance, double begin) {
+  if (distance < 0 || distance > farthest_way(row))
+    return named((column + "_at").c_str(), distance) + " is not on the droplet's way";
+  if (begin < 0 || begin > (1 + round_off) * row.time)
+    return named((column + "_from").c_str(), begin) + " is not within the run";
+  return "";
+}
+
+/// @param next  the dwell that is longer; the run's end if there is none
+std::string dwell_fault(const RunRow& row, const std::string& column, const Dwell& dwell, const Dwell& next) {
+  if (std::string fault = dwell_begin_fault(row, column, dwell.distance, dwell.begin); !fault.empty())
+    return fault;
+  if (!(dwell.length > row.dwells.known_from && dwell.length < next.length))
+    return named(column.c_str(), dwell.length) + " is not among those that are kept";
+  if (!(dwell.distance <= next.distance && dwell.begin + dwell.length <= (1 + round_off) * next.begin))
+    return named(column.c_str(), dwell.length) + " does not end before what comes next";
+  return "";
+}
+
+std::string dwells_fault(const RunRow& row) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const Dwells& dwells = row.dwells;
+  const bool is_known = !std::isnan(dwells.known_from);
+  if (std::isnan(dwells.last_distance) == is_known || std::isnan(dwells.last_begin) == is_known)
+    return "dwells_known_from, last_dwell_at, last_dwell_from: only some are known";
+  if (is_known && !(dwells.known_from > 0 && dwells.known_from < infinity))
+    return named("dwells_known_from", dwells.known_from) + " is no time";
+  if (std::string fault = dwell_begin_fault(row, "last_dwell", dwells.last_distance, dwells.last_begin);
+      !fault.empty())
+    return fault;
+  Dwell next = {.length = infinity, .distance = infinity, .begin = row.time};
+  for (std::size_t i = 0; i < Dwells::most; ++i) {
+    const Dwell& dwell = dwells.longest[i];
+    if (std::isnan(dwell.length) && std::isnan(dwell.distance) && std::isnan(dwell.begin)) {
+      next.length = -infinity;  // none before it was longer
+      continue;
+    }
+    if (std::string fault = dwell_fault(row, dwell_column(i), dwell, next); !fault.empty()) return fault;
+    next = dwell;
+  }
+  return "";
+}
+
 /// Of a droplet that has moved: before that its shape is not known.
 std::string shape_fault(const RunRow& row) {
   if (row.steps == 0) return "";
@@ -175,7 +221,7 @@ std::string passage_fault(const RunRow& row) {
 
 std::string result_fault(const RunRow& row) {
   if (row.status == RunStatus::failed) return row.message.empty() ? "failed without a reason" : "";
-  for (const auto check : {time_fault, motion_fault, shape_fault, clog_fault, passage_fault})
+  for (const auto check : {time_fault, motion_fault, dwells_fault, shape_fault, clog_fault, passage_fault})
     if (std::string fault = check(row); !fault.empty()) return fault;
   return "";
 }

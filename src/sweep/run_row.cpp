@@ -47,6 +47,7 @@ void record(const RunResult& result, RunRow& row) {
   row.mean_speed_error = result.speed.error;
   row.transient = result.speed.transient;
   row.travel_time = result.speed.time;
+  row.dwells = result.dwells;
   row.kinetic_energy_ratio = result.kinetic_energy_ratio;
   row.shape_parameter = result.shape_parameter;
   row.mechanism = result.hold.mechanism;

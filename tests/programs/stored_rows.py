@@ -44,12 +44,21 @@ def change_columns(path, **columns):
     change(path, edit)
 
 
+def columns(path):
+    with h5py.File(path) as file:
+        return file["runs"].dtype.names
+
+
 def make_older(path, version, without=()):
-    """Makes the file one of an older format: no checksums, fewer columns."""
-    with h5py.File(path, "r+") as file:
+    """Makes the file one of an older format: fewer columns, before 5 no checksums."""
+    def edit(file):
         table = file["runs"][:]
-        del file["runs"], file["row_checksums"]
+        del file["runs"]
         kept = [(name, table.dtype[name]) for name in table.dtype.names if name not in without]
         file.create_dataset("runs", data=table[[name for name, _ in kept]].astype(kept), chunks=(64,), maxshape=(None,))
         file.attrs["format_version"] = np.bytes_(version)
-        del file.attrs["checksums"]
+
+    edited(path, edit)
+    if int(version) < 5:
+        with h5py.File(path, "r+") as file:
+            del file["row_checksums"], file.attrs["checksums"]

@@ -106,6 +106,87 @@ class Fit(ProgramTest):
         self.assertAlmostEqual(narrow["clogging_length_profile_lower"], group["clogging_length"], places=9)
         self.assertAlmostEqual(narrow["clogging_length_profile_upper"], group["clogging_length"], places=9)
 
+    # Runs of which some droplets stood for 20 t0 or more on their way; none clogs by wrapping.
+    DWELLING = ["seeds=1..8", "line-tension=0.05,0.3", "max-time=400"]
+
+    def longest_first(self, table):
+        """Of every row its dwells, length and place, from the longest back."""
+        names = ["longest_dwell", *(f"earlier_dwell_{i}" for i in range(1, 8))]
+        return [[(row[name], row[name + "_at"]) for name in names if row[name] > 0] for _, row in table.iterrows()]
+
+    def expected_endings(self, table, dwell):
+        """How far each run got until its droplet had not moved for so long, and whether it had, from the table alone."""
+        for row, dwells in zip(table.itertuples(), self.longest_first(table)):
+            stood = [place for length, place in reversed(dwells) if length > dwell]
+            is_clogged = row.status == "clogged"
+            yield (stood[0], True) if stood else (row.distance, True) if is_clogged else (row.last_dwell_at, False)
+
+    def test_droplets_that_have_not_moved_for_a_time_can_count_as_clogged(self):
+        table = self.sweep(*self.DWELLING)
+        usual = {group["line_tension"]: group for group in self.fit()["groups"]}
+        stood_and_went_on = 0
+        for dwell in (17, 25, 60, 399):
+            for group in self.fit("--dwell", dwell)["groups"]:
+                rows = table[table.line_tension == group["line_tension"]]
+                ends = list(self.expected_endings(rows, dwell))
+                clogs = sum(is_end for _, is_end in ends)
+                self.assertEqual((group["dwell"], group["runs"], group["clogs"]), (dwell, 8, clogs))
+                total = sum(max(place, 0) for place, _ in ends)
+                self.assertAlmostEqual(group["total_distance"], total, places=12)
+                self.assertEqual(group["clogging_length"] is None, clogs == 0)
+                if clogs:
+                    self.assertAlmostEqual(group["clogging_length"], total / clogs, places=12)
+                # What held a droplet that went on is not known; speeds are those of all runs.
+                of_clogs = usual[group["line_tension"]]
+                self.assertEqual(group["flowing"], 8 - clogs)
+                self.assertLessEqual(group["squeezed"], of_clogs["squeezed"])
+                self.assertEqual(group["relative_speed"], of_clogs["relative_speed"])
+                stood_and_went_on += clogs - of_clogs["clogs"]
+        self.assertGreater(stood_and_went_on, 0)
+        self.assertIn("by neither or droplets that went on\n", self.succeed("clogfit", "sweep.h5", "--dwell=25").stdout)
+
+    def test_lengths_rise_with_the_time_to_those_of_clogs_alone(self):
+        self.sweep(*self.DWELLING)
+        known = [group["dwells_known_from"] for group in self.fit()["groups"]]
+        self.assertAlmostEqual(min(known), 10 * 0.05 / 0.03, places=12)
+        results = []
+        for dwell in [*np.geomspace(max(known), 400, 8)[1:-1], 399.9, 400, 1e9]:
+            groups = self.fit("--dwell", dwell)["groups"]
+            results.append([(group["total_distance"], group["clogs"]) for group in groups])
+        for shorter, longer in zip(results, results[1:]):
+            for (way, clogs), (longer_way, fewer_clogs) in zip(shorter, longer):
+                self.assertGreaterEqual(longer_way, way)
+                self.assertLessEqual(fewer_clogs, clogs)
+        self.assertLess(results[0], results[-1])
+        # No run can have stood for as long as it is: the same numbers as without the option.
+        usual = self.fit()["groups"]
+        for dwell in (400, 1e9):
+            self.assertEqual(self.fit("--dwell", dwell)["groups"], usual)
+        # Of what was last seen going, less than a dwell-length is not counted a little earlier.
+        for (way, clogs), group in zip(results[-3], usual):
+            self.assertEqual(clogs, group["clogs"])
+            self.assertLess(group["total_distance"] - way, 0.05 * (group["flowing"] + 1))
+
+    def test_a_fit_of_dwells_says_what_it_calls_clogged(self):
+        self.sweep("seeds=1..2", "line-tension=0.05", "max-time=40,60")
+        text = self.succeed("clogfit", "sweep.h5", "--dwell=50").stdout
+        self.assertIn("\nclogged: has not moved by 0.05 sigma for 50 t0; where max_time is not longer, this is the usual fit\n", text)
+        self.assertIn("\nclogged: has not moved by 0.05 sigma for 20 t0\n", self.succeed("clogfit", "sweep.h5", "--dwell=20").stdout)
+        self.assertIn("\nno run is longer than --dwell=60: this is the usual fit\n", self.succeed("clogfit", "sweep.h5", "--dwell=60").stdout)
+        self.assertNotIn("clogged:", self.succeed("clogfit", "sweep.h5").stdout)
+        self.assertEqual([group["dwell"] for group in self.fit("--dwell=50")["groups"]], [None, 50])
+
+    def test_dwells_that_are_not_known_are_refused(self):
+        self.sweep("seeds=1..2", "line-tension=0.05", "max-time=60")
+        self.refuse("clogfit", "sweep.h5", "--dwell=10", words=["--dwell=10 (the rows do not hold", "use 16.7 or more"])
+        self.succeed("clogfit", "sweep.h5", "--dwell=16.7")
+        stored_rows.make_older(self.folder / "sweep.h5", "6", [name for name in stored_rows.columns(self.folder / "sweep.h5") if "dwell" in name])
+        group, = self.fit()["groups"]
+        self.assertEqual((group["runs"], group["dwell_length"], group["dwells_known_from"]), (2, 0.05, None))
+        self.refuse("clogfit", "sweep.h5", "--dwell=20", words=["--dwell=20 (2 rows of a version", "compute the sweep anew"])
+        self.assertIn("this is the usual fit", self.succeed("clogfit", "sweep.h5", "--dwell=60").stdout)
+        self.succeed("clogsweep", "replay", "sweep.h5", 1)  # all that the row knows is found again
+
     def test_numbers_have_their_unit_in_json_as_in_the_table(self):
         self.sweep("seeds=1..2", *FAR)
         fit = self.fit()
@@ -380,6 +461,7 @@ class Fit(ProgramTest):
             (["sweep.h5", "--confidence", "high"], ["--confidence=high"]),
             (["sweep.h5", "line-tension=1"], ["no place for 'line-tension=1'"]),
             (["sweep.h5", "--from-distance", "-1"], ["--from-distance=-1"]),
+            (["sweep.h5", "--dwell", "0"], ["--dwell=0 (must be a positive number)"]),
         ]:
             with self.subTest(arguments=arguments):
                 self.refuse("clogfit", *arguments, words=words)

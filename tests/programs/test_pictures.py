@@ -7,13 +7,16 @@ import numpy as np
 from matplotlib import pyplot
 
 from scripts import Analysis
-from support import BIN, QUICK
+from support import BIN, QUICK, SMALL
 
+import stored_rows
 import clogging_length
+import dwell
 import film
 from groups import Groups
 import report
 import rounded
+import stored
 import style
 import trajectory
 
@@ -21,7 +24,7 @@ ONE_CURVE = [*QUICK, "line-tension=0.5,3", "seeds=1..2", "near-wall-drag=0.07", 
 
 
 class Calls(Analysis):
-    SCRIPTS = ["clogging_length.py", "clogs.py", "droplet.py", "export_vtk.py", "report.py"]
+    SCRIPTS = ["clogging_length.py", "clogs.py", "droplet.py", "dwell.py", "export_vtk.py", "report.py"]
 
     def needs(self, script):
         return [] if script in ("droplet.py", "export_vtk.py") else ["--programs", BIN]
@@ -43,7 +46,8 @@ class Calls(Analysis):
 
     def test_an_output_may_be_left_out_or_have_its_ending(self):
         self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1..2", "--output", "s.h5")
-        for script, made in [("clogging_length.py", "s-clogging-length.png"), ("clogs.py", "s-clogs.png"), ("report.py", "s-report.html")]:
+        for script, made in [("clogging_length.py", "s-clogging-length.png"), ("clogs.py", "s-clogs.png"), ("dwell.py", "s-dwell.png"),
+                             ("report.py", "s-report.html")]:
             self.assertIn(made, self.draw(script, "s.h5", "--programs", BIN).stdout)
             self.assertTrue((self.folder / made).exists())
         for name in ("cl.png", "cl.pdf", "cl0.2"):
@@ -111,6 +115,44 @@ class Looks(Analysis):
         self.assertIn("interface: robust", axes.get_title())
         low, high = axes.get_xlim()
         self.assertTrue(low < 0.5 and high > 3, (low, high))
+
+    def test_lengths_over_the_time_that_counts_as_clogged_are_those_of_clogfit(self):
+        self.succeed("clogsweep", *SMALL, "line-tension=0.05,0.3", "max-time=400", "seeds=1..8", "--output", "s.h5")
+        times = dwell.times_of(self.fit_at())
+        self.assertEqual(len(times), 12)
+        self.assertEqual((times[0], times[-1]), (stored.read_rows(self.folder / "s.h5")["dwells_known_from"].max(), 400))
+        fits = [dwell.fit_at(BIN / "clogfit", self.folder / "s.h5", "--dwell", repr(time)) for time in times]
+        drawing = dwell.draw(times, fits)
+        self.addCleanup(pyplot.close, drawing)
+        self.assert_title_is_whole(drawing)
+        axes, = drawing.axes
+        self.assertIn("moved by $0.05", axes.get_xlabel())
+        self.assertEqual([curve.get_label() for curve in axes.containers], [r"$\Gamma/(g\,\rho\,\sigma^2) = 0.05$", r"$\Gamma/(g\,\rho\,\sigma^2) = 0.3$"])
+        soft, stiff = axes.containers
+        # No soft droplet stands: bounds, as open triangles.
+        self.assertTrue(np.isnan(soft.lines[0].get_xydata()[:, 1]).all())
+        bounds, = [line for line in axes.lines if line.get_marker() == "^" and len(line.get_xdata()) > 0]
+        places, lengths = stiff.lines[0].get_xydata().T
+        np.testing.assert_allclose(places, times, rtol=0.01)
+        bars = [segment[:, 1] for segment in stiff.lines[2][0].get_segments()]
+        for i, time in enumerate(times):
+            bound, group = self.fit_at("--dwell", repr(time)).members
+            self.assertEqual((bound["clogs"], bounds.get_ydata()[i]), (0, bound["clogging_length_lower"]))
+            self.assertEqual(lengths[i], group["clogging_length"])
+            np.testing.assert_allclose(bars[i], [group["clogging_length_lower"], group["clogging_length_upper"]])
+        self.assertEqual(lengths[-1], self.fit_at().members[1]["clogging_length"])
+        self.assertLess(lengths[0], 0.7 * lengths[-1])
+        self.draw("dwell.py", "s.h5", "-o", "d", "--programs", BIN)
+        self.assert_picture("d")
+
+    def fit_at(self, *options):
+        return Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json", *options).stdout))
+
+    def test_dwells_that_cannot_be_drawn_are_refused(self):
+        self.succeed("clogsweep", *SMALL, "seeds=1", "max-time=10", "--output", "s.h5")
+        self.refuse_analysis("dwell.py", "s.h5", "--programs", BIN, words=["from 16.67 t0 on", "make max-time longer"])
+        stored_rows.make_older(self.folder / "s.h5", "6", [name for name in stored_rows.columns(self.folder / "s.h5") if "dwell" in name])
+        self.refuse_analysis("dwell.py", "s.h5", "--programs", BIN, words=["did not look for them", "compute the sweep anew"])
 
     def test_many_curves_are_told_apart_beside_the_legend_and_off_the_frame(self):
         arrays = ["obstacle-gap=lin(0.2,0.35,4)", "obstacle-diameter=lin(0.3,0.45,4)"]

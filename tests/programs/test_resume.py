@@ -41,6 +41,7 @@ class Resumed(SweepTest):
 
     def test_kills_at_random_moments_lose_nothing(self):
         self.succeed("clogsweep", *SWEEP[:-1], "whole.h5", ranks=2)
+        self.assertTrue((table(self.folder / "whole.h5").longest_dwell > 0).any(), "some droplets stand for a while, which is to be the same")
         chance = random.Random(7)
         finished = 0
         for _ in range(int(os.environ.get("KILLS", "8"))):

@@ -92,7 +92,8 @@ TEST(FaultOf, NoColumnThatAnOlderVersionDidNotHave) {
   RunRow row = clogged();
   for (const char* name :
        {"near_wall_cutoff", "contact_range", "self_contact_range", "boxes", "mean_speed_error", "transient",
-        "travel_time", "mechanism", "wrapped_support", "num_wrapped", "num_gaps", "num_arcs", "clogged_by"})
+        "travel_time", "mechanism", "wrapped_support", "num_wrapped", "num_gaps", "num_arcs", "clogged_by",
+        "dwells_known_from", "last_dwell_at", "last_dwell_from"})
     column(name).set_unknown(row);
   EXPECT_EQ(fault_of(row), "near_wall_cutoff is not known") << "this version has it";
   row.model_version = model_version - 1;
@@ -174,19 +175,21 @@ TEST(FaultOf, NamesEveryWordThatIsUnknown) {
 }
 
 TEST(FaultOf, NamesEveryNumberThatIsNone) {
-  const std::set<std::string> may_be_unknown = {"mean_speed",
-                                                "mean_speed_error",
-                                                "transient",
-                                                "travel_time",
-                                                "wrapped_support",
-                                                "largest_shape_parameter",
-                                                "largest_shape_parameter_at",
-                                                "largest_relative_speed",
-                                                "largest_relative_speed_at",
-                                                "smallest_relative_speed",
-                                                "smallest_relative_speed_at",
-                                                "sag",
-                                                "top_sag"};
+  std::set<std::string> may_be_unknown = {"mean_speed",
+                                          "mean_speed_error",
+                                          "transient",
+                                          "travel_time",
+                                          "wrapped_support",
+                                          "largest_shape_parameter",
+                                          "largest_shape_parameter_at",
+                                          "largest_relative_speed",
+                                          "largest_relative_speed_at",
+                                          "smallest_relative_speed",
+                                          "smallest_relative_speed_at",
+                                          "sag",
+                                          "top_sag"};
+  for (std::size_t i = 0; i < Dwells::most; ++i)
+    for (const char* part : {"", "_at", "_from"}) may_be_unknown.insert(dwell_column(i) + part);
   for (const Column& column : columns()) {
     if (column.kind != ValueKind::number) continue;
     const bool means_nothing = column.name == "lattice_angle";  // the array is random
@@ -237,6 +240,46 @@ TEST(FaultOf, NamesWhatContradictsTheRest) {
   for (const auto& [words, damage] : damages) {
     RunRow row = clogged();
     damage(row);
+    EXPECT_NE(fault_of(row).find(words), std::string::npos) << words << ": " << fault_of(row);
+  }
+}
+
+/// The end of a run that stood twice, and hangs.
+const RunRow& hanging() {
+  static const RunRow row = [] {
+    RunRow one = row_of({{"max-time", "1000"},
+                         {"line-tension", "2"},
+                         {"clog-detection", "threshold"},
+                         {"clog-energy", "1e-300"}});
+    Dwells& dwells = one.dwells;
+    const double begin = one.dwells.last_begin;
+    dwells.longest[1] = {.length = begin / 2, .distance = dwells.last_distance / 2, .begin = begin / 4};
+    dwells.known_from = begin / 4;
+    return one;
+  }();
+  return row;
+}
+
+TEST(FaultOf, NamesDwellsThatCannotBe) {
+  ASSERT_EQ(fault_of(hanging()), "");
+  ASSERT_GT(hanging().dwells.longest[0].length, hanging().dwells.longest[1].length);
+  const std::vector<std::pair<const char*, std::function<void(Dwells&)>>> damages = {
+      {"only some are known", [](Dwells& dwells) { dwells.known_from = std::nan(""); }},
+      {"last_dwell_at=-1 ", [](Dwells& dwells) { dwells.last_distance = -1; }},
+      {"last_dwell_from=1001 is not within", [](Dwells& dwells) { dwells.last_begin = 1001; }},
+      {"longest_dwell=", [](Dwells& dwells) { dwells.longest[0].length *= 1.1; }},
+      {"longest_dwell=nan is not among", [](Dwells& dwells) { dwells.longest[0].length = std::nan(""); }},
+      {"longest_dwell_at=", [](Dwells& dwells) { dwells.longest[0].distance = -0.1; }},
+      {"longest_dwell_from=-1 ", [](Dwells& dwells) { dwells.longest[0].begin = -1; }},
+      {"earlier_dwell_1=", [](Dwells& dwells) { dwells.longest[1].length = 2000; }},
+      {"earlier_dwell_1=", [](Dwells& dwells) { dwells.longest[1].length = dwells.known_from; }},
+      {"earlier_dwell_1=", [](Dwells& dwells) { dwells.longest[1].begin = dwells.longest[0].begin; }},
+      {"earlier_dwell_1=",
+       [](Dwells& dwells) { dwells.longest[1].distance = dwells.longest[0].distance + 0.01; }},
+      {"earlier_dwell_2=", [](Dwells& dwells) { std::swap(dwells.longest[1], dwells.longest[2]); }}};
+  for (const auto& [words, damage] : damages) {
+    RunRow row = hanging();
+    damage(row.dwells);
     EXPECT_NE(fault_of(row).find(words), std::string::npos) << words << ": " << fault_of(row);
   }
 }

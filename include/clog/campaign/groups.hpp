@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -63,7 +64,9 @@ const DoubtText& text_of(Doubt doubt);
 
 /// The runs of a sweep that differ in their seed only, and what they say together.
 struct Group {
-  sweep::RunRow first_row;  ///< its parameters are those of all
+  sweep::RunRow first_row;                                 ///< its parameters are those of all
+  double dwell = std::numeric_limits<double>::infinity();  ///< see group_runs() [t0]
+  double dwells_known_from = 0;                            ///< of all its runs, NaN if not of all [t0]
   fit::CloggingLength clogging;
   double least_squares_length = 0;  ///< the published way, biased; NaN for fewer than two clogs
   fit::WeibullTest weibull;
@@ -94,8 +97,15 @@ inline constexpr ClogMechanism causes[] = {ClogMechanism::wrapped, ClogMechanism
 /// Groups rows by everything but the seed, in the order of their parameters.
 /// @param from_distance  clogging lengths count from here on [sigma]: runs that ended before are left out of
 /// them, the others are as long as they went beyond (left truncation)
+/// @param dwell  a droplet that has stood for longer than this counts as clogged where it did so first [t0].
+/// One that has not, nor clogged, is censored where its last dwell began: how long that one would have been
+/// is not known. What is not less than max-time changes nothing.
+/// @throws Error if the rows do not tell which droplets stood for so long
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence,
-                              double from_distance = 0);
+                              double from_distance = 0,
+                              double dwell = std::numeric_limits<double>::infinity());
+/// Can a droplet of this group have stood for so long?
+bool is_dwell_possible(const Group& group);
 
 using sweep::Value;
 using Field = std::pair<const char*, Value>;

@@ -65,6 +65,8 @@ struct Column {
 
 /// In the order in which they lie in files.
 std::span<const Column> columns();
+/// Of a dwell in Dwells::longest; `_at` and `_from` follow for where and when it began.
+std::string dwell_column(std::size_t place);
 /// @throws std::out_of_range if there is none
 const Column& column(std::string_view name);
 

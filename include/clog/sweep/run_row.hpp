@@ -53,6 +53,7 @@ struct RunRow {
   double mean_speed_error = not_known;
   double transient = not_known;
   double travel_time = not_known;
+  Dwells dwells;
   double kinetic_energy_ratio = 0;
   double shape_parameter = 0;
   std::optional<ClogMechanism> mechanism;

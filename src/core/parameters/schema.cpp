@@ -474,6 +474,16 @@ std::vector<Parameter> make_schema() {
                "certified: a droplet that slows down is clogged once a stable equilibrium is proved to be at "
                "hand, or by clog-energy; threshold: by clog-energy only",
            .role = numerics}),
+      entry("dwell-length", [](auto& run) -> auto& { return run.dwell_length; },
+            {.column = "dwell_length",
+             .symbol = R"(\delta_\mathrm{d})",
+             .unit = "sigma",
+             .meaning =
+                 "a droplet that comes no farther than this counts as standing: how long, is told by the "
+                 "columns of dwells",
+             .role = numerics,
+             .range = {positive, to(0.5, "a droplet that hangs moves less", "try 0.05")},
+             .before = RunParameters().dwell_length}),
   };
 }
 

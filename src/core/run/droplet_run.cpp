@@ -32,7 +32,7 @@ constexpr double fall_between_searches = 0.1;
 constexpr double rise_of_a_moving_droplet = 10;
 
 /// Changes with what a snapshot holds.
-constexpr std::uint64_t snapshot_kind = 0x636c6f6773000001;
+constexpr std::uint64_t snapshot_kind = 0x636c6f6773000002;
 
 }  // namespace
 
@@ -52,7 +52,8 @@ DropletRun::DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> o
       end_(way),
       max_steps_(std::max<std::int64_t>(1, std::llround(run_.max_time / run_.time_step.value()))),
       first_quiet_time_(relaxation_times_before_a_clog * run_.drag.terminal_speed / units::gravity),
-      next_search_(first_search(run_.drag.terminal_speed)) {}
+      next_search_(first_search(run_.drag.terminal_speed)),
+      dwells_(run_.dwell_length, run_.drag.terminal_speed) {}
 
 PotentialEnergy DropletRun::potential_energy() const {
   PotentialEnergy energy = droplet_->potential_energy();
@@ -88,6 +89,7 @@ void DropletRun::take_snapshot() {
   bytes.put(quiet_checks_);
   bytes.put(next_search_);
   record_.save(bytes);
+  dwells_.save(bytes);
   if (is_passage()) passage_.save(bytes);
   snapshot_ = bytes.take();
 }
@@ -114,6 +116,7 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
     rest.get(resumed.quiet_checks_);
     rest.get(resumed.next_search_);
     resumed.record_.restore(rest);
+    resumed.dwells_.restore(rest);
     if (resumed.is_passage()) resumed.passage_.restore(rest);
     if (!rest.at_end()) throw Error("the snapshot is of another run");
     resumed.snapshot_.assign(snapshot.begin(), snapshot.end());
@@ -139,6 +142,7 @@ void DropletRun::check() {
     return;
   }
   record_.add(time(), displacement()[0]);
+  dwells_.add(time(), displacement()[0]);
   if (is_passage())
     passage_.add(run_.channel.start + displacement()[0], shape.shape_parameter(),
                  droplet_->centre_velocity()[0] / run_.drag.terminal_speed, has_fallen());
@@ -193,6 +197,7 @@ RunResult DropletRun::result() const {
           .lateral = displaced[1],
           .time = time(),
           .speed = record_.travel_speed(),
+          .dwells = dwells_.found(time(), status_ == RunStatus::clogged),
           .kinetic_energy_ratio = kinetic_energy_ratio(),
           .shape_parameter = last.shape().shape_parameter(),
           .hold = hold,

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "clog/core/run/resolve.hpp"
+#include "clog/core/tools/byte_archive.hpp"
 #include "clog/core/tools/error.hpp"
 
 namespace clog {
@@ -25,6 +26,12 @@ RunResult result_of(const RunParameters& parameters, int checks_at_a_time) {
   return run.result();
 }
 
+std::vector<std::byte> bytes_of(const Dwells& dwells) {
+  ByteWriter bytes;
+  bytes.put(dwells);
+  return bytes.take();
+}
+
 void expect_identical(const RunResult& a, const RunResult& b) {
   EXPECT_EQ(a.status, b.status);
   EXPECT_EQ(a.distance, b.distance);
@@ -34,6 +41,7 @@ void expect_identical(const RunResult& a, const RunResult& b) {
   EXPECT_EQ(a.shape_parameter, b.shape_parameter);
   EXPECT_EQ(a.steps, b.steps);
   EXPECT_EQ(a.hold.mechanism, b.hold.mechanism);
+  EXPECT_EQ(bytes_of(a.dwells), bytes_of(b.dwells));
 }
 
 void expect_diverged(const RunResult& result) {
@@ -101,6 +109,33 @@ TEST(DropletRun, RefusesASnapshotThatIsTornOrOfAnotherRun) {
   bytes.pop_back();
   bytes[0] = ~bytes[0];
   EXPECT_THROW(resume_in_array(run, bytes), Error);
+}
+
+/// What a droplet stood for before it clogged is the same however the clog is found.
+TEST(DropletRun, ItsDwellsDoNotDependOnHowClogsAreFound) {
+  RunParameters run = small_run(2);
+  run.max_time = 5000;
+  const RunResult certified = result_of(run, 1000);
+  run.clog_detection = ClogDetection::threshold;
+  const RunResult threshold = result_of(run, 1000);
+  ASSERT_EQ(certified.status, RunStatus::clogged);
+  ASSERT_EQ(threshold.status, RunStatus::clogged);
+  EXPECT_GT(threshold.time, certified.time);
+  EXPECT_EQ(bytes_of(certified.dwells), bytes_of(threshold.dwells));
+  EXPECT_NEAR(certified.dwells.last_distance, certified.distance, run.dwell_length);
+  EXPECT_LT(certified.dwells.last_begin, certified.time);
+}
+
+TEST(DropletRun, ADropletThatHangsToTheEndOfItsTimeHasADwell) {
+  RunParameters run = small_run(2);
+  run.max_time = 300;
+  run.clog_detection = ClogDetection::threshold;
+  run.clog_energy = 1e-300;
+  const RunResult result = result_of(run, 1000);
+  ASSERT_EQ(result.status, RunStatus::flowing);
+  EXPECT_GT(result.dwells.longest[0].length, 200);
+  EXPECT_EQ(result.dwells.longest[0].begin, result.dwells.last_begin);
+  EXPECT_EQ(result.dwells.longest[0].begin + result.dwells.longest[0].length, result.time);
 }
 
 TEST(DropletRun, OfAnotherSeedDiffers) {

@@ -61,6 +61,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"max-time=-1", [](auto& run) { run.max_time = -1; }},
         Refusal{"max-time=1e-4 (shorter", [](auto& run) { run.max_time = 1e-4; }},
         Refusal{"clog-energy=0.1", [](auto& run) { run.clog_energy = 0.1; }},
+        Refusal{"dwell-length=0 (must be positive", [](auto& run) { run.dwell_length = 0; }},
+        Refusal{"dwell-length=0.6 (a droplet that hangs", [](auto& run) { run.dwell_length = 0.6; }},
         Refusal{"terminal-speed=0", [](auto& run) { run.drag.terminal_speed = 0; }},
         Refusal{"near-wall-drag=-1", [](auto& run) { run.drag.near_wall = -1; }},
         Refusal{"near-wall-exponent=-1", [](auto& run) { run.drag.near_wall_exponent = -1; }},

@@ -12,6 +12,7 @@
 #include "clog/core/droplet/hold.hpp"
 #include "clog/core/parameters/parameters.hpp"
 #include "clog/core/run/displacement_record.hpp"
+#include "clog/core/run/dwell_record.hpp"
 #include "clog/core/run/passage.hpp"
 #include "clog/core/world/obstacle_array.hpp"
 
@@ -43,10 +44,11 @@ struct Sag {
 struct RunResult {
   RunStatus status = RunStatus::running;
   std::optional<ClogDetection> clogged_by;  ///< how a clog was found; empty unless clogged
-  double distance = 0;              ///< displacement along the flow since release, certified: at rest [sigma]
-  double lateral = 0;               ///< displacement across the flow, certified: at rest [sigma]
-  double time = 0;                  ///< [t0]
-  TravelSpeed speed;                ///< of the way so far
+  double distance = 0;  ///< displacement along the flow since release, certified: at rest [sigma]
+  double lateral = 0;   ///< displacement across the flow, certified: at rest [sigma]
+  double time = 0;      ///< [t0]
+  TravelSpeed speed;    ///< of the way so far
+  Dwells dwells;
   double kinetic_energy_ratio = 0;  ///< E_k/E_t at the end
   double shape_parameter = 0;       ///< A at the end, certified: at rest
   Hold hold;                        ///< of a clogged droplet, certified: at rest
@@ -125,6 +127,7 @@ class DropletRun {
   std::unique_ptr<Droplet> at_rest_;  // of a certified clog
   std::string message_;
   DisplacementRecord record_;
+  DwellRecord dwells_;
   Passage passage_;  // through a channel
   std::vector<std::byte> snapshot_;
 

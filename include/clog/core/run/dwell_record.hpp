@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+
+#include "clog/core/tools/byte_archive.hpp"
+
+namespace clog {
+
+/// A time in which the droplet came no farther than dwell-length; NaN while there is none.
+struct Dwell {
+  double length = std::numeric_limits<double>::quiet_NaN();    ///< [t0]
+  double distance = std::numeric_limits<double>::quiet_NaN();  ///< along the flow, where it began [sigma]
+  double begin = std::numeric_limits<double>::quiet_NaN();     ///< [t0]
+};
+
+/// What is kept of a run's dwells: those longer than all before.
+struct Dwells {
+  static constexpr std::size_t most = 8;
+
+  /// The longest of all, the longest of those before it, and so on. Of more than `most` the earliest are
+  /// dropped.
+  std::array<Dwell, most> longest;
+  /// Of any time from this on first_longer() tells the first dwell that was longer; NaN: of none [t0].
+  double known_from = std::numeric_limits<double>::quiet_NaN();
+  double last_distance = std::numeric_limits<double>::quiet_NaN();  ///< where the last dwell began [sigma]
+  double last_begin = std::numeric_limits<double>::quiet_NaN();     ///< and when [t0]
+
+  /// @param time  not less than known_from [t0]; @return nullptr if there was none
+  const Dwell* first_longer(double time) const;
+  /// Of a dwell later than all before.
+  void keep(const Dwell& dwell);
+};
+
+/// Follows how far a droplet has come, and finds its dwells. One begins at the release, another whenever the
+/// droplet is found farther than dwell-length from where the last began; that is where and when that one
+/// ends.
+class DwellRecord {
+ public:
+  /// A droplet without obstacles needs dwell_length/terminal_speed. Dwells of up to so many times that are
+  /// not kept.
+  static constexpr double shortest = 10;
+
+  /// @param dwell_length [sigma]; @param terminal_speed [sqrt(sigma g)]
+  DwellRecord(double dwell_length, double terminal_speed);
+
+  /// To be called once per check of a run. @param displacement  along the flow since release [sigma]
+  void add(double time, double displacement);
+
+  /// @param time  of the last check. The dwell under way is as long as it is by then, but for that of a clog:
+  /// it has no end and is none.
+  Dwells found(double time, bool has_clogged) const;
+
+  void save(ByteWriter& bytes) const { bytes.put(found_); }
+  void restore(ByteReader& bytes) { bytes.get(found_); }
+
+ private:
+  double dwell_length_;
+  Dwells found_;  // those that have ended
+
+  Dwell under_way(double time) const;
+};
+
+}  // namespace clog
