@@ -31,11 +31,7 @@ def draw(groups):
     for index, (label, members) in enumerate(curves):
         style.draw_lengths(axes, groups.places(members, index, len(curves)), members, index, label)
     groups.draw_abscissa(axes)
-    axes.set_yscale("log")
-    axes.set_ylabel(style.AXES["length"])
-    style.grid(axes)
-    style.legend(axes, groups.members)
-    style.caption(axes, f"{groups.caption()}\n{groups.note(style.length_note(groups.members, groups.confidence))}")
+    style.finish_lengths(axes, groups, groups.members)
     return figure
 
 

@@ -59,15 +59,11 @@ def draw(times, fits):
         style.draw_lengths(axes, places, members, index, label_of(fits[-1], members[-1]))
     style.logarithmic_abscissa(axes, times)
     axes.xaxis.set_major_formatter("{x:g}")  # times may be long
-    axes.set_yscale("log")
     lengths = fits[-1].values("dwell_length")
     moved = f"{lengths.pop():g}" + r"\,\sigma" if len(lengths) == 1 else r"\delta_\mathrm{d}"
     axes.set_xlabel(f"time without having moved by ${moved}$ that counts as clogged $/t_0$")
-    axes.set_ylabel(style.AXES["length"])
-    style.grid(axes)
     everyone = [group for groups in fits for group in groups.members]
-    style.legend(axes, everyone, "most went on later, or other clogs")
-    style.caption(axes, f"{fits[-1].caption()}\n{fits[-1].note(style.length_note(everyone, fits[-1].confidence))}")
+    style.finish_lengths(axes, fits[-1], everyone, "most went on later, or other clogs")
     return figure
 
 

@@ -73,6 +73,15 @@ def main_mechanism(group):
     return max(MECHANISM_MARKERS, key=lambda name: group[name])
 
 
+def finish_lengths(axes, groups, drawn, other="other clogs"):
+    """The ordinate, legend and caption of a picture of clogging lengths. @param drawn  all that draw_lengths() was given"""
+    axes.set_yscale("log")
+    axes.set_ylabel(AXES["length"])
+    grid(axes)
+    legend(axes, drawn, other)
+    caption(axes, f"{groups.caption()}\n{groups.note(length_note(drawn, groups.confidence))}")
+
+
 def legend(axes, groups=(), other="other clogs"):
     """Of the curves if they have names, and of the markers that draw_lengths() gave these groups. That of many curves is
     beside the axes, in a figure that is as much wider. @param other  what clogs are called that are of no mechanism"""

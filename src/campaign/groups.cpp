@@ -147,8 +147,7 @@ void require_dwells(std::span<const sweep::RunRow> rows, double dwell) {
   if (known_from > 0)
     throw Error(
         fmt::format("cannot fit --dwell={} (the rows do not hold all dwells as short as that; column "
-                    "dwells_known_from) use "
-                    "{} or more",
+                    "dwells_known_from) use {} or more",
                     shortest(dwell), rounded_up(known_from)));
 }
 

@@ -90,11 +90,7 @@ Axes x_and_y(const DropletState& state) {
 std::optional<DropletState> equilibrium_of_disk(const RunParameters& run, const ObstacleArray& obstacles,
                                                 const DropletState& state) {
   SpForces forces(run, obstacles);
-  return find_equilibrium(
-      {.update_contacts = [&](const auto& at, const Travel& travel) { forces.update_contacts(at, travel); },
-       .evaluate = [&](const auto& at, Eigen::ArrayXd& force) { forces.evaluate(at, force); },
-       .axes = x_and_y},
-      state);
+  return find_equilibrium(EquilibriumForces::of(forces, x_and_y), state);
 }
 
 /// It cannot hang over an obstacle.

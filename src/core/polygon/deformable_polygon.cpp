@@ -85,11 +85,8 @@ Axes axes_of_interface(const DpParameters& dp, const DropletState& state) {
 std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, const ObstacleArray& obstacles,
                                                    const DropletState& state) {
   DpForces forces(run, obstacles);
-  return find_equilibrium(
-      {.update_contacts = [&](const auto& at, const Travel& travel) { forces.update_contacts(at, travel); },
-       .evaluate = [&](const auto& at, Eigen::ArrayXd& force) { forces.evaluate(at, force); },
-       .axes = [&](const auto& at) { return axes_of_interface(run.dp, at); }},
-      state);
+  const auto axes = [&](const DropletState& at) { return axes_of_interface(run.dp, at); };
+  return find_equilibrium(EquilibriumForces::of(forces, axes), state);
 }
 
 Hold hold_of_polygon(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state) {

@@ -42,6 +42,10 @@ void check_spacing(const RunParameters& run) {
 
 double smallest_diameter(const RunParameters& run) { return run.obstacles.smallest_diameter(); }
 
+DropletState release_in_void(const RunParameters& run, const ObstacleArray& obstacles) {
+  return model_of(run).release(run, obstacles);
+}
+
 double endless_way(const RunParameters&) { return std::numeric_limits<double>::infinity(); }
 
 }  // namespace clog

@@ -1,6 +1,8 @@
 #pragma once
 
+#include "clog/core/droplet/droplet_state.hpp"
 #include "clog/core/parameters/parameters.hpp"
+#include "clog/core/world/obstacle_array.hpp"
 
 namespace clog {
 
@@ -9,6 +11,9 @@ void check_spacing(const RunParameters& run);
 
 /// The interface bends around obstacles.
 double smallest_diameter(const RunParameters& run);
+
+/// In the void nearest to the centre. @throws Error if there is no room for it
+DropletState release_in_void(const RunParameters& run, const ObstacleArray& obstacles);
 
 /// A droplet never comes to the end of a periodic array, nor through a wall.
 double endless_way(const RunParameters& run);

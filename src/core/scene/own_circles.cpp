@@ -129,10 +129,6 @@ double density(const ObstacleParameters& obstacles) {
   return obstacles.density.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
-DropletState release_among_circles(const RunParameters& run, const ObstacleArray& obstacles) {
-  return model_of(run).release(run, obstacles);
-}
-
 }  // namespace
 
 const Scene own_circles_scene = {.finding = Finding::clogging_length,
@@ -144,7 +140,7 @@ const Scene own_circles_scene = {.finding = Finding::clogging_length,
                                  .sharpest_bend = smallest_circle,
                                  .density = density,
                                  .walls = shifted_circles,
-                                 .release = release_among_circles,
+                                 .release = release_in_void,
                                  .way = endless_way};
 
 }  // namespace clog

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 
-#include "clog/core/model/model.hpp"
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/units.hpp"
 #include "clog/core/world/jamming.hpp"
@@ -36,10 +35,6 @@ double density(const ObstacleParameters& obstacles) {
   return obstacles.density.value_or(saturated_density(obstacles.diameter, obstacles.gap));
 }
 
-DropletState release_in_array(const RunParameters& run, const ObstacleArray& obstacles) {
-  return model_of(run).release(run, obstacles);
-}
-
 }  // namespace
 
 const Scene random_array_scene = {.finding = Finding::clogging_length,
@@ -51,7 +46,7 @@ const Scene random_array_scene = {.finding = Finding::clogging_length,
                                   .sharpest_bend = smallest_diameter,
                                   .density = density,
                                   .walls = sample,
-                                  .release = release_in_array,
+                                  .release = release_in_void,
                                   .way = endless_way};
 
 }  // namespace clog

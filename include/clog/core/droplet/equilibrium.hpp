@@ -3,6 +3,7 @@
 #include <Eigen/SparseCore>
 #include <functional>
 #include <optional>
+#include <utility>
 
 #include "clog/core/droplet/droplet_state.hpp"
 
@@ -33,6 +34,15 @@ struct EquilibriumForces {
   /// Of all points, all x then all y [g rho sigma^2].
   std::function<void(const DropletState& state, Eigen::ArrayXd& force)> evaluate;
   std::function<Axes(const DropletState& state)> axes;
+
+  /// @param forces  has update_contacts(state, travel) and evaluate(state, force); must outlive this
+  template <class Forces>
+  static EquilibriumForces of(Forces& forces, std::function<Axes(const DropletState& state)> axes) {
+    return {
+        [&forces](const DropletState& state, const Travel& travel) { forces.update_contacts(state, travel); },
+        [&forces](const DropletState& state, Eigen::ArrayXd& force) { forces.evaluate(state, force); },
+        std::move(axes)};
+  }
 };
 
 /// The stable static equilibrium next to a droplet that has nearly stopped, where it is about to come to
