@@ -40,7 +40,7 @@ def curve_style(index):
 # Doubts of clogfit in a length itself, and what to say of them under a picture.
 OPEN_MARKERS = {
     "few_clogs": "fewer than 5 clogs: more seeds are needed",
-    "held_by_mesh": "droplets hang over obstacles, and lengths depend on the number of vertices",
+    "held_by_mesh": "the polygon's corners may hold droplets: more vertices are needed",
     "array_repeats": "droplets went farther than the array is long, which repeats",
     "below_spacing": "shorter than one obstacle spacing, the depth of the void of release",
     "not_proved_sound": "outside of what was proved sound",

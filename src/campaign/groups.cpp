@@ -30,13 +30,10 @@ bool is_numerics(const sweep::Column& column) {
   return column.parameter && column.parameter->role == ParameterRole::numerics;
 }
 
-/// Are so many clogs wrapped or hybrid that what holds those decides the length?
+/// May so many of the clogs be the mesh's that they move the length?
 bool hangs_on_mesh(const Group& group) {
-  int hanging = 0;
-  for (const Group::Cause& cause : group.causes)
-    if (cause.mechanism == ClogMechanism::wrapped || cause.mechanism == ClogMechanism::hybrid)
-      hanging += cause.clogging.num_clogs;
-  return hanging > 0 && 3 * hanging >= group.clogging.num_clogs;
+  constexpr int most = 10;  // clogs for one of them
+  return group.num_on_mesh > 0 && most * group.num_on_mesh >= group.clogging.num_clogs;
 }
 
 std::vector<Doubt> doubts_about(const Group& group) {
@@ -252,6 +249,7 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
       const Ending ending = ending_of(*run, dwell);
       group.num_interrupted += sweep::is_unfinished(run->status) && !ending.is_clog;
       if (run->steps > 0) group.dwells_known_from = later(group.dwells_known_from, run->dwells.known_from);
+      group.num_on_mesh += sweep::may_hang_on_mesh(*run);
       group.num_repeating += sweep::has_met_repetition(*run);
       const bool is_left_out = std::max(ending.distance, 0.0) < from_distance;
       group.num_left_out += is_left_out;
@@ -314,6 +312,7 @@ std::vector<Field> result_fields(const Group& group) {
       {"dwell", is_dwell_possible(group) ? value_of(group.dwell) : Value()},
       {"dwells_known_from", value_of(group.dwells_known_from)},
       {"repeating", value_of(group.num_repeating)},
+      {"on_mesh", value_of(group.num_on_mesh)},
       {"total_distance", value_of(group.clogging.total_distance)},
       {"clogging_length", value_of(group.clogging.length)},
       {"clogging_length_lower", value_of(group.clogging.interval.lower)},

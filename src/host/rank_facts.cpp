@@ -35,7 +35,7 @@ double step_cost(double seconds) {
   const auto begin = now();
   std::chrono::duration<double> elapsed{};
   while (elapsed.count() < seconds && !run.advance(8)) elapsed = now() - begin;
-  return 1e9 * elapsed.count() / (static_cast<double>(run.result().steps) * parameters.dp.vertices);
+  return 1e9 * elapsed.count() / (static_cast<double>(run.result().steps) * *parameters.dp.vertices);
 }
 
 }  // namespace

@@ -12,8 +12,8 @@ namespace {
 
 void say_what_is_coarse(const RunParameters& run) {
   constexpr int fine = 128;
-  if (run.model == Model::dp && run.dp.vertices < fine)
-    console::say("vertices=" + std::to_string(run.dp.vertices) +
+  if (run.model == Model::dp && *run.dp.vertices < fine)
+    console::say("vertices=" + std::to_string(*run.dp.vertices) +
                  " may clog where 128 and more pass (corners of the polygon catch on the wedges' tips); use "
                  "vertices=128 or more");
 }

@@ -36,16 +36,16 @@ std::string unproven_tension(const std::string& preset_name, const DpParameters&
            (preset_name == "custom" ? " (an interface that was not looked at)"
                                     : " (droplets cross themselves and obstacles)");
   constexpr int fine = 128;
-  const double smallest = dp.vertices >= fine ? preset->smallest_tension : preset->smallest_tension_coarse;
+  const double smallest = *dp.vertices >= fine ? preset->smallest_tension : preset->smallest_tension_coarse;
   if (dp.line_tension >= smallest && dp.line_tension <= largest_tension) return "";
   return fmt::format("line-tension={} ({}{} is sound from {} to {})", shortest(dp.line_tension), preset->name,
-                     dp.vertices >= fine ? "" : " of less than 128 vertices", shortest(smallest),
+                     *dp.vertices >= fine ? "" : " of less than 128 vertices", shortest(smallest),
                      shortest(largest_tension));
 }
 
 std::string unproven_vertices(const DpParameters& dp) {
-  if (dp.vertices >= fewest_vertices && dp.vertices <= most_vertices) return "";
-  return fmt::format("vertices={} ({} to {} were looked at)", dp.vertices, fewest_vertices, most_vertices);
+  if (*dp.vertices >= fewest_vertices && *dp.vertices <= most_vertices) return "";
+  return fmt::format("vertices={} ({} to {} were looked at)", *dp.vertices, fewest_vertices, most_vertices);
 }
 
 /// Needles slip through the interface: then the droplet encloses them, at its release or on its way. Seen
@@ -53,7 +53,7 @@ std::string unproven_vertices(const DpParameters& dp) {
 std::string unproven_diameter(const RunParameters& run) {
   constexpr double thinnest = 2;                                  // over the length of an edge, with a margin
   if (scene_of(run).walls_from == WallsFrom::droplet) return "";  // there are no obstacles
-  const double edge = units::regular_edge_length(run.dp.vertices);
+  const double edge = units::regular_edge_length(*run.dp.vertices);
   if (!(run.obstacles.smallest_diameter() < thinnest * edge)) return "";
   return fmt::format(
       "obstacle-diameter={} (obstacles thinner than two edges, {:.4g}, slip into the droplet; use more "
@@ -122,6 +122,12 @@ std::vector<std::string> limits_of_results(const Plan& plan) {
   std::vector<std::string> all = {possible_repetition(plan), unproven_parameters(plan)};
   std::erase(all, "");
   return all;
+}
+
+bool may_hang_on_mesh(const RunRow& row) {
+  if (row.status != RunStatus::clogged || row.parameters.model != Model::dp) return false;
+  if (!std::isnan(row.mesh_hold)) return row.mesh_hold > tolerated_mesh_hold;
+  return row.mechanism == ClogMechanism::wrapped || row.mechanism == ClogMechanism::hybrid;
 }
 
 double obstacle_spacing(const RunRow& row) {

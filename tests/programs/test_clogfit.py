@@ -285,8 +285,6 @@ class Fit(ProgramTest):
         mechanisms = [b"wrapped"] * 2 + [b"squeezed"] * 4 + [b"hybrid"] + [b"none"] * 3
         self.change(distance=np.arange(1.0, 11), status=[b"clogged"] * 8 + [b"flowing"] * 2, mechanism=mechanisms)
         group, = self.fit()["groups"]
-        self.assertIn("held_by_mesh", group["doubts"])
-        self.assertIn("m: a third of the clogs", self.succeed("clogfit", "sweep.h5").stdout)
         kinds = ("wrapped", "squeezed", "hybrid", "other")
         self.assertEqual([group[kind] for kind in kinds], [2, 4, 1, 1])
         lengths = [group[f"clogging_length_{kind}"] for kind in kinds]
@@ -298,9 +296,25 @@ class Fit(ProgramTest):
         self.change(mechanism=[b"squeezed"] * 8 + [b"none"] * 2)
         group, = self.fit()["groups"]
         self.assertEqual((group["wrapped"], group["clogging_length_wrapped"]), (0, None))
-        self.assertNotIn("held_by_mesh", group["doubts"])
         self.assertGreater(group["clogging_length_wrapped_lower"], 0)
         self.assertNotIn("w/s/h", self.succeed("clogfit", "sweep.h5").stdout)
+
+    def test_clogs_that_the_mesh_may_hold_are_marked(self):
+        self.sweep("seeds=1..10", *FAR)
+        self.change(distance=np.arange(1.0, 11), status=[b"clogged"] * 10, mechanism=[b"wrapped"] * 10, mesh_hold=[0.009] * 10)
+        group, = self.fit()["groups"]
+        self.assertEqual((group["on_mesh"], group["doubts"]), (0, None))
+        self.change(mesh_hold=[0.009] * 9 + [0.011])
+        group, = self.fit()["groups"]
+        self.assertEqual((group["on_mesh"], group["doubts"]), (1, "held_by_mesh"))
+        self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, "m: a tenth of the clogs or more .* mesh_hold")
+
+    def test_of_files_without_a_word_on_the_mesh_all_that_hang_are_marked(self):
+        self.sweep("seeds=1..10", *FAR)
+        self.change(status=[b"clogged"] * 10, distance=np.arange(1.0, 11), mechanism=[b"hybrid"] + [b"squeezed"] * 9)
+        stored_rows.make_older(self.folder / "sweep.h5", "7", ["mesh_hold"])
+        group, = self.fit()["groups"]
+        self.assertEqual((group["on_mesh"], group["doubts"]), (1, "held_by_mesh"))
 
     def test_files_of_format_version_3_can_be_read(self):
         self.sweep("max-time=60", "line-tension=2", "seeds=1..3")

@@ -145,7 +145,7 @@ CaseReport release_case(const RunParameters& parameters) {
     forces.update_contacts(state, {});
     Eigen::ArrayXd force(state.position.size());
     forces.evaluate(state, force);
-    const double vertex_weight = units::droplet_mass * units::gravity / parameters.dp.vertices;
+    const double vertex_weight = units::droplet_mass * units::gravity / *parameters.dp.vertices;
     report.release_force = force.abs().maxCoeff() / vertex_weight;
   } catch (const Error& error) {
     report.refusal = error.what();
@@ -224,7 +224,7 @@ std::vector<std::string> table_row(const std::vector<const CaseReport*>& cell) {
   for (const CaseReport* report : cell) {
     worst.keep_worst(report->worst);
     seconds += report->seconds;
-    vertex_steps += static_cast<double>(report->result.steps) * report->run.dp.vertices;
+    vertex_steps += static_cast<double>(report->result.steps) * *report->run.dp.vertices;
     is_sound = is_sound && report->is_sound();
   }
   const RunParameters& run = cell.front()->run;

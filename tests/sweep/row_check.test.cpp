@@ -93,7 +93,7 @@ TEST(FaultOf, NoColumnThatAnOlderVersionDidNotHave) {
   for (const char* name :
        {"near_wall_cutoff", "contact_range", "self_contact_range", "boxes", "mean_speed_error", "transient",
         "travel_time", "mechanism", "wrapped_support", "num_wrapped", "num_gaps", "num_arcs", "clogged_by",
-        "dwells_known_from", "last_dwell_at", "last_dwell_from"})
+        "mesh_hold", "dwells_known_from", "last_dwell_at", "last_dwell_from"})
     column(name).set_unknown(row);
   EXPECT_EQ(fault_of(row), "near_wall_cutoff is not known") << "this version has it";
   row.model_version = model_version - 1;
@@ -180,6 +180,7 @@ TEST(FaultOf, NamesEveryNumberThatIsNone) {
                                           "transient",
                                           "travel_time",
                                           "wrapped_support",
+                                          "mesh_hold",
                                           "largest_shape_parameter",
                                           "largest_shape_parameter_at",
                                           "largest_relative_speed",
@@ -236,6 +237,7 @@ TEST(FaultOf, NamesWhatContradictsTheRest) {
        [](RunRow& row) { row.parameters.clog_detection = ClogDetection::threshold; }},
       {"kinetic_energy_ratio=", [](RunRow& row) { row.clogged_by = FoundBy::threshold; }},
       {"wrapped_support=", [](RunRow& row) { row.wrapped_support = 1.5; }},
+      {"mesh_hold=", [](RunRow& row) { row.mesh_hold = -0.1; }},
       {"number of contacts", [](RunRow& row) { row.num_gaps = -2; }}};
   for (const auto& [words, damage] : damages) {
     RunRow row = clogged();

@@ -25,7 +25,7 @@ enum class Doubt {
   censored_by_time,  ///< runs ended by max-time, slow ones nearer than fast ones
   incomplete,        ///< runs are under way, interrupted or failed
   damaged,           ///< rows hold what cannot be (sweep::fault_of)
-  held_by_mesh,      ///< a third of the clogs or more are wrapped or hybrid; the polygon's corners hold those
+  held_by_mesh,      ///< the polygon's corners may hold a tenth of the clogs or more
   array_repeats,     ///< runs went farther than the period of their array (sweep::has_met_repetition)
   below_spacing,     ///< lambda is shorter than one obstacle spacing (sweep::obstacle_spacing)
   not_proved_sound,  ///< sweep::unproven_parameters
@@ -49,8 +49,8 @@ inline constexpr DoubtText doubt_texts[] = {
     {Doubt::damaged, 'd', "damaged",
      "rows hold what cannot be (left out; clogsweep verify names them): the file is damaged"},
     {Doubt::held_by_mesh, 'm', "held_by_mesh",
-     "a third of the clogs or more hang over obstacles: how far such droplets get depends on the number of "
-     "vertices"},
+     "a tenth of the clogs or more hang over obstacles with edges so long that the polygon's corners may hold "
+     "them (column mesh_hold): use more vertices"},
     {Doubt::array_repeats, 'r', "array_repeats",
      "runs went farther than boxes times box, where obstacles repeat: what lets a droplet pass once does so "
      "again"},
@@ -86,6 +86,7 @@ struct Group {
   int num_failed = 0;     ///< left out of all fits
   int num_damaged = 0;    ///< likewise
   int num_left_out = 0;   ///< ended before distances are counted, see group_runs(); likewise
+  int num_on_mesh = 0;    ///< clogs that the corners of the polygon may hold (sweep::may_hang_on_mesh)
   int num_repeating = 0;  ///< went farther than their array's period
   std::vector<Doubt> doubts;
 };

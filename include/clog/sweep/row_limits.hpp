@@ -27,6 +27,13 @@ std::string possible_repetition(const Plan& plan);
 /// something.
 std::vector<std::string> limits_of_results(const Plan& plan);
 
+/// The corners of a polygon that hangs over obstacles may hold as much of its weight, and no more, before a
+/// clog is theirs rather than the obstacles'.
+inline constexpr double tolerated_mesh_hold = 0.01;
+/// Is it a clog that may be theirs? Where it is not known what they can hold, every droplet that hangs over
+/// obstacles is.
+bool may_hang_on_mesh(const RunRow& row);
+
 /// Distance between the centres of two obstacles as near to each other as they may be, of a mixture the mean
 /// [sigma]. The void in which a droplet is released is about as large.
 double obstacle_spacing(const RunRow& row);

@@ -61,6 +61,7 @@ struct RunRow {
   std::int64_t num_wrapped = -1;  ///< -1: not known
   std::int64_t num_gaps = -1;
   std::int64_t num_arcs = -1;
+  double mesh_hold = not_known;
   double largest_shape_parameter = not_known;  ///< of a passage through a channel; so the next
   double largest_shape_parameter_at = not_known;
   double largest_relative_speed = not_known;

@@ -23,6 +23,8 @@ namespace {
 constexpr double most_contacts = 12;
 constexpr double max_omega_dt2 = 3.0;
 
+void leave_one_point(RunParameters&, double) {}
+
 int one_point(const RunParameters&) { return 1; }
 double no_width(const RunParameters&) { return 0; }
 
@@ -101,9 +103,10 @@ Hold hold_of_disk(const RunParameters&, const ObstacleArray&, const DropletState
 }  // namespace
 
 const DropletModel soft_disk = {.stiffness_key = "wall-stiffness",
-                                .num_points = one_point,
+                                .choose_points = leave_one_point,
                                 .narrowest = no_width,
                                 .resolve = resolve_disk,
+                                .num_points = one_point,
                                 .free_shape = centre_alone,
                                 .reach = radius,
                                 .release = release_disk,

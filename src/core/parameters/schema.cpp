@@ -68,6 +68,17 @@ struct Outside<Integer> {
   }
 };
 
+template <>
+struct Outside<std::optional<int>> : Outside<int> {
+  static ParameterValue get(std::optional<int> value) {
+    return value ? ParameterValue(std::int64_t{*value}) : ParameterValue();
+  }
+  static std::optional<int> set(const ParameterValue& value) {
+    return std::holds_alternative<std::monostate>(value) ? std::nullopt
+                                                         : std::optional(Outside<int>::set(value));
+  }
+};
+
 template <class Enum>
 requires std::is_enum_v<Enum>
 struct Outside<Enum> {
@@ -357,11 +368,14 @@ std::vector<Parameter> make_schema() {
       entry("vertices", [](auto& run) -> auto& { return run.dp.vertices; },
             {.column = "vertices",
              .symbol = "N_v",
-             .meaning = "N_v, number of vertices of the polygon",
+             .meaning = "N_v, number of vertices of the polygon; auto: 128, or so many more that edges on "
+                        "obstacles are short against their radius",
              .role = numerics,
              .scope = &polygons,
+             .automatic_in = &polygons,
              .range = {from(16, "a droplet is no circle any more", "use 16..4096"),
                        to(4096, "a run would take months", "use 16..4096")},
+             .words = {"auto"},
              .elsewhere = std::int64_t{1}}),
       entry(
           "time-step", [](auto& run) -> auto& { return run.time_step; },

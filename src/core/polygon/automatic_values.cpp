@@ -18,7 +18,7 @@ namespace {
 
 StiffModes stiff_modes_of_circle(const DpParameters& dp, double wall_stiffness) {
   const double circumference = std::numbers::pi * units::droplet_diameter;
-  return stiff_modes(dp, wall_stiffness, circumference, circumference / dp.vertices);
+  return stiff_modes(dp, wall_stiffness, circumference, circumference / *dp.vertices);
 }
 
 /// An automatic contact follows the step; only the other modes limit it then.
@@ -44,7 +44,7 @@ std::vector<Rate> polygon_rates(const RunParameters& run) {
 double automatic_time_step(const RunParameters& run, double sharpest_bend) {
   const double drag = drag_time_step(run);
   constexpr double depth = 0.02;  // of an obstacle in the contact range, over the vertex diameter
-  const double vertex_mass = units::droplet_mass / run.dp.vertices;
+  const double vertex_mass = units::droplet_mass / *run.dp.vertices;
   if (run.wall_stiffness)
     return rounded_down(
         std::min(drag, std::sqrt(auto_step_margin) *
@@ -73,9 +73,28 @@ void validate_compression(const DpParameters& dp, bool automatic_area) {
   });
 }
 
+/// N_v l of the longest edges l that a droplet has on an obstacle [sigma], as measured (src/core/README.md).
+double length_over_obstacles(const RunParameters& run) {
+  // Of an even mesh, that of the whole interface.
+  const double even = std::numbers::pi * units::droplet_diameter + 0.33 / run.dp.line_tension;
+  if (run.dp.perimeter_spring != PerimeterSpring::rest) return even;
+  const double stiffness = run.dp.perimeter_stiffness.value_or(automatic_perimeter_stiffness(run));
+  // Softer springs let the vertices slip.
+  if (stiffness < 0.02 * run.dp.line_tension) return even;
+  return std::max(even, 0.2 * units::droplet_mass * units::gravity / stiffness);
+}
+
 }  // namespace
 
-double half_vertex_diameter(const DpParameters& dp) { return units::regular_edge_length(dp.vertices) / 2; }
+int automatic_vertices(const RunParameters& run, double obstacle_diameter) {
+  constexpr int fewest = 128, most = 1024, group = 8;
+  constexpr double longest_edge = 0.28;  // over the obstacle's radius
+  const double needed = length_over_obstacles(run) / (longest_edge * obstacle_diameter / 2);
+  if (!(needed < most)) return most;
+  return std::max(fewest, group * static_cast<int>(std::ceil(needed / group)));
+}
+
+double half_vertex_diameter(const DpParameters& dp) { return units::regular_edge_length(*dp.vertices) / 2; }
 
 double automatic_perimeter_stiffness(const RunParameters& run) {
   switch (run.dp.perimeter_spring) {
@@ -115,8 +134,8 @@ void resolve_polygon(RunParameters& run, double sharpest_bend) {
         "perimeter-spring=along contradicts gravity=vertex (springs without tension cannot carry the weight "
         "of vertices) use gravity=area, or perimeter-spring=mean");
 
-  const double vertex_mass = units::droplet_mass / dp.vertices;
-  const double vertex_diameter = units::regular_edge_length(dp.vertices);
+  const double vertex_mass = units::droplet_mass / *dp.vertices;
+  const double vertex_diameter = units::regular_edge_length(*dp.vertices);
   const bool automatic = !run.wall_stiffness;
   if (!run.time_step) choose_time_step(run, automatic_time_step(run, sharpest_bend), polygon_rates(run));
   check_time_step(run);
@@ -136,7 +155,7 @@ void resolve_polygon(RunParameters& run, double sharpest_bend) {
   });
   // A contact too soft to carry the droplet lets obstacles sink into it: demand that a weight of M g on
   // the vertices of an eighth of the circumference leaves less than half the contact range.
-  const double softest = units::droplet_mass / (dp.vertices / 8.0) / (vertex_diameter / 4);
+  const double softest = units::droplet_mass / (*dp.vertices / 8.0) / (vertex_diameter / 4);
   require(contact_stiffness(*run.wall_stiffness, vertex_diameter) >= softest, "wall-stiffness",
           *run.wall_stiffness, [&] {
             return fmt::format(

@@ -49,6 +49,7 @@ bool hangs_over(const Polygon& polygon, const Obstacle& obstacle) {
 struct Touched {
   double support = 0;
   bool is_wrapped = false;
+  double longest_link = 0;  ///< that touches it, over the radius at which it lies
 };
 
 /// Which obstacle each edge touches, the one that it overlaps most; -1 for none.
@@ -72,6 +73,8 @@ Contacts find_contacts(const Polygon& polygon, std::span<const Obstacle> obstacl
       if (overlap <= 0) continue;
       is_touched = true;
       touched.support -= overlap * away[0] / distance;
+      const double length = (polygon.vertex(polygon.next(i)) - polygon.vertex(i)).matrix().norm();
+      touched.longest_link = std::max(touched.longest_link, length / (contact_range + obstacle.radius));
       if (overlap <= deepest[i]) continue;
       deepest[i] = overlap;
       contacts.of_edge[i] = static_cast<int>(contacts.obstacles.size());
@@ -104,18 +107,21 @@ std::vector<Arc> find_arcs(const Polygon& polygon, const std::vector<int>& of_ed
 }  // namespace
 
 ClogGeometry clog_geometry(const Eigen::ArrayXd& position, std::span<const Obstacle> obstacles,
-                           double contact_range) {
+                           double contact_range, int links_per_edge) {
   const Polygon polygon{position};
   const Contacts contacts = find_contacts(polygon, obstacles, contact_range);
   ClogGeometry geometry;
-  double support = 0, wrapped_support = 0;
+  double support = 0, wrapped_support = 0, mesh_hold = 0;
   for (const Touched& touched : contacts.obstacles) {
     support += std::max(0.0, touched.support);
     if (!touched.is_wrapped) continue;
     ++geometry.num_wrapped;
     wrapped_support += std::max(0.0, touched.support);
+    const double edge = links_per_edge * touched.longest_link;
+    mesh_hold += std::max(0.0, touched.support) * edge * edge / 16;
   }
   if (support > 0) geometry.wrapped_support = wrapped_support / support;
+  if (support > 0) geometry.mesh_hold = mesh_hold / support;
 
   const std::vector<Arc> arcs = find_arcs(polygon, contacts.of_edge);
   geometry.num_arcs = static_cast<int>(arcs.size());
@@ -136,15 +142,15 @@ ClogGeometry clog_geometry(const Eigen::ArrayXd& position, std::span<const Obsta
 
 ClogGeometry clog_geometry(const DropletState& state, const ObstacleArray& array, const DpParameters& dp) {
   const double contact_range = dp.contact_range.value();
-  const Eigen::ArrayXd interface =
-      dp.wall_contact == WallContact::edge ? refined(state.position) : state.position;
+  const bool meets_edges = dp.wall_contact == WallContact::edge;
+  const Eigen::ArrayXd interface = meets_edges ? refined(state.position) : state.position;
   const Eigen::Index n = interface.size() / 2;
   std::vector<Obstacle> obstacles;
   array.gather({state.frame.origin[0], state.frame.origin[1], interface.head(n).minCoeff(),
                 interface.head(n).maxCoeff(), interface.tail(n).minCoeff(), interface.tail(n).maxCoeff(),
                 contact_range},
                obstacles);
-  return clog_geometry(interface, obstacles, contact_range);
+  return clog_geometry(interface, obstacles, contact_range, meets_edges ? 2 : 1);
 }
 
 }  // namespace clog

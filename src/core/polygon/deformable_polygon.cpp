@@ -16,14 +16,18 @@
 namespace clog {
 namespace {
 
-int num_vertices(const RunParameters& run) { return run.dp.vertices; }
+void choose_vertices(RunParameters& run, double obstacle_diameter) {
+  if (!run.dp.vertices) run.dp.vertices = automatic_vertices(run, obstacle_diameter);
+}
+
+int num_vertices(const RunParameters& run) { return *run.dp.vertices; }
 
 /// As wide as an edge is long at rest.
-double edge_length(const RunParameters& run) { return units::regular_edge_length(run.dp.vertices); }
+double edge_length(const RunParameters& run) { return units::regular_edge_length(*run.dp.vertices); }
 
 /// The regular polygon in which area pressure balances line tension and springs, a little smaller than a_0.
 Eigen::ArrayXd free_polygon(const RunParameters& run) {
-  const int n = run.dp.vertices;
+  const int n = *run.dp.vertices;
   const double spring =
       run.dp.perimeter_spring == PerimeterSpring::rest ? run.dp.perimeter_stiffness.value() * n : 0;
   const double rest_edge = units::regular_edge_length(n);
@@ -41,7 +45,7 @@ Eigen::ArrayXd free_polygon(const RunParameters& run) {
 }
 
 double reach_of_polygon(const RunParameters& run) {
-  return free_polygon(run).head(run.dp.vertices).maxCoeff() + run.dp.contact_range.value();
+  return free_polygon(run).head(*run.dp.vertices).maxCoeff() + run.dp.contact_range.value();
 }
 
 /// The interface of a droplet released among obstacles is longer than a circle; it gets hardly twice as long.
@@ -97,9 +101,10 @@ Hold hold_of_polygon(const RunParameters& run, const ObstacleArray& obstacles, c
 }  // namespace
 
 const DropletModel deformable_polygon = {.stiffness_key = "line-tension",
-                                         .num_points = num_vertices,
+                                         .choose_points = choose_vertices,
                                          .narrowest = edge_length,
                                          .resolve = resolve_polygon,
+                                         .num_points = num_vertices,
                                          .free_shape = free_polygon,
                                          .reach = reach_of_polygon,
                                          .release = release_polygon,

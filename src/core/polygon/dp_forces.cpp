@@ -23,7 +23,7 @@ kernel::WedgePlace kernel::place_in(const LocalFrame& frame, const Wedge& wedge)
 DpForces::DpForces(const RunParameters& run, const ObstacleArray& obstacles)
     : dp_(run.dp),
       obstacles_(&obstacles),
-      vertex_diameter_(units::regular_edge_length(run.dp.vertices)),
+      vertex_diameter_(units::regular_edge_length(*run.dp.vertices)),
       contact_stiffness_(clog::contact_stiffness(run.wall_stiffness.value(), vertex_diameter_)),
       weight_(units::droplet_mass * units::gravity),
       near_wall_cutoff_(run.drag.near_wall_cutoff),
@@ -34,19 +34,19 @@ DpForces::DpForces(const RunParameters& run, const ObstacleArray& obstacles)
       adhesive_walls_(obstacles, dp_.contact_range.value() + wetting_width * vertex_diameter_,
                       WallContacts::Keep::touched_by_vertex),
       self_(dp_.self_contact_range, vertex_diameter_),
-      edge_x_(dp_.vertices),
-      edge_y_(dp_.vertices),
-      edge_length_(dp_.vertices),
-      pull_(dp_.vertices),
-      centroid_gradient_(Eigen::ArrayXd::Zero(Eigen::Index{4} * dp_.vertices)),
-      refined_edges_(8 * dp_.vertices),
-      wall_distance_(run.drag.near_wall > 0 ? dp_.vertices : 0) {
+      edge_x_(*dp_.vertices),
+      edge_y_(*dp_.vertices),
+      edge_length_(*dp_.vertices),
+      pull_(*dp_.vertices),
+      centroid_gradient_(Eigen::ArrayXd::Zero(Eigen::Index{4} * *dp_.vertices)),
+      refined_edges_(8 * *dp_.vertices),
+      wall_distance_(run.drag.near_wall > 0 ? *dp_.vertices : 0) {
   set_rest_area(units::rest_area);
 }
 
 void DpForces::set_rest_area(double area) {
   rest_area_ = area;
-  rest_edge_ = units::regular_edge_length(dp_.vertices, area);
+  rest_edge_ = units::regular_edge_length(*dp_.vertices, area);
   self_.set_rest_edge(rest_edge_);
 }
 
@@ -73,17 +73,17 @@ kernel::Interface DpForces::interface(double area, double perimeter) const {
   kernel::Interface interface;
   interface.line_tension = dp_.line_tension;
   // The springs to the mean length are unloaded on average: their force needs no derivative of the mean.
-  interface.spring = has_tension ? *dp_.perimeter_stiffness * dp_.vertices : 0;
+  interface.spring = has_tension ? *dp_.perimeter_stiffness * *dp_.vertices : 0;
   interface.spring_length =
-      dp_.perimeter_spring == PerimeterSpring::rest ? rest_edge_ : perimeter / dp_.vertices;
-  interface.spreading = has_tension ? 0 : *dp_.perimeter_stiffness * dp_.vertices;
+      dp_.perimeter_spring == PerimeterSpring::rest ? rest_edge_ : perimeter / *dp_.vertices;
+  interface.spreading = has_tension ? 0 : *dp_.perimeter_stiffness * *dp_.vertices;
   interface.pressure = -dp_.area_stiffness.value() * (area - rest_area_);
-  interface.vertex_weight = dp_.gravity == Gravity::vertex ? weight_ / dp_.vertices : 0;
+  interface.vertex_weight = dp_.gravity == Gravity::vertex ? weight_ / *dp_.vertices : 0;
   return interface;
 }
 
 void DpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
-  const int n = dp_.vertices;
+  const int n = *dp_.vertices;
   const double* x = state.position.data();
   const double* y = x + n;
   double* fx = force.data();
@@ -113,7 +113,7 @@ void DpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
 }
 
 void DpForces::add_walls(const DropletState& state, Eigen::ArrayXd& force) {
-  const int n = dp_.vertices;
+  const int n = *dp_.vertices;
   const double* x = state.position.data();
   const double* y = x + n;
   double* fx = force.data();
@@ -135,7 +135,7 @@ void DpForces::add_walls(const DropletState& state, Eigen::ArrayXd& force) {
 }
 
 void DpForces::measure_wall_distance(const DropletState& state) {
-  const int n = dp_.vertices;
+  const int n = *dp_.vertices;
   const double* x = state.position.data();
   const double* y = x + n;
   double* distance = wall_distance_.data();
@@ -152,7 +152,7 @@ void DpForces::measure_wall_distance(const DropletState& state) {
 /// The tension changes from Gamma, far from a wall, to that of the wetted wall where contact begins: a smooth
 /// step, so that the energy and the force are continuous, and wide enough for the edges to follow its bend.
 DpForces::Wetted DpForces::wetted(const DropletState& state, int vertex) const {
-  const int n = dp_.vertices;
+  const int n = *dp_.vertices;
   const Eigen::Array2d place{state.position[vertex], state.position[n + vertex]};
   double nearest = std::numeric_limits<double>::infinity();
   Wetted wetted;
@@ -183,7 +183,7 @@ DpForces::Wetted DpForces::wetted(const DropletState& state, int vertex) const {
 /// taken together. On a smooth interface its gradient has no part along the interface, -d(gamma)/ds from the
 /// edges cancels the pull towards the wall; what a polygon leaves of it is an error of its finite edges.
 DpForces::WettingForces DpForces::wetting_forces(const DropletState& state) const {
-  const int n = dp_.vertices;
+  const int n = *dp_.vertices;
   const auto edge = [&](int i) {
     const int end = i + 1 < n ? i + 1 : 0;
     return Eigen::Array2d(state.position[end] - state.position[i],
@@ -218,7 +218,7 @@ DpForces::WettingForces DpForces::wetting_forces(const DropletState& state) cons
 }
 
 void DpForces::add_self_contact(const DropletState& state, Eigen::ArrayXd& force) const {
-  const int n = dp_.vertices;
+  const int n = *dp_.vertices;
   const double* x = state.position.data();
   const double* y = x + n;
   double* fx = force.data();
@@ -241,7 +241,7 @@ void DpForces::add_self_contact(const DropletState& state, Eigen::ArrayXd& force
 
 template <class Visit>
 void DpForces::visit_overlaps(const DropletState& state, Visit visit) const {
-  const int n = dp_.vertices;
+  const int n = *dp_.vertices;
   const auto vertex = [&](int i) { return Eigen::Array2d(state.position[i], state.position[n + i]); };
   const Eigen::ArrayXd fine = refined(state.position);
   const auto point = [&](int i) { return Eigen::Array2d(fine[i % (2 * n)], fine[2 * n + i % (2 * n)]); };
@@ -270,7 +270,7 @@ double DpForces::deepest_overlap(const DropletState& state) const {
 }
 
 PotentialEnergy DpForces::energy(const DropletState& state) const {
-  const int n = dp_.vertices;
+  const int n = *dp_.vertices;
   const double* x = state.position.data();
   const double* y = x + n;
   const PolygonShape shape = polygon_shape(state.position);

@@ -37,7 +37,7 @@ DpStepper::DpStepper(const RunParameters& run, const DpForces& forces)
       forces_(&forces),
       terms_(terms_of(run)),
       kernel_(kernel::step_kernel(terms_)),
-      n_(run.dp.vertices) {
+      n_(*run.dp.vertices) {
   // Every array on a cache line, with room for an entry before and a group behind it.
   constexpr int line = 8;
   const int stride = (n_ + line - 1) / line * line + 3 * line;

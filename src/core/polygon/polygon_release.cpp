@@ -18,10 +18,10 @@ constexpr double radius = units::droplet_diameter / 2;
 
 /// A polygon smaller than the droplet has a smaller perimeter: a stiffer tension mode, a softer area mode.
 FireOptions fire_options(const RunParameters& run, double perimeter) {
-  const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, perimeter, perimeter / run.dp.vertices);
-  return {.mass = units::droplet_mass / run.dp.vertices,
+  const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, perimeter, perimeter / *run.dp.vertices);
+  return {.mass = units::droplet_mass / *run.dp.vertices,
           .largest_step = 0.5 * largest_stable_step(modes),
-          .max_move = 0.05 * units::regular_edge_length(run.dp.vertices)};
+          .max_move = 0.05 * units::regular_edge_length(*run.dp.vertices)};
 }
 
 /// A small circle in the nearest void, at rest, and its area.
@@ -30,7 +30,7 @@ struct Seed {
   double area;
 };
 Seed seed_polygon(const RunParameters& run, const ObstacleArray& obstacles) {
-  const int n = run.dp.vertices;
+  const int n = *run.dp.vertices;
   const Eigen::Array2d place = nearest_void(obstacles);
   // A hundredth less, so that nothing touches.
   const double room = 0.99 * (clearance(obstacles, place[0], place[1], 2 * radius) - *run.dp.contact_range);
@@ -58,7 +58,7 @@ RunParameters with_growing_interface(RunParameters run) {
 }
 
 double vertex_weight(const RunParameters& run) {
-  return units::droplet_mass * units::gravity / run.dp.vertices;
+  return units::droplet_mass * units::gravity / *run.dp.vertices;
 }
 
 DpForces weightless_forces(const RunParameters& run, const ObstacleArray& obstacles) {

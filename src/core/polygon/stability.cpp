@@ -9,9 +9,9 @@ namespace clog {
 
 StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double perimeter,
                        double shortest_edge) {
-  const double num_vertices = dp.vertices;
+  const double num_vertices = *dp.vertices;
   const double vertex_mass = units::droplet_mass / num_vertices;
-  const double vertex_diameter = units::regular_edge_length(dp.vertices);
+  const double vertex_diameter = units::regular_edge_length(*dp.vertices);
   const int edges_per_vertex = dp.wall_contact == WallContact::edge ? 2 : 1;
   const double mean_edge = perimeter / num_vertices;
   const double edge = std::max(shortest_edge, 0.01 * mean_edge);

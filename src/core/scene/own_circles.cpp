@@ -36,6 +36,7 @@ std::vector<Obstacle> circles_of(const ObstacleParameters& obstacles) {
 double smallest_circle(const RunParameters& run) {
   if (!run.obstacles.own || !run.obstacles.own->are_known()) return run.obstacles.diameter;
   const std::vector<Obstacle> circles = circles_of(run.obstacles);
+  if (circles.empty()) return run.obstacles.diameter;
   const auto smallest =
       std::min_element(circles.begin(), circles.end(),
                        [](const Obstacle& a, const Obstacle& b) { return a.radius < b.radius; });

@@ -38,9 +38,9 @@ TEST(Release, NeverEnclosesAnObstacleAndStartsAtRest) {
       DpForces forces(run, obstacles);
       forces.set_weight(0);
       forces.update_contacts(state, {});
-      Eigen::ArrayXd force(2 * run.dp.vertices);
+      Eigen::ArrayXd force(2 * *run.dp.vertices);
       forces.evaluate(state, force);
-      const double vertex_weight = units::droplet_mass / run.dp.vertices;
+      const double vertex_weight = units::droplet_mass / *run.dp.vertices;
       EXPECT_LE(force.abs().maxCoeff(), 1.01 * release_force_tolerance * vertex_weight) << "seed " << seed;
       EXPECT_NEAR(forces.shape().area, units::rest_area, 0.02) << "seed " << seed;
       EXPECT_LT(DpDroplet(run, obstacles, state).deepest_overlap(), 0.6 * forces.vertex_diameter())

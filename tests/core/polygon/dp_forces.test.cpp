@@ -30,7 +30,7 @@ double free_force_error(const RunParameters& run, double weight = 0) {
   const ObstacleArray nothing = no_obstacles();
   DpForces forces(run, nothing);
   forces.set_weight(weight);
-  return force_error(forces, state_of(shaken(regular_polygon(run.dp.vertices, 0.8), 0.003)));
+  return force_error(forces, state_of(shaken(regular_polygon(*run.dp.vertices, 0.8), 0.003)));
 }
 
 TEST(DpForces, AreaTermIsTheGradientOfItsEnergy) {
@@ -169,7 +169,7 @@ TEST(DpForces, LaplacePressureOfACircleIsLineTensionOverRadius) {
   const ObstacleArray nothing = no_obstacles();
   DpForces forces(run, nothing);
   forces.set_weight(0);
-  const int n = run.dp.vertices;
+  const int n = *run.dp.vertices;
   const Eigen::ArrayXd position = regular_polygon(n, 0.6);
   const double inner_radius = position[0] * std::cos(std::numbers::pi / n);
   forces.set_rest_area(0.6 + 2 / inner_radius / *run.dp.area_stiffness);

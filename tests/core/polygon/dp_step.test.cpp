@@ -22,7 +22,7 @@ using namespace test;
 class ReadableDroplet {
  public:
   ReadableDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial)
-      : run_(run), n_(run.dp.vertices), forces_(run, obstacles), state_(std::move(initial)), force_(2 * n_) {
+      : run_(run), n_(*run.dp.vertices), forces_(run, obstacles), state_(std::move(initial)), force_(2 * n_) {
     forces_.update_contacts(state_, {.absolute = 0.05, .relative = 0.05});
     forces_.evaluate(state_, force_);
   }

@@ -14,7 +14,7 @@ using namespace test;
 /// mass.
 double stiffest_omega2(const RunParameters& run, const Eigen::ArrayXd& position,
                        const ObstacleArray& obstacles = no_obstacles()) {
-  const int n = run.dp.vertices;
+  const int n = *run.dp.vertices;
   DpForces forces(run, obstacles);
   forces.set_rest_area(polygon_shape(position).area);
   DropletState state = state_of(position);
@@ -42,7 +42,7 @@ TEST(StiffModes, BoundTheStiffestModeOfTheDroplet) {
       RunParameters run = bare_parameters(128);
       run.dp.line_tension = line_tension;
       StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, polygon_shape(position).perimeter,
-                                     polygon_shape(position).perimeter / run.dp.vertices);
+                                     polygon_shape(position).perimeter / *run.dp.vertices);
       modes.contact = 0;  // nothing to touch here
       const double stiffest = stiffest_omega2(run, position);
       EXPECT_LE(stiffest, 1.001 * modes.sum()) << "Gamma " << line_tension;
@@ -113,13 +113,13 @@ TEST(StiffModes, LeaveRoomForAContactThatTurnsWithItsEdges) {
 
 TEST(StiffModes, ContactModeIsThatOfAVertexWithBothItsEdges) {
   const RunParameters run = bare_parameters(128);
-  const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, 3.14, 3.14 / run.dp.vertices);
+  const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, 3.14, 3.14 / *run.dp.vertices);
   EXPECT_NEAR(modes.contact, 2 * 1000 * 128 / units::droplet_mass, 1e-6);
 }
 
 TEST(NumSubsteps, IsOneUpToTheLargestStableStep) {
   const RunParameters run = resolve(RunParameters{});
-  const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, 3.14, 3.14 / run.dp.vertices);
+  const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, 3.14, 3.14 / *run.dp.vertices);
   const double largest = largest_stable_step(modes);
   EXPECT_EQ(num_substeps(modes, largest), 1);
   EXPECT_EQ(num_substeps(modes, 1.01 * largest), 2);

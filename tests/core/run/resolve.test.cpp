@@ -151,8 +151,8 @@ TEST(Resolve, FillsInTheStiffestStableContact) {
   RunParameters run;
   run.time_step = 1e-3;
   const double k =
-      contact_stiffness(*resolve(run).wall_stiffness, units::regular_edge_length(run.dp.vertices));
-  EXPECT_NEAR(k * 1e-6 / (units::droplet_mass / run.dp.vertices), 0.25, 1e-12);
+      contact_stiffness(*resolve(run).wall_stiffness, units::regular_edge_length(*run.dp.vertices));
+  EXPECT_NEAR(k * 1e-6 / (units::droplet_mass / *run.dp.vertices), 0.25, 1e-12);
 }
 
 TEST(Resolve, FillsInTheLargestStepThatHolds) {

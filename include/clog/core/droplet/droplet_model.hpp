@@ -17,8 +17,10 @@ struct DropletModel {
   /// Key of the parameter that says how stiff a droplet is.
   const char* stiffness_key;
 
-  /// Of the points that move [1].
-  int (*num_points)(const RunParameters& run);
+  /// Chooses the number of points that move where none is given.
+  /// @param obstacle_diameter  of the smallest obstacle that the droplet can hang over, infinite if there is
+  /// none [sigma]
+  void (*choose_points)(RunParameters& run, double obstacle_diameter);
   /// Of a passage that the droplet's points resolve: it has to be wider [sigma].
   double (*narrowest)(const RunParameters& run);
   /// Replaces automatic values by those that will be used, and refuses what cannot be once they are known.
@@ -26,6 +28,8 @@ struct DropletModel {
   void (*resolve)(RunParameters& run, double sharpest_bend);
 
   // Of resolved parameters:
+  /// Of the points that move [1].
+  int (*num_points)(const RunParameters& run);
   /// The droplet without walls and weight, around the origin: all x, then all y [sigma].
   Eigen::ArrayXd (*free_shape)(const RunParameters& run);
   /// Distance from a free droplet's centre at which a wall begins to push it [sigma].

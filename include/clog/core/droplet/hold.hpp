@@ -24,6 +24,10 @@ struct ClogGeometry {
   /// Pairs of obstacles, one at least supporting, between which the interface looks downstream.
   int num_gaps = 0;
   int num_arcs = 0;  ///< runs of successive edges in contact with one obstacle
+  /// Part of the weight that the corners of the polygon can hold at most: of all wrapped obstacles, their
+  /// part of the support times x^2/16, x the longest edge on the obstacle over the radius at which it lies.
+  /// NaN without support.
+  double mesh_hold = std::numeric_limits<double>::quiet_NaN();
 
   /// Hybrid when wrapped obstacles and others each give a third of the support.
   ClogMechanism mechanism() const;

@@ -100,7 +100,7 @@ struct DpParameters {
   /// [sigma].
   double self_contact_range = published_vertex_diameter;
   Gravity gravity = Gravity::area;
-  int vertices = 128;  ///< N_v
+  std::optional<int> vertices;  ///< N_v; empty: automatic
 };
 
 /// The rectangle after which an array repeats: square boxes in a row along the flow.

@@ -4,6 +4,13 @@
 
 namespace clog {
 
+/// N_v where none is given. The corners of a polygon that hangs over an obstacle can hold up to x^2/16 of the
+/// weight, x = l/R', l the edges on the obstacle, R' the radius at which they lie: so many vertices that the
+/// longest edges to be expected hold half a percent, 128 at least, and at most 1024.
+/// @param obstacle_diameter  of the smallest obstacle that the droplet can hang over, infinite if there is
+/// none [sigma]
+int automatic_vertices(const RunParameters& run, double obstacle_diameter);
+
 /// The published range of contact [sigma].
 double half_vertex_diameter(const DpParameters& dp);
 
