@@ -249,11 +249,11 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
       const Ending ending = ending_of(*run, dwell);
       group.num_interrupted += sweep::is_unfinished(run->status) && !ending.is_clog;
       if (run->steps > 0) group.dwells_known_from = later(group.dwells_known_from, run->dwells.known_from);
-      group.num_on_mesh += sweep::may_hang_on_mesh(*run);
       group.num_repeating += sweep::has_met_repetition(*run);
       const bool is_left_out = std::max(ending.distance, 0.0) < from_distance;
       group.num_left_out += is_left_out;
       if (!is_left_out) counted.push_back(ending);
+      group.num_on_mesh += !is_left_out && sweep::may_hang_on_mesh(*run);
       group.num_flowing += !is_left_out && !ending.is_clog && run->status == RunStatus::flowing;
       const double relative_speed = run->mean_speed / run->parameters.drag.terminal_speed;
       speeds.push_back(relative_speed);

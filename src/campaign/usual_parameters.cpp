@@ -52,16 +52,21 @@ std::vector<Field> usual_parameters(const sweep::RunRow& row) try {
   const auto fields_of = [](RunParameters run) {
     return parameter_fields(sweep::describe(resolved_in_any_layout(std::move(run))));
   };
+  // One automatic value follows from the other: the step from the vertices, the stiffness of walls from both.
   RunParameters run = with_usual_values(row);
+  const std::vector<Field> with_usual_vertices = fields_of(run);
+  run.dp.vertices = row.parameters.dp.vertices;
   const std::vector<Field> with_usual_step = fields_of(run);
-  run.time_step = row.parameters.time_step;  // the stiffness of walls follows from it
+  run.time_step = row.parameters.time_step;
   const std::vector<Field> with_own_step = fields_of(run);
   std::vector<Field> usual = fields_of(defaults_for(row));
   for (std::size_t i = 0; i < usual.size(); ++i) {
     const sweep::Column& column = *group_columns()[i];
     if (column.name == "obstacle_density" && !run.obstacles.density) usual[i] = with_own_step[i];
     if (!column.may_be_automatic(run)) continue;
-    usual[i] = (column.name == "time_step" ? with_usual_step : with_own_step)[i];
+    usual[i] = (column.name == "vertices"    ? with_usual_vertices
+                : column.name == "time_step" ? with_usual_step
+                                             : with_own_step)[i];
   }
   return usual;
 } catch (const Error&) {

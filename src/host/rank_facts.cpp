@@ -30,7 +30,8 @@ double step_cost(double seconds) {
   parameters.obstacles.box = 20;
   parameters.obstacles.gap = 0.5;
   parameters.max_time = 1e9;
-  DropletRun run(resolve(parameters));
+  parameters = resolve(parameters);
+  DropletRun run(parameters);
   const auto now = [] { return std::chrono::steady_clock::now(); };
   const auto begin = now();
   std::chrono::duration<double> elapsed{};

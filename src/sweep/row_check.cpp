@@ -181,7 +181,7 @@ std::string clog_fault(const RunRow& row) {
   if (!std::isnan(row.wrapped_support) &&
       !(is_clogged && row.wrapped_support >= 0 && row.wrapped_support <= 1 + round_off))
     return named("wrapped_support", row.wrapped_support) + " is no share of a clog's support";
-  if (!std::isnan(row.mesh_hold) && !(is_clogged && row.mesh_hold >= 0))
+  if (!std::isnan(row.mesh_hold) && !(is_clogged && row.mesh_hold >= 0 && std::isfinite(row.mesh_hold)))
     return named("mesh_hold", row.mesh_hold) + " is no part of a clogged droplet's weight";
   if (std::min({row.num_wrapped, row.num_gaps, row.num_arcs}) < -1) return "a negative number of contacts";
   return "";

@@ -19,7 +19,7 @@ namespace {
 /// As tests/soundness/README.md has it.
 constexpr double largest_tension = 10;
 constexpr int fewest_vertices = 64;
-constexpr int most_vertices = 256;
+constexpr int most_vertices = 1024;
 struct SoundPreset {
   std::string_view name;
   double smallest_tension;         ///< with 128 vertices or more

@@ -20,6 +20,8 @@ import stored  # noqa: E402
 
 # Such droplets might get a hundred diameters far: rows of theirs can be given any distance up to that.
 FAR = ["max-time=1", "terminal-speed=100"]
+# As ten runs would have it whose law is exponential, exactly.
+EXPONENTIAL = -np.log(1 - (np.arange(10) + 0.5) / 10)
 
 
 class Profiles(ProgramTest):
@@ -301,7 +303,7 @@ class Fit(ProgramTest):
 
     def test_clogs_that_the_mesh_may_hold_are_marked(self):
         self.sweep("seeds=1..10", *FAR)
-        self.change(distance=np.arange(1.0, 11), status=[b"clogged"] * 10, mechanism=[b"wrapped"] * 10, mesh_hold=[0.009] * 10)
+        self.change(distance=3 * EXPONENTIAL, status=[b"clogged"] * 10, mechanism=[b"wrapped"] * 10, mesh_hold=[0.009] * 10)
         group, = self.fit()["groups"]
         self.assertEqual((group["on_mesh"], group["doubts"]), (0, None))
         self.change(mesh_hold=[0.009] * 9 + [0.011])
@@ -311,7 +313,7 @@ class Fit(ProgramTest):
 
     def test_of_files_without_a_word_on_the_mesh_all_that_hang_are_marked(self):
         self.sweep("seeds=1..10", *FAR)
-        self.change(status=[b"clogged"] * 10, distance=np.arange(1.0, 11), mechanism=[b"hybrid"] + [b"squeezed"] * 9)
+        self.change(status=[b"clogged"] * 10, distance=3 * EXPONENTIAL, mechanism=[b"hybrid"] + [b"squeezed"] * 9)
         stored_rows.make_older(self.folder / "sweep.h5", "7", ["mesh_hold"])
         group, = self.fit()["groups"]
         self.assertEqual((group["on_mesh"], group["doubts"]), (1, "held_by_mesh"))

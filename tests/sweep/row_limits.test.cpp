@@ -43,9 +43,9 @@ TEST(UnprovenParameters, AreNamedWithTheirValueBeyondIt) {
        "line-tension=0.04 (heavy-interface is sound from 0.05 to 10)"},
       {{{"preset", "literal"}}, "preset=literal (droplets cross themselves and obstacles)"},
       {{{"self-contact", "off"}}, "preset=custom (an interface that was not looked at)"},
-      {{{"vertices", "32"}}, "vertices=32 (64 to 256 were looked at)"},
-      {{{"vertices", "512"}}, "vertices=512 (64 to 256 were looked at)"},
-      {{{"obstacle-diameter", "0.04"}},
+      {{{"vertices", "32"}}, "vertices=32 (64 to 1024 were looked at)"},
+      {{{"vertices", "2048"}}, "vertices=2048 (64 to 1024 were looked at)"},
+      {{{"obstacle-diameter", "0.04"}, {"vertices", "128"}},
        "obstacle-diameter=0.04 (obstacles thinner than two edges, 0.04909, slip into the droplet; use more "
        "vertices)"}};
   for (const auto& [keys, words] : unproven)

@@ -38,11 +38,12 @@ bool is_definite(double bound, const MatrixXd& k) {
 }
 
 /// Do all of them die out under a drag, dx/dt = -Kx, faster than with this stiffness? True of all that are
-/// definite, which costs less to see. Springs along the interface have no energy: what they do to the shape
-/// makes K a little unsymmetric, and where it is soft it may be stable without being definite.
-bool is_stable(double bound, const MatrixXd& k) {
-  return is_definite(bound, k) ||
-         Eigen::EigenSolver<MatrixXd>(k, false).eigenvalues().real().minCoeff() > bound;
+/// definite, which costs less to see, and where forces have an energy, K being symmetric, of no others.
+/// Springs along the interface have none: what they do to the shape makes K a little unsymmetric, and where it
+/// is soft it may be stable without being definite.
+bool is_stable(double bound, const MatrixXd& k, bool has_energy) {
+  if (is_definite(bound, k)) return true;
+  return !has_energy && Eigen::EigenSolver<MatrixXd>(k, false).eigenvalues().real().minCoeff() > bound;
 }
 
 /// K, minus the derivative of the force, in two parts: K_tt, of the vertices along the interface, and the
@@ -51,8 +52,9 @@ bool is_stable(double bound, const MatrixXd& k) {
 /// discretisation.
 class Stiffness {
  public:
-  explicit Stiffness(const MatrixXd& k)
+  Stiffness(const MatrixXd& k, bool has_energy)
       : size_(k.rows() / 2),
+        has_energy_(has_energy),
         normal_along_(k.topRightCorner(size_, size_)),
         along_(k.bottomRightCorner(size_, size_)),
         along_factor_(along_),
@@ -61,7 +63,7 @@ class Stiffness {
         shape_factor_(shape_) {}
 
   /// Does it resist all displacements by more than `bound`, and let the vertices find their places?
-  bool resists(double bound) const { return is_definite(0, along_) && is_stable(bound, shape_); }
+  bool resists(double bound) const { return is_definite(0, along_) && is_stable(bound, shape_, has_energy_); }
   VectorXd solve(const VectorXd& force) const {
     const VectorXd along = along_factor_.solve(force.tail(size_));
     VectorXd move(2 * size_);
@@ -72,6 +74,7 @@ class Stiffness {
 
  private:
   Index size_;
+  bool has_energy_;
   MatrixXd normal_along_, along_;
   Eigen::PartialPivLU<MatrixXd> along_factor_;
   MatrixXd adapting_, shape_;
@@ -139,7 +142,8 @@ std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, co
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const Axes axes = forces.axes(field.state());
     const VectorXd force = field.force_at(position, axes);
-    const Stiffness stiffness(field.stiffness(axes));
+    const bool has_energy = axes.slide.size() == 0;
+    const Stiffness stiffness(field.stiffness(axes), has_energy);
     if (!stiffness.resists(least_stiffness * point_weight)) return std::nullopt;
     const VectorXd move = stiffness.solve(force);
     const double longest = move.lpNorm<Eigen::Infinity>();

@@ -39,6 +39,7 @@ RunParameters heavy_interface() {
 RunParameters soft_disk(double wall_stiffness = 5) {
   RunParameters run = robust();
   run.model = Model::sp;
+  run.dp.vertices.reset();
   run.wall_stiffness = wall_stiffness;
   return run;
 }

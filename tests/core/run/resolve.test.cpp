@@ -150,8 +150,8 @@ std::string refusal(const RunParameters& run) {
 TEST(Resolve, FillsInTheStiffestStableContact) {
   RunParameters run;
   run.time_step = 1e-3;
-  const double k =
-      contact_stiffness(*resolve(run).wall_stiffness, units::regular_edge_length(*run.dp.vertices));
+  run = resolve(run);
+  const double k = contact_stiffness(*run.wall_stiffness, units::regular_edge_length(*run.dp.vertices));
   EXPECT_NEAR(k * 1e-6 / (units::droplet_mass / *run.dp.vertices), 0.25, 1e-12);
 }
 
