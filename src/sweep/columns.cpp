@@ -294,9 +294,10 @@ std::vector<Column> make_columns() {
       member("num_gaps", &RunRow::num_gaps, result, "",
              "gaps between supporting obstacles that it looks into; -1: not known"),
       member("num_arcs", &RunRow::num_arcs, result, "", "arcs of contact; -1: not known"),
-      member("mesh_hold", &RunRow::mesh_hold, result, "",
-             "part of the weight of a clogged polygon that the corners of its mesh can hold at most, where it "
-             "hangs over obstacles; NaN otherwise"),
+      member(
+          "mesh_hold", &RunRow::mesh_hold, result, "",
+          "part of the weight of a clogged polygon that the corners of its mesh can hold at most, where it "
+          "hangs over obstacles; NaN otherwise"),
       member("largest_shape_parameter", &RunRow::largest_shape_parameter, result, "",
              "largest A on the way through a channel; NaN elsewhere, as in the next five"),
       member("largest_shape_parameter_at", &RunRow::largest_shape_parameter_at, result, "sigma",

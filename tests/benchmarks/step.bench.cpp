@@ -38,7 +38,8 @@ void advance(benchmark::State& state, const RunParameters& parameters) {
   run.advance(100);
   const std::int64_t before = run.result().steps;
   for ([[maybe_unused]] auto _ : state) run.advance(100);
-  count_steps(state, run.result().steps - before, parameters.model == Model::dp ? *parameters.dp.vertices : 1);
+  count_steps(state, run.result().steps - before,
+              parameters.model == Model::dp ? *parameters.dp.vertices : 1);
 }
 
 void with_instruction_set(benchmark::State& state, const std::string& set) {

@@ -39,8 +39,8 @@ bool is_definite(double bound, const MatrixXd& k) {
 
 /// Do all of them die out under a drag, dx/dt = -Kx, faster than with this stiffness? True of all that are
 /// definite, which costs less to see, and where forces have an energy, K being symmetric, of no others.
-/// Springs along the interface have none: what they do to the shape makes K a little unsymmetric, and where it
-/// is soft it may be stable without being definite.
+/// Springs along the interface have none: what they do to the shape makes K a little unsymmetric, and where
+/// it is soft it may be stable without being definite.
 bool is_stable(double bound, const MatrixXd& k, bool has_energy) {
   if (is_definite(bound, k)) return true;
   return !has_energy && Eigen::EigenSolver<MatrixXd>(k, false).eigenvalues().real().minCoeff() > bound;

@@ -42,8 +42,8 @@ RunParameters elastic(double line_tension, int vertices) {
 
 ObstacleArray one_obstacle() { return {box, {{middle, middle, radius}}}; }
 
-/// A circle straight upstream of the obstacle, turned so that a vertex (phase 0) or the middle of an edge (1/2)
-/// looks at it.
+/// A circle straight upstream of the obstacle, turned so that a vertex (phase 0) or the middle of an edge
+/// (1/2) looks at it.
 DropletState above_the_obstacle(const RunParameters& run, double phase, double aside = 0) {
   const int n = *run.dp.vertices;
   const Eigen::ArrayXd circle = regular_polygon(n, units::rest_area);
