@@ -61,7 +61,8 @@ bool is_sound(const Findings& findings) {
 }
 
 Findings look_at(const DropletState& state, const ObstacleArray& obstacles) {
-  const double vertex_diameter = units::regular_edge_length(static_cast<int>(state.size()));
+  const int usual = std::min(128, static_cast<int>(state.size()));
+  const double vertex_diameter = units::regular_edge_length(usual);
   const PolygonShape shape = polygon_shape(state.position);
   Findings findings;
   findings.crossings = num_self_crossings(state.position);

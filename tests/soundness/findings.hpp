@@ -7,9 +7,9 @@ namespace clog::soundness {
 
 /// What a deformable droplet looks like at one moment, or the worst of several moments.
 struct Findings {
-  int crossings = 0;      ///< see num_self_crossings()
-  int enclosed = 0;       ///< obstacles whose centre lies inside the droplet
-  double overlap = 0;     ///< depth of an obstacle's surface in the interface [vertex diameters]
+  int crossings = 0;   ///< see num_self_crossings()
+  int enclosed = 0;    ///< obstacles whose centre lies inside the droplet
+  double overlap = 0;  ///< depth of an obstacle's surface in the interface [vertex diameters, of 128 at most]
   double area_error = 0;  ///< |area/rest area - 1|
   double edge_ratio = 1;  ///< longest over shortest edge
   double perimeter = 0;   ///< in units of the circle's
@@ -20,7 +20,7 @@ struct Findings {
 };
 
 /// Contact is soft: the interface may come nearer to an obstacle's centre than its radius by this much
-/// [vertex diameters].
+/// [vertex diameters]. What is deep enough for 128 vertices is so for a finer mesh.
 inline constexpr double deepest_overlap = 0.25;
 /// The area may not be wrong by more than this.
 inline constexpr double largest_area_error = 0.05;
