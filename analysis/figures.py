@@ -21,13 +21,13 @@ from command_line import UserError
 
 with command_line.needs_modules():
     import style
-    from paper import arrays, channels  # noqa: F401, they fill the catalogue
+    from paper import arrays, channels, hanging  # noqa: F401, they fill the catalogue
     from paper.plate import CATALOGUE
     import programs
     from paper.workshop import Override, Workshop, measured
     from programs import ROOT
 
-ORDER = ["1", "2", "3", "4", "5", "6a", "6b", "6c", "7a", "7b", "7c", "8a", "8b", "8ca", "9a", "9b", "A1", "B1", "B2", "C1", "C2", "D", "E"]
+ORDER = ["1", "2", "3", "4", "5", "6a", "6b", "6c", "7a", "7b", "7c", "8a", "8b", "8ca", "9a", "9b", "A1", "B1", "B2", "C1", "C2", "D", "E", "W1"]
 
 
 def print_list():
