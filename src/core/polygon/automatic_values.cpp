@@ -73,19 +73,6 @@ void validate_compression(const DpParameters& dp, bool automatic_area) {
   });
 }
 
-/// A neck that the interface's repulsion keeps open never breaks, and one in every gap breaks all that pass.
-void validate_break_up(const RunParameters& run) {
-  const DpParameters& dp = run.dp;
-  if (dp.break_up_neck == 0) return;
-  require(dp.self_contact == SelfContact::off || dp.break_up_neck > dp.self_contact_range, "break-up-neck",
-          dp.break_up_neck, [&] {
-            return fmt::format(
-                "self-contact keeps both sides of a neck self-contact-range={} apart) use more than that, or "
-                "0 for no break-up",
-                shortest(dp.self_contact_range));
-          });
-}
-
 }  // namespace
 
 double half_vertex_diameter(const DpParameters& dp) { return units::regular_edge_length(dp.vertices) / 2; }
@@ -122,7 +109,6 @@ void resolve_polygon(RunParameters& run, double sharpest_bend) {
   const bool automatic_area = !dp.area_stiffness;
   if (automatic_area) dp.area_stiffness = automatic_area_stiffness(run, sharpest_bend);
   validate_compression(dp, automatic_area);
-  validate_break_up(run);
 
   if (dp.perimeter_spring == PerimeterSpring::along && dp.gravity == Gravity::vertex)
     throw Error(
