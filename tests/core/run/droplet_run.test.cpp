@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/byte_archive.hpp"
@@ -67,7 +68,7 @@ RunParameters long_run(Model model) {
   run.max_time = 850;
   run.model = model;
   if (model == Model::sp) run.wall_stiffness = 0.3;
-  if (model == Model::dp) run.dp.vertices = 64, run.dp.line_tension = 0.05, run.drag.near_wall = 0.02, run.dp.break_up_neck = 0.02;
+  if (model == Model::dp) run.dp.vertices = 64, run.dp.line_tension = 0.05, run.drag.near_wall = 0.02;
   return resolve(run);
 }
 
@@ -78,7 +79,8 @@ DropletRun resume_in_array(const RunParameters& run, std::span<const std::byte> 
 
 TEST(DropletRun, GoesOnFromEverySnapshotBitForBit) {
   for (const Model model : {Model::dp, Model::sp}) {
-    const RunParameters run = long_run(model);
+    RunParameters run = long_run(model);
+    if (model == Model::dp) run.dp.line_tension = 0.15, run.dp.break_up_neck = 0.02;
     DropletRun whole(run);
     EXPECT_TRUE(whole.snapshot().empty());
     std::vector<std::vector<std::byte>> snapshots;
@@ -86,6 +88,7 @@ TEST(DropletRun, GoesOnFromEverySnapshotBitForBit) {
       if (!whole.snapshot().empty() && (snapshots.empty() || snapshots.back() != whole.snapshot()))
         snapshots.push_back(whole.snapshot());
     ASSERT_EQ(snapshots.size(), 3u);
+    EXPECT_EQ(std::isnan(whole.result().neck.width), model == Model::sp) << whole.result().neck.width;
     for (const std::vector<std::byte>& snapshot : snapshots) {
       DropletRun resumed = resume_in_array(run, snapshot);
       EXPECT_GT(resumed.time(), 200);
@@ -244,6 +247,86 @@ TEST(DropletRun, FollowsASoftDiskToo) {
   EXPECT_EQ(result.status, RunStatus::clogged);
   EXPECT_EQ(result.shape_parameter, 1);
   EXPECT_EQ(result.hold.mechanism, ClogMechanism::squeezed);
+}
+
+/// Released 3 sigma upstream of a circle of 0.3 sigma, `offset` beside its centre's line.
+RunParameters falls_onto_a_circle(double line_tension, double offset, int vertices = 128) {
+  RunParameters run;
+  run.dp.line_tension = line_tension;
+  run.dp.vertices = vertices;
+  run.dp.break_up_neck = 0.03;
+  run.obstacles.box = 20;
+  run.obstacles.layout = ObstacleLayout::file;
+  run.obstacles.own = OwnCircles({{13, 10 + offset, 0.15}});
+  run.max_time = 250;
+  return resolve(run);
+}
+
+/// When its liquid hangs on both sides of a thin film over the obstacle, four interfaces of tension Gamma carry
+/// all of its weight, at most: below Gamma = pi/16 none holds it. Stiffer ones lie on the obstacle as well.
+TEST(BreakUp, HeadOnADropletTooHeavyForFourInterfacesBreaks) {
+  for (const int vertices : {64, 128, 256}) {
+    const RunResult broken = result_of(falls_onto_a_circle(0.95 * std::numbers::pi / 16, 0, vertices), 100);
+    EXPECT_EQ(broken.status, RunStatus::broken) << vertices;
+    EXPECT_LT(broken.neck.width, 0.03);
+    EXPECT_EQ(broken.neck.distance, broken.distance);
+    EXPECT_FALSE(broken.clogged_by);
+    const RunResult whole = result_of(falls_onto_a_circle(0.4, 0, vertices), 100);
+    EXPECT_EQ(whole.status, RunStatus::flowing) << vertices;
+    EXPECT_LT(whole.distance, 3) << "it lies on the obstacle";
+  }
+}
+
+/// What breaks head-on slips off on one side when it comes off-centre, unless it is softer.
+TEST(BreakUp, OffCentreADropletHasToBeSofterToBreak) {
+  for (const double side : {-1.0, 1.0}) {
+    const RunResult passed = result_of(falls_onto_a_circle(0.15, 0.1 * side), 100);
+    EXPECT_EQ(passed.status, RunStatus::flowing);
+    EXPECT_GT(passed.distance, 4);
+    EXPECT_GT(passed.lateral * -side, 0.1);
+    EXPECT_EQ(result_of(falls_onto_a_circle(0.05, 0.1 * side), 100).status, RunStatus::broken);
+    EXPECT_EQ(result_of(falls_onto_a_circle(0.05, 0.3 * side), 100).status, RunStatus::flowing);
+  }
+}
+
+/// Looking for necks changes nothing of a run's course but its end.
+TEST(BreakUp, TheCourseIsTheSameWithoutIt) {
+  RunParameters run = falls_onto_a_circle(0.05, 0.1);
+  const RunResult broken = result_of(run, 100);
+  run.max_time = broken.time;
+  run.dp.break_up_neck = 0;
+  const RunResult same = result_of(run, 100);
+  EXPECT_EQ(same.status, RunStatus::flowing);
+  EXPECT_TRUE(std::isnan(same.neck.width));
+  EXPECT_EQ(same.distance, broken.distance);
+  EXPECT_EQ(same.kinetic_energy_ratio, broken.kinetic_energy_ratio);
+}
+
+/// On its way to rest a droplet's neck still gets thinner after its rest is known. If that is too thin, it is
+/// no rest, and the droplet breaks when its neck is there.
+TEST(BreakUp, ComesBeforeACertifiedClog) {
+  RunParameters run;
+  run.dp.line_tension = 0.3;
+  run.dp.vertices = 64;
+  run.dp.break_up_neck = 0.02;
+  run.obstacles.box = 20;
+  run.max_time = 2000;
+  int num_tried = 0;
+  for (std::uint32_t seed = 1; seed <= 30 && num_tried < 3; ++seed) {
+    run.seed = seed;
+    run.dp.break_up_neck = 0.02;
+    run.clog_detection = ClogDetection::threshold;
+    const double at_rest = result_of(resolve(run), 1000).neck.width;
+    run.clog_detection = ClogDetection::certified;
+    const RunResult certified = result_of(resolve(run), 1000);
+    if (certified.status != RunStatus::clogged || !(certified.neck.width > at_rest)) continue;
+    ++num_tried;
+    run.dp.break_up_neck = (certified.neck.width + at_rest) / 2;
+    const RunResult broken = result_of(resolve(run), 1000);
+    EXPECT_EQ(broken.status, RunStatus::broken) << "seed " << seed;
+    EXPECT_GT(broken.time, certified.time);
+  }
+  EXPECT_EQ(num_tried, 3);
 }
 
 }  // namespace
