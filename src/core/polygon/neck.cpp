@@ -9,8 +9,11 @@ namespace clog {
 namespace {
 
 /// A part of the droplet is a lobe if a drop of its area is at least so many times as wide as the neck. What
-/// a chord cuts off a convex shape is at most half as large as a drop of the chord's width.
+/// a chord cuts off a circle is at most half as large as a drop of the chord's width.
 constexpr double lobe_width = 2;
+/// And if it has at least this share of the droplet's area. Without it a droplet would lose no more than a
+/// bead: films end in beads of a thousandth when they draw in.
+constexpr double lobe_share = 0.02;
 
 /// Cosine of an angle that counts as a right one: of a bridge with straight sides all segments are equal.
 constexpr double round_off = 1e-9;
@@ -112,7 +115,8 @@ bool lies_inside(const Contour& contour, Eigen::Index vertex, const Foot& foot) 
 }
 
 bool parts_are_lobes(const Contour& contour, Eigen::Index vertex, const Foot& foot, double width) {
-  const double least = std::numbers::pi / 4 * (lobe_width * width) * (lobe_width * width);
+  const double least = std::max(lobe_share * contour.area(),
+                                std::numbers::pi / 4 * (lobe_width * width) * (lobe_width * width));
   const double part = contour.area_behind(vertex, foot.edge, foot.point);
   return part >= least && contour.area() - part >= least;
 }

@@ -95,9 +95,19 @@ TEST(ThinnestNeck, IsTheWidthOfAStadiumIfItsHalvesAreLobes) {
 
 /// A circle almost without a bridge, of 1.8 or 2.2 times its width.
 TEST(ThinnestNeck, JoinsPartsThatAreTwiceAsWide) {
-  const double width = 0.1;
-  EXPECT_EQ(thinnest_neck(bridged_circles(0.6, 0.9 * width, width, 64, 0.68)), INFINITY);
-  EXPECT_NEAR(thinnest_neck(bridged_circles(0.6, 1.1 * width, width, 64, 0.70)), width, 1e-12);
+  const double width = 0.2;
+  EXPECT_EQ(thinnest_neck(bridged_circles(0.6, 0.9 * width, width, 64, 0.75)), INFINITY);
+  EXPECT_NEAR(thinnest_neck(bridged_circles(0.6, 1.1 * width, width, 64, 0.79)), width, 1e-12);
+}
+
+/// A circle of 1.9 or 2.1 hundredths of the area of both.
+TEST(ThinnestNeck, JoinsPartsOfTwoHundredthsOfTheArea) {
+  const double width = 0.01;
+  for (const double share : {0.019, 0.021}) {
+    const double radius = 0.5 * std::sqrt(share / (1 - share));
+    const double neck = thinnest_neck(bridged_circles(0.5, radius, width, 128, 0.5 + radius));
+    EXPECT_EQ(neck < 1, share > 0.02) << neck;
+  }
 }
 
 /// Distances to two points at +-a have the product b^2: 2 sqrt(b^2 - a^2) wide in the middle for a < b <

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "clog/core/model/model.hpp"
+#include "clog/core/polygon/neck.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/byte_archive.hpp"
 #include "clog/core/tools/error.hpp"
@@ -80,7 +82,8 @@ DropletRun resume_in_array(const RunParameters& run, std::span<const std::byte> 
 TEST(DropletRun, GoesOnFromEverySnapshotBitForBit) {
   for (const Model model : {Model::dp, Model::sp}) {
     RunParameters run = long_run(model);
-    if (model == Model::dp) run.dp.line_tension = 0.15, run.dp.break_up_neck = 0.02;
+    if (model == Model::dp)
+      run.obstacles.gap = 0.35, run.dp.line_tension = 0.2, run.dp.break_up_neck = 0.02, run.seed = 1;
     DropletRun whole(run);
     EXPECT_TRUE(whole.snapshot().empty());
     std::vector<std::vector<std::byte>> snapshots;
@@ -302,31 +305,38 @@ TEST(BreakUp, TheCourseIsTheSameWithoutIt) {
   EXPECT_EQ(same.kinetic_energy_ratio, broken.kinetic_energy_ratio);
 }
 
-/// On its way to rest a droplet's neck still gets thinner after its rest is known. If that is too thin, it is
-/// no rest, and the droplet breaks when its neck is there.
+/// A droplet that hangs over an obstacle, with its rest known, from where its neck still gets thinner: a rest
+/// with a neck that is too thin is none, and it breaks when its neck is there.
 TEST(BreakUp, ComesBeforeACertifiedClog) {
   RunParameters run;
-  run.dp.line_tension = 0.3;
+  run.dp.perimeter_spring = PerimeterSpring::rest;
+  run.dp.line_tension = 0.1;
+  run.dp.perimeter_stiffness = 0.1 * run.dp.line_tension;
+  run.dp.gravity = Gravity::vertex;
   run.dp.vertices = 64;
-  run.dp.break_up_neck = 0.02;
-  run.obstacles.box = 20;
-  run.max_time = 2000;
-  int num_tried = 0;
-  for (std::uint32_t seed = 1; seed <= 30 && num_tried < 3; ++seed) {
-    run.seed = seed;
-    run.dp.break_up_neck = 0.02;
-    run.clog_detection = ClogDetection::threshold;
-    const double at_rest = result_of(resolve(run), 1000).neck.width;
-    run.clog_detection = ClogDetection::certified;
-    const RunResult certified = result_of(resolve(run), 1000);
-    if (certified.status != RunStatus::clogged || !(certified.neck.width > at_rest)) continue;
-    ++num_tried;
-    run.dp.break_up_neck = (certified.neck.width + at_rest) / 2;
-    const RunResult broken = result_of(resolve(run), 1000);
-    EXPECT_EQ(broken.status, RunStatus::broken) << "seed " << seed;
-    EXPECT_GT(broken.time, certified.time);
+  run.obstacles.gap = 0.3;
+  run.obstacles.box = 40;
+  run.max_time = 3000;
+  run.seed = 3;
+  run = resolve(run);
+  DropletRun hung(run);
+  while (!hung.advance(1000)) {
   }
-  EXPECT_EQ(num_tried, 3);
+  ASSERT_EQ(hung.result().clogged_by, ClogDetection::certified);
+  const DropletState state = hung.droplet().state();
+  const std::optional<DropletState> rest = model_of(run).equilibrium(run, hung.obstacles(), state);
+  ASSERT_TRUE(rest);
+  const double now = thinnest_neck(state.position), at_rest = thinnest_neck(rest->position);
+  ASSERT_LT(at_rest, now);
+  run.max_time = 1000;
+  const auto obstacles = std::make_shared<const ObstacleArray>(sample_obstacles(run.obstacles, run.seed));
+  for (const double share : {-0.5, 0.5}) {  // on either side of the neck at rest
+    run.dp.break_up_neck = at_rest + share * (now - at_rest);
+    DropletRun on(run, obstacles, state);
+    while (!on.advance(1000)) {
+    }
+    EXPECT_EQ(on.result().status, share > 0 ? RunStatus::broken : RunStatus::clogged) << at_rest << " " << now;
+  }
 }
 
 }  // namespace
