@@ -146,8 +146,8 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
       {"runs", [](const Group& group) { return std::to_string(group.clogging.num_runs); }},
       {"clogs", [](const Group& group) { return std::to_string(group.clogging.num_clogs); }}};
   if (are_mechanisms_shown(groups)) columns.push_back({"w/s/h/o", mechanism_counts});
-  columns.insert(columns.end(), {{"lambda/sigma", length_text},
-                                 {fmt::format("{:g} %", 100 * confidence), interval_text}});
+  columns.insert(columns.end(),
+                 {{"lambda/sigma", length_text}, {fmt::format("{:g} %", 100 * confidence), interval_text}});
   if (have_some_broken(groups))
     columns.insert(columns.end(), {{"broken",
                                     [](const Group& group) {
@@ -155,8 +155,7 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
                                       return broken ? std::to_string(broken->num_clogs) : "-";
                                     }},
                                    {"lambda_b/sigma", break_up_length}});
-  columns.insert(columns.end(), {
-                                 {"<v_g>/v_t", [](const Group& group) { return speed_of(group).value; }},
+  columns.insert(columns.end(), {{"<v_g>/v_t", [](const Group& group) { return speed_of(group).value; }},
                                  {"+-", [](const Group& group) { return speed_of(group).error; }}});
   // In random arrays a droplet goes straight on the average.
   if (std::any_of(groups.begin(), groups.end(), is_lattice))
@@ -229,7 +228,9 @@ std::string left_out(const std::vector<Group>& groups) {
     text += fmt::format("w/s/h/o: clogs by wrapping, by squeezing, by both, by neither{}\n",
                         std::ranges::any_of(groups, is_dwell_possible) ? " or droplets that went on" : "");
   if (have_some_broken(groups))
-    text += "lambda_b: of break-ups; where droplets break up they count as not clogged so far, and the other way round\n";
+    text +=
+        "lambda_b: of break-ups; where droplets break up they count as not clogged so far, and the other way "
+        "round\n";
   if (num_left_out > 0)
     text += fmt::format(
         "   {} ended before --from-distance, left out of runs, clogs and lambda; <v_g> is still of all "

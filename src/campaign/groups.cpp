@@ -84,8 +84,8 @@ std::vector<Field> fields_of_run(const sweep::RunRow& row) {
   for (const char* name :
        {"status", "distance", "time", "largest_shape_parameter", "largest_shape_parameter_at",
         "largest_relative_speed", "largest_relative_speed_at", "smallest_relative_speed",
-        "smallest_relative_speed_at", "sag", "top_sag", "thinnest_neck", "thinnest_neck_at", "shape_parameter",
-        "mean_speed"})
+        "smallest_relative_speed_at", "sag", "top_sag", "thinnest_neck", "thinnest_neck_at",
+        "shape_parameter", "mean_speed"})
     fields.emplace_back(name, sweep::column(name).get(row));
   return fields;
 }
@@ -132,8 +132,7 @@ Ending ending_of(const sweep::RunRow& run, double dwell) {
   const Ending last = {run.distance, is_clogged, cause_of(run)};
   if (!has_dwells_to_tell(run, dwell)) return last;
   // What held a droplet that went on is not known: it counts among the other mechanisms.
-  if (const Dwell* first = run.dwells.first_longer(dwell))
-    return {first->distance, true, Cause::other};
+  if (const Dwell* first = run.dwells.first_longer(dwell)) return {first->distance, true, Cause::other};
   return is_clogged || last.cause ? last : Ending{run.dwells.last_distance, false, {}};
 }
 
@@ -173,8 +172,7 @@ void fit_clogging(Group& group, std::span<const Ending> runs, double confidence,
   // Observations in which only some of the ends are such, the other runs being censored where they ended.
   const auto observe = [&](auto is_end) {
     std::vector<fit::Observation> observations;
-    for (const Ending& run : runs)
-      observations.push_back({run.distance - from_distance, is_end(run)});
+    for (const Ending& run : runs) observations.push_back({run.distance - from_distance, is_end(run)});
     return observations;
   };
   const std::vector<fit::Observation> all = observe([](const Ending& run) { return run.is_clog; });
@@ -189,8 +187,8 @@ void fit_clogging(Group& group, std::span<const Ending> runs, double confidence,
     return;
   std::vector<fit::CompetingEnd> competing;
   for (const Ending& run : runs)
-    competing.push_back(
-        {run.distance - from_distance, run.cause ? std::optional(static_cast<int>(*run.cause)) : std::nullopt});
+    competing.push_back({run.distance - from_distance,
+                         run.cause ? std::optional(static_cast<int>(*run.cause)) : std::nullopt});
   for (const CauseText& text : cause_texts) {
     const auto is_of_cause = [&](const Ending& run) { return run.cause == text.cause; };
     Group::EndsBy& one = group.causes.emplace_back(

@@ -11,7 +11,7 @@ namespace {
 
 /// Sums over all distances so far from which the variance of F_c follows. With g = d/(n (n - d)), all causes,
 /// and h = P d_c/n^2 it is the sum of (F - F_s)^2 g + P h (n - d_c)/n - 2 (F - F_s) h, F_s being F_c at the
-/// summand's distance and F now.
+/// term's distance and F now.
 struct VarianceSums {
   double g = 0, F_g = 0, F2_g = 0;
   double own = 0;

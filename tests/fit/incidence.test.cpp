@@ -17,11 +17,13 @@ CompetingEnd by(int cause, double distance) { return {distance, cause}; }
 CompetingEnd going(double distance) { return {distance, std::nullopt}; }
 
 /// Ties within and between causes, and with a censored run.
-const std::vector<CompetingEnd> twenty_runs = {
-    by(1, 1), by(1, 2),  by(2, 2), going(3),  by(1, 4),  by(2, 4),  going(4),  by(2, 5),  by(1, 6),  by(1, 7),
-    going(7), by(2, 8),  by(1, 9), by(2, 10), by(2, 10), going(11), by(1, 12), going(13), by(2, 14), by(1, 15)};
+const std::vector<CompetingEnd> twenty_runs = {by(1, 1),  by(1, 2),  by(2, 2),  going(3),  by(1, 4),
+                                               by(2, 4),  going(4),  by(2, 5),  by(1, 6),  by(1, 7),
+                                               going(7),  by(2, 8),  by(1, 9),  by(2, 10), by(2, 10),
+                                               going(11), by(1, 12), going(13), by(2, 14), by(1, 15)};
 
-/// statsmodels 0.13.5, CumIncidenceRight(time, status); its errors at the last distance, where all end, are NaN.
+/// statsmodels 0.13.5, CumIncidenceRight(time, status); its errors at the last distance, where all end, are
+/// NaN.
 TEST(CumulativeIncidence, IsTheReferenceAnswer) {
   struct Expected {
     double distance, probability, error;
@@ -69,10 +71,11 @@ TEST(CumulativeIncidence, OfUncensoredRunsIsTheirShareWithABinomialError) {
   const auto all = static_cast<double>(runs.size());
   for (const int cause : {0, 1, 2})
     for (const IncidenceStep& step : cumulative_incidence(runs, cause)) {
-      const double share = static_cast<double>(std::ranges::count_if(runs, [&](const CompetingEnd& run) {
-                             return run.cause == cause && run.distance <= step.distance;
-                           })) /
-                           all;
+      const double share =
+          static_cast<double>(std::ranges::count_if(
+              runs,
+              [&](const CompetingEnd& run) { return run.cause == cause && run.distance <= step.distance; })) /
+          all;
       EXPECT_NEAR(step.probability, share, 1e-12);
       EXPECT_NEAR(step.standard_error, std::sqrt(share * (1 - share) / all), 1e-12);
       EXPECT_LT(step.interval.lower, share);

@@ -323,8 +323,13 @@ class Fit(ProgramTest):
         self.assertRegex(text, r"95 % +broken +lambda_b/sigma.*\n.* 4 +13\.\d+ ")
         self.assertIn("lambda_b: of break-ups", text)
         self.assertNotIn("w/s/h/o", text)
-        # Any dwell ends a run before its droplet breaks; without one it does.
+        # A droplet that stood for long ended there, also if it broke later on; else it ends where it broke.
+        dwells = [name for name in stored_rows.columns(self.folder / "sweep.h5") if name.startswith(("longest_dwell", "earlier_dwell"))]
+        self.change(**{name: np.nan for name in dwells})
         self.assertEqual(self.fit("--dwell", 0.9)["groups"][0]["broken"], 4)
+        self.change(longest_dwell=[np.nan, 0.95] + [np.nan] * 8, longest_dwell_at=[np.nan, 0.01] + [np.nan] * 8, longest_dwell_from=[np.nan, 0] + [np.nan] * 8)
+        group, = self.fit("--dwell", 0.9)["groups"]
+        self.assertEqual((group["broken"], group["other"]), (3, 1))
         self.change(status=[b"flowing"] * 10, mechanism=b"none", thinnest_neck=np.nan, thinnest_neck_at=np.nan)
         group, = self.fit()["groups"]
         self.assertEqual((group["broken"], group["break_up_length"], group["incidence"]), (0, None, {}))
@@ -430,7 +435,7 @@ class Fit(ProgramTest):
         groups = self.fit()["groups"]
         self.assertEqual(len(lines), 2)
         for line, group in zip(lines, groups):
-            self.assertEqual(list(line), [name for name in group if name not in ("survival", "censored_distances")])
+            self.assertEqual(list(line), [name for name in group if name not in ("survival", "incidence", "censored_distances")])
             self.assertEqual(float(line["total_distance"]), group["total_distance"])
 
     def test_numbers_have_the_figures_that_their_interval_allows(self):

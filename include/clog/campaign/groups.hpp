@@ -62,8 +62,8 @@ inline constexpr DoubtText doubt_texts[] = {
      "(tests/soundness/README.md)"}};
 const DoubtText& text_of(Doubt doubt);
 
-/// By what a run may end, each a competing risk for the others: how a clog is held (`other` are clogs by none of
-/// the mechanisms), or the droplet's break-up.
+/// By what a run may end, each a competing risk for the others: how a clog is held (`other` are clogs by none
+/// of the mechanisms), or the droplet's break-up.
 enum class Cause { wrapped, squeezed, hybrid, other, broken };
 /// How files name the number of its ends, their length (S over that number) and that one's interval.
 struct CauseText {
@@ -92,8 +92,8 @@ struct Group {
   fit::WeibullTest weibull;
   std::vector<fit::SurvivalStep> survival;
   std::vector<double> censored_distances;  ///< of the runs that did not clog, increasing [sigma]
-  /// One of each Cause, in their order: the runs that it ended, all others censored. Empty if the mechanism of
-  /// a clog is not known.
+  /// One of each Cause, in their order: the runs that it ended, all others censored. Empty if the mechanism
+  /// of a clog is not known.
   struct EndsBy {
     const CauseText* text;
     fit::CloggingLength ends;

@@ -27,12 +27,12 @@ struct IncidenceStep {
 };
 
 /// Aalen and Johansen's estimate (Scand. J. Stat. 5, 141 (1978)): F_c grows by P d_c/n at every distance with
-/// ends, P the probability to have come so far (survival_curve() of all causes), n the runs at risk, d_c those
-/// of them that end by the cause. So F_c of all causes and P add up to 1, which one minus the survival curves
-/// of single causes, the other ends being censored, do not. One step per distance with ends by the cause, in
-/// increasing order; at equal distances ends come before censorings. The variance is that of Dinse and Larson
-/// (Biometrika 73, 379 (1986)), binomial without censoring. Intervals are symmetric in log(-log F_c), as those
-/// of survival_curve().
+/// ends, P the probability to have come so far (survival_curve() of all causes), n the runs at risk, d_c
+/// those of them that end by the cause. So F_c of all causes and P add up to 1, which one minus the survival
+/// curves of single causes, the other ends being censored, do not. One step per distance with ends by the
+/// cause, in increasing order; at equal distances ends come before censorings. The variance is that of Dinse
+/// and Larson (Biometrika 73, 379 (1986)), binomial without censoring. Intervals are symmetric in log(-log
+/// F_c), as those of survival_curve().
 /// @throws std::invalid_argument unless 0 < confidence < 1
 std::vector<IncidenceStep> cumulative_incidence(std::span<const CompetingEnd> runs, int cause,
                                                 double confidence = 0.95);

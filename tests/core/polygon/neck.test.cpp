@@ -30,8 +30,8 @@ Eigen::ArrayXd closed_curve(int num_vertices, Point point) {
 }
 
 Eigen::ArrayXd ellipse(int num_vertices, double along, double across) {
-  return closed_curve(
-      num_vertices, [=](double t) { return Eigen::Array2d(along * std::cos(t), across * std::sin(t)); });
+  return closed_curve(num_vertices,
+                      [=](double t) { return Eigen::Array2d(along * std::cos(t), across * std::sin(t)); });
 }
 
 Eigen::ArrayXd turned(const Eigen::ArrayXd& position, double angle) {
@@ -106,7 +106,7 @@ TEST(ThinnestNeck, JoinsPartsOfTwoHundredthsOfTheArea) {
   for (const double share : {0.019, 0.021}) {
     const double radius = 0.5 * std::sqrt(share / (1 - share));
     const double neck = thinnest_neck(bridged_circles(0.5, radius, width, 128, 0.5 + radius));
-    EXPECT_EQ(neck < 1, share > 0.02) << neck;
+    EXPECT_EQ(neck<1, share> 0.02) << neck;
   }
 }
 
@@ -120,7 +120,8 @@ TEST(ThinnestNeck, OfACassiniOvalConvergesAsTheContourDoes) {
     for (const int num_vertices : {130, 258, 514, 1026}) {  // no vertex in the middle
       const double neck = thinnest_neck(closed_curve(num_vertices, [=](double t) {
         const double s = std::sin(2 * t);
-        const double r = std::sqrt(a * a * std::cos(2 * t) + std::sqrt(std::pow(b, 4) - std::pow(a, 4) * s * s));
+        const double r =
+            std::sqrt(a * a * std::cos(2 * t) + std::sqrt(std::pow(b, 4) - std::pow(a, 4) * s * s));
         return Eigen::Array2d(r * std::cos(t), r * std::sin(t));
       }));
       const double error = std::abs(neck - exact);
@@ -135,7 +136,8 @@ TEST(ThinnestNeck, DoesNotDependOnWhereTheContourBegins) {
   const Eigen::ArrayXd shape = test::dumbbell(128, 0.04);
   const double width = thinnest_neck(shape);
   EXPECT_NEAR(width, 0.04, 1e-3);
-  for (const int first : {1, 31, 32, 64, 127}) EXPECT_NEAR(thinnest_neck(test::renumbered(shape, first)), width, 1e-15);
+  for (const int first : {1, 31, 32, 64, 127})
+    EXPECT_NEAR(thinnest_neck(test::renumbered(shape, first)), width, 1e-15);
 }
 
 TEST(ThinnestNeck, IsLookedForBelowABoundOnly) {
@@ -162,7 +164,8 @@ TEST(ThinnestNeck, IsTheFilmAboveAnObstacleAndNotTheGapBetweenLobes) {
 
 TEST(ThinnestNeck, HasOneLineOfSight) {
   // Two parallel bars joined at one end: the far sides face each other over both bars and the water between.
-  const Eigen::ArrayXd bars = polygon_of({{0, 0}, {2, 0}, {2, 0.3}, {0.5, 0.3}, {0.5, 0.35}, {2, 0.35}, {2, 0.65}, {0, 0.65}});
+  const Eigen::ArrayXd bars =
+      polygon_of({{0, 0}, {2, 0}, {2, 0.3}, {0.5, 0.3}, {0.5, 0.35}, {2, 0.35}, {2, 0.65}, {0, 0.65}});
   EXPECT_NEAR(thinnest_neck(bars), 0.3, 1e-12);
 }
 

@@ -265,8 +265,9 @@ RunParameters falls_onto_a_circle(double line_tension, double offset, int vertic
   return resolve(run);
 }
 
-/// When its liquid hangs on both sides of a thin film over the obstacle, four interfaces of tension Gamma carry
-/// all of its weight, at most: below Gamma = pi/16 none holds it. Stiffer ones lie on the obstacle as well.
+/// When its liquid hangs on both sides of a thin film over the obstacle, four interfaces of tension Gamma
+/// carry all of its weight, at most: below Gamma = pi/16 none holds it. Stiffer ones lie on the obstacle as
+/// well.
 TEST(BreakUp, HeadOnADropletTooHeavyForFourInterfacesBreaks) {
   for (const int vertices : {64, 128, 256}) {
     const RunResult broken = result_of(falls_onto_a_circle(0.95 * std::numbers::pi / 16, 0, vertices), 100);
@@ -335,7 +336,8 @@ TEST(BreakUp, ComesBeforeACertifiedClog) {
     DropletRun on(run, obstacles, state);
     while (!on.advance(1000)) {
     }
-    EXPECT_EQ(on.result().status, share > 0 ? RunStatus::broken : RunStatus::clogged) << at_rest << " " << now;
+    EXPECT_EQ(on.result().status, share > 0 ? RunStatus::broken : RunStatus::clogged)
+        << at_rest << " " << now;
   }
 }
 

@@ -63,8 +63,8 @@ struct RunResult {
   Passage passage;                  ///< through a channel; NaN elsewhere
   Sag sag;                          ///< certified: at rest
   ThinnestNeck neck;
-  std::int64_t steps = 0;           ///< integrated steps, sub-steps counted singly
-  std::string message;              ///< why it failed
+  std::int64_t steps = 0;  ///< integrated steps, sub-steps counted singly
+  std::string message;     ///< why it failed
 };
 
 /// One droplet followed from its release until it clogs, breaks up, passes the end of its way, or its time is
@@ -74,7 +74,8 @@ struct RunResult {
 /// clog-energy at two checks in a row, not before it had ten relaxation times V_t/g to fall. With
 /// clog-detection=certified it also does as soon as find_equilibrium() knows where it will rest. One with a
 /// neck thinner than break-up-neck has broken up, however close to rest it is; a rest with such a neck is
-/// none. The course of a run depends on its parameters alone, not on how advance() is called, nor on how clogs are found.
+/// none. The course of a run depends on its parameters alone, not on how advance() is called, nor on how
+/// clogs are found.
 class DropletRun {
  public:
   /// Clogging and the end of the run are looked for, and r(t) is recorded, once in so many steps.
