@@ -34,7 +34,7 @@ def said(column, value):
     return f"${symbol(column)} = {number(value)}$"
 
 
-FINISHED = ("passed", "clogged", "flowing")
+FINISHED = ("passed", "clogged", "broken", "flowing")
 
 
 class Groups:

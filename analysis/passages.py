@@ -25,7 +25,7 @@ class Kind:
 
 
 CHANNEL = Kind(
-    "Passages", "passed", {"passed": "passed", "clogged": "clogged", "flowing": "under way at the end"},
+    "Passages", "passed", {"passed": "passed", "clogged": "clogged", "broken": "broken up", "flowing": "under way at the end"},
     {"largest_shape_parameter": r"largest shape parameter $\mathcal{A}$", "smallest_relative_speed": r"smallest speed $v_g/v_t$",
      "largest_relative_speed": r"largest speed $v_g/v_t$"},
     {"largest_shape_parameter": "largest A", "largest_shape_parameter_at": "at h/&sigma;", "smallest_relative_speed": "smallest v<sub>g</sub>/v<sub>t</sub>",
@@ -34,7 +34,7 @@ CHANNEL = Kind(
     "where its shape parameter is largest",
     "h is the distance of the droplet's centre from the orifice, v<sub>t</sub> the speed of a free droplet.")
 WALL = Kind(
-    "Sags", "clogged", {"clogged": "at rest", "flowing": "not yet at rest"},
+    "Sags", "clogged", {"clogged": "at rest", "broken": "broken up", "flowing": "not yet at rest"},
     {"sag": style.AXES["sag"], "top_sag": r"sag of the top $/\sigma$"},
     {"sag": "sag/&sigma;", "top_sag": "sag of the top/&sigma;", "shape_parameter": "A"},
     "at the end", "The sag is how far the droplet's centre sinks under its own weight.")
@@ -53,7 +53,7 @@ def draw_curves(groups, column):
     """One point for each droplet; a cross is one that clogged in a channel, an open marker one that was under way at the end."""
     kind = kind_of(groups)
     figure, axes = plt.subplots(figsize=(6.4, 4.8), layout="constrained")
-    markers = {kind.goal: {"marker": "o"}, "flowing": {"marker": "o", "markerfacecolor": "white"}}
+    markers = {kind.goal: {"marker": "o"}, "flowing": {"marker": "o", "markerfacecolor": "white"}, "broken": {"marker": "^"}}
     for index, (label, members) in enumerate(groups.curves()):
         members = sorted((group for group in members if group[column] is not None), key=lambda group: group[groups.abscissa])
         look = {name: style.curve_style(index)[name] for name in ("color", "linestyle")}
@@ -67,7 +67,7 @@ def draw_curves(groups, column):
     style.legend(axes)
     ends = {group["status"] for group in groups.members}
     style.caption(axes, "\n".join([groups.caption(), groups.note("; ".join(
-        f"{sign}: {kind.outcomes[status]}" for sign, status in (("dots", kind.goal), ("crosses", "clogged"), ("open", "flowing"))
+        f"{sign}: {kind.outcomes[status]}" for sign, status in (("dots", kind.goal), ("crosses", "clogged"), ("triangles", "broken"), ("open", "flowing"))
         if status in ends and (sign == "dots" or status != kind.goal)))]))
     return figure
 

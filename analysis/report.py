@@ -87,13 +87,42 @@ def survival(groups, label, members):
     return figure
 
 
+def occurring_causes(members):
+    """Words of clogfit for what ended runs of these groups, in the order of their colours."""
+    return [name for name in style.CAUSE_COLOURS if any(name in group["incidence"] for group in members)]
+
+
+def incidence(groups, label, members):
+    """How probable an end by each cause is on a way r, the others being at work (Aalen and Johansen's estimate), for one curve's members."""
+    names = occurring_causes(members)
+    figure, all_axes = plt.subplots(1, len(names), figsize=(3.2 * len(names), 4.8), layout="constrained", sharex=True, sharey=True, squeeze=False)
+    longest = max(survival_curve.longest_way(group) for group in members)
+    begin = 0.5 * min((step["distance"] for group in members for steps in group["incidence"].values() for step in steps if step["distance"] > 0), default=longest)
+    for axes, name in zip(all_axes[0], names):
+        for group, colour in zip(members, plt.get_cmap("viridis")(np.linspace(0, 0.9, len(members)))):
+            steps = group["incidence"].get(name, [])
+            way = [begin, *(step["distance"] for step in steps), survival_curve.longest_way(group)]
+            share = [0, *(step["probability"] for step in steps)]
+            axes.step(way, [*share, share[-1]], where="post", color=colour, linewidth=1.2, label=groups.said(groups.abscissa, group[groups.abscissa]))
+        axes.set_title(name, fontsize=10)
+        axes.set_xscale("log")
+        axes.set_xlim(begin, longest)
+        axes.set_ylim(0, 1.02)
+        axes.set_xlabel(r"$r/\sigma$")
+        style.grid(axes)
+    all_axes[0][0].set_ylabel("probability to have ended so within $r$")
+    all_axes[0][0].legend(frameon=False, fontsize=8, ncols=1 + len(members) // 8)
+    figure.suptitle(label or groups.caption(), fontsize=8, wrap=True)
+    return figure
+
+
 def causes(groups, label, members):
     """What became of the runs of one curve, as shares."""
     figure, axes = plt.subplots(figsize=(6.4, 4.8), layout="constrained")
     places, base = np.arange(len(members)), np.zeros(len(members))
-    shares = {f"clogged, {name}": (colour, [group[name] / group["runs"] for group in members])
-              for name, colour in style.MECHANISM_COLOURS.items()}
-    shares["not clogged"] = ("0.88", [1 - group["clogs"] / group["runs"] for group in members])
+    shares = {name if name == "broken" else f"clogged, {name}": (colour, [(group[name] or 0) / group["runs"] for group in members])
+              for name, colour in style.CAUSE_COLOURS.items()}
+    shares["still going"] = ("0.88", [1 - (group["clogs"] + (group["broken"] or 0)) / group["runs"] for group in members])
     for name, (colour, share) in shares.items():
         if any(share):
             axes.bar(places, share, bottom=base, color=colour, width=0.8, label=name)
@@ -191,7 +220,9 @@ def of_lengths(groups, sweep, count, clogrun):
         curves += picture(speeds(groups), "mean speed over terminal speed")
     survivals = "".join(picture(survival(groups, label, members), "P(r), to the longest way") for label, members in groups.curves()
                         if any(group["survival"] for group in members))
-    ends = "".join(picture(causes(groups, label, members), "clogs by mechanism") for label, members in groups.curves())
+    survivals += "".join(picture(incidence(groups, label, members), "ends by cause") for label, members in groups.curves()
+                         if len(occurring_causes(members)) > 1)
+    ends = "".join(picture(causes(groups, label, members), "ends by cause, shares") for label, members in groups.curves())
     return {"Curves": side_by_side(curves), "How far droplets get": side_by_side(survivals), "What becomes of them": side_by_side(ends),
             "Example clogs": example_pictures(examples(clogs.read_clogs(sweep), count), sweep, clogrun)}, table(groups)
 

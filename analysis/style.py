@@ -13,6 +13,7 @@ from matplotlib.lines import Line2D  # noqa: E402
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
 MARKERS = ["o", "s", "D", "v", "P", "X", "*"]
 MECHANISM_COLOURS = {"wrapped": COLOURS[0], "squeezed": COLOURS[1], "hybrid": COLOURS[2], "other": COLOURS[3]}
+CAUSE_COLOURS = {**MECHANISM_COLOURS, "broken": COLOURS[4]}
 MECHANISM_MARKERS = {"wrapped": "o", "squeezed": "s", "hybrid": "D", "other": "X"}
 OBSTACLE = "0.72"
 DROPLET = "#D55E00"

@@ -153,7 +153,7 @@ def verdict(trajectory):
     """How the run ended."""
     ends = {"wrapped": "clogged by wrapping", "squeezed": "clogged by squeezing", "hybrid": "clogged by wrapping and squeezing"}
     status = trajectory.word("status")
-    end = ends.get(mechanism(trajectory), status) if status == "clogged" else {"flowing": "still flowing"}.get(status, status)
+    end = ends.get(mechanism(trajectory), status) if status == "clogged" else {"flowing": "still flowing", "broken": "broken up"}.get(status, status)
     return rf"{end} after $r = {trajectory.row['distance']:.2f}\,\sigma$"
 
 

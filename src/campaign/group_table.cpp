@@ -81,18 +81,38 @@ struct ResultColumn {
 /// Clogs by mechanism, as 3/5/2/0.
 std::string mechanism_counts(const Group& group) {
   std::vector<std::string> counts;
-  for (const Group::Cause& cause : group.causes) counts.push_back(std::to_string(cause.clogging.num_clogs));
+  for (const Group::EndsBy& cause : group.causes)
+    if (cause.text->is_clog) counts.push_back(std::to_string(cause.ends.num_clogs));
   return counts.empty() ? "-" : joined(counts, "/");
 }
 
 /// Where clogs are not all of one kind, or some are left out, it is said of which kind they are.
 bool are_mechanisms_shown(const std::vector<Group>& groups) {
-  std::set<ClogMechanism> seen;
+  std::set<Cause> seen;
   for (const Group& group : groups)
-    for (const Group::Cause& cause : group.causes)
-      if (cause.clogging.num_clogs > 0) seen.insert(cause.mechanism);
+    for (const Group::EndsBy& cause : group.causes)
+      if (cause.text->is_clog && cause.ends.num_clogs > 0) seen.insert(cause.text->cause);
   return seen.size() > 1 ||
          std::any_of(groups.begin(), groups.end(), [](const Group& group) { return group.num_left_out > 0; });
+}
+
+/// Of a group whose clogs are of known mechanisms; so are those of all that know of break-up.
+const fit::CloggingLength* break_ups(const Group& group) {
+  for (const Group::EndsBy& cause : group.causes)
+    if (cause.text->cause == Cause::broken) return &cause.ends;
+  return nullptr;
+}
+bool have_some_broken(const std::vector<Group>& groups) {
+  return std::ranges::any_of(groups, [](const Group& group) {
+    const fit::CloggingLength* broken = break_ups(group);
+    return broken && broken->num_clogs > 0;
+  });
+}
+std::string break_up_length(const Group& group) {
+  const fit::CloggingLength* broken = break_ups(group);
+  if (!broken || broken->num_runs == 0) return "-";
+  if (broken->num_clogs == 0) return "> " + console::plain(broken->interval.lower);
+  return console::with_interval(broken->length, broken->interval.lower, broken->interval.upper).value;
 }
 
 console::RoundedInterval length_of(const Group& group) {
@@ -126,9 +146,16 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
       {"runs", [](const Group& group) { return std::to_string(group.clogging.num_runs); }},
       {"clogs", [](const Group& group) { return std::to_string(group.clogging.num_clogs); }}};
   if (are_mechanisms_shown(groups)) columns.push_back({"w/s/h/o", mechanism_counts});
-  columns.insert(columns.end(), {{"lambda/sigma", length_text},
-                                 {fmt::format("{:g} %", 100 * confidence), interval_text},
-                                 {"<v_g>/v_t", [](const Group& group) { return speed_of(group).value; }},
+  columns.insert(columns.end(),
+                 {{"lambda/sigma", length_text}, {fmt::format("{:g} %", 100 * confidence), interval_text}});
+  if (have_some_broken(groups))
+    columns.insert(columns.end(), {{"broken",
+                                    [](const Group& group) {
+                                      const fit::CloggingLength* broken = break_ups(group);
+                                      return broken ? std::to_string(broken->num_clogs) : "-";
+                                    }},
+                                   {"lambda_b/sigma", break_up_length}});
+  columns.insert(columns.end(), {{"<v_g>/v_t", [](const Group& group) { return speed_of(group).value; }},
                                  {"+-", [](const Group& group) { return speed_of(group).error; }}});
   // In random arrays a droplet goes straight on the average.
   if (std::any_of(groups.begin(), groups.end(), is_lattice))
@@ -200,6 +227,10 @@ std::string left_out(const std::vector<Group>& groups) {
   if (are_mechanisms_shown(groups))
     text += fmt::format("w/s/h/o: clogs by wrapping, by squeezing, by both, by neither{}\n",
                         std::ranges::any_of(groups, is_dwell_possible) ? " or droplets that went on" : "");
+  if (have_some_broken(groups))
+    text +=
+        "lambda_b: of break-ups; where droplets break up they count as not clogged so far, and the other way "
+        "round\n";
   if (num_left_out > 0)
     text += fmt::format(
         "   {} ended before --from-distance, left out of runs, clogs and lambda; <v_g> is still of all "
@@ -264,7 +295,7 @@ nlohmann::ordered_json field_units(const Group& group) {
   nlohmann::ordered_json all;
   for (const auto& [name, value] : all_fields(group))
     if (const std::string_view unit = unit_of(name); !unit.empty()) all[name] = unit;
-  all["survival"] = {{"distance", "sigma"}};
+  all["survival"] = all["incidence"] = {{"distance", "sigma"}};
   all["censored_distances"] = "sigma";
   return all;
 }
@@ -393,6 +424,16 @@ std::string to_json(const std::vector<Group>& groups, double confidence,
                                    {"standard_error", step.standard_error},
                                    {"lower", step.interval.lower},
                                    {"upper", step.interval.upper}});
+    entry["incidence"] = nlohmann::ordered_json::object();
+    for (const Group::EndsBy& cause : group.causes)
+      for (const fit::IncidenceStep& step : cause.incidence)
+        entry["incidence"][cause.text->count].push_back({{"distance", step.distance},
+                                                         {"at_risk", step.num_at_risk},
+                                                         {"ends", step.num_ends},
+                                                         {"probability", step.probability},
+                                                         {"standard_error", step.standard_error},
+                                                         {"lower", step.interval.lower},
+                                                         {"upper", step.interval.upper}});
     entry["censored_distances"] = group.censored_distances;
     list.push_back(std::move(entry));
   }

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <stdexcept>
 
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
@@ -81,7 +82,8 @@ std::vector<Field> fields_of_run(const sweep::RunRow& row) {
   for (const char* name :
        {"status", "distance", "time", "largest_shape_parameter", "largest_shape_parameter_at",
         "largest_relative_speed", "largest_relative_speed_at", "smallest_relative_speed",
-        "smallest_relative_speed_at", "sag", "top_sag", "shape_parameter", "mean_speed"})
+        "smallest_relative_speed_at", "sag", "top_sag", "thinnest_neck", "thinnest_neck_at",
+        "shape_parameter", "mean_speed"})
     fields.emplace_back(name, sweep::column(name).get(row));
   return fields;
 }
@@ -98,8 +100,24 @@ std::vector<double> censored_distances(std::span<const fit::Observation> runs) {
 struct Ending {
   double distance;  ///< [sigma]
   bool is_clog;
-  std::optional<ClogMechanism> mechanism;  ///< of a clog, if it is known
+  std::optional<Cause> cause;  ///< of a clog, if it is known; of a break-up
 };
+
+std::optional<Cause> cause_of(const sweep::RunRow& run) {
+  if (run.status == RunStatus::broken) return Cause::broken;
+  if (run.status != RunStatus::clogged || !run.mechanism) return std::nullopt;
+  switch (*run.mechanism) {
+    case ClogMechanism::wrapped:
+      return Cause::wrapped;
+    case ClogMechanism::squeezed:
+      return Cause::squeezed;
+    case ClogMechanism::hybrid:
+      return Cause::hybrid;
+    case ClogMechanism::none:
+      return Cause::other;
+  }
+  throw std::logic_error("a mechanism that is no cause");
+}
 
 /// May the run have dwells as long as this? One that has not begun has none.
 bool has_dwells_to_tell(const sweep::RunRow& run, double dwell) {
@@ -109,12 +127,11 @@ bool has_dwells_to_tell(const sweep::RunRow& run, double dwell) {
 /// @param dwell  see group_runs()
 Ending ending_of(const sweep::RunRow& run, double dwell) {
   const bool is_clogged = run.status == RunStatus::clogged;
-  const Ending last = {run.distance, is_clogged, run.mechanism};
+  const Ending last = {run.distance, is_clogged, cause_of(run)};
   if (!has_dwells_to_tell(run, dwell)) return last;
   // What held a droplet that went on is not known: it counts among the other mechanisms.
-  if (const Dwell* first = run.dwells.first_longer(dwell))
-    return {first->distance, true, ClogMechanism::none};
-  return is_clogged ? last : Ending{run.dwells.last_distance, false, {}};
+  if (const Dwell* first = run.dwells.first_longer(dwell)) return {first->distance, true, Cause::other};
+  return is_clogged || last.cause ? last : Ending{run.dwells.last_distance, false, {}};
 }
 
 /// The later of two times; not known if one of them is not.
@@ -150,14 +167,13 @@ void require_dwells(std::span<const sweep::RunRow> rows, double dwell) {
 
 /// Clogging lengths of runs that are sound and reached the distance from which they count.
 void fit_clogging(Group& group, std::span<const Ending> runs, double confidence, double from_distance) {
-  // Observations in which only some of the clogs are such, the other runs being censored where they ended.
+  // Observations in which only some of the ends are such, the other runs being censored where they ended.
   const auto observe = [&](auto is_end) {
     std::vector<fit::Observation> observations;
-    for (const Ending& run : runs)
-      observations.push_back({run.distance - from_distance, run.is_clog && is_end(run)});
+    for (const Ending& run : runs) observations.push_back({run.distance - from_distance, is_end(run)});
     return observations;
   };
-  const std::vector<fit::Observation> all = observe([](const Ending&) { return true; });
+  const std::vector<fit::Observation> all = observe([](const Ending& run) { return run.is_clog; });
   group.clogging = fit::fit_clogging_length(all, confidence);
   group.least_squares_length = fit::least_squares_length(all);
   group.weibull = fit::test_exponentiality(all);
@@ -165,35 +181,32 @@ void fit_clogging(Group& group, std::span<const Ending> runs, double confidence,
     group.survival = fit::survival_curve(all, confidence);
     group.censored_distances = censored_distances(all);
   }
-  if (std::any_of(runs.begin(), runs.end(), [](const Ending& run) { return run.is_clog && !run.mechanism; }))
+  if (std::any_of(runs.begin(), runs.end(), [](const Ending& run) { return run.is_clog && !run.cause; }))
     return;
-  for (const ClogMechanism cause : causes)
-    group.causes.push_back(
-        {cause, fit::fit_clogging_length(observe([=](const Ending& run) { return run.mechanism == cause; }),
-                                         confidence)});
+  std::vector<fit::CompetingEnd> competing;
+  for (const Ending& run : runs)
+    competing.push_back({run.distance - from_distance,
+                         run.cause ? std::optional(static_cast<int>(*run.cause)) : std::nullopt});
+  for (const CauseText& text : cause_texts) {
+    const auto is_of_cause = [&](const Ending& run) { return run.cause == text.cause; };
+    Group::EndsBy& one = group.causes.emplace_back(
+        Group::EndsBy{&text, fit::fit_clogging_length(observe(is_of_cause), confidence), {}});
+    if (has_clogging_length(group.first_row))
+      one.incidence = fit::cumulative_incidence(competing, static_cast<int>(text.cause), confidence);
+  }
 }
 
-/// Counts by mechanism and their lengths; without values where they are not known.
+/// Counts by cause and their lengths; without values where they are not known.
 void append_causes(const Group& group, std::vector<Field>& fields) {
-  // Fields are named by literals.
-  struct Names {
-    const char *count, *length, *lower, *upper;
-  };
-  constexpr Names names[] = {
-      {"wrapped", "clogging_length_wrapped", "clogging_length_wrapped_lower",
-       "clogging_length_wrapped_upper"},
-      {"squeezed", "clogging_length_squeezed", "clogging_length_squeezed_lower",
-       "clogging_length_squeezed_upper"},
-      {"hybrid", "clogging_length_hybrid", "clogging_length_hybrid_lower", "clogging_length_hybrid_upper"},
-      {"other", "clogging_length_other", "clogging_length_other_lower", "clogging_length_other_upper"}};
   const Value unknown;
-  for (std::size_t i = 0; i < std::size(names); ++i) {
+  for (std::size_t i = 0; i < std::size(cause_texts); ++i) {
+    const CauseText& text = cause_texts[i];
     const bool known = !group.causes.empty();
-    const fit::CloggingLength fit = known ? group.causes[i].clogging : fit::CloggingLength();
-    fields.emplace_back(names[i].count, known ? value_of(fit.num_clogs) : unknown);
-    fields.emplace_back(names[i].length, known ? value_of(fit.length) : unknown);
-    fields.emplace_back(names[i].lower, known ? value_of(fit.interval.lower) : unknown);
-    fields.emplace_back(names[i].upper, known ? value_of(fit.interval.upper) : unknown);
+    const fit::CloggingLength fit = known ? group.causes[i].ends : fit::CloggingLength();
+    fields.emplace_back(text.count, known ? value_of(fit.num_clogs) : unknown);
+    fields.emplace_back(text.length, known ? value_of(fit.length) : unknown);
+    fields.emplace_back(text.lower, known ? value_of(fit.interval.lower) : unknown);
+    fields.emplace_back(text.upper, known ? value_of(fit.interval.upper) : unknown);
   }
 }
 
@@ -208,7 +221,7 @@ constexpr std::pair<std::string_view, std::string_view> units_of_results[] = {
 }  // namespace
 
 std::string_view unit_of(std::string_view field) {
-  if (field.starts_with("clogging_length")) return "sigma";
+  if (field.starts_with("clogging_length") || field.starts_with("break_up_length")) return "sigma";
   for (const auto& [name, unit] : units_of_results)
     if (name == field) return unit;
   for (const sweep::Column& column : sweep::columns())

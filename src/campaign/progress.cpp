@@ -64,7 +64,8 @@ std::string Progress::line() const {
   if (num_before_ > 0) text += fmt::format("{} of them before; now ", num_before_);
   text += fmt::format("{} running, {} clogged, {} flowing", running_.size(), count(RunStatus::clogged),
                       count(RunStatus::flowing));
-  for (const RunStatus status : {RunStatus::passed, RunStatus::failed, RunStatus::interrupted})
+  for (const RunStatus status :
+       {RunStatus::broken, RunStatus::passed, RunStatus::failed, RunStatus::interrupted})
     if (count(status) != 0) text += fmt::format(", {} {}", count(status), name(status));
   const double elapsed = seconds_since(begin_);
   if (num_ended_ > 0)

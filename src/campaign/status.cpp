@@ -57,6 +57,8 @@ std::string to_text(const std::string& path, const Status& status, double confid
       "{}: {} of {} over{}, {} clogged, {} flowing, {} failed", console::printable(path), status.num_over(),
       sweep::counted(status.runs.num_runs, "run"), status.runs.text_of_beyond(),
       status.count(RunStatus::clogged), status.count(RunStatus::flowing), status.count(RunStatus::failed));
+  if (const std::int64_t broken = status.count(RunStatus::broken); broken > 0)
+    text += fmt::format(", {} broken", broken);
   if (const std::int64_t under_way = status.num_under_way(); under_way > 0)
     text += fmt::format("; {} {}", under_way, status.is_alive ? "running" : "interrupted");
   text += fmt::format("; {:.3g} core-hours", status.core_hours);
@@ -77,7 +79,7 @@ std::string to_json(const Status& status, double confidence) {
   all["runs"] = status.runs.num_runs;
   all["runs_beyond_lists"] = status.runs.num_beyond;
   all["over"] = status.num_over();
-  for (const RunStatus one : {RunStatus::clogged, RunStatus::flowing, RunStatus::failed})
+  for (const RunStatus one : {RunStatus::clogged, RunStatus::broken, RunStatus::flowing, RunStatus::failed})
     all[name(one)] = status.count(one);
   all["under_way"] = status.num_under_way();
   all["alive"] = status.is_alive;

@@ -73,16 +73,15 @@ LogWays log_ways(std::span<const Observation> runs) {
   return ways;
 }
 
-/// P^exp(-+ z s/|log P|), s^2 being the variance of log P, with which log(-log P) has the error s/|log P|.
+}  // namespace
+
 Interval log_log_interval(double probability, double log_variance, double confidence) {
   constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-  if (!(probability > 0)) return {undefined, undefined};
+  if (!(probability > 0 && probability < 1)) return {undefined, undefined};
   const double factor =
       std::exp(normal_deviate(confidence) * std::sqrt(log_variance) / -std::log(probability));
   return {std::pow(probability, factor), std::pow(probability, 1 / factor)};
 }
-
-}  // namespace
 
 std::vector<SurvivalStep> survival_curve(std::span<const Observation> runs, double confidence) {
   require_confidence(confidence);

@@ -257,7 +257,8 @@ std::vector<Column> make_columns() {
       member("model_version", &RunRow::model_version, parameter, "",
              "runs of different versions differ though their parameters agree (parameters.hpp)"),
       member("status", &RunRow::status, result, "",
-             "clogged; flowing: max_time reached; passed: the end of its way; failed: see message; running, "
+             "clogged; broken: its neck got thinner than break_up_neck; flowing: max_time reached; passed: "
+             "the end of its way; failed: see message; running, "
              "interrupted: not over, the other columns say how far it is",
              16),
       member("clogged_by", &RunRow::clogged_by, result, "",
@@ -315,6 +316,14 @@ std::vector<Column> make_columns() {
           "sag", &RunRow::sag, result, "sigma",
           "delta_s, how far the centroid of a droplet on a flat wall has sunk under gravity; NaN elsewhere"),
       member("top_sag", &RunRow::top_sag, result, "sigma", "the same of its highest point"),
+      number_in(
+          "thinnest_neck", [](auto& row) -> auto& { return row.neck.width; }, "sigma",
+          "width of the thinnest neck between two lobes that the droplet has had (src/core/README.md); NaN: "
+          "it "
+          "had none, or break_up_neck is 0"),
+      number_in(
+          "thinnest_neck_at", [](auto& row) -> auto& { return row.neck.distance; }, "sigma",
+          "distance at which it was found"),
       member("steps", &RunRow::steps, result, "", "integrated steps, sub-steps counted singly"),
       member("wall_seconds", &RunRow::wall_seconds, circumstance, "s",
              "computing time, all sessions together"),

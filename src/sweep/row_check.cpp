@@ -221,9 +221,28 @@ std::string passage_fault(const RunRow& row) {
   return "";
 }
 
+/// Only a thinner neck than that makes a droplet break up, and each such neck does.
+std::string neck_fault(const RunRow& row) {
+  const double width = row.neck.width, least = row.parameters.dp.break_up_neck;
+  if (std::isnan(width) != std::isnan(row.neck.distance))
+    return "thinnest_neck, thinnest_neck_at: only one is known";
+  if (row.status == RunStatus::broken && !(width < least))
+    return "broken, but " + named("thinnest_neck", width) + " is not below " + named("break_up_neck", least);
+  if (std::isnan(width)) return "";
+  if (row.status != RunStatus::broken && width < least)
+    return named("thinnest_neck", width) + " is below " + named("break_up_neck", least) +
+           ", but it has not broken";
+  if (!(width > 0 && width < burst_perimeter) || least == 0)
+    return named("thinnest_neck", width) + " is that of no droplet in which necks are looked for";
+  if (!is_number_below(row.neck.distance, farthest_way(row)))
+    return named("thinnest_neck_at", row.neck.distance) + " is not on the droplet's way";
+  return "";
+}
+
 std::string result_fault(const RunRow& row) {
   if (row.status == RunStatus::failed) return row.message.empty() ? "failed without a reason" : "";
-  for (const auto check : {time_fault, motion_fault, dwells_fault, shape_fault, clog_fault, passage_fault})
+  for (const auto check :
+       {time_fault, motion_fault, dwells_fault, shape_fault, clog_fault, passage_fault, neck_fault})
     if (std::string fault = check(row); !fault.empty()) return fault;
   return "";
 }

@@ -64,6 +64,7 @@ void record(const RunResult& result, RunRow& row) {
   row.smallest_relative_speed_at = result.passage.smallest_speed.place;
   row.sag = result.sag.centre;
   row.top_sag = result.sag.top;
+  row.neck = result.neck;
   row.steps = result.steps;
   row.message = result.message;
 }

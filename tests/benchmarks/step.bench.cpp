@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "clog/core/polygon/neck.hpp"
 #include "clog/core/run/droplet_run.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
@@ -97,6 +98,22 @@ void wrapped_polygon(benchmark::State& state) {
   advance(state, resolve(run));
 }
 BENCHMARK(wrapped_polygon)->Unit(benchmark::kMillisecond);
+
+/// What break-up-neck costs, once in DropletRun::steps_per_check steps: of a soft droplet on its way.
+void neck_of_a_droplet(benchmark::State& state) {
+  RunParameters run = flowing_droplet(static_cast<int>(state.range(0)), 0);
+  run.dp.line_tension = 0.05;
+  run.obstacles.gap = 0.2;
+  DropletRun droplet(resolve(run));
+  double sum = 0;
+  for ([[maybe_unused]] auto _ : state) {
+    state.PauseTiming();
+    droplet.advance(20);
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(sum += thinnest_neck(droplet.droplet().state().position));
+  }
+}
+BENCHMARK(neck_of_a_droplet)->ArgName("vertices")->Arg(128)->Arg(512)->Unit(benchmark::kMicrosecond);
 
 /// As in the figures: the elastic interface, the automatic step, and gaps that the droplet wraps its way
 /// through.

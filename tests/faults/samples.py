@@ -20,7 +20,7 @@ SWEEPS = {
 }
 VERIFY = ("clogsweep", "verify", FILE)
 REPORTS = [("clogsweep", "status", FILE, "--format", "json"), ("clogfit", FILE, "--format", "json")]
-ENDINGS = (b"clogged", b"flowing")
+ENDINGS = (b"clogged", b"broken", b"flowing")
 
 
 def in_child(function, *arguments):

@@ -318,6 +318,46 @@ class Fit(ProgramTest):
         group, = self.fit()["groups"]
         self.assertEqual((group["on_mesh"], group["doubts"]), (1, "held_by_mesh"))
 
+    def test_break_up_is_a_cause_of_its_own(self):
+        self.sweep("seeds=1..10", "break-up-neck=0.05", *FAR)
+        status = [b"clogged", b"broken", b"broken", b"clogged", b"flowing"] * 2
+        necks = [0.04 if one == b"broken" else np.nan for one in status]
+        self.change(distance=np.arange(1.0, 11), status=status, mechanism=[b"squeezed" if one == b"clogged" else b"none" for one in status],
+                    thinnest_neck=necks, thinnest_neck_at=necks)
+        group, = self.fit()["groups"]
+        self.assertEqual([group[name] for name in ("runs", "clogs", "broken", "flowing", "squeezed", "other")], [10, 4, 4, 2, 4, 0])
+        self.assertEqual([group[name] for name in ("total_distance", "clogging_length", "break_up_length")], [55, 55 / 4, 55 / 4])
+        self.assertTrue(group["break_up_length_lower"] < 55 / 4 < group["break_up_length_upper"])
+        # By hand: P just before r times ends over runs at risk, 1/10 each until the first is censored at 5, from then on 6/10 of 1/5.
+        broken = [(step["distance"], round(step["probability"], 12)) for step in group["incidence"]["broken"]]
+        self.assertEqual(broken, [(2, 0.1), (3, 0.2), (7, 0.32), (8, 0.44)])
+        clogged = [round(step["probability"], 12) for step in group["incidence"]["squeezed"]]
+        self.assertEqual(clogged, [0.1, 0.2, 0.32, 0.44])
+        self.assertEqual(set(group["incidence"]), {"squeezed", "broken"})
+        self.assertEqual(group["censored_distances"], [2, 3, 5, 7, 8, 10])  # of clogs
+        text = self.succeed("clogfit", "sweep.h5").stdout
+        self.assertRegex(text, r"95 % +broken +lambda_b/sigma.*\n.* 4 +13\.\d+ ")
+        self.assertIn("lambda_b: of break-ups", text)
+        self.assertNotIn("w/s/h/o", text)
+        # A droplet that stood for long ended there, also if it broke later on; else it ends where it broke.
+        dwells = [name for name in stored_rows.columns(self.folder / "sweep.h5") if name.startswith(("longest_dwell", "earlier_dwell"))]
+        self.change(**{name: np.nan for name in dwells})
+        self.assertEqual(self.fit("--dwell", 0.9)["groups"][0]["broken"], 4)
+        self.change(longest_dwell=[np.nan, 0.95] + [np.nan] * 8, longest_dwell_at=[np.nan, 0.01] + [np.nan] * 8, longest_dwell_from=[np.nan, 0] + [np.nan] * 8)
+        group, = self.fit("--dwell", 0.9)["groups"]
+        self.assertEqual((group["broken"], group["other"]), (3, 1))
+        self.change(status=[b"flowing"] * 10, mechanism=b"none", thinnest_neck=np.nan, thinnest_neck_at=np.nan)
+        group, = self.fit()["groups"]
+        self.assertEqual((group["broken"], group["break_up_length"], group["incidence"]), (0, None, {}))
+        self.assertNotIn("broken", self.succeed("clogfit", "sweep.h5").stdout)
+
+    def test_files_of_format_version_7_can_be_read(self):
+        self.sweep("max-time=60", "line-tension=2", "seeds=1..3")
+        before, = self.fit()["groups"]
+        stored_rows.make_older(self.folder / "sweep.h5", "7", ["break_up_neck", "thinnest_neck", "thinnest_neck_at"])
+        group, = self.fit()["groups"]
+        self.assertEqual((group["break_up_neck"], group["clogging_length"]), (0, before["clogging_length"]))
+
     def test_files_of_format_version_3_can_be_read(self):
         self.sweep("max-time=60", "line-tension=2", "seeds=1..3")
         before, = self.fit()["groups"]
@@ -411,7 +451,7 @@ class Fit(ProgramTest):
         groups = self.fit()["groups"]
         self.assertEqual(len(lines), 2)
         for line, group in zip(lines, groups):
-            self.assertEqual(list(line), [name for name in group if name not in ("survival", "censored_distances")])
+            self.assertEqual(list(line), [name for name in group if name not in ("survival", "incidence", "censored_distances")])
             self.assertEqual(float(line["total_distance"]), group["total_distance"])
 
     def test_numbers_have_the_figures_that_their_interval_allows(self):

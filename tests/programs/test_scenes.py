@@ -27,6 +27,52 @@ def read_rows(path):
     return list(table(path).itertuples(index=False))
 
 
+class BreakUp(Analysis):
+    """A droplet that falls onto one circle, a tenth of its diameter beside the middle."""
+
+    KEYS = ["obstacles=one.csv", "box=20", "vertices=64", "max-time=250", "break-up-neck=0.03"]
+
+    def setUp(self):
+        super().setUp()
+        (self.folder / "one.csv").write_text("x,y,diameter\n13,10.1,0.3\n")
+
+    def test_soft_droplets_break_and_are_told_of(self):
+        self.succeed("clogsweep", *self.KEYS, "line-tension=0.03,0.05,0.07", "--output", "s.h5")
+        rows = read_rows(self.folder / "s.h5")
+        self.assertEqual([row.status for row in rows], ["broken", "broken", "flowing"])
+        for row in rows[:2]:
+            self.assertTrue(0 < row.thinnest_neck < 0.03)
+            self.assertEqual((row.thinnest_neck_at, row.clogged_by, row.mechanism), (row.distance, "none", "none"))
+        self.assertGreater(rows[2].thinnest_neck, 0.03)
+        self.assertIn("0 clogged, 1 flowing, 0 failed, 2 broken; ", self.succeed("clogsweep", "status", "s.h5").stdout)
+        self.assertEqual(json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)["broken"], 2)
+        self.assertIn("2 broken", self.succeed("clogsweep", *self.KEYS, "line-tension=0.03,0.05", "--output", "t.h5").stderr)
+        self.succeed("clogsweep", "verify", "s.h5")
+        self.succeed("clogsweep", "replay", "s.h5", 0)
+        self.assertIn("broken after", self.succeed("clogrun", "replay", "s.h5", 1, "--output", "r.h5").stdout)
+        self.succeed("clogfit", "report", "s.h5", "--examples", 0)
+        self.assertIn("2 broken", (self.folder / "s-report.html").read_text())
+
+    def test_a_wider_neck_breaks_whom_the_thinnest_neck_of_the_row_says(self):
+        self.succeed("clogsweep", *self.KEYS, "line-tension=0.066,0.07,0.08,0.1", "--output", "s.h5")
+        wider = 0.1
+        self.succeed("clogsweep", *self.KEYS[:-1], "line-tension=0.066,0.07,0.08,0.1", f"break-up-neck={wider}", "--output", "t.h5")
+        foretold = [row.thinnest_neck < wider for row in read_rows(self.folder / "s.h5")]
+        self.assertEqual([row.status == "broken" for row in read_rows(self.folder / "t.h5")], foretold)
+        self.assertEqual(set(foretold), {True, False})
+
+    def test_the_picture_of_collisions_closes_in_on_the_threshold(self):
+        done = self.draw("collision.py", "--output", "c", "--programs", BIN, "--offsets", "0.1,0.4", "vertices=64")
+        head, near, far = done.stdout.splitlines()
+        self.assertEqual(head, "offset,symmetry,breaks_up_to,whole_from,capillary_number")
+        low, high = map(float, near.split(",")[2:4])
+        self.assertTrue(0.055 < low < high < 0.07 and high < 1.02 * low, near)
+        self.assertEqual(far.split(",")[2:], ["", "0.01", ""])  # none breaks
+        self.assertTrue((self.folder / "c.png").exists())
+        for words, said in [(["--offsets", "0.6"], "0.6"), (["vertices"], "KEY=VALUE"), (["vertices=x"], "vertices"), (["--offsets", "0.4"], "nothing to draw")]:
+            self.refuse_analysis("collision.py", "--output", "d", "--programs", BIN, *words, words=[said])
+
+
 class Channels(Analysis):
     def test_a_row_has_what_the_run_itself_shows(self):
         self.succeed("clogsweep", *CHANNEL, "line-tension=0.3,0.6,5", "--output", "s.h5")

@@ -45,6 +45,7 @@ const std::vector<Keys> sweeps = {
     {{"max-time", "5"}, {"preset", "literal"}},
     {{"max-time", "5"}, {"line-tension", "0"}},
     {{"max-time", "5"}, {"near-wall-drag", "0.07"}, {"relative-drag", "0"}, {"wall-tension", "0.5"}},
+    {{"max-time", "60"}, {"line-tension", "0.05"}, {"break-up-neck", "0.1"}, {"seeds", "3"}},
     {{"max-time", "60"}, {"line-tension", "2"}, {"clog-detection", "threshold"}, {"clog-energy", "1e-5"}},
     {{"max-time", "0.01"}, {"time-step", "3e-3"}},
     {{"max-time", "5"}, {"obstacle-density", "1.2"}, {"obstacle-diameter-spread", "0.3"}},
@@ -188,7 +189,9 @@ TEST(FaultOf, NamesEveryNumberThatIsNone) {
                                           "smallest_relative_speed",
                                           "smallest_relative_speed_at",
                                           "sag",
-                                          "top_sag"};
+                                          "top_sag",
+                                          "thinnest_neck",
+                                          "thinnest_neck_at"};
   for (std::size_t i = 0; i < Dwells::most; ++i)
     for (const char* part : {"", "_at", "_from"}) may_be_unknown.insert(dwell_column(i) + part);
   for (const Column& column : columns()) {
@@ -284,6 +287,30 @@ TEST(FaultOf, NamesDwellsThatCannotBe) {
     damage(row.dwells);
     EXPECT_NE(fault_of(row).find(words), std::string::npos) << words << ": " << fault_of(row);
   }
+}
+
+TEST(FaultOf, NamesNecksThatCannotBe) {
+  RunRow necked = row_of({{"max-time", "5"}, {"line-tension", "0.05"}, {"break-up-neck", "0.05"}});
+  necked.neck = {.width = 0.07, .distance = necked.distance / 2};
+  ASSERT_EQ(fault_of(necked), "");
+  const std::vector<std::pair<const char*, std::function<void(RunRow&)>>> damages = {
+      {"only one is known", [](RunRow& row) { row.neck.distance = std::nan(""); }},
+      {"thinnest_neck=0.04 is below break_up_neck=0.05, but it has not broken",
+       [](RunRow& row) { row.neck.width = 0.04; }},
+      {"broken, but thinnest_neck=0.07 is not below break_up_neck=0.05",
+       [](RunRow& row) { row.status = RunStatus::broken; }},
+      {"broken, but thinnest_neck=nan",
+       [](RunRow& row) { row.status = RunStatus::broken, row.neck = ThinnestNeck(); }},
+      {"thinnest_neck=0.07 is that of no droplet", [](RunRow& row) { row.parameters.dp.break_up_neck = 0; }},
+      {"thinnest_neck=-0.01 is", [](RunRow& row) { row.neck.width = -0.01, row.status = RunStatus::broken; }},
+      {"thinnest_neck_at=1000 is not on", [](RunRow& row) { row.neck.distance = 1e3; }}};
+  for (const auto& [words, damage] : damages) {
+    RunRow row = necked;
+    damage(row);
+    EXPECT_NE(fault_of(row).find(words), std::string::npos) << words << ": " << fault_of(row);
+  }
+  necked.status = RunStatus::broken, necked.neck.width = 0.04;
+  EXPECT_EQ(fault_of(necked), "");
 }
 
 TEST(FarthestWay, IsHardlyMoreThanAFreeSoftDiskFalls) {

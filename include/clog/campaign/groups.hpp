@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "clog/core/polygon/clog_geometry.hpp"
 #include "clog/fit/clogging_length.hpp"
+#include "clog/fit/incidence.hpp"
 #include "clog/fit/mean_speed.hpp"
 #include "clog/fit/migration.hpp"
 #include "clog/fit/survival.hpp"
@@ -63,6 +63,26 @@ inline constexpr DoubtText doubt_texts[] = {
      "(tests/soundness/README.md)"}};
 const DoubtText& text_of(Doubt doubt);
 
+/// By what a run may end, each a competing risk for the others: how a clog is held (`other` are clogs by none
+/// of the mechanisms), or the droplet's break-up.
+enum class Cause { wrapped, squeezed, hybrid, other, broken };
+/// How files name the number of its ends, their length (S over that number) and that one's interval.
+struct CauseText {
+  Cause cause;
+  bool is_clog;
+  const char *count, *length, *lower, *upper;
+};
+inline constexpr CauseText cause_texts[] = {
+    {Cause::wrapped, true, "wrapped", "clogging_length_wrapped", "clogging_length_wrapped_lower",
+     "clogging_length_wrapped_upper"},
+    {Cause::squeezed, true, "squeezed", "clogging_length_squeezed", "clogging_length_squeezed_lower",
+     "clogging_length_squeezed_upper"},
+    {Cause::hybrid, true, "hybrid", "clogging_length_hybrid", "clogging_length_hybrid_lower",
+     "clogging_length_hybrid_upper"},
+    {Cause::other, true, "other", "clogging_length_other", "clogging_length_other_lower",
+     "clogging_length_other_upper"},
+    {Cause::broken, false, "broken", "break_up_length", "break_up_length_lower", "break_up_length_upper"}};
+
 /// The runs of a sweep that differ in their seed only, and what they say together.
 struct Group {
   sweep::RunRow first_row;                                 ///< its parameters are those of all
@@ -73,12 +93,14 @@ struct Group {
   fit::WeibullTest weibull;
   std::vector<fit::SurvivalStep> survival;
   std::vector<double> censored_distances;  ///< of the runs that did not clog, increasing [sigma]
-  /// By mechanism: its clogs, all other runs censored there. Empty if the mechanism of a clog is not known.
-  struct Cause {
-    ClogMechanism mechanism;
-    fit::CloggingLength clogging;
+  /// One of each Cause, in their order: the runs that it ended, all others censored. Empty if the mechanism
+  /// of a clog is not known.
+  struct EndsBy {
+    const CauseText* text;
+    fit::CloggingLength ends;
+    std::vector<fit::IncidenceStep> incidence;  ///< empty where there is no clogging length
   };
-  std::vector<Cause> causes;
+  std::vector<EndsBy> causes;
   fit::MeanSpeed relative_speed;         ///< v_g/v_t, mean of the runs
   fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, way over time of all runs together
   fit::Migration migration;
@@ -91,10 +113,6 @@ struct Group {
   int num_repeating = 0;  ///< went farther than their array's period
   std::vector<Doubt> doubts;
 };
-
-/// Mechanisms with a clogging length of their own; `none` are clogs of none of the others.
-inline constexpr ClogMechanism causes[] = {ClogMechanism::wrapped, ClogMechanism::squeezed,
-                                           ClogMechanism::hybrid, ClogMechanism::none};
 
 /// Groups rows by everything but the seed, in the order of their parameters.
 /// @param from_distance  clogging lengths count from here on [sigma]: runs that ended before are left out of

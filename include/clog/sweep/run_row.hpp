@@ -70,6 +70,7 @@ struct RunRow {
   double smallest_relative_speed_at = not_known;
   double sag = not_known;  ///< on a flat wall
   double top_sag = not_known;
+  ThinnestNeck neck;
   std::int64_t steps = 0;
 
   double wall_seconds = 0;
@@ -84,7 +85,8 @@ struct RunRow {
 
 /// Has the run come to its end, so that it has a result?
 inline bool is_result(RunStatus status) {
-  return status == RunStatus::clogged || status == RunStatus::flowing || status == RunStatus::passed;
+  return status == RunStatus::clogged || status == RunStatus::broken || status == RunStatus::flowing ||
+         status == RunStatus::passed;
 }
 /// Is it under way, or was it stopped on its way?
 inline bool is_unfinished(RunStatus status) {

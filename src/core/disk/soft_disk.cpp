@@ -100,6 +100,9 @@ Hold hold_of_disk(const RunParameters&, const ObstacleArray&, const DropletState
   return {.mechanism = ClogMechanism::squeezed, .geometry = {}};
 }
 
+/// It stays round.
+double neck_of_disk(const DropletState&, double) { return no_neck; }
+
 }  // namespace
 
 const DropletModel soft_disk = {.stiffness_key = "wall-stiffness",
@@ -113,6 +116,7 @@ const DropletModel soft_disk = {.stiffness_key = "wall-stiffness",
                                 .most_energy_at_release = energy_of_overlaps,
                                 .make = make_disk,
                                 .equilibrium = equilibrium_of_disk,
-                                .hold = hold_of_disk};
+                                .hold = hold_of_disk,
+                                .neck = neck_of_disk};
 
 }  // namespace clog

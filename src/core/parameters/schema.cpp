@@ -498,6 +498,16 @@ std::vector<Parameter> make_schema() {
              .role = numerics,
              .range = {positive, to(0.5, "a droplet that hangs moves less", "try 0.05")},
              .before = RunParameters().dwell_length}),
+      entry(
+          "break-up-neck", [](auto& run) -> auto& { return run.dp.break_up_neck; },
+          {.column = "break_up_neck",
+           .symbol = R"(w_\mathrm{b})",
+           .unit = "sigma",
+           .meaning = "a droplet with a thinner neck between two lobes has broken up, which ends the run; 0: "
+                      "necks are not looked for",
+           .scope = &polygons,
+           .range = {not_negative, to(0.5, "a droplet in a gap is no wider", "try 0.05")},
+           .before = 0.0}),
   };
 }
 

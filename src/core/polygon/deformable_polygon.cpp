@@ -10,6 +10,7 @@
 #include "clog/core/polygon/clog_geometry.hpp"
 #include "clog/core/polygon/dp_droplet.hpp"
 #include "clog/core/polygon/dp_forces.hpp"
+#include "clog/core/polygon/neck.hpp"
 #include "clog/core/tools/units.hpp"
 #include "core/polygon/polygon_release.hpp"
 
@@ -98,6 +99,10 @@ Hold hold_of_polygon(const RunParameters& run, const ObstacleArray& obstacles, c
   return {.mechanism = geometry.mechanism(), .geometry = geometry};
 }
 
+double neck_of_polygon(const DropletState& state, double below) {
+  return thinnest_neck(state.position, below);
+}
+
 }  // namespace
 
 const DropletModel deformable_polygon = {.stiffness_key = "line-tension",
@@ -111,6 +116,7 @@ const DropletModel deformable_polygon = {.stiffness_key = "line-tension",
                                          .most_energy_at_release = energy_of_interface,
                                          .make = make_polygon,
                                          .equilibrium = equilibrium_of_polygon,
-                                         .hold = hold_of_polygon};
+                                         .hold = hold_of_polygon,
+                                         .neck = neck_of_polygon};
 
 }  // namespace clog

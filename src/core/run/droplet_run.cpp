@@ -32,7 +32,7 @@ constexpr double fall_between_searches = 0.1;
 constexpr double rise_of_a_moving_droplet = 10;
 
 /// Changes with what a snapshot holds.
-constexpr std::uint64_t snapshot_kind = 0x636c6f6773000002;
+constexpr std::uint64_t snapshot_kind = 0x636c6f6773000003;
 
 }  // namespace
 
@@ -91,6 +91,7 @@ void DropletRun::take_snapshot() {
   record_.save(bytes);
   dwells_.save(bytes);
   if (is_passage()) passage_.save(bytes);
+  bytes.put(neck_);
   snapshot_ = bytes.take();
 }
 
@@ -118,6 +119,7 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
     resumed.record_.restore(rest);
     resumed.dwells_.restore(rest);
     if (resumed.is_passage()) resumed.passage_.restore(rest);
+    rest.get(resumed.neck_);
     if (!rest.at_end()) throw Error("the snapshot is of another run");
     resumed.snapshot_.assign(snapshot.begin(), snapshot.end());
     return resumed;
@@ -146,6 +148,10 @@ void DropletRun::check() {
   if (is_passage())
     passage_.add(run_.channel.start + displacement()[0], shape.shape_parameter(),
                  droplet_->centre_velocity()[0] / run_.drag.terminal_speed, has_fallen());
+  if (has_broken()) {
+    status_ = RunStatus::broken;
+    return;
+  }
   if (is_quiet(energy_ratio))
     clogged_by_ = ClogDetection::threshold;
   else if (run_.clog_detection == ClogDetection::certified && finds_rest(energy_ratio))
@@ -160,6 +166,14 @@ void DropletRun::check() {
 
 bool DropletRun::is_passage() const { return scene_of(run_).finding == Finding::passage; }
 
+bool DropletRun::has_broken() {
+  if (run_.dp.break_up_neck == 0) return false;
+  const double thinnest = std::isnan(neck_.width) ? no_neck : neck_.width;
+  const double width = model_of(run_).neck(droplet_->state(), thinnest);
+  if (width < thinnest) neck_ = {.width = width, .distance = displacement()[0]};
+  return width < run_.dp.break_up_neck;
+}
+
 bool DropletRun::is_quiet(double energy_ratio) {
   const bool is_quiet = energy_ratio < run_.clog_energy && has_fallen();
   quiet_checks_ = is_quiet ? quiet_checks_ + 1 : 0;
@@ -173,8 +187,9 @@ bool DropletRun::finds_rest(double energy_ratio) {
   next_search_ = fall_between_searches * energy_ratio;
   const DropletModel& model = model_of(run_);
   std::optional<DropletState> rest = model.equilibrium(run_, *obstacles_, droplet_->state());
-  if (rest) at_rest_ = model.make(run_, *obstacles_, std::move(*rest));
-  return at_rest_ != nullptr;
+  if (!rest || model.neck(*rest, run_.dp.break_up_neck) < no_neck) return false;
+  at_rest_ = model.make(run_, *obstacles_, std::move(*rest));
+  return true;
 }
 
 Sag DropletRun::sag(const Droplet& droplet) const {
@@ -203,6 +218,7 @@ RunResult DropletRun::result() const {
           .hold = hold,
           .passage = passage_,
           .sag = scene_of(run_).finding == Finding::sag ? sag(last) : Sag(),
+          .neck = neck_,
           .steps = droplet_->num_integrated_steps(),
           .message = message_};
 }

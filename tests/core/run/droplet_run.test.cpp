@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
+#include "clog/core/model/model.hpp"
+#include "clog/core/polygon/neck.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/byte_archive.hpp"
 #include "clog/core/tools/error.hpp"
@@ -41,6 +46,7 @@ void expect_identical(const RunResult& a, const RunResult& b) {
   EXPECT_EQ(a.shape_parameter, b.shape_parameter);
   EXPECT_EQ(a.steps, b.steps);
   EXPECT_EQ(a.hold.mechanism, b.hold.mechanism);
+  EXPECT_TRUE(a.neck.width == b.neck.width || (std::isnan(a.neck.width) && std::isnan(b.neck.width)));
   EXPECT_EQ(bytes_of(a.dwells), bytes_of(b.dwells));
 }
 
@@ -75,7 +81,9 @@ DropletRun resume_in_array(const RunParameters& run, std::span<const std::byte> 
 
 TEST(DropletRun, GoesOnFromEverySnapshotBitForBit) {
   for (const Model model : {Model::dp, Model::sp}) {
-    const RunParameters run = long_run(model);
+    RunParameters run = long_run(model);
+    if (model == Model::dp)
+      run.obstacles.gap = 0.35, run.dp.line_tension = 0.2, run.dp.break_up_neck = 0.02, run.seed = 1;
     DropletRun whole(run);
     EXPECT_TRUE(whole.snapshot().empty());
     std::vector<std::vector<std::byte>> snapshots;
@@ -83,6 +91,7 @@ TEST(DropletRun, GoesOnFromEverySnapshotBitForBit) {
       if (!whole.snapshot().empty() && (snapshots.empty() || snapshots.back() != whole.snapshot()))
         snapshots.push_back(whole.snapshot());
     ASSERT_EQ(snapshots.size(), 3u);
+    EXPECT_EQ(std::isnan(whole.result().neck.width), model == Model::sp) << whole.result().neck.width;
     for (const std::vector<std::byte>& snapshot : snapshots) {
       DropletRun resumed = resume_in_array(run, snapshot);
       EXPECT_GT(resumed.time(), 200);
@@ -241,6 +250,95 @@ TEST(DropletRun, FollowsASoftDiskToo) {
   EXPECT_EQ(result.status, RunStatus::clogged);
   EXPECT_EQ(result.shape_parameter, 1);
   EXPECT_EQ(result.hold.mechanism, ClogMechanism::squeezed);
+}
+
+/// Released 3 sigma upstream of a circle of 0.3 sigma, `offset` beside its centre's line.
+RunParameters falls_onto_a_circle(double line_tension, double offset, int vertices = 128) {
+  RunParameters run;
+  run.dp.line_tension = line_tension;
+  run.dp.vertices = vertices;
+  run.dp.break_up_neck = 0.03;
+  run.obstacles.box = 20;
+  run.obstacles.layout = ObstacleLayout::file;
+  run.obstacles.own = OwnCircles({{13, 10 + offset, 0.15}});
+  run.max_time = 250;
+  return resolve(run);
+}
+
+/// When its liquid hangs on both sides of a thin film over the obstacle, four interfaces of tension Gamma
+/// carry all of its weight, at most: below Gamma = pi/16 none holds it. Stiffer ones lie on the obstacle as
+/// well.
+TEST(BreakUp, HeadOnADropletTooHeavyForFourInterfacesBreaks) {
+  for (const int vertices : {64, 128, 256}) {
+    const RunResult broken = result_of(falls_onto_a_circle(0.95 * std::numbers::pi / 16, 0, vertices), 100);
+    EXPECT_EQ(broken.status, RunStatus::broken) << vertices;
+    EXPECT_LT(broken.neck.width, 0.03);
+    EXPECT_EQ(broken.neck.distance, broken.distance);
+    EXPECT_FALSE(broken.clogged_by);
+    const RunResult whole = result_of(falls_onto_a_circle(0.4, 0, vertices), 100);
+    EXPECT_EQ(whole.status, RunStatus::flowing) << vertices;
+    EXPECT_LT(whole.distance, 3) << "it lies on the obstacle";
+  }
+}
+
+/// What breaks head-on slips off on one side when it comes off-centre, unless it is softer.
+TEST(BreakUp, OffCentreADropletHasToBeSofterToBreak) {
+  for (const double side : {-1.0, 1.0}) {
+    const RunResult passed = result_of(falls_onto_a_circle(0.15, 0.1 * side), 100);
+    EXPECT_EQ(passed.status, RunStatus::flowing);
+    EXPECT_GT(passed.distance, 4);
+    EXPECT_GT(passed.lateral * -side, 0.1);
+    EXPECT_EQ(result_of(falls_onto_a_circle(0.05, 0.1 * side), 100).status, RunStatus::broken);
+    EXPECT_EQ(result_of(falls_onto_a_circle(0.05, 0.3 * side), 100).status, RunStatus::flowing);
+  }
+}
+
+/// Looking for necks changes nothing of a run's course but its end.
+TEST(BreakUp, TheCourseIsTheSameWithoutIt) {
+  RunParameters run = falls_onto_a_circle(0.05, 0.1);
+  const RunResult broken = result_of(run, 100);
+  run.max_time = broken.time;
+  run.dp.break_up_neck = 0;
+  const RunResult same = result_of(run, 100);
+  EXPECT_EQ(same.status, RunStatus::flowing);
+  EXPECT_TRUE(std::isnan(same.neck.width));
+  EXPECT_EQ(same.distance, broken.distance);
+  EXPECT_EQ(same.kinetic_energy_ratio, broken.kinetic_energy_ratio);
+}
+
+/// A droplet that hangs over an obstacle, with its rest known, from where its neck still gets thinner: a rest
+/// with a neck that is too thin is none, and it breaks when its neck is there.
+TEST(BreakUp, ComesBeforeACertifiedClog) {
+  RunParameters run;
+  run.dp.perimeter_spring = PerimeterSpring::rest;
+  run.dp.line_tension = 0.1;
+  run.dp.perimeter_stiffness = 0.1 * run.dp.line_tension;
+  run.dp.gravity = Gravity::vertex;
+  run.dp.vertices = 64;
+  run.obstacles.gap = 0.3;
+  run.obstacles.box = 40;
+  run.max_time = 3000;
+  run.seed = 3;
+  run = resolve(run);
+  DropletRun hung(run);
+  while (!hung.advance(1000)) {
+  }
+  ASSERT_EQ(hung.result().clogged_by, ClogDetection::certified);
+  const DropletState state = hung.droplet().state();
+  const std::optional<DropletState> rest = model_of(run).equilibrium(run, hung.obstacles(), state);
+  ASSERT_TRUE(rest);
+  const double now = thinnest_neck(state.position), at_rest = thinnest_neck(rest->position);
+  ASSERT_LT(at_rest, now);
+  run.max_time = 1000;
+  const auto obstacles = std::make_shared<const ObstacleArray>(sample_obstacles(run.obstacles, run.seed));
+  for (const double share : {-0.5, 0.5}) {  // on either side of the neck at rest
+    run.dp.break_up_neck = at_rest + share * (now - at_rest);
+    DropletRun on(run, obstacles, state);
+    while (!on.advance(1000)) {
+    }
+    EXPECT_EQ(on.result().status, share > 0 ? RunStatus::broken : RunStatus::clogged)
+        << at_rest << " " << now;
+  }
 }
 
 }  // namespace

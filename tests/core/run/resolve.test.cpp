@@ -63,6 +63,20 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"clog-energy=0.1", [](auto& run) { run.clog_energy = 0.1; }},
         Refusal{"dwell-length=0 (must be positive", [](auto& run) { run.dwell_length = 0; }},
         Refusal{"dwell-length=0.6 (a droplet that hangs", [](auto& run) { run.dwell_length = 0.6; }},
+        Refusal{"break-up-neck=-0.1 (must not be", [](auto& run) { run.dp.break_up_neck = -0.1; }},
+        Refusal{"break-up-neck=0.01 (no neck is thinner than self-contact-range=0.01227",
+                [](auto& run) { run.dp.break_up_neck = 0.01; }},
+        Refusal{"break-up-neck=0.2 (all that pass obstacle-gap=0.2 have a neck as thin as that) use less",
+                [](auto& run) { run.dp.break_up_neck = 0.2; }},
+        Refusal{"break-up-neck=0.45 (all that pass orifice=0.4",
+                [](auto& run) {
+                  run.dp.break_up_neck = 0.45, run.obstacles.layout = ObstacleLayout::channel;
+                  run.channel.orifice = 0.4;
+                }},
+        Refusal{"break-up-neck=0.05 (model=sp does not depend on it) leave it out",
+                [](auto& run) {
+                  run.model = Model::sp, run.wall_stiffness = 1, run.dp.break_up_neck = 0.05;
+                }},
         Refusal{"terminal-speed=0", [](auto& run) { run.drag.terminal_speed = 0; }},
         Refusal{"near-wall-drag=-1", [](auto& run) { run.drag.near_wall = -1; }},
         Refusal{"near-wall-exponent=-1", [](auto& run) { run.drag.near_wall_exponent = -1; }},

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -10,6 +11,8 @@
 #include "clog/core/world/obstacle_array.hpp"
 
 namespace clog {
+
+inline constexpr double no_neck = std::numeric_limits<double>::infinity();
 
 /// What a droplet is. There is one for each Model: a new one is a word of that, a folder beside `polygon` and
 /// `disk` with an object of its own, a line in model.cpp, and what src/README.md says besides.
@@ -47,6 +50,8 @@ struct DropletModel {
                                              const DropletState& state);
   /// What holds a droplet that has clogged.
   Hold (*hold)(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state);
+  /// Width of its thinnest neck; no_neck if it has none that is narrower than `below` [sigma].
+  double (*neck)(const DropletState& state, double below);
 };
 
 extern const DropletModel deformable_polygon, soft_disk;

@@ -101,6 +101,8 @@ struct DpParameters {
   double self_contact_range = published_vertex_diameter;
   Gravity gravity = Gravity::area;
   std::optional<int> vertices;  ///< N_v; empty: automatic
+  /// A droplet with a thinner neck has broken up [sigma]; 0: none does.
+  double break_up_neck = 0;
 };
 
 /// The rectangle after which an array repeats: square boxes in a row along the flow.

@@ -18,13 +18,14 @@
 
 namespace clog {
 
-enum class RunStatus { running, clogged, flowing, passed, interrupted, failed };
+enum class RunStatus { running, clogged, broken, flowing, passed, interrupted, failed };
 template <>
 struct Words<RunStatus> {
   static constexpr Worded<RunStatus> all[] = {
-      {RunStatus::running, "running"},         {RunStatus::clogged, "clogged"},
-      {RunStatus::flowing, "flowing"},         {RunStatus::passed, "passed"},
-      {RunStatus::interrupted, "interrupted"}, {RunStatus::failed, "failed"}};
+      {RunStatus::running, "running"}, {RunStatus::clogged, "clogged"},
+      {RunStatus::broken, "broken"},   {RunStatus::flowing, "flowing"},
+      {RunStatus::passed, "passed"},   {RunStatus::interrupted, "interrupted"},
+      {RunStatus::failed, "failed"}};
 };
 
 /// E_k/E_t beyond which the integration has broken down: free fall without drag over a whole box stays below
@@ -38,6 +39,13 @@ inline constexpr double diverged_area_error = 0.5;
 struct Sag {
   double centre = std::numeric_limits<double>::quiet_NaN();  ///< delta_s, of the area's centroid
   double top = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// The thinnest neck that a droplet has had so far, and where it was then [sigma]; NaN if it had none, or
+/// none was looked for. Once there was one, thinner ones only are looked for.
+struct ThinnestNeck {
+  double width = std::numeric_limits<double>::quiet_NaN();
+  double distance = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// What one run found out.
@@ -54,16 +62,20 @@ struct RunResult {
   Hold hold;                        ///< of a clogged droplet, certified: at rest
   Passage passage;                  ///< through a channel; NaN elsewhere
   Sag sag;                          ///< certified: at rest
-  std::int64_t steps = 0;           ///< integrated steps, sub-steps counted singly
-  std::string message;              ///< why it failed
+  ThinnestNeck neck;
+  std::int64_t steps = 0;  ///< integrated steps, sub-steps counted singly
+  std::string message;     ///< why it failed
 };
 
-/// One droplet followed from its release until it clogs, passes the end of its way, or its time is up.
+/// One droplet followed from its release until it clogs, breaks up, passes the end of its way, or its time is
+/// up.
 ///
 /// The droplet counts as clogged when E_k/E_t (E_t: kinetic energy at terminal speed) has been below
 /// clog-energy at two checks in a row, not before it had ten relaxation times V_t/g to fall. With
-/// clog-detection=certified it also does as soon as find_equilibrium() knows where it will rest. The course
-/// of a run depends on its parameters alone, not on how advance() is called, nor on how clogs are found.
+/// clog-detection=certified it also does as soon as find_equilibrium() knows where it will rest. One with a
+/// neck thinner than break-up-neck has broken up, however close to rest it is; a rest with such a neck is
+/// none. The course of a run depends on its parameters alone, not on how advance() is called, nor on how
+/// clogs are found.
 class DropletRun {
  public:
   /// Clogging and the end of the run are looked for, and r(t) is recorded, once in so many steps.
@@ -129,6 +141,7 @@ class DropletRun {
   DisplacementRecord record_;
   DwellRecord dwells_;
   Passage passage_;  // through a channel
+  ThinnestNeck neck_;
   std::vector<std::byte> snapshot_;
 
   bool is_passage() const;
@@ -136,6 +149,7 @@ class DropletRun {
   void check();
   Sag sag(const Droplet& droplet) const;
   void take_snapshot();
+  bool has_broken();
   bool is_quiet(double energy_ratio);
   bool finds_rest(double energy_ratio);
 };

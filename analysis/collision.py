@@ -1,0 +1,148 @@
+#!/usr/bin/python3
+"""Finds and draws which droplets break up on a single obstacle: up to which line tension, by how far off its centre they fall.
+
+    analysis/collision.py --output collision                     # collision.png, collision.pdf; the numbers as CSV
+    analysis/collision.py --output fine vertices=512 break-up-neck=0.05 --offsets 0,0.1,0.3
+
+For each offset a droplet falls onto a circle of 0.3 sigma, in sweeps over the line tension that close in on the largest
+at which it breaks up. KEY=VALUE are keys of clogsweep for all of them. The symmetry S of a collision is the area of the
+droplet on one side of the vertical line through the obstacle over that on the other, at most 1; the capillary number Ca
+is weight over tension, pi/(4 Gamma). On the right: the share of droplets that break up if all offsets at which they
+touch the obstacle are as likely.
+"""
+
+import argparse
+import math
+import pathlib
+import sys
+import tempfile
+
+import command_line
+
+with command_line.needs_modules():
+    import programs
+    import stored
+    import style
+    from style import plt
+
+DIAMETER = 0.3  # of the obstacle [sigma]
+FALL = 3  # from the release to the obstacle's centre [sigma]: far enough that the droplet starts where it is told to
+BOX = 20
+KEYS = {"vertices": "128", "terminal-speed": "0.03", "break-up-neck": "0.02"}
+TENSIONS = (0.01, 0.6)  # the softest droplets that are proved sound, and some that none breaks
+PRECISION = 0.02
+STEPS = 6  # of a sweep
+
+
+def key_and_value(word):
+    """Type of an option: KEY=VALUE."""
+    key, equals, value = word.partition("=")
+    if not (key and equals and value):
+        raise argparse.ArgumentTypeError(f"invalid key: {word} (must be KEY=VALUE) try vertices=256")
+    return key, value
+
+
+def offsets(word):
+    """Type of an option: offsets from the obstacle's centre at which the droplet touches it [sigma]."""
+    try:
+        numbers = [float(part) for part in word.split(",")]
+    except ValueError:
+        numbers = [math.nan]
+    if not all(0 <= number < 0.5 for number in numbers):
+        raise argparse.ArgumentTypeError(f"invalid value: {word} (must be numbers from 0 to below 0.5 with commas between them) try 0,0.1,0.3")
+    return numbers
+
+
+def symmetry(offset):
+    """Of a collision with a droplet of radius 1/2."""
+    small = (math.acos(2 * offset) - 2 * offset * math.sqrt(1 - 4 * offset**2)) / math.pi
+    return small / (1 - small)
+
+
+def capillary_number(tension):
+    return math.pi / 4 / tension
+
+
+class Collisions:
+    """Droplets that fall onto the obstacle."""
+
+    def __init__(self, clogsweep, folder, keys):
+        self.clogsweep, self.folder, self.keys = clogsweep, folder, KEYS | keys
+        # A droplet that hangs on until it has had the time to fall four times the way has not broken up.
+        self.keys.setdefault("max-time", f"{4 * FALL / float(self.keys['terminal-speed']):g}")
+
+    def break_up(self, offset, tensions):
+        """Which of the droplets do."""
+        circles, sweep = self.folder / "circle.csv", self.folder / "collisions.h5"
+        circles.write_text(f"x,y,diameter\n{BOX / 2 + FALL},{BOX / 2 + offset},{DIAMETER}\n")
+        programs.run_program(self.clogsweep, f"obstacles={circles}", f"box={BOX}", "seeds=1", *(f"{key}={value}" for key, value in self.keys.items()),
+                             "line-tension=" + ",".join(f"{tension:.6g}" for tension in tensions), "--output", sweep, "--quiet")
+        ends = [row["status"] for row in sorted(stored.read_rows(sweep), key=lambda row: row["line_tension"])]
+        sweep.unlink()
+        return [end == b"broken" for end in ends]
+
+    def threshold(self, offset):
+        """@return the largest line tension found at which the droplet breaks up, the next at which it does not; None beyond TENSIONS"""
+        low, high = TENSIONS
+        while high / low > 1 + PRECISION:
+            tensions = [low * (high / low)**(step / STEPS) for step in range(STEPS + 1)]
+            broken = self.break_up(offset, tensions)
+            first_whole = broken.index(False) if False in broken else len(broken)
+            if first_whole in (0, len(broken)):
+                return (None, low) if first_whole == 0 else (high, None)
+            low, high = tensions[first_whole - 1], tensions[first_whole]
+        return low, high
+
+
+def draw(found):
+    """@param found  thresholds by offset"""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.4), layout="constrained")
+    known = {offset: math.sqrt(low * high) for offset, (low, high) in found.items() if low and high}
+    places = {offset: (symmetry(offset), capillary_number(tension)) for offset, tension in known.items()}
+    left.plot(*zip(*places.values()), marker="o", linestyle="none", color=style.COLOURS[0], label="droplets above break up")
+    off_centre = [place for offset, place in places.items() if offset > 0]
+    if off_centre:
+        s, ca = off_centre[len(off_centre) // 2]
+        ends = min(place[0] for place in off_centre), 1
+        left.plot(ends, [ca * (end / s)**(-4 / 3) for end in ends], color="0.4", linewidth=1, linestyle="--", label=r"$Ca\,S^{4/3}$ constant")
+    left.set_xscale("log")
+    left.set_yscale("log")
+    left.set_xlabel("symmetry of the collision $S$")
+    left.set_ylabel(r"capillary number $Ca = \pi/(4\Gamma)$")
+    ordered = sorted(known, key=lambda offset: places[offset][1])
+    right.plot([places[offset][1] for offset in ordered], [offset / ((1 + DIAMETER) / 2) for offset in ordered], marker="o", color=style.COLOURS[0])
+    right.set_xscale("log")
+    right.set_ylim(0, 1)
+    right.set_xlabel(left.get_ylabel())
+    right.set_ylabel("share of collisions that break the droplet up")
+    left.legend(frameon=False, fontsize=8)
+    for axes in (left, right):
+        style.grid(axes)
+    return figure
+
+
+def body():
+    parser = command_line.Parser(__doc__)
+    parser.add_argument("keys", type=key_and_value, nargs="*", metavar="KEY=VALUE", help="of clogsweep; vertices, terminal-speed, break-up-neck, max-time have values "
+                        "of their own here")
+    command_line.add_output(parser, "name of the picture; .png and .pdf are made", ".png", ".pdf", required=True)
+    parser.add_argument("--offsets", type=offsets, default="0,0.01,0.02,0.05,0.1,0.15,0.2,0.25,0.3,0.35", help="of the droplet's way from the obstacle's centre [sigma]")
+    programs.add_option(parser)
+    arguments = parser.parse_args()
+    command_line.refuse_unwritable_picture(arguments.output)
+    found = {}
+    print("offset,symmetry,breaks_up_to,whole_from,capillary_number")
+    with tempfile.TemporaryDirectory(prefix="clogsweep-collision-") as folder:
+        collisions = Collisions(programs.programs_in(arguments.programs) / "clogsweep", pathlib.Path(folder), dict(arguments.keys))
+        for offset in arguments.offsets:
+            low, high = found[offset] = collisions.threshold(offset)
+            middle = f"{capillary_number(math.sqrt(low * high)):.4g}" if low and high else ""
+            print(offset, f"{symmetry(offset):.4f}", *(f"{end:.4g}" if end else "" for end in (low, high)), middle, sep=",", flush=True)
+    if not any(low and high for low, high in found.values()):
+        raise command_line.UserError(f"nothing to draw (no offset has a threshold between line tensions of {TENSIONS[0]} and {TENSIONS[1]}); try smaller --offsets")
+    style.save(draw(found), arguments.output)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(command_line.run(body))

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "clog/fit/clogging_length.hpp"
+
+namespace clog::fit {
+
+/// What one run says where it may end by several causes: it went `distance` [sigma] and ended there by one of
+/// them, or was still going when it was last seen (censored).
+struct CompetingEnd {
+  double distance;
+  std::optional<int> cause;
+};
+
+/// A step of the estimated F_c(r), the probability to end by cause c on a way r, the other causes being at
+/// work.
+struct IncidenceStep {
+  double distance;        ///< of one or more ends by this cause [sigma]
+  int num_at_risk;        ///< runs that came so far
+  int num_ends;           ///< of them, by this cause at this distance
+  double probability;     ///< F_c just beyond
+  double standard_error;  ///< by the delta method
+  Interval interval;      ///< of F_c; NaN where that is 1
+};
+
+/// Aalen and Johansen's estimate (Scand. J. Stat. 5, 141 (1978)): F_c grows by P d_c/n at every distance with
+/// ends, P the probability to have come so far (survival_curve() of all causes), n the runs at risk, d_c
+/// those of them that end by the cause. So F_c of all causes and P add up to 1, which one minus the survival
+/// curves of single causes, the other ends being censored, do not. One step per distance with ends by the
+/// cause, in increasing order; at equal distances ends come before censorings. The variance is that of Dinse
+/// and Larson (Biometrika 73, 379 (1986)), binomial without censoring. Intervals are symmetric in log(-log
+/// F_c), as those of survival_curve().
+/// @throws std::invalid_argument unless 0 < confidence < 1
+std::vector<IncidenceStep> cumulative_incidence(std::span<const CompetingEnd> runs, int cause,
+                                                double confidence = 0.95);
+
+}  // namespace clog::fit

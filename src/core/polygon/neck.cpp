@@ -1,0 +1,144 @@
+#include "clog/core/polygon/neck.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace clog {
+namespace {
+
+/// A part of the droplet is a lobe if a drop of its area is at least so many times as wide as the neck. What
+/// a chord cuts off a circle is at most half as large as a drop of the chord's width.
+constexpr double lobe_width = 2;
+/// And if it has at least this share of the droplet's area. Without it a droplet would lose no more than a
+/// bead: films end in beads of a thousandth when they draw in.
+constexpr double lobe_share = 0.02;
+
+/// Cosine of an angle that counts as a right one: of a bridge with straight sides all segments are equal.
+constexpr double round_off = 1e-9;
+
+using Eigen::Array2d;
+
+double dot(const Array2d& a, const Array2d& b) { return a[0] * b[0] + a[1] * b[1]; }
+double cross(const Array2d& a, const Array2d& b) { return a[0] * b[1] - a[1] * b[0]; }
+double length(const Array2d& a) { return std::sqrt(dot(a, a)); }
+
+/// Is the other end of the segment no nearer from a bit further along this edge?
+bool leads_away(const Array2d& segment, const Array2d& edge) {
+  return dot(segment, edge) <= round_off * length(segment) * length(edge);
+}
+
+class Contour {
+ public:
+  explicit Contour(const Eigen::ArrayXd& position) : n_(position.size() / 2), position_(position) {
+    sectors_.reserve(n_ + 1);
+    sectors_.push_back(0);
+    for (Eigen::Index i = 0; i < n_; ++i)
+      sectors_.push_back(sectors_.back() + 0.5 * cross(vertex(i), vertex(next(i))));
+  }
+
+  Eigen::Index size() const { return n_; }
+  Eigen::Index next(Eigen::Index i) const { return i + 1 < n_ ? i + 1 : 0; }
+  Eigen::Index before(Eigen::Index i) const { return i > 0 ? i - 1 : n_ - 1; }
+  Array2d vertex(Eigen::Index i) const { return {position_[i], position_[n_ + i]}; }
+  /// Edge i leads from vertex i to the next.
+  Array2d edge(Eigen::Index i) const { return vertex(next(i)) - vertex(i); }
+
+  /// Is the contour concave at this vertex, or straight?
+  bool turns_inwards(Eigen::Index i) const {
+    const Array2d come = edge(before(i)), go = edge(i);
+    return cross(come, go) <= round_off * length(come) * length(go);
+  }
+
+  /// Towards the outside.
+  Array2d normal_of_edge(Eigen::Index i) const {
+    const Array2d along = edge(i);
+    return Array2d(along[1], -along[0]) / length(along);
+  }
+  Array2d normal_at_vertex(Eigen::Index i) const { return normal_of_edge(before(i)) + normal_of_edge(i); }
+
+  /// Area between the contour from vertex `from` to a point of edge `to`, and the segment back.
+  double area_behind(Eigen::Index from, Eigen::Index to, const Array2d& point) const {
+    const double way = sectors_[to] - sectors_[from] + (to < from ? sectors_[n_] : 0);
+    return way + 0.5 * (cross(vertex(to), point) + cross(point, vertex(from)));
+  }
+  double area() const { return sectors_[n_]; }
+
+  /// Is no other part of the contour between a vertex and a point of an edge?
+  bool is_clear(Eigen::Index from, Eigen::Index to, const Array2d& point) const {
+    const Array2d begin = vertex(from), segment = point - begin;
+    for (Eigen::Index i = 0; i < n_; ++i) {
+      if (i == from || next(i) == from || i == to || next(i) == to || i == next(to)) continue;
+      const Array2d a = vertex(i), b = vertex(next(i));
+      if (cross(segment, a - begin) * cross(segment, b - begin) < 0 &&
+          cross(b - a, begin - a) * cross(b - a, point - a) < 0)
+        return false;
+    }
+    return true;
+  }
+
+ private:
+  Eigen::Index n_;
+  const Eigen::ArrayXd& position_;
+  std::vector<double> sectors_;  // area between the origin and the contour from vertex 0 to vertex i
+};
+
+/// The point of an edge that is nearest to another point.
+struct Foot {
+  Eigen::Index edge;
+  double place;  ///< 0 at the edge's first vertex, 1 at its second
+  Array2d point;
+};
+Foot foot_on(const Contour& contour, Eigen::Index edge, const Array2d& from) {
+  const Array2d begin = contour.vertex(edge), along = contour.edge(edge);
+  const double place = std::clamp(dot(from - begin, along) / dot(along, along), 0.0, 1.0);
+  return {edge, place, begin + place * along};
+}
+
+/// Does the segment get no shorter when either of its ends moves along the contour?
+bool is_local_minimum(const Contour& contour, Eigen::Index vertex, const Foot& foot) {
+  const Array2d there = foot.point - contour.vertex(vertex), back = -there;
+  return leads_away(there, contour.edge(vertex)) &&
+         leads_away(there, -contour.edge(contour.before(vertex))) &&
+         (foot.place > 0 || leads_away(back, -contour.edge(contour.before(foot.edge)))) &&
+         (foot.place < 1 || leads_away(back, contour.edge(contour.next(foot.edge))));
+}
+
+bool lies_inside(const Contour& contour, Eigen::Index vertex, const Foot& foot) {
+  const Array2d there = foot.point - contour.vertex(vertex);
+  const Array2d normal = foot.place <= 0   ? contour.normal_at_vertex(foot.edge)
+                         : foot.place >= 1 ? contour.normal_at_vertex(contour.next(foot.edge))
+                                           : contour.normal_of_edge(foot.edge);
+  return dot(there, contour.normal_at_vertex(vertex)) < 0 && dot(there, normal) > 0 &&
+         contour.is_clear(vertex, foot.edge, foot.point);
+}
+
+bool parts_are_lobes(const Contour& contour, Eigen::Index vertex, const Foot& foot, double width) {
+  const double least = std::max(lobe_share * contour.area(),
+                                std::numbers::pi / 4 * (lobe_width * width) * (lobe_width * width));
+  const double part = contour.area_behind(vertex, foot.edge, foot.point);
+  return part >= least && contour.area() - part >= least;
+}
+
+}  // namespace
+
+double thinnest_neck(const Eigen::ArrayXd& position, double below) {
+  const Contour contour(position);
+  double thinnest = below;
+  for (Eigen::Index vertex = 0; vertex < contour.size(); ++vertex) {
+    if (!contour.turns_inwards(vertex)) continue;
+    const Array2d from = contour.vertex(vertex);
+    for (Eigen::Index edge = 0; edge < contour.size(); ++edge) {
+      if (edge == vertex || contour.next(edge) == vertex) continue;
+      const Foot foot = foot_on(contour, edge, from);
+      const double width = length(foot.point - from);
+      if (width < thinnest && is_local_minimum(contour, vertex, foot) &&
+          parts_are_lobes(contour, vertex, foot, width) && lies_inside(contour, vertex, foot))
+        thinnest = width;
+    }
+  }
+  return thinnest < below ? thinnest : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace clog

@@ -1,0 +1,67 @@
+#include "clog/fit/incidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "clog/fit/survival.hpp"
+
+namespace clog::fit {
+namespace {
+
+/// Sums over all distances so far from which the variance of F_c follows. With g = d/(n (n - d)), all causes,
+/// and h = P d_c/n^2 it is the sum of (F - F_s)^2 g + P h (n - d_c)/n - 2 (F - F_s) h, F_s being F_c at the
+/// term's distance and F now.
+struct VarianceSums {
+  double g = 0, F_g = 0, F2_g = 0;
+  double own = 0;
+  double h = 0, F_h = 0;
+
+  void add(double before, double F, double at_risk, double ends, double own_ends) {
+    // Where all end, F no longer grows, and (F - F_s)^2 g stays zero.
+    if (ends < at_risk) {
+      const double g_s = ends / (at_risk * (at_risk - ends));
+      g += g_s, F_g += F * g_s, F2_g += F * F * g_s;
+    }
+    const double h_s = before * own_ends / (at_risk * at_risk);
+    own += before * h_s * (at_risk - own_ends) / at_risk;
+    h += h_s, F_h += F * h_s;
+  }
+  double variance(double F) const {
+    return std::max(0.0, F * F * g - 2 * F * F_g + F2_g + own - 2 * (F * h - F_h));
+  }
+};
+
+}  // namespace
+
+std::vector<IncidenceStep> cumulative_incidence(std::span<const CompetingEnd> runs, int cause,
+                                                double confidence) {
+  require_confidence(confidence);
+  std::vector<CompetingEnd> sorted;
+  std::copy_if(runs.begin(), runs.end(), std::back_inserter(sorted),
+               [](const CompetingEnd& run) { return !std::isnan(run.distance); });
+  std::ranges::sort(sorted, {}, &CompetingEnd::distance);
+  std::vector<IncidenceStep> steps;
+  double still_going = 1, incidence = 0;
+  VarianceSums sums;
+  for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
+    int num_ends = 0, num_own = 0;
+    for (; end < sorted.size() && sorted[end].distance == sorted[begin].distance; ++end) {
+      num_ends += sorted[end].cause.has_value();
+      num_own += sorted[end].cause == cause;
+    }
+    if (num_ends == 0) continue;
+    const auto at_risk = static_cast<double>(sorted.size() - begin);
+    incidence += still_going * num_own / at_risk;
+    sums.add(still_going, incidence, at_risk, num_ends, num_own);
+    still_going *= 1 - num_ends / at_risk;
+    if (num_own == 0) continue;
+    const double variance = sums.variance(incidence);
+    steps.push_back({sorted[begin].distance, static_cast<int>(at_risk), num_own, incidence,
+                     std::sqrt(variance),
+                     log_log_interval(incidence, variance / (incidence * incidence), confidence)});
+  }
+  return steps;
+}
+
+}  // namespace clog::fit
