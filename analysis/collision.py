@@ -32,6 +32,7 @@ KEYS = {"vertices": "128", "terminal-speed": "0.03", "break-up-neck": "0.02"}
 TENSIONS = (0.01, 0.6)  # the softest droplets that are proved sound, and some that none breaks
 PRECISION = 0.02
 STEPS = 6  # of a sweep
+CAPILLARY_TICKS = [2, 3, 5, 10, 20, 50, 100]
 
 
 def key_and_value(word):
@@ -94,6 +95,15 @@ class Collisions:
         return low, high
 
 
+def logarithmic(axes, which, ticks):
+    """One of the axes, with plain numbers where they fall within what is drawn."""
+    axes.set(**{f"{which}scale": "log"})
+    axis, (low, high) = getattr(axes, f"{which}axis"), getattr(axes, f"get_{which}lim")()
+    axis.set_ticks([tick for tick in ticks if low <= tick <= high])
+    axis.set_major_formatter("{x:g}")
+    axis.set_ticks([], minor=True)
+
+
 def draw(found):
     """@param found  thresholds by offset"""
     figure, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.4), layout="constrained")
@@ -105,13 +115,13 @@ def draw(found):
         s, ca = off_centre[len(off_centre) // 2]
         ends = min(place[0] for place in off_centre), 1
         left.plot(ends, [ca * (end / s)**(-4 / 3) for end in ends], color="0.4", linewidth=1, linestyle="--", label=r"$Ca\,S^{4/3}$ constant")
-    left.set_xscale("log")
-    left.set_yscale("log")
+    logarithmic(left, "x", [0.1, 0.2, 0.3, 0.5, 0.7, 1])
+    logarithmic(left, "y", CAPILLARY_TICKS)
     left.set_xlabel("symmetry of the collision $S$")
     left.set_ylabel(r"capillary number $Ca = \pi/(4\Gamma)$")
     ordered = sorted(known, key=lambda offset: places[offset][1])
     right.plot([places[offset][1] for offset in ordered], [offset / ((1 + DIAMETER) / 2) for offset in ordered], marker="o", color=style.COLOURS[0])
-    right.set_xscale("log")
+    logarithmic(right, "x", CAPILLARY_TICKS)
     right.set_ylim(0, 1)
     right.set_xlabel(left.get_ylabel())
     right.set_ylabel("share of collisions that break the droplet up")

@@ -17,6 +17,10 @@ constexpr double lobe_share = 0.02;
 
 /// Cosine of an angle that counts as a right one: of a bridge with straight sides all segments are equal.
 constexpr double round_off = 1e-9;
+/// Is a cosine, or sine, times both lengths no more than that? Without square roots.
+bool is_hardly_positive(double value, double squared_lengths) {
+  return value <= 0 || value * value <= round_off * round_off * squared_lengths;
+}
 
 using Eigen::Array2d;
 
@@ -26,7 +30,7 @@ double length(const Array2d& a) { return std::sqrt(dot(a, a)); }
 
 /// Is the other end of the segment no nearer from a bit further along this edge?
 bool leads_away(const Array2d& segment, const Array2d& edge) {
-  return dot(segment, edge) <= round_off * length(segment) * length(edge);
+  return is_hardly_positive(dot(segment, edge), dot(segment, segment) * dot(edge, edge));
 }
 
 class Contour {
@@ -48,7 +52,7 @@ class Contour {
   /// Is the contour concave at this vertex, or straight?
   bool turns_inwards(Eigen::Index i) const {
     const Array2d come = edge(before(i)), go = edge(i);
-    return cross(come, go) <= round_off * length(come) * length(go);
+    return is_hardly_positive(cross(come, go), dot(come, come) * dot(go, go));
   }
 
   /// Towards the outside.
@@ -121,24 +125,77 @@ bool parts_are_lobes(const Contour& contour, Eigen::Index vertex, const Foot& fo
   return part >= least && contour.area() - part >= least;
 }
 
+/// Of a neck between parts of equal area: no other is wider.
+double widest_neck(const Contour& contour) {
+  return std::sqrt(contour.area() / 2 / (std::numbers::pi / 4)) / lobe_width;
+}
+
+/// Edges `first` to `last`, not included, and the rectangle that they are in.
+struct Run {
+  Eigen::Index first, last;
+  Array2d low, high;
+
+  double squared_distance(const Array2d& point) const {
+    const Array2d away = (low - point).max(point - high).max(0);
+    return dot(away, away);
+  }
+  /// Does some point of it lie where segments from `point` have no acute angle with this edge?
+  /// @param tolerance  round-off times the edge's length
+  bool reaches_behind(const Array2d& point, const Array2d& edge, double tolerance) const {
+    const double x = edge[0] > 0 ? low[0] : high[0];
+    const double y = edge[1] > 0 ? low[1] : high[1];
+    return (x - point[0]) * edge[0] + (y - point[1]) * edge[1] <= tolerance;
+  }
+};
+
+std::vector<Run> runs_of_edges(const Contour& contour) {
+  constexpr Eigen::Index most = 16;
+  std::vector<Run> runs;
+  for (Eigen::Index first = 0; first < contour.size(); first += most) {
+    Run run{first, std::min(first + most, contour.size()), contour.vertex(first), contour.vertex(first)};
+    for (Eigen::Index i = first; i < run.last; ++i) {
+      const Array2d end = contour.vertex(contour.next(i));
+      run.low = run.low.min(end);
+      run.high = run.high.max(end);
+    }
+    runs.push_back(run);
+  }
+  return runs;
+}
+
+/// The width of the thinnest neck from a vertex to these edges; `below` if there is none thinner.
+double thinnest_neck_to(const Contour& contour, Eigen::Index vertex, const Run& run, double below) {
+  const Array2d from = contour.vertex(vertex);
+  double thinnest = below;
+  for (Eigen::Index edge = run.first; edge < run.last; ++edge) {
+    if (edge == vertex || contour.next(edge) == vertex) continue;
+    const Foot foot = foot_on(contour, edge, from);
+    const Array2d there = foot.point - from;
+    if (dot(there, there) >= thinnest * thinnest || !is_local_minimum(contour, vertex, foot)) continue;
+    const double width = length(there);
+    if (parts_are_lobes(contour, vertex, foot, width) && lies_inside(contour, vertex, foot)) thinnest = width;
+  }
+  return thinnest;
+}
+
 }  // namespace
 
 double thinnest_neck(const Eigen::ArrayXd& position, double below) {
   const Contour contour(position);
-  double thinnest = below;
+  const std::vector<Run> runs = runs_of_edges(contour);
+  const double bound = std::min(below, (1 + round_off) * widest_neck(contour));
+  double thinnest = bound;
   for (Eigen::Index vertex = 0; vertex < contour.size(); ++vertex) {
     if (!contour.turns_inwards(vertex)) continue;
     const Array2d from = contour.vertex(vertex);
-    for (Eigen::Index edge = 0; edge < contour.size(); ++edge) {
-      if (edge == vertex || contour.next(edge) == vertex) continue;
-      const Foot foot = foot_on(contour, edge, from);
-      const double width = length(foot.point - from);
-      if (width < thinnest && is_local_minimum(contour, vertex, foot) &&
-          parts_are_lobes(contour, vertex, foot, width) && lies_inside(contour, vertex, foot))
-        thinnest = width;
-    }
+    const Array2d go = contour.edge(vertex), come = -contour.edge(contour.before(vertex));
+    const double tolerance = round_off * std::max(length(go), length(come));
+    for (const Run& run : runs)
+      if (run.squared_distance(from) < thinnest * thinnest && run.reaches_behind(from, go, tolerance) &&
+          run.reaches_behind(from, come, tolerance))
+        thinnest = thinnest_neck_to(contour, vertex, run, thinnest);
   }
-  return thinnest < below ? thinnest : std::numeric_limits<double>::infinity();
+  return thinnest < bound ? thinnest : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace clog
