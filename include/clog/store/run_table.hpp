@@ -10,7 +10,7 @@
 namespace clog::store {
 
 /// Version of the file format; see src/store/README.md.
-inline constexpr const char* format_version = "7";
+inline constexpr const char* format_version = "8";
 
 /// Name and text of the attributes at the file's root: where its numbers come from.
 using Provenance = std::vector<std::pair<std::string, std::string>>;

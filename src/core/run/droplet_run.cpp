@@ -32,7 +32,7 @@ constexpr double fall_between_searches = 0.1;
 constexpr double rise_of_a_moving_droplet = 10;
 
 /// Changes with what a snapshot holds.
-constexpr std::uint64_t snapshot_kind = 0x636c6f6773000002;
+constexpr std::uint64_t snapshot_kind = 0x636c6f6773000003;
 
 }  // namespace
 
