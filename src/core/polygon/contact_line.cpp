@@ -207,7 +207,7 @@ void ContactLine::add_forces(const DropletState& state, std::span<const End> end
   for (std::size_t e = 0; e < ends.size(); ++e) {
     if (anchor_of[e] < 0) continue;
     const WallAnchor& anchor = state.anchors[static_cast<std::size_t>(anchor_of[e])];
-    const double pull = -stiffness_ * way(ends[e].wall, anchor.x, ends[e].place);
+    const double pull = -stiffness_ * anchor.slip_of_force(way(ends[e].wall, anchor.x, ends[e].place));
     for (const auto& [vertex, gradient] : ends[e].gradient) {
       force[vertex] += pull * gradient[0];
       force[state.size() + vertex] += pull * gradient[1];
@@ -227,7 +227,7 @@ double ContactLine::energy(const DropletState& state, std::span<const End> ends)
   return energy;
 }
 
-WallYield ContactLine::follow(DropletState& state, std::span<const End> ends) const {
+WallYield ContactLine::follow(DropletState& state, std::span<const End> ends, Purpose purpose) const {
   const std::vector<Index> anchor_of = matched(state, ends);
   WallYield yield;
   std::vector<WallAnchor> after;
@@ -241,22 +241,13 @@ WallYield ContactLine::follow(DropletState& state, std::span<const End> ends) co
     is_kept[static_cast<std::size_t>(anchor_of[e])] = 1;
     WallAnchor anchor = state.anchors[static_cast<std::size_t>(anchor_of[e])];
     const double slip = way(end.wall, anchor.x, end.place);
-    const double held = std::clamp(slip, -most_outwards_ / stiffness_, most_inwards_ / stiffness_);
-    if (held != slip) {
-      anchor.x = end.place - held;
-      // By the trapezoidal rule, as the integrator: the force of before acts on half of the way.
-      yield.dissipated += stiffness_ * (anchor.slip + held) / 2 * (slip - held);
-      yield.excess = std::max(yield.excess, stiffness_ * std::abs(slip - held));
-    }
-    anchor.slip = held;
+    const double held = yield.hold(anchor, slip, -most_outwards_ / stiffness_, most_inwards_ / stiffness_,
+                                   stiffness_, purpose);
+    if (held != slip) anchor.x = end.place - held;
     after.push_back(anchor);
   }
-  for (std::size_t a = 0; a < state.anchors.size(); ++a) {
-    if (is_kept[a] != 0) continue;
-    const double slip = state.anchors[a].slip;
-    yield.dissipated += 0.5 * stiffness_ * slip * slip;
-    yield.excess = std::max(yield.excess, stiffness_ * std::abs(slip));
-  }
+  for (std::size_t a = 0; a < state.anchors.size(); ++a)
+    if (is_kept[a] == 0) yield.forget(state.anchors[a], stiffness_);
   state.anchors = std::move(after);
   return yield;
 }

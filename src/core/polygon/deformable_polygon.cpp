@@ -89,15 +89,20 @@ std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, con
   const EquilibriumForces asked = EquilibriumForces::of(forces, axes);
   std::optional<DropletState> rest = find_equilibrium(asked, state);
   if (!forces.has_anchors()) return rest;
-  // Walls hold the droplet by springs, whose anchors rest while it is searched. A rest counts if its walls
-  // bear what the springs ask for; those that do not yield, and the search goes on from there.
-  constexpr int most_yields = 10;
+  // Walls hold the droplet by springs, whose anchors rest while it is searched. Where a wall does not bear
+  // what its spring asks for, it gives what it bears, whatever the droplet does, and the search goes on from
+  // there until all walls bear what they give.
+  constexpr int most_yields = 20;
   const double bearable = 1e-6 * units::droplet_mass * units::gravity / run.dp.vertices;
   WallTouches touches(run, obstacles);
   for (int yields = 0; rest && yields < most_yields; ++yields) {
     forces.update_contacts(*rest, {});
-    const WallYield yield = forces.let_walls_yield(*rest, touches, forces.walls().items());
-    if (yield.excess <= bearable) return rest;
+    const WallYield yield =
+        forces.let_walls_yield(*rest, touches, forces.walls().items(), Purpose::equilibrium);
+    if (yield.excess <= bearable) {
+      for (WallAnchor& anchor : rest->anchors) anchor.yields = 0;
+      return rest;
+    }
     rest = find_equilibrium(asked, *rest);
     if (rest && (rest->position - state.position).abs().maxCoeff() > farthest_rest) return std::nullopt;
   }

@@ -231,9 +231,9 @@ DpForces::WettingForces DpForces::wetting_forces(const DropletState& state) cons
 }
 
 WallYield DpForces::let_walls_yield(DropletState& state, WallTouches& touches,
-                                    std::span<const WallContacts::Item> circles) const {
-  if (friction_.is_on()) return friction_.follow(state, touches.find(state, circles));
-  return contact_line_.follow(state, contact_line_.ends(state, adhesive_walls_.items()));
+                                    std::span<const WallContacts::Item> circles, Purpose purpose) const {
+  if (friction_.is_on()) return friction_.follow(state, touches.find(state, circles), purpose);
+  return contact_line_.follow(state, contact_line_.ends(state, adhesive_walls_.items()), purpose);
 }
 
 void DpForces::add_self_contact(const DropletState& state, Eigen::ArrayXd& force) const {

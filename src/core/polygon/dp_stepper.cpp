@@ -211,7 +211,7 @@ void DpStepper::push_off_everything(DropletState& droplet, const kernel::KickCoe
 }
 
 void DpStepper::let_walls_yield(DropletState& droplet, Droplet::Work* work) {
-  const WallYield yield = forces_->let_walls_yield(droplet, touches_, near_walls_);
+  const WallYield yield = forces_->let_walls_yield(droplet, touches_, near_walls_, Purpose::motion);
   if (work != nullptr) work->dissipated += yield.dissipated;
 }
 

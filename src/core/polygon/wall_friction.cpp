@@ -28,7 +28,7 @@ void WallFriction::add_forces(const DropletState& state, Eigen::ArrayXd& force) 
   for (const WallAnchor& anchor : state.anchors) {
     const Foot at = foot(anchor.wall, state, anchor.holder);
     const double slip = (at.along * (at.point - Eigen::Array2d(anchor.x, anchor.y))).sum();
-    const double pull = -stiffness_ * slip * at.gradient;
+    const double pull = -stiffness_ * anchor.slip_of_force(slip) * at.gradient;
     force[anchor.holder] += pull * at.along[0];
     force[n + anchor.holder] += pull * at.along[1];
   }
@@ -43,7 +43,8 @@ double WallFriction::energy(const DropletState& state) const {
   return energy;
 }
 
-WallYield WallFriction::follow(DropletState& state, std::span<const WallTouch> touches) const {
+WallYield WallFriction::follow(DropletState& state, std::span<const WallTouch> touches,
+                               Purpose purpose) const {
   WallYield yield;
   std::vector<WallAnchor> before = std::exchange(state.anchors, {});
   for (const WallTouch& touch : touches) {
@@ -60,23 +61,16 @@ WallYield WallFriction::follow(DropletState& state, std::span<const WallTouch> t
     known->holder = -1;  // it is not lost
     const double slip = (at.along * (at.point - Eigen::Array2d(anchor.x, anchor.y))).sum();
     const double most = (coefficient_ * touch.push + traction_ * touch.wetted) / (stiffness_ * at.gradient);
-    const double held = std::clamp(slip, -most, most);
+    const double held = yield.hold(anchor, slip, -most, most, stiffness_, purpose);
     if (held != slip) {
       const Eigen::Array2d moved = at.point - held * at.along;
       anchor.x = moved[0];
       anchor.y = moved[1];
-      // By the trapezoidal rule, as the integrator: the force of before acts on half of the way.
-      yield.dissipated += stiffness_ * (anchor.slip + held) / 2 * (slip - held);
-      yield.excess = std::max(yield.excess, stiffness_ * at.gradient * std::abs(slip - held));
     }
-    anchor.slip = held;
     state.anchors.push_back(anchor);
   }
-  for (const WallAnchor& lost : before) {
-    if (lost.holder < 0) continue;
-    yield.dissipated += 0.5 * stiffness_ * lost.slip * lost.slip;
-    yield.excess = std::max(yield.excess, stiffness_ * std::abs(lost.slip));
-  }
+  for (const WallAnchor& anchor : before)
+    if (anchor.holder >= 0) yield.forget(anchor, stiffness_);
   return yield;
 }
 

@@ -29,7 +29,7 @@ RunParameters rough(double friction, double yield_traction) {
 void anchor(const RunParameters& run, const ObstacleArray& walls, const DpForces& forces,
             DropletState& state) {
   WallTouches touches(run, walls);
-  forces.let_walls_yield(state, touches, forces.walls().items());
+  forces.let_walls_yield(state, touches, forces.walls().items(), Purpose::motion);
 }
 
 TEST(WallFriction, ForceIsTheGradientOfTheEnergyWhileTheAnchorsRest) {
@@ -158,7 +158,7 @@ class Rope {
     }
     force[0] += first_pull;
     force[n_ - 1] += second_pull;
-    friction_.follow(state_, touches);
+    friction_.follow(state_, touches, Purpose::motion);
     friction_.add_forces(state_, force);
     state_.velocity = kept * (state_.velocity + force / mass);
     state_.position += state_.velocity;

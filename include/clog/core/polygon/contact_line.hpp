@@ -65,7 +65,7 @@ class ContactLine {
   double energy(const DropletState& state, std::span<const End> ends) const;
   /// Lets walls yield: anchors follow. An end keeps the nearest anchor of its wall and side; new ends get one
   /// of their own, and the anchors of ends that are no more are forgotten.
-  WallYield follow(DropletState& state, std::span<const End> ends) const;
+  WallYield follow(DropletState& state, std::span<const End> ends, Purpose purpose) const;
 
  private:
   struct Zone;

@@ -62,7 +62,7 @@ class DpForces {
   /// Lets walls yield to friction's springs or to those of the contact line, see WallFriction::follow().
   /// @param circles  all that may touch
   WallYield let_walls_yield(DropletState& state, WallTouches& touches,
-                            std::span<const WallContacts::Item> circles) const;
+                            std::span<const WallContacts::Item> circles, Purpose purpose) const;
   bool has_anchors() const { return friction_.is_on() || contact_line_.is_on(); }
   /// Are walls wetted, so that the tension on them differs, or do they hold the ends of wetted arcs?
   bool wets() const { return extra_tension() != 0 || contact_line_.is_on(); }

@@ -31,7 +31,7 @@ class WallFriction {
   /// [g rho sigma^3]
   double energy(const DropletState& state) const;
   /// Lets walls yield: anchors follow, new touches get one, those of touches that are no more are forgotten.
-  WallYield follow(DropletState& state, std::span<const WallTouch> touches) const;
+  WallYield follow(DropletState& state, std::span<const WallTouch> touches, Purpose purpose) const;
 
  private:
   double coefficient_, traction_, stiffness_;
