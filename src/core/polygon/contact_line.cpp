@@ -61,7 +61,9 @@ double way(const WallPlace& wall, double from, double to) {
   return wall.wedge >= 0 ? to - from : std::remainder(to - from, turn);
 }
 
-constexpr double fully = 1 - 1e-3;  // a share above counts as wetted; ends are known to that part of an edge
+/// Vertices that a contact lets hover, or that bounce, still lie on the wall up to this distance, over the
+/// vertex diameter: an end that is held must not be lost with them.
+constexpr double hovering = 0.25;
 
 }  // namespace
 
@@ -108,7 +110,8 @@ void ContactLine::add_to(Zone& zone, const DropletState& state, Index vertex) co
   const WedgeDistance at = zone.wall.wedge < 0
                                ? WedgeDistance{r - zone.wall.radius, from_centre / r}
                                : distance_to(wedges_[static_cast<std::size_t>(zone.wall.wedge)], from_centre);
-  const WettedShare share = wetted_share(at.distance, contact_range_, width_);
+  const double on_wall = width_ * hovering / wetting_width;
+  const WettedShare share = wetted_share(at.distance, contact_range_ + on_wall, width_ - on_wall);
   if (share.share > 0) zone.vertices.push_back({vertex, share.share, share.slope, at.normal});
 }
 
@@ -144,13 +147,13 @@ void ContactLine::add_ends(const Zone& zone, const DropletState& state, std::vec
   const auto follows = [&](Index k) { return (vertex(k).vertex + 1) % n == vertex(k + 1).vertex; };
   // One end for each wetted vertex from which a sum outwards meets no other.
   for (Index k = 0; k < num; ++k) {
-    if (vertex(k).share < fully) continue;
+    if (vertex(k).share < 1) continue;
     for (const Index side : {Index{0}, Index{1}}) {
       const Index step = side == 1 ? 1 : -1;
       Index last = k;  // of the arc
       const auto goes_on = [&] { return step > 0 ? follows(last) : follows(last - 1); };
-      while (last - k < num && k - last < num && goes_on() && vertex(last + step).share < fully) last += step;
-      if (goes_on() && vertex(last + step).share >= fully) continue;
+      while (last - k < num && k - last < num && goes_on() && vertex(last + step).share < 1) last += step;
+      if (goes_on() && vertex(last + step).share >= 1) continue;
 
       // u falls along the contour: outwards is -u at the last end.
       const double outwards = side == 1 ? -1 : 1;

@@ -6,10 +6,14 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <memory>
 #include <numbers>
+#include <utility>
 #include <vector>
 
+#include "clog/core/model/model.hpp"
 #include "clog/core/polygon/dp_droplet.hpp"
+#include "clog/core/run/droplet_run.hpp"
 #include "support.hpp"
 
 namespace clog {
@@ -79,6 +83,62 @@ TEST(WallTouches, PushesAddUpToTheContactsForce) {
   }
   EXPECT_GT(sum, 1);
   EXPECT_GT(wetted, 2 * units::regular_edge_length(64));
+}
+
+/// How well the energy of a droplet that a wall holds and the energy that was dissipated add up.
+struct Balance {
+  double worst = 0;  ///< difference from what it was at first
+  double rise = 0;   ///< of the energy alone, from one time to the next
+  double anchors = 0, dissipated = 0;
+};
+Balance balance(RunParameters run, const ObstacleArray& wall, double terminal_speed, double time_step) {
+  run.drag.terminal_speed = terminal_speed;
+  run.dp.area_stiffness = 100;
+  run.time_step = time_step;
+  DpDroplet droplet(run, wall, state_of(regular_polygon(64, units::rest_area)));
+  droplet.measure_dissipation();
+  const auto energy = [&] { return droplet.kinetic_energy() + droplet.potential_energy().total(); };
+  const auto taken = [&] { return droplet.work().dissipated - droplet.work().spreading; };
+  const double begin = energy();
+  Balance balance;
+  double before = begin;
+  for (int i = 0; i < 20; ++i) {
+    droplet.advance(static_cast<int>(std::lround(0.08 / time_step)));
+    const double now = energy();
+    balance.worst = std::max(balance.worst, std::abs(now + taken() - begin));
+    balance.rise = std::max(balance.rise, now - before);
+    balance.anchors = std::max(balance.anchors, droplet.potential_energy().anchors);
+    before = now;
+  }
+  balance.dissipated = droplet.work().dissipated;
+  return balance;
+}
+void expect_balance(const RunParameters& run, const ObstacleArray& wall, double terminal_speed) {
+  const Balance coarse = balance(run, wall, terminal_speed, 4e-4);
+  const Balance fine = balance(run, wall, terminal_speed, 2.5e-5);
+  EXPECT_GT(fine.anchors, 1e-5);
+  EXPECT_GT(fine.dissipated, 0.1);
+  EXPECT_LT(fine.worst, 1e-6);
+  EXPECT_GT(std::log2(coarse.worst / fine.worst) / 4, 1.6) << coarse.worst << ' ' << fine.worst;
+  EXPECT_LE(fine.rise, 0);
+}
+
+TEST(WallAnchors, OfFrictionBalanceTheEnergyToSecondOrder) {
+  expect_balance(rough(0.3, 0), ObstacleArray(20, {{0.775, 0.2, 0.15}}), 0.5);
+}
+
+TEST(WallAnchors, OfAContactLineBalanceTheEnergyToSecondOrder) {
+  // On an incline, where no end is torn off: that happens within a step.
+  RunParameters run = bare_parameters();
+  run.dp.perimeter_spring = PerimeterSpring::along;
+  run.dp.perimeter_stiffness = 0.3;
+  run.dp.gravity = Gravity::area;
+  run.dp.wall_tension = 0.5;
+  run.dp.receding_angle = 90;
+  run.dp.advancing_angle = 150;
+  const Eigen::Array2d into{0.8, -0.6};
+  const Wedge incline{.tip = (0.5 + *run.dp.contact_range) * into, .axis = into};
+  expect_balance(run, ObstacleArray(20, {}, {incline}), 0.2);
 }
 
 /// A rope over half of a disc, with straight ends that hang along +x: vertices joined by stiff springs, pushed
@@ -223,6 +283,41 @@ TEST(RopeOverADisc, ThatOnlySticksSlidesAtPiRTau) {
     };
     return (threshold(slides, 0.8 * exact, 1.2 * exact) - exact) / (exact - 1);
   });
+}
+
+TEST(WallFriction, HoldsADropletThatHangsOverADisc) {
+  // Without friction it slips off. Proved or waited for, it is the same rest.
+  const auto outcome = [](double friction, ClogDetection detection) {
+    RunParameters run;
+    run.dp.vertices = 128;
+    run.dp.line_tension = 0.1;
+    run.dp.perimeter_spring = PerimeterSpring::rest;
+    run.dp.perimeter_stiffness_ratio = 0.1;
+    run.dp.gravity = Gravity::vertex;
+    run.dp.friction = friction;
+    run.drag.terminal_speed = 0.1;
+    run.obstacles.box = 20;
+    run.max_time = 400;
+    run.clog_detection = detection;
+    run.clog_energy = 1e-12;
+    run = resolve(run);
+    DropletState state = state_of(model_of(run).free_shape(run));
+    state.x() += 9.3;
+    state.y() += 10.02;
+    DropletRun droplet(run, std::make_shared<ObstacleArray>(20, std::vector<Obstacle>{{10, 10, 0.15}}),
+                       std::move(state), 3.0);
+    while (!droplet.advance(100)) {
+    }
+    return droplet.result();
+  };
+  EXPECT_EQ(outcome(0, ClogDetection::certified).status, RunStatus::passed);
+  const RunResult certified = outcome(0.1, ClogDetection::certified);
+  const RunResult waited = outcome(0.1, ClogDetection::threshold);
+  ASSERT_EQ(certified.clogged_by, ClogDetection::certified);
+  ASSERT_EQ(waited.clogged_by, ClogDetection::threshold);
+  EXPECT_NEAR(certified.distance, waited.distance, 1e-4);
+  EXPECT_NEAR(certified.lateral, waited.lateral, 1e-4);
+  EXPECT_LT(certified.time, 0.8 * waited.time);
 }
 
 }  // namespace
