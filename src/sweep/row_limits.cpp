@@ -20,6 +20,8 @@ namespace {
 constexpr double largest_tension = 10;
 constexpr int fewest_vertices = 64;
 constexpr int most_vertices = 1024;
+constexpr double most_friction = 0.5;
+constexpr double most_traction = 0.1;
 struct SoundPreset {
   std::string_view name;
   double smallest_tension;         ///< with 128 vertices or more
@@ -48,6 +50,12 @@ std::string unproven_vertices(const DpParameters& dp) {
   return fmt::format("vertices={} ({} to {} were looked at)", *dp.vertices, fewest_vertices, most_vertices);
 }
 
+/// @param hold  of walls, by friction or a yield traction
+std::string unproven_hold(const char* key, double hold, double most, const char* unit) {
+  if (hold <= most) return "";
+  return fmt::format("{}={} (up to {}{} was looked at)", key, shortest(hold), shortest(most), unit);
+}
+
 /// Needles slip through the interface: then the droplet encloses them, at its release or on its way. Seen
 /// with obstacles as thick as an edge is long and thinner ones, the more often the more of them there are.
 std::string unproven_diameter(const RunParameters& run) {
@@ -68,7 +76,9 @@ std::vector<std::string> unproven_parameters(const RunRow& row) {
   if (row.parameters.model != Model::dp) return all;
   const DpParameters& dp = row.parameters.dp;
   for (const std::string& one :
-       {unproven_tension(row.preset, dp), unproven_vertices(dp), unproven_diameter(row.parameters)})
+       {unproven_tension(row.preset, dp), unproven_vertices(dp), unproven_diameter(row.parameters),
+        unproven_hold("friction", dp.friction, most_friction, ""),
+        unproven_hold("yield-traction", dp.yield_traction, most_traction, " g rho sigma")})
     if (!one.empty()) all.push_back(one);
   return all;
 }

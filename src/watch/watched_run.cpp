@@ -106,6 +106,8 @@ void WatchedRun::add_common_columns() {
   add_column("wall_energy", "of the contact with walls", [](Run run) { return run.potential_energy().wall; });
   add_column("self_contact_energy", "of the interface's contact with itself",
              [](Run run) { return run.potential_energy().self_contact; });
+  add_column("anchor_energy", "of the springs by which walls hold the interface",
+             [](Run run) { return run.potential_energy().anchors; });
 }
 
 void WatchedRun::add_columns_of_channel() {

@@ -15,6 +15,9 @@ SURROUNDINGS = {
     "box": ["vertices=64", "max-time=60"],
     "vertices": ["box=20", "max-time=60"],
     "max-time": ["box=20", "vertices=64"],
+    "advancing-angle": ["wall-tension=0.5", "box=20", "vertices=64", "max-time=60"],
+    "friction": ["preset=elastic", "box=20", "vertices=64", "max-time=60"],
+    "yield-traction": ["preset=elastic", "box=20", "vertices=64", "max-time=60"],
     "obstacles": ["box=10", "vertices=64", "max-time=300"],
 }
 # These belong to channels, which have passages and no clogging lengths: test_scenes.
@@ -25,6 +28,7 @@ VALUES = {"line-tension": "1,3", "wall-stiffness": "0.05,0.08", "obstacle-gap": 
           "near-wall-exponent": "1,1.5", "near-wall-cutoff": "0.006,0.01", "relative-drag": "0.5,1", "vertices": "64,96",
           "time-step": "1e-3,2e-3", "area-stiffness": "5000,6000", "perimeter-stiffness": "0.05,0.1",
           "perimeter-stiffness-ratio": "0.1,0.2", "contact-range": "0,0.01", "wall-tension": "0.5,1",
+          "receding-angle": "120,150", "advancing-angle": "130,150", "friction": "0.1,0.2", "yield-traction": "0.05,0.1",
           "self-contact-range": "0.01,0.012", "clog-energy": "1e-17,1e-16", "dwell-length": "0.04,0.05", "break-up-neck": "0,0.05",
           "obstacles": "one.csv,other.csv"}
 

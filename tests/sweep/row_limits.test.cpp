@@ -27,6 +27,8 @@ TEST(UnprovenParameters, AreNoneWithinWhatWasFoundSound) {
                         {{"line-tension", "0.02"}, {"vertices", "64"}},
                         {{"preset", "elastic"}, {"line-tension", "0.03"}},
                         {{"preset", "heavy-interface"}, {"line-tension", "0.05"}},
+                        {{"receding-angle", "120"}},
+                        {{"preset", "elastic"}, {"friction", "0.5"}},
                         {{"model", "sp"}, {"wall-stiffness", "1"}}};
   for (const Keys& keys : sound) EXPECT_TRUE(unproven_parameters(row_of(keys)).empty());
 }
@@ -43,6 +45,9 @@ TEST(UnprovenParameters, AreNamedWithTheirValueBeyondIt) {
        "line-tension=0.04 (heavy-interface is sound from 0.05 to 10)"},
       {{{"preset", "literal"}}, "preset=literal (droplets cross themselves and obstacles)"},
       {{{"self-contact", "off"}}, "preset=custom (an interface that was not looked at)"},
+      {{{"preset", "elastic"}, {"friction", "0.6"}}, "friction=0.6 (up to 0.5 was looked at)"},
+      {{{"preset", "elastic"}, {"yield-traction", "0.2"}},
+       "yield-traction=0.2 (up to 0.1 g rho sigma was looked at)"},
       {{{"vertices", "32"}}, "vertices=32 (64 to 1024 were looked at)"},
       {{{"vertices", "2048"}}, "vertices=2048 (64 to 1024 were looked at)"},
       {{{"obstacle-diameter", "0.04"}, {"vertices", "128"}},

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "clog/core/droplet/time_step.hpp"
+#include "clog/core/polygon/contact_line.hpp"
 #include "clog/core/polygon/stability.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/units.hpp"
@@ -21,14 +22,15 @@ StiffModes stiff_modes_of_circle(const DpParameters& dp, double wall_stiffness) 
   return stiff_modes(dp, wall_stiffness, circumference, circumference / *dp.vertices);
 }
 
-/// An automatic contact follows the step; only the other modes limit it then.
+/// An automatic contact follows the step, and with it what has its stiffness; only the other modes limit it
+/// then.
 double largest_step_with_automatic_contact(const DpParameters& dp) {
   const StiffModes modes = stiff_modes_of_circle(dp, 1);
-  const double others = modes.sum() - modes.contact;
+  const double others = modes.sum() - modes.contact - modes.friction;
+  const double contact_part = auto_contact_omega_dt2 * (1 + modes.friction / modes.contact);
   const double self_part = auto_contact_omega_dt2 * modes.self_contact / modes.contact;
-  return std::sqrt(
-      std::min({max_area_omega_dt2 / modes.area, (max_total_omega_dt2 - auto_contact_omega_dt2) / others,
-                (max_total_with_self_omega_dt2 - auto_contact_omega_dt2 - self_part) / others}));
+  return std::sqrt(std::min({max_area_omega_dt2 / modes.area, (max_total_omega_dt2 - contact_part) / others,
+                             (max_total_with_self_omega_dt2 - contact_part - self_part) / others}));
 }
 
 std::vector<Rate> polygon_rates(const RunParameters& run) {
@@ -84,6 +86,23 @@ double length_over_obstacles(const RunParameters& run) {
   return std::max(even, 0.2 * units::droplet_mass * units::gravity / stiffness);
 }
 
+void resolve_contact_angles(DpParameters& dp) {
+  const double young = young_angle(dp);
+  if (!dp.receding_angle) dp.receding_angle = young;
+  if (!dp.advancing_angle) dp.advancing_angle = young;
+  require(*dp.receding_angle <= young, "receding-angle", *dp.receding_angle, [&] {
+    return fmt::format("above Young's angle, which wall-tension sets) use at most {:.6g}, or young", young);
+  });
+  require(*dp.advancing_angle >= young, "advancing-angle", *dp.advancing_angle, [&] {
+    return fmt::format("below Young's angle, which wall-tension sets) use at least {:.6g}, or young", young);
+  });
+  if (has_hysteresis(dp) && dp.perimeter_spring != PerimeterSpring::along)
+    throw Error(fmt::format(
+        "{} contradicts perimeter-spring={} (walls hold such an interface by friction) use friction, or "
+        "preset=robust",
+        *dp.receding_angle < young ? "receding-angle" : "advancing-angle", name(dp.perimeter_spring)));
+}
+
 }  // namespace
 
 int automatic_vertices(const RunParameters& run, double obstacle_diameter) {
@@ -133,6 +152,13 @@ void resolve_polygon(RunParameters& run, double sharpest_bend) {
     throw Error(
         "perimeter-spring=along contradicts gravity=vertex (springs without tension cannot carry the weight "
         "of vertices) use gravity=area, or perimeter-spring=mean");
+
+  resolve_contact_angles(dp);
+  if (dp.perimeter_spring == PerimeterSpring::along && (dp.friction > 0 || dp.yield_traction > 0))
+    throw Error(fmt::format(
+        "{} contradicts perimeter-spring=along (an interface of constant tension cannot carry what friction "
+        "gives along it) use preset=elastic",
+        dp.friction > 0 ? "friction" : "yield-traction"));
 
   const double vertex_mass = units::droplet_mass / *dp.vertices;
   const double vertex_diameter = units::regular_edge_length(*dp.vertices);

@@ -91,7 +91,27 @@ std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, con
                                                    const DropletState& state) {
   DpForces forces(run, obstacles);
   const auto axes = [&](const DropletState& at) { return axes_of_interface(run.dp, at); };
-  return find_equilibrium(EquilibriumForces::of(forces, axes), state);
+  const EquilibriumForces asked = EquilibriumForces::of(forces, axes);
+  std::optional<DropletState> rest = find_equilibrium(asked, state);
+  if (!forces.has_anchors()) return rest;
+  // Walls hold the droplet by springs, whose anchors rest while it is searched. Where a wall does not bear
+  // what its spring asks for, it gives what it bears, whatever the droplet does, and the search goes on from
+  // there until all walls bear what they give.
+  constexpr int most_yields = 20;
+  const double bearable = 1e-6 * units::droplet_mass * units::gravity / *run.dp.vertices;
+  WallTouches touches(run, obstacles);
+  for (int yields = 0; rest && yields < most_yields; ++yields) {
+    forces.update_contacts(*rest, {});
+    const WallYield yield =
+        forces.let_walls_yield(*rest, touches, forces.walls().items(), Purpose::equilibrium);
+    if (yield.excess <= bearable) {
+      for (WallAnchor& anchor : rest->anchors) anchor.yields = 0;
+      return rest;
+    }
+    rest = find_equilibrium(asked, *rest);
+    if (rest && (rest->position - state.position).abs().maxCoeff() > farthest_rest) return std::nullopt;
+  }
+  return std::nullopt;
 }
 
 Hold hold_of_polygon(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state) {

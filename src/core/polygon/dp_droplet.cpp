@@ -25,7 +25,7 @@ DpDroplet::DpDroplet(const RunParameters& run, const ObstacleArray& obstacles, D
       forces_(run, obstacles),
       vertex_mass_(units::droplet_mass / *run.dp.vertices),
       steps_per_check_(steps_between_checks(run.time_step.value())),
-      stepper_(std::make_unique<DpStepper>(run, forces_)) {
+      stepper_(std::make_unique<DpStepper>(run, obstacles, forces_)) {
   state_ = std::move(initial);
   DpDroplet::start_afresh();
 }

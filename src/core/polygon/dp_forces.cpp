@@ -9,6 +9,17 @@
 
 namespace clog {
 
+namespace {
+
+/// From vertex i to the next.
+Eigen::Array2d edge_of(const DropletState& state, int i) {
+  const auto n = static_cast<int>(state.size());
+  const int end = i + 1 < n ? i + 1 : 0;
+  return {state.position[end] - state.position[i], state.position[n + end] - state.position[n + i]};
+}
+
+}  // namespace
+
 kernel::WedgePlace kernel::place_in(const LocalFrame& frame, const Wedge& wedge) {
   const Eigen::Array2d centre = wedge.centre() - frame.origin - frame.image.cast<double>() * frame.period;
   return {.x = centre[0],
@@ -34,6 +45,9 @@ DpForces::DpForces(const RunParameters& run, const ObstacleArray& obstacles)
       adhesive_walls_(obstacles, dp_.contact_range.value() + wetting_width * vertex_diameter_,
                       WallContacts::Keep::touched_by_vertex),
       self_(dp_.self_contact_range, vertex_diameter_),
+      friction_(dp_.friction, dp_.yield_traction, friction_stiffness_ratio * contact_stiffness_,
+                obstacles.wedges()),
+      contact_line_(run, obstacles.wedges()),
       edge_x_(*dp_.vertices),
       edge_y_(*dp_.vertices),
       edge_length_(*dp_.vertices),
@@ -108,6 +122,7 @@ void DpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   }
 
   add_walls(state, force);
+  if (friction_.is_on()) friction_.add_forces(state, force);
   if (wall_distance_.size() > 0) measure_wall_distance(state);
   if (dp_.self_contact == SelfContact::on) add_self_contact(state, force);
 }
@@ -155,66 +170,70 @@ DpForces::Wetted DpForces::wetted(const DropletState& state, int vertex) const {
   const int n = *dp_.vertices;
   const Eigen::Array2d place{state.position[vertex], state.position[n + vertex]};
   double nearest = std::numeric_limits<double>::infinity();
-  Wetted wetted;
+  Eigen::Array2d away_from_it{0, 0};
   for (int s = 0; s < adhesive_walls_.num_slots(); ++s) {
     const Eigen::Array2d away =
         place - Eigen::Array2d(adhesive_walls_.slot_x(s)[vertex], adhesive_walls_.slot_y(s)[vertex]);
     const double r = away.matrix().norm();
     if (r - adhesive_walls_.slot_radius(s)[vertex] >= nearest) continue;
     nearest = r - adhesive_walls_.slot_radius(s)[vertex];
-    wetted.normal = away / r;
+    away_from_it = away / r;
   }
   for (const Wedge& wedge : obstacles_->wedges()) {
     const kernel::WedgePlace in_frame = kernel::place_in(state.frame, wedge);
     const auto [distance, normal] = distance_to(wedge, place - Eigen::Array2d(in_frame.x, in_frame.y));
     if (distance >= nearest) continue;
     nearest = distance;
-    wetted.normal = normal;
+    away_from_it = normal;
   }
-  const double width = wetting_width * vertex_diameter_;
-  const double t = std::clamp((adhesive_walls_.range() - nearest) / width, 0.0, 1.0);
-  wetted.share = t * t * t * (10 + t * (6 * t - 15));
-  wetted.slope = -30 * t * t * (1 - t) * (1 - t) / width;
-  return wetted;
+  return {wetted_share(nearest, walls_.range(), wetting_width * vertex_diameter_), away_from_it};
 }
 
 /// U_gamma = sum gamma_e l_e, gamma_e = Gamma + (Gamma_wall - Gamma) times the mean share of its two
 /// vertices: the three-tension energy, Cheng et al. Eq. 2, with the tensions of a wetted wall's two sides
 /// taken together. On a smooth interface its gradient has no part along the interface, -d(gamma)/ds from the
 /// edges cancels the pull towards the wall; what a polygon leaves of it is an error of its finite edges.
-DpForces::WettingForces DpForces::wetting_forces(const DropletState& state) const {
+void DpForces::add_wetted_tension(const DropletState& state, Eigen::ArrayXd& gradient) const {
   const int n = *dp_.vertices;
-  const auto edge = [&](int i) {
-    const int end = i + 1 < n ? i + 1 : 0;
-    return Eigen::Array2d(state.position[end] - state.position[i],
-                          state.position[n + end] - state.position[n + i]);
-  };
-  const Eigen::ArrayXd none = Eigen::ArrayXd::Zero(Eigen::Index{2} * n);
-  WettingForces forces{none, none};
-  Eigen::ArrayXd& gradient = forces.gradient;
   Wetted before = wetted(state, n - 1);
   for (int i = 0; i < n; ++i) {
     const int previous = i > 0 ? i - 1 : n - 1;
     const Wetted here = wetted(state, i);
-    const Eigen::Array2d along = edge(previous);
+    const Eigen::Array2d along = edge_of(state, previous);
     const double length = along.matrix().norm();
     const double pull = extra_tension() * (before.share + here.share) / 2 / length;
-    const double push = -extra_tension() * here.slope * (length + edge(i).matrix().norm()) / 2;
+    const double push = -extra_tension() * here.slope * (length + edge_of(state, i).matrix().norm()) / 2;
     gradient[previous] += pull * along[0];
     gradient[n + previous] += pull * along[1];
     gradient[i] += push * here.normal[0] - pull * along[0];
     gradient[n + i] += push * here.normal[1] - pull * along[1];
     before = here;
   }
+}
+
+DpForces::WettingForces DpForces::wetting_forces(const DropletState& state) const {
+  const int n = *dp_.vertices;
+  const Eigen::ArrayXd none = Eigen::ArrayXd::Zero(Eigen::Index{2} * n);
+  WettingForces forces{none, none};
+  Eigen::ArrayXd& gradient = forces.gradient;
+  if (extra_tension() != 0) add_wetted_tension(state, gradient);
+  if (contact_line_.is_on())
+    contact_line_.add_forces(state, contact_line_.ends(state, adhesive_walls_.items()), gradient);
   if (dp_.perimeter_spring != PerimeterSpring::along) return forces;
   for (int i = 0; i < n; ++i) {
-    const Eigen::Array2d chord = edge(i) + edge(i > 0 ? i - 1 : n - 1);
+    const Eigen::Array2d chord = edge_of(state, i) + edge_of(state, i > 0 ? i - 1 : n - 1);
     const Eigen::Array2d here{gradient[i], gradient[n + i]};
     const Eigen::Array2d along = (here * chord).sum() / chord.square().sum() * chord;
     forces.spreading[i] = -along[0];
     forces.spreading[n + i] = -along[1];
   }
   return forces;
+}
+
+WallYield DpForces::let_walls_yield(DropletState& state, WallTouches& touches,
+                                    std::span<const WallContacts::Item> circles, Purpose purpose) const {
+  if (friction_.is_on()) return friction_.follow(state, touches.find(state, circles), purpose);
+  return contact_line_.follow(state, contact_line_.ends(state, adhesive_walls_.items()), purpose);
 }
 
 void DpForces::add_self_contact(const DropletState& state, Eigen::ArrayXd& force) const {
@@ -285,7 +304,7 @@ PotentialEnergy DpForces::energy(const DropletState& state) const {
     const double stretch = std::hypot(x[i] - x[j], y[i] - y[j]) - reference;
     if (dp_.perimeter_spring != PerimeterSpring::along)
       energy.spring += 0.5 * *dp_.perimeter_stiffness * n * stretch * stretch;
-    if (wets())
+    if (extra_tension() != 0)
       energy.line_tension += extra_tension() * (wetted(state, i).share + wetted(state, j).share) / 2 *
                              std::hypot(x[i] - x[j], y[i] - y[j]);
   }
@@ -297,6 +316,9 @@ PotentialEnergy DpForces::energy(const DropletState& state) const {
       const double overlap = std::max(0.0, self_.range() - nearest_point(pair, x, y, n).distance);
       energy.self_contact += 0.5 * contact_stiffness_ * overlap * overlap;
     }
+  if (friction_.is_on()) energy.anchors = friction_.energy(state);
+  if (contact_line_.is_on())
+    energy.anchors = contact_line_.energy(state, contact_line_.ends(state, adhesive_walls_.items()));
   return energy;
 }
 

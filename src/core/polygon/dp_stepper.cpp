@@ -32,12 +32,13 @@ void keep_near(const std::vector<Item>& items, const std::vector<double>& gaps, 
 
 }  // namespace
 
-DpStepper::DpStepper(const RunParameters& run, const DpForces& forces)
+DpStepper::DpStepper(const RunParameters& run, const ObstacleArray& obstacles, const DpForces& forces)
     : run_(run),
       forces_(&forces),
       terms_(terms_of(run)),
       kernel_(kernel::step_kernel(terms_)),
-      n_(*run.dp.vertices) {
+      n_(*run.dp.vertices),
+      touches_(run, obstacles) {
   // Every array on a cache line, with room for an entry before and a group behind it.
   constexpr int line = 8;
   const int stride = (n_ + line - 1) / line * line + 3 * line;
@@ -132,10 +133,10 @@ void DpStepper::finish(DropletState& state, Droplet::Work* work) {
 
 /// One force evaluation, the half kicks on its two sides, and the drift to the next one; without a drift only
 /// the first half kick.
-void DpStepper::kick_and_drift(const DropletState& frame, const kernel::KickCoefficients& coefficients,
+void DpStepper::kick_and_drift(DropletState& droplet, const kernel::KickCoefficients& coefficients,
                                double drift_time, Droplet::Work* work) {
   const double impulse = coefficients.half_step / (units::droplet_mass / n_);
-  push_off_everything(frame, coefficients, impulse);
+  push_off_everything(droplet, coefficients, impulse, work);
   const kernel::Interface at_rest = forces_->interface(sums_.area, sums_.perimeter);
   const kernel::InterfaceKick interface {
     .line_tension = impulse * (at_rest.line_tension - at_rest.spring * at_rest.spring_length),
@@ -169,18 +170,19 @@ kernel::Contact DpStepper::contact(double stiffness) const {
           .self_range = forces_->self_contacts().range()};
 }
 
-void DpStepper::push_off_everything(const DropletState& frame, const kernel::KickCoefficients& coefficients,
-                                    double impulse) {
+void DpStepper::push_off_everything(DropletState& droplet, const kernel::KickCoefficients& coefficients,
+                                    double impulse, Droplet::Work* work) {
   const double stiffness = impulse * forces_->contact_stiffness();
-  if (!wedges_.empty() || forces_->wets()) kernel_.clear_pushes(n_, arrays_);
+  const bool slides = forces_->friction().is_on();
+  if (!wedges_.empty() || forces_->wets() || slides) kernel_.clear_pushes(n_, arrays_);
   kernel_.push(n_, near_walls_.data(), near_walls_.size(), near_self_.data(), near_self_.size(),
                contact(stiffness), arrays_);
   if (!wedges_.empty())
     kernel_.push_off_wedges(n_, wedges_.data(), wedges_.size(), forces_->walls().range(), stiffness, arrays_);
   if (forces_->wets()) {
-    DropletState here = frame;
-    store(here);
-    const DpForces::WettingForces wetting = forces_->wetting_forces(here);
+    store(droplet);
+    if (!slides && forces_->has_anchors()) let_walls_yield(droplet, work);
+    const DpForces::WettingForces wetting = forces_->wetting_forces(droplet);
     wetting_spread_ = wetting.net_spreading();
     for (int i = 0; i < n_; ++i) {
       arrays_.wetting_x[i] = impulse * wetting.spreading[i];
@@ -189,6 +191,7 @@ void DpStepper::push_off_everything(const DropletState& frame, const kernel::Kic
       arrays_.push_y[i] += impulse * wetting.gradient[n_ + i] + arrays_.wetting_y[i];
     }
   }
+  if (slides) hold_by_friction(droplet, impulse, work);
   if (!terms_.varying_rate) return;
   const WallContacts& nearest = forces_->nearest_walls();
   kernel_.near_wall_rates(n_,
@@ -205,6 +208,23 @@ void DpStepper::push_off_everything(const DropletState& frame, const kernel::Kic
                            .exponent = run_.drag.near_wall_exponent,
                            .far_rate = units::gravity / run_.drag.terminal_speed},
                           coefficients, arrays_);
+}
+
+void DpStepper::let_walls_yield(DropletState& droplet, Droplet::Work* work) {
+  const WallYield yield = forces_->let_walls_yield(droplet, touches_, near_walls_, Purpose::motion);
+  if (work != nullptr) work->dissipated += yield.dissipated;
+}
+
+/// Walls yield where they have to, and hold the vertices by what they bear.
+void DpStepper::hold_by_friction(DropletState& droplet, double impulse, Droplet::Work* work) {
+  store(droplet);
+  let_walls_yield(droplet, work);
+  Eigen::ArrayXd force = Eigen::ArrayXd::Zero(Eigen::Index{2} * n_);
+  forces_->friction().add_forces(droplet, force);
+  for (int i = 0; i < n_; ++i) {
+    arrays_.push_x[i] += impulse * force[i];
+    arrays_.push_y[i] += impulse * force[n_ + i];
+  }
 }
 
 /// What drag takes and the springs along the interface give per time, where a time step ends.

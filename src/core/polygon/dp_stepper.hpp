@@ -6,6 +6,7 @@
 
 #include "clog/core/droplet/droplet.hpp"
 #include "clog/core/polygon/dp_forces.hpp"
+#include "clog/core/polygon/wall_touches.hpp"
 #include "dp_step_kernel.hpp"
 
 namespace clog {
@@ -14,9 +15,10 @@ namespace clog {
 /// positions and velocities and nothing else.
 class DpStepper {
  public:
-  /// @param run     resolved parameters
-  /// @param forces  its contact lists are used; must outlive this object
-  DpStepper(const RunParameters& run, const DpForces& forces);
+  /// @param run        resolved parameters
+  /// @param obstacles  must outlive this object
+  /// @param forces     its contact lists are used; must outlive this object
+  DpStepper(const RunParameters& run, const ObstacleArray& obstacles, const DpForces& forces);
 
   /// Takes over a droplet.
   void load(const DropletState& state);
@@ -48,6 +50,7 @@ class DpStepper {
   std::vector<SelfContacts::Item> near_self_;
   std::vector<double> wall_gaps_, self_gaps_;  // of the lists' items at the last look
   std::vector<kernel::WedgePlace> wedges_;
+  WallTouches touches_;
   Eigen::Array2d wetting_spread_{0, 0};  // of wetting, see DpForces::wetting_forces()
   kernel::Sums sums_{};
   double open_step_ = 0;      // length of the step whose last half kick is to come; 0: none is
@@ -55,10 +58,12 @@ class DpStepper {
 
   void store(DropletState& state) const;
   kernel::Contact contact(double stiffness) const;
-  void kick_and_drift(const DropletState& frame, const kernel::KickCoefficients& coefficients,
-                      double drift_time, Droplet::Work* work);
-  void push_off_everything(const DropletState& frame, const kernel::KickCoefficients& coefficients,
-                           double impulse);
+  void kick_and_drift(DropletState& droplet, const kernel::KickCoefficients& coefficients, double drift_time,
+                      Droplet::Work* work);
+  void push_off_everything(DropletState& droplet, const kernel::KickCoefficients& coefficients,
+                           double impulse, Droplet::Work* work);
+  void let_walls_yield(DropletState& droplet, Droplet::Work* work);
+  void hold_by_friction(DropletState& droplet, double impulse, Droplet::Work* work);
   Droplet::Work power(const kernel::InterfaceKick& interface, const kernel::KickCoefficients& coefficients,
                       const kernel::Coupling& coupling) const;
 };

@@ -53,6 +53,8 @@ RunParameters with_growing_interface(RunParameters run) {
   run.dp.perimeter_stiffness = 0.01 + 0.03 * run.dp.line_tension;
   run.dp.wall_contact = WallContact::edge;
   run.dp.self_contact = SelfContact::on;
+  run.dp.receding_angle.reset();  // walls hold it from the start of the run on
+  run.dp.advancing_angle.reset();
   run.dp.gravity = Gravity::vertex;  // without weight: the springs need no reaction on the area yet
   return run;
 }
@@ -117,6 +119,8 @@ DropletState release_polygon(const RunParameters& run, const ObstacleArray& obst
   bool rests = comes_to_rest(growing, obstacles, forces, options, longer, state);
   // Then with its own interface; only springs with a tension of their own begin to act with the run.
   RunParameters own = run;
+  own.dp.receding_angle = growing.dp.receding_angle;
+  own.dp.advancing_angle = growing.dp.advancing_angle;
   if (own.dp.perimeter_spring != PerimeterSpring::along) {
     own.dp.perimeter_spring = growing.dp.perimeter_spring;
     own.dp.perimeter_stiffness = growing.dp.perimeter_stiffness;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clog/core/polygon/contact_line.hpp"
+#include "clog/core/polygon/wall_friction.hpp"
 #include "clog/core/tools/units.hpp"
 
 namespace clog {
@@ -15,6 +17,7 @@ StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double per
   const int edges_per_vertex = dp.wall_contact == WallContact::edge ? 2 : 1;
   const double mean_edge = perimeter / num_vertices;
   const double edge = std::max(shortest_edge, 0.01 * mean_edge);
+  const bool has_friction = dp.friction > 0 || dp.yield_traction > 0;
   return {
       .contact = edges_per_vertex * contact_stiffness(wall_stiffness, vertex_diameter) / vertex_mass,
       .self_contact = dp.self_contact == SelfContact::on
@@ -25,6 +28,12 @@ StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double per
       .spring = 4 * dp.perimeter_stiffness.value() * num_vertices / vertex_mass,
       .wetting = 6 * dp.line_tension * std::abs(dp.wall_tension - 1) * mean_edge /
                  (wetting_width * wetting_width * vertex_diameter * vertex_diameter * vertex_mass),
+      .pinning = has_hysteresis(dp) ? pinning_gradient2 * pinning_stiffness * dp.line_tension /
+                                          (vertex_diameter * vertex_mass)
+                                    : 0,
+      .friction = has_friction ? friction_stiffness_ratio *
+                                     contact_stiffness(wall_stiffness, vertex_diameter) / vertex_mass
+                               : 0,
   };
 }
 

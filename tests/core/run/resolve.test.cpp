@@ -87,6 +87,24 @@ INSTANTIATE_TEST_SUITE_P(
                 [](auto& run) { run.dp.contact_range = 0.2; }},
         Refusal{"self-contact-range=0", [](auto& run) { run.dp.self_contact_range = 0; }},
         Refusal{"wall-tension=-1", [](auto& run) { run.dp.wall_tension = -1; }},
+        Refusal{"friction=-0.1 (must not be negative", [](auto& run) { run.dp.friction = -0.1; }},
+        Refusal{"friction contradicts perimeter-spring=along (an interface of constant tension cannot carry "
+                "what friction gives along it) use preset=elastic",
+                [](auto& run) { run.dp.friction = 0.1; }},
+        Refusal{"yield-traction contradicts perimeter-spring=along",
+                [](auto& run) { run.dp.yield_traction = 0.1; }},
+        Refusal{"receding-angle=190 (an angle between wall and interface) use 0..180, or young",
+                [](auto& run) { run.dp.receding_angle = 190; }},
+        Refusal{"receding-angle=130 (above Young's angle, which wall-tension sets) use at most 120, or young",
+                [](auto& run) { run.dp.wall_tension = 0.5, run.dp.receding_angle = 130; }},
+        Refusal{"advancing-angle=150 (below Young's angle, which wall-tension sets) use at least 180, or "
+                "young",
+                [](auto& run) { run.dp.advancing_angle = 150; }},
+        Refusal{"receding-angle contradicts perimeter-spring=mean (walls hold such an interface by friction) "
+                "use friction, or preset=robust",
+                [](auto& run) {
+                  run.dp.receding_angle = 120, run.dp.perimeter_spring = PerimeterSpring::mean;
+                }},
         Refusal{"perimeter-stiffness-ratio=-1", [](auto& run) { run.dp.perimeter_stiffness_ratio = -1; }},
         Refusal{"perimeter-spring=along contradicts gravity=vertex",
                 [](auto& run) { run.dp.gravity = Gravity::vertex; }},

@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
+#include "clog/core/droplet/wall_anchor.hpp"
 #include "clog/core/tools/byte_archive.hpp"
 #include "clog/core/tools/units.hpp"
 
@@ -61,6 +63,7 @@ struct DropletState {
   Eigen::ArrayXd position;  ///< 2N, local [sigma]
   Eigen::ArrayXd velocity;  ///< 2N [sqrt(sigma g)]
   LocalFrame frame;
+  std::vector<WallAnchor> anchors;  ///< where walls hold it
 
   Eigen::Index size() const { return position.size() / 2; }
   auto x() { return position.head(size()); }
@@ -87,11 +90,13 @@ struct DropletState {
     bytes.put(position);
     bytes.put(velocity);
     frame.save(bytes);
+    bytes.put(anchors);
   }
   void restore(ByteReader& bytes) {
     bytes.get(position);
     bytes.get(velocity);
     frame.restore(bytes);
+    bytes.get(anchors);
   }
 
   /// Keeps local coordinates of order one: moves the frame by whole units when the centre has left the unit
@@ -102,6 +107,10 @@ struct DropletState {
     Eigen::Array2d step = centre_now.round();
     x() -= step[0];
     y() -= step[1];
+    for (WallAnchor& anchor : anchors) {
+      anchor.wall.x -= step[0];
+      anchor.wall.y -= step[1];
+    }
     frame.shift(step);
     return step;
   }

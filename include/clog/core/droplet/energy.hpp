@@ -11,8 +11,9 @@ struct PotentialEnergy {
   double gravity = 0;       ///< -M g h; the droplet measures h from its frame's origin, a run from the start
   double wall = 0;          ///< (k_c/2) sum overlap^2 over edges (or vertices) and obstacles
   double self_contact = 0;  ///< (k_c/2) sum overlap^2 over vertices and edges of the interface
+  double anchors = 0;       ///< of the springs by which walls hold the interface
 
-  double total() const { return area + spring + line_tension + gravity + wall + self_contact; }
+  double total() const { return area + spring + line_tension + gravity + wall + self_contact + anchors; }
 };
 
 }  // namespace clog

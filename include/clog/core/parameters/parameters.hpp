@@ -95,6 +95,11 @@ struct DpParameters {
   /// Tension of the interface where it touches a wall, over Gamma: (gamma_so - gamma_sw)/gamma_ow, which is
   /// -cos of the contact angle (Young). 1: a film of water everywhere, as in the paper's figures.
   double wall_tension = 1;
+  /// Contact angles, of the droplet's fluid, beyond which the end of a wetted arc recedes and advances
+  /// [degrees]; empty: Young's, it is not held. For springs `along` the interface.
+  std::optional<double> receding_angle, advancing_angle;
+  double friction = 0;        ///< mu of walls, where springs carry tension
+  double yield_traction = 0;  ///< tau_y, that a wall bears per length without any push [g rho sigma]
   SelfContact self_contact = SelfContact::on;
   /// Distance below which the interface repels itself: the thickness of a film between two parts of it
   /// [sigma].

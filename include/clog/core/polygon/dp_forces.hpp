@@ -6,8 +6,11 @@
 #include "clog/core/droplet/energy.hpp"
 #include "clog/core/droplet/shape.hpp"
 #include "clog/core/parameters/parameters.hpp"
+#include "clog/core/polygon/contact_line.hpp"
 #include "clog/core/polygon/self_contacts.hpp"
 #include "clog/core/polygon/wall_contacts.hpp"
+#include "clog/core/polygon/wall_friction.hpp"
+#include "clog/core/polygon/wall_touches.hpp"
 #include "clog/core/world/obstacle_array.hpp"
 
 namespace clog {
@@ -55,8 +58,14 @@ class DpForces {
   const WallContacts& nearest_walls() const { return nearest_walls_; }
   const SelfContacts& self_contacts() const { return self_; }
   const std::vector<Wedge>& wedges() const { return obstacles_->wedges(); }
-  /// Are walls wetted, so that the tension on them differs?
-  bool wets() const { return extra_tension() != 0; }
+  const WallFriction& friction() const { return friction_; }
+  /// Lets walls yield to friction's springs or to those of the contact line, see WallFriction::follow().
+  /// @param circles  all that may touch
+  WallYield let_walls_yield(DropletState& state, WallTouches& touches,
+                            std::span<const WallContacts::Item> circles, Purpose purpose) const;
+  bool has_anchors() const { return friction_.is_on() || contact_line_.is_on(); }
+  /// Are walls wetted, so that the tension on them differs, or do they hold the ends of wetted arcs?
+  bool wets() const { return extra_tension() != 0 || contact_line_.is_on(); }
   /// Forces of wetted walls on the vertices, which add up: all x then all y [g rho sigma^2]. `gradient` is
   /// minus the energy's. `spreading` is minus its part along the interface, where springs carry no tension
   /// (`along`), otherwise 0; it has no energy.
@@ -91,19 +100,19 @@ class DpForces {
   WallContacts nearest_walls_;   // kept only with near-wall drag
   WallContacts adhesive_walls_;  // kept only where walls are wetted
   SelfContacts self_;
+  WallFriction friction_;
+  ContactLine contact_line_;
   PolygonShape shape_;
   Eigen::ArrayXd edge_x_, edge_y_, edge_length_, pull_, centroid_gradient_, refined_edges_;
   Eigen::ArrayXd wall_distance_;
 
-  /// A wall near a vertex, for wetting: how far the tension has changed to that of the wall, its derivative
-  /// by the distance [1/sigma], and the direction away from the wall.
-  struct Wetted {
-    double share = 0;
-    double slope = 0;
-    Eigen::Array2d normal{0, 0};
+  /// The wall next to a vertex, for wetting, and the direction away from it.
+  struct Wetted : WettedShare {
+    Eigen::Array2d normal;
   };
   Wetted wetted(const DropletState& state, int vertex) const;
   double extra_tension() const { return (dp_.wall_tension - 1) * dp_.line_tension; }
+  void add_wetted_tension(const DropletState& state, Eigen::ArrayXd& force) const;
   void add_walls(const DropletState& state, Eigen::ArrayXd& force);
   void measure_wall_distance(const DropletState& state);
   /// Calls visit(overlap) for every half edge (vertex) and slot or wedge [sigma]; negative where they do not

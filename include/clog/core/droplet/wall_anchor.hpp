@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+namespace clog {
+
+/// A wall that a droplet meets, in its frame: a circle, or a wedge of the scene.
+struct WallPlace {
+  double x = 0, y = 0;      ///< centre [sigma]
+  double radius = 0;        ///< [sigma]
+  Eigen::Index wedge = -1;  ///< number of the wedge; -1: a circle
+
+  /// Is it the same wall? Centres of two lists may differ by rounding, those of two walls by much more.
+  bool is(const WallPlace& other) const {
+    constexpr double rounding = 1e-6;
+    return wedge == other.wedge && std::abs(x - other.x) < rounding && std::abs(y - other.y) < rounding;
+  }
+};
+
+/// Where a spring between interface and wall is tied to the wall. It rests there until the wall yields: a
+/// static force, which is conservative in between. It is a part of a droplet's state.
+struct WallAnchor {
+  Eigen::Index holder;  ///< what the spring holds: a vertex, or the first (0) or last (1) end of an arc
+  WallPlace wall;       ///< to which it is tied
+  double x, y;      ///< where, from the wall's centre; of an arc's end x is its place along the wall [sigma]
+  double slip = 0;  ///< way along the wall from there to what it holds, when the wall was last asked [sigma]
+  /// 1: the wall yields, and the spring's force is that of `slip` wherever it holds on. While an equilibrium
+  /// is searched; a droplet that moves asks its walls at every step.
+  Eigen::Index yields = 0;
+
+  double slip_of_force(double slip_now) const { return yields != 0 ? slip : slip_now; }
+};
+
+/// Why walls are asked.
+enum class Purpose { motion, equilibrium };
+
+/// What walls gave way to.
+struct WallYield {
+  double dissipated = 0;  ///< [g rho sigma^3]
+  double excess = 0;      ///< most by which a spring's force was not what its wall bears [g rho sigma^2]
+
+  /// A spring that its wall lost.
+  void forget(const WallAnchor& anchor, double stiffness) {
+    dissipated += 0.5 * stiffness * anchor.slip * anchor.slip;
+    excess = std::max(excess, stiffness * std::abs(anchor.slip));
+  }
+  /// What is left of the slip where the wall bears slips from `least` to `most`. The anchor is then to be
+  /// moved by what is lost of it.
+  double hold(WallAnchor& anchor, double slip, double least, double most, double stiffness, Purpose purpose) {
+    const double held = std::clamp(slip, least, most);
+    excess = std::max(excess, stiffness * std::abs(held - anchor.slip_of_force(slip)));
+    // By the trapezoidal rule, as the integrator: the force of before acts on half of the way.
+    dissipated += stiffness * (anchor.slip + held) / 2 * (slip - held);
+    anchor.slip = held;
+    anchor.yields = purpose == Purpose::equilibrium && held != slip ? 1 : 0;
+    return held;
+  }
+};
+
+}  // namespace clog
