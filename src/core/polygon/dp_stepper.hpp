@@ -58,10 +58,10 @@ class DpStepper {
 
   void store(DropletState& state) const;
   kernel::Contact contact(double stiffness) const;
-  void kick_and_drift(DropletState& droplet, const kernel::KickCoefficients& coefficients,
-                      double drift_time, Droplet::Work* work);
-  void push_off_everything(DropletState& droplet, const kernel::KickCoefficients& coefficients, double impulse,
-                           Droplet::Work* work);
+  void kick_and_drift(DropletState& droplet, const kernel::KickCoefficients& coefficients, double drift_time,
+                      Droplet::Work* work);
+  void push_off_everything(DropletState& droplet, const kernel::KickCoefficients& coefficients,
+                           double impulse, Droplet::Work* work);
   void let_walls_yield(DropletState& droplet, Droplet::Work* work);
   void hold_by_friction(DropletState& droplet, double impulse, Droplet::Work* work);
   Droplet::Work power(const kernel::InterfaceKick& interface, const kernel::KickCoefficients& coefficients,

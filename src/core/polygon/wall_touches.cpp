@@ -27,9 +27,7 @@ void WallTouches::add_edge(const Eigen::ArrayXd& position, int edge, const WallP
   const auto n = static_cast<int>(position.size() / 2);
   const int vertices[4] = {(edge + n - 1) % n, edge, (edge + 1) % n, (edge + 2) % n};
   constexpr double shares[4] = {refined_far, refined_near, refined_near, refined_far};
-  const auto vertex = [&](int k) {
-    return Eigen::Array2d(position[vertices[k]], position[n + vertices[k]]);
-  };
+  const auto vertex = [&](int k) { return Eigen::Array2d(position[vertices[k]], position[n + vertices[k]]); };
   Eigen::Array2d middle{0, 0};
   for (int k = 0; k < 4; ++k) middle += shares[k] * vertex(k);
   const Eigen::Array2d centre{circle.x, circle.y};
@@ -102,8 +100,9 @@ const std::vector<WallTouch>& WallTouches::find(const DropletState& state,
   for (const Part& one : parts_) {
     const Eigen::Array2d from_centre{state.x()[one.vertex] - one.wall.x, state.y()[one.vertex] - one.wall.y};
     const Eigen::Array2d normal =
-        one.wall.wedge >= 0 ? distance_to(wedges[static_cast<std::size_t>(one.wall.wedge)], from_centre).normal
-                            : from_centre / from_centre.matrix().norm();
+        one.wall.wedge >= 0
+            ? distance_to(wedges[static_cast<std::size_t>(one.wall.wedge)], from_centre).normal
+            : from_centre / from_centre.matrix().norm();
     // The middle next to the end of a contact pulls the vertex behind it a little towards the wall.
     const double push = std::max(0.0, (one.push * normal).sum());
     if (push > 0 || one.wetted > 0) touches_.push_back({one.vertex, one.wall, push, one.wetted});

@@ -137,8 +137,8 @@ TEST_P(OnAnIncline, ADropSticksBelowWhatFurmidgeAllowsAndSlidesAbove) {
 }
 
 TEST(ContactLine, OnADiscCarriesTheTorqueOfADropsWeight) {
-  // What a drop's ends pull along the wall is all that turns it around the disc's centre: M g y = R (f_0 - f_1),
-  // y its centroid's way beside the centre.
+  // What a drop's ends pull along the wall is all that turns it around the disc's centre: M g y = R (f_0 -
+  // f_1), y its centroid's way beside the centre.
   const auto on_disc = [](double aside, double receding, int vertices) {
     constexpr double radius = 3;
     return drop_on(sticky({1, receding, 180}, vertices, 0.3), {{10.5 + radius, 10 - aside, radius}}, {}, 150);

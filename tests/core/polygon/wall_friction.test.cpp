@@ -141,8 +141,8 @@ TEST(WallAnchors, OfAContactLineBalanceTheEnergyToSecondOrder) {
   expect_balance(run, ObstacleArray(20, {}, {incline}), 0.2);
 }
 
-/// A rope over half of a disc, with straight ends that hang along +x: vertices joined by stiff springs, pushed
-/// off by the disc, held by it. It is pulled at both ends, until it rests or slides.
+/// A rope over half of a disc, with straight ends that hang along +x: vertices joined by stiff springs,
+/// pushed off by the disc, held by it. It is pulled at both ends, until it rests or slides.
 class Rope {
  public:
   static constexpr double radius = 0.5;
@@ -161,7 +161,7 @@ class Rope {
     for (int i = 0; i < n_; ++i) {
       const double along = (i - num_first_) * edge_;
       const double angle = along / radius;
-      const bool before = i < num_first_, after = i > num_first_ + on_disc;
+      const bool before = i<num_first_, after = i> num_first_ + on_disc;
       state_.position[i] = before ? -along : after ? along - pi * radius : -radius * std::sin(angle);
       state_.position[n_ + i] = before ? radius : after ? -radius : radius * std::cos(angle);
     }
@@ -255,8 +255,8 @@ TEST(RopeOverADisc, WithoutWeightSlidesAtExpMuTheta) {
 }
 
 TEST(RopeOverADisc, OfWeightSlidesWhenItsOverhangSaysSo) {
-  // dT/dphi = mu (T + w R sin phi) + w R cos phi from end to end of half a turn: L_2 = exp(mu pi) L_1 + 2 mu R
-  // (1 + exp(mu pi))/(1 + mu^2), where the ends are pulled by the weight of what is missing.
+  // dT/dphi = mu (T + w R sin phi) + w R cos phi from end to end of half a turn: L_2 = exp(mu pi) L_1 + 2 mu
+  // R (1 + exp(mu pi))/(1 + mu^2), where the ends are pulled by the weight of what is missing.
   const double mu = 0.5, weight = 2;
   const double grip = std::exp(mu * pi);
   const double hanging = 0.3 * 0.5 * pi;

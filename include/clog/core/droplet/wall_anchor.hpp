@@ -8,8 +8,8 @@ namespace clog {
 
 /// A wall that a droplet meets, in its frame: a circle, or a wedge of the scene.
 struct WallPlace {
-  double x = 0, y = 0;  ///< centre [sigma]
-  double radius = 0;    ///< [sigma]
+  double x = 0, y = 0;      ///< centre [sigma]
+  double radius = 0;        ///< [sigma]
   Eigen::Index wedge = -1;  ///< number of the wedge; -1: a circle
 
   /// Is it the same wall? Centres of two lists may differ by rounding, those of two walls by much more.
@@ -24,10 +24,10 @@ struct WallPlace {
 struct WallAnchor {
   Eigen::Index holder;  ///< what the spring holds: a vertex, or the first (0) or last (1) end of an arc
   WallPlace wall;       ///< to which it is tied
-  double x, y;          ///< where, from the wall's centre; of an arc's end x is its place along the wall [sigma]
-  double slip = 0;      ///< way along the wall from there to what it holds, when the wall was last asked [sigma]
-  /// 1: the wall yields, and the spring's force is that of `slip` wherever it holds on. While an equilibrium is
-  /// searched; a droplet that moves asks its walls at every step.
+  double x, y;      ///< where, from the wall's centre; of an arc's end x is its place along the wall [sigma]
+  double slip = 0;  ///< way along the wall from there to what it holds, when the wall was last asked [sigma]
+  /// 1: the wall yields, and the spring's force is that of `slip` wherever it holds on. While an equilibrium
+  /// is searched; a droplet that moves asks its walls at every step.
   Eigen::Index yields = 0;
 
   double slip_of_force(double slip_now) const { return yields != 0 ? slip : slip_now; }
