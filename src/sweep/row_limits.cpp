@@ -58,7 +58,8 @@ std::string unproven_hold(const char* key, double hold, double most, const char*
 }
 
 std::string unproven_angle(const DpParameters& dp) {
-  if (!(dp.receding_angle < smallest_receding_angle)) return "";
+  // Of rows from before there was one it is not known.
+  if (!(dp.receding_angle.value_or(smallest_receding_angle) < smallest_receding_angle)) return "";
   return fmt::format("receding-angle={} (from {} on was looked at)", shortest(*dp.receding_angle),
                      shortest(smallest_receding_angle));
 }
@@ -84,8 +85,7 @@ std::vector<std::string> unproven_parameters(const RunRow& row) {
   const DpParameters& dp = row.parameters.dp;
   for (const std::string& one :
        {unproven_tension(row.preset, dp), unproven_vertices(dp), unproven_diameter(row.parameters),
-        unproven_angle(dp),
-        unproven_hold("friction", dp.friction, most_friction, ""),
+        unproven_angle(dp), unproven_hold("friction", dp.friction, most_friction, ""),
         unproven_hold("yield-traction", dp.yield_traction, most_traction, " g rho sigma")})
     if (!one.empty()) all.push_back(one);
   return all;
