@@ -22,6 +22,7 @@ constexpr int fewest_vertices = 64;
 constexpr int most_vertices = 1024;
 constexpr double most_friction = 0.5;
 constexpr double most_traction = 0.1;
+constexpr double smallest_receding_angle = 60;  // [degrees]
 struct SoundPreset {
   std::string_view name;
   double smallest_tension;         ///< with 128 vertices or more
@@ -56,6 +57,13 @@ std::string unproven_hold(const char* key, double hold, double most, const char*
   return fmt::format("{}={} (up to {}{} was looked at)", key, shortest(hold), shortest(most), unit);
 }
 
+std::string unproven_angle(const DpParameters& dp) {
+  // Of rows from before there was one it is not known.
+  if (!(dp.receding_angle.value_or(smallest_receding_angle) < smallest_receding_angle)) return "";
+  return fmt::format("receding-angle={} (from {} on was looked at)", shortest(*dp.receding_angle),
+                     shortest(smallest_receding_angle));
+}
+
 /// Needles slip through the interface: then the droplet encloses them, at its release or on its way. Seen
 /// with obstacles as thick as an edge is long and thinner ones, the more often the more of them there are.
 std::string unproven_diameter(const RunParameters& run) {
@@ -77,7 +85,7 @@ std::vector<std::string> unproven_parameters(const RunRow& row) {
   const DpParameters& dp = row.parameters.dp;
   for (const std::string& one :
        {unproven_tension(row.preset, dp), unproven_vertices(dp), unproven_diameter(row.parameters),
-        unproven_hold("friction", dp.friction, most_friction, ""),
+        unproven_angle(dp), unproven_hold("friction", dp.friction, most_friction, ""),
         unproven_hold("yield-traction", dp.yield_traction, most_traction, " g rho sigma")})
     if (!one.empty()) all.push_back(one);
   return all;

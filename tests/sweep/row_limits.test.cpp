@@ -45,6 +45,7 @@ TEST(UnprovenParameters, AreNamedWithTheirValueBeyondIt) {
        "line-tension=0.04 (heavy-interface is sound from 0.05 to 10)"},
       {{{"preset", "literal"}}, "preset=literal (droplets cross themselves and obstacles)"},
       {{{"self-contact", "off"}}, "preset=custom (an interface that was not looked at)"},
+      {{{"receding-angle", "50"}}, "receding-angle=50 (from 60 on was looked at)"},
       {{{"preset", "elastic"}, {"friction", "0.6"}}, "friction=0.6 (up to 0.5 was looked at)"},
       {{{"preset", "elastic"}, {"yield-traction", "0.2"}},
        "yield-traction=0.2 (up to 0.1 g rho sigma was looked at)"},
