@@ -43,7 +43,10 @@ sweep::Settings settings_for(const Parameter& parameter) {
   }
   settings.set("obstacle-gap", "0.6");
   if (scope == "lattice") settings.set("obstacle-layout", "lattice");
-  if (parameter.key == std::string("perimeter-stiffness-ratio")) settings.set("preset", "elastic");
+  const std::string key = parameter.key;
+  if (key == "perimeter-stiffness-ratio" || key == "friction" || key == "yield-traction")
+    settings.set("preset", "elastic");
+  if (key == "advancing-angle") settings.set("wall-tension", "0.5");  // Young's is not the largest there is
   if (parameter.key == std::string("gravity")) settings.set("preset", "heavy-interface");
   if (parameter.key == std::string("model")) settings.set("wall-stiffness", "1");
   return settings;
@@ -57,6 +60,7 @@ std::string other_value(const Parameter& parameter, const sweep::Settings& setti
     return *std::ranges::find_if(parameter.words,
                                  [&](const std::string& word) { return ParameterValue(word) != value; });
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer + 1);
+  if (parameter.key == std::string("advancing-angle")) return "150";
   if (parameter.unit == std::string("degrees")) return "10";  // a little less may be the same lattice
   if (const auto* number = std::get_if<double>(&value)) return shortest(*number == 0 ? 0.05 : 0.8 * *number);
   return "0.5";
