@@ -460,6 +460,7 @@ std::vector<Parameter> make_schema() {
              .meaning = "contact angle of the droplet below which the end of a wetted arc recedes; young: "
                         "that of wall-tension; only with perimeter-spring=along",
              .scope = &polygons,
+             .automatic_in = &polygons,
              .range = {from(0, "an angle between wall and interface", "use 0..180, or young"),
                        to(180, "an angle between wall and interface", "use 0..180, or young")},
              .words = {"young"}}),
@@ -470,6 +471,7 @@ std::vector<Parameter> make_schema() {
              .meaning = "contact angle of the droplet above which the end of a wetted arc advances; young: "
                         "that of wall-tension; only with perimeter-spring=along",
              .scope = &polygons,
+             .automatic_in = &polygons,
              .range = {from(0, "an angle between wall and interface", "use 0..180, or young"),
                        to(180, "an angle between wall and interface", "use 0..180, or young")},
              .words = {"young"}}),
