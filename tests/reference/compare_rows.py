@@ -17,7 +17,6 @@ import tempfile
 import time
 
 import h5py
-import numpy as np
 
 CIRCUMSTANCES = {"wall_seconds", "rank", "host", "attempt"}
 SMALL = ["box=20", "max-time=40", "vertices=64", "seeds=3..4"]
