@@ -9,6 +9,12 @@
 namespace clog::fit {
 namespace {
 
+/// At one distance.
+struct Ends {
+  double at_risk;
+  double all, own;  ///< by any cause, by the one looked at
+};
+
 /// Sums over all distances so far from which the variance of F_c follows. With g = d/(n (n - d)), all causes,
 /// and h = P d_c/n^2 it is the sum of (F - F_s)^2 g + P h (n - d_c)/n - 2 (F - F_s) h, F_s being F_c at the
 /// term's distance and F now.
@@ -17,14 +23,15 @@ struct VarianceSums {
   double own = 0;
   double h = 0, F_h = 0;
 
-  void add(double before, double F, double at_risk, double ends, double own_ends) {
+  /// @param before  P before these ends  @param F  behind them
+  void add(double before, double F, const Ends& ends) {
     // Where all end, F no longer grows, and (F - F_s)^2 g stays zero.
-    if (ends < at_risk) {
-      const double g_s = ends / (at_risk * (at_risk - ends));
+    if (ends.all < ends.at_risk) {
+      const double g_s = ends.all / (ends.at_risk * (ends.at_risk - ends.all));
       g += g_s, F_g += F * g_s, F2_g += F * F * g_s;
     }
-    const double h_s = before * own_ends / (at_risk * at_risk);
-    own += before * h_s * (at_risk - own_ends) / at_risk;
+    const double h_s = before * ends.own / (ends.at_risk * ends.at_risk);
+    own += before * h_s * (ends.at_risk - ends.own) / ends.at_risk;
     h += h_s, F_h += F * h_s;
   }
   double variance(double F) const {
@@ -45,20 +52,18 @@ std::vector<IncidenceStep> cumulative_incidence(std::span<const CompetingEnd> ru
   double still_going = 1, incidence = 0;
   VarianceSums sums;
   for (std::size_t begin = 0, end = 0; begin < sorted.size(); begin = end) {
-    int num_ends = 0, num_own = 0;
+    Ends ends = {.at_risk = static_cast<double>(sorted.size() - begin), .all = 0, .own = 0};
     for (; end < sorted.size() && sorted[end].distance == sorted[begin].distance; ++end) {
-      num_ends += sorted[end].cause.has_value();
-      num_own += sorted[end].cause == cause;
+      ends.all += sorted[end].cause.has_value();
+      ends.own += sorted[end].cause == cause;
     }
-    if (num_ends == 0) continue;
-    const auto at_risk = static_cast<double>(sorted.size() - begin);
-    incidence += still_going * num_own / at_risk;
-    sums.add(still_going, incidence, at_risk, num_ends, num_own);
-    still_going *= 1 - num_ends / at_risk;
-    if (num_own == 0) continue;
+    incidence += still_going * ends.own / ends.at_risk;
+    sums.add(still_going, incidence, ends);
+    still_going *= 1 - ends.all / ends.at_risk;
+    if (ends.own == 0) continue;
     const double variance = sums.variance(incidence);
-    steps.push_back({sorted[begin].distance, static_cast<int>(at_risk), num_own, incidence,
-                     std::sqrt(variance),
+    steps.push_back({sorted[begin].distance, static_cast<int>(ends.at_risk), static_cast<int>(ends.own),
+                     incidence, std::sqrt(variance),
                      log_log_interval(incidence, variance / (incidence * incidence), confidence)});
   }
   return steps;

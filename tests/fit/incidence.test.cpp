@@ -67,7 +67,8 @@ TEST(CumulativeIncidence, CountsRunsAtRiskAndEnds) {
 
 TEST(CumulativeIncidence, OfUncensoredRunsIsTheirShareWithABinomialError) {
   std::vector<CompetingEnd> runs;
-  for (int i = 0; i < 50; ++i) runs.push_back(by(i % 3, 1 + i / 2));
+  runs.reserve(50);
+  for (int i = 0; i < 50; ++i) runs.push_back(by(i % 3, 1 + 0.5 * (i - i % 2)));
   const auto all = static_cast<double>(runs.size());
   for (const int cause : {0, 1, 2})
     for (const IncidenceStep& step : cumulative_incidence(runs, cause)) {

@@ -168,7 +168,7 @@ bool DropletRun::is_passage() const { return scene_of(run_).finding == Finding::
 
 bool DropletRun::has_broken() {
   if (run_.dp.break_up_neck == 0) return false;
-  const double thinnest = std::isnan(neck_.width) ? no_neck : neck_.width;
+  const double thinnest = std::fmin(neck_.width, no_neck);  // of NaN and a number the number
   const double width = model_of(run_).neck(droplet_->state(), thinnest);
   if (width < thinnest) neck_ = {.width = width, .distance = displacement()[0]};
   return width < run_.dp.break_up_neck;

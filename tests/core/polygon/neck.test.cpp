@@ -25,6 +25,7 @@ Eigen::ArrayXd polygon_of(const std::vector<Eigen::Array2d>& points) {
 template <class Point>
 Eigen::ArrayXd closed_curve(int num_vertices, Point point) {
   std::vector<Eigen::Array2d> points;
+  points.reserve(num_vertices);
   for (int i = 0; i < num_vertices; ++i) points.push_back(point(2 * pi * i / num_vertices));
   return polygon_of(points);
 }
