@@ -29,8 +29,9 @@ class Resumed(SweepTest):
 
     def stop_under_way(self, sweep):
         """Stops it where a run has a snapshot, at another try if need be. @return rows of the runs under way"""
-        for _ in range(100):
-            if self.run_program("clogsweep", *sweep, "--max-hours=0.0001").returncode != 75:
+        for attempt in range(100):
+            # A busy machine needs longer to come so far.
+            if self.run_program("clogsweep", *sweep, f"--max-hours={0.0001 * 1.05**attempt:.6f}").returncode != 75:
                 (self.folder / "s.h5").resolve().unlink()  # complete: once more from the beginning
                 continue
             rows = table(self.folder / "s.h5")
