@@ -7,7 +7,7 @@ from paper.plate import Plate, figure, interface_of
 from style import plt
 
 
-@figure("W1", "what of the clogging length is the mesh's: line tension, numbers of vertices, interfaces", ["hanging-robust", "hanging-elastic"], "20 min")
+@figure("W1", "what of the clogging length is the mesh's: line tension, numbers of vertices, interfaces", ["hanging-robust", "hanging-elastic"], "32 min")
 def lengths_by_mesh(shop):
     configs = ["hanging-robust", "hanging-elastic"]
     presets = [(config, shop.sweep(config)) for config in configs]
