@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 #include <variant>
 
@@ -275,7 +276,14 @@ std::vector<bool> shown_fields(const std::vector<Group>& groups, const std::vect
     shown[i] = (varies[i] && !group_columns()[i]->may_be_automatic(run)) ||
                (is_there && is_of(scene_of(run).gap_key)) || is_of(model_of(run).stiffness_key);
   }
-  for (std::size_t i = 0; i < first.size(); ++i) {
+  // Of automatic values that are given, those that others follow from come first.
+  std::vector<std::size_t> order(first.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_partition(
+      order, [&](std::size_t i) { return first[i].first == std::string_view("time_step"); });
+  std::ranges::stable_partition(
+      order, [&](std::size_t i) { return first[i].first == std::string_view("vertices"); });
+  for (const std::size_t i : order) {
     if (!varies[i] || shown[i]) continue;
     std::map<std::vector<Value>, Value> follows;
     for (const Group& group : groups) {

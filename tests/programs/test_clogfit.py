@@ -301,6 +301,10 @@ class Fit(ProgramTest):
         self.assertGreater(group["clogging_length_wrapped_lower"], 0)
         self.assertNotIn("w/s/h", self.succeed("clogfit", "sweep.h5").stdout)
 
+    def test_a_list_of_vertices_is_told_though_they_may_be_automatic(self):
+        self.succeed("clogsweep", "seeds=1..2", "vertices=64,96", "box=20", *FAR, "--output", "sweep.h5")
+        self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, r"\nobstacle_gap +line_tension +vertices +runs")
+
     def test_clogs_that_the_mesh_may_hold_are_marked(self):
         self.sweep("seeds=1..10", *FAR)
         self.change(distance=3 * EXPONENTIAL, status=[b"clogged"] * 10, mechanism=[b"wrapped"] * 10, mesh_hold=[0.009] * 10)

@@ -14,7 +14,7 @@ namespace clog::soundness {
 namespace {
 
 constexpr int num_vertices = 256;
-const double vertex_diameter = units::regular_edge_length(num_vertices);
+const double vertex_diameter = units::regular_edge_length(128);  // the unit of depths, for finer meshes too
 
 DropletState circle() { return test::state_of(regular_polygon(num_vertices, units::rest_area)); }
 
