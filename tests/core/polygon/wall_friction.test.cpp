@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdio>
 #include <functional>
 #include <memory>
@@ -285,39 +286,63 @@ TEST(RopeOverADisc, ThatOnlySticksSlidesAtPiRTau) {
   });
 }
 
+/// An elastic droplet let down on a small disc, a little beside its middle.
+DropletRun falls_on_disc(double friction, ClogDetection detection, double clog_energy) {
+  RunParameters run;
+  run.dp.vertices = 128;
+  run.dp.line_tension = 0.1;
+  run.dp.perimeter_spring = PerimeterSpring::rest;
+  run.dp.perimeter_stiffness_ratio = 0.1;
+  run.dp.gravity = Gravity::vertex;
+  run.dp.friction = friction;
+  run.drag.terminal_speed = 0.1;
+  run.obstacles.box = 20;
+  run.max_time = 1000;
+  run.clog_detection = detection;
+  run.clog_energy = clog_energy;
+  run = resolve(run);
+  DropletState state = state_of(model_of(run).free_shape(run));
+  state.x() += 9.3;
+  state.y() += 10.02;
+  return {run, std::make_shared<ObstacleArray>(20, std::vector<Obstacle>{{10, 10, 0.15}}), std::move(state),
+          3.0};
+}
+RunResult finished(DropletRun run) {
+  while (!run.advance(100)) {
+  }
+  return run.result();
+}
+
 TEST(WallFriction, HoldsADropletThatHangsOverADisc) {
   // Without friction it slips off. Proved or waited for, it is the same rest.
-  const auto outcome = [](double friction, ClogDetection detection) {
-    RunParameters run;
-    run.dp.vertices = 128;
-    run.dp.line_tension = 0.1;
-    run.dp.perimeter_spring = PerimeterSpring::rest;
-    run.dp.perimeter_stiffness_ratio = 0.1;
-    run.dp.gravity = Gravity::vertex;
-    run.dp.friction = friction;
-    run.drag.terminal_speed = 0.1;
-    run.obstacles.box = 20;
-    run.max_time = 400;
-    run.clog_detection = detection;
-    run.clog_energy = 1e-12;
-    run = resolve(run);
-    DropletState state = state_of(model_of(run).free_shape(run));
-    state.x() += 9.3;
-    state.y() += 10.02;
-    DropletRun droplet(run, std::make_shared<ObstacleArray>(20, std::vector<Obstacle>{{10, 10, 0.15}}),
-                       std::move(state), 3.0);
-    while (!droplet.advance(100)) {
-    }
-    return droplet.result();
-  };
-  EXPECT_EQ(outcome(0, ClogDetection::certified).status, RunStatus::passed);
-  const RunResult certified = outcome(0.1, ClogDetection::certified);
-  const RunResult waited = outcome(0.1, ClogDetection::threshold);
+  constexpr double quiet = 1e-12;
+  EXPECT_EQ(finished(falls_on_disc(0, ClogDetection::certified, quiet)).status, RunStatus::passed);
+  const RunResult certified = finished(falls_on_disc(0.1, ClogDetection::certified, quiet));
+  const RunResult waited = finished(falls_on_disc(0.1, ClogDetection::threshold, quiet));
   ASSERT_EQ(certified.clogged_by, ClogDetection::certified);
   ASSERT_EQ(waited.clogged_by, ClogDetection::threshold);
   EXPECT_NEAR(certified.distance, waited.distance, 1e-4);
   EXPECT_NEAR(certified.lateral, waited.lateral, 1e-4);
   EXPECT_LT(certified.time, 0.8 * waited.time);
+}
+
+TEST(WallAnchors, AreSavedAndRestored) {
+  const RunParameters run = rough(0.3, 0);
+  const ObstacleArray wall(20, {{0.66, 0.1, 0.15}});
+  DpDroplet droplet(run, wall, state_of(regular_polygon(64, units::rest_area)));
+  droplet.advance(640);
+  droplet.start_afresh();
+  ASSERT_GT(droplet.potential_energy().anchors, 0);
+  ByteWriter bytes;
+  droplet.save(bytes);
+  DpDroplet restored(run, wall, state_of(regular_polygon(64, units::rest_area)));
+  const std::vector<std::byte> saved = bytes.take();
+  ByteReader reader(saved);
+  restored.restore(reader);
+  droplet.advance(640);
+  restored.advance(640);
+  EXPECT_TRUE((restored.state().position == droplet.state().position).all());
+  EXPECT_TRUE((restored.state().velocity == droplet.state().velocity).all());
 }
 
 }  // namespace
