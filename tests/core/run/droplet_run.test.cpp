@@ -79,6 +79,36 @@ DropletRun resume_in_array(const RunParameters& run, std::span<const std::byte> 
                             snapshot);
 }
 
+/// Of interfaces that walls hold, with anchors at the snapshots.
+TEST(DropletRun, GoesOnFromASnapshotWithItsAnchors) {
+  for (const bool by_friction : {true, false}) {
+    RunParameters run;
+    run.obstacles.box = 20;
+    run.obstacles.gap = 0.4;
+    run.time_step = 2e-3;
+    run.max_time = 600;
+    run.dp.vertices = 64;
+    run.dp.line_tension = 0.1;
+    if (by_friction) {
+      run.dp.perimeter_spring = PerimeterSpring::rest;
+      run.dp.perimeter_stiffness_ratio = 0.1;
+      run.dp.gravity = Gravity::vertex;
+      run.dp.friction = 0.02;
+    } else {
+      run.dp.receding_angle = 150;
+    }
+    run = resolve(run);
+    DropletRun whole(run);
+    while (whole.snapshot().empty()) ASSERT_FALSE(whole.advance(64)) << by_friction;
+    DropletRun resumed = resume_in_array(run, whole.snapshot());
+    EXPECT_GT(resumed.droplet().state().anchors.size(), 0u) << by_friction;
+    while (!whole.advance(64)) continue;
+    while (!resumed.advance(7)) continue;
+    expect_identical(resumed.result(), whole.result());
+    EXPECT_TRUE((resumed.droplet().state().position == whole.droplet().state().position).all());
+  }
+}
+
 TEST(DropletRun, GoesOnFromEverySnapshotBitForBit) {
   for (const Model model : {Model::dp, Model::sp}) {
     RunParameters run = long_run(model);
