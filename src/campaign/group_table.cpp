@@ -279,10 +279,10 @@ std::vector<bool> shown_fields(const std::vector<Group>& groups, const std::vect
   // Of automatic values that are given, those that others follow from come first.
   std::vector<std::size_t> order(first.size());
   std::iota(order.begin(), order.end(), 0);
-  std::ranges::stable_partition(
-      order, [&](std::size_t i) { return first[i].first == std::string_view("time_step"); });
-  std::ranges::stable_partition(
-      order, [&](std::size_t i) { return first[i].first == std::string_view("vertices"); });
+  std::stable_partition(order.begin(), order.end(),
+                        [&](std::size_t i) { return first[i].first == std::string_view("time_step"); });
+  std::stable_partition(order.begin(), order.end(),
+                        [&](std::size_t i) { return first[i].first == std::string_view("vertices"); });
   for (const std::size_t i : order) {
     if (!varies[i] || shown[i]) continue;
     std::map<std::vector<Value>, Value> follows;
