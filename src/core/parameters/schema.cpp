@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "clog/core/parameters/contact_angle.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/number_text.hpp"
 
@@ -124,6 +125,7 @@ struct Facts {
   std::vector<std::string> words = {};  ///< if not all of the type's
   ParameterValue elsewhere = {};
   ParameterValue before = {};
+  ParameterValue (*before_from)(const RunParameters&) = nullptr;
 };
 
 /// @param Member  stateless: from the parameters of a run, const or not, to a reference to the member
@@ -144,6 +146,7 @@ Parameter entry(const char* key, Member, const Facts& facts) {
       .shapes_array = facts.shapes_array,
       .elsewhere = facts.elsewhere,
       .before = facts.before,
+      .before_from = facts.before_from,
       .kind = Outside<T>::kind,
       .words = facts.words.empty() ? Outside<T>::words() : facts.words,
       .get = [](const RunParameters& run) { return Outside<T>::get(Member{}(run)); },
@@ -159,6 +162,8 @@ const Bound positive = above(0, "must be positive", "use a value above 0");
 const Bound not_negative = from(0, "must not be negative", "use 0 or more");
 
 using enum ParameterRole;
+
+ParameterValue young_angle_of(const RunParameters& run) { return young_angle(run.dp); }
 
 std::vector<Parameter> make_schema() {
   return {
@@ -463,7 +468,8 @@ std::vector<Parameter> make_schema() {
              .automatic_in = &polygons,
              .range = {from(0, "an angle between wall and interface", "use 0..180, or young"),
                        to(180, "an angle between wall and interface", "use 0..180, or young")},
-             .words = {"young"}}),
+             .words = {"young"},
+             .before_from = young_angle_of}),
       entry("advancing-angle", [](auto& run) -> auto& { return run.dp.advancing_angle; },
             {.column = "advancing_angle",
              .symbol = R"(\theta_\mathrm{A})",
@@ -474,7 +480,8 @@ std::vector<Parameter> make_schema() {
              .automatic_in = &polygons,
              .range = {from(0, "an angle between wall and interface", "use 0..180, or young"),
                        to(180, "an angle between wall and interface", "use 0..180, or young")},
-             .words = {"young"}}),
+             .words = {"young"},
+             .before_from = young_angle_of}),
       entry("friction", [](auto& run) -> auto& { return run.dp.friction; },
             {.column = "friction",
              .symbol = R"(\mu)",

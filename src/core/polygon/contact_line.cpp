@@ -67,10 +67,6 @@ constexpr double hovering = 0.25;
 
 }  // namespace
 
-double young_angle(const DpParameters& dp) {
-  return portable::atan2(std::sqrt(1 - dp.wall_tension * dp.wall_tension), -dp.wall_tension) * 180 / pi;
-}
-
 bool has_hysteresis(const DpParameters& dp) {
   const double young = young_angle(dp);
   return dp.receding_angle.value_or(young) < young || dp.advancing_angle.value_or(young) > young;

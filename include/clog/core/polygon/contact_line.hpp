@@ -6,14 +6,13 @@
 #include <vector>
 
 #include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/parameters/contact_angle.hpp"
 #include "clog/core/parameters/parameters.hpp"
 #include "clog/core/polygon/wall_contacts.hpp"
 #include "clog/core/world/wedge.hpp"
 
 namespace clog {
 
-/// Young's contact angle of the droplet's fluid, of which wall-tension is minus the cosine [degrees].
-double young_angle(const DpParameters& dp);
 /// Do contact angles differ from Young's?
 bool has_hysteresis(const DpParameters& dp);
 
