@@ -358,8 +358,8 @@ class Fit(ProgramTest):
     def test_files_of_format_version_7_can_be_read(self):
         self.sweep("max-time=60", "line-tension=2", "seeds=1..3")
         before, = self.fit()["groups"]
-        stored_rows.make_older(self.folder / "sweep.h5", "7", ["mesh_hold", "break_up_neck", "thinnest_neck", "thinnest_neck_at", "receding_angle",
-                                                                    "advancing_angle", "friction", "yield_traction"])
+        new = ["mesh_hold", "break_up_neck", "thinnest_neck", "thinnest_neck_at", "receding_angle", "advancing_angle", "friction", "yield_traction"]
+        stored_rows.make_older(self.folder / "sweep.h5", "7", new)
         group, = self.fit()["groups"]
         self.assertEqual((group["break_up_neck"], group["clogging_length"], group["receding_angle"]), (0, before["clogging_length"], 180))
         self.assertEqual(group["doubts"], before["doubts"])
