@@ -279,10 +279,12 @@ std::vector<bool> shown_fields(const std::vector<Group>& groups, const std::vect
   // Of automatic values that are given, those that others follow from come first.
   std::vector<std::size_t> order(first.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_partition(order.begin(), order.end(),
-                        [&](std::size_t i) { return first[i].first == std::string_view("time_step"); });
-  std::stable_partition(order.begin(), order.end(),
-                        [&](std::size_t i) { return first[i].first == std::string_view("vertices"); });
+  const auto rank = [&](std::size_t i) {
+    const std::string_view name = first[i].first;
+    return name == "vertices" ? 0 : name == "time_step" ? 1 : 2;
+  };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
   for (const std::size_t i : order) {
     if (!varies[i] || shown[i]) continue;
     std::map<std::vector<Value>, Value> follows;

@@ -33,8 +33,8 @@ bool is_numerics(const sweep::Column& column) {
 
 /// May so many of the clogs be the mesh's that they move the length?
 bool hangs_on_mesh(const Group& group) {
-  constexpr int most = 10;  // clogs for one of them
-  return group.num_on_mesh > 0 && most * group.num_on_mesh >= group.clogging.num_clogs;
+  constexpr double tolerated = 0.1;  // of the clogs
+  return group.num_on_mesh > 0 && group.num_on_mesh >= tolerated * group.clogging.num_clogs;
 }
 
 std::vector<Doubt> doubts_about(const Group& group) {

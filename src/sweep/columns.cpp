@@ -321,8 +321,7 @@ std::vector<Column> make_columns() {
       number_in(
           "thinnest_neck", [](auto& row) -> auto& { return row.neck.width; }, "sigma",
           "width of the thinnest neck between two lobes that the droplet has had (src/core/README.md); NaN: "
-          "it "
-          "had none, or break_up_neck is 0"),
+          "it had none, or break_up_neck is 0"),
       number_in(
           "thinnest_neck_at", [](auto& row) -> auto& { return row.neck.distance; }, "sigma",
           "distance at which it was found"),

@@ -58,8 +58,7 @@ std::string unproven_hold(const char* key, double hold, double most, const char*
 }
 
 std::string unproven_angle(const DpParameters& dp) {
-  // Of rows from before there was one it is not known.
-  if (!(dp.receding_angle.value_or(smallest_receding_angle) < smallest_receding_angle)) return "";
+  if (!dp.receding_angle || *dp.receding_angle >= smallest_receding_angle) return "";
   return fmt::format("receding-angle={} (from {} on was looked at)", shortest(*dp.receding_angle),
                      shortest(smallest_receding_angle));
 }

@@ -50,8 +50,7 @@ inline constexpr DoubtText doubt_texts[] = {
      "rows hold what cannot be (left out; clogsweep verify names them): the file is damaged"},
     {Doubt::held_by_mesh, 'm', "held_by_mesh",
      "a tenth of the clogs or more hang over obstacles with edges so long that the polygon's corners may "
-     "hold "
-     "them (column mesh_hold): use more vertices"},
+     "hold them (column mesh_hold): use more vertices"},
     {Doubt::array_repeats, 'r', "array_repeats",
      "runs went farther than boxes times box, where obstacles repeat: what lets a droplet pass once does so "
      "again"},

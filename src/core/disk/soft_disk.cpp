@@ -92,7 +92,7 @@ Axes x_and_y(const DropletState& state) {
 std::optional<DropletState> equilibrium_of_disk(const RunParameters& run, const ObstacleArray& obstacles,
                                                 const DropletState& state) {
   SpForces forces(run, obstacles);
-  return find_equilibrium(EquilibriumForces::of(forces, x_and_y), state);
+  return find_equilibrium(EquilibriumForces::of(forces, x_and_y, true), state);
 }
 
 /// It cannot hang over an obstacle.

@@ -142,8 +142,7 @@ std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, co
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const Axes axes = forces.axes(field.state());
     const VectorXd force = field.force_at(position, axes);
-    const bool has_energy = axes.slide.size() == 0;
-    const Stiffness stiffness(field.stiffness(axes), has_energy);
+    const Stiffness stiffness(field.stiffness(axes), forces.have_energy);
     if (!stiffness.resists(least_stiffness * point_weight)) return std::nullopt;
     const VectorXd move = stiffness.solve(force);
     const double longest = move.lpNorm<Eigen::Infinity>();

@@ -102,10 +102,7 @@ ContactLine::ContactLine(const RunParameters& run, std::span<const Wedge> wedges
 
 void ContactLine::add_to(Zone& zone, const DropletState& state, Index vertex) const {
   const Eigen::Array2d from_centre{state.x()[vertex] - zone.wall.x, state.y()[vertex] - zone.wall.y};
-  const double r = from_centre.matrix().norm();
-  const WedgeDistance at = zone.wall.wedge < 0
-                               ? WedgeDistance{r - zone.wall.radius, from_centre / r}
-                               : distance_to(wedges_[static_cast<std::size_t>(zone.wall.wedge)], from_centre);
+  const WedgeDistance at = distance_to(zone.wall, wedges_, from_centre);
   const double on_wall = width_ * hovering / wetting_width;
   const WettedShare share = wetted_share(at.distance, contact_range_ + on_wall, width_ - on_wall);
   if (share.share > 0) zone.vertices.push_back({vertex, share.share, share.slope, at.normal});

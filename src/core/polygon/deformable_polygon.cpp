@@ -91,7 +91,8 @@ std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, con
                                                    const DropletState& state) {
   DpForces forces(run, obstacles);
   const auto axes = [&](const DropletState& at) { return axes_of_interface(run.dp, at); };
-  const EquilibriumForces asked = EquilibriumForces::of(forces, axes);
+  const bool have_energy = run.dp.perimeter_spring != PerimeterSpring::along;
+  const EquilibriumForces asked = EquilibriumForces::of(forces, axes, have_energy);
   std::optional<DropletState> rest = find_equilibrium(asked, state);
   if (!forces.has_anchors()) return rest;
   // Walls hold the droplet by springs, whose anchors rest while it is searched. Where a wall does not bear

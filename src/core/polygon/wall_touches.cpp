@@ -99,10 +99,7 @@ const std::vector<WallTouch>& WallTouches::find(const DropletState& state,
   touches_.clear();
   for (const Part& one : parts_) {
     const Eigen::Array2d from_centre{state.x()[one.vertex] - one.wall.x, state.y()[one.vertex] - one.wall.y};
-    const Eigen::Array2d normal =
-        one.wall.wedge >= 0
-            ? distance_to(wedges[static_cast<std::size_t>(one.wall.wedge)], from_centre).normal
-            : from_centre / from_centre.matrix().norm();
+    const Eigen::Array2d normal = distance_to(one.wall, wedges, from_centre).normal;
     // The middle next to the end of a contact pulls the vertex behind it a little towards the wall.
     const double push = std::max(0.0, (one.push * normal).sum());
     if (push > 0 || one.wetted > 0) touches_.push_back({one.vertex, one.wall, push, one.wetted});

@@ -37,11 +37,11 @@ RunParameters resolve(RunParameters run) {
   check_each(run);
   const Scene& scene = scene_of(run);
   const DropletModel& model = model_of(run);
+  const double sharpest_bend = scene.sharpest_bend(run);
   const bool has_obstacles = scene.finding == Finding::clogging_length;
-  constexpr double none = std::numeric_limits<double>::infinity();
-  model.choose_points(run, has_obstacles ? scene.sharpest_bend(run) : none);
+  model.choose_points(run, has_obstacles ? sharpest_bend : std::numeric_limits<double>::infinity());
   scene.check(run);
-  model.resolve(run, scene.sharpest_bend(run));
+  model.resolve(run, sharpest_bend);
   scene.resolve(run);
   check_break_up(run);
   return run;

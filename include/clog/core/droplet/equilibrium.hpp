@@ -34,14 +34,16 @@ struct EquilibriumForces {
   /// Of all points, all x then all y [g rho sigma^2].
   std::function<void(const DropletState& state, Eigen::ArrayXd& force)> evaluate;
   std::function<Axes(const DropletState& state)> axes;
+  bool have_energy;  ///< then the stiffness is symmetric
 
   /// @param forces  has update_contacts(state, travel) and evaluate(state, force); must outlive this
   template <class Forces>
-  static EquilibriumForces of(Forces& forces, std::function<Axes(const DropletState& state)> axes) {
+  static EquilibriumForces of(Forces& forces, std::function<Axes(const DropletState& state)> axes,
+                              bool have_energy) {
     return {
         [&forces](const DropletState& state, const Travel& travel) { forces.update_contacts(state, travel); },
         [&forces](const DropletState& state, Eigen::ArrayXd& force) { forces.evaluate(state, force); },
-        std::move(axes)};
+        std::move(axes), have_energy};
   }
 };
 

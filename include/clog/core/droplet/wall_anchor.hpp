@@ -3,6 +3,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <span>
+
+#include "clog/core/world/wedge.hpp"
 
 namespace clog {
 
@@ -18,6 +21,14 @@ struct WallPlace {
     return wedge == other.wedge && std::abs(x - other.x) < rounding && std::abs(y - other.y) < rounding;
   }
 };
+
+/// Of a point given from the wall's centre. @param wedges  those of the scene
+inline WedgeDistance distance_to(const WallPlace& wall, std::span<const Wedge> wedges,
+                                 const Eigen::Array2d& from_centre) {
+  if (wall.wedge >= 0) return distance_to(wedges[static_cast<std::size_t>(wall.wedge)], from_centre);
+  const double r = from_centre.matrix().norm();
+  return {r - wall.radius, from_centre / r};
+}
 
 /// Where a spring between interface and wall is tied to the wall. It rests there until the wall yields: a
 /// static force, which is conservative in between. It is a part of a droplet's state.
