@@ -47,16 +47,21 @@ WallYield WallFriction::follow(DropletState& state, std::span<const WallTouch> t
                                Purpose purpose) const {
   WallYield yield;
   std::vector<WallAnchor> before = std::exchange(state.anchors, {});
+  state.anchors.reserve(touches.size());
+  auto next = before.begin();  // touches are found in the same order as a step before, but for few
   for (const WallTouch& touch : touches) {
     const Foot at = foot(touch.wall, state, touch.vertex);
     if (!(at.gradient > 0)) continue;  // a sharp tip: there is nothing to slip along
-    const auto known = std::find_if(before.begin(), before.end(), [&](const WallAnchor& one) {
+    const auto is_its = [&](const WallAnchor& one) {
       return one.holder == touch.vertex && one.wall.is(touch.wall);
-    });
+    };
+    auto known = std::find_if(next, before.end(), is_its);
+    if (known == before.end()) known = std::find_if(before.begin(), before.end(), is_its);
     if (known == before.end()) {
       state.anchors.push_back({touch.vertex, touch.wall, at.point[0], at.point[1]});
       continue;
     }
+    next = known + 1;
     WallAnchor anchor = *known;
     known->holder = -1;  // it is not lost
     const double slip = (at.along * (at.point - Eigen::Array2d(anchor.x, anchor.y))).sum();

@@ -31,19 +31,32 @@ void WallTouches::add_edge(const Eigen::ArrayXd& position, int edge, const WallP
   Eigen::Array2d middle{0, 0};
   for (int k = 0; k < 4; ++k) middle += shares[k] * vertex(k);
   const Eigen::Array2d centre{circle.x, circle.y};
+  const double reach = circle.radius + range_;
+  Eigen::Array2d pushes[4] = {{0, 0}, {0, 0}, {0, 0}, {0, 0}};
+  double wetted[4] = {0, 0, 0, 0};
+  bool touches = false;
   for (const int end : {1, 2}) {
+    const double length = (middle - vertex(end)).matrix().norm();
+    // No point of the half is farther from its end than it is long.
+    if ((vertex(end) - centre).matrix().squaredNorm() > (reach + length) * (reach + length)) continue;
     const Eigen::Array2d nearest = nearest_on_segment(centre, vertex(end), middle);
     const double distance = (nearest - centre).matrix().norm();
-    const double overlap = circle.radius + range_ - distance;
+    const double overlap = reach - distance;
     if (!(overlap > 0 && distance > 0)) continue;
-    const double length = (middle - vertex(end)).matrix().norm();
+    touches = true;
     const double to_middle = length > 0 ? (nearest - vertex(end)).matrix().norm() / length : 0;
     const Eigen::Array2d push = stiffness_ * overlap / distance * (nearest - centre);
-    part(vertices[end], circle).push += (1 - to_middle) * push;
-    for (int k = 0; k < 4; ++k) part(vertices[k], circle).push += to_middle * shares[k] * push;
+    pushes[end] += (1 - to_middle) * push;
+    for (int k = 0; k < 4; ++k) pushes[k] += to_middle * shares[k] * push;
     // A half is as long on the wall as it is; the middle belongs to both vertices.
-    part(vertices[end], circle).wetted += 0.75 * length;
-    part(vertices[3 - end], circle).wetted += 0.25 * length;
+    wetted[end] += 0.75 * length;
+    wetted[3 - end] += 0.25 * length;
+  }
+  if (!touches) return;
+  for (int k = 0; k < 4; ++k) {
+    Part& touched = part(vertices[k], circle);
+    touched.push += pushes[k];
+    touched.wetted += wetted[k];
   }
 }
 
