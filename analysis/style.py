@@ -100,8 +100,8 @@ def legend(axes, groups=(), other="other clogs"):
         axes.legend(*zip(*entries), frameon=False)
 
 
-def draw_lengths(axes, places, groups, index, label):
-    """Clogging lengths with clogfit's intervals. The marker is that of what holds most of the clogs; an open one is a
+def draw_lengths(axes, places, groups, index, label, linestyle=None):
+    """Clogging lengths with clogfit's intervals, `linestyle` where it is not that of the index. The marker is that of what holds most of the clogs; an open one is a
     length in doubt (OPEN_MARKERS), an open triangle a lower bound, where no run clogged."""
     order = sorted(range(len(groups)), key=lambda i: places[i])
     places, groups = [places[i] for i in order], [groups[i] for i in order]
@@ -112,6 +112,7 @@ def draw_lengths(axes, places, groups, index, label):
         for end in ("clogging_length_lower", "clogging_length_upper")
     ]
     colour, line = (curve_style(index)[name] for name in ("color", "linestyle"))
+    line = linestyle or line
     axes.errorbar(places, lengths, yerr=bars, color=colour, linestyle=line, linewidth=1, elinewidth=1, capsize=2.5, label=label)
     for x, y, group in zip(places, lengths, groups):
         face = "white" if reasons_for_open_marker(group) else colour

@@ -136,36 +136,57 @@ TEST_P(OnAnIncline, ADropSticksBelowWhatFurmidgeAllowsAndSlidesAbove) {
   }
 }
 
-TEST(ContactLine, OnADiscCarriesTheTorqueOfADropsWeight) {
-  // What a drop's ends pull along the wall is all that turns it around the disc's centre: M g y = R (f_0 -
-  // f_1), y its centroid's way beside the centre.
-  const auto on_disc = [](double aside, double receding, int vertices) {
-    constexpr double radius = 3;
-    return drop_on(sticky({1, receding, 180}, vertices, 0.3), {{10.5 + radius, 10 - aside, radius}}, {}, 150);
-  };
+struct Disc {
+  const char* name;
+  double radius, line_tension;
+  Angles angles;
+  double aside;  ///< of the disc's centre, where the drop is let down
+  double max_time;
+};
+
+class OnADisc : public testing::TestWithParam<Disc> {
+ protected:
+  static DropletRun drop(double aside, const Angles& angles, int vertices) {
+    const auto& [name, radius, line_tension, _, __, max_time] = GetParam();
+    return drop_on(sticky(angles, vertices, line_tension), {{10.5 + radius, 10 - aside, radius}}, {},
+                   max_time);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Sizes, OnADisc,
+                         testing::Values(Disc{"large", 3, 0.3, {1, 60, 180}, 0.1, 150},
+                                         Disc{"small", 0.5, 1, {0.5, 30, 150}, 0.1, 150}),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+/// What a drop's ends pull along the wall is all that turns it around the disc's centre: M g y = R (f_0 -
+/// f_1), y its centroid's way beside the centre. So two lobes of different weight are held over a disc.
+TEST_P(OnADisc, CarriesTheTorqueOfADropsWeight) {
+  const Disc& disc = GetParam();
   double error[2];
   for (const int vertices : {64, 128}) {
-    DropletRun run = on_disc(0.1, 60, vertices);
+    DropletRun run = drop(disc.aside, disc.angles, vertices);
     while (!run.advance(100)) {
     }
     const RunResult result = run.result();
     ASSERT_EQ(result.clogged_by, ClogDetection::certified);
-    const double beside = 0.1 + result.lateral;
+    const double beside = disc.aside + result.lateral;
     const auto rest =
         model_of(run.parameters()).equilibrium(run.parameters(), run.obstacles(), run.droplet().state());
     double pull = 0;
     for (const WallAnchor& anchor : rest.value().anchors) {
-      const double stiffness = pinning_stiffness * 0.3 / units::regular_edge_length(vertices);
+      const double stiffness = pinning_stiffness * disc.line_tension / units::regular_edge_length(vertices);
       pull += (anchor.holder == 0 ? -1 : 1) * stiffness * anchor.slip;
     }
-    error[vertices == 128] = 3 * pull / (units::droplet_mass * beside) - 1;
-    std::printf("%d vertices: the ends carry %+.5f more\n", vertices, error[vertices == 128]);
+    error[vertices == 128] = disc.radius * pull / (units::droplet_mass * beside) - 1;
+    std::printf("%d vertices, beside by %.4f: the ends carry %+.5f more\n", vertices, beside,
+                error[vertices == 128]);
   }
-  EXPECT_LT(std::abs(error[0]), 0.01);
-  EXPECT_LT(std::abs(error[1]), 0.005);
+  EXPECT_LT(std::abs(error[1]), 0.01);
+  EXPECT_LT(std::abs(error[1]), std::abs(error[0]) / 2);
+}
 
-  // Beyond y = R Gamma h/(M g) = 0.15 it cannot stay.
-  DropletRun lost = on_disc(0.1, 150, 64);
+TEST(ContactLine, LetsADropGoWhoseWeightTurnsItMoreThanTheEndsBear) {
+  // Beyond y = R Gamma h/(M g) = 0.15.
+  DropletRun lost = drop_on(sticky({1, 150, 180}, 64, 0.3), {{13.5, 9.9, 3}}, {}, 150);
   while (!lost.advance(100)) {
   }
   EXPECT_NE(lost.result().status, RunStatus::clogged);
