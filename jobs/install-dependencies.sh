@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing of the Debian 12 packages that clogsweep needs. Does nothing when all are there.
-# With the argument `gates`: those, too, that look at its sources (tests/gates/README.md).
+# With the argument `gates`: those, too, that look at its sources (tests/gates/README.md); with `docs`: those that make
+# the site of docs/
 set -euo pipefail
 packages=(
   g++ cmake ninja-build git                          # to build
@@ -17,7 +18,8 @@ packages=(
 case ${1:-} in
   "") ;;
   gates) packages+=(clang clang-format clang-tidy aspell aspell-en shellcheck flake8) ;;
-  *) echo "usage: install-dependencies.sh [gates]" >&2; exit 2 ;;
+  docs) packages+=(python3-sphinx python3-myst-parser furo python3-sphinx-copybutton libjs-mathjax doxygen) ;;
+  *) echo "usage: install-dependencies.sh [gates|docs]" >&2; exit 2 ;;
 esac
 missing=()
 for package in "${packages[@]}"; do
