@@ -1,25 +1,29 @@
 # One target per layer: what a layer may use is what it links. See src/README.md.
 
-# Flags of all our own code, and of nothing else.
+# Flags of all our own code, and of nothing else. What uses the installed libraries gets the first part only.
 add_library(clog_flags INTERFACE)
 target_compile_features(clog_flags INTERFACE cxx_std_20)
-target_include_directories(clog_flags INTERFACE "${PROJECT_SOURCE_DIR}/include")
+target_include_directories(clog_flags INTERFACE
+  "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>" "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
 # Eigen would add up products of matrices in an order that fits the processor's caches.
 target_compile_definitions(clog_flags INTERFACE EIGEN_NO_CPUID)
-target_compile_options(clog_flags INTERFACE
+# The namespace has the name of a C library function (complex logarithm) that g++ treats as built in.
+target_compile_options(clog_flags INTERFACE -fno-builtin-clog)
+set(own_flags
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-  # The namespace has the name of a C library function (complex logarithm) that g++ treats as built in.
-  -fno-builtin-clog
+  # What is installed knows nothing of where it was built.
+  "-ffile-prefix-map=${PROJECT_SOURCE_DIR}/="
   # Loops marked `omp simd` are vectorised (no OpenMP runtime). errno and floating-point traps are never read,
   # and would forbid vector square roots. Nothing here reorders sums beyond the marked reductions.
   -fopenmp-simd -fno-math-errno -fno-trapping-math)
 if(CLOG_SANITIZE)
-  target_compile_options(clog_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
-  target_link_options(clog_flags INTERFACE -fsanitize=address,undefined)
+  list(APPEND own_flags -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(clog_flags INTERFACE "$<BUILD_INTERFACE:-fsanitize=address,undefined>")
 endif()
 if(CLOG_FUZZ)
-  target_compile_options(clog_flags INTERFACE -fsanitize=fuzzer-no-link)  # main is libFuzzer's in its targets only
+  list(APPEND own_flags -fsanitize=fuzzer-no-link)  # main is libFuzzer's in its targets only
 endif()
+target_compile_options(clog_flags INTERFACE "$<BUILD_INTERFACE:${own_flags}>")
 
 # clog_layer(<name> SOURCES <files...> USES <public dependencies...> USES_PRIVATE <private dependencies...>)
 function(clog_layer name)

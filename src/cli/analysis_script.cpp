@@ -14,11 +14,12 @@
 namespace clog::cli {
 
 std::filesystem::path find_analysis_script(const std::string& name) {
-  std::filesystem::path script = std::filesystem::path(CLOG_ANALYSIS_FOLDER) / name;
+  const std::filesystem::path folder = own_folder() / CLOG_SHARED_FOLDER / "analysis";
   std::error_code error;
-  if (!std::filesystem::exists(script, error))
-    throw Error("cannot draw without " + script.string() + ", which was there when " + own_folder().string() +
-                " was built; run analysis/" + name + " of the source tree instead");
+  std::filesystem::path script = std::filesystem::canonical(folder / name, error);
+  if (error)
+    throw Error("cannot draw without " + (folder / name).string() +
+                ", which belongs to this program; install clogsweep as a whole (cmake --install)");
   return script;
 }
 

@@ -6,7 +6,7 @@
 
 namespace clog::cli {
 
-/// A script of the source tree's folder analysis. @throws Error  if it is not there any more
+/// A script of the folder analysis, which is installed with this program. @throws Error  if it is not there
 std::filesystem::path find_analysis_script(const std::string& name);
 
 /// The program goes on as this script; its exit code is the script's.

@@ -1,0 +1,55 @@
+# cmake --install: programs, scripts, completion, and the libraries for find_package(clogsweep). Nothing of it knows
+# where the source tree was.
+include(CMakePackageConfigHelpers)
+
+# Programs
+
+install(TARGETS clogsweep clogrun clogfit RUNTIME COMPONENT programs)
+
+# Scripts and configs, which the programs find beside themselves (CLOG_SHARED_FOLDER). The build tree has links.
+
+foreach(folder analysis jobs)
+  file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_DATADIR}/clogsweep")
+  file(CREATE_LINK "${PROJECT_SOURCE_DIR}/${folder}" "${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_DATADIR}/clogsweep/${folder}" SYMBOLIC)
+endforeach()
+install(DIRECTORY analysis jobs DESTINATION "${CMAKE_INSTALL_DATADIR}/clogsweep" USE_SOURCE_PERMISSIONS COMPONENT programs
+  FILES_MATCHING PATTERN "*.py" PATTERN "*.cfg" PATTERN "*.sh"
+  PATTERN "__pycache__" EXCLUDE PATTERN "install-dependencies.sh" EXCLUDE PATTERN "laptop.sh" EXCLUDE)
+install(FILES README.md CHANGELOG.md CITATION.cff LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs)
+
+# What a shell completes, from what the programs say of themselves
+
+set(completion "${PROJECT_BINARY_DIR}/completion")
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+add_custom_command(OUTPUT "${completion}/clogsweep" "${completion}/_clogsweep"
+  COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/cmake/completion.py" "$<TARGET_FILE_DIR:clogsweep>" "${completion}"
+  DEPENDS clogsweep clogrun clogfit "${PROJECT_SOURCE_DIR}/cmake/completion.py"
+  VERBATIM)
+add_custom_target(completion ALL DEPENDS "${completion}/clogsweep" "${completion}/_clogsweep")
+# bash loads the file that is called as the command is.
+foreach(program clogsweep clogrun clogfit)
+  install(FILES "${completion}/clogsweep" RENAME ${program}
+    DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT programs)
+endforeach()
+install(FILES "${completion}/_clogsweep" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions" COMPONENT programs)
+
+# Libraries: what a program needs that runs droplets, plans sweeps, reads their files, fits them
+
+set(libraries core sweep fit store)
+foreach(library ${libraries})
+  set_target_properties(clog_${library} PROPERTIES EXPORT_NAME ${library})
+endforeach()
+set_target_properties(clog_flags PROPERTIES EXPORT_NAME flags)
+list(TRANSFORM libraries PREPEND clog_ OUTPUT_VARIABLE targets)
+set(package "${CMAKE_INSTALL_LIBDIR}/cmake/clogsweep")
+install(TARGETS ${targets} clog_flags EXPORT clogsweep ARCHIVE COMPONENT libraries)
+install(EXPORT clogsweep NAMESPACE clogsweep:: FILE clogsweepTargets.cmake DESTINATION "${package}" COMPONENT libraries)
+foreach(library ${libraries})
+  install(DIRECTORY "include/clog/${library}" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/clog" COMPONENT libraries)
+endforeach()
+configure_package_config_file(cmake/clogsweepConfig.cmake.in "${PROJECT_BINARY_DIR}/clogsweepConfig.cmake"
+  INSTALL_DESTINATION "${package}" NO_SET_AND_CHECK_MACRO NO_CHECK_REQUIRED_COMPONENTS_MACRO)
+# Versions before 1.0 promise nothing to each other.
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/clogsweepConfigVersion.cmake" COMPATIBILITY SameMinorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/clogsweepConfig.cmake" "${PROJECT_BINARY_DIR}/clogsweepConfigVersion.cmake"
+  DESTINATION "${package}" COMPONENT libraries)

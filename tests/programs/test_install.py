@@ -1,0 +1,98 @@
+"""What cmake --install puts somewhere, tried where nothing else is."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+import pandas
+
+from support import BIN, ROOT
+
+KEYS = ["line-tension=0.5", "obstacle-gap=0.3", "vertices=64", "box=20", "max-time=200", "seeds=1..4"]
+
+
+class Installed(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="clog_install_")
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        first = cls.folder / "first"
+        cls.called("cmake", "--install", BIN.parent, "--prefix", first)
+        # To another place: whatever knows where it was installed no longer finds it.
+        cls.prefix = cls.folder / "moved"
+        first.rename(cls.prefix)
+
+    @classmethod
+    def called(cls, *command, **options):
+        # Only what is installed, and the system.
+        environment = {"PATH": f"{cls.folder}/moved/bin:/usr/bin:/bin", "HOME": str(cls.folder), "OMPI_ALLOW_RUN_AS_ROOT": "1",
+                       "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "PYTHONDONTWRITEBYTECODE": "1", "ASAN_OPTIONS": os.environ.get("ASAN_OPTIONS", "")}
+        done = subprocess.run([str(word) for word in command], cwd=cls.folder, env=environment, capture_output=True, text=True, timeout=300, **options)
+        if done.returncode != 0:
+            raise AssertionError(f"{command}: {done.stdout}{done.stderr}")
+        return done.stdout
+
+    def test_nothing_knows_where_it_was_built(self):
+        for path in self.prefix.rglob("*"):
+            self.assertFalse(path.is_symlink(), path)
+            if path.is_file():
+                content = path.read_bytes()
+                for place in (ROOT, BIN.parent, self.folder / "first"):
+                    self.assertNotIn(str(place).encode() + b"/", content, path)
+
+    def test_a_sweep_its_fit_its_report_and_its_pictures(self):
+        self.called("clogsweep", *KEYS, "--output", "s.h5")
+        self.assertIn("lambda/sigma", self.called("clogfit", "s.h5"))
+        self.called("clogfit", "report", "s.h5", "--output", "s.html")
+        self.assertIn("<figure>", (self.folder / "s.html").read_text())
+        self.called(self.prefix / "share/clogsweep/analysis/clogging_length.py", "s.h5", "--output", "curve")
+        self.assertTrue((self.folder / "curve.png").exists())
+        self.called("clogrun", "array", *KEYS[:-1], "seeds=1", "--polygon-interval", 20, "--output", "r.h5", "--frames", "film.gif")
+        self.assertTrue((self.folder / "film.gif").exists())
+
+    def test_a_config_that_comes_with_it(self):
+        said = self.called("clogsweep", "--config", self.prefix / "share/clogsweep/jobs/laptop.cfg", "--print-config")
+        self.assertIn("preset", said)
+
+    def test_a_program_of_ones_own_finds_what_the_sweep_finds(self):
+        example = self.folder / "example"
+        shutil.copytree(ROOT / "docs/examples/own-program", example)
+        build_type = "-DCMAKE_BUILD_TYPE=Release"
+        flags = ["-DCMAKE_CXX_FLAGS=-fsanitize=address,undefined"] if "sanitize" in self.cache() else []
+        self.called("cmake", "-S", example, "-B", example / "build", f"-DCMAKE_PREFIX_PATH={self.prefix}", build_type, *flags)
+        self.called("cmake", "--build", example / "build")
+        said = self.called(example / "build/own-program").splitlines()
+        self.called("clogsweep", *KEYS, "--output", "own.h5")
+        rows = pandas.read_hdf(self.folder / "own.h5", "runs").sort_values("seed")
+        for line, row in zip(said, rows.itertuples(), strict=False):
+            self.assertEqual(line, f"seed {row.seed}: {row.status} after {row.distance:.17g} sigma")
+        self.assertRegex(said[-1], r"^lambda = \S+ sigma \(95 %: ")
+
+    @staticmethod
+    def cache():
+        text = (BIN.parent / "CMakeCache.txt").read_text()
+        return "sanitize" if "CLOG_SANITIZE:BOOL=ON" in text else ""
+
+    def completed(self, *words):
+        """What bash offers for the last word."""
+        script = f"""
+            compopt() {{ :; }}
+            . {self.prefix}/share/bash-completion/completions/{words[0]}
+            COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _clogsweep; printf '%s\\n' "${{COMPREPLY[@]}}"
+        """
+        return self.called("bash", "-c", script, "bash", *words).split()
+
+    def test_bash_completes_commands_options_keys_and_words(self):
+        self.assertEqual(self.completed("clogsweep", "stat"), ["status"])
+        self.assertEqual(self.completed("clogsweep", "status", "--wat"), ["--watch"])
+        self.assertEqual(self.completed("clogsweep", "line-t"), ["line-tension="])
+        self.assertEqual(self.completed("clogrun", "array", "preset", "=", "el"), ["elastic"])
+        self.assertEqual(self.completed("clogfit", "sweep.h5", "--dw"), ["--dwell"])
+
+
+if __name__ == "__main__":
+    unittest.main()
