@@ -16,7 +16,7 @@
 namespace clog::sweep {
 namespace {
 
-/// As tests/soundness/README.md has it.
+/// As docs/explanation/soundness.md has it.
 constexpr double largest_tension = 10;
 constexpr int fewest_vertices = 64;
 constexpr int most_vertices = 1024;
@@ -102,7 +102,7 @@ std::string unproven_parameters(const Plan& plan) {
     all.resize(most_named);
     all.push_back(others);
   }
-  return "not proved sound (tests/soundness/README.md): " + joined(all);
+  return "not proved sound (docs/explanation/soundness.md): " + joined(all);
 }
 
 double repetition_length(const RunRow& row) {

@@ -1,4 +1,4 @@
-/// soundness: does every droplet stay physically sound? See README.md in this folder.
+/// soundness: does every droplet stay physically sound? See docs/explanation/soundness.md.
 
 #include <algorithm>
 #include <atomic>

@@ -60,9 +60,10 @@ TEST(UnprovenParameters, AreNamedWithTheirValueBeyondIt) {
 
 TEST(UnprovenParameters, OfAPlanAreNamedOnceEach) {
   EXPECT_EQ(unproven_parameters(plan_of({{"line-tension", "0.1,1"}})), "");
-  EXPECT_EQ(unproven_parameters(plan_of({{"line-tension", "0,1,30"}, {"obstacle-gap", "0.2,0.3"}})),
-            "not proved sound (tests/soundness/README.md): line-tension=0 (robust is sound from 0.01 to 10), "
-            "line-tension=30 (robust is sound from 0.01 to 10)");
+  EXPECT_EQ(
+      unproven_parameters(plan_of({{"line-tension", "0,1,30"}, {"obstacle-gap", "0.2,0.3"}})),
+      "not proved sound (docs/explanation/soundness.md): line-tension=0 (robust is sound from 0.01 to 10), "
+      "line-tension=30 (robust is sound from 0.01 to 10)");
   EXPECT_TRUE(
       unproven_parameters(plan_of({{"line-tension", "11,12,13,14,15,16"}})).ends_with(", and 2 more"));
 }

@@ -59,7 +59,7 @@ inline constexpr DoubtText doubt_texts[] = {
      "not how often gaps clog droplets"},
     {Doubt::not_proved_sound, 'u', "not_proved_sound",
      "line tension, preset, vertices or obstacles are outside of what was proved sound "
-     "(tests/soundness/README.md)"}};
+     "(docs/explanation/soundness.md)"}};
 const DoubtText& text_of(Doubt doubt);
 
 /// By what a run may end, each a competing risk for the others: how a clog is held (`other` are clogs by none
