@@ -22,5 +22,8 @@ html_static_path = ["_static"]
 html_show_copyright = False
 # The site opens offline: build.sh puts Debian's MathJax, which is of version 2, beside its pages.
 mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_CHTML"
+# MyST would tell only MathJax 3 that it may look into what has the class math, and version 2 would show the source.
+myst_update_mathjax = False
+mathjax2_config = {"tex2jax": {"processClass": "tex2jax_process|mathjax_process|math"}}
 copybutton_prompt_text = r"\$ "
 copybutton_prompt_is_regexp = True
