@@ -27,7 +27,7 @@ def of_markdown(text):
     for number, line in enumerate(text.splitlines(), 1):
         fenced ^= line.lstrip().startswith("```")
         if not fenced and not line.startswith("    "):
-            yield number, line
+            yield number, re.sub(r"\\[A-Za-z]+", " ", line)  # a formula's word
 
 
 def of_cpp(text, with_messages):
