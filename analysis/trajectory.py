@@ -44,7 +44,7 @@ class Trajectory:
 
 
 def refined(polygons, row):
-    """Polygons with the middles of their edges, by the four-point rule (src/core/README.md): walls meet these. Those of
+    """Polygons with the middles of their edges, by the four-point rule (docs/explanation/model.md): walls meet these. Those of
     runs in which walls meet vertices alone, or the chords of older versions, stay as they are.
 
     @param polygons  (..., 2, N_v) [sigma]

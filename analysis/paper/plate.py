@@ -4,7 +4,7 @@ import dataclasses
 from collections.abc import Callable
 
 CATALOGUE = {}
-# Presets of the interface, in words; src/core/README.md says what is behind them.
+# Presets of the interface, in words; docs/explanation/model.md says what is behind them.
 INTERFACES = {
     "robust": "robust, weight on the liquid",
     "heavy-interface": "heavy-interface, weight on the interface",

@@ -286,8 +286,8 @@ std::vector<Column> make_columns() {
       member("shape_parameter", &RunRow::shape_parameter, result, "",
              "A = perimeter^2/(4 pi area) at the end; 1 for a circle"),
       member("mechanism", &RunRow::mechanism, result, "",
-             "wrapped around obstacles, squeezed in gaps, hybrid (src/core/README.md); none unless clogged, "
-             "or if nothing that it touches makes a gap; empty: not known",
+             "wrapped around obstacles, squeezed in gaps, hybrid (docs/explanation/clogged.md); none unless "
+             "clogged, or if nothing that it touches makes a gap; empty: not known",
              16),
       member(
           "wrapped_support", &RunRow::wrapped_support, result, "",
@@ -320,8 +320,8 @@ std::vector<Column> make_columns() {
       member("top_sag", &RunRow::top_sag, result, "sigma", "the same of its highest point"),
       number_in(
           "thinnest_neck", [](auto& row) -> auto& { return row.neck.width; }, "sigma",
-          "width of the thinnest neck between two lobes that the droplet has had (src/core/README.md); NaN: "
-          "it had none, or break_up_neck is 0"),
+          "width of the thinnest neck between two lobes that the droplet has had "
+          "(docs/explanation/wrapped.md); NaN: it had none, or break_up_neck is 0"),
       number_in(
           "thinnest_neck_at", [](auto& row) -> auto& { return row.neck.distance; }, "sigma",
           "distance at which it was found"),

@@ -75,7 +75,8 @@ void validate_compression(const DpParameters& dp, bool automatic_area) {
   });
 }
 
-/// N_v l of the longest edges l that a droplet has on an obstacle [sigma], as measured (src/core/README.md).
+/// N_v l of the longest edges l that a droplet has on an obstacle [sigma], as measured
+/// (docs/explanation/mesh.md).
 double length_over_obstacles(const RunParameters& run) {
   // Of an even mesh, that of the whole interface.
   const double even = std::numbers::pi * units::droplet_diameter + 0.33 / run.dp.line_tension;

@@ -16,7 +16,8 @@ struct Words<ClogMechanism> {
                                                   {ClogMechanism::hybrid, "hybrid"}};
 };
 
-/// How a polygon at rest lies among obstacles; src/core/README.md has the definitions. The flow is along +x.
+/// How a polygon at rest lies among obstacles; docs/explanation/clogged.md has the definitions.
+/// The flow is along +x.
 struct ClogGeometry {
   /// Of all the obstacles' support against the flow, the part that comes from wrapped ones; NaN without any.
   double wrapped_support = std::numeric_limits<double>::quiet_NaN();
