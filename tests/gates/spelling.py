@@ -2,7 +2,7 @@
 """The spelling of prose: *.md, comments, docstrings, and what programs say. British, with -ise, by aspell.
 
 Words that aspell does not know and that are right stand in words.txt. What looks like code is left out: `quoted`,
-with digits, underscores, slashes or equals signs, in CamelCase or CAPITALS; and so are $equations$ in Markdown.
+with digits, underscores, slashes or equals signs, in CamelCase or CAPITALS.
 """
 
 import ast
@@ -17,7 +17,7 @@ import known
 WORDS = known.ROOT / "tests/gates/words.txt"
 CPP = re.compile(r'''//(?P<line>[^\n]*)|/\*(?P<block>.*?)\*/|R"\((?P<raw>.*?)\)"|"(?P<text>(?:\\.|[^"\\\n])*)"|'''
                  r"""(?<![0-9A-Za-z])'(?:\\.|[^'\\\n])+'""", re.DOTALL)
-CODE = re.compile(r"\b(?:upper|lower) center\b|`[^`]*`|\$[^$]+\$|\]\([^)]*\)|https?://\S+|@param\s+\S+|@\w+|<[^>\s]*>|\{[^}\s]*\}|(?<!\w)--?\w[\w-]*|"
+CODE = re.compile(r"\b(?:upper|lower) center\b|`[^`]*`|\]\([^)]*\)|https?://\S+|@param\s+\S+|@\w+|<[^>\s]*>|\{[^}\s]*\}|(?<!\w)--?\w[\w-]*|"
                   r"\S*[_:=/%^]\S+|\S*[^\W\d_]\(\S*|\S*\w\.(?:py|h5|csv|cpp|hpp|md|cfg|sh|txt|png|mp4|html|journal)\b|\S*\d\S*")
 WORD = re.compile(r"[^\W\d_]+(?:'[^\W\d_]+)*")
 
@@ -25,9 +25,9 @@ WORD = re.compile(r"[^\W\d_]+(?:'[^\W\d_]+)*")
 def of_markdown(text):
     fenced = False
     for number, line in enumerate(text.splitlines(), 1):
-        fenced ^= line.lstrip().startswith("```") or line.strip() == "$$"
+        fenced ^= line.lstrip().startswith("```")
         if not fenced and not line.startswith("    "):
-            yield number, line
+            yield number, re.sub(r"\\[A-Za-z]+", " ", line)  # a formula's word
 
 
 def of_cpp(text, with_messages):
