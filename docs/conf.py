@@ -22,5 +22,8 @@ html_static_path = ["_static"]
 html_show_copyright = False
 # The site opens offline: build.sh puts Debian's MathJax, which is of version 2, beside its pages.
 mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_CHTML"
+# MyST lets mathematics be looked for in elements of the class `math` only, but tells so in words of version 3.
+myst_update_mathjax = False
+mathjax2_config = {"tex2jax": {"processClass": "math"}}
 copybutton_prompt_text = r"\$ "
 copybutton_prompt_is_regexp = True
