@@ -8,7 +8,7 @@
 Makes RUN.pvd, which names every frame with its time, the frames in the folder RUN-vtk, and RUN-obstacles.vtp, to be opened beside it:
 discs and walls (of diameter 0), cut off five diameters from the droplet's way. All are VTK's XML PolyData, as text. An outline
 is the interface that walls meet, vertices and middles of edges in turn. Frames have its points' speed, and, as field data, the columns of
-the trajectory at that time. Units are those of src/store/README.md.
+the trajectory at that time. Units are those of docs/reference/files.md.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""Files of clogsweep and clogrun, opened only if nothing in them is damaged (src/store/README.md says how that is known)."""
+"""Files of clogsweep and clogrun, opened only if nothing in them is damaged (docs/explanation/survival.md says how that is known)."""
 
 import contextlib
 import os

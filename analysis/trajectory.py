@@ -17,7 +17,7 @@ POINTS_OF_DISK = 128
 
 @dataclasses.dataclass
 class Trajectory:
-    """Shapes as in src/store/README.md; without --polygon-interval there are no frames, obstacles and wedges. The polygons
+    """Shapes as in docs/reference/files.md; without --polygon-interval there are no frames, obstacles and wedges. The polygons
     are those that walls meet, see outlines()."""
 
     path: pathlib.Path

@@ -3,7 +3,7 @@
 #   sbatch jobs/slurm.sh --config sweep.cfg --output sweep.h5
 #   sbatch --nodes=8 --ntasks-per-node=64 --time=48:00:00 jobs/slurm.sh --config sweep.cfg --output sweep.h5
 # One job for the whole sweep, on one node or many; no job arrays. Two minutes before the time is up the sweep writes what it has,
-# and the job queues itself again until the sweep is complete. See jobs/README.md.
+# and the job queues itself again until the sweep is complete. See docs/how-to/cluster.md.
 #SBATCH --job-name=clogsweep
 #SBATCH --nodes=1
 #SBATCH --ntasks-per-node=32

@@ -114,7 +114,7 @@ TEST(CloggingLength, IntervalsCoverTheTruthAsOftenAsTheyClaim) {
 
 TEST(CloggingLength, IntervalsCoverTheTruthWhereRunsAreCensoredAfterSomeDistance) {
   // From a quarter of the runs clogged to nearly all of them. 20000 samples: standard error 0.0015; as d is a
-  // whole number the coverage wavers, most where few clogs are expected (src/fit/README.md).
+  // whole number the coverage wavers, most where few clogs are expected (docs/explanation/statistics.md).
   std::mt19937_64 engine(2);
   std::exponential_distribution<double> distance(1);
   for (const double share : {0.25, 0.5, 0.75, 0.95}) {

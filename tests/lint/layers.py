@@ -1,5 +1,5 @@
-"""A room includes the rooms that its line in src/README.md names, and no others; some libraries belong to one room, fmt to
-no header.
+"""A room includes the rooms that its line in docs/explanation/architecture.md names, and no others; some libraries belong
+to one room, fmt to no header.
 
 The rooms inside core have lines of their own: core/world and so on.
 
@@ -11,13 +11,14 @@ import pathlib
 import re
 import sys
 
+PAGE = "docs/explanation/architecture.md"
 OWN_LIBRARY = {"mpi.h": "parallel", "hdf5.h": "store", "boost/program_options.hpp": "cli"}
 
 
 def table(root):
-    """What each room uses, by src/README.md."""
+    """What each room uses, by the page."""
     rooms = {}
-    for line in (root / "src/README.md").read_text().splitlines():
+    for line in (root / PAGE).read_text().splitlines():
         cells = [cell.strip() for cell in line.strip("|").split("|")]
         if line.startswith("| `") and len(cells) == 3:
             rooms[cells[0].strip("`")] = cells[2]
@@ -45,7 +46,7 @@ def faults(root):
     used = collections.defaultdict(set)
     for path, number, room, target in includes(root, uses):
         if room not in uses:
-            yield f"{path}: the room {room} is not in src/README.md"
+            yield f"{path}: the room {room} is not in {PAGE}"
             continue
         if target.startswith("clog/") or target.startswith("core/"):
             other = room_of(target.removeprefix("clog/").split("/"), uses)
@@ -63,9 +64,9 @@ def faults(root):
     for room in uses.keys() - {"core"}:
         for other in sorted(uses[room] - used[room] - {"programs", room}):
             if room != "programs":
-                yield f"src/README.md: {room} does not use {other}"
+                yield f"{PAGE}: {room} does not use {other}"
         if not (root / "src" / room).is_dir():
-            yield f"src/README.md: there is no room {room}"
+            yield f"{PAGE}: there is no room {room}"
 
 
 found = list(faults(pathlib.Path(sys.argv[1])))

@@ -202,7 +202,7 @@ std::string flipped(std::string content, std::size_t byte) {
   return content;
 }
 
-constexpr std::size_t seal_size = 64;  // src/store/README.md
+constexpr std::size_t seal_size = 64;  // docs/reference/files.md
 
 TEST_F(RunTableTest, NoticesEveryFlippedBit) {
   publish_sweep(path(), some_rows(3), {{"config", "a = 1\n"}});

@@ -9,7 +9,7 @@
 
 namespace clog::store {
 
-/// Version of the file format; see src/store/README.md.
+/// Version of the file format; see docs/reference/files.md.
 inline constexpr const char* format_version = "8";
 
 /// Name and text of the attributes at the file's root: where its numbers come from.
