@@ -44,7 +44,7 @@ def columns(schema):
         yield f"| `{column['name']}`{type_of(column)} | {column['unit']} | {cell(column['meaning'])} |"
 
 
-TABLES = [("README.md", "keys", keys), ("src/store/README.md", "columns", columns)]
+TABLES = [("docs/reference/keys.md", "keys", keys), ("src/store/README.md", "columns", columns)]
 
 
 def renewed(text, name, lines):
