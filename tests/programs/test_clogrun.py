@@ -167,6 +167,24 @@ class Run(ProgramTest):
         self.assertGreater(row.distance, 1.4)
         self.assertLess(row.distance, 2)
 
+    def test_walls_that_hold_take_energy_and_never_give_any(self):
+        """Laws of walls in a whole run among obstacles. Springs along the interface do work, all else is stored or dissipated."""
+        laws = {
+            "friction": ["preset=elastic", "friction=0.2"],
+            "traction": ["preset=elastic", "yield-traction=0.05"],
+            "hysteresis": ["wall-tension=0.5", "receding-angle=90", "advancing-angle=150"],
+        }
+        stored = ["kinetic", "gravity", "line_tension", "area", "spring", "wall", "self_contact", "anchor"]
+        for name, keys in laws.items():
+            with self.subTest(name):
+                self.succeed("clogrun", "array", *keys, "vertices=64", "line-tension=0.2", "obstacle-gap=0.3", "box=20", "max-time=80", "seeds=1",
+                             "--sample-interval", 0.5, "--output", f"{name}.h5")
+                samples = pandas.read_hdf(self.folder / f"{name}.h5", "trajectory")
+                energy = sum(samples[f"{part}_energy"] for part in stored) - samples.spreading_work
+                self.assertGreater(samples.anchor_energy.max(), 0)
+                self.assertLess(energy.diff().max(), 0)
+                self.assertLess((energy + samples.dissipated_energy).pipe(np.ptp), 1e-4 * samples.dissipated_energy.iloc[-1])
+
     def test_a_channel_run_writes_h_speed_shape_and_polygons(self):
         self.succeed(
             "clogrun", "channel", "vertices=128", "line-tension=0.3", "terminal-speed=0.08", "--orifice", 0.7,
