@@ -9,7 +9,7 @@ import subprocess
 from processes import Hung, descend, kill, wait_for
 from support import BIN, MPIRUN
 
-EXIT_CODES = {0, 1, 2, 75}  # README.md
+EXIT_CODES = {0, 1, 2, 75}  # docs/reference/exit-codes.md
 READER_GONE = 141  # of a program whose output nobody reads any more
 SUBCOMMANDS = {"status", "verify", "replay", "salvage", "doctor", "array", "channel", "sag", "calibrate", "deviation",
                "drag", "report"}

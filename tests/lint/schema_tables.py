@@ -44,7 +44,7 @@ def columns(schema):
         yield f"| `{column['name']}`{type_of(column)} | {column['unit']} | {cell(column['meaning'])} |"
 
 
-TABLES = [("README.md", "keys", keys), ("docs/reference/columns.md", "columns", columns)]
+TABLES = [("docs/reference/keys.md", "keys", keys), ("docs/reference/columns.md", "columns", columns)]
 
 
 def renewed(text, name, lines):

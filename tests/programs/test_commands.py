@@ -1,11 +1,8 @@
 """What the programs say to commands that were meant otherwise, and what they refuse to do."""
 
-import os
-import subprocess
-import sys
 import unittest
 
-from support import BLOCKED, QUICK, ROOT, ProgramTest
+from support import BLOCKED, QUICK, ProgramTest
 
 
 class Meant(ProgramTest):
@@ -129,19 +126,6 @@ class Parameters(ProgramTest):
             for word in ("terminal_speed=0.03", "near_wall_cutoff=0.00614", "clog_detection=certified", "model_version="):
                 self.assertIn(word, told)
             self.assertLessEqual(max(map(len, told.splitlines())), 110, told)
-
-
-class Readme(ProgramTest):
-    def test_its_python_reads_what_the_programs_write(self):
-        self.succeed("clogsweep", *QUICK, "line-tension=1", "seeds=1..3", "--output", "sweep.h5")
-        self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 5, "--output", "run.h5")
-        section = (ROOT / "README.md").read_text().split("### Results in Python\n")[1].split("\n## ")[0]
-        code = "".join(line[4:] + "\n" for line in section.splitlines() if line.startswith("    "))
-        self.assertIn('"trajectory"', code)
-        done = subprocess.run([sys.executable, "-c", code + "print(*samples.columns[:4], polygons.shape[1:])"], cwd=self.folder,
-                              env={**os.environ, "PYTHONPATH": str(ROOT / "analysis")}, capture_output=True, text=True)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(done.stdout.splitlines()[-1], "time distance lateral_displacement speed (2, 64)")
 
 
 if __name__ == "__main__":

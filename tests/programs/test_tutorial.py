@@ -1,0 +1,73 @@
+"""Pages of the handbook: their commands as they stand, one block after the other, in an empty folder.
+
+Blocks of `bash` and `python` are run. The first line of a block of `text` has to be among what they print, whatever its
+numbers are, and every file that a page names has to be there in the end.
+"""
+
+import os
+import re
+import subprocess
+import sys
+import unittest
+
+from support import BIN, ROOT, ProgramTest
+
+BLOCK = re.compile(r"^```(bash|python|text)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+FILE = re.compile(r"`([\w-]+\.(?:h5|csv|cfg|json|png|pdf|gif|mp4|html))`")
+# As on the page before the tutorials; `set` ends a block at the first command that fails.
+BEFORE = f"set -euo pipefail; . {ROOT}/jobs/mpi-settings.sh\n"
+
+
+def outline(line):
+    """A line without its numbers and the widths of its columns."""
+    return re.sub(r"\d[\d.]*(?:e[+-]?\d+)?", "#", " ".join(line.split()))
+
+
+class Pages(ProgramTest):
+    def follow(self, path):
+        environment = {**os.environ, "PATH": f"{BIN}:{ROOT / 'analysis'}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT / "analysis")}
+        page = (ROOT / path).read_text()
+        blocks = BLOCK.findall(page)
+        self.assertIn("bash", [language for language, _ in blocks])
+        seen = set()
+        for language, block in blocks:
+            if language == "text":
+                self.assertIn(outline(block.splitlines()[0]), seen)
+                continue
+            command = ["bash", "-c", BEFORE + block] if language == "bash" else [sys.executable, "-c", block]
+            done = subprocess.run(command, cwd=self.folder, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                  stderr=subprocess.STDOUT, text=True, timeout=500)
+            self.assertEqual(done.returncode, 0, f"{block}\n{done.stdout}")
+            seen.update(map(outline, done.stdout.splitlines()))
+        files = FILE.findall(re.sub(r"^```.*?^```$", "", page, flags=re.MULTILINE | re.DOTALL))
+        self.assertNotEqual(files, [])
+        for name in files:
+            self.assertTrue((self.folder / name).exists(), f"{path} names {name}, which is not there")
+
+    def test_the_first_sweep(self):
+        self.follow("docs/tutorial/first-sweep.md")
+
+    def test_the_first_film(self):
+        self.follow("docs/tutorial/first-film.md")
+
+    def test_the_calibrated_droplet(self):
+        self.follow("docs/tutorial/calibrated-droplet.md")
+
+    def test_the_sweep_of_the_first_page(self):
+        self.follow("README.md")
+
+    def test_obstacles_of_your_own(self):
+        self.follow("docs/how-to/own-obstacles.md")
+
+    def test_a_lattice(self):
+        self.follow("docs/how-to/lattice.md")
+
+    def test_two_sweeps_compared(self):
+        self.follow("docs/how-to/compare-sweeps.md")
+
+    def test_results_in_python(self):
+        self.follow("docs/how-to/python.md")
+
+
+if __name__ == "__main__":
+    unittest.main()
