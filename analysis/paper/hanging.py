@@ -40,7 +40,7 @@ def lengths_by_mesh(shop):
     return Plate(drawing, data)
 
 
-@figure("W2", "the clogging length with friction of walls: line tension, coefficients of friction, numbers of vertices", ["hanging-friction"], "70 min")
+@figure("W2", "the clogging length with friction of walls: line tension, coefficients of friction, numbers of vertices", ["hanging-friction"], "60 min")
 def lengths_by_friction(shop):
     config = "hanging-friction"
     groups = shop.sweep(config)
