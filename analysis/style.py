@@ -84,14 +84,14 @@ def finish_lengths(axes, groups, drawn, other="other clogs"):
 
 
 def legend(axes, groups=(), other="other clogs"):
-    """Of the curves if they have names, and of the markers that draw_lengths() gave these groups. That of many curves is
+    """Of the curves if they have names, and of the markers that draw_lengths() gave these groups. That of many is
     beside the axes, in a figure that is as much wider. @param other  what clogs are called that are of no mechanism"""
     curves = [(handle, label) for handle, label in zip(*axes.get_legend_handles_labels()) if label]
     names = {main_mechanism(group) for group in groups if group["clogs"] > 0}
     markers = [(Line2D([], [], color="0.4", marker=marker, linestyle="none"), f"most clogs {name}" if name != "other" else other)
                for name, marker in MECHANISM_MARKERS.items() if name in names]
     entries = [*curves, *markers]
-    if len(curves) > len(COLOURS):
+    if len(entries) > len(COLOURS):
         made = axes.legend(*zip(*entries), frameon=False, fontsize=7, handlelength=4, ncols=math.ceil(len(entries) / 28),
                            loc="upper left", bbox_to_anchor=(1, 1))
         figure = axes.figure
