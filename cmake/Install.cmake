@@ -33,6 +33,23 @@ foreach(program clogsweep clogrun clogfit)
 endforeach()
 install(FILES "${completion}/_clogsweep" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions" COMPONENT programs)
 
+# Man pages, which are pages of the handbook
+
+find_program(CLOG_SPHINX NAMES sphinx-build PATHS /usr/bin NO_DEFAULT_PATH DOC "Debian's Sphinx, which has MyST")
+if(CLOG_SPHINX)
+  set(manual "${PROJECT_BINARY_DIR}/man")
+  set(pages "${manual}/clogsweep.1" "${manual}/clogrun.1" "${manual}/clogfit.1")
+  file(GLOB_RECURSE handbook CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/docs/reference/*.md")
+  add_custom_command(OUTPUT ${pages}
+    COMMAND "${CLOG_SPHINX}" -q -b man -d "${PROJECT_BINARY_DIR}/man-doctrees" "${PROJECT_SOURCE_DIR}/docs" "${manual}"
+    DEPENDS ${handbook} "${PROJECT_SOURCE_DIR}/docs/conf.py"
+    VERBATIM)
+  add_custom_target(man ALL DEPENDS ${pages})
+  install(FILES ${pages} DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT programs)
+else()
+  message(STATUS "no man pages will be installed, for there is no Sphinx (./jobs/install-dependencies.sh)")
+endif()
+
 # Libraries: what a program needs that runs droplets, plans sweeps, reads their files, fits them
 
 set(libraries core sweep fit store)

@@ -27,3 +27,6 @@ myst_update_mathjax = False
 mathjax2_config = {"tex2jax": {"processClass": "tex2jax_process|mathjax_process|math"}}
 copybutton_prompt_text = r"\$ "
 copybutton_prompt_is_regexp = True
+man_pages = [(f"reference/{name}", name, what, "the clogsweep authors", 1) for name, what in
+             {"clogsweep": "sweeps of droplets among obstacles, on MPI ranks", "clogrun": "one droplet, watched closely",
+              "clogfit": "clogging lengths and speeds of a sweep"}.items()]

@@ -13,12 +13,13 @@ packages=(
   libfmt-dev                                         # text with numbers in it
   libgtest-dev libbenchmark-dev                      # tests and benchmarks
   procps iproute2                                    # tests that kill ranks, and join two hosts
+  python3-sphinx python3-myst-parser python3-sphinx-copybutton furo      # man pages, from the handbook
   python3 python3-h5py python3-pandas python3-tables python3-matplotlib  # figures, and readers for the tests
 )
 case ${1:-} in
   "") ;;
   gates) packages+=(clang clang-format clang-tidy aspell aspell-en shellcheck flake8) ;;
-  docs) packages+=(python3-sphinx python3-myst-parser furo python3-sphinx-copybutton libjs-mathjax doxygen) ;;
+  docs) packages+=(libjs-mathjax doxygen) ;;
   *) echo "usage: install-dependencies.sh [gates|docs]" >&2; exit 2 ;;
 esac
 missing=()

@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
@@ -12,6 +13,9 @@ import pandas
 from support import BIN, ROOT
 
 KEYS = ["line-tension=0.5", "obstacle-gap=0.3", "vertices=64", "box=20", "max-time=200", "seeds=1..4"]
+
+# What words without dashes stand for.
+POSITIONAL = {"--file", "--system", "--task"}
 
 
 class Installed(unittest.TestCase):
@@ -53,6 +57,13 @@ class Installed(unittest.TestCase):
         self.assertTrue((self.folder / "curve.png").exists())
         self.called("clogrun", "array", *KEYS[:-1], "seeds=1", "--polygon-interval", 20, "--output", "r.h5", "--frames", "film.gif")
         self.assertTrue((self.folder / "film.gif").exists())
+
+    def test_man_pages_name_every_option(self):
+        for program in ("clogsweep", "clogrun", "clogfit"):
+            page = (self.prefix / f"share/man/man1/{program}.1").read_text().replace("\\-", "-")
+            for option in re.findall(r"^  (?:-\w \[ )?(--[a-z][a-z-]*)", self.called(program, "--help").split("\nKeys")[0], re.MULTILINE):
+                if option not in POSITIONAL:
+                    self.assertIn(option, page)
 
     def test_a_config_that_comes_with_it(self):
         said = self.called("clogsweep", "--config", self.prefix / "share/clogsweep/jobs/laptop.cfg", "--print-config")
