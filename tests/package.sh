@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# tests/package.sh [FOLDER]: the Debian package, made from build/release and installed into an empty Debian 12 in FOLDER
+# (/tmp/clogsweep-root), where a user without a source tree runs a sweep. Needs root and debootstrap, and takes minutes:
+# run by hand, before a release. Exit code 1: something of it fails.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+root=${1:-/tmp/clogsweep-root}
+[ "$(id -u)" -eq 0 ] || { echo "needs root, for debootstrap and chroot" >&2; exit 2; }
+command -v debootstrap >/dev/null || { echo "needs debootstrap: apt-get install debootstrap" >&2; exit 2; }
+
+rm -f build/release/*.deb
+(cd build/release && cpack >/dev/null)
+[ -d "$root/usr" ] || debootstrap --variant=minbase bookworm "$root" >/dev/null
+cp build/release/clogsweep_*.deb "$root/tmp/clogsweep.deb"
+
+inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 "$@"; }
+mount -t proc proc "$root/proc"
+mount --rbind /dev "$root/dev"
+trap 'umount "$root/proc"; umount -l "$root/dev"' EXIT
+inside apt-get -qq update
+inside apt-get -qq install -y --no-install-recommends man-db bash-completion >/dev/null
+inside apt-get -qq install -y --no-install-recommends --reinstall /tmp/clogsweep.deb >/dev/null
+inside id visitor >/dev/null 2>&1 || inside useradd --create-home --shell /bin/bash visitor
+
+cat >"$root/home/visitor/visit.sh" <<'VISIT'
+set -euxo pipefail
+cd "$(mktemp -d)"
+clogsweep --version
+man clogsweep | grep -q -- --until-precision
+. /usr/share/bash-completion/bash_completion
+_completion_loader clogsweep || true
+complete -p clogsweep
+keys="obstacle-gap=0.3 vertices=64 box=20 max-time=200"
+mpirun --oversubscribe -np 2 clogsweep $keys line-tension=0.3,0.5 seeds=1..4 --output sweep.h5
+clogfit sweep.h5
+clogfit report sweep.h5 --output report.html
+/usr/share/clogsweep/analysis/clogging_length.py sweep.h5
+clogrun array $keys line-tension=0.5 seeds=1 --polygon-interval 20 --output run.h5 --frames film.gif
+clogsweep --config /usr/share/clogsweep/jobs/laptop.cfg --print-config | grep line-tension
+ls -l
+VISIT
+inside su - visitor -c "bash visit.sh"
+echo "the package works"
