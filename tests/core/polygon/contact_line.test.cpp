@@ -147,9 +147,9 @@ struct Disc {
 class OnADisc : public testing::TestWithParam<Disc> {
  protected:
   static DropletRun drop(double aside, const Angles& angles, int vertices) {
-    const auto& [name, radius, line_tension, _, __, max_time] = GetParam();
-    return drop_on(sticky(angles, vertices, line_tension), {{10.5 + radius, 10 - aside, radius}}, {},
-                   max_time);
+    const Disc& disc = GetParam();
+    return drop_on(sticky(angles, vertices, disc.line_tension),
+                   {{10.5 + disc.radius, 10 - aside, disc.radius}}, {}, disc.max_time);
   }
 };
 INSTANTIATE_TEST_SUITE_P(Sizes, OnADisc,

@@ -112,7 +112,7 @@ class DpForces {
   };
   Wetted wetted(const DropletState& state, int vertex) const;
   double extra_tension() const { return (dp_.wall_tension - 1) * dp_.line_tension; }
-  void add_wetted_tension(const DropletState& state, Eigen::ArrayXd& force) const;
+  void add_wetted_tension(const DropletState& state, Eigen::ArrayXd& gradient) const;
   void add_walls(const DropletState& state, Eigen::ArrayXd& force);
   void measure_wall_distance(const DropletState& state);
   /// Calls visit(overlap) for every half edge (vertex) and slot or wedge [sigma]; negative where they do not
