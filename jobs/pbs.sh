@@ -9,14 +9,24 @@
 #PBS -l walltime=24:00:00
 set -euo pipefail
 cd "${PBS_O_WORKDIR:-.}"
-. jobs/mpi-settings.sh
-. jobs/batch.sh
+# From the source tree, or as installed; the batch system runs a copy of this script from somewhere else.
+jobs=./jobs
+bin=${CLOG_BIN:-build/release/bin}
+if [ ! -e jobs/batch.sh ]; then
+  called=$(command -v clogsweep) || { echo "no clogsweep in the PATH, and this is not its source tree" >&2; exit 2; }
+  bin=${CLOG_BIN:-$(dirname "$called")}
+  jobs=$(dirname "$called")/../share/clogsweep/jobs
+fi
+# shellcheck source=jobs/mpi-settings.sh
+. "$jobs/mpi-settings.sh"
+# shellcheck source=jobs/batch.sh
+. "$jobs/batch.sh"
 mapfile -t options <"$SWEEP"
 code=0
-run_sweep "${CLOG_BIN:-build/release/bin}/clogsweep" "${options[@]}" --max-hours "${HOURS:-23.9}" || code=$?
+run_sweep "$bin/clogsweep" "${options[@]}" --max-hours "${HOURS:-23.9}" || code=$?
 if ((code == 75 && !was_cancelled)); then
   echo "not complete; it queues again"
-  export SWEEP HOURS="${HOURS:-23.9}" CLOG_BIN="${CLOG_BIN:-build/release/bin}"
-  qsub -v SWEEP,HOURS,CLOG_BIN jobs/pbs.sh
+  export SWEEP HOURS="${HOURS:-23.9}" CLOG_BIN="$bin"
+  qsub -v SWEEP,HOURS,CLOG_BIN "$jobs/pbs.sh"
 fi
 exit "$code"

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# A sweep on a cluster with Slurm, from the folder of clogsweep's sources after ./tests/run.sh or a build:
+# A sweep on a cluster with Slurm, from the folder of clogsweep's sources after ./tests/run.sh or a build, or where it is
+# installed (share/clogsweep/jobs):
 #   sbatch jobs/slurm.sh --config sweep.cfg --output sweep.h5
 #   sbatch --nodes=8 --ntasks-per-node=64 --time=48:00:00 jobs/slurm.sh --config sweep.cfg --output sweep.h5
 # One job for the whole sweep, on one node or many; no job arrays. Two minutes before the time is up the sweep writes what it has,
@@ -14,10 +15,20 @@
 #SBATCH --open-mode=append
 set -euo pipefail
 cd "${SLURM_SUBMIT_DIR:-.}"
-. jobs/mpi-settings.sh
-. jobs/batch.sh
+# From the source tree, or as installed; the batch system runs a copy of this script from somewhere else.
+jobs=./jobs
+bin=${CLOG_BIN:-build/release/bin}
+if [ ! -e jobs/batch.sh ]; then
+  called=$(command -v clogsweep) || { echo "no clogsweep in the PATH, and this is not its source tree" >&2; exit 2; }
+  bin=${CLOG_BIN:-$(dirname "$called")}
+  jobs=$(dirname "$called")/../share/clogsweep/jobs
+fi
+# shellcheck source=jobs/mpi-settings.sh
+. "$jobs/mpi-settings.sh"
+# shellcheck source=jobs/batch.sh
+. "$jobs/batch.sh"
 code=0
-run_sweep "${CLOG_BIN:-build/release/bin}/clogsweep" "$@" || code=$?
+run_sweep "$bin/clogsweep" "$@" || code=$?
 if ((code == 75 && !was_cancelled)); then
   echo "not complete; job $SLURM_JOB_ID queues again"
   scontrol requeue "$SLURM_JOB_ID"

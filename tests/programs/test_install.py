@@ -69,6 +69,12 @@ class Installed(unittest.TestCase):
         said = self.called("clogsweep", "--config", self.prefix / "share/clogsweep/jobs/laptop.cfg", "--print-config")
         self.assertIn("preset", said)
 
+    def test_the_script_for_slurm_finds_what_is_installed(self):
+        # As Slurm does, from a copy somewhere else.
+        copy = shutil.copy(self.prefix / "share/clogsweep/jobs/slurm.sh", self.folder / "slurm_script")
+        self.called("bash", copy, *KEYS[:-1], "seeds=1", "--output", "slurm.h5")
+        self.assertEqual(len(pandas.read_hdf(self.folder / "slurm.h5", "runs")), 1)
+
     def test_a_program_of_ones_own_finds_what_the_sweep_finds(self):
         example = self.folder / "example"
         shutil.copytree(ROOT / "docs/examples/own-program", example)
