@@ -8,8 +8,11 @@ install(TARGETS clogsweep clogrun clogfit RUNTIME COMPONENT programs)
 
 # Scripts and configs, which the programs find beside themselves (CLOG_SHARED_FOLDER). The build tree has links.
 
+if(IS_ABSOLUTE "${CMAKE_INSTALL_DATADIR}" OR NOT CMAKE_INSTALL_BINDIR MATCHES "^[^/]+$")
+  message(FATAL_ERROR "programs find their scripts from where they are: CMAKE_INSTALL_BINDIR has to be one folder, CMAKE_INSTALL_DATADIR relative")
+endif()
+file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_DATADIR}/clogsweep")
 foreach(folder analysis jobs)
-  file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_DATADIR}/clogsweep")
   file(CREATE_LINK "${PROJECT_SOURCE_DIR}/${folder}" "${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_DATADIR}/clogsweep/${folder}" SYMBOLIC)
 endforeach()
 install(DIRECTORY analysis jobs DESTINATION "${CMAKE_INSTALL_DATADIR}/clogsweep" USE_SOURCE_PERMISSIONS COMPONENT programs
@@ -24,6 +27,8 @@ find_package(Python3 REQUIRED COMPONENTS Interpreter)
 add_custom_command(OUTPUT "${completion}/clogsweep" "${completion}/_clogsweep"
   COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/cmake/completion.py" "$<TARGET_FILE_DIR:clogsweep>" "${completion}"
   DEPENDS clogsweep clogrun clogfit "${PROJECT_SOURCE_DIR}/cmake/completion.py"
+    "${PROJECT_SOURCE_DIR}/cmake/completion.bash.in" "${PROJECT_SOURCE_DIR}/cmake/completion.zsh.in"
+    "${PROJECT_SOURCE_DIR}/analysis/report.py"
   VERBATIM)
 add_custom_target(completion ALL DEPENDS "${completion}/clogsweep" "${completion}/_clogsweep")
 # bash loads the file that is called as the command is.
@@ -31,12 +36,19 @@ foreach(program clogsweep clogrun clogfit)
   install(FILES "${completion}/clogsweep" RENAME ${program}
     DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT programs)
 endforeach()
-install(FILES "${completion}/_clogsweep" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions" COMPONENT programs)
+# Where zsh looks below /usr in Debian, and below any other prefix.
+foreach(folder vendor-completions site-functions)
+  install(FILES "${completion}/_clogsweep" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/${folder}" COMPONENT programs)
+endforeach()
 
 # Man pages, which are pages of the handbook
 
 find_program(CLOG_SPHINX NAMES sphinx-build PATHS /usr/bin NO_DEFAULT_PATH DOC "Debian's Sphinx, which has MyST")
+set(lacks_extensions TRUE)
 if(CLOG_SPHINX)
+  execute_process(COMMAND /usr/bin/python3 -c "import myst_parser, sphinx_copybutton" RESULT_VARIABLE lacks_extensions ERROR_QUIET)
+endif()
+if(NOT lacks_extensions)
   set(manual "${PROJECT_BINARY_DIR}/man")
   set(pages "${manual}/clogsweep.1" "${manual}/clogrun.1" "${manual}/clogfit.1")
   file(GLOB_RECURSE handbook CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/docs/reference/*.md")

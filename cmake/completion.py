@@ -14,6 +14,7 @@ import sys
 
 COMMANDS = {"clogsweep": ["status", "verify", "salvage", "replay", "doctor"], "clogrun": ["array", "channel", "sag", "replay"],
             "clogfit": ["calibrate", "deviation", "drag", "report"]}
+POSITIONAL = {"--file", "--system", "--task"}
 
 
 def asked(folder, program, *words):
@@ -23,8 +24,8 @@ def asked(folder, program, *words):
 
 def options(folder, keys, program, *command):
     """The long ones of a command, without keys and without those that words without dashes stand for."""
-    named = re.findall(r"^  (?:-\w \[ )?--([a-z][a-z-]*)|^  (?:-\w, )--([a-z][a-z-]*)", asked(folder, program, *command, "--help"), re.MULTILINE)
-    return " ".join(sorted({f"--{first or second}" for first, second in named} - {f"--{key}" for key in keys}))
+    named = re.findall(r"^  (?:-\w(?: [A-Z]+)?(?:, | \[ ))?--([a-z][a-z-]*)", asked(folder, program, *command, "--help"), re.MULTILINE)
+    return " ".join(sorted({f"--{name}" for name in named} - {f"--{key}" for key in keys} - POSITIONAL))
 
 
 def assigned(table, separator):
@@ -42,9 +43,11 @@ def main(programs, output):
         after[program] = " ".join([*commands, options(folder, names, program)])
     values = {key["key"]: " ".join(key["words"]) for key in keys}
     meanings = [f"{key['key']}:{re.split('[;:(]', key['help'])[0].strip()}" for key in keys]
+    with_keys = [name for name in after if "\nKeys" in asked(folder, *name.split(), "--help")]
     output.mkdir(parents=True, exist_ok=True)
     for name, template, item in (("clogsweep", "completion.bash.in", "[{}]={}"), ("_clogsweep", "completion.zsh.in", "{} {}")):
         text = pathlib.Path(__file__).with_name(template).read_text()
+        text = text.replace("@WITH_KEYS@", " ".join(name.replace(" ", ":") for name in with_keys))
         text = text.replace("@OPTIONS@", assigned(after, item)).replace("@VALUES@", assigned(values, item))
         (output / name).write_text(text.replace("@MEANINGS@", "\n".join(f"  {shlex.quote(meaning)}" for meaning in meanings)))
 

@@ -54,9 +54,10 @@ def lengths_by_friction(shop):
         families = by(members, "friction")
         for index, (friction, family) in enumerate(families):
             # A colour for every friction; coarser meshes are dashed, finest is whole.
-            for mesh, (vertices, curve) in enumerate(by(family, "vertices")):
+            for vertices, curve in by(family, "vertices"):
+                mesh = meshes.index(vertices)
                 shift = style.side_by_side(index * len(meshes) + mesh, len(families) * len(meshes), places)
-                line = "-" if vertices == meshes[-1] else (0, (4, 1 + meshes.index(vertices)))
+                line = "-" if vertices == meshes[-1] else (0, (4, 1 + mesh))
                 style.draw_lengths(axes, [group["line_tension"] * shift for group in curve], curve, index,
                                    f"{said(columns['friction'], friction)}, $N_v = {vertices}$", line)
                 data += numbers(curve, f"friction {friction:g}, gap {gap:g}", vertices=[vertices] * len(curve), friction=[friction] * len(curve),

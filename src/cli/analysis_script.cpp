@@ -18,7 +18,7 @@ std::filesystem::path find_analysis_script(const std::string& name) {
   std::error_code error;
   std::filesystem::path script = std::filesystem::canonical(folder / name, error);
   if (error)
-    throw Error("cannot draw without " + (folder / name).string() +
+    throw Error("cannot draw without " + (folder / name).lexically_normal().string() +
                 ", which belongs to this program; install clogsweep as a whole (cmake --install)");
   return script;
 }
