@@ -13,7 +13,6 @@ import csv
 import datetime
 import os
 import pathlib
-import subprocess
 import sys
 
 import command_line
@@ -37,11 +36,6 @@ def print_list():
         print(f"{name:5} {entry.cost:24} {', '.join(entry.configs) or '-':24} {entry.caption}")
 
 
-def git_hash():
-    done = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short=12", "HEAD"], capture_output=True, text=True)
-    return done.stdout.strip() or "unknown"
-
-
 def output_of(name, shop):
     """Without ending."""
     return shop.folder / f"figure-{name}"
@@ -58,8 +52,9 @@ def refuse_unwritable(name, shop):
 def write(plate, entry, shop, command):
     output = output_of(entry.name, shop)
     sources = shop.take_sources()
+    version = programs.run_program(shop.programs / "clogsweep", "--version").splitlines()[0]
     about = "\n".join([f"Figure {entry.name}, {shop.size} size: {entry.caption}", f"drawn by {command}",
-                       f"git {git_hash()}, {datetime.datetime.now(datetime.timezone.utc):%Y-%m-%dT%H:%M:%SZ}", "from", *sources]) + "\n"
+                       f"{version}, {datetime.datetime.now(datetime.timezone.utc):%Y-%m-%dT%H:%M:%SZ}", "from", *sources]) + "\n"
     style.save(plate.figure, output, {"Title": f"Figure {entry.name}: {entry.caption}", "Description": about, "Software": "clogsweep"})
     columns = list(dict.fromkeys(name for row in plate.data for name in row))
     with open(f"{output}.csv", "w", newline="") as out:

@@ -19,13 +19,15 @@ install(DIRECTORY analysis jobs DESTINATION "${CMAKE_INSTALL_DATADIR}/clogsweep"
   FILES_MATCHING PATTERN "*.py" PATTERN "*.cfg" PATTERN "*.sh"
   PATTERN "__pycache__" EXCLUDE PATTERN "install-dependencies.sh" EXCLUDE PATTERN "laptop.sh" EXCLUDE)
 install(FILES README.md CHANGELOG.md CITATION.cff LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs)
+# Messages name pages of the handbook.
+install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "examples/*")
 
 # What a shell completes, from what the programs say of themselves
 
 set(completion "${PROJECT_BINARY_DIR}/completion")
-find_package(Python3 REQUIRED COMPONENTS Interpreter)
 add_custom_command(OUTPUT "${completion}/clogsweep" "${completion}/_clogsweep"
-  COMMAND Python3::Interpreter "${PROJECT_SOURCE_DIR}/cmake/completion.py" "$<TARGET_FILE_DIR:clogsweep>" "${completion}"
+  COMMAND "${CLOG_PYTHON}" "${PROJECT_SOURCE_DIR}/cmake/completion.py" "$<TARGET_FILE_DIR:clogsweep>" "${completion}"
   DEPENDS clogsweep clogrun clogfit "${PROJECT_SOURCE_DIR}/cmake/completion.py"
     "${PROJECT_SOURCE_DIR}/cmake/completion.bash.in" "${PROJECT_SOURCE_DIR}/cmake/completion.zsh.in"
     "${PROJECT_SOURCE_DIR}/analysis/report.py"
@@ -46,7 +48,7 @@ endforeach()
 find_program(CLOG_SPHINX NAMES sphinx-build PATHS /usr/bin NO_DEFAULT_PATH DOC "Debian's Sphinx, which has MyST")
 set(lacks_extensions TRUE)
 if(CLOG_SPHINX)
-  execute_process(COMMAND /usr/bin/python3 -c "import myst_parser, sphinx_copybutton" RESULT_VARIABLE lacks_extensions ERROR_QUIET)
+  execute_process(COMMAND "${CLOG_PYTHON}" -c "import myst_parser, sphinx_copybutton" RESULT_VARIABLE lacks_extensions ERROR_QUIET)
 endif()
 if(NOT lacks_extensions)
   set(manual "${PROJECT_BINARY_DIR}/man")

@@ -15,13 +15,11 @@ set(CPACK_DEBIAN_PROGRAMS_PACKAGE_NAME clogsweep)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_DEPENDS "openmpi-bin, python3, python3-h5py, python3-pandas, python3-tables, python3-matplotlib")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "ffmpeg, slurm-client")
-set(CPACK_COMPONENT_PROGRAMS_DESCRIPTION "clogging of capillary droplets: sweeps on MPI ranks
- Follows droplets that sink through a forest of obstacles until they clog, one
- by one on as many cores as there are, and fits clogging lengths and speeds.")
+set(CPACK_COMPONENT_PROGRAMS_DESCRIPTION "Follows droplets that sink through a forest of obstacles until they clog, one by
+one on as many cores as there are, and fits clogging lengths and speeds.")
 set(CPACK_DEBIAN_LIBRARIES_PACKAGE_NAME libclogsweep-dev)
 set(CPACK_DEBIAN_LIBRARIES_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LIBRARIES_PACKAGE_DEPENDS
   "libeigen3-dev, libboost-dev, nlohmann-json3-dev, libhwy-dev, libfmt-dev, libnlopt-cxx-dev, libhdf5-dev, zlib1g-dev")
-set(CPACK_COMPONENT_LIBRARIES_DESCRIPTION "clogging of capillary droplets: libraries
- Static libraries and headers for programs of one's own: find_package(clogsweep).")
+set(CPACK_COMPONENT_LIBRARIES_DESCRIPTION "Static libraries and headers for programs of one's own: find_package(clogsweep).")
 include(CPack)

@@ -1,5 +1,7 @@
 # Sourced by the scripts for batch systems.
 # shellcheck shell=bash
+# shellcheck source=jobs/mpi-settings.sh
+. "$(dirname "${BASH_SOURCE[0]}")/mpi-settings.sh"
 
 # run_sweep PROGRAM ARGS...: runs it by mpirun. A warning of the batch system (SIGUSR1, or SIGTERM) goes on to the ranks as SIGUSR1:
 # Open MPI forwards that one and leaves them the time to write what they have. Returns the sweep's exit code, 75 when it

@@ -3,30 +3,26 @@
 #   printf '%s\n' --config sweep.cfg --output sweep.h5 > sweep.options
 #   qsub -v SWEEP=sweep.options jobs/pbs.sh
 # HOURS, a little less than the walltime below, ends the sweep in good order; then the job queues itself again with the
-# resources below: edit them here rather than on the command line.
+# resources below: edit them here rather than on the command line. JOB_SCRIPT names a copy that you edited.
 #PBS -N clogsweep
 #PBS -l select=1:ncpus=32:mpiprocs=32
 #PBS -l walltime=24:00:00
 set -euo pipefail
 cd "${PBS_O_WORKDIR:-.}"
-# From the source tree, or as installed; the batch system runs a copy of this script from somewhere else.
-jobs=./jobs
+# What belongs to the programs lies beside them; the batch system runs a copy of this script from somewhere else.
 bin=${CLOG_BIN:-build/release/bin}
-if [ ! -e jobs/batch.sh ]; then
-  called=$(command -v clogsweep) || { echo "no clogsweep in the PATH, and this is not its source tree" >&2; exit 2; }
-  bin=${CLOG_BIN:-$(dirname "$called")}
-  jobs=$(dirname "$called")/../share/clogsweep/jobs
+if [ ! -x "$bin/clogsweep" ]; then
+  type -P clogsweep >/dev/null || { echo "no clogsweep in $bin or the PATH; set CLOG_BIN to its folder" >&2; exit 2; }
+  bin=$(dirname "$(type -P clogsweep)")
 fi
-# shellcheck source=jobs/mpi-settings.sh
-. "$jobs/mpi-settings.sh"
 # shellcheck source=jobs/batch.sh
-. "$jobs/batch.sh"
+. "$bin/../share/clogsweep/jobs/batch.sh"
 mapfile -t options <"$SWEEP"
 code=0
 run_sweep "$bin/clogsweep" "${options[@]}" --max-hours "${HOURS:-23.9}" || code=$?
 if ((code == 75 && !was_cancelled)); then
   echo "not complete; it queues again"
-  export SWEEP HOURS="${HOURS:-23.9}" CLOG_BIN="$bin"
-  qsub -v SWEEP,HOURS,CLOG_BIN "$jobs/pbs.sh"
+  export SWEEP HOURS="${HOURS:-23.9}" CLOG_BIN="$bin" JOB_SCRIPT="${JOB_SCRIPT:-jobs/pbs.sh}"
+  qsub -v SWEEP,HOURS,CLOG_BIN,JOB_SCRIPT "$JOB_SCRIPT"
 fi
 exit "$code"

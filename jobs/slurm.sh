@@ -15,18 +15,14 @@
 #SBATCH --open-mode=append
 set -euo pipefail
 cd "${SLURM_SUBMIT_DIR:-.}"
-# From the source tree, or as installed; the batch system runs a copy of this script from somewhere else.
-jobs=./jobs
+# What belongs to the programs lies beside them; the batch system runs a copy of this script from somewhere else.
 bin=${CLOG_BIN:-build/release/bin}
-if [ ! -e jobs/batch.sh ]; then
-  called=$(command -v clogsweep) || { echo "no clogsweep in the PATH, and this is not its source tree" >&2; exit 2; }
-  bin=${CLOG_BIN:-$(dirname "$called")}
-  jobs=$(dirname "$called")/../share/clogsweep/jobs
+if [ ! -x "$bin/clogsweep" ]; then
+  type -P clogsweep >/dev/null || { echo "no clogsweep in $bin or the PATH; set CLOG_BIN to its folder" >&2; exit 2; }
+  bin=$(dirname "$(type -P clogsweep)")
 fi
-# shellcheck source=jobs/mpi-settings.sh
-. "$jobs/mpi-settings.sh"
 # shellcheck source=jobs/batch.sh
-. "$jobs/batch.sh"
+. "$bin/../share/clogsweep/jobs/batch.sh"
 code=0
 run_sweep "$bin/clogsweep" "$@" || code=$?
 if ((code == 75 && !was_cancelled)); then

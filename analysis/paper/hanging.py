@@ -6,6 +6,27 @@ from paper.arrays import by, numbers
 from paper.plate import Plate, figure, interface_of
 from style import plt
 
+HOLDS = ("vertices", "on_mesh", "wrapped", "squeezed", "hybrid")
+
+
+def of_each(curve, *names):
+    return {name: [group[name] for group in curve] for name in names}
+
+
+def title(drawing, shop, config, groups):
+    """What all points have in common, and what the marks mean."""
+    first = groups[0]
+    drawing.suptitle(f"{style.runs_a_point(groups)}; saturated arrays, obstacles of {first['obstacle_diameter']:g}$\\sigma$, "
+                     f"$T = {first['max_time']:g}\\,t_0$\n{style.length_note(groups, shop.confidence(config))}", fontsize=8, color="0.25")
+
+
+def finish(axes, places, groups, text):
+    axes.set_yscale("log")
+    style.logarithmic_abscissa(axes, places)
+    style.grid(axes)
+    axes.set_title(text, fontsize=9)
+    style.legend(axes, groups)
+
 
 @figure("W1", "what of the clogging length is the mesh's: line tension, numbers of vertices, interfaces", ["hanging-robust", "hanging-elastic"], "32 min")
 def lengths_by_mesh(shop):
@@ -23,20 +44,13 @@ def lengths_by_mesh(shop):
             for index, (vertices, curve) in enumerate(families):
                 shift = style.side_by_side(index, len(families), places)
                 style.draw_lengths(axes, [group["line_tension"] * shift for group in curve], curve, index, f"$N_v = {vertices}$")
-                data += numbers(curve, f"{config}, gap {gap:g}", vertices=[vertices] * len(curve),
-                                on_mesh=[group["on_mesh"] for group in curve], wrapped=[group["wrapped"] for group in curve],
-                                squeezed=[group["squeezed"] for group in curve], hybrid=[group["hybrid"] for group in curve])
-            axes.set_yscale("log")
-            style.logarithmic_abscissa(axes, places)
-            style.grid(axes)
-            axes.set_title(f"{interface_of(members[0]['preset'])}\n{said(shop.columns(config)['obstacle_gap'], gap)}", fontsize=9)
-            style.legend(axes, [group for _, curve in families for group in curve])
+                data += numbers(curve, f"{config}, gap {gap:g}", **of_each(curve, *HOLDS))
+            finish(axes, places, [group for _, curve in families for group in curve],
+                   f"{interface_of(members[0]['preset'])}\n{said(shop.columns(config)['obstacle_gap'], gap)}")
         line[0].set_ylabel(style.AXES["length"])
     for axes in panels[-1]:
         axes.set_xlabel(style.AXES["line_tension"])
-    note = style.length_note(groups, shop.confidence(configs[0]))
-    drawing.suptitle(f"{style.runs_a_point(groups)}; saturated arrays, obstacles of {groups[0]['obstacle_diameter']:g}$\\sigma$, "
-                     f"$T = {groups[0]['max_time']:g}\\,t_0$\n{note}", fontsize=8, color="0.25")
+    title(drawing, shop, configs[0], groups)
     return Plate(drawing, data)
 
 
@@ -60,17 +74,9 @@ def lengths_by_friction(shop):
                 line = "-" if vertices == meshes[-1] else (0, (4, 1 + mesh))
                 style.draw_lengths(axes, [group["line_tension"] * shift for group in curve], curve, index,
                                    f"{said(columns['friction'], friction)}, $N_v = {vertices}$", line)
-                data += numbers(curve, f"friction {friction:g}, gap {gap:g}", vertices=[vertices] * len(curve), friction=[friction] * len(curve),
-                                on_mesh=[group["on_mesh"] for group in curve], wrapped=[group["wrapped"] for group in curve],
-                                squeezed=[group["squeezed"] for group in curve], hybrid=[group["hybrid"] for group in curve])
-        axes.set_yscale("log")
-        style.logarithmic_abscissa(axes, places)
-        style.grid(axes)
-        axes.set_title(said(columns["obstacle_gap"], gap), fontsize=9)
+                data += numbers(curve, f"friction {friction:g}, gap {gap:g}", **of_each(curve, "friction", *HOLDS))
+        finish(axes, places, members, f"{interface_of(groups[0]['preset'])}\n{said(columns['obstacle_gap'], gap)}")
         axes.set_xlabel(style.AXES["line_tension"])
-        style.legend(axes, members)
     panels[0][0].set_ylabel(style.AXES["length"])
-    note = style.length_note(groups, shop.confidence(config))
-    drawing.suptitle(f"interface: {interface_of(groups[0]['preset'])}; {style.runs_a_point(groups)}; saturated arrays, "
-                     f"obstacles of {groups[0]['obstacle_diameter']:g}$\\sigma$, $T = {groups[0]['max_time']:g}\\,t_0$\n{note}", fontsize=8, color="0.25")
+    title(drawing, shop, config, groups)
     return Plate(drawing, data)

@@ -2,7 +2,9 @@
 
 import os
 import pathlib
+import pty
 import re
+import select
 import shutil
 import subprocess
 import tempfile
@@ -65,6 +67,11 @@ class Installed(unittest.TestCase):
                 if option not in POSITIONAL:
                     self.assertIn(option, page)
 
+    def test_pages_that_messages_name_are_there(self):
+        said = self.called("clogsweep", *KEYS[1:], "line-tension=30", "--dry-run")
+        page, = re.findall(r"not proved sound \((docs/\S+\.md)\)", said)
+        self.assertTrue((self.prefix / "share/doc/clogsweep" / page).exists())
+
     def test_a_config_that_comes_with_it(self):
         said = self.called("clogsweep", "--config", self.prefix / "share/clogsweep/jobs/laptop.cfg", "--print-config")
         self.assertIn("line-tension = 0.05,0.1,0.2,0.3,0.5,1", said)
@@ -106,6 +113,26 @@ class Installed(unittest.TestCase):
         self.assertEqual(self.completed("clogfit", "sweep.h5", "--dw"), ["--dwell"])
         self.assertEqual(self.completed("clogfit", "report", "--out"), ["--output"])
         self.assertEqual(self.completed("clogsweep", "status", "see"), [])
+
+    def test_an_interactive_bash_completes_a_key_and_then_its_value(self):
+        pid, terminal = pty.fork()
+        if pid == 0:
+            os.environ["TERM"] = "dumb"
+            os.execvp("bash", ["bash", "--norc", "-i"])
+        self.addCleanup(os.waitpid, pid, 0)
+        self.addCleanup(os.close, terminal)
+        os.write(terminal, f". {self.prefix}/share/bash-completion/completions/clogsweep; echo rea''dy\n".encode())
+        self.read_until(terminal, b"ready\r")
+        os.write(terminal, b"clogsweep pres\tel\t")
+        self.read_until(terminal, b"clogsweep preset=elastic ")
+
+    def read_until(self, terminal, text):
+        """Of a terminal that may be slow."""
+        seen = b""
+        while text not in seen:
+            ready, _, _ = select.select([terminal], [], [], 120)
+            self.assertTrue(ready, seen)
+            seen += os.read(terminal, 4096)
 
 
 if __name__ == "__main__":

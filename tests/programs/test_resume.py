@@ -409,7 +409,7 @@ class Batch(ProgramTest):
         process = self.script("pbs.sh", SWEEP=str(options), HOURS="0.0004", PBS_O_WORKDIR=str(ROOT))
         output, _ = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 75, output)
-        self.assertEqual(self.called(), "qsub -v SWEEP,HOURS,CLOG_BIN ./jobs/pbs.sh\n")
+        self.assertEqual(self.called(), "qsub -v SWEEP,HOURS,CLOG_BIN,JOB_SCRIPT jobs/pbs.sh\n")
         self.assertEqual(set(table(self.folder / "s.h5").line_tension), {0.1, 0.2})
 
     def test_one_rank_of_many_tasks_is_refused(self):
