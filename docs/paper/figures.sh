@@ -14,7 +14,7 @@ figures() { /usr/bin/python3 analysis/figures.py "$@" --programs "$bin"; }
 
 for name in "$@"; do
   case $name in
-    clogging-length) # some minutes on two cores; docs/pictures/clogging-length.png
+    clogging-length) # 5 to 10 minutes on two idle cores; docs/pictures/clogging-length.png
       mpirun -np 2 "$bin/clogsweep" --config jobs/laptop.cfg --output "$folder/sweep.h5"
       /usr/bin/python3 analysis/clogging_length.py "$folder/sweep.h5" --output "$folder/clogging-length" --programs "$bin"
       ;;
