@@ -21,7 +21,7 @@ install(DIRECTORY analysis jobs DESTINATION "${CMAKE_INSTALL_DATADIR}/clogsweep"
 install(FILES README.md CHANGELOG.md CITATION.cff LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs)
 # Messages name pages of the handbook.
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs
-  FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "examples/*")
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "examples/*" PATTERN "paper" EXCLUDE)
 
 # What a shell completes, from what the programs say of themselves
 

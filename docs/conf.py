@@ -11,7 +11,7 @@ release = version = re.search(r"project\(clogsweep\s+VERSION\s+([\d.]+)", (ROOT 
 
 extensions = ["myst_parser", "sphinx.ext.mathjax", "sphinx_copybutton"]
 source_suffix = {".md": "markdown"}
-exclude_patterns = ["_static", "README.md"]
+exclude_patterns = ["_static", "README.md", "paper"]
 myst_enable_extensions = ["dollarmath", "deflist", "colon_fence"]
 myst_heading_anchors = 4
 nitpicky = True

@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# docs/paper/figures.sh [NAME...]: makes the paper's figures anew, in results/paper: clogging-length clogs mesh (all).
+# CLOG_BIN is the folder of the programs (build/laptop/bin). What was stopped goes on with the same command.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+bin=${CLOG_BIN:-build/laptop/bin}
+[ -x "$bin/clogsweep" ] || { echo "no clogsweep in $bin: build it with ./jobs/laptop.sh, or set CLOG_BIN" >&2; exit 2; }
+. jobs/mpi-settings.sh
+if [ $# -eq 0 ]; then set -- clogging-length clogs mesh; fi
+folder=results/paper
+mkdir -p "$folder"
+
+figures() { /usr/bin/python3 analysis/figures.py "$@" --programs "$bin"; }
+
+for name in "$@"; do
+  case $name in
+    clogging-length) # 5 to 10 minutes on two idle cores; docs/pictures/clogging-length.png
+      mpirun -np 2 "$bin/clogsweep" --config jobs/laptop.cfg --output "$folder/sweep.h5"
+      /usr/bin/python3 analysis/clogging_length.py "$folder/sweep.h5" --output "$folder/clogging-length" --programs "$bin"
+      ;;
+    clogs) # a minute; docs/pictures/figure-5.png
+      figures 5 --output "$folder/clogs" --set clogging:line-tension=0.05,0.5 --set clogging:obstacle-gap=0.2 \
+        --set clogging:seeds=1..2
+      ;;
+    mesh) figures W1 --output "$folder/mesh" ;; # 32 core-minutes; docs/pictures/figure-W1.png
+    *) echo "no figure is called $name; there are: clogging-length clogs mesh" >&2; exit 2 ;;
+  esac
+done
