@@ -8,11 +8,11 @@ import sys
 
 import tables  # noqa: F401, see run_script
 from matplotlib import image
-from matplotlib import pyplot  # noqa: F401, see run_script
 
 from support import ROOT, ProgramTest
 
 sys.path.insert(1, str(ROOT / "analysis"))
+import clogsweep  # noqa: E402, F401, see run_script
 
 
 def run_script(words, folder, out, error):

@@ -13,22 +13,16 @@ import xml.etree.ElementTree as xml
 import h5py
 import numpy as np
 import pandas
-from matplotlib import image, pyplot
+from matplotlib import image
 
 import stored_rows
 from scripts import Analysis
 from support import BIN, QUICK, ROOT, SMALL, table
 
-import clogging_length
-import clogs
-import film
-import programs
-import rounded
-import style
-import survival_curve
-import trajectory
-from groups import Groups
-from paper import arrays
+import clogsweep
+from clogsweep import clogs, film, lengths, programs, rounded, style, survival_curve, trajectory
+from clogsweep.groups import Groups
+from clogsweep.paper import arrays
 
 # A few seconds for all of them: coarse droplets, short ways.
 TINY = {
@@ -51,8 +45,7 @@ class Survival(unittest.TestCase):
     STEPS = [{"distance": 2.0, "probability": 0.75, "lower": 0.13, "upper": 0.96}, {"distance": 5.0, "probability": 0.375, "lower": 0.01, "upper": 0.8}]
 
     def draw(self, steps, censored):
-        drawing, axes = pyplot.subplots()
-        self.addCleanup(pyplot.close, drawing)
+        drawing, axes = style.subplots(figsize=(6.4, 4.8))
         group = {"survival": steps, "censored_distances": censored}
         arrays.draw_band(axes, group)
         survival_curve.draw(axes, group, "black", "")
@@ -269,7 +262,7 @@ class Pictures(Analysis):
         return {"clogs": sum(clogs), "doubts": None, **dict(zip(style.MECHANISM_MARKERS, clogs)), **lengths, **columns}
 
     def test_markers_show_by_what_droplets_clog_and_open_ones_a_doubt(self):
-        axes = pyplot.figure().subplots()
+        axes = style.new_figure().subplots()
         groups = [self.group((4, 1, 0, 0), doubts="few_clogs held_by_mesh"), self.group((1, 4, 0, 0)), self.group((0, 1, 3, 0)), self.group((0, 0, 0, 0))]
         style.draw_lengths(axes, [1, 2, 3, 4], groups, 0, "")
         drawn = {line.get_xdata()[0]: (line.get_marker(), line.get_markerfacecolor() == "white") for line in axes.lines
@@ -277,11 +270,10 @@ class Pictures(Analysis):
         self.assertEqual(drawn, {1: ("o", True), 2: ("s", False), 3: ("D", False), 4: ("^", True)})
         style.legend(axes, groups)
         self.assertEqual([text.get_text() for text in axes.get_legend().get_texts()], ["most clogs wrapped", "most clogs squeezed", "most clogs hybrid"])
-        pyplot.close("all")
 
     def test_labels_of_an_abscissa_are_plain_numbers_side_by_side(self):
         for values in ([0.2, 0.25, 0.3, 10], np.linspace(0.2, 0.4, 15), [0.3, 0.31], [0.3], [0.04, 0.045, 0.05, 0.5, 5], np.geomspace(0.01, 10, 30)):
-            figure, axes = pyplot.subplots(figsize=(6.4, 4.8), layout="constrained")
+            figure, axes = style.subplots(figsize=(6.4, 4.8))
             axes.plot(values, values)
             style.logarithmic_abscissa(axes, list(values))
             figure.canvas.draw()
@@ -291,10 +283,9 @@ class Pictures(Analysis):
             self.assertGreater(len(places), 0)
             self.assertTrue(all(end < begin for (_, end), (begin, _) in zip(places, places[1:])), f"{values}: {places}")
             self.assertTrue(all(float(label.get_text()) > 0 for label in labels))
-        pyplot.close("all")
 
     def test_warnings_of_libraries_stay_away_from_the_terminal(self):
-        lines = "import command_line\nwith command_line.needs_modules():\n    import warnings\n    warnings.warn('of a library')"
+        lines = "from clogsweep import command_line\nwith command_line.needs_modules():\n    import warnings\n    warnings.warn('of a library')"
         for switches, expected in [([], ""), (["-W", "default"], "of a library")]:
             done = subprocess.run([sys.executable, *switches, "-c", lines], cwd=ROOT / "analysis", capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stderr)
@@ -318,8 +309,7 @@ class Pictures(Analysis):
 
         def open_places():
             """With the caption."""
-            axes = clogging_length.draw(groups).axes[0]
-            self.addCleanup(pyplot.close, axes.figure)
+            axes = lengths.draw(groups).axes[0]
             return [line.get_xdata()[0] for line in axes.lines if line.get_markerfacecolor() == "white" and line.get_marker() != "^"], axes.get_title()
 
         groups.members[0]["doubts"] = "censored_by_time"
@@ -360,14 +350,11 @@ class Pictures(Analysis):
             ("vertices", 1, ["wall-contact=vertex", "contact-range=half-vertex", "vertices=64", "line-tension=1"]),
         ]:
             self.succeed("clogsweep", *keys, "box=20", "max-time=500", "seeds=1..4", "--output", f"{name}.h5")
-            rows = clogs.read_clogs(self.folder / f"{name}.h5")
-            self.assertGreater(len(rows), 0)
-            for row in rows:
-                with self.subTest(contact=name, task=row["task"]):
-                    interface, obstacles = clogs.run_again(BIN / "clogrun", self.folder / f"{name}.h5", row, self.folder)
-                    (self.folder / f"{row['task']}.h5").unlink()
-                    self.assertEqual(interface.shape[1], points_per_vertex * row["vertices"])
-                    depths = clogs.overlaps(row, interface, obstacles)
+            for clog in clogsweep.open(self.folder / f"{name}.h5", BIN).clogs():
+                row = clog.row
+                with self.subTest(contact=name, task=clog.task):
+                    self.assertEqual(clog.polygon.shape[1], points_per_vertex * row["vertices"])
+                    depths = clogs.overlaps(row, clog.polygon, clog.obstacles)
                     touched = np.where(depths.max(axis=0) > 0, depths.argmax(axis=0), -1)
                     arcs = np.count_nonzero((touched >= 0) & (touched != np.roll(touched, 1)))
                     self.assertEqual(arcs, row["num_arcs"])
@@ -485,7 +472,6 @@ class Pictures(Analysis):
             shown.append([text.get_text() for text in axes.texts if text.get_visible()])
         self.assertTrue(all(verdict not in texts for texts in shown[:-1]))
         self.assertIn(verdict, shown[-1])
-        pyplot.close("all")
 
     def test_a_film_has_so_many_frames_at_most(self):
         run, frames, _ = self.film_of("obstacle-gap=1.2", "max-time=2000", "--polygon-interval", 1, most=100)
@@ -499,7 +485,6 @@ class Pictures(Analysis):
         self.assertEqual(len(film.chosen_frames(run, 10**6)), len(run.times))
         for most in (1, 2):
             self.assertEqual(len(film.chosen_frames(run, most)), most)
-        pyplot.close("all")
 
     def test_a_film_that_cannot_be_made_is_refused_before_the_run(self):
         filmed = ["--polygon-interval", 15, "--frames", "film.mp4", "--output", "run.h5"]

@@ -4,21 +4,13 @@ import json
 import unittest
 
 import numpy as np
-from matplotlib import pyplot
 
 from scripts import Analysis
 from support import BIN, QUICK, SMALL
 
 import stored_rows
-import clogging_length
-import dwell
-import film
-from groups import Groups
-import report
-import rounded
-import stored
-import style
-import trajectory
+from clogsweep import dwell, film, lengths, report, rounded, stored, style, trajectory
+from clogsweep.groups import Groups
 
 ONE_CURVE = [*QUICK, "line-tension=0.5,3", "seeds=1..2", "near-wall-drag=0.07", "obstacle-gap=0.35", "terminal-speed=0.032"]
 
@@ -73,8 +65,8 @@ class Calls(Analysis):
             (["clogs.py", "s.h5", "--jobs", "0"], ["--jobs", "1 or more"]),
             (["clogs.py", "s.h5", "--most", "few"], ["--most", "whole number"]),
             (["clogs.py", "s.h5", "--tasks", "1-3"], ["--tasks", "1-3", "try 3,17,40"]),
-            (["clogs.py", "s.h5", "--tasks", "7,0"], ["--tasks 7:", "no such clogged polygon"]),
-            (["clogs.py", "s.h5", "--mechanism", "wrapped"], ["--mechanism wrapped", "no such clogged polygon"]),
+            (["clogs.py", "s.h5", "--tasks", "7,0"], ["tasks 7:", "no such clogged polygon"]),
+            (["clogs.py", "s.h5", "--mechanism", "wrapped"], ["mechanism wrapped", "no such clogged polygon"]),
             (["clogs.py", "disk.h5"], ["disk.h5 holds no clogged polygon", "soft disks"]),
             (["droplet.py", "s.h5", "-o", "x", "--rate", "0"], ["--rate", "1 or more"]),
             (["figures.py", "2", "--ranks", "0"], ["--ranks", "1 or more"]),
@@ -102,15 +94,13 @@ class Looks(Analysis):
 
     def test_one_curve_has_its_whole_title_the_interface_and_room_at_the_frame(self):
         groups = self.fit(*ONE_CURVE)
-        for drawing in (clogging_length.draw(groups), report.speeds(groups), report.survival(groups, "", groups.members)):
-            self.addCleanup(pyplot.close, drawing)
+        for drawing in (lengths.draw(groups), lengths.draw_speeds(groups), report.survival(groups, "", groups.members)):
             self.assert_title_is_whole(drawing)
             self.assertIn("2 runs a point", drawing.axes[0].get_title())
         # The speed of the stiffer droplets, which clog at once, is not known.
         for group, speed in zip(groups.members, (0.4, None)):
             group.update(relative_speed=speed, relative_speed_error=0.1)
-        drawing = report.speeds(groups)
-        self.addCleanup(pyplot.close, drawing)
+        drawing = lengths.draw_speeds(groups)
         axes = drawing.axes[0]
         self.assertIn("interface: robust", axes.get_title())
         low, high = axes.get_xlim()
@@ -121,9 +111,8 @@ class Looks(Analysis):
         times = dwell.times_of(self.fit_at())
         self.assertEqual(len(times), 12)
         self.assertEqual((times[0], times[-1]), (stored.read_rows(self.folder / "s.h5")["dwells_known_from"].max(), 400))
-        fits = [dwell.fit_at(BIN / "clogfit", self.folder / "s.h5", "--dwell", repr(time)) for time in times]
+        fits = [self.fit_at("--dwell", repr(time)) for time in times]
         drawing = dwell.draw(times, fits)
-        self.addCleanup(pyplot.close, drawing)
         self.assert_title_is_whole(drawing)
         axes, = drawing.axes
         self.assertIn("moved by $0.05", axes.get_xlabel())
@@ -161,8 +150,7 @@ class Looks(Analysis):
             groups = self.fit(*QUICK, tensions, *arrays, "seeds=1")
             for group in groups.members:
                 group.update(relative_speed=0.4, relative_speed_error=0.1)
-            for drawing in (clogging_length.draw(groups), report.speeds(groups)):
-                self.addCleanup(pyplot.close, drawing)
+            for drawing in (lengths.draw(groups), lengths.draw_speeds(groups)):
                 self.assert_title_is_whole(drawing)
                 axes, = drawing.axes
                 legend, frame = axes.get_legend().get_window_extent(), axes.get_window_extent()
@@ -176,8 +164,7 @@ class Looks(Analysis):
                         self.assertTrue(frame.x0 + 4 < x < frame.x1 - 4 or np.isnan(x), (frame, x))
 
     def test_long_captions_of_panels_are_wrapped_between_phrases(self):
-        drawing, panels = pyplot.subplots(1, 2, figsize=(7, 3), layout="constrained")
-        self.addCleanup(pyplot.close, drawing)
+        drawing, panels = style.subplots(1, 2, figsize=(7, 3))
         phrases = [rf"$\sigma_\mathrm{{ob}}/\sigma = {number}$" for number in range(9)]
         for axes in panels:
             style.caption(axes, ", ".join(phrases) + "\nsecond line")
@@ -194,7 +181,6 @@ class Looks(Analysis):
                                                 {"clogging_length": 8.0, "survival": steps, "censored_distances": [3.0, 9.0]})):
             group.update(ways)
         drawing = report.survival(groups, "two", groups.members)
-        self.addCleanup(pyplot.close, drawing)
         curves = [line.get_xydata() for line in drawing.axes[0].lines if line.get_drawstyle() == "steps-post"]
         self.assertEqual([curve[-1].tolist() for curve in curves], [[40, 1], [9, 0.75]])
         self.assertTrue(all(curve[0, 0] > 0 and curve[0, 1] == 1 for curve in curves), "it begins where the scale does")
@@ -228,7 +214,6 @@ class Looks(Analysis):
         # As of a certified clog, whose equilibrium is beyond the last frame.
         run.row["distance"] = run.table["distance"][-1] + 0.01
         moving = film.Film(run, film.chosen_frames(run, 50), "speed", 20)
-        self.addCleanup(pyplot.close, moving.figure)
         moving.show(len(moving) - 1)
         end = f"r = {run.row['distance']:.2f} "
         self.assertTrue(any(end in text.get_text() for text in moving.figure.texts), [text.get_text() for text in moving.figure.texts])

@@ -5,16 +5,13 @@ import unittest
 
 import h5py
 import numpy as np
-from matplotlib import pyplot
 
 import stored_rows
 from scripts import Analysis
 from support import BIN, ProgramTest, table
 
-import passages
-import stored
-import style
-from groups import Groups
+from clogsweep import passages, stored, style
+from clogsweep.groups import Groups
 
 EXTREMES = [f"{extreme}{at}" for extreme in ("largest_shape_parameter", "smallest_relative_speed", "largest_relative_speed") for at in ("", "_at")]
 CHANNEL = ["obstacle-layout=channel", "orifice=0.7", "near-wall-drag=0.07", "terminal-speed=0.05", "start=-1.5", "end=1", "vertices=64"]
@@ -150,7 +147,6 @@ class Channels(Analysis):
         drawn = [(line.get_xdata()[0], line.get_ydata()[0], line.get_marker()) for line in axes.lines if len(line.get_xdata()) == 1]
         self.assertEqual(drawn, [(group["line_tension"], group["largest_shape_parameter"], {"passed": "o", "clogged": "X"}[group["status"]])
                                  for group in fit["groups"]])
-        pyplot.close("all")
 
     def test_a_report_of_soft_disks_has_no_shapes(self):
         self.succeed("clogsweep", "model=sp", "orifice=0.7", "wall-stiffness=1,50", "start=-1.5", "end=1", "max-time=2000", "--output", "s.h5")
@@ -187,7 +183,6 @@ class Channels(Analysis):
             perimeter, area = np.hypot(after_x - x, after_y - y).sum(), abs((x * after_y - after_x * y).sum()) / 2
             self.assertAlmostEqual(perimeter**2 / (4 * np.pi * area), row["largest_shape_parameter"], delta=0.003)
             self.assertIn(row["status"].decode(), figure.axes[0].get_title())
-        pyplot.close("all")
 
     def test_what_stops_goes_on(self):
         keys = [*CHANNEL[:-1], "line-tension=0.3,0.6,1", "vertices=256"]

@@ -6,9 +6,9 @@ import pathlib
 import shlex
 import tempfile
 
-import trajectory
-from command_line import UserError
-from programs import run_program
+from . import trajectory
+from .errors import UserError
+from .programs import run_program
 
 # What may differ between a row and the same run once more.
 CIRCUMSTANCES = {"task", "wall_seconds", "rank", "host", "attempt"}

@@ -5,14 +5,11 @@ import shutil
 
 import matplotlib
 import numpy as np
-import progress
-import style
-import trajectory
-from command_line import UserError
+from . import progress, style, trajectory
+from .errors import UserError
 from matplotlib import animation
 from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.patches import Circle, Rectangle
-from style import plt
 
 SIZE = (9.6, 5.4)  # inches
 DPI = 100
@@ -76,7 +73,7 @@ class Film:
         self._rate = rate
         self._camera = Camera(run.polygons[frames], rate)
         self._centres = trajectory.centroids(run.polygons)
-        self.figure = plt.figure(figsize=SIZE, dpi=DPI)
+        self.figure = style.new_figure(figsize=SIZE, dpi=DPI)
         self._axes = self.figure.add_axes(PLACE)
         self._axes.xaxis.set_visible(False)
         self._axes.yaxis.set_visible(False)

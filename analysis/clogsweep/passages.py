@@ -4,11 +4,8 @@ import dataclasses
 import html
 
 import numpy as np
-import replays
-import style
-import trajectory
-from groups import FINISHED
-from style import plt
+from . import replays, style, trajectory
+from .groups import FINISHED
 
 
 @dataclasses.dataclass(frozen=True)
@@ -52,7 +49,7 @@ def share(kind, members):
 def draw_curves(groups, column):
     """One point for each droplet; a cross is one that clogged in a channel, an open marker one that was under way at the end."""
     kind = kind_of(groups)
-    figure, axes = plt.subplots(figsize=(6.4, 4.8), layout="constrained")
+    figure, axes = style.subplots(figsize=(6.4, 4.8))
     markers = {kind.goal: {"marker": "o"}, "flowing": {"marker": "o", "markerfacecolor": "white"}, "broken": {"marker": "^"}}
     for index, (label, members) in enumerate(groups.curves()):
         members = sorted((group for group in members if group[column] is not None), key=lambda group: group[groups.abscissa])
@@ -106,7 +103,7 @@ def draw_outlines(groups, rows, clogrun, sweep, folder):
     frame = min(0.02 / row["terminal_speed"] for row in rows)
     for run in replays.follow_all(clogrun, sweep, rows, folder, 2, frame, frame):
         shown = run.frame_at("h", run.row["largest_shape_parameter_at"]) if kind is CHANNEL else -1
-        figure, axes = plt.subplots(figsize=(4.6, 4.6), layout="constrained")
+        figure, axes = style.subplots(figsize=(4.6, 4.6))
         low, high = run.polygons[shown].min(axis=1), run.polygons[shown].max(axis=1)
         trajectory.draw_droplet(axes, run, shown, (low + high) / 2)
         half = (high - low).max() / 2 + 0.3

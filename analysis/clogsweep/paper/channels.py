@@ -3,12 +3,10 @@
 import math
 
 import numpy as np
-import style
-import trajectory
-from command_line import UserError
-from paper.plate import Plate, figure, interface_of
-from paper.workshop import measured
-from style import plt
+from .. import style, trajectory
+from ..errors import UserError
+from .plate import Plate, figure, interface_of
+from .workshop import measured
 
 SMOOTH = 512  # vertices from which on a passage of w = 0.4 shows no ripple
 
@@ -86,7 +84,7 @@ def geometry(shop):
     channel = narrow(shop)
     released, = shop.runs("geometry", "trajectory", {"seeds": 1, "line-tension": 0.3, "obstacle-gap": 1.0, "max-time": 300.0})
     array, = shop.ways("geometry", [released], 1, 4)
-    drawing, (left, right) = plt.subplots(1, 2, figsize=(9.6, 4.4), layout="constrained", width_ratios=[1, 1.5])
+    drawing, (left, right) = style.subplots(1, 2, figsize=(9.6, 4.4), width_ratios=[1, 1.5])
     middle = channel.middle
     frame = channel.frame_at("h", -0.75)
     trajectory.draw_droplet(left, channel, frame, middle)
@@ -117,7 +115,7 @@ def geometry(shop):
 @figure("2", "a droplet squeezes through an orifice of 0.4 diameters: outlines, shape parameter, speed", ["channel"], "1 s")
 def squeezing(shop):
     run = narrow(shop)
-    drawing = plt.figure(figsize=(9.6, 6.2), layout="constrained")
+    drawing = style.new_figure(figsize=(9.6, 6.2), layout="constrained")
     top, bottom = drawing.subfigures(2, 1, height_ratios=[1, 2.4])
     middle = run.middle
     for axes, h in zip(top.subplots(1, 6), [-1.0, -0.5, -0.25, 0.0, 0.25, 0.5]):
@@ -142,7 +140,7 @@ def squeezing(shop):
 
 @figure("3", "shape and speed through orifices of 0.9 and 0.7 diameters", ["channel"], "3 s")
 def two_orifices(shop):
-    drawing, panels = plt.subplots(2, 2, figsize=(9.0, 6.8), layout="constrained", sharex=True)
+    drawing, panels = style.subplots(2, 2, figsize=(9.0, 6.8), sharex=True)
     data = []
     for line, (orifice, line_tension, drag, speed) in enumerate([(0.9, 1.7, 0.21, 0.028), (0.7, 1.08, 0.07, 0.032)]):
         run, = profiles(shop, f"channel-{orifice}", outlines=True, orifice=orifice, line_tension=line_tension, near_wall_drag=drag, terminal_speed=speed)
@@ -172,7 +170,7 @@ def two_orifices(shop):
 
 @figure("4", "speed behind an orifice, which overshoots the terminal speed, for three line tensions", ["channel"], "3 s")
 def overshoot(shop):
-    drawing, panels = plt.subplots(1, 2, figsize=(9.6, 4.6), layout="constrained")
+    drawing, panels = style.subplots(1, 2, figsize=(9.6, 4.6))
     data = []
     for axes, (orifice, drag) in zip(panels, [(0.7, 0.02), (0.8, 0.0)]):
         line_tensions = [1.85, 1.11, 0.83]
@@ -200,7 +198,7 @@ def near_wall_drag(shop):
     data = [{"distance": distance, "speed_ratio": speed, "ratio": speed / (1 - speed)} for distance, speed in zip(distances, speeds)]
     row = rows[0]
     fit = shop.fit("drag", shop.table("walls", ["d [sigma]", "v [v_t]"], zip(distances, speeds)), "--format", "json")
-    drawing, axes = plt.subplots(figsize=(6.4, 4.8), layout="constrained")
+    drawing, axes = style.subplots(figsize=(6.4, 4.8))
     ratio = np.array([point["ratio"] for point in data])
     axes.plot(distances, ratio, "o", color=style.COLOURS[0], label="droplet midway between two walls")
     d = np.geomspace(0.02, 5, 100)
@@ -228,7 +226,7 @@ def vertices(shop):
     # Up to so many times the config's number of vertices: the finest run takes most of the time.
     line_tension, most = (1.08, 4) if shop.size == "full" else (0.83, 2)
     counts = [count for count in (32, 64, 128, 256, 512, 1024) if count <= most * int(shop.keys("channel")["vertices"])]
-    drawing, axes = plt.subplots(figsize=(7.2, 5.0), layout="constrained")
+    drawing, axes = style.subplots(figsize=(7.2, 5.0))
     inset = axes.inset_axes([0.74, 0.1, 0.25, 0.36])
     data = []
     runs = profiles(shop, "vertices", orifice=0.7, line_tension=line_tension, near_wall_drag=0.07, terminal_speed=0.032, vertices=counts)
@@ -248,7 +246,7 @@ def vertices(shop):
 
 @figure("B2", "deviation of the speed profile as the perimeter's springs stiffen", ["channel"], "15 s")
 def perimeter_springs(shop):
-    drawing, axes = plt.subplots(figsize=(6.4, 4.8), layout="constrained")
+    drawing, axes = style.subplots(figsize=(6.4, 4.8))
     ratios = [1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0]
     data = []
     for index, preset in enumerate(["elastic", "literal"]):

@@ -5,10 +5,8 @@ import shlex
 import shutil
 import subprocess
 
-from command_line import ProgramFailed, UserError
-
-ROOT = pathlib.Path(__file__).resolve().parents[1]
-
+from . import places
+from .errors import ProgramFailed, UserError
 
 def reason(text):
     """The line in which a program of ours says why it stopped; mpirun talks around it."""
@@ -18,14 +16,13 @@ def reason(text):
 
 
 def programs_in(folder=None):
-    """Folder of clogsweep, clogrun and clogfit: the user's own choice, or those of the PATH, or built here."""
-    if folder:
-        places = [folder]
-    else:
-        called = shutil.which("clogsweep")
-        places = [pathlib.Path(called).resolve().parent] if called else []
-        places += [ROOT / "build" / preset / "bin" for preset in ("release", "laptop")]
-    for place in places:
+    """Folder of clogsweep, clogrun and clogfit: the user's own choice, or those of the PATH, or those beside this package.
+
+    @throws UserError  if they are not there
+    """
+    called = shutil.which("clogsweep")
+    candidates = [pathlib.Path(folder)] if folder else [*([pathlib.Path(called).resolve().parent] if called else []), *places.PROGRAMS]
+    for place in candidates:
         if (place / "clogsweep").exists():
             return place.resolve()
     raise UserError(f"no clogsweep in {place}; build it (cmake --workflow --preset release), or give --programs FOLDER")
@@ -34,14 +31,14 @@ def programs_in(folder=None):
 def add_option(parser):
     """--programs, for programs_in()."""
     parser.add_argument("--programs", type=pathlib.Path,
-                        help="folder of clogsweep, clogrun and clogfit (that of the PATH, or build/release/bin, or build/laptop/bin)")
+                        help="folder of clogsweep, clogrun and clogfit (that of the PATH, or beside this package)")
 
 
 def run_program(program, *arguments, ranks=1):
     """@return what it prints"""
     command = [str(program), *map(str, arguments)]
     if ranks > 1:
-        settings = shlex.quote(str(ROOT / "jobs" / "mpi-settings.sh"))
+        settings = shlex.quote(str(places.JOBS / "mpi-settings.sh"))
         command = ["bash", "-c", f'. {settings} && exec mpirun -np {ranks} "$@"', "mpirun", *command]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         while True:

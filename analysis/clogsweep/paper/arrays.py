@@ -3,15 +3,10 @@
 import math
 
 import numpy as np
-import rounded
-import stored
-import style
-import survival_curve
-import trajectory
-from paper.plate import Plate, figure, interface_of
-from command_line import UserError
-from groups import said
-from style import plt
+from .. import rounded, stored, style, survival_curve, trajectory
+from .plate import Plate, figure, interface_of
+from ..errors import UserError
+from ..groups import said
 
 # Of what all points have in common, a caption names these.
 NAMED = ("obstacle_gap", "obstacle_diameter", "near_wall_drag")
@@ -51,7 +46,7 @@ def by(groups, name):
 def curves(shop, config, abscissa, parameter, quantity):
     """One curve for each value of a parameter. @param quantity  "length" or "speed" """
     groups = shop.sweep(config)
-    drawing, axes = plt.subplots(figsize=(6.8, 5.0), layout="constrained")
+    drawing, axes = style.subplots(figsize=(6.8, 5.0))
     data = []
     families = by(groups, parameter)
     places = [] if abscissa == "capillary_number" else [group[abscissa] for group in groups]
@@ -124,7 +119,7 @@ def sags(shop, config, groups):
 
 
 def over_sag(shop, configs, gap, quantity):
-    drawing, axes = plt.subplots(figsize=(6.8, 5.0), layout="constrained")
+    drawing, axes = style.subplots(figsize=(6.8, 5.0))
     data, captions, drawn = [], [], []
     for index, config in enumerate(configs):
         groups = [group for group in shop.sweep(config) if math.isclose(group["obstacle_gap"], gap)]
@@ -168,7 +163,7 @@ def sag_picture(shop):
     polygon, = shop.ways("sag-polygon", [row], 1, 2)
     disk, = shop.runs("sag-disk", None, {**on_wall, "model": "sp", "wall-stiffness": stiffness})
     disk_sag, polygon_sag = disk["sag"], row["sag"]
-    drawing, panels = plt.subplots(1, 2, figsize=(7.2, 4.2), layout="constrained", sharey=True)
+    drawing, panels = style.subplots(1, 2, figsize=(7.2, 4.2), sharey=True)
     wall = polygon.wedges[0, :2]
     # Gravity points along +x in the model; here it points down.
     outlines = [(shape[1] - wall[1], wall[0] - shape[0]) for shape in polygon.polygons]
@@ -231,7 +226,7 @@ def clog_numbers(run, row, frame):
 
 def snapshot(shop, mechanism):
     run, row = example(shop, mechanism)
-    drawing, axes = plt.subplots(figsize=(5.6, 5.4), layout="constrained")
+    drawing, axes = style.subplots(figsize=(5.6, 5.4))
     shape = run.polygons[-1]
     centre = shape.mean(axis=1)
     trajectory.draw_droplet(axes, run, -1, centre)
@@ -257,7 +252,7 @@ def squeezed(shop):
 
 @figure("5", "how droplets wrap around an obstacle and squeeze into a gap: the last outlines before two clogs of 6c", ["clogging"], "shared with 6c")
 def two_ways(shop):
-    drawing, panels = plt.subplots(2, 4, figsize=(10.4, 6.0), layout="constrained")
+    drawing, panels = style.subplots(2, 4, figsize=(10.4, 6.0))
     data = []
     for line, mechanism in zip(panels, ["wrapped", "squeezed"]):
         run, row = example(shop, mechanism)
@@ -286,7 +281,7 @@ def two_ways(shop):
 
 @figure("C1", "kinetic energy of a droplet that clogs and of one that flows", ["trajectory"], "2 s")
 def kinetic_energy(shop):
-    drawing, axes = plt.subplots(figsize=(7.2, 4.8), layout="constrained")
+    drawing, axes = style.subplots(figsize=(7.2, 4.8))
     data = []
     gaps = [0.3, 1.1]
     rows = shop.runs("energy", "trajectory", {"seeds": 1, "line-tension": 0.5, "obstacle-gap": gaps, "clog-detection": "threshold"})
@@ -330,7 +325,7 @@ def survival(shop):
     group = shop.sweep("survival")[0]
     if not group["survival"]:
         raise UserError(f"no run has clogged in {shop.sweep_file('survival')}; raise max-time or seeds")
-    drawing, axes = plt.subplots(figsize=(6.8, 5.0), layout="constrained")
+    drawing, axes = style.subplots(figsize=(6.8, 5.0))
     draw_band(axes, group)
     survival_curve.draw(axes, group, style.COLOURS[0], f"{rounded.counted(group['runs'], 'run')}, {rounded.counted(group['clogs'], 'clog')}",
                         f"last seen going ({rounded.counted(len(group['censored_distances']), 'run')})")
@@ -342,7 +337,7 @@ def survival(shop):
     axes.set_yscale("log")
     axes.set_ylim(lowest_shown(group, end), 1.3)
     axes.set_xlim(0, 1.02 * end)
-    axes.yaxis.set_major_formatter(plt.FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_major_formatter("{x:g}")
     axes.set_xlabel(r"displacement along the flow $r/\sigma$")
     axes.set_ylabel(r"probability of not having clogged $P(r)$")
     style.grid(axes)
@@ -356,7 +351,7 @@ def survival(shop):
 
 @figure("D", "displacement against time for five line tensions, smallest gap 1.1", ["trajectory"], "3 s")
 def displacement(shop):
-    drawing, axes = plt.subplots(figsize=(6.8, 5.0), layout="constrained")
+    drawing, axes = style.subplots(figsize=(6.8, 5.0))
     data = []
     line_tensions = [0.04, 0.1, 0.2, 0.5, 1.0]
     rows = shop.runs("displacement", "trajectory", {"seeds": 1, "line-tension": line_tensions, "obstacle-gap": 1.1, "preset": "elastic"})

@@ -7,12 +7,11 @@ import json
 import pathlib
 import shlex
 
-import replays
-import stored
-from command_line import UserError
-from programs import ROOT, run_program
+from .. import places, replays, stored
+from ..errors import UserError
+from ..programs import run_program
 
-CONFIGS = ROOT / "jobs" / "figures"
+CONFIGS = places.JOBS / "figures"
 
 
 def config_keys(path):

@@ -7,17 +7,13 @@ import sys
 import zlib
 
 import h5py
-from command_line import UserError
+from .errors import Damaged, UserError
 
 SEAL = re.compile(rb"\nclogsweep seal 1: crc32 ([0-9a-f]{8}) of ([0-9]{20}) bytes\n")
 SEAL_SIZE = 64
 OLD_VERSIONS = ("2", "3", "4")  # had no checksums
 SWEEP, RUN = "sweep", "run"
 WRITERS = {SWEEP: "the output of clogsweep", RUN: "the output of clogrun with --polygon-interval", None: "a file of clogsweep or clogrun"}
-
-
-class Damaged(UserError):
-    """A file that is not as it was written; the message is one line and names the file."""
 
 
 def is_sealed(path):
@@ -59,6 +55,12 @@ def check_kind(path, file, kind):
         raise unreadable(path, "holds one run of clogrun, not a sweep", kind)
     if kind == RUN and "trajectory" not in file:
         raise unreadable(path, "holds a sweep, not one run of clogrun", kind)
+
+
+def kind_of(path):
+    """SWEEP or RUN. @throws as opened()"""
+    with opened(path) as file:
+        return RUN if "trajectory" in file else SWEEP
 
 
 def check_checksums(path, file, sealed):
@@ -116,11 +118,16 @@ def unit(meaning):
 
 def read_table(path):
     """The same for pandas, with text as text. `attrs` of the table holds the columns' `units` and `meanings`, by name."""
+    with opened(path) as file:
+        return table_of(file)
+
+
+def table_of(file):
+    """The same of an open file."""
     import pandas  # slow to load, and not needed by all
 
-    with opened(path) as file:
-        rows = file["runs"][:]
-        meanings = {name: text(file["runs"].attrs.get(name, "")) for name in rows.dtype.names}
+    rows = file["runs"][:]
+    meanings = {name: text(file["runs"].attrs.get(name, "")) for name in rows.dtype.names}
     table = pandas.DataFrame({name: [text(value) for value in rows[name]] if rows.dtype[name].kind == "S" else rows[name]
                               for name in rows.dtype.names})
     table.attrs = {"units": {name: unit(meaning) for name, meaning in meanings.items()}, "meanings": meanings}

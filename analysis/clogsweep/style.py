@@ -3,11 +3,11 @@
 import math
 
 import matplotlib
-import rounded
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402, with the backend chosen above
-from matplotlib.lines import Line2D  # noqa: E402
+from . import rounded
 
 # Okabe and Ito's palette, safe for colour-blind readers; a marker of its own for every curve besides.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
@@ -15,6 +15,7 @@ MARKERS = ["o", "s", "D", "v", "P", "X", "*"]
 MECHANISM_COLOURS = {"wrapped": COLOURS[0], "squeezed": COLOURS[1], "hybrid": COLOURS[2], "other": COLOURS[3]}
 CAUSE_COLOURS = {**MECHANISM_COLOURS, "broken": COLOURS[4]}
 MECHANISM_MARKERS = {"wrapped": "o", "squeezed": "s", "hybrid": "D", "other": "X"}
+VIRIDIS = matplotlib.colormaps["viridis"]
 OBSTACLE = "0.72"
 DROPLET = "#D55E00"
 
@@ -29,6 +30,19 @@ AXES = {
     "shape": r"shape parameter $\mathcal{A} = P^2/(4\pi a)$",
     "profile": r"speed $v_g/v_t$",
 }
+
+
+def new_figure(**options):
+    """Not one of pyplot's, which stay in memory and belong to a backend: whoever draws in a notebook has chosen one."""
+    made = Figure(**options)
+    FigureCanvasAgg(made)
+    return made
+
+
+def subplots(rows=1, columns=1, *, figsize, **options):
+    """A figure laid out by itself, and its axes, as pyplot's."""
+    made = new_figure(figsize=figsize, layout="constrained")
+    return made, made.subplots(rows, columns, **options)
 
 
 def curve_style(index):
@@ -219,4 +233,3 @@ def save(figure, output, metadata=None):
     figure.set_layout_engine("none")
     subject = {"Title": metadata.get("Title"), "Subject": metadata.get("Description")}
     figure.savefig(f"{output}.pdf", metadata={key: value for key, value in subject.items() if value})
-    plt.close(figure)

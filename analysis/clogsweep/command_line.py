@@ -1,7 +1,4 @@
-"""How every script here is called, and how it says what went wrong: one line, exit code 2, as the programs do.
-
-Modules that a machine may lack are loaded in the block of needs_modules().
-"""
+"""How every command here is called, and how it says what went wrong: one line, exit code 2, as the programs do."""
 
 import argparse
 import contextlib
@@ -11,29 +8,28 @@ import pathlib
 import sys
 import warnings
 
+from .errors import ProgramFailed, UserError
+
 USER_FAULT = 2
 INTERRUPTED = 75
 
 
-class UserError(Exception):
-    """What the user can mend: one line, exit code 2."""
+_own_name = ""
 
 
-class ProgramFailed(Exception):
-    """A program of ours said why and left with this exit code."""
-
-    def __init__(self, message, exit_code):
-        super().__init__(message)
-        self.exit_code = exit_code
+def speak_as(name):
+    """Of a command, how it calls itself; else it has the name of the script."""
+    global _own_name
+    _own_name = name
 
 
 def name():
-    """Of the script in its messages. Whoever calls it under another one, as clogfit report does, wants that."""
-    return os.environ.get("CLOG_CALLED_AS") or pathlib.Path(sys.argv[0]).name
+    """Of the command in its messages. Whoever calls it under another one, as clogfit report does, wants that."""
+    return os.environ.get("CLOG_CALLED_AS") or _own_name or pathlib.Path(sys.argv[0]).name
 
 
 class Parser(argparse.ArgumentParser):
-    """Options of a script. @param about  its docstring"""
+    """Options of a command. @param about  its docstring"""
 
     def __init__(self, about):
         super().__init__(prog=name(), description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -60,7 +56,7 @@ def tasks(word):
 
 
 def add_output(parser, meaning, *endings, required=False):
-    """--output of a script. @param endings  such as ".png", that it gives its files itself: a name may have them or not"""
+    """--output of a command. @param endings  such as ".png", that it gives its files itself: a name may have them or not"""
     def without_ending(word):
         path = pathlib.Path(word)
         return path.with_suffix("") if path.suffix in endings else path
@@ -75,14 +71,14 @@ def beside(source, ending):
     return source.with_name(f"{source.stem}-{ending}")
 
 
-# How the files begin that scripts here make.
+# How the files begin that commands here make.
 BEGINNINGS = {"html": b"<!DOCTYPE html>", "png": b"\x89PNG\r\n", "pdf": b"%PDF-", "vtk": b"<?xml", "text": b""}
 
 
 def refuse_unwritable(path, kind, *inputs):
     """To be asked before minutes of work, of a file to be made. An earlier one of its kind is replaced, nothing else.
 
-    @param kind  of BEGINNINGS; @param inputs  files that the script reads
+    @param kind  of BEGINNINGS; @param inputs  files that the command reads
     """
     if not path.parent.is_dir():
         raise UserError(f"cannot write {path} (no folder {path.parent}); make it first")
@@ -118,6 +114,7 @@ def quieten_libraries():
 
 @contextlib.contextmanager
 def needs_modules():
+    """For a block that loads modules which a machine may lack."""
     quieten_libraries()
     try:
         yield
@@ -132,7 +129,7 @@ def _refuse(reason):
 
 
 def run(body):
-    """@param body  what the script does, returns its exit code. @return the exit code"""
+    """@param body  what the command does, returns its exit code. @return the exit code"""
     try:
         return body()
     except UserError as error:

@@ -5,8 +5,7 @@ import math
 import pathlib
 
 import numpy as np
-import stored
-import style
+from . import stored, style
 from matplotlib.collections import PatchCollection
 from matplotlib.patches import Circle, Polygon
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
@@ -81,9 +80,15 @@ def read(path, needs_frames=True):
         row = file["runs"][0]
         frames[0] = outlines(frames[0], row)
         trajectory = Trajectory(pathlib.Path(path), file["trajectory"][:], row, stored.attributes(file), *frames)
-    if needs_frames and len(trajectory.times) == 0:
-        raise stored.unreadable(path, "holds no polygons", stored.RUN)
+    if needs_frames:
+        require_frames(trajectory)
     return trajectory
+
+
+def require_frames(trajectory):
+    """@throws UserError if there are no outlines"""
+    if len(trajectory.times) == 0:
+        raise stored.unreadable(trajectory.path, "holds no polygons", stored.RUN)
 
 
 def wedge_outline(wedge, reach=50.0):
@@ -149,12 +154,16 @@ def mechanism(trajectory):
     return trajectory.word("mechanism") if "mechanism" in trajectory.row.dtype.names else ""
 
 
-def verdict(trajectory):
-    """How the run ended."""
+def end_of(trajectory):
+    """How the run ended, in words."""
     ends = {"wrapped": "clogged by wrapping", "squeezed": "clogged by squeezing", "hybrid": "clogged by wrapping and squeezing"}
     status = trajectory.word("status")
-    end = ends.get(mechanism(trajectory), status) if status == "clogged" else {"flowing": "still flowing", "broken": "broken up"}.get(status, status)
-    return rf"{end} after $r = {trajectory.row['distance']:.2f}\,\sigma$"
+    return ends.get(mechanism(trajectory), status) if status == "clogged" else {"flowing": "still flowing", "broken": "broken up"}.get(status, status)
+
+
+def verdict(trajectory):
+    """The same with how far it came, for a picture."""
+    return rf"{end_of(trajectory)} after $r = {trajectory.row['distance']:.2f}\,\sigma$"
 
 
 def centroids(polygons):

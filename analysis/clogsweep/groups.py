@@ -4,8 +4,8 @@ Names, symbols, units and defaults of the parameters are clogsweep's own; clogfi
 """
 
 
-import style
-from command_line import UserError
+from . import style
+from .errors import UserError
 
 
 def tex(unit):

@@ -1,10 +1,9 @@
 """Figures of droplets that hang over obstacles: what holds them, the mesh or a law of walls."""
 
-import style
-from groups import said
-from paper.arrays import by, numbers
-from paper.plate import Plate, figure, interface_of
-from style import plt
+from .. import style
+from ..groups import said
+from .arrays import by, numbers
+from .plate import Plate, figure, interface_of
 
 HOLDS = ("vertices", "on_mesh", "wrapped", "squeezed", "hybrid")
 
@@ -34,7 +33,7 @@ def lengths_by_mesh(shop):
     presets = [(config, shop.sweep(config)) for config in configs]
     groups = [group for _, members in presets for group in members]
     gaps = by(groups, "obstacle_gap")
-    drawing, panels = plt.subplots(len(gaps), len(presets), figsize=(5.2 * len(presets), 4.0 * len(gaps)), layout="constrained",
+    drawing, panels = style.subplots(len(gaps), len(presets), figsize=(5.2 * len(presets), 4.0 * len(gaps)),
                                    sharex=True, sharey=True, squeeze=False)
     data = []
     for (gap, _), line in zip(gaps, panels):
@@ -61,7 +60,7 @@ def lengths_by_friction(shop):
     columns = shop.columns(config)
     gaps = by(groups, "obstacle_gap")
     meshes = sorted({group["vertices"] for group in groups})
-    drawing, panels = plt.subplots(1, len(gaps), figsize=(6.8 * len(gaps), 5.4), layout="constrained", sharey=True, squeeze=False)
+    drawing, panels = style.subplots(1, len(gaps), figsize=(6.8 * len(gaps), 5.4), sharey=True, squeeze=False)
     data = []
     for (gap, members), axes in zip(gaps, panels[0]):
         places = [group["line_tension"] for group in members]
