@@ -50,10 +50,5 @@ def main() -> int:
     return command_line.run(choose)
 
 
-def script(command: str) -> None:
-    """What a script of the source tree does that is called as a command is."""
-    sys.exit(command_line.run(lambda: become(command)))
-
-
 if __name__ == "__main__":
     sys.exit(main())

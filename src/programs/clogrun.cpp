@@ -109,7 +109,7 @@ std::filesystem::path film_name(const cli::CommandLine& line) {
   return name;
 }
 
-/// How droplet.py is to draw the film. @throws Error  where none could be written
+/// How the Python module is to draw the film. @throws Error  where none could be written
 std::vector<std::string> film_options(const cli::CommandLine& line) {
   std::vector<std::string> options = {"droplet", line.require("output"), "--output=" + film_name(line).string(),
                                       "--film"};

@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pandas
 
-from scripts import Analysis
+from drawing import Analysis
 from support import BIN, QUICK, ROOT, SweepTest, table
 
 import clogsweep
@@ -138,8 +138,8 @@ class Module(Analysis):
 
         listed = called()
         self.assertEqual((listed.returncode, called("--help").stdout), (0, listed.stdout))
-        scripts = {path.stem.replace("_", "-") for path in (ROOT / "analysis").glob("*.py")}
-        for command in scripts:
+        modules = {path.stem.replace("_", "-") for path in (ROOT / "analysis/clogsweep/commands").glob("[a-z]*.py")}
+        for command in modules:
             self.assertIn(f"\n  {command} ", listed.stdout)
             helped = called(command, "--help")
             self.assertEqual(helped.returncode, 0, helped.stderr)

@@ -1,11 +1,11 @@
-"""How the scripts of analysis/ are called, and what their pictures and pages say."""
+"""How the commands of the Python module are called, and what their pictures and pages say."""
 
 import json
 import unittest
 
 import numpy as np
 
-from scripts import Analysis
+from drawing import Analysis
 from support import BIN, QUICK, SMALL
 
 import stored_rows
@@ -16,68 +16,68 @@ ONE_CURVE = [*QUICK, "line-tension=0.5,3", "seeds=1..2", "near-wall-drag=0.07", 
 
 
 class Calls(Analysis):
-    SCRIPTS = ["clogging_length.py", "clogs.py", "droplet.py", "dwell.py", "export_vtk.py", "report.py"]
+    COMMANDS = ["clogging-length", "clogs", "droplet", "dwell", "export-vtk", "report"]
 
-    def needs(self, script):
-        return [] if script in ("droplet.py", "export_vtk.py") else ["--programs", BIN]
+    def needs(self, command):
+        return [] if command in ("droplet", "export-vtk") else ["--programs", BIN]
 
     def test_a_run_is_no_sweep_and_a_sweep_no_run(self):
         self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 30, "--output", "run.h5")
         self.succeed("clogsweep", *QUICK, "seeds=1", "--output", "s.h5")
-        for script in self.SCRIPTS:
-            is_of_runs = not self.needs(script)
-            with self.subTest(script=script):
-                self.refuse_analysis(script, "s.h5" if is_of_runs else "run.h5", "--output", "x", *self.needs(script),
+        for command in self.COMMANDS:
+            is_of_runs = not self.needs(command)
+            with self.subTest(command=command):
+                self.refuse_analysis(command, "s.h5" if is_of_runs else "run.h5", "--output", "x", *self.needs(command),
                                      words=["cannot read", "output of clogrun" if is_of_runs else "clogsweep"])
-        self.refuse_analysis("clogs.py", "run.h5", *self.needs("clogs.py"), words=["run.h5 (holds one run of clogrun, not a sweep)"])
+        self.refuse_analysis("clogs", "run.h5", *self.needs("clogs"), words=["run.h5 (holds one run of clogrun, not a sweep)"])
 
     def test_a_file_that_is_not_there_is_called_so(self):
-        for script in self.SCRIPTS:
-            with self.subTest(script=script):
-                self.refuse_analysis(script, "nope.h5", "--output", "x", *self.needs(script), words=["cannot read nope.h5 (no such file); check the name"])
+        for command in self.COMMANDS:
+            with self.subTest(command=command):
+                self.refuse_analysis(command, "nope.h5", "--output", "x", *self.needs(command), words=["cannot read nope.h5 (no such file); check the name"])
 
     def test_an_output_may_be_left_out_or_have_its_ending(self):
         self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1..2", "--output", "s.h5")
-        for script, made in [("clogging_length.py", "s-clogging-length.png"), ("clogs.py", "s-clogs.png"), ("dwell.py", "s-dwell.png"),
-                             ("report.py", "s-report.html")]:
-            self.assertIn(made, self.draw(script, "s.h5", "--programs", BIN).stdout)
+        for command, made in [("clogging-length", "s-clogging-length.png"), ("clogs", "s-clogs.png"), ("dwell", "s-dwell.png"),
+                             ("report", "s-report.html")]:
+            self.assertIn(made, self.draw(command, "s.h5", "--programs", BIN).stdout)
             self.assertTrue((self.folder / made).exists())
         for name in ("cl.png", "cl.pdf", "cl0.2"):
-            self.draw("clogging_length.py", "s.h5", "-o", name, "--programs", BIN)
+            self.draw("clogging-length", "s.h5", "-o", name, "--programs", BIN)
         self.assertEqual({path.name for path in self.folder.glob("cl*")}, {"cl.png", "cl.pdf", "cl0.2.png", "cl0.2.pdf"})
-        self.refuse_analysis("clogging_length.py", "/dev/null", words=["no name", "--output"])
+        self.refuse_analysis("clogging-length", "/dev/null", words=["no name", "--output"])
 
     def test_a_name_of_a_film_asks_for_one(self):
         self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 30, "--output", "run.h5")
-        self.assertEqual(self.draw("droplet.py", "run.h5", "-o", "run.gif").stdout, "run.gif\n")
+        self.assertEqual(self.draw("droplet", "run.h5", "-o", "run.gif").stdout, "run.gif\n")
         self.assertEqual((self.folder / "run.gif").read_bytes()[:4], b"GIF8")
 
     def test_earlier_pictures_of_a_longer_run_do_not_stay_between_those_of_a_film(self):
         self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 10, "--output", "run.h5")
         for most in (4, 2):
-            self.draw("droplet.py", "run.h5", "-o", "run", "--pictures", "--most-frames", most)
+            self.draw("droplet", "run.h5", "-o", "run", "--pictures", "--most-frames", most)
             self.assertEqual(len(list((self.folder / "run-frames").iterdir())), most)
 
     def test_numbers_that_cannot_be_and_clogs_that_are_not_there_get_one_line(self):
         self.succeed("clogsweep", *QUICK, "line-tension=3", "seeds=1", "--output", "s.h5")
         self.succeed("clogsweep", "model=sp", "wall-stiffness=30", "box=20", "max-time=60", "seeds=1", "--output", "disk.h5")
         for arguments, words in [
-            (["clogs.py", "s.h5", "--jobs", "0"], ["--jobs", "1 or more"]),
-            (["clogs.py", "s.h5", "--most", "few"], ["--most", "whole number"]),
-            (["clogs.py", "s.h5", "--tasks", "1-3"], ["--tasks", "1-3", "try 3,17,40"]),
-            (["clogs.py", "s.h5", "--tasks", "7,0"], ["tasks 7:", "no such clogged polygon"]),
-            (["clogs.py", "s.h5", "--mechanism", "wrapped"], ["mechanism wrapped", "no such clogged polygon"]),
-            (["clogs.py", "disk.h5"], ["disk.h5 holds no clogged polygon", "soft disks"]),
-            (["droplet.py", "s.h5", "-o", "x", "--rate", "0"], ["--rate", "1 or more"]),
-            (["figures.py", "2", "--ranks", "0"], ["--ranks", "1 or more"]),
-            (["figures.py", "2", "--profile", "none.csv"], ["cannot read none.csv (no such file); check the name"]),
+            (["clogs", "s.h5", "--jobs", "0"], ["--jobs", "1 or more"]),
+            (["clogs", "s.h5", "--most", "few"], ["--most", "whole number"]),
+            (["clogs", "s.h5", "--tasks", "1-3"], ["--tasks", "1-3", "try 3,17,40"]),
+            (["clogs", "s.h5", "--tasks", "7,0"], ["tasks 7:", "no such clogged polygon"]),
+            (["clogs", "s.h5", "--mechanism", "wrapped"], ["mechanism wrapped", "no such clogged polygon"]),
+            (["clogs", "disk.h5"], ["disk.h5 holds no clogged polygon", "soft disks"]),
+            (["droplet", "s.h5", "-o", "x", "--rate", "0"], ["--rate", "1 or more"]),
+            (["figures", "2", "--ranks", "0"], ["--ranks", "1 or more"]),
+            (["figures", "2", "--profile", "none.csv"], ["cannot read none.csv (no such file); check the name"]),
         ]:
             with self.subTest(arguments=arguments):
-                where = ["--programs", BIN] if arguments[0] != "droplet.py" else []
+                where = ["--programs", BIN] if arguments[0] != "droplet" else []
                 self.refuse_analysis(*arguments, *where, words=words)
 
     def test_the_colour_of_obstacles_is_the_one_in_the_help(self):
-        self.assertIn("obstacles are blue", " ".join(self.draw("clogs.py", "--help").stdout.split()))
+        self.assertIn("obstacles are blue", " ".join(self.draw("clogs", "--help").stdout.split()))
 
 
 class Looks(Analysis):
@@ -131,7 +131,7 @@ class Looks(Analysis):
             np.testing.assert_allclose(bars[i], [group["clogging_length_lower"], group["clogging_length_upper"]])
         self.assertEqual(lengths[-1], self.fit_at().members[1]["clogging_length"])
         self.assertLess(lengths[0], 0.7 * lengths[-1])
-        self.draw("dwell.py", "s.h5", "-o", "d", "--programs", BIN)
+        self.draw("dwell", "s.h5", "-o", "d", "--programs", BIN)
         self.assert_picture("d")
 
     def fit_at(self, *options):
@@ -139,9 +139,9 @@ class Looks(Analysis):
 
     def test_dwells_that_cannot_be_drawn_are_refused(self):
         self.succeed("clogsweep", *SMALL, "seeds=1", "max-time=10", "--output", "s.h5")
-        self.refuse_analysis("dwell.py", "s.h5", "--programs", BIN, words=["from 16.67 t0 on", "make max-time longer"])
+        self.refuse_analysis("dwell", "s.h5", "--programs", BIN, words=["from 16.67 t0 on", "make max-time longer"])
         stored_rows.make_older(self.folder / "s.h5", "6", [name for name in stored_rows.columns(self.folder / "s.h5") if "dwell" in name])
-        self.refuse_analysis("dwell.py", "s.h5", "--programs", BIN, words=["did not look for them", "compute the sweep anew"])
+        self.refuse_analysis("dwell", "s.h5", "--programs", BIN, words=["did not look for them", "compute the sweep anew"])
 
     def test_many_curves_are_told_apart_beside_the_legend_and_off_the_frame(self):
         arrays = ["obstacle-gap=lin(0.2,0.35,4)", "obstacle-diameter=lin(0.3,0.45,4)"]
@@ -192,8 +192,8 @@ class Looks(Analysis):
         run = trajectory.read(self.folder / "run.h5")
         size = run.polygons.max(axis=2) - run.polygons.min(axis=2)
         np.testing.assert_allclose(size, 1, atol=1e-3)
-        for script, made in [("droplet.py", "disk.png"), ("export_vtk.py", "disk.pvd")]:
-            self.draw(script, "run.h5", "-o", "disk")
+        for command, made in [("droplet", "disk.png"), ("export-vtk", "disk.pvd")]:
+            self.draw(command, "run.h5", "-o", "disk")
             self.assertTrue((self.folder / made).exists())
 
     def test_a_caption_names_what_its_model_has(self):

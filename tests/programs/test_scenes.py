@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 
 import stored_rows
-from scripts import Analysis
+from drawing import Analysis
 from support import BIN, ProgramTest, table
 
 from clogsweep import passages, stored, style
@@ -59,7 +59,7 @@ class BreakUp(Analysis):
         self.assertEqual(set(foretold), {True, False})
 
     def test_the_picture_of_collisions_closes_in_on_the_threshold(self):
-        done = self.draw("collision.py", "--output", "c", "--programs", BIN, "--offsets", "0.1,0.4", "vertices=64")
+        done = self.draw("collision", "--output", "c", "--programs", BIN, "--offsets", "0.1,0.4", "vertices=64")
         head, near, far = done.stdout.splitlines()
         self.assertEqual(head, "offset,symmetry,breaks_up_to,whole_from,capillary_number")
         low, high = map(float, near.split(",")[2:4])
@@ -67,7 +67,7 @@ class BreakUp(Analysis):
         self.assertEqual(far.split(",")[2:], ["", "0.01", ""])  # none breaks
         self.assertTrue((self.folder / "c.png").exists())
         for words, said in [(["--offsets", "0.6"], "0.6"), (["vertices"], "KEY=VALUE"), (["vertices=x"], "vertices"), (["--offsets", "0.4"], "nothing to draw")]:
-            self.refuse_analysis("collision.py", "--output", "d", "--programs", BIN, *words, words=[said])
+            self.refuse_analysis("collision", "--output", "d", "--programs", BIN, *words, words=[said])
 
 
 class Channels(Analysis):
@@ -121,8 +121,8 @@ class Channels(Analysis):
         self.assertIn("speed_ratio", again["trajectory"].dtype.names)
         for name in ("orifice", "wedge_angle", "tip_radius", "start_h", "end_h"):
             self.assertEqual(again.attrs[name], same.attrs[name])
-        self.refuse_analysis("clogging_length.py", "s.h5", "--programs", BIN, words=["in a channel", "clogfit report"])
-        self.refuse_analysis("clogs.py", "s.h5", "--programs", BIN, words=["in a channel", "clogfit report"])
+        self.refuse_analysis("clogging-length", "s.h5", "--programs", BIN, words=["in a channel", "clogfit report"])
+        self.refuse_analysis("clogs", "s.h5", "--programs", BIN, words=["in a channel", "clogfit report"])
 
     def test_a_report_shows_what_came_out_of_them(self):
         self.succeed("clogsweep", *CHANNEL[:1], *CHANNEL[2:], "orifice=0.6,0.7", "line-tension=0.3,0.6,5", "--output", "s.h5")
@@ -223,7 +223,7 @@ class Walls(Analysis):
             self.assertIn("".join(f"<td>{cell}</td>" for cell in cells), page)
         self.assertIn("<li>2 of 2 at rest</li>", page)
         self.assertEqual(page.count("<img"), 2 + 2)
-        self.refuse_analysis("clogging_length.py", "s.h5", "--programs", BIN, words=["on a wall", "clogfit report"])
+        self.refuse_analysis("clogging-length", "s.h5", "--programs", BIN, words=["on a wall", "clogfit report"])
 
     def test_a_soft_disk_sags_as_its_spring_says(self):
         self.succeed("clogsweep", "obstacle-layout=wall", "model=sp", "wall-stiffness=0.5,5", "--output", "s.h5")

@@ -65,7 +65,7 @@ class EveryKey(Analysis):
                         self.assertIn(key["column"].replace("_", " "), groups.axis_label())
                 # Curves and, run once more, a clog.
                 self.assertGreater(sum(group["clogs"] for group in groups.members), 0)
-                self.draw("report.py", "s.h5", "--programs", BIN, "--output", "r.html", "--examples", 1)
+                self.draw("report", "s.h5", "--programs", BIN, "--output", "r.html", "--examples", 1)
                 self.assertIn("touched obstacles blue", (self.folder / "r.html").read_text())
 
     def test_two_parameters_make_curves_of_the_one_over_the_other(self):

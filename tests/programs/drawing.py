@@ -1,35 +1,34 @@
-"""Runs the scripts of analysis/ as a person would."""
+"""Runs commands of the Python module as a person would."""
 
 import multiprocessing
 import os
-import runpy
 import subprocess
 import sys
 
-import tables  # noqa: F401, see run_script
+import tables  # noqa: F401, see run_command
 from matplotlib import image
 
 from support import ROOT, ProgramTest
 
 sys.path.insert(1, str(ROOT / "analysis"))
-import clogsweep  # noqa: E402, F401, see run_script
+import clogsweep.__main__  # noqa: E402
 
 
-def run_script(words, folder, out, error):
-    """A script of analysis/ as a person runs it, in a process forked for it: what takes a second to load is there already."""
+def run_command(words, folder, out, error):
+    """python3 -m clogsweep, in a process forked for it: what takes a second to load is there already."""
     os.chdir(folder)
     for file, descriptor in [(out, 1), (error, 2)]:
         with open(file, "w") as stream:
             os.dup2(stream.fileno(), descriptor)
-    sys.argv, sys.path[0] = words, os.path.dirname(words[0])
-    runpy.run_path(words[0], run_name="__main__")
+    sys.argv = ["clogsweep", *words]
+    sys.exit(clogsweep.__main__.main())
 
 
 class Analysis(ProgramTest):
-    def analyse(self, script, *arguments):
-        words = [str(ROOT / "analysis" / script), *map(str, arguments)]
+    def analyse(self, command, *arguments):
+        words = [command, *map(str, arguments)]
         out, error = self.folder / "stdout.txt", self.folder / "stderr.txt"
-        process = multiprocessing.get_context("fork").Process(target=run_script, args=(words, self.folder, out, error))
+        process = multiprocessing.get_context("fork").Process(target=run_command, args=(words, self.folder, out, error))
         process.start()
         process.join(300)
         if process.exitcode is None:
@@ -37,13 +36,13 @@ class Analysis(ProgramTest):
             self.fail(f"{words} takes more than 300 s")
         return subprocess.CompletedProcess(words, process.exitcode, out.read_text(), error.read_text())
 
-    def draw(self, script, *arguments):
-        done = self.analyse(script, *arguments)
+    def draw(self, command, *arguments):
+        done = self.analyse(command, *arguments)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         return done
 
-    def refuse_analysis(self, script, *arguments, words):
-        done = self.analyse(script, *arguments)
+    def refuse_analysis(self, command, *arguments, words):
+        done = self.analyse(command, *arguments)
         self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
         self.assertEqual(len(done.stderr.strip().splitlines()), 1, done.stderr)
         for word in words:

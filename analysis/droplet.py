@@ -1,6 +1,0 @@
-#!/usr/bin/python3
-"""python3 -m clogsweep droplet, from the source tree."""
-
-from clogsweep.__main__ import script
-
-script("droplet")
