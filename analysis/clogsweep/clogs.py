@@ -91,6 +91,9 @@ class Clogs(Sequence[Clog]):
     def __iter__(self) -> Iterator[Clog]:
         return iter(self._clogs)
 
+    def __repr__(self) -> str:
+        return f"<{rounded.counted(len(self), 'clog')}: {', '.join(f'task {clog.task} {clog.mechanism}' for clog in self)}>"
+
     def picture(self) -> Picture:
         return Picture(sheet(self._clogs))
 

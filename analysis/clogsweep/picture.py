@@ -31,5 +31,8 @@ class Picture:
         style.save(self.figure, path)
         return pathlib.Path(f"{path}.png")
 
+    def __repr__(self) -> str:
+        return f"<picture of {' x '.join(f'{side:g}' for side in self.figure.get_size_inches())} inches>"
+
     def _repr_png_(self) -> bytes:
         return self.png()

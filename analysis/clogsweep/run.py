@@ -18,6 +18,9 @@ class Film:
     def __init__(self, path: pathlib.Path) -> None:
         self.path = path
 
+    def __repr__(self) -> str:
+        return f"<film {self.path}>"
+
     def _repr_html_(self) -> str:
         data = base64.b64encode(self.path.read_bytes()).decode()
         if self.path.suffix == ".gif":
@@ -73,4 +76,4 @@ class Run:
         return self.picture().png() if len(self.times) > 0 else None
 
     def __repr__(self) -> str:
-        return f"<run {self.path}: {trajectory.end_of(self.trajectory)}>"
+        return f"<run {self.path.name}: {trajectory.end_of(self.trajectory)}>"

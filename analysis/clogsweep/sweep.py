@@ -84,4 +84,4 @@ class Sweep:
         return f"<sweep {self.path}: {len(self.rows)} runs ({counts})>"
 
     def _repr_html_(self) -> str:
-        return f"<p>{html.escape(repr(self)[1:-1])}</p>{self.rows._repr_html_()}"
+        return f"<p>{html.escape(repr(self)[1:-1])}; the first rows:</p>{self.rows.head()._repr_html_()}"
