@@ -39,6 +39,7 @@ mpirun --oversubscribe -np 2 clogsweep $keys line-tension=0.3,0.5 seeds=1..4 --o
 clogfit sweep.h5
 clogfit report sweep.h5 --output report.html
 python3 -m clogsweep clogging-length sweep.h5
+python3 -c 'import clogsweep; print(clogsweep.open("sweep.h5").fit().groups.clogging_length)'
 clogrun array $keys line-tension=0.5 seeds=1 --polygon-interval 20 --output run.h5 --frames film.gif
 clogsweep --config /usr/share/clogsweep/jobs/laptop.cfg --print-config | grep line-tension
 ls -l
