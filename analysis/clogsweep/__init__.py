@@ -1,4 +1,4 @@
-"""Results of clogsweep in Python: tables, fits, curves, clogs, films.
+"""Results of clogsweep in Python: tables, fits, curves, clogs, films::
 
     import clogsweep
     sweep = clogsweep.open("sweep.h5")

@@ -29,7 +29,7 @@ class Film:
 
 
 class Run:
-    """What clogrun --output wrote, with --polygon-interval: how a droplet moved and what it looked like.
+    """What ``clogrun --output`` wrote, with ``--polygon-interval``: how a droplet moved and what it looked like.
 
     - `samples`: table of the way; time [t0], distance [sigma], speed [sqrt(sigma g)], energies, shape parameter
     - `polygons`: outlines, frames x 2 x points [sigma], at the `times` (frames) [t0]; those that walls meet

@@ -16,7 +16,7 @@ from .run import Run
 
 
 class Sweep:
-    """What clogsweep --output wrote, finished or still under way.
+    """What ``clogsweep --output`` wrote, finished or still under way.
 
     - `rows`: table with a row for each run, as it was when the file was opened; `rows.attrs` holds `units` and
       `meanings` of the columns
