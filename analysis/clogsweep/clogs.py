@@ -98,7 +98,7 @@ class Clogs(Sequence[Clog]):
         return Picture(sheet(self._clogs))
 
     def _repr_png_(self) -> bytes:
-        return self.picture().png(60)
+        return self.picture().png(80)
 
 
 def run_again(clogrun: pathlib.Path, sweep: pathlib.Path, row: np.void, folder: str) -> Clog:
