@@ -8,6 +8,7 @@ import pathlib
 import subprocess
 import tempfile
 from collections.abc import Collection, Iterator, Sequence
+from typing import overload
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -85,7 +86,13 @@ class Clogs(Sequence[Clog]):
     def __len__(self) -> int:
         return len(self._clogs)
 
-    def __getitem__(self, index):  # type: ignore[no-untyped-def, override]
+    @overload
+    def __getitem__(self, index: int) -> Clog: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> Clogs: ...
+
+    def __getitem__(self, index: int | slice) -> Clog | Clogs:
         return Clogs(self._clogs[index]) if isinstance(index, slice) else self._clogs[index]
 
     def __iter__(self) -> Iterator[Clog]:

@@ -8,6 +8,7 @@ import subprocess
 from . import places
 from .errors import ProgramFailed, UserError
 
+
 def reason(text):
     """The line in which a program of ours says why it stopped; mpirun talks around it."""
     lines = [line for line in text.splitlines() if line.strip()]

@@ -52,7 +52,8 @@ void become_python(const std::string& name, const std::filesystem::path& module,
 }
 
 std::string python_command(const std::filesystem::path& module, const std::vector<std::string>& arguments) {
-  std::string command = python_path + "=" + module.parent_path().string() + " " + CLOG_PYTHON + " -m clogsweep";
+  std::string command =
+      python_path + "=" + module.parent_path().string() + " " + CLOG_PYTHON + " -m clogsweep";
   for (const std::string& argument : arguments) command += " " + argument;
   return command;
 }

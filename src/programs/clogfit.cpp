@@ -8,9 +8,9 @@
 
 #include "clog/campaign/group_table.hpp"
 #include "clog/campaign/stored_sweep.hpp"
-#include "clog/cli/python_command.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
+#include "clog/cli/python_command.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"

@@ -363,7 +363,7 @@ class Pictures(Analysis):
         self.write("fit.json", json.dumps({"groups": "none"}))
         self.write("run.h5", "nothing")
         for command, file in [("clogging-length", "fit.json"), ("droplet", "run.h5"),
-                             ("export-vtk", "run.h5"), ("clogs", "run.h5"), ("report", "run.h5")]:
+                              ("export-vtk", "run.h5"), ("clogs", "run.h5"), ("report", "run.h5")]:
             with self.subTest(command=command, file=file):
                 where = ["--programs", BIN] if command in ("report", "clogs") else []
                 self.refuse_analysis(command, file, "--output", "x", *where, words=["run.h5" if command == "report" else "cannot read"])

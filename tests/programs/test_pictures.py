@@ -39,7 +39,7 @@ class Calls(Analysis):
     def test_an_output_may_be_left_out_or_have_its_ending(self):
         self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1..2", "--output", "s.h5")
         for command, made in [("clogging-length", "s-clogging-length.png"), ("clogs", "s-clogs.png"), ("dwell", "s-dwell.png"),
-                             ("report", "s-report.html")]:
+                              ("report", "s-report.html")]:
             self.assertIn(made, self.draw(command, "s.h5", "--programs", BIN).stdout)
             self.assertTrue((self.folder / made).exists())
         for name in ("cl.png", "cl.pdf", "cl0.2"):

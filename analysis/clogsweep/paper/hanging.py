@@ -34,7 +34,7 @@ def lengths_by_mesh(shop):
     groups = [group for _, members in presets for group in members]
     gaps = by(groups, "obstacle_gap")
     drawing, panels = style.subplots(len(gaps), len(presets), figsize=(5.2 * len(presets), 4.0 * len(gaps)),
-                                   sharex=True, sharey=True, squeeze=False)
+                                     sharex=True, sharey=True, squeeze=False)
     data = []
     for (gap, _), line in zip(gaps, panels):
         for (config, members), axes in zip(presets, line):
