@@ -6,18 +6,29 @@ include(CMakePackageConfigHelpers)
 
 install(TARGETS clogsweep clogrun clogfit RUNTIME COMPONENT programs)
 
-# Scripts and configs, which the programs find beside themselves (CLOG_SHARED_FOLDER). The build tree has links.
+# The Python module and jobs with their configs, which find each other from where they are. The build tree has links.
 
-if(IS_ABSOLUTE "${CMAKE_INSTALL_DATADIR}" OR NOT CMAKE_INSTALL_BINDIR MATCHES "^[^/]+$")
-  message(FATAL_ERROR "programs find their scripts from where they are: CMAKE_INSTALL_BINDIR has to be one folder, CMAKE_INSTALL_DATADIR relative")
-endif()
-file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_DATADIR}/clogsweep")
-foreach(folder analysis jobs)
-  file(CREATE_LINK "${PROJECT_SOURCE_DIR}/${folder}" "${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_DATADIR}/clogsweep/${folder}" SYMBOLIC)
+foreach(folder CMAKE_INSTALL_BINDIR CMAKE_INSTALL_DATADIR CLOG_PYTHON_DIR)
+  if(IS_ABSOLUTE "${${folder}}")
+    message(FATAL_ERROR "what is installed finds its parts from where it is: ${folder} has to be relative, here ${${folder}}")
+  endif()
 endforeach()
-install(DIRECTORY analysis jobs DESTINATION "${CMAKE_INSTALL_DATADIR}/clogsweep" USE_SOURCE_PERMISSIONS COMPONENT programs
-  FILES_MATCHING PATTERN "*.py" PATTERN "*.cfg" PATTERN "*.sh"
-  PATTERN "__pycache__" EXCLUDE PATTERN "install-dependencies.sh" EXCLUDE PATTERN "laptop.sh" EXCLUDE)
+if(NOT CMAKE_INSTALL_BINDIR MATCHES "^[^/]+$")
+  message(FATAL_ERROR "the build tree is laid out alike, with bin beside it: CMAKE_INSTALL_BINDIR has to be one folder, here ${CMAKE_INSTALL_BINDIR}")
+endif()
+set(shared "${CMAKE_INSTALL_DATADIR}/clogsweep")
+file(MAKE_DIRECTORY "${PROJECT_BINARY_DIR}/${shared}" "${PROJECT_BINARY_DIR}/${CLOG_PYTHON_DIR}")
+file(CREATE_LINK "${PROJECT_SOURCE_DIR}/jobs" "${PROJECT_BINARY_DIR}/${shared}/jobs" SYMBOLIC)
+file(CREATE_LINK "${PROJECT_SOURCE_DIR}/analysis/clogsweep" "${PROJECT_BINARY_DIR}/${CLOG_PYTHON_DIR}/clogsweep" SYMBOLIC)
+install(DIRECTORY jobs DESTINATION "${shared}" USE_SOURCE_PERMISSIONS COMPONENT programs
+  FILES_MATCHING PATTERN "*.cfg" PATTERN "*.sh" PATTERN "install-dependencies.sh" EXCLUDE PATTERN "laptop.sh" EXCLUDE)
+install(DIRECTORY analysis/clogsweep DESTINATION "${CLOG_PYTHON_DIR}" COMPONENT programs
+  FILES_MATCHING PATTERN "*.py" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
+set(module "${CMAKE_INSTALL_PREFIX}/${CLOG_PYTHON_DIR}/clogsweep")
+file(RELATIVE_PATH PROGRAMS_FOLDER "${module}" "${CMAKE_INSTALL_FULL_BINDIR}")
+file(RELATIVE_PATH JOBS_FOLDER "${module}" "${CMAKE_INSTALL_PREFIX}/${shared}/jobs")
+configure_file(cmake/_installed.py.in "${PROJECT_BINARY_DIR}/_installed.py" @ONLY)
+install(FILES "${PROJECT_BINARY_DIR}/_installed.py" DESTINATION "${CLOG_PYTHON_DIR}/clogsweep" COMPONENT programs)
 install(FILES README.md CHANGELOG.md CITATION.cff LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs)
 # Messages name pages of the handbook.
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs
@@ -30,7 +41,7 @@ add_custom_command(OUTPUT "${completion}/clogsweep" "${completion}/_clogsweep"
   COMMAND "${CLOG_PYTHON}" "${PROJECT_SOURCE_DIR}/cmake/completion.py" "$<TARGET_FILE_DIR:clogsweep>" "${completion}"
   DEPENDS clogsweep clogrun clogfit "${PROJECT_SOURCE_DIR}/cmake/completion.py"
     "${PROJECT_SOURCE_DIR}/cmake/completion.bash.in" "${PROJECT_SOURCE_DIR}/cmake/completion.zsh.in"
-    "${PROJECT_SOURCE_DIR}/analysis/report.py"
+    "${PROJECT_SOURCE_DIR}/analysis/clogsweep/commands/report.py"
   VERBATIM)
 add_custom_target(completion ALL DEPENDS "${completion}/clogsweep" "${completion}/_clogsweep")
 # bash loads the file that is called as the command is.

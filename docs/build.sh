@@ -8,7 +8,7 @@ site=${1:-build/docs}
 
 mathjax=/usr/share/javascript/mathjax
 mkdir -p "$site"
-sphinx-build -W --keep-going -q -b html -d "$site/.doctrees" docs "$site/html"
+sphinx-build -W --keep-going -q -t site -b html -d "$site/.doctrees" docs "$site/html"
 mkdir -p "$site/html/_static/mathjax"
 for part in MathJax.js config extensions jax fonts/HTML-CSS/TeX/woff; do
   mkdir -p "$site/html/_static/mathjax/$(dirname "$part")"

@@ -14,12 +14,13 @@ packages=(
   libgtest-dev libbenchmark-dev                      # tests and benchmarks
   procps iproute2                                    # tests that kill ranks, and join two hosts
   python3-sphinx python3-myst-parser python3-sphinx-copybutton furo      # man pages, from the handbook
-  python3 python3-h5py python3-pandas python3-tables python3-matplotlib  # figures, and readers for the tests
+  python3 python3-h5py python3-pandas python3-tables python3-matplotlib  # the Python module, and readers for the tests
+  python3-nbclient python3-ipykernel                 # a test that runs the notebook of the gallery
 )
 case ${1:-} in
   "") ;;
   gates) packages+=(clang clang-format clang-tidy aspell aspell-en shellcheck flake8) ;;
-  docs) packages+=(libjs-mathjax doxygen) ;;
+  docs) packages+=(libjs-mathjax doxygen python3-nbsphinx pandoc) ;;
   paper) packages+=(pandoc) ;;
   *) echo "usage: install-dependencies.sh [gates|docs|paper]" >&2; exit 2 ;;
 esac

@@ -14,10 +14,10 @@ bin=build/laptop/bin
 mpirun -np 2 "$bin/clogsweep" --config jobs/laptop.cfg --output "$results/sweep.h5"
 "$bin/clogfit" "$results/sweep.h5" --format json >"$results/fit.json"
 # Debian's own Python has the packages; another one may come first in the path.
-/usr/bin/python3 analysis/clogging_length.py "$results/fit.json" --output "$results/clogging-length"
+PYTHONPATH=analysis /usr/bin/python3 -m clogsweep clogging-length "$results/fit.json" --output "$results/clogging-length"
 echo
 "$bin/clogfit" "$results/sweep.h5" | tee "$results/fit.txt"
 echo
 echo "runs:    $results/sweep.h5"
 echo "picture: $results/clogging-length.png (and .pdf)"
-echo "the programs themselves: export PATH=$PWD/$bin:\$PATH"
+echo "the programs themselves: export PATH=$PWD/$bin:\$PATH PYTHONPATH=$PWD/analysis"

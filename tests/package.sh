@@ -38,7 +38,8 @@ keys="obstacle-gap=0.3 vertices=64 box=20 max-time=200"
 mpirun --oversubscribe -np 2 clogsweep $keys line-tension=0.3,0.5 seeds=1..4 --output sweep.h5
 clogfit sweep.h5
 clogfit report sweep.h5 --output report.html
-/usr/share/clogsweep/analysis/clogging_length.py sweep.h5
+python3 -m clogsweep clogging-length sweep.h5
+python3 -c 'import clogsweep; print(clogsweep.open("sweep.h5").fit().groups.clogging_length)'
 clogrun array $keys line-tension=0.5 seeds=1 --polygon-interval 20 --output run.h5 --frames film.gif
 clogsweep --config /usr/share/clogsweep/jobs/laptop.cfg --print-config | grep line-tension
 ls -l

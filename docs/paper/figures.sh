@@ -10,19 +10,20 @@ if [ $# -eq 0 ]; then set -- clogging-length clogs mesh; fi
 folder=results/paper
 mkdir -p "$folder"
 
-figures() { /usr/bin/python3 analysis/figures.py "$@" --programs "$bin"; }
+export PYTHONPATH=$PWD/analysis
+draw() { /usr/bin/python3 -m clogsweep "$@" --programs "$bin"; }
 
 for name in "$@"; do
   case $name in
     clogging-length) # 5 to 10 minutes on two idle cores; docs/pictures/clogging-length.png
       mpirun -np 2 "$bin/clogsweep" --config jobs/laptop.cfg --output "$folder/sweep.h5"
-      /usr/bin/python3 analysis/clogging_length.py "$folder/sweep.h5" --output "$folder/clogging-length" --programs "$bin"
+      draw clogging-length "$folder/sweep.h5" --output "$folder/clogging-length"
       ;;
     clogs) # a minute; docs/pictures/figure-5.png
-      figures 5 --output "$folder/clogs" --set clogging:line-tension=0.05,0.5 --set clogging:obstacle-gap=0.2 \
+      draw figures 5 --output "$folder/clogs" --set clogging:line-tension=0.05,0.5 --set clogging:obstacle-gap=0.2 \
         --set clogging:seeds=1..2
       ;;
-    mesh) figures W1 --output "$folder/mesh" ;; # 32 core-minutes; docs/pictures/figure-W1.png
+    mesh) draw figures W1 --output "$folder/mesh" ;; # 32 core-minutes; docs/pictures/figure-W1.png
     *) echo "no figure is called $name; there are: clogging-length clogs mesh" >&2; exit 2 ;;
   esac
 done

@@ -8,9 +8,9 @@
 
 #include "clog/campaign/group_table.hpp"
 #include "clog/campaign/stored_sweep.hpp"
-#include "clog/cli/analysis_script.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
+#include "clog/cli/python_command.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
@@ -92,12 +92,12 @@ int body(int argc, char** argv) {
   return console::exit_success;
 }
 
-/// One page of HTML about a sweep: analysis/report.py, which asks this very program for the numbers.
+/// One page of HTML about a sweep: python3 -m clogsweep report, which asks this very program for the numbers.
 int report(int argc, char** argv) {
   // The user's own --programs comes later and has the last word.
-  std::vector<std::string> arguments = {"--programs", cli::own_folder()};
+  std::vector<std::string> arguments = {"report", "--programs", cli::own_folder()};
   arguments.insert(arguments.end(), argv + 2, argv + argc);
-  cli::become_script("clogfit report", cli::find_analysis_script("report.py"), arguments);
+  cli::become_python("clogfit report", cli::find_python_module(), arguments);
 }
 
 }  // namespace

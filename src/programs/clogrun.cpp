@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include "clog/cli/analysis_script.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
+#include "clog/cli/python_command.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
@@ -109,10 +109,10 @@ std::filesystem::path film_name(const cli::CommandLine& line) {
   return name;
 }
 
-/// How droplet.py is to draw the film. @throws Error  where none could be written
+/// How the Python module is to draw the film. @throws Error  where none could be written
 std::vector<std::string> film_options(const cli::CommandLine& line) {
-  std::vector<std::string> options = {line.require("output"), "--output=" + film_name(line).string(),
-                                      "--film"};
+  std::vector<std::string> options = {"droplet", line.require("output"),
+                                      "--output=" + film_name(line).string(), "--film"};
   if (line.has("most-frames"))
     options.push_back(fmt::format("--most-frames={:.0f}",
                                   std::clamp(std::round(line.get_positive("most-frames")), 1.0, 1e9)));
@@ -130,14 +130,13 @@ int follow(cli::CommandLine& line, const std::string& system) {
     return run(line);
   }
   const std::vector<std::string> options = film_options(line);
-  const std::filesystem::path script = cli::find_analysis_script("droplet.py");
+  const std::filesystem::path module = cli::find_python_module();
   const int exit_code = run(line);
   if (exit_code == console::exit_incomplete)
-    console::say(fmt::format(
-        "clogrun: stopped before its end, so no film is drawn; {} {} {} --film draws what there is",
-        script.string(), options[0], options[1]));
+    console::say(fmt::format("clogrun: stopped before its end, so no film is drawn; {} draws what there is",
+                             cli::python_command(module, options)));
   if (exit_code != console::exit_success || line.has("dry-run")) return exit_code;
-  cli::become_script("clogrun", script, options);
+  cli::become_python("clogrun", module, options);
 }
 
 int body(int argc, char** argv) {

@@ -9,6 +9,7 @@ The copy is built without optimisation, in some minutes. Exit code 1: the parame
 
 import argparse
 import json
+import os
 import pathlib
 import shutil
 import subprocess
@@ -54,7 +55,8 @@ def findings(programs, folder):
     yield "groups of its own", sorted(group["quiet_checks"] for group in fit["groups"]) == [1, 50]
     text = output(programs / "clogfit", "s.h5", cwd=folder)
     yield "a column of the fit", "quiet_checks" in text
-    picture = subprocess.run(["/usr/bin/python3", ROOT / "analysis" / "clogging_length.py", "s.h5", "--programs", programs], cwd=folder)
+    picture = subprocess.run(["/usr/bin/python3", "-m", "clogsweep", "clogging-length", "s.h5", "--programs", programs], cwd=folder,
+                             env={**os.environ, "PYTHONPATH": str(ROOT / "analysis")})
     yield "a curve", picture.returncode == 0 and (folder / "s-clogging-length.png").exists()
     tables = subprocess.run(["/usr/bin/python3", folder / "tests/lint/schema_tables.py", programs / "clogsweep", folder], capture_output=True)
     yield "a demand for documentation", tables.returncode == 1

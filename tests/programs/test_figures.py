@@ -13,22 +13,16 @@ import xml.etree.ElementTree as xml
 import h5py
 import numpy as np
 import pandas
-from matplotlib import image, pyplot
+from matplotlib import image
 
 import stored_rows
-from scripts import Analysis
+from drawing import Analysis
 from support import BIN, QUICK, ROOT, SMALL, table
 
-import clogging_length
-import clogs
-import film
-import programs
-import rounded
-import style
-import survival_curve
-import trajectory
-from groups import Groups
-from paper import arrays
+import clogsweep
+from clogsweep import clogs, film, lengths, programs, rounded, style, survival_curve, trajectory
+from clogsweep.groups import Groups
+from clogsweep.paper import arrays
 
 # A few seconds for all of them: coarse droplets, short ways.
 TINY = {
@@ -51,8 +45,7 @@ class Survival(unittest.TestCase):
     STEPS = [{"distance": 2.0, "probability": 0.75, "lower": 0.13, "upper": 0.96}, {"distance": 5.0, "probability": 0.375, "lower": 0.01, "upper": 0.8}]
 
     def draw(self, steps, censored):
-        drawing, axes = pyplot.subplots()
-        self.addCleanup(pyplot.close, drawing)
+        drawing, axes = style.subplots(figsize=(6.4, 4.8))
         group = {"survival": steps, "censored_distances": censored}
         arrays.draw_band(axes, group)
         survival_curve.draw(axes, group, "black", "")
@@ -82,7 +75,7 @@ class Figures(Analysis):
     PLACE = "reduced"
 
     def figures(self, *arguments):
-        return self.draw("figures.py", "--output", ".", "--programs", BIN, *SET, *arguments)
+        return self.draw("figures", "--output", ".", "--programs", BIN, *SET, *arguments)
 
     def drawn(self, name):
         with open(self.folder / self.PLACE / f"figure-{name}.csv") as file:
@@ -122,7 +115,7 @@ class Figures(Analysis):
         file = self.folder / self.PLACE / "sweeps" / "clogging.h5"
         self.draw_clogs(file)
         # Other settings than the file's are refused by clogsweep, in its words.
-        self.refuse_analysis("figures.py", "6c", "--output", ".", "--programs", BIN, *SET, "--set", "clogging:box=30", words=["box"])
+        self.refuse_analysis("figures", "6c", "--output", ".", "--programs", BIN, *SET, "--set", "clogging:box=30", words=["box"])
         self.make_report(file)
 
     def call_wrapped(self, sweep, number):
@@ -152,7 +145,7 @@ class Figures(Analysis):
             self.assertEqual(file["runs"]["distance"][0], float(wrapped["distance"]), "the same run, bit for bit")
         # What is drawn from files alone is not labelled as another droplet.
         self.call_wrapped(sweep, 0)
-        self.refuse_analysis("figures.py", "6a", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["clogging-", "leave out --draw-only"])
+        self.refuse_analysis("figures", "6a", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["clogging-", "leave out --draw-only"])
 
     def make_report(self, sweep):
         self.succeed("clogfit", "report", sweep, "--output", "report.html", "--examples", 2)
@@ -196,7 +189,7 @@ class Figures(Analysis):
         self.figures(*names, "--set", "seeds=1..3")
         self.assertEqual({path: path.stat().st_mtime_ns for path in before}, before)
         # Other settings than the sweep's are refused by clogsweep, in its words.
-        self.refuse_analysis("figures.py", "7b", "--output", ".", "--programs", BIN, *SET, "--set", "channel:max-time=200", words=["max-time"])
+        self.refuse_analysis("figures", "7b", "--output", ".", "--programs", BIN, *SET, "--set", "channel:max-time=200", words=["max-time"])
 
     def test_channels_are_sweeps_and_what_their_rows_say_is_drawn(self):
         self.figures("3", "A1", "B1", "--ranks", 2)
@@ -213,7 +206,7 @@ class Figures(Analysis):
         # A way of another row than the sweep's is run again, and not drawn without that.
         way = self.folder / self.PLACE / "runs" / "vertices-1.h5"
         way.with_name("vertices-0.h5").replace(way)
-        self.refuse_analysis("figures.py", "B1", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["vertices-0.h5", "not there"])
+        self.refuse_analysis("figures", "B1", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["vertices-0.h5", "not there"])
         self.figures("B1")
         with h5py.File(way) as file:
             self.assertEqual(file["runs"]["vertices"][0], 64)
@@ -228,8 +221,8 @@ class Figures(Analysis):
             (["2", "--programs", BIN, "--output", ".", *SET, "--profile", "no.csv"], ["cannot read no.csv"]),
         ]:
             with self.subTest(arguments=arguments):
-                self.refuse_analysis("figures.py", *arguments, words=words)
-        self.assertIn("A1", self.draw("figures.py", "list").stdout)
+                self.refuse_analysis("figures", *arguments, words=words)
+        self.assertIn("A1", self.draw("figures", "list").stdout)
 
 
 class Pictures(Analysis):
@@ -250,7 +243,7 @@ class Pictures(Analysis):
         ]:
             self.succeed("clogsweep", *keys, "--output", f"{name}.h5")
             self.write("fit.json", self.succeed("clogfit", f"{name}.h5", "--format", "json").stdout)
-            self.draw("clogging_length.py", "fit.json", "--output", name)
+            self.draw("clogging-length", "fit.json", "--output", name)
             self.assert_picture(name)
 
     def test_numbers_have_the_figures_that_their_interval_allows(self):
@@ -269,7 +262,7 @@ class Pictures(Analysis):
         return {"clogs": sum(clogs), "doubts": None, **dict(zip(style.MECHANISM_MARKERS, clogs)), **lengths, **columns}
 
     def test_markers_show_by_what_droplets_clog_and_open_ones_a_doubt(self):
-        axes = pyplot.figure().subplots()
+        axes = style.new_figure().subplots()
         groups = [self.group((4, 1, 0, 0), doubts="few_clogs held_by_mesh"), self.group((1, 4, 0, 0)), self.group((0, 1, 3, 0)), self.group((0, 0, 0, 0))]
         style.draw_lengths(axes, [1, 2, 3, 4], groups, 0, "")
         drawn = {line.get_xdata()[0]: (line.get_marker(), line.get_markerfacecolor() == "white") for line in axes.lines
@@ -277,11 +270,10 @@ class Pictures(Analysis):
         self.assertEqual(drawn, {1: ("o", True), 2: ("s", False), 3: ("D", False), 4: ("^", True)})
         style.legend(axes, groups)
         self.assertEqual([text.get_text() for text in axes.get_legend().get_texts()], ["most clogs wrapped", "most clogs squeezed", "most clogs hybrid"])
-        pyplot.close("all")
 
     def test_labels_of_an_abscissa_are_plain_numbers_side_by_side(self):
         for values in ([0.2, 0.25, 0.3, 10], np.linspace(0.2, 0.4, 15), [0.3, 0.31], [0.3], [0.04, 0.045, 0.05, 0.5, 5], np.geomspace(0.01, 10, 30)):
-            figure, axes = pyplot.subplots(figsize=(6.4, 4.8), layout="constrained")
+            figure, axes = style.subplots(figsize=(6.4, 4.8))
             axes.plot(values, values)
             style.logarithmic_abscissa(axes, list(values))
             figure.canvas.draw()
@@ -291,10 +283,9 @@ class Pictures(Analysis):
             self.assertGreater(len(places), 0)
             self.assertTrue(all(end < begin for (_, end), (begin, _) in zip(places, places[1:])), f"{values}: {places}")
             self.assertTrue(all(float(label.get_text()) > 0 for label in labels))
-        pyplot.close("all")
 
     def test_warnings_of_libraries_stay_away_from_the_terminal(self):
-        lines = "import command_line\nwith command_line.needs_modules():\n    import warnings\n    warnings.warn('of a library')"
+        lines = "from clogsweep import command_line\nwith command_line.needs_modules():\n    import warnings\n    warnings.warn('of a library')"
         for switches, expected in [([], ""), (["-W", "default"], "of a library")]:
             done = subprocess.run([sys.executable, *switches, "-c", lines], cwd=ROOT / "analysis", capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stderr)
@@ -318,8 +309,7 @@ class Pictures(Analysis):
 
         def open_places():
             """With the caption."""
-            axes = clogging_length.draw(groups).axes[0]
-            self.addCleanup(pyplot.close, axes.figure)
+            axes = lengths.draw(groups).axes[0]
             return [line.get_xdata()[0] for line in axes.lines if line.get_markerfacecolor() == "white" and line.get_marker() != "^"], axes.get_title()
 
         groups.members[0]["doubts"] = "censored_by_time"
@@ -338,18 +328,18 @@ class Pictures(Analysis):
 
     def test_clogs_are_drawn_from_a_sweep(self):
         self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1..2", "--output", "s.h5")
-        told = self.draw("clogs.py", "s.h5", "--programs", BIN, "--most", 2).stdout
+        told = self.draw("clogs", "s.h5", "--programs", BIN, "--most", 2).stdout
         self.assertEqual(told, "s-clogs.png (and .pdf)\n")
         self.assert_picture("s-clogs")
-        self.refuse_analysis("clogs.py", "s.h5", "--programs", BIN, "--output", "clogs", "--tasks", "0,77", words=["77"])
+        self.refuse_analysis("clogs", "s.h5", "--programs", BIN, "--output", "clogs", "--tasks", "0,77", words=["77"])
 
     def test_the_clogging_length_comes_from_the_sweep_itself_by_the_programs_of_the_path(self):
         self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1..2", "--output", "s.h5")
         self.write("fit.json", self.succeed("clogfit", "s.h5", "--format", "json").stdout)
-        self.draw("clogging_length.py", "fit.json", "--output", "from-fit")
+        self.draw("clogging-length", "fit.json", "--output", "from-fit")
         with unittest.mock.patch.dict(os.environ, {"PATH": f"{BIN}:{os.environ['PATH']}"}):
             self.assertEqual(programs.programs_in(), BIN.resolve())
-            self.draw("clogging_length.py", "s.h5", "--output", "from-sweep")
+            self.draw("clogging-length", "s.h5", "--output", "from-sweep")
         self.assertTrue((image.imread(self.folder / "from-fit.png") == image.imread(self.folder / "from-sweep.png")).all())
 
     def test_edges_marked_as_touching_are_those_that_the_program_counts(self):
@@ -360,14 +350,11 @@ class Pictures(Analysis):
             ("vertices", 1, ["wall-contact=vertex", "contact-range=half-vertex", "vertices=64", "line-tension=1"]),
         ]:
             self.succeed("clogsweep", *keys, "box=20", "max-time=500", "seeds=1..4", "--output", f"{name}.h5")
-            rows = clogs.read_clogs(self.folder / f"{name}.h5")
-            self.assertGreater(len(rows), 0)
-            for row in rows:
-                with self.subTest(contact=name, task=row["task"]):
-                    interface, obstacles = clogs.run_again(BIN / "clogrun", self.folder / f"{name}.h5", row, self.folder)
-                    (self.folder / f"{row['task']}.h5").unlink()
-                    self.assertEqual(interface.shape[1], points_per_vertex * row["vertices"])
-                    depths = clogs.overlaps(row, interface, obstacles)
+            for clog in clogsweep.open(self.folder / f"{name}.h5", BIN).clogs():
+                row = clog.row
+                with self.subTest(contact=name, task=clog.task):
+                    self.assertEqual(clog.polygon.shape[1], points_per_vertex * row["vertices"])
+                    depths = clogs.overlaps(row, clog.polygon, clog.obstacles)
                     touched = np.where(depths.max(axis=0) > 0, depths.argmax(axis=0), -1)
                     arcs = np.count_nonzero((touched >= 0) & (touched != np.roll(touched, 1)))
                     self.assertEqual(arcs, row["num_arcs"])
@@ -375,11 +362,11 @@ class Pictures(Analysis):
     def test_foreign_files_get_one_line(self):
         self.write("fit.json", json.dumps({"groups": "none"}))
         self.write("run.h5", "nothing")
-        for script, file in [("clogging_length.py", "fit.json"), ("droplet.py", "run.h5"),
-                             ("export_vtk.py", "run.h5"), ("clogs.py", "run.h5"), ("report.py", "run.h5")]:
-            with self.subTest(script=script, file=file):
-                where = ["--programs", BIN] if script in ("report.py", "clogs.py") else []
-                self.refuse_analysis(script, file, "--output", "x", *where, words=["run.h5" if script == "report.py" else "cannot read"])
+        for command, file in [("clogging-length", "fit.json"), ("droplet", "run.h5"),
+                              ("export-vtk", "run.h5"), ("clogs", "run.h5"), ("report", "run.h5")]:
+            with self.subTest(command=command, file=file):
+                where = ["--programs", BIN] if command in ("report", "clogs") else []
+                self.refuse_analysis(command, file, "--output", "x", *where, words=["run.h5" if command == "report" else "cannot read"])
 
     def test_nothing_is_written_over_what_is_read_or_of_another_kind(self):
         self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1", "--output", "s.h5")
@@ -394,25 +381,25 @@ class Pictures(Analysis):
             (self.folder / folder / "reduced").mkdir(parents=True)
             os.link(self.folder / "profile.csv", self.folder / folder / "reduced" / kept)
         before = self.snapshot()
-        for script, source, output, words in [
-            ("report.py", "s.h5", "s.h5", ["is what is to be read"]),
-            ("report.py", "s.h5", "soft.h5", ["is what is to be read"]),
-            ("report.py", "s.h5", "hard.h5", ["is what is to be read"]),
-            ("report.py", "soft.h5", "run.h5", ["run.h5", "it is no HTML file"]),
-            ("report.py", "s.h5", "page.html", ["page.html", "it is no HTML file"]),
-            ("clogging_length.py", "fit.json", "own", ["own.png", "it is no PNG file"]),
-            ("clogs.py", "s.h5", "own2", ["own2.pdf", "it is no PDF file"]),
-            ("droplet.py", "run.h5", "own", ["own.png", "it is no PNG file"]),
-            ("export_vtk.py", "run.h5", "own3", ["own3.pvd", "it is no VTK file"]),
-            ("droplet.py", "run.h5", "own4", ["own4.", "it exists", "--film"][:2]),
-            ("droplet.py", "run.h5", "own4.gif", ["own4.gif", "it exists"]),
+        for command, source, output, words in [
+            ("report", "s.h5", "s.h5", ["is what is to be read"]),
+            ("report", "s.h5", "soft.h5", ["is what is to be read"]),
+            ("report", "s.h5", "hard.h5", ["is what is to be read"]),
+            ("report", "soft.h5", "run.h5", ["run.h5", "it is no HTML file"]),
+            ("report", "s.h5", "page.html", ["page.html", "it is no HTML file"]),
+            ("clogging-length", "fit.json", "own", ["own.png", "it is no PNG file"]),
+            ("clogs", "s.h5", "own2", ["own2.pdf", "it is no PDF file"]),
+            ("droplet", "run.h5", "own", ["own.png", "it is no PNG file"]),
+            ("export-vtk", "run.h5", "own3", ["own3.pvd", "it is no VTK file"]),
+            ("droplet", "run.h5", "own4", ["own4.", "it exists", "--film"][:2]),
+            ("droplet", "run.h5", "own4.gif", ["own4.gif", "it exists"]),
         ]:
-            with self.subTest(script=script, output=output):
+            with self.subTest(command=command, output=output):
                 film = ["--film"] if output.startswith("own4") else []
-                where = ["--programs", BIN] if script in ("report.py", "clogs.py") else []
-                self.refuse_analysis(script, source, "--output", output, *film, *where, words=words)
-        self.refuse_analysis("figures.py", "4", "--programs", BIN, "--output", "own5", words=["figure-4.png", "no PNG file"])
-        self.refuse_analysis("figures.py", "4", "--programs", BIN, "--output", "own6", "--profile", "profile.csv",
+                where = ["--programs", BIN] if command in ("report", "clogs") else []
+                self.refuse_analysis(command, source, "--output", output, *film, *where, words=words)
+        self.refuse_analysis("figures", "4", "--programs", BIN, "--output", "own5", words=["figure-4.png", "no PNG file"])
+        self.refuse_analysis("figures", "4", "--programs", BIN, "--output", "own6", "--profile", "profile.csv",
                              words=["figure-4.txt", "is what is to be read"])
         for film in ("own4", "own4.mp4", "own4.gif"):
             self.refuse("clogrun", "array", *QUICK, "--polygon-interval", 15, "--frames", film, "--output", "r.h5", words=["own4.", "it exists"])
@@ -420,9 +407,9 @@ class Pictures(Analysis):
         self.assertEqual({name: after[name] for name in before}, before)
         # An earlier page or picture of one's own is replaced.
         for _ in range(2):
-            self.draw("report.py", "s.h5", "--output", "report.html", "--programs", BIN, "--examples", 0)
-            self.draw("clogging_length.py", "fit.json", "--output", "length")
-            self.draw("export_vtk.py", "run.h5", "--output", "run")
+            self.draw("report", "s.h5", "--output", "report.html", "--programs", BIN, "--examples", 0)
+            self.draw("clogging-length", "fit.json", "--output", "length")
+            self.draw("export-vtk", "run.h5", "--output", "run")
 
     def test_a_film_has_the_ending_that_was_asked_for(self):
         self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 30, "--output", "run.h5", "--frames", "film.gif")
@@ -433,7 +420,7 @@ class Pictures(Analysis):
                         ["--output", "r.h5", "--write-obstacles", "film.gif", "--frames", "./film.gif"]):
             self.refuse("clogrun", "array", *QUICK, "--polygon-interval", 15, *options, words=["name the same file", "give two names"])
 
-    def test_mistakes_get_one_line_from_every_script(self):
+    def test_mistakes_get_one_line_from_every_command(self):
         self.succeed("clogsweep", *QUICK, "line-tension=2", "seeds=1..2", "--output", "s.h5")
         self.write("text.h5", "not a table")
         (self.folder / "folder").mkdir()
@@ -449,9 +436,9 @@ class Pictures(Analysis):
         ]:
             with self.subTest(arguments=arguments):
                 self.refuse("clogfit", "report", *arguments, words=["clogfit report: ", *words])
-        for script in ("clogging_length.py", "clogs.py", "droplet.py", "export_vtk.py", "figures.py"):
-            with self.subTest(script=script):
-                self.refuse_analysis(script, "s.h5", "--colours", words=[f"{script}: ", "--help"])
+        for command in ("clogging-length", "clogs", "droplet", "export-vtk", "figures"):
+            with self.subTest(command=command):
+                self.refuse_analysis(command, "s.h5", "--colours", words=[f"python3 -m clogsweep {command}: ", "--help"])
 
     def test_a_machine_without_matplotlib_is_told_what_it_lacks(self):
         self.write("matplotlib.py", "raise ImportError('No module named matplotlib')")
@@ -485,7 +472,6 @@ class Pictures(Analysis):
             shown.append([text.get_text() for text in axes.texts if text.get_visible()])
         self.assertTrue(all(verdict not in texts for texts in shown[:-1]))
         self.assertIn(verdict, shown[-1])
-        pyplot.close("all")
 
     def test_a_film_has_so_many_frames_at_most(self):
         run, frames, _ = self.film_of("obstacle-gap=1.2", "max-time=2000", "--polygon-interval", 1, most=100)
@@ -499,7 +485,6 @@ class Pictures(Analysis):
         self.assertEqual(len(film.chosen_frames(run, 10**6)), len(run.times))
         for most in (1, 2):
             self.assertEqual(len(film.chosen_frames(run, most)), most)
-        pyplot.close("all")
 
     def test_a_film_that_cannot_be_made_is_refused_before_the_run(self):
         filmed = ["--polygon-interval", 15, "--frames", "film.mp4", "--output", "run.h5"]
@@ -511,7 +496,7 @@ class Pictures(Analysis):
         filmed = [*QUICK, "--polygon-interval", 5, "--frames", "film", "--output", "run.h5"]
         self.refuse("clogrun", "array", *filmed, "--most-frames=few", words=["--most-frames=few"])
         self.succeed("clogrun", "array", *filmed, "--most-frames", 3)
-        self.draw("droplet.py", "run.h5", "--output", "run", "--pictures", "--most-frames", 3)
+        self.draw("droplet", "run.h5", "--output", "run", "--pictures", "--most-frames", 3)
         self.assertEqual(len(list((self.folder / "run-frames").iterdir())), 3)
 
     def numbers(self, parent, name):
@@ -526,11 +511,11 @@ class Pictures(Analysis):
         told = self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 15, "--output", "run.h5", "--frames", name).stdout
         self.assertEqual(told.splitlines()[-1], name)
         self.assertGreater((self.folder / name).stat().st_size, 1000)
-        self.draw("droplet.py", "run.h5", "--output", "droplet")
+        self.draw("droplet", "run.h5", "--output", "droplet")
         self.assert_picture("droplet")
         with h5py.File(self.folder / "run.h5") as file:
             polygons, times, obstacles = (file[name][:] for name in ("polygons", "polygon_times", "obstacles"))
-        told = self.draw("droplet.py", "run.h5", "--output", "droplet", "--pictures", "--film", "--colour", "mechanism").stdout
+        told = self.draw("droplet", "run.h5", "--output", "droplet", "--pictures", "--film", "--colour", "mechanism").stdout
         frames = sorted((self.folder / "droplet-frames").iterdir())
         self.assertEqual(len(frames), len(times))
         self.assertNotEqual(frames[0].read_bytes(), frames[-1].read_bytes())
@@ -538,7 +523,7 @@ class Pictures(Analysis):
         self.assertEqual(film.suffix, ".mp4" if shutil.which("ffmpeg") else ".gif")
         self.assertIn(film.read_bytes()[:8][4:] if film.suffix == ".mp4" else film.read_bytes()[:4], [b"ftyp", b"GIF8"])
 
-        self.draw("export_vtk.py", "run.h5", "--output", "run")
+        self.draw("export-vtk", "run.h5", "--output", "run")
         frames = xml.parse(self.folder / "run.pvd").findall(".//DataSet")
         self.assertEqual([float(frame.get("timestep")) for frame in frames], times.tolist())
         last = xml.parse(self.folder / frames[-1].get("file"))
@@ -556,7 +541,7 @@ class Pictures(Analysis):
     def test_a_channel_is_exported_in_numbers_that_vtk_reads(self):
         """Its readers stop at the first NaN."""
         self.succeed("clogrun", "channel", "vertices=32", "line-tension=0.5", "max-time=30", "--start", -1, "--polygon-interval", 10, "--output", "run.h5")
-        self.draw("export_vtk.py", "run.h5", "--output", "run")
+        self.draw("export-vtk", "run.h5", "--output", "run")
         walls = xml.parse(self.folder / "run-obstacles.vtp")
         self.assertEqual(self.numbers(walls, "diameter").tolist(), [0, 0])
         for file in [self.folder / "run-obstacles.vtp", *(self.folder / "run-vtk").iterdir()]:

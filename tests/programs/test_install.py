@@ -36,7 +36,7 @@ class Installed(unittest.TestCase):
     def called(cls, *command, **options):
         # Only what is installed, and the system.
         environment = {"PATH": f"{cls.folder}/moved/bin:/usr/bin:/bin", "HOME": str(cls.folder), "OMPI_ALLOW_RUN_AS_ROOT": "1",
-                       "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "PYTHONDONTWRITEBYTECODE": "1", "ASAN_OPTIONS": os.environ.get("ASAN_OPTIONS", "")}
+                       "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": f"{cls.folder}/moved/lib/python3/dist-packages", "ASAN_OPTIONS": os.environ.get("ASAN_OPTIONS", "")}
         done = subprocess.run([str(word) for word in command], cwd=cls.folder, env=environment, capture_output=True, text=True, timeout=300, **options)
         if done.returncode != 0:
             raise AssertionError(f"{command}: {done.stdout}{done.stderr}")
@@ -55,7 +55,7 @@ class Installed(unittest.TestCase):
         self.assertIn("lambda/sigma", self.called("clogfit", "s.h5"))
         self.called("clogfit", "report", "s.h5", "--output", "s.html")
         self.assertIn("<figure>", (self.folder / "s.html").read_text())
-        self.called(self.prefix / "share/clogsweep/analysis/clogging_length.py", "s.h5", "--output", "curve")
+        self.called("/usr/bin/python3", "-m", "clogsweep", "clogging-length", "s.h5", "--output", "curve")
         self.assertTrue((self.folder / "curve.png").exists())
         self.called("clogrun", "array", *KEYS[:-1], "seeds=1", "--polygon-interval", 20, "--output", "r.h5", "--frames", "film.gif")
         self.assertTrue((self.folder / "film.gif").exists())

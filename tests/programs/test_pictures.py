@@ -1,91 +1,83 @@
-"""How the scripts of analysis/ are called, and what their pictures and pages say."""
+"""How the commands of the Python module are called, and what their pictures and pages say."""
 
 import json
 import unittest
 
 import numpy as np
-from matplotlib import pyplot
 
-from scripts import Analysis
+from drawing import Analysis
 from support import BIN, QUICK, SMALL
 
 import stored_rows
-import clogging_length
-import dwell
-import film
-from groups import Groups
-import report
-import rounded
-import stored
-import style
-import trajectory
+from clogsweep import dwell, film, lengths, report, rounded, stored, style, trajectory
+from clogsweep.groups import Groups
 
 ONE_CURVE = [*QUICK, "line-tension=0.5,3", "seeds=1..2", "near-wall-drag=0.07", "obstacle-gap=0.35", "terminal-speed=0.032"]
 
 
 class Calls(Analysis):
-    SCRIPTS = ["clogging_length.py", "clogs.py", "droplet.py", "dwell.py", "export_vtk.py", "report.py"]
+    COMMANDS = ["clogging-length", "clogs", "droplet", "dwell", "export-vtk", "report"]
 
-    def needs(self, script):
-        return [] if script in ("droplet.py", "export_vtk.py") else ["--programs", BIN]
+    def needs(self, command):
+        return [] if command in ("droplet", "export-vtk") else ["--programs", BIN]
 
     def test_a_run_is_no_sweep_and_a_sweep_no_run(self):
         self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 30, "--output", "run.h5")
         self.succeed("clogsweep", *QUICK, "seeds=1", "--output", "s.h5")
-        for script in self.SCRIPTS:
-            is_of_runs = not self.needs(script)
-            with self.subTest(script=script):
-                self.refuse_analysis(script, "s.h5" if is_of_runs else "run.h5", "--output", "x", *self.needs(script),
+        for command in self.COMMANDS:
+            is_of_runs = not self.needs(command)
+            with self.subTest(command=command):
+                self.refuse_analysis(command, "s.h5" if is_of_runs else "run.h5", "--output", "x", *self.needs(command),
                                      words=["cannot read", "output of clogrun" if is_of_runs else "clogsweep"])
-        self.refuse_analysis("clogs.py", "run.h5", *self.needs("clogs.py"), words=["run.h5 (holds one run of clogrun, not a sweep)"])
+        self.refuse_analysis("clogs", "run.h5", *self.needs("clogs"), words=["run.h5 (holds one run of clogrun, not a sweep)"])
 
     def test_a_file_that_is_not_there_is_called_so(self):
-        for script in self.SCRIPTS:
-            with self.subTest(script=script):
-                self.refuse_analysis(script, "nope.h5", "--output", "x", *self.needs(script), words=["cannot read nope.h5 (no such file); check the name"])
+        for command in self.COMMANDS:
+            with self.subTest(command=command):
+                self.refuse_analysis(command, "nope.h5", "--output", "x", *self.needs(command), words=["cannot read nope.h5 (no such file); check the name"])
 
     def test_an_output_may_be_left_out_or_have_its_ending(self):
         self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1..2", "--output", "s.h5")
-        for script, made in [("clogging_length.py", "s-clogging-length.png"), ("clogs.py", "s-clogs.png"), ("dwell.py", "s-dwell.png"),
-                             ("report.py", "s-report.html")]:
-            self.assertIn(made, self.draw(script, "s.h5", "--programs", BIN).stdout)
+        for command, made in [("clogging-length", "s-clogging-length.png"), ("clogs", "s-clogs.png"), ("dwell", "s-dwell.png"),
+                              ("report", "s-report.html")]:
+            self.assertIn(made, self.draw(command, "s.h5", "--programs", BIN).stdout)
             self.assertTrue((self.folder / made).exists())
         for name in ("cl.png", "cl.pdf", "cl0.2"):
-            self.draw("clogging_length.py", "s.h5", "-o", name, "--programs", BIN)
+            self.draw("clogging-length", "s.h5", "-o", name, "--programs", BIN)
         self.assertEqual({path.name for path in self.folder.glob("cl*")}, {"cl.png", "cl.pdf", "cl0.2.png", "cl0.2.pdf"})
-        self.refuse_analysis("clogging_length.py", "/dev/null", words=["no name", "--output"])
+        self.refuse_analysis("clogging-length", "/dev/null", words=["no name", "--output"])
 
     def test_a_name_of_a_film_asks_for_one(self):
         self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 30, "--output", "run.h5")
-        self.assertEqual(self.draw("droplet.py", "run.h5", "-o", "run.gif").stdout, "run.gif\n")
+        self.assertEqual(self.draw("droplet", "run.h5", "-o", "run.gif").stdout, "run.gif\n")
         self.assertEqual((self.folder / "run.gif").read_bytes()[:4], b"GIF8")
 
     def test_earlier_pictures_of_a_longer_run_do_not_stay_between_those_of_a_film(self):
         self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 10, "--output", "run.h5")
         for most in (4, 2):
-            self.draw("droplet.py", "run.h5", "-o", "run", "--pictures", "--most-frames", most)
+            self.draw("droplet", "run.h5", "-o", "run", "--pictures", "--most-frames", most)
             self.assertEqual(len(list((self.folder / "run-frames").iterdir())), most)
 
     def test_numbers_that_cannot_be_and_clogs_that_are_not_there_get_one_line(self):
         self.succeed("clogsweep", *QUICK, "line-tension=3", "seeds=1", "--output", "s.h5")
         self.succeed("clogsweep", "model=sp", "wall-stiffness=30", "box=20", "max-time=60", "seeds=1", "--output", "disk.h5")
         for arguments, words in [
-            (["clogs.py", "s.h5", "--jobs", "0"], ["--jobs", "1 or more"]),
-            (["clogs.py", "s.h5", "--most", "few"], ["--most", "whole number"]),
-            (["clogs.py", "s.h5", "--tasks", "1-3"], ["--tasks", "1-3", "try 3,17,40"]),
-            (["clogs.py", "s.h5", "--tasks", "7,0"], ["--tasks 7:", "no such clogged polygon"]),
-            (["clogs.py", "s.h5", "--mechanism", "wrapped"], ["--mechanism wrapped", "no such clogged polygon"]),
-            (["clogs.py", "disk.h5"], ["disk.h5 holds no clogged polygon", "soft disks"]),
-            (["droplet.py", "s.h5", "-o", "x", "--rate", "0"], ["--rate", "1 or more"]),
-            (["figures.py", "2", "--ranks", "0"], ["--ranks", "1 or more"]),
-            (["figures.py", "2", "--profile", "none.csv"], ["cannot read none.csv (no such file); check the name"]),
+            (["clogs", "s.h5", "--jobs", "0"], ["--jobs", "1 or more"]),
+            (["clogs", "s.h5", "--most", "few"], ["--most", "whole number"]),
+            (["clogs", "s.h5", "--tasks", "1-3"], ["--tasks", "1-3", "try 3,17,40"]),
+            (["clogs", "s.h5", "--tasks", "7,0"], ["tasks 7:", "no such clogged polygon"]),
+            (["clogs", "s.h5", "--mechanism", "wrapped"], ["mechanism wrapped", "no such clogged polygon"]),
+            (["clogs", "disk.h5"], ["disk.h5 holds no clogged polygon", "soft disks"]),
+            (["droplet", "s.h5", "-o", "x", "--rate", "0"], ["--rate", "1 or more"]),
+            (["figures", "2", "--ranks", "0"], ["--ranks", "1 or more"]),
+            (["figures", "2", "--profile", "none.csv"], ["cannot read none.csv (no such file); check the name"]),
         ]:
             with self.subTest(arguments=arguments):
-                where = ["--programs", BIN] if arguments[0] != "droplet.py" else []
+                where = ["--programs", BIN] if arguments[0] != "droplet" else []
                 self.refuse_analysis(*arguments, *where, words=words)
 
     def test_the_colour_of_obstacles_is_the_one_in_the_help(self):
-        self.assertIn("obstacles are blue", " ".join(self.draw("clogs.py", "--help").stdout.split()))
+        self.assertIn("obstacles are blue", " ".join(self.draw("clogs", "--help").stdout.split()))
 
 
 class Looks(Analysis):
@@ -102,15 +94,13 @@ class Looks(Analysis):
 
     def test_one_curve_has_its_whole_title_the_interface_and_room_at_the_frame(self):
         groups = self.fit(*ONE_CURVE)
-        for drawing in (clogging_length.draw(groups), report.speeds(groups), report.survival(groups, "", groups.members)):
-            self.addCleanup(pyplot.close, drawing)
+        for drawing in (lengths.draw(groups), lengths.draw_speeds(groups), report.survival(groups, "", groups.members)):
             self.assert_title_is_whole(drawing)
             self.assertIn("2 runs a point", drawing.axes[0].get_title())
         # The speed of the stiffer droplets, which clog at once, is not known.
         for group, speed in zip(groups.members, (0.4, None)):
             group.update(relative_speed=speed, relative_speed_error=0.1)
-        drawing = report.speeds(groups)
-        self.addCleanup(pyplot.close, drawing)
+        drawing = lengths.draw_speeds(groups)
         axes = drawing.axes[0]
         self.assertIn("interface: robust", axes.get_title())
         low, high = axes.get_xlim()
@@ -121,9 +111,8 @@ class Looks(Analysis):
         times = dwell.times_of(self.fit_at())
         self.assertEqual(len(times), 12)
         self.assertEqual((times[0], times[-1]), (stored.read_rows(self.folder / "s.h5")["dwells_known_from"].max(), 400))
-        fits = [dwell.fit_at(BIN / "clogfit", self.folder / "s.h5", "--dwell", repr(time)) for time in times]
+        fits = [self.fit_at("--dwell", repr(time)) for time in times]
         drawing = dwell.draw(times, fits)
-        self.addCleanup(pyplot.close, drawing)
         self.assert_title_is_whole(drawing)
         axes, = drawing.axes
         self.assertIn("moved by $0.05", axes.get_xlabel())
@@ -142,7 +131,7 @@ class Looks(Analysis):
             np.testing.assert_allclose(bars[i], [group["clogging_length_lower"], group["clogging_length_upper"]])
         self.assertEqual(lengths[-1], self.fit_at().members[1]["clogging_length"])
         self.assertLess(lengths[0], 0.7 * lengths[-1])
-        self.draw("dwell.py", "s.h5", "-o", "d", "--programs", BIN)
+        self.draw("dwell", "s.h5", "-o", "d", "--programs", BIN)
         self.assert_picture("d")
 
     def fit_at(self, *options):
@@ -150,9 +139,9 @@ class Looks(Analysis):
 
     def test_dwells_that_cannot_be_drawn_are_refused(self):
         self.succeed("clogsweep", *SMALL, "seeds=1", "max-time=10", "--output", "s.h5")
-        self.refuse_analysis("dwell.py", "s.h5", "--programs", BIN, words=["from 16.67 t0 on", "make max-time longer"])
+        self.refuse_analysis("dwell", "s.h5", "--programs", BIN, words=["from 16.67 t0 on", "make max-time longer"])
         stored_rows.make_older(self.folder / "s.h5", "6", [name for name in stored_rows.columns(self.folder / "s.h5") if "dwell" in name])
-        self.refuse_analysis("dwell.py", "s.h5", "--programs", BIN, words=["did not look for them", "compute the sweep anew"])
+        self.refuse_analysis("dwell", "s.h5", "--programs", BIN, words=["did not look for them", "compute the sweep anew"])
 
     def test_many_curves_are_told_apart_beside_the_legend_and_off_the_frame(self):
         arrays = ["obstacle-gap=lin(0.2,0.35,4)", "obstacle-diameter=lin(0.3,0.45,4)"]
@@ -161,8 +150,7 @@ class Looks(Analysis):
             groups = self.fit(*QUICK, tensions, *arrays, "seeds=1")
             for group in groups.members:
                 group.update(relative_speed=0.4, relative_speed_error=0.1)
-            for drawing in (clogging_length.draw(groups), report.speeds(groups)):
-                self.addCleanup(pyplot.close, drawing)
+            for drawing in (lengths.draw(groups), lengths.draw_speeds(groups)):
                 self.assert_title_is_whole(drawing)
                 axes, = drawing.axes
                 legend, frame = axes.get_legend().get_window_extent(), axes.get_window_extent()
@@ -176,8 +164,7 @@ class Looks(Analysis):
                         self.assertTrue(frame.x0 + 4 < x < frame.x1 - 4 or np.isnan(x), (frame, x))
 
     def test_long_captions_of_panels_are_wrapped_between_phrases(self):
-        drawing, panels = pyplot.subplots(1, 2, figsize=(7, 3), layout="constrained")
-        self.addCleanup(pyplot.close, drawing)
+        drawing, panels = style.subplots(1, 2, figsize=(7, 3))
         phrases = [rf"$\sigma_\mathrm{{ob}}/\sigma = {number}$" for number in range(9)]
         for axes in panels:
             style.caption(axes, ", ".join(phrases) + "\nsecond line")
@@ -194,7 +181,6 @@ class Looks(Analysis):
                                                 {"clogging_length": 8.0, "survival": steps, "censored_distances": [3.0, 9.0]})):
             group.update(ways)
         drawing = report.survival(groups, "two", groups.members)
-        self.addCleanup(pyplot.close, drawing)
         curves = [line.get_xydata() for line in drawing.axes[0].lines if line.get_drawstyle() == "steps-post"]
         self.assertEqual([curve[-1].tolist() for curve in curves], [[40, 1], [9, 0.75]])
         self.assertTrue(all(curve[0, 0] > 0 and curve[0, 1] == 1 for curve in curves), "it begins where the scale does")
@@ -206,8 +192,8 @@ class Looks(Analysis):
         run = trajectory.read(self.folder / "run.h5")
         size = run.polygons.max(axis=2) - run.polygons.min(axis=2)
         np.testing.assert_allclose(size, 1, atol=1e-3)
-        for script, made in [("droplet.py", "disk.png"), ("export_vtk.py", "disk.pvd")]:
-            self.draw(script, "run.h5", "-o", "disk")
+        for command, made in [("droplet", "disk.png"), ("export-vtk", "disk.pvd")]:
+            self.draw(command, "run.h5", "-o", "disk")
             self.assertTrue((self.folder / made).exists())
 
     def test_a_caption_names_what_its_model_has(self):
@@ -228,7 +214,6 @@ class Looks(Analysis):
         # As of a certified clog, whose equilibrium is beyond the last frame.
         run.row["distance"] = run.table["distance"][-1] + 0.01
         moving = film.Film(run, film.chosen_frames(run, 50), "speed", 20)
-        self.addCleanup(pyplot.close, moving.figure)
         moving.show(len(moving) - 1)
         end = f"r = {run.row['distance']:.2f} "
         self.assertTrue(any(end in text.get_text() for text in moving.figure.texts), [text.get_text() for text in moving.figure.texts])

@@ -5,16 +5,13 @@ import unittest
 
 import h5py
 import numpy as np
-from matplotlib import pyplot
 
 import stored_rows
-from scripts import Analysis
+from drawing import Analysis
 from support import BIN, ProgramTest, table
 
-import passages
-import stored
-import style
-from groups import Groups
+from clogsweep import passages, stored, style
+from clogsweep.groups import Groups
 
 EXTREMES = [f"{extreme}{at}" for extreme in ("largest_shape_parameter", "smallest_relative_speed", "largest_relative_speed") for at in ("", "_at")]
 CHANNEL = ["obstacle-layout=channel", "orifice=0.7", "near-wall-drag=0.07", "terminal-speed=0.05", "start=-1.5", "end=1", "vertices=64"]
@@ -62,7 +59,7 @@ class BreakUp(Analysis):
         self.assertEqual(set(foretold), {True, False})
 
     def test_the_picture_of_collisions_closes_in_on_the_threshold(self):
-        done = self.draw("collision.py", "--output", "c", "--programs", BIN, "--offsets", "0.1,0.4", "vertices=64")
+        done = self.draw("collision", "--output", "c", "--programs", BIN, "--offsets", "0.1,0.4", "vertices=64")
         head, near, far = done.stdout.splitlines()
         self.assertEqual(head, "offset,symmetry,breaks_up_to,whole_from,capillary_number")
         low, high = map(float, near.split(",")[2:4])
@@ -70,7 +67,7 @@ class BreakUp(Analysis):
         self.assertEqual(far.split(",")[2:], ["", "0.01", ""])  # none breaks
         self.assertTrue((self.folder / "c.png").exists())
         for words, said in [(["--offsets", "0.6"], "0.6"), (["vertices"], "KEY=VALUE"), (["vertices=x"], "vertices"), (["--offsets", "0.4"], "nothing to draw")]:
-            self.refuse_analysis("collision.py", "--output", "d", "--programs", BIN, *words, words=[said])
+            self.refuse_analysis("collision", "--output", "d", "--programs", BIN, *words, words=[said])
 
 
 class Channels(Analysis):
@@ -124,8 +121,8 @@ class Channels(Analysis):
         self.assertIn("speed_ratio", again["trajectory"].dtype.names)
         for name in ("orifice", "wedge_angle", "tip_radius", "start_h", "end_h"):
             self.assertEqual(again.attrs[name], same.attrs[name])
-        self.refuse_analysis("clogging_length.py", "s.h5", "--programs", BIN, words=["in a channel", "clogfit report"])
-        self.refuse_analysis("clogs.py", "s.h5", "--programs", BIN, words=["in a channel", "clogfit report"])
+        self.refuse_analysis("clogging-length", "s.h5", "--programs", BIN, words=["in a channel", "clogfit report"])
+        self.refuse_analysis("clogs", "s.h5", "--programs", BIN, words=["in a channel", "clogfit report"])
 
     def test_a_report_shows_what_came_out_of_them(self):
         self.succeed("clogsweep", *CHANNEL[:1], *CHANNEL[2:], "orifice=0.6,0.7", "line-tension=0.3,0.6,5", "--output", "s.h5")
@@ -150,7 +147,6 @@ class Channels(Analysis):
         drawn = [(line.get_xdata()[0], line.get_ydata()[0], line.get_marker()) for line in axes.lines if len(line.get_xdata()) == 1]
         self.assertEqual(drawn, [(group["line_tension"], group["largest_shape_parameter"], {"passed": "o", "clogged": "X"}[group["status"]])
                                  for group in fit["groups"]])
-        pyplot.close("all")
 
     def test_a_report_of_soft_disks_has_no_shapes(self):
         self.succeed("clogsweep", "model=sp", "orifice=0.7", "wall-stiffness=1,50", "start=-1.5", "end=1", "max-time=2000", "--output", "s.h5")
@@ -187,7 +183,6 @@ class Channels(Analysis):
             perimeter, area = np.hypot(after_x - x, after_y - y).sum(), abs((x * after_y - after_x * y).sum()) / 2
             self.assertAlmostEqual(perimeter**2 / (4 * np.pi * area), row["largest_shape_parameter"], delta=0.003)
             self.assertIn(row["status"].decode(), figure.axes[0].get_title())
-        pyplot.close("all")
 
     def test_what_stops_goes_on(self):
         keys = [*CHANNEL[:-1], "line-tension=0.3,0.6,1", "vertices=256"]
@@ -228,7 +223,7 @@ class Walls(Analysis):
             self.assertIn("".join(f"<td>{cell}</td>" for cell in cells), page)
         self.assertIn("<li>2 of 2 at rest</li>", page)
         self.assertEqual(page.count("<img"), 2 + 2)
-        self.refuse_analysis("clogging_length.py", "s.h5", "--programs", BIN, words=["on a wall", "clogfit report"])
+        self.refuse_analysis("clogging-length", "s.h5", "--programs", BIN, words=["on a wall", "clogfit report"])
 
     def test_a_soft_disk_sags_as_its_spring_says(self):
         self.succeed("clogsweep", "obstacle-layout=wall", "model=sp", "wall-stiffness=0.5,5", "--output", "s.h5")

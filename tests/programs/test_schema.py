@@ -6,7 +6,7 @@ import unittest
 from scripts import Analysis
 from support import BIN, QUICK
 
-from groups import Groups
+from clogsweep.groups import Groups
 
 # Of keys that mean something in certain runs only, and of words, which take no list.
 SURROUNDINGS = {
@@ -65,7 +65,7 @@ class EveryKey(Analysis):
                         self.assertIn(key["column"].replace("_", " "), groups.axis_label())
                 # Curves and, run once more, a clog.
                 self.assertGreater(sum(group["clogs"] for group in groups.members), 0)
-                self.draw("report.py", "s.h5", "--programs", BIN, "--output", "r.html", "--examples", 1)
+                self.draw("report", "s.h5", "--programs", BIN, "--output", "r.html", "--examples", 1)
                 self.assertIn("touched obstacles blue", (self.folder / "r.html").read_text())
 
     def test_two_parameters_make_curves_of_the_one_over_the_other(self):

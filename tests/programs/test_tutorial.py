@@ -25,7 +25,7 @@ def outline(line):
 
 class Pages(ProgramTest):
     def follow(self, path):
-        environment = {**os.environ, "PATH": f"{BIN}:{ROOT / 'analysis'}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT / "analysis")}
+        environment = {**os.environ, "PATH": f"{BIN}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT / "analysis")}
         page = (ROOT / path).read_text()
         blocks = BLOCK.findall(page)
         self.assertIn("bash", [language for language, _ in blocks])

@@ -1,0 +1,33 @@
+"""Results of clogsweep in Python: tables, fits, curves, clogs, films::
+
+    import clogsweep
+    sweep = clogsweep.open("sweep.h5")
+    sweep.rows                # pandas: a row for each run
+    sweep.fit().groups        # clogging lengths, from clogfit
+    sweep.fit().curve()       # draws itself in a notebook
+
+Nothing is fitted or simulated here: the programs are asked.
+"""
+
+from __future__ import annotations
+
+import os
+
+from . import stored
+from .clogs import Clog, Clogs
+from .errors import Damaged, ProgramFailed, UserError
+from .fit import Fit
+from .picture import Picture
+from .run import Film, Run
+from .sweep import Sweep
+
+__all__ = ["Clog", "Clogs", "Damaged", "Film", "Fit", "Picture", "ProgramFailed", "Run", "Sweep", "UserError", "open"]
+
+
+def open(path: str | os.PathLike[str], programs: str | os.PathLike[str] | None = None) -> Sweep | Run:
+    """A file of clogsweep, or of clogrun.
+
+    @param programs  folder of clogsweep, clogrun and clogfit, if they are not in the PATH or beside this module
+    @throws UserError  if it is neither; Damaged  if anything in it is not as it was written
+    """
+    return Run(path) if stored.kind_of(path) == stored.RUN else Sweep(path, programs)

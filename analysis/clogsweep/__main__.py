@@ -1,0 +1,54 @@
+"""Pictures, films and pages of what clogsweep and clogrun wrote.
+
+    python3 -m clogsweep COMMAND ...
+    python3 -m clogsweep COMMAND --help
+"""
+
+import importlib
+import sys
+
+from . import command_line
+from .errors import UserError
+
+COMMANDS = {
+    "figures": "a figure of the article from runs of our own",
+    "report": "one page of HTML about a sweep, as clogfit report",
+    "clogging-length": "the clogging length over what a sweep varies",
+    "dwell": "the same over the time after which a droplet that stands counts as clogged",
+    "clogs": "the clogs of a sweep on one sheet",
+    "collision": "which droplets break up on a single obstacle",
+    "droplet": "one run as a picture or a film",
+    "export-vtk": "one run for ParaView",
+}
+
+
+def usage() -> str:
+    return f"{__doc__}\n" + "\n".join(f"  {name:16} {about}" for name, about in COMMANDS.items())
+
+
+def become(command: str) -> int:
+    """@return the command's exit code"""
+    with command_line.needs_modules():
+        module = importlib.import_module(f".commands.{command.replace('-', '_')}", __package__)
+    return module.body()
+
+
+def choose() -> int:
+    command, *words = sys.argv[1:] or ["--help"]
+    if command in ("-h", "--help"):
+        print(usage())
+        return 0
+    if command not in COMMANDS:
+        raise UserError(f"unknown command: {command}; python3 -m clogsweep --help lists them")
+    command_line.speak_as(f"python3 -m clogsweep {command}")
+    sys.argv[1:] = words
+    return become(command)
+
+
+def main() -> int:
+    command_line.speak_as("python3 -m clogsweep")
+    return command_line.run(choose)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

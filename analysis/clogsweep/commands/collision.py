@@ -1,0 +1,62 @@
+"""Finds and draws which droplets break up on a single obstacle: up to which line tension, by how far off its centre they fall.
+
+    python3 -m clogsweep collision --output collision                     # collision.png, collision.pdf; the numbers as CSV
+    python3 -m clogsweep collision --output fine vertices=512 break-up-neck=0.05 --offsets 0,0.1,0.3
+
+For each offset a droplet falls onto a circle of 0.3 sigma, in sweeps over the line tension that close in on the largest
+at which it breaks up. KEY=VALUE are keys of clogsweep for all of them. The symmetry S of a collision is the area of the
+droplet on one side of the vertical line through the obstacle over that on the other, at most 1; the capillary number Ca
+is weight over tension, pi/(4 Gamma). On the right: the share of droplets that break up if all offsets at which they
+touch the obstacle are as likely.
+"""
+
+import argparse
+import math
+import pathlib
+import tempfile
+
+from .. import collision, command_line, programs
+from ..errors import UserError
+from ..picture import Picture
+
+
+def key_and_value(word):
+    """Type of an option: KEY=VALUE."""
+    key, equals, value = word.partition("=")
+    if not (key and equals and value):
+        raise argparse.ArgumentTypeError(f"invalid key: {word} (must be KEY=VALUE) try vertices=256")
+    return key, value
+
+
+def offsets(word):
+    """Type of an option: offsets from the obstacle's centre at which the droplet touches it [sigma]."""
+    try:
+        numbers = [float(part) for part in word.split(",")]
+    except ValueError:
+        numbers = [math.nan]
+    if not all(0 <= number < 0.5 for number in numbers):
+        raise argparse.ArgumentTypeError(f"invalid value: {word} (must be numbers from 0 to below 0.5 with commas between them) try 0,0.1,0.3")
+    return numbers
+
+
+def body() -> int:
+    parser = command_line.Parser(__doc__)
+    parser.add_argument("keys", type=key_and_value, nargs="*", metavar="KEY=VALUE", help="of clogsweep; vertices, terminal-speed, break-up-neck, max-time have values "
+                        "of their own here")
+    command_line.add_output(parser, "name of the picture; .png and .pdf are made", ".png", ".pdf", required=True)
+    parser.add_argument("--offsets", type=offsets, default="0,0.01,0.02,0.05,0.1,0.15,0.2,0.25,0.3,0.35", help="of the droplet's way from the obstacle's centre [sigma]")
+    programs.add_option(parser)
+    arguments = parser.parse_args()
+    command_line.refuse_unwritable_picture(arguments.output)
+    found = {}
+    print("offset,symmetry,breaks_up_to,whole_from,capillary_number")
+    with tempfile.TemporaryDirectory(prefix="clogsweep-collision-") as folder:
+        collisions = collision.Collisions(programs.programs_in(arguments.programs) / "clogsweep", pathlib.Path(folder), dict(arguments.keys))
+        for offset in arguments.offsets:
+            low, high = found[offset] = collisions.threshold(offset)
+            middle = f"{collision.capillary_number(math.sqrt(low * high)):.4g}" if low and high else ""
+            print(offset, f"{collision.symmetry(offset):.4f}", *(f"{end:.4g}" if end else "" for end in (low, high)), middle, sep=",", flush=True)
+    if not any(low and high for low, high in found.values()):
+        raise UserError(f"nothing to draw (no offset has a threshold between line tensions of {collision.TENSIONS[0]} and {collision.TENSIONS[1]}); try smaller --offsets")
+    Picture(collision.draw(found)).save(arguments.output)
+    return 0

@@ -1,0 +1,62 @@
+"""Draws a droplet among obstacles: several moments of one run in one picture, or a film of it.
+
+    clogrun array --output run.h5 --polygon-interval 5 line-tension=0.3 seeds=4
+    python3 -m clogsweep droplet run.h5 --output droplet
+    python3 -m clogsweep droplet run.h5 --output droplet --film --colour speed
+
+The flow goes to the right. In a picture the last outline is filled; earlier ones are thin, evenly spaced along the way,
+coloured by time. A film is DROPLET.mp4 if ffmpeg is there, otherwise DROPLET.gif; a name that ends in .mp4 or .gif asks
+for that film, and a film that is there is never replaced. --pictures makes numbered pictures in the folder DROPLET-frames.
+The camera follows the droplet, the way of its centre is a line, and r(t) grows in a corner. The outline has the colour of
+its speed; with --colour mechanism the last frame has that of how the droplet clogged.
+
+A film has --most-frames at most. A longer run is thinned; if the droplet moved more than half its width between frames
+then, the film shows the end of the run alone.
+"""
+
+import pathlib
+import sys
+
+from .. import command_line, film, trajectory, way
+from ..errors import UserError
+from ..picture import Picture
+
+
+def body() -> int:
+    parser = command_line.Parser(__doc__)
+    parser.add_argument("run", type=pathlib.Path, help="output of clogrun with --polygon-interval")
+    command_line.add_output(parser, "name of the picture, .png and .pdf are made; or of a film", ".png", ".pdf", required=True)
+    parser.add_argument("--outlines", type=command_line.whole(1), default=12, help="how many moments to show in a picture (12)")
+    parser.add_argument("--film", action="store_true", help="a film instead: .mp4 (ffmpeg) or .gif")
+    parser.add_argument("--pictures", action="store_true", help="numbered pictures in OUTPUT-frames instead")
+    parser.add_argument("--colour", choices=["speed", "mechanism"], default="speed", help="of the droplet in a film (speed)")
+    parser.add_argument("--rate", type=command_line.whole(1), default=20, help="frames of a film a second (20)")
+    parser.add_argument("--most-frames", type=command_line.whole(1), default=600, help="of a film (600)")
+    arguments = parser.parse_args()
+    if not arguments.output.parent.is_dir():
+        raise UserError(f"no folder {arguments.output.parent}; make it first")
+    arguments.film |= arguments.output.suffix in film.ENDINGS
+    if not arguments.film and not arguments.pictures:
+        return draw_picture(arguments)
+    return draw_film(arguments)
+
+
+def draw_picture(arguments) -> int:
+    command_line.refuse_unwritable_picture(arguments.output, arguments.run)
+    run = trajectory.read(arguments.run)
+    print(f"{Picture(way.draw(run, arguments.outlines)).save(arguments.output)} (and .pdf)")
+    return 0
+
+
+def draw_film(arguments) -> int:
+    path = film.path_of(arguments.output) if arguments.film else None
+    run = trajectory.read(arguments.run)
+    frames = film.chosen_frames(run, arguments.most_frames)
+    moving = film.Film(run, frames, arguments.colour, arguments.rate)
+    if frames[0] > 0:
+        print(f"{command_line.name()}: the film begins at t = {run.times[frames[0]]:.4g} t0; --most-frames shows more", file=sys.stderr)
+    if path:
+        print(film.write_film(moving, path, arguments.rate))
+    if arguments.pictures:
+        print(film.write_pictures(moving, f"{arguments.output}-frames"))
+    return 0

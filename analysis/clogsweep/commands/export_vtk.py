@@ -1,0 +1,24 @@
+"""Writes a run for ParaView: the droplet's outline over time, and what it moves among.
+
+    clogrun array --output run.h5 --polygon-interval 5 line-tension=0.3 seeds=4
+    python3 -m clogsweep export-vtk run.h5 --output run
+    paraview run.pvd
+
+Makes RUN.pvd, which names every frame with its time, the frames in the folder RUN-vtk, and RUN-obstacles.vtp, to be opened beside it:
+discs and walls (of diameter 0), cut off five diameters from the droplet's way. All are VTK's XML PolyData, as text. An outline
+is the interface that walls meet, vertices and middles of edges in turn. Frames have its points' speed, and, as field data, the columns of
+the trajectory at that time. Units are those of docs/reference/files.md.
+"""
+
+import pathlib
+
+from .. import command_line, trajectory, vtk
+
+
+def body() -> int:
+    parser = command_line.Parser(__doc__)
+    parser.add_argument("run", type=pathlib.Path, help="output of clogrun with --polygon-interval")
+    command_line.add_output(parser, "name of the files; their endings are given", ".pvd", required=True)
+    arguments = parser.parse_args()
+    print(vtk.export(trajectory.read(arguments.run), arguments.output))
+    return 0

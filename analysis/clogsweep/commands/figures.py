@@ -1,0 +1,58 @@
+"""Regenerates a figure of the paper from runs of our own: sweeps, clogfit, picture.
+
+    python3 -m clogsweep figures list
+    python3 -m clogsweep figures 6c 7c
+    python3 -m clogsweep figures all --size full --output results/figures
+
+The same command goes on with an interrupted sweep, and never repeats finished runs. Figures that share a sweep run it once.
+Beside FOLDER/SIZE/figure-NAME.png are the same as .pdf, the numbers drawn as .csv, and where they came from as .txt.
+"""
+
+import pathlib
+import sys
+
+from .. import command_line, figures, programs
+from ..errors import UserError
+from ..paper.plate import CATALOGUE
+from ..paper.workshop import Override, Workshop, measured
+
+
+def parse():
+    parser = command_line.Parser(__doc__)
+    parser.add_argument("names", nargs="+", metavar="NAME", help="of figures, or list, or all")
+    parser.add_argument("--size", choices=["reduced", "full"], default="reduced", help="reduced: minutes on two cores; full: as published")
+    parser.add_argument("--ranks", type=command_line.whole(1), default=2, help="MPI ranks of the sweeps, and runs at a time (2)")
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("results/figures"), help="folder (results/figures)")
+    parser.add_argument("--draw-only", action="store_true", help="run nothing, draw from what is there")
+    parser.add_argument("--profile", type=pathlib.Path, action="append", default=[], metavar="FILE.csv",
+                        help="measured passage h [sigma], v [v_t], A to draw in 2, 3 (twice: w = 0.9, 0.7), 4, or to compare with in B2")
+    parser.add_argument("--set", action="append", default=[], metavar="[CONFIG:]KEY=VALUE",
+                        help="another value than the config's, e.g. clogging:seeds=1..50; keys that a figure itself sets stay")
+    programs.add_option(parser)
+    return parser.parse_args()
+
+
+def body() -> int:
+    arguments = parse()
+    if arguments.names == ["list"]:
+        figures.print_list()
+        return 0
+    names = figures.ORDER if arguments.names == ["all"] else arguments.names
+    for name in names:
+        if name not in CATALOGUE:
+            raise UserError(f"no figure {name}; {command_line.name()} list names them")
+    shop = Workshop(size=arguments.size, ranks=arguments.ranks, folder=arguments.output / arguments.size,
+                    programs=programs.programs_in(arguments.programs), overrides=[Override.parse(text) for text in getattr(arguments, "set")],
+                    profiles=arguments.profile, draw_only=arguments.draw_only)
+    for path in arguments.profile:
+        measured(path)
+    try:
+        shop.folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(f"cannot make {shop.folder} ({error.strerror}); give another --output") from error
+    for name in names:
+        figures.refuse_unwritable(name, shop)
+    command = " ".join([command_line.name(), *sys.argv[1:]])
+    for name in names:
+        figures.write(CATALOGUE[name].draw(shop), CATALOGUE[name], shop, command)
+    return 0

@@ -1,0 +1,24 @@
+"""One page about a sweep: curves, table, example clogs or outlines, doubts, where the numbers came from. Opens offline in any browser.
+
+    clogfit report sweep.h5 --output report.html      # is python3 -m clogsweep report
+
+Every number comes from clogfit. Example clogs are run once more by clogrun, until they rest, in a temporary folder. Of
+droplets in a channel or on a wall it shows the passage or the sag over what the sweep varies, and some outlines.
+"""
+
+import pathlib
+
+from .. import command_line, programs, report
+
+
+def body() -> int:
+    parser = command_line.Parser(__doc__)
+    parser.add_argument("sweep", type=pathlib.Path, help="output of clogsweep")
+    command_line.add_output(parser, "HTML file to write (SWEEP-report.html)")
+    parser.add_argument("--examples", type=command_line.whole(0), default=4, help="clogs or outlines to show (4); 0 runs nothing")
+    programs.add_option(parser)
+    arguments = parser.parse_args()
+    output = arguments.output or command_line.beside(arguments.sweep, "report.html")
+    command_line.refuse_unwritable(output, "html", arguments.sweep)
+    print(report.write(arguments.sweep, output, arguments.examples, programs.programs_in(arguments.programs)))
+    return 0

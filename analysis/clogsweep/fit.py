@@ -1,0 +1,87 @@
+"""What clogfit says of a sweep."""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+from typing import TYPE_CHECKING, Any
+
+from . import lengths, programs
+from .errors import UserError
+from .groups import Groups
+from .picture import Picture
+
+if TYPE_CHECKING:
+    import pandas
+
+HDF5_BEGINNING = b"\x89HDF\r\n\x1a\n"
+
+
+class Fit:
+    """Clogging lengths and mean speeds, a group for each set of parameters. Nothing is fitted here.
+
+    `groups` is a table with a row for each group, and clogfit's columns: the clogging length and its interval in droplet
+    diameters, how many runs clogged and by what, doubts, all parameters. `units` names the unit of each.
+    """
+
+    def __init__(self, told: dict[str, Any]) -> None:
+        """@param told  the JSON of clogfit. @throws KeyError, TypeError  if it is not"""
+        self.told = told
+        self.confidence: float = told["confidence"]
+        self.units: dict[str, str] = told["units"]
+        self.doubts: dict[str, str] = told["doubts"]
+        self._groups = Groups(told)
+
+    @property
+    def groups(self) -> pandas.DataFrame:
+        """What is known of each group as one number or word; P(r) and incidence are in survival() and `told`."""
+        import pandas
+
+        flat = [{name: value for name, value in group.items() if not isinstance(value, list | dict)} for group in self.told["groups"]]
+        return pandas.DataFrame(flat)
+
+    def survival(self, group: int) -> pandas.DataFrame:
+        """P(r) of a group, by its index in `groups`: the probability of not having clogged on a way r [sigma]."""
+        import pandas
+
+        return pandas.DataFrame(self.told["groups"][group]["survival"])
+
+    def drawable(self, source: object = "the sweep") -> Groups:
+        """The groups that hold finished runs. @throws UserError  if there are none, or no clogging lengths"""
+        self._groups.refuse_passages()
+        if not self._groups.members:
+            raise UserError(f"{source} holds no finished runs")
+        return self._groups
+
+    def curve(self) -> Picture:
+        """Clogging lengths over what the sweep varies. @throws UserError  as drawable()"""
+        return Picture(lengths.draw(self.drawable()))
+
+    def speeds(self) -> Picture:
+        """Mean speeds over the speed of a free droplet, over what the sweep varies. @throws UserError  as drawable()"""
+        return Picture(lengths.draw_speeds(self.drawable()))
+
+    def _repr_html_(self) -> str:
+        return self.groups._repr_html_()
+
+
+def fitted(clogfit: pathlib.Path, sweep: str | os.PathLike[str], *options: str) -> Fit:
+    """What clogfit says now. @throws ProgramFailed  with its reason"""
+    return Fit(json.loads(programs.run_program(clogfit, sweep, "--format", "json", *options)))
+
+
+def read(path: pathlib.Path, folder: pathlib.Path | None) -> Fit:
+    """@param path  of a sweep, or of clogfit's JSON; @param folder  of the programs. @throws UserError, ProgramFailed"""
+    try:
+        content = path.read_bytes()
+    except FileNotFoundError as error:
+        raise UserError(f"cannot read {path} (no such file); check the name") from error
+    except OSError as error:
+        raise UserError(f"cannot read {path} ({error.strerror}); give a sweep, or the output of clogfit --format json") from error
+    if content.startswith(HDF5_BEGINNING):
+        return fitted(programs.programs_in(folder) / "clogfit", path)
+    try:
+        return Fit(json.loads(content))
+    except (ValueError, KeyError, TypeError) as error:
+        raise UserError(f"cannot read {path} ({error}); give a sweep, or the output of clogfit --format json") from error

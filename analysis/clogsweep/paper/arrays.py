@@ -1,0 +1,376 @@
+"""Figures of droplets among obstacles."""
+
+import math
+
+import numpy as np
+from .. import rounded, stored, style, survival_curve, trajectory
+from .plate import Plate, figure, interface_of
+from ..errors import UserError
+from ..groups import said
+
+# Of what all points have in common, a caption names these.
+NAMED = ("obstacle_gap", "obstacle_diameter", "near_wall_drag")
+
+
+def describe(columns, groups, without=()):
+    """What all points have in common. @param columns  see Workshop.columns()"""
+    first = groups[0]
+    words = []
+    for name in NAMED:
+        if name not in without and len({group[name] for group in groups}) == 1:
+            words.append(said(columns[name], first[name]))
+    words.append("saturated arrays" if first["obstacle_filling"] == "saturated" else rf"$\rho_\mathrm{{ob}}\sigma^2 = {first['obstacle_density']:g}$")
+    words += [f"$V_t = {first['terminal_speed']:g}$", f"$T = {first['max_time']:g}\\,t_0$", f"$L = {first['box']:g}\\sigma$"]
+    line = style.runs_a_point(groups)
+    if first["model"] == "dp":
+        words.insert(0, f"$N_v = {first['vertices']}$")
+        line += f"; interface: {interface_of(first['preset'])}"
+    else:
+        words.insert(0, "soft disk")
+    return ", ".join(words) + "\n" + line
+
+
+def numbers(groups, label, **more):
+    """What is drawn of each group, as clogfit gives it."""
+    columns = ["model", "line_tension", "wall_stiffness", "obstacle_gap", "obstacle_diameter", "obstacle_density", "near_wall_drag", "runs", "clogs",
+               "clogging_length", "clogging_length_lower", "clogging_length_upper", "relative_speed", "relative_speed_error", "capillary_number", "doubts"]
+    return [{"curve": label, **{name: group[name] for name in columns}, **{name: values[i] for name, values in more.items()}}
+            for i, group in enumerate(groups)]
+
+
+def by(groups, name):
+    """Groups of one curve each, by the value that tells the curves apart."""
+    return [(value, [group for group in groups if group[name] == value]) for value in sorted({group[name] for group in groups})]
+
+
+def curves(shop, config, abscissa, parameter, quantity):
+    """One curve for each value of a parameter. @param quantity  "length" or "speed" """
+    groups = shop.sweep(config)
+    drawing, axes = style.subplots(figsize=(6.8, 5.0))
+    data = []
+    families = by(groups, parameter)
+    places = [] if abscissa == "capillary_number" else [group[abscissa] for group in groups]
+    for index, (value, members) in enumerate(families):
+        label = said(shop.columns(config)[parameter], value)
+        shift = style.side_by_side(index, len(families), places) if places else 1
+        members = [group for group in members if group[abscissa] is not None]
+        draw = style.draw_lengths if quantity == "length" else style.draw_speeds
+        draw(axes, [group[abscissa] * shift for group in members], members, index, label)
+        data += numbers(members, label)
+    style.logarithmic_abscissa(axes, places)
+    if quantity == "length":
+        axes.set_yscale("log")
+    axes.set_xlabel(style.AXES[abscissa])
+    axes.set_ylabel(style.AXES[quantity])
+    style.grid(axes)
+    style.legend(axes, groups if quantity == "length" else ())
+    note = style.length_note(groups, shop.confidence(config)) if quantity == "length" else "bars: standard error"
+    style.caption(axes, f"{describe(shop.columns(config), groups, [parameter])}\n{note}")
+    return Plate(drawing, data)
+
+
+@figure("6c", "clogging length against line tension for four smallest gaps (deformable polygon)", ["clogging"], "20 min")
+def lengths_of_polygons(shop):
+    return curves(shop, "clogging", "line_tension", "obstacle_gap", "length")
+
+
+@figure("7a", "clogging length against wall stiffness for four smallest gaps (soft disk)", ["clogging-sp"], "10 s")
+def lengths_of_disks(shop):
+    return curves(shop, "clogging-sp", "wall_stiffness", "obstacle_gap", "length")
+
+
+@figure("8a", "mean speed against line tension for four wide gaps (deformable polygon)", ["speed"], "1 min")
+def speeds_of_polygons(shop):
+    return curves(shop, "speed", "line_tension", "obstacle_gap", "speed")
+
+
+@figure("8b", "mean speed against line tension for three obstacle diameters", ["speed-diameter"], "1 min")
+def speeds_by_diameter(shop):
+    return curves(shop, "speed-diameter", "line_tension", "obstacle_diameter", "speed")
+
+
+@figure("8ca", "the speeds of 8a against the capillary number", ["speed"], "1 min, shared with 8a")
+def speeds_by_capillary_number(shop):
+    return curves(shop, "speed", "capillary_number", "obstacle_gap", "speed")
+
+
+@figure("9a", "mean speed against wall stiffness for four wide gaps (soft disk)", ["speed-sp"], "5 s")
+def speeds_of_disks(shop):
+    return curves(shop, "speed-sp", "wall_stiffness", "obstacle_gap", "speed")
+
+
+@figure("E", "mean speed against line tension for three near-wall drags", ["near-wall-drag"], "1 min")
+def speeds_by_drag(shop):
+    return curves(shop, "near-wall-drag", "line_tension", "near_wall_drag", "speed")
+
+
+# Both models over the sag
+
+def sags(shop, config, groups):
+    """delta_s for each group, from one sweep of walls with all its line tensions or stiffnesses."""
+    is_polygon = groups[0]["model"] == "dp"
+    column, key = ("line_tension", "line-tension") if is_polygon else ("wall_stiffness", "wall-stiffness")
+    keys = shop.keys(config)
+    settings = {name: keys[name] for name in ("model", "preset", "vertices") if name in keys}
+    values = sorted({group[column] for group in groups})
+    rows = shop.runs(f"sag-{config}", None, {"obstacle-layout": "wall", **settings, key: values})
+    known = dict(zip(values, rows, strict=True))
+    return [known[group[column]]["sag"] for group in groups]
+
+
+def over_sag(shop, configs, gap, quantity):
+    drawing, axes = style.subplots(figsize=(6.8, 5.0))
+    data, captions, drawn = [], [], []
+    for index, config in enumerate(configs):
+        groups = [group for group in shop.sweep(config) if math.isclose(group["obstacle_gap"], gap)]
+        if not groups:
+            raise UserError(f"sweep {config} has no runs with obstacle-gap={gap}; add it to the list")
+        places = sags(shop, config, groups)
+        label = "deformable polygon" if groups[0]["model"] == "dp" else "soft disk"
+        (style.draw_lengths if quantity == "length" else style.draw_speeds)(axes, places, groups, index, label)
+        data += numbers(groups, label, sag=places)
+        captions.append(describe(shop.columns(config), groups))
+        drawn += groups
+    style.logarithmic_abscissa(axes)
+    if quantity == "length":
+        axes.set_yscale("log")
+    axes.set_xlabel(style.AXES["sag"])
+    axes.set_ylabel(style.AXES[quantity])
+    axes.axvline(0.25, color="0.75", linewidth=0.8, linestyle=":", zorder=0)
+    axes.text(0.25, 0.02, r"$\delta_s = 0.25\sigma$ ", ha="right", color="0.4", fontsize=8, transform=axes.get_xaxis_transform())
+    style.grid(axes)
+    axes.legend(frameon=False)
+    note = style.length_note(drawn, shop.confidence(config)) if quantity == "length" else "bars: standard error"
+    style.caption(axes, "\n".join(captions) + f"\n{note}")
+    return Plate(drawing, data)
+
+
+@figure("7c", "clogging length against sag, deformable polygon and soft disk, smallest gap 0.2", ["clogging", "clogging-sp"], "shared with 6c, 7a")
+def lengths_over_sag(shop):
+    return over_sag(shop, ["clogging", "clogging-sp"], 0.2, "length")
+
+
+@figure("9b", "mean speed against sag, deformable polygon and soft disk, smallest gap 1.1", ["speed", "speed-sp"], "shared with 8a, 9a")
+def speeds_over_sag(shop):
+    return over_sag(shop, ["speed", "speed-sp"], 1.1, "speed")
+
+
+@figure("7b", "what the sag is: a soft disk and a polygon on a wall, before and after gravity sets in", ["channel"], "1 s")
+def sag_picture(shop):
+    line_tension, stiffness = 0.3, 1.0
+    on_wall = {"obstacle-layout": "wall"}
+    row, = shop.runs("sag-polygon", "channel", {**on_wall, "line-tension": line_tension})
+    polygon, = shop.ways("sag-polygon", [row], 1, 2)
+    disk, = shop.runs("sag-disk", None, {**on_wall, "model": "sp", "wall-stiffness": stiffness})
+    disk_sag, polygon_sag = disk["sag"], row["sag"]
+    drawing, panels = style.subplots(1, 2, figsize=(7.2, 4.2), sharey=True)
+    wall = polygon.wedges[0, :2]
+    # Gravity points along +x in the model; here it points down.
+    outlines = [(shape[1] - wall[1], wall[0] - shape[0]) for shape in polygon.polygons]
+    angle = np.linspace(0, 2 * math.pi, 200)
+    circle = np.array([0.5 * np.cos(angle), 0.5 + 0.5 * np.sin(angle)])
+    for axes, before, after, sag, title in [
+        (panels[0], circle, circle - np.array([[0], [disk_sag]]), disk_sag, rf"soft disk, $E_w = {stiffness:g}$"),
+        (panels[1], outlines[0], outlines[-1], polygon_sag, rf"deformable polygon, $\Gamma = {line_tension:g}$"),
+    ]:
+        axes.axhspan(-0.3, 0, facecolor=style.OBSTACLE)
+        axes.fill(*after, facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1.2, label="with weight")
+        axes.plot(*np.append(before, np.asarray(before)[:, :1], axis=1), color="black", linestyle="--", linewidth=1, label="without")
+        axes.plot([-0.08, 0.08], [0.5, 0.5], color="black", linewidth=1)
+        axes.plot([-0.08, 0.08], [0.5 - sag, 0.5 - sag], color="black", linewidth=1)
+        axes.annotate("", (0, 0.5 - sag), (0, 0.5), arrowprops={"arrowstyle": "-|>", "color": "black"})
+        axes.text(0, 0.46 - sag, rf"$\delta_s = {sag:.3f}\sigma$", ha="center", va="top")
+        trajectory.frame_limits(axes, (-0.85, -0.25), (0.85, 1.1))
+        axes.set_xlabel(r"along the wall $/\sigma$")
+        style.caption(axes, title)
+    panels[0].set_ylabel(r"height above the wall $/\sigma$")
+    panels[1].legend(frameon=False, loc="upper right", fontsize=8)
+    return Plate(drawing, [{"model": "sp", "wall_stiffness": stiffness, "sag": disk_sag},
+                           {"model": "dp", "line_tension": line_tension, "sag": polygon_sag}])
+
+
+# Clogs
+
+def example(shop, mechanism):
+    """A clog of the sweep, run once more with its outline. By squeezing: the stiffest that went at least half a diameter, if any
+    did. By wrapping: the one of median shape, of those that only hang over obstacles, if there are any."""
+    shop.sweep("clogging")
+    rows = shop.rows("clogging")
+    if "mechanism" not in rows or not rows.mechanism.any():
+        raise UserError(f"{shop.sweep_file('clogging')} does not know how droplets clogged (it is of an earlier version); remove it and sweep again")
+    is_wrapped = mechanism == "wrapped"
+    clogs = rows[(rows.status == "clogged") & (rows.mechanism == mechanism)]
+    if is_wrapped and clogs.empty:
+        clogs = rows[(rows.status == "clogged") & (rows.mechanism == "hybrid")]
+    if clogs.empty:
+        raise UserError(f"no {mechanism} clog in {shop.sweep_file('clogging')}; more seeds, or other line tensions")
+    if is_wrapped:
+        row = clogs.sort_values(["shape_parameter", "task"]).iloc[len(clogs) // 2]
+    else:
+        travelled = clogs[clogs.distance >= 0.5]
+        row = (clogs if travelled.empty else travelled).sort_values(["line_tension", "task"]).iloc[-1]
+    stored_row = [one for one in stored.read_rows(shop.sweep_file("clogging")) if one["task"] == row.task]
+    run, = shop.ways("clogging", stored_row, 1, max(0.5, row.time / 400))
+    return run, row
+
+
+def clog_title(run, row):
+    return (rf"{row.mechanism}: $\Gamma = {row.line_tension:g}$, $w_\mathrm{{ob}} = {row.obstacle_gap:g}\sigma$, seed {row.seed}, "
+            rf"$r = {row.distance:.2f}\sigma$" f"\n{row.wrapped_support:.0%} of the support from wrapped obstacles, $N_v = {row.vertices}$\ninterface: {interface_of(row.preset)}")
+
+
+def clog_numbers(run, row, frame):
+    return [{"mechanism": row.mechanism, "line_tension": row.line_tension, "obstacle_gap": row.obstacle_gap, "seed": row.seed,
+             "distance": row.distance, "x": x, "y": y} for x, y in run.polygons[frame].T]
+
+
+def snapshot(shop, mechanism):
+    run, row = example(shop, mechanism)
+    drawing, axes = style.subplots(figsize=(5.6, 5.4))
+    shape = run.polygons[-1]
+    centre = shape.mean(axis=1)
+    trajectory.draw_droplet(axes, run, -1, centre)
+    half = 0.6 + np.abs(shape - centre[:, None]).max()
+    trajectory.frame_limits(axes, (-half, -half), (half, half))
+    axes.annotate("flow", (0.22, 0.94), (0.04, 0.94), xycoords="axes fraction", va="center",
+                  arrowprops={"arrowstyle": "-|>", "color": "black"}, bbox={"facecolor": "white", "edgecolor": "none", "pad": 1})
+    axes.set_xlabel(r"$x/\sigma$")
+    axes.set_ylabel(r"$y/\sigma$")
+    style.caption(axes, clog_title(run, row))
+    return Plate(drawing, clog_numbers(run, row, -1))
+
+
+@figure("6a", "a clog by wrapping, from the sweep of 6c", ["clogging"], "shared with 6c")
+def wrapped(shop):
+    return snapshot(shop, "wrapped")
+
+
+@figure("6b", "a clog by squeezing, from the sweep of 6c", ["clogging"], "shared with 6c")
+def squeezed(shop):
+    return snapshot(shop, "squeezed")
+
+
+@figure("5", "how droplets wrap around an obstacle and squeeze into a gap: the last outlines before two clogs of 6c", ["clogging"], "shared with 6c")
+def two_ways(shop):
+    drawing, panels = style.subplots(2, 4, figsize=(10.4, 6.0))
+    data = []
+    for line, mechanism in zip(panels, ["wrapped", "squeezed"]):
+        run, row = example(shop, mechanism)
+        final = run.polygons[-1].mean(axis=1)
+        # The last diameter and a half of the way.
+        near = np.flatnonzero(np.hypot(*(run.polygons.mean(axis=2) - final).T) > 1.5)
+        first = near[-1] + 1 if len(near) else 0
+        chosen = first + trajectory.along_the_way(run.polygons[first:], len(line))[-len(line):]
+        shown = run.polygons[chosen]
+        low, high = shown.min(axis=(0, 2)) - 0.3, shown.max(axis=(0, 2)) + 0.3
+        for axes, frame in zip(line, chosen):
+            trajectory.draw_droplet(axes, run, frame)
+            half = max(high - low) / 2
+            trajectory.frame_limits(axes, (low + high) / 2 - half, (low + high) / 2 + half)
+            axes.set_xticks([]), axes.set_yticks([])
+            axes.set_title(f"$t = {run.times[frame]:.0f}\\,t_0$", fontsize=9)
+        for axes in line[len(chosen):]:
+            axes.axis("off")
+        line[0].set_ylabel(f"{row.mechanism}\n$\\Gamma = {row.line_tension:g}$, $w_\\mathrm{{ob}} = {row.obstacle_gap:g}\\sigma$, seed {row.seed}", fontsize=9)
+        data += clog_numbers(run, row, -1)
+    drawing.suptitle(f"flow to the right; $N_v = {row.vertices}$; interface: {interface_of(row.preset)}", fontsize=9, color="0.25")
+    return Plate(drawing, data)
+
+
+# Single runs and P(r)
+
+@figure("C1", "kinetic energy of a droplet that clogs and of one that flows", ["trajectory"], "2 s")
+def kinetic_energy(shop):
+    drawing, axes = style.subplots(figsize=(7.2, 4.8))
+    data = []
+    gaps = [0.3, 1.1]
+    rows = shop.runs("energy", "trajectory", {"seeds": 1, "line-tension": 0.5, "obstacle-gap": gaps, "clog-detection": "threshold"})
+    for index, (gap, run) in enumerate(zip(gaps, shop.ways("energy", rows, 1))):
+        energy = np.where(run.table["kinetic_energy_ratio"] > 0, run.table["kinetic_energy_ratio"], math.nan)
+        label = rf"$w_\mathrm{{ob}} = {gap}\sigma$: {run.word('status')} at $r = {run.row['distance']:.2f}\sigma$"
+        axes.plot(run.table["time"], energy, color=style.COLOURS[index], linewidth=0.9, label=label)
+        data += [{"obstacle_gap": gap, "time": t, "kinetic_energy_ratio": e} for t, e in zip(run.table["time"], run.table["kinetic_energy_ratio"])]
+    threshold = run.row["clog_energy"]
+    axes.axhline(threshold, color="0.5", linewidth=0.8, linestyle="--")
+    axes.text(0.99, threshold * 2, "threshold of a clog", ha="right", fontsize=8, color="0.4", transform=axes.get_yaxis_transform())
+    axes.set_yscale("log")
+    axes.set_xlabel(r"time $t/t_0$")
+    axes.set_ylabel(r"kinetic energy over that at terminal speed $E_k/E_t$")
+    style.grid(axes)
+    axes.legend(frameon=False)
+    row = run.row
+    style.caption(axes, rf"$\Gamma = 0.5$, $\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, saturated arrays, $V_t = {row['terminal_speed']:g}$, "
+                  rf"$N_v = {row['vertices']}$, seed {row['seed']}" f"\ninterface: {interface_of(run.word('preset'))}")
+    return Plate(drawing, data)
+
+
+def draw_band(axes, group):
+    """The error of P(r), to the longest way."""
+    steps = group["survival"]
+    known = [step for step in steps if step["lower"] is not None]  # not of the last one if no run is left
+    end = survival_curve.longest_way(group) if known == steps else steps[-1]["distance"]
+    axes.fill_between([0.0] + [step["distance"] for step in known] + [end], *(
+        [1.0] + [step[bound] for step in known] + [known[-1][bound] if known else 1.0] for bound in ("lower", "upper")),
+        step="post", color=style.COLOURS[0], alpha=0.2, linewidth=0, label="95 %, log-log")
+
+
+def lowest_shown(group, end):
+    """The band, the curve and the exponential to the longest way have room above it, those that have come to zero excepted."""
+    lowest = [step[name] for step in group["survival"] for name in ("lower", "probability") if step[name]]
+    return 0.7 * min(1.0, *lowest, math.exp(-end / group["clogging_length"]))
+
+
+@figure("C2", "probability P(r) of not having clogged, with its error band and the exponential law", ["survival"], "10 s")
+def survival(shop):
+    group = shop.sweep("survival")[0]
+    if not group["survival"]:
+        raise UserError(f"no run has clogged in {shop.sweep_file('survival')}; raise max-time or seeds")
+    drawing, axes = style.subplots(figsize=(6.8, 5.0))
+    draw_band(axes, group)
+    survival_curve.draw(axes, group, style.COLOURS[0], f"{rounded.counted(group['runs'], 'run')}, {rounded.counted(group['clogs'], 'clog')}",
+                        f"last seen going ({rounded.counted(len(group['censored_distances']), 'run')})")
+    end = survival_curve.longest_way(group)
+    length, lower, upper = (group[f"clogging_length{bound}"] for bound in ("", "_lower", "_upper"))
+    r = np.linspace(0, end, 200)
+    axes.plot(r, np.exp(-r / length), color=style.COLOURS[1], linewidth=1.4,
+              label=rf"$e^{{-r/\lambda}}$, $\lambda = {length:.3g}\sigma$ ({lower:.3g} to {upper:.3g})")
+    axes.set_yscale("log")
+    axes.set_ylim(lowest_shown(group, end), 1.3)
+    axes.set_xlim(0, 1.02 * end)
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.set_xlabel(r"displacement along the flow $r/\sigma$")
+    axes.set_ylabel(r"probability of not having clogged $P(r)$")
+    style.grid(axes)
+    axes.legend(frameon=False)
+    style.caption(axes, rf"$\Gamma = {group['line_tension']:g}$, {describe(shop.columns('survival'), [group])}" f"\nexponential? Weibull shape {group['weibull_shape']:.2f}, p = {group['weibull_p_value']:.2f}")
+    names = ["distance", "probability", "standard_error", "lower", "upper"]
+    return Plate(drawing, [{"distance": 0.0, "probability": 1.0}] + [{name: step[name] for name in names} for step in group["survival"]]
+                 + [{"censored_distance": distance} for distance in group["censored_distances"]]
+                 + [{"clogging_length": length, "clogging_length_lower": lower, "clogging_length_upper": upper}])
+
+
+@figure("D", "displacement against time for five line tensions, smallest gap 1.1", ["trajectory"], "3 s")
+def displacement(shop):
+    drawing, axes = style.subplots(figsize=(6.8, 5.0))
+    data = []
+    line_tensions = [0.04, 0.1, 0.2, 0.5, 1.0]
+    rows = shop.runs("displacement", "trajectory", {"seeds": 1, "line-tension": line_tensions, "obstacle-gap": 1.1, "preset": "elastic"})
+    for index, (line_tension, run) in enumerate(zip(line_tensions, shop.ways("displacement", rows, 2))):
+        speed = run.row["mean_speed"] / run.row["terminal_speed"]
+        label = rf"$\Gamma = {line_tension:g}$" + (rf": $v_g = {speed:.2f}\,v_t$" if math.isfinite(speed) else "") + (
+            ", clogged" if run.word("status") == "clogged" else "")
+        axes.plot(run.table["time"], run.table["distance"], color=style.COLOURS[index], linewidth=1.2, label=label)
+        if run.word("status") == "clogged":
+            axes.plot(run.table["time"][-1], run.table["distance"][-1], "x", color=style.COLOURS[index], markersize=8)
+        data += [{"line_tension": line_tension, "time": t, "distance": r} for t, r in zip(run.table["time"], run.table["distance"])]
+    row = run.row
+    t = np.array([0, axes.get_xlim()[1]])
+    axes.plot(t, row["terminal_speed"] * t, ":", color="0.5", linewidth=1, label="terminal speed")
+    axes.set_xlim(0, t[1]), axes.set_ylim(bottom=0)
+    axes.set_xlabel(r"time $t/t_0$")
+    axes.set_ylabel(r"displacement along the flow $r/\sigma$")
+    style.grid(axes)
+    axes.legend(frameon=False)
+    style.caption(axes, rf"$w_\mathrm{{ob}} = {row['obstacle_gap']:g}\sigma$, $\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, saturated array, "
+                  rf"$V_t = {row['terminal_speed']:g}$, $N_v = {row['vertices']}$, seed {row['seed']}" f"\ninterface: {interface_of(run.word('preset'))}")
+    return Plate(drawing, data)

@@ -1,0 +1,272 @@
+"""Figures of droplets in narrow channels and along walls."""
+
+import math
+
+import numpy as np
+from .. import style, trajectory
+from ..errors import UserError
+from .plate import Plate, figure, interface_of
+from .workshop import measured
+
+SMOOTH = 512  # vertices from which on a passage of w = 0.4 shows no ripple
+
+
+def passages(shop, name, **keys):
+    """Rows of a sweep of channels. @param keys  as of Workshop.runs(), with _ for -"""
+    start, end = (-10, 3) if shop.size == "full" else (-2, 2)
+    return shop.runs(name, "channel", {"obstacle-layout": "channel", "start": start, "end": end} | {key.replace("_", "-"): value for key, value in keys.items()})
+
+
+def profiles(shop, name, outlines=False, **keys):
+    """The same with h, v and A on the way, and outlines."""
+    rows = passages(shop, name, **keys)
+    # Frames a fiftieth of a diameter apart, samples a fifth of that.
+    frame = 0.02 / rows[0]["terminal_speed"]
+    return shop.ways(name, rows, frame / 5, frame if outlines else None)
+
+
+def parameters(run, orifice):
+    row = run.row
+    return (rf"$w = {orifice}\sigma$, $\Gamma = {row['line_tension']:g}$, $b_0/b_\infty = {row['near_wall_drag']:g}$, "
+            rf"$V_t = {row['terminal_speed']:g}$, $N_v = {row['vertices']}$")
+
+
+def ending(run):
+    """A droplet that did not pass is shown as far as it came; its legend says so."""
+    return "" if run.word("status") == "passed" else f" (stops at $h = {run.table['h'][-1]:.2f}$)"
+
+
+def draw_profile(axes, run, column, index, label):
+    style_of = style.curve_style(index)
+    axes.plot(run.table["h"], run.table[column], color=style_of["color"], linewidth=1.4, label=label)
+    if run.word("status") != "passed":
+        axes.plot(run.table["h"][-1:], run.table[column][-1:], color=style_of["color"], marker="x", markersize=7, linestyle="none")
+
+
+def draw_measured(shop, axes, column):
+    for number, path in enumerate(shop.profiles):
+        table = measured(path)
+        if column in table:
+            axes.plot(table["h"], table[column], "o", color="black", markerfacecolor="none", markersize=4,
+                      label="measured" if number == 0 else None)
+
+
+def finish(axes, ordinate, reach=1.6):
+    axes.set_xlim(-reach, reach)
+    axes.set_xlabel(style.AXES["h"])
+    axes.set_ylabel(style.AXES[ordinate])
+    axes.axvline(0, color="0.8", linewidth=0.8, zorder=0)
+    if ordinate == "profile":
+        axes.axhline(1, color="0.6", linewidth=0.8, linestyle=":", zorder=0)
+        axes.set_ylim(bottom=0)
+    style.grid(axes)
+
+
+def extremes(run, label):
+    """What the row says of the passage."""
+    return {"curve": label} | {f"{extreme}{at}": run.row[f"{extreme}{at}"] for at in ("", "_at")
+                               for extreme in ("largest_shape_parameter", "smallest_relative_speed", "largest_relative_speed")}
+
+
+def profile_rows(run, label):
+    step = max(1, len(run.table) // 400)
+    return [{"curve": label, "h": frame["h"], "speed_ratio": frame["speed_ratio"], "shape_parameter": frame["shape_parameter"]}
+            for frame in run.table[::step]]
+
+
+def narrow(shop):
+    """The passage of Figs. 1 and 2."""
+    return profiles(shop, "channel-0.4", outlines=True, orifice=0.4, line_tension=0.16, near_wall_drag=0.064, terminal_speed=0.08)[0]
+
+
+@figure("1", "geometry: a droplet in a narrow channel, and one among obstacles with its trajectory", ["channel", "trajectory"], "1 s")
+def geometry(shop):
+    channel = narrow(shop)
+    released, = shop.runs("geometry", "trajectory", {"seeds": 1, "line-tension": 0.3, "obstacle-gap": 1.0, "max-time": 300.0})
+    array, = shop.ways("geometry", [released], 1, 4)
+    drawing, (left, right) = style.subplots(1, 2, figsize=(9.6, 4.4), width_ratios=[1, 1.5])
+    middle = channel.middle
+    frame = channel.frame_at("h", -0.75)
+    trajectory.draw_droplet(left, channel, frame, middle)
+    left.annotate("", (0.0, 0.2), (0.0, -0.2), arrowprops={"arrowstyle": "<->"})
+    left.text(0.06, 0, "$w$", va="center")
+    left.annotate("", (1.2, 0), (0.75, 0), arrowprops={"arrowstyle": "-|>", "color": "black"})
+    left.text(0.97, 0.06, "flow", ha="center")
+    trajectory.frame_limits(left, (-1.3, -1.3), (1.3, 1.3))
+    style.caption(left, f"(a) {parameters(channel, 0.4)}".replace(", $b_0", ",\n$b_0"))
+    start = array.polygons[0].mean(axis=1)
+    centres = array.polygons.mean(axis=2) - start
+    right.plot(*centres.T, "o", color="black", markerfacecolor="none", markersize=3.5, markeredgewidth=0.6)
+    shown = int(np.argmin(np.abs(centres[:, 0] - 0.5 * centres[-1, 0])))
+    trajectory.draw_droplet(right, array, shown, start)
+    middle_y = (centres[:, 1].min() + centres[:, 1].max()) / 2
+    half = max(2.4, (centres[:, 1].max() - centres[:, 1].min()) / 2 + 1.5)
+    trajectory.frame_limits(right, (-1, middle_y - half), (centres[-1, 0] + 1, middle_y + half))
+    row = array.row
+    style.caption(right, rf"(b) $w_\mathrm{{ob}} = {row['obstacle_gap']:g}\sigma$, $\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, "
+                  rf"$\Gamma = {row['line_tension']:g}$" "\n" rf"circles: centre, every {np.diff(array.times[:2])[0]:.3g} $t_0$; seed {row['seed']}")
+    for axes in (left, right):
+        axes.set_xlabel(r"$x/\sigma$, along the flow")
+    left.set_ylabel(r"$y/\sigma$")
+    data = [{"panel": "b", "time": t, "x": c[0], "y": c[1]} for t, c in zip(array.times, centres)]
+    return Plate(drawing, data)
+
+
+@figure("2", "a droplet squeezes through an orifice of 0.4 diameters: outlines, shape parameter, speed", ["channel"], "1 s")
+def squeezing(shop):
+    run = narrow(shop)
+    drawing = style.new_figure(figsize=(9.6, 6.2), layout="constrained")
+    top, bottom = drawing.subfigures(2, 1, height_ratios=[1, 2.4])
+    middle = run.middle
+    for axes, h in zip(top.subplots(1, 6), [-1.0, -0.5, -0.25, 0.0, 0.25, 0.5]):
+        frame = run.frame_at("h", h)
+        trajectory.draw_droplet(axes, run, frame, middle)
+        trajectory.frame_limits(axes, (-1.55, -0.85), (1.15, 0.85))
+        axes.set_xticks([]), axes.set_yticks([])
+        reached = np.interp(run.times[frame], run.table["time"], run.table["h"])
+        axes.set_title(rf"$h = {reached + 0.0:.2f}\sigma$".replace("-0.00", "0.00"), fontsize=9)
+    panels = bottom.subplots(1, 2)
+    for place, (column, ordinate) in enumerate([("shape_parameter", "shape"), ("speed_ratio", "profile")]):
+        axes = panels[place]
+        draw_profile(axes, run, column, 1, "simulation" + ending(run))
+        draw_measured(shop, axes, "A" if place == 0 else "v")
+        finish(axes, ordinate)
+        if shop.profiles:
+            axes.legend(frameon=False)
+    ripples = "" if run.row["vertices"] >= SMOOTH else f"; ripples of the speed: one for each vertex that passes the tips, none with {SMOOTH}"
+    drawing.suptitle(f"{parameters(run, 0.4)}; interface: {interface_of(run.word('preset'))}\nflow to the right, walls grey{ripples}", fontsize=9, color="0.25")
+    return Plate(drawing, profile_rows(run, "w=0.4"))
+
+
+@figure("3", "shape and speed through orifices of 0.9 and 0.7 diameters", ["channel"], "3 s")
+def two_orifices(shop):
+    drawing, panels = style.subplots(2, 2, figsize=(9.0, 6.8), sharex=True)
+    data = []
+    for line, (orifice, line_tension, drag, speed) in enumerate([(0.9, 1.7, 0.21, 0.028), (0.7, 1.08, 0.07, 0.032)]):
+        run, = profiles(shop, f"channel-{orifice}", outlines=True, orifice=orifice, line_tension=line_tension, near_wall_drag=drag, terminal_speed=speed)
+        for place, (column, ordinate) in enumerate([("shape_parameter", "shape"), ("speed_ratio", "profile")]):
+            axes = panels[line][place]
+            draw_profile(axes, run, column, line, "simulation" + ending(run))
+            finish(axes, ordinate)
+            if run.word("status") != "passed":
+                axes.legend(frameon=False)
+        style.caption(panels[line][0], parameters(run, orifice))
+        style.caption(panels[line][1], f"interface: {interface_of(run.word('preset'))}")
+        # The most deformed outline, where nothing else is drawn.
+        inset = panels[line][0].inset_axes([0.68, 0.5, 0.3, 0.47])
+        frame = run.frame_at("h", run.row["largest_shape_parameter_at"])
+        trajectory.draw_droplet(inset, run, frame, run.middle)
+        trajectory.frame_limits(inset, (-0.8, -0.8), (0.8, 0.8))
+        inset.set_xticks([]), inset.set_yticks([])
+        inset.set_xlabel(rf"$\mathcal{{A}}_\mathrm{{max}} = {run.row['largest_shape_parameter']:.3f}$", fontsize=8)
+        data += [*profile_rows(run, f"w={orifice}"), extremes(run, f"w={orifice}")]
+    for number, path in enumerate(shop.profiles[:2]):
+        table = measured(path)
+        for place, column in enumerate(["A", "v"]):
+            if column in table:
+                panels[number][place].plot(table["h"], table[column], "o", color="black", markerfacecolor="none", markersize=4)
+    return Plate(drawing, data)
+
+
+@figure("4", "speed behind an orifice, which overshoots the terminal speed, for three line tensions", ["channel"], "3 s")
+def overshoot(shop):
+    drawing, panels = style.subplots(1, 2, figsize=(9.6, 4.6))
+    data = []
+    for axes, (orifice, drag) in zip(panels, [(0.7, 0.02), (0.8, 0.0)]):
+        line_tensions = [1.85, 1.11, 0.83]
+        runs = profiles(shop, f"overshoot-{orifice}", orifice=orifice, line_tension=line_tensions, near_wall_drag=drag, terminal_speed=0.032)
+        for index, (line_tension, run) in enumerate(zip(line_tensions, runs)):
+            draw_profile(axes, run, "speed_ratio", index, rf"$\Gamma = {line_tension:g}$" + ending(run))
+            data += profile_rows(run, f"w={orifice} b_0={drag:g} Gamma={line_tension:g}")
+        finish(axes, "profile")
+        style.caption(axes, rf"$w = {orifice}\sigma$, $b_0/b_\infty = {drag:g}$, $V_t = 0.032$, $N_v = {run.row['vertices']}$"
+                      f"\ninterface: {interface_of(run.word('preset'))}")
+    draw_measured(shop, panels[0], "v")
+    for axes in panels:
+        axes.legend(frameon=False, fontsize=8, loc="lower right")
+    return Plate(drawing, data)
+
+
+@figure("A1", "near-wall drag: speed between parallel walls against the distance from them, and its exponent", ["channel"], "3 s")
+def near_wall_drag(shop):
+    distances = [0.03, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2]
+    rows = passages(shop, "walls", start=-1.5, end=1.5, wedge_angle=0, orifice=[1 + 2 * distance for distance in distances],
+                    line_tension=1, near_wall_drag=0.07, terminal_speed=0.03)
+    speeds = [row["mean_speed"] / row["terminal_speed"] for row in rows]
+    if not np.isfinite(speeds).all():
+        raise UserError(f"droplets of {shop.sweep_file('walls')} went too short a way for a mean speed; raise max-time, e.g. --set channel:max-time=3000")
+    data = [{"distance": distance, "speed_ratio": speed, "ratio": speed / (1 - speed)} for distance, speed in zip(distances, speeds)]
+    row = rows[0]
+    fit = shop.fit("drag", shop.table("walls", ["d [sigma]", "v [v_t]"], zip(distances, speeds)), "--format", "json")
+    drawing, axes = style.subplots(figsize=(6.4, 4.8))
+    ratio = np.array([point["ratio"] for point in data])
+    axes.plot(distances, ratio, "o", color=style.COLOURS[0], label="droplet midway between two walls")
+    d = np.geomspace(0.02, 5, 100)
+    alpha, strength = fit["near_wall_exponent"], fit["near_wall_drag"]
+    axes.plot(d, d**alpha / strength, color=style.COLOURS[0], linewidth=1,
+              label=rf"fit: $\alpha = {alpha:.2f}\pm{fit['near_wall_exponent_error'] or math.nan:.2f}$")
+    # A circle whose vertices feel the drag each: b_0/b_inf times the mean of d_i^-alpha over them.
+    exponent, height = row["near_wall_exponent"], 0.5 * (1 - np.abs(np.sin(np.linspace(0, 2 * np.pi, row["vertices"], endpoint=False))))
+    circle = 1 / (row["near_wall_drag"] * np.mean((d[:, None] + height) ** -exponent, axis=1))
+    axes.plot(d, circle, ":", color="black", linewidth=1, label="a circle whose every vertex feels it")
+    axes.plot(d, ratio[-1] * (d / distances[-1]) ** exponent, "--", color="0.4", linewidth=1, label=rf"slope {exponent:.3g}, of every vertex")
+    style.logarithmic_abscissa(axes)
+    axes.set_yscale("log")
+    axes.set_xlabel(r"distance between wall and droplet $d/\sigma$")
+    axes.set_ylabel(r"$v_g/(v_t - v_g)$")
+    style.grid(axes)
+    axes.legend(frameon=False)
+    style.caption(axes, rf"$\Gamma = 1$, $b_0/b_\infty = 0.07$, $V_t = 0.03$, $N_v = {row['vertices']}$, no error bars: one run a point" "\n"
+                  "near a wall only the nearest vertices feel it: the exponent of the whole droplet is smaller than theirs")
+    return Plate(drawing, data)
+
+
+@figure("B1", "speed through an orifice of 0.7 diameters for different numbers of vertices", ["channel"], "4 s")
+def vertices(shop):
+    # Up to so many times the config's number of vertices: the finest run takes most of the time.
+    line_tension, most = (1.08, 4) if shop.size == "full" else (0.83, 2)
+    counts = [count for count in (32, 64, 128, 256, 512, 1024) if count <= most * int(shop.keys("channel")["vertices"])]
+    drawing, axes = style.subplots(figsize=(7.2, 5.0))
+    inset = axes.inset_axes([0.74, 0.1, 0.25, 0.36])
+    data = []
+    runs = profiles(shop, "vertices", orifice=0.7, line_tension=line_tension, near_wall_drag=0.07, terminal_speed=0.032, vertices=counts)
+    for index, (count, run) in enumerate(zip(counts, runs)):
+        for panel in (axes, inset):
+            draw_profile(panel, run, "speed_ratio", index, rf"$N_v = {count}$, slowest ${round(run.row['smallest_relative_speed'], 3) + 0.0:.3f}\,v_t$" + ending(run))
+        data += [*profile_rows(run, f"N_v={count}"), extremes(run, f"N_v={count}")]
+    finish(axes, "profile")
+    inset.set_xlim(-0.4, -0.1)
+    inset.set_ylim(0, 0.5)
+    inset.tick_params(labelsize=7)
+    axes.legend(frameon=False, fontsize=8, loc="lower left")
+    style.caption(axes, rf"$w = 0.7\sigma$, $\Gamma = {line_tension:g}$, $b_0/b_\infty = 0.07$, $V_t = 0.032$; interface: {interface_of(run.word('preset'))}"
+                  "\ninset: near the first minimum; a cross ends the curve of a droplet that stops")
+    return Plate(drawing, data)
+
+
+@figure("B2", "deviation of the speed profile as the perimeter's springs stiffen", ["channel"], "15 s")
+def perimeter_springs(shop):
+    drawing, axes = style.subplots(figsize=(6.4, 4.8))
+    ratios = [1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0]
+    data = []
+    for index, preset in enumerate(["elastic", "literal"]):
+        runs = profiles(shop, f"springs-{preset}", orifice=0.9, line_tension=1.7, near_wall_drag=0.21, terminal_speed=0.028, preset=preset,
+                        perimeter_spring="rest", perimeter_stiffness_ratio=ratios)
+        files = []
+        for ratio, run in zip(ratios, runs):
+            frames = run.table[np.abs(run.table["h"]) < 1.2]
+            files.append(shop.table(f"springs-{preset}-{ratio:g}", ["h [sigma]", "v [v_t]", "A"],
+                                    zip(frames["h"], frames["speed_ratio"], frames["shape_parameter"])))
+        reference, compared = (shop.profiles[0], files) if shop.profiles else (files[0], files[1:])
+        places = ratios if shop.profiles else ratios[1:]
+        found = [entry["delta_v"] for entry in shop.fit("deviation", reference, *compared)["deviations"]]
+        axes.plot(places, found, **style.curve_style(index), markersize=5, linewidth=1, label=interface_of(preset))
+        data += [{"preset": preset, "stiffness_ratio": x, "delta_v": y} for x, y in zip(places, found)]
+    style.logarithmic_abscissa(axes)
+    axes.set_ylim(bottom=0)
+    axes.set_xlabel(r"stiffness of the perimeter over line tension $K_l/\Gamma$")
+    axes.set_ylabel(r"$\Delta_v$ from the measured profile" if shop.profiles else r"$\Delta_v$ from the profile at $K_l/\Gamma = 10^{-4}$")
+    style.grid(axes)
+    axes.legend(frameon=False)
+    style.caption(axes, parameters(run, 0.9) + "\nsprings to the rest length")
+    return Plate(drawing, data)

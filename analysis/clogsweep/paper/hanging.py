@@ -1,0 +1,81 @@
+"""Figures of droplets that hang over obstacles: what holds them, the mesh or a law of walls."""
+
+from .. import style
+from ..groups import said
+from .arrays import by, numbers
+from .plate import Plate, figure, interface_of
+
+HOLDS = ("vertices", "on_mesh", "wrapped", "squeezed", "hybrid")
+
+
+def of_each(curve, *names):
+    return {name: [group[name] for group in curve] for name in names}
+
+
+def title(drawing, shop, config, groups):
+    """What all points have in common, and what the marks mean."""
+    first = groups[0]
+    drawing.suptitle(f"{style.runs_a_point(groups)}; saturated arrays, obstacles of {first['obstacle_diameter']:g}$\\sigma$, "
+                     f"$T = {first['max_time']:g}\\,t_0$\n{style.length_note(groups, shop.confidence(config))}", fontsize=8, color="0.25")
+
+
+def finish(axes, places, groups, text):
+    axes.set_yscale("log")
+    style.logarithmic_abscissa(axes, places)
+    style.grid(axes)
+    axes.set_title(text, fontsize=9)
+    style.legend(axes, groups)
+
+
+@figure("W1", "what of the clogging length is the mesh's: line tension, numbers of vertices, interfaces", ["hanging-robust", "hanging-elastic"], "32 min")
+def lengths_by_mesh(shop):
+    configs = ["hanging-robust", "hanging-elastic"]
+    presets = [(config, shop.sweep(config)) for config in configs]
+    groups = [group for _, members in presets for group in members]
+    gaps = by(groups, "obstacle_gap")
+    drawing, panels = style.subplots(len(gaps), len(presets), figsize=(5.2 * len(presets), 4.0 * len(gaps)),
+                                     sharex=True, sharey=True, squeeze=False)
+    data = []
+    for (gap, _), line in zip(gaps, panels):
+        for (config, members), axes in zip(presets, line):
+            families = by([group for group in members if group["obstacle_gap"] == gap], "vertices")
+            places = [group["line_tension"] for group in members]
+            for index, (vertices, curve) in enumerate(families):
+                shift = style.side_by_side(index, len(families), places)
+                style.draw_lengths(axes, [group["line_tension"] * shift for group in curve], curve, index, f"$N_v = {vertices}$")
+                data += numbers(curve, f"{config}, gap {gap:g}", **of_each(curve, *HOLDS))
+            finish(axes, places, [group for _, curve in families for group in curve],
+                   f"{interface_of(members[0]['preset'])}\n{said(shop.columns(config)['obstacle_gap'], gap)}")
+        line[0].set_ylabel(style.AXES["length"])
+    for axes in panels[-1]:
+        axes.set_xlabel(style.AXES["line_tension"])
+    title(drawing, shop, configs[0], groups)
+    return Plate(drawing, data)
+
+
+@figure("W2", "the clogging length with friction of walls: line tension, coefficients of friction, numbers of vertices", ["hanging-friction"], "60 min")
+def lengths_by_friction(shop):
+    config = "hanging-friction"
+    groups = shop.sweep(config)
+    columns = shop.columns(config)
+    gaps = by(groups, "obstacle_gap")
+    meshes = sorted({group["vertices"] for group in groups})
+    drawing, panels = style.subplots(1, len(gaps), figsize=(6.8 * len(gaps), 5.4), sharey=True, squeeze=False)
+    data = []
+    for (gap, members), axes in zip(gaps, panels[0]):
+        places = [group["line_tension"] for group in members]
+        families = by(members, "friction")
+        for index, (friction, family) in enumerate(families):
+            # A colour for every friction; coarser meshes are dashed, finest is whole.
+            for vertices, curve in by(family, "vertices"):
+                mesh = meshes.index(vertices)
+                shift = style.side_by_side(index * len(meshes) + mesh, len(families) * len(meshes), places)
+                line = "-" if vertices == meshes[-1] else (0, (4, 1 + mesh))
+                style.draw_lengths(axes, [group["line_tension"] * shift for group in curve], curve, index,
+                                   f"{said(columns['friction'], friction)}, $N_v = {vertices}$", line)
+                data += numbers(curve, f"friction {friction:g}, gap {gap:g}", **of_each(curve, "friction", *HOLDS))
+        finish(axes, places, members, f"{interface_of(groups[0]['preset'])}\n{said(columns['obstacle_gap'], gap)}")
+        axes.set_xlabel(style.AXES["line_tension"])
+    panels[0][0].set_ylabel(style.AXES["length"])
+    title(drawing, shop, config, groups)
+    return Plate(drawing, data)

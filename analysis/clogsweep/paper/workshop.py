@@ -1,0 +1,218 @@
+"""Runs what a figure needs with clogsweep, clogrun and clogfit, once, and remembers where every number came from."""
+
+import csv
+import dataclasses
+import itertools
+import json
+import pathlib
+import shlex
+
+from .. import places, replays, stored
+from ..errors import UserError
+from ..programs import run_program
+
+CONFIGS = places.JOBS / "figures"
+
+
+def config_keys(path):
+    """Keys and values of a config file, as text."""
+    keys = {}
+    for line in path.read_text().splitlines():
+        line = line.split("#", 1)[0]
+        if "=" in line:
+            key, value = line.split("=", 1)
+            keys[key.strip()] = value.strip()
+    return keys
+
+
+def as_text(value):
+    """Of a key."""
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def in_row(row, key, otherwise):
+    """The text of a key's value in a row, and that of a key that has no column of numbers."""
+    if key == "perimeter-stiffness-ratio":
+        return as_text(row["perimeter_stiffness"] / row["line_tension"])
+    column = key.replace("-", "_")
+    return as_text(row[column]) if column in row.dtype.names and not isinstance(row[column], bytes) else otherwise
+
+
+@dataclasses.dataclass(frozen=True)
+class Override:
+    """KEY=VALUE for all configs, or CONFIG:KEY=VALUE for one."""
+
+    config: str | None
+    key: str
+    value: str
+
+    @staticmethod
+    def parse(text):
+        name, equals, value = text.partition("=")
+        config, colon, key = name.rpartition(":")
+        if not equals or not key or not value:
+            raise UserError(f"invalid --set {text} (is not KEY=VALUE or CONFIG:KEY=VALUE) try --set max-time=100")
+        return Override(config if colon else None, key, value)
+
+
+@dataclasses.dataclass
+class Workshop:
+    size: str
+    ranks: int
+    folder: pathlib.Path
+    programs: pathlib.Path
+    overrides: list
+    profiles: list = dataclasses.field(default_factory=list)
+    draw_only: bool = False
+
+    def __post_init__(self):
+        self._complete_sweeps = set()
+        self._fits = {}
+        self._sources = []
+
+    # Configs
+
+    def config(self, name):
+        return CONFIGS / f"{name}.{self.size}.cfg"
+
+    def keys(self, name):
+        """What a config and --set say together."""
+        keys = config_keys(self.config(name))
+        # What is meant for this config alone has the last word.
+        for config in (None, name):
+            keys |= {override.key: override.value for override in self.overrides if override.config == config}
+        return keys
+
+    def _arguments(self, name, own_keys):
+        """The config and what differs from it: first --set, then the figure's own keys, which have the last word."""
+        in_file = config_keys(self.config(name))
+        keys = self.keys(name) | own_keys
+        if own_keys.get("obstacle-layout") in ("channel", "wall"):
+            # Nothing is random or periodic there: such a --set is meant for the others.
+            keys = {key: value for key, value in keys.items() if key not in ("seeds", "box")}
+        return ["--config", str(self.config(name)), *(f"{key}={value}" for key, value in keys.items() if in_file.get(key) != value)]
+
+    # Programs
+
+    def _call(self, program, *arguments, ranks=1):
+        return run_program(self.programs / program, *arguments, ranks=ranks)
+
+    # Sweeps
+
+    def sweep_file(self, name):
+        return self.folder / "sweeps" / f"{name}.h5"
+
+    def _complete(self, name, arguments, ranks):
+        """Runs what is missing of a sweep, once."""
+        file = self.sweep_file(name)
+        if self.draw_only and not file.exists():
+            raise UserError(f"{file} is not there; leave out --draw-only, or run clogsweep {shlex.join(arguments)}")
+        if not self.draw_only and name not in self._complete_sweeps:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            print(f"sweep {name}: {file}", flush=True)
+            self._call("clogsweep", "--output", file, *arguments, ranks=ranks)
+            self._complete_sweeps.add(name)
+        self._note_sweep(name)
+
+    def sweep(self, name):
+        """Runs what is missing of a config's sweep. @return clogfit's groups"""
+        self._complete(name, self._arguments(name, {}), self.ranks)
+        if name not in self._fits:
+            self._fits[name] = json.loads(self._call("clogfit", self.sweep_file(name), "--format", "json"))
+        return [group for group in self._fits[name]["groups"] if group["runs"] > 0]
+
+    def runs(self, name, config, keys):
+        """Runs what is missing of a sweep of a figure's own keys.
+
+        @param config  whose keys hold where these say nothing, or None for the defaults
+        @param keys  a value or a list of them for each, e.g. {"line-tension": [0.3, 1]}
+        @return the rows, in the order of the lists, the last of which goes fastest
+        """
+        lists = {key: [as_text(value) for value in (values if isinstance(values, list) else [values])] for key, values in keys.items()}
+        words = {key: ",".join(values) for key, values in lists.items()}
+        wanted = list(itertools.product(*lists.values()))
+        self._complete(name, self._arguments(config, words) if config else [f"{key}={word}" for key, word in words.items()],
+                       min(self.ranks, len(wanted)))
+        # The file may hold others beside them. What has no column is the same in all of them.
+        known = {tuple(in_row(row, key, values[0]) for key, values in lists.items()): row for row in stored.read_rows(self.sweep_file(name))}
+        if missing := [values for values in wanted if values not in known]:
+            which = ", ".join(map("=".join, zip(lists, missing[0])))
+            raise UserError(f"{self.sweep_file(name)} holds no run of {which}; leave out --draw-only, or give another --output")
+        found = [known[values] for values in wanted]
+        for row in found:
+            if row["status"] == b"failed":
+                raise UserError(f"task {row['task']} of {self.sweep_file(name)} failed ({row['message'].decode()}); clogrun replay shows how far it came")
+        return found
+
+    def columns(self, name):
+        """What the parameters of a sweep that sweep() has run are called: see clogfit's JSON, by name."""
+        return {column["name"]: column for column in self._fits[name]["columns"]}
+
+    def confidence(self, name):
+        """Of the intervals of a sweep that sweep() has run."""
+        return self._fits[name]["confidence"]
+
+    def rows(self, name):
+        """The table of a sweep that sweep() has run."""
+        return stored.read_table(self.sweep_file(name))
+
+    def _note_sweep(self, name):
+        with stored.opened(self.sweep_file(name)) as file:
+            about, rows = stored.attributes(file), file["runs"][:]
+        seeds = sorted(set(rows["seed"].tolist()))
+        finished = sum(status not in (b"running", b"interrupted") for status in rows["status"])
+        self._sources.append(
+            f"{about['command_line']}\n    {finished} of {len(rows)} runs finished, rows 0 to {len(rows) - 1}, "
+            f"seeds {seeds[0]} to {seeds[-1]}; clogsweep {about['version']}, git {about['git_hash']}, begun {about['start_time']}")
+
+    # Ways of single droplets
+
+    def ways(self, name, rows, samples, outlines=None):
+        """Rows of a sweep run once more, see replays.follow_all(); reused where a file holds the same already."""
+        folder = self.folder / "runs"
+        if not self.draw_only:
+            print(f"ways of {name}: {folder}", flush=True)
+            folder.mkdir(parents=True, exist_ok=True)
+        clogrun = None if self.draw_only else self.programs / "clogrun"
+        ways = replays.follow_all(clogrun, self.sweep_file(name), rows, folder, self.ranks, samples, outlines)
+        for way in ways:
+            self._sources.append(
+                f"{way.attributes['command_line']}\n    {way.word('status')} at t = {way.row['time']:.6g}; "
+                f"clogrun {way.attributes['version']}, git {way.attributes['git_hash']}, {way.attributes['start_time']}; file {way.path}")
+        return ways
+
+    # Fits of tables
+
+    def fit(self, *arguments):
+        """JSON of clogfit drag, clogfit deviation."""
+        self._sources.append("clogfit " + shlex.join(map(str, arguments)))
+        return json.loads(self._call("clogfit", *arguments))
+
+    def table(self, name, columns, rows):
+        """A CSV file that clogfit reads. @param columns  its header, e.g. ["h [sigma]", "v [v_t]"]"""
+        file = self.folder / "runs" / f"{name}.csv"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        with open(file, "w", newline="") as out:
+            csv.writer(out).writerows([columns, *rows])
+        return file
+
+    def take_sources(self):
+        """Where the numbers of the figure drawn last came from; forgets them."""
+        sources, self._sources = self._sources, []
+        return sources
+
+
+def measured(path):
+    """Columns h, v, A of a measured passage in reduced units, as clogfit calibrate reads it; for display."""
+    import pandas  # slow to load, and seldom needed
+
+    try:
+        table = pandas.read_csv(path, comment="#", skipinitialspace=True)
+    except FileNotFoundError as error:
+        raise UserError(f"cannot read {path} (no such file); check the name") from error
+    except (OSError, ValueError) as error:
+        raise UserError(f"cannot read {path} ({error}); give a CSV file with the header h [sigma], v [v_t], A") from error
+    table.columns = [name.strip() for name in table.columns]
+    if not {"h [sigma]", "v [v_t]"} <= set(table.columns):
+        raise UserError(f"cannot read {path} (no columns h [sigma] and v [v_t]); give a CSV file with the header h [sigma], v [v_t], A")
+    return table.rename(columns={"h [sigma]": "h", "v [v_t]": "v"})

@@ -1,0 +1,117 @@
+"""What came out of single droplets: their passage through a channel, or their sag on a wall, over what the sweep varies."""
+
+import dataclasses
+import html
+
+import numpy as np
+from . import replays, style, trajectory
+from .groups import FINISHED
+
+
+@dataclasses.dataclass(frozen=True)
+class Kind:
+    """What is told of droplets in a channel, or on a wall."""
+
+    heading: str
+    goal: str  # the status of those that came where they should
+    outcomes: dict  # in words, by status
+    curves: dict  # labels of axes, by column: one picture each
+    columns: dict  # headings of the table, by column
+    outline: str
+    about: str
+
+
+CHANNEL = Kind(
+    "Passages", "passed", {"passed": "passed", "clogged": "clogged", "broken": "broken up", "flowing": "under way at the end"},
+    {"largest_shape_parameter": r"largest shape parameter $\mathcal{A}$", "smallest_relative_speed": r"smallest speed $v_g/v_t$",
+     "largest_relative_speed": r"largest speed $v_g/v_t$"},
+    {"largest_shape_parameter": "largest A", "largest_shape_parameter_at": "at h/&sigma;", "smallest_relative_speed": "smallest v<sub>g</sub>/v<sub>t</sub>",
+     "smallest_relative_speed_at": "at h/&sigma;", "largest_relative_speed": "largest v<sub>g</sub>/v<sub>t</sub>",
+     "largest_relative_speed_at": "at h/&sigma;"},
+    "where its shape parameter is largest",
+    "h is the distance of the droplet's centre from the orifice, v<sub>t</sub> the speed of a free droplet.")
+WALL = Kind(
+    "Sags", "clogged", {"clogged": "at rest", "broken": "broken up", "flowing": "not yet at rest"},
+    {"sag": style.AXES["sag"], "top_sag": r"sag of the top $/\sigma$"},
+    {"sag": "sag/&sigma;", "top_sag": "sag of the top/&sigma;", "shape_parameter": "A"},
+    "at the end", "The sag is how far the droplet's centre sinks under its own weight.")
+
+
+def kind_of(groups):
+    return CHANNEL if groups.members[0]["obstacle_filling"] == "channel" else WALL
+
+
+def share(kind, members):
+    """Of a curve's droplets, how many came where they should."""
+    return f"{sum(group['status'] == kind.goal for group in members)} of {len(members)} {kind.outcomes[kind.goal]}"
+
+
+def draw_curves(groups, column):
+    """One point for each droplet; a cross is one that clogged in a channel, an open marker one that was under way at the end."""
+    kind = kind_of(groups)
+    figure, axes = style.subplots(figsize=(6.4, 4.8))
+    markers = {kind.goal: {"marker": "o"}, "flowing": {"marker": "o", "markerfacecolor": "white"}, "broken": {"marker": "^"}}
+    for index, (label, members) in enumerate(groups.curves()):
+        members = sorted((group for group in members if group[column] is not None), key=lambda group: group[groups.abscissa])
+        look = {name: style.curve_style(index)[name] for name in ("color", "linestyle")}
+        axes.plot([group[groups.abscissa] for group in members], [group[column] for group in members], linewidth=1, **look,
+                  label=f"{label}: {share(kind, members)}" if label else share(kind, members))
+        for group in members:
+            axes.plot(group[groups.abscissa], group[column], color=look["color"], markersize=6, **markers.get(group["status"], {"marker": "X"}))
+    groups.draw_abscissa(axes)
+    axes.set_ylabel(kind.curves[column])
+    style.grid(axes)
+    style.legend(axes)
+    ends = {group["status"] for group in groups.members}
+    style.caption(axes, "\n".join([groups.caption(), groups.note("; ".join(
+        f"{sign}: {kind.outcomes[status]}" for sign, status in (("dots", kind.goal), ("crosses", "clogged"), ("triangles", "broken"), ("open", "flowing"))
+        if status in ends and (sign == "dots" or status != kind.goal)))]))
+    return figure
+
+
+def shares(groups, value):
+    """The same for every curve, as a list. @param value  as for table()"""
+    kind, names = kind_of(groups), groups.curve_parameters()
+    lines = [(", ".join(f"{name.replace('_', ' ')} {value(members[0][name])}" for name in names), share(kind, members)) for _, members in groups.curves()]
+    return "<ul>" + "".join(f"<li>{html.escape(f'{curve}: {said}' if curve else said)}</li>" for curve, said in lines) + "</ul>"
+
+
+def table(groups, value):
+    """@param value  makes a cell of a number and its digits"""
+    kind, names = kind_of(groups), [*groups.curve_parameters(), groups.abscissa]
+    lines = ["<tr>" + "".join(f"<th>{title}</th>" for title in [*(name.replace("_", " ") for name in names), "outcome", *kind.columns.values(), "doubts"]) + "</tr>"]
+    for group in groups.members:
+        cells = [*(value(group[name]) for name in names), kind.outcomes[group["status"]], *(value(group[name], 4) for name in kind.columns)]
+        doubts = ", ".join((group["doubts"] or "").split()).replace("_", " ")
+        lines.append("<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + f'<td class="doubt">{html.escape(doubts)}</td></tr>')
+    return '<div class="scroll"><table>' + "\n".join(lines) + "</table></div>"
+
+
+def examples(rows, count):
+    """Rows that are spread over the sweep, the first and the last among them."""
+    over = [row for row in rows if row["status"].decode() in FINISHED and row["model"] == b"dp"]
+    return [over[place] for place in sorted({round(place) for place in np.linspace(0, len(over) - 1, min(count, len(over)))})]
+
+
+def draw_outlines(groups, rows, clogrun, sweep, folder):
+    """One picture of each row's droplet, run once more in a temporary folder."""
+    if len(rows) == 0:
+        return []
+    kind = kind_of(groups)
+    pictures = []
+    # Frames a fiftieth of a diameter apart at terminal speed.
+    frame = min(0.02 / row["terminal_speed"] for row in rows)
+    for run in replays.follow_all(clogrun, sweep, rows, folder, 2, frame, frame):
+        shown = run.frame_at("h", run.row["largest_shape_parameter_at"]) if kind is CHANNEL else -1
+        figure, axes = style.subplots(figsize=(4.6, 4.6))
+        low, high = run.polygons[shown].min(axis=1), run.polygons[shown].max(axis=1)
+        trajectory.draw_droplet(axes, run, shown, (low + high) / 2)
+        half = (high - low).max() / 2 + 0.3
+        trajectory.frame_limits(axes, (-half, -half), (half, half))
+        axes.set_xlabel(r"$x/\sigma$ from the droplet's middle, along the flow")
+        axes.set_ylabel(r"$y/\sigma$")
+        names = [*groups.curve_parameters(), groups.abscissa]
+        said = ", ".join(groups.said(name, run.word(name) if run.row[name].dtype.kind == "S" else float(run.row[name])) for name in names)
+        axes.set_title(f"task {run.path.stem.rsplit('-', 1)[1]}: {said}\n{kind.outcomes[run.word('status')]}; {kind.outline}", fontsize=8)
+        pictures.append(figure)
+    return pictures

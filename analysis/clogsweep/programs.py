@@ -1,0 +1,54 @@
+"""Finds the built programs and runs them."""
+
+import pathlib
+import shlex
+import shutil
+import subprocess
+
+from . import places
+from .errors import ProgramFailed, UserError
+
+
+def reason(text):
+    """The line in which a program of ours says why it stopped; mpirun talks around it."""
+    lines = [line for line in text.splitlines() if line.strip()]
+    ours = [line for line in lines if line.startswith(("clogsweep", "clogrun", "clogfit"))]
+    return (ours or lines[-1:] or ["no reason given"])[-1]
+
+
+def programs_in(folder=None):
+    """Folder of clogsweep, clogrun and clogfit: the user's own choice, or those of the PATH, or those beside this package.
+
+    @throws UserError  if they are not there
+    """
+    called = shutil.which("clogsweep")
+    candidates = [pathlib.Path(folder)] if folder else [*([pathlib.Path(called).resolve().parent] if called else []), *places.PROGRAMS]
+    for place in candidates:
+        if (place / "clogsweep").exists():
+            return place.resolve()
+    raise UserError(f"no clogsweep in {place}; build it (cmake --workflow --preset release), or give --programs FOLDER")
+
+
+def add_option(parser):
+    """--programs, for programs_in()."""
+    parser.add_argument("--programs", type=pathlib.Path,
+                        help="folder of clogsweep, clogrun and clogfit (that of the PATH, or beside this package)")
+
+
+def run_program(program, *arguments, ranks=1):
+    """@return what it prints"""
+    command = [str(program), *map(str, arguments)]
+    if ranks > 1:
+        settings = shlex.quote(str(places.JOBS / "mpi-settings.sh"))
+        command = ["bash", "-c", f'. {settings} && exec mpirun -np {ranks} "$@"', "mpirun", *command]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        while True:
+            try:
+                out, error = process.communicate()
+                break
+            except KeyboardInterrupt:
+                # The terminal has told the programs, too: they end in good order and say where they are.
+                continue
+    if process.returncode != 0:
+        raise ProgramFailed(reason(error or out), process.returncode)
+    return out

@@ -1,0 +1,41 @@
+"""The way of one droplet among obstacles: several moments of a run in one picture."""
+
+import matplotlib
+
+from . import style, trajectory
+
+
+def view(run):
+    """Corners of what the droplet comes to."""
+    return run.polygons.min(axis=(0, 2)) - 0.5, run.polygons.max(axis=(0, 2)) + 0.5
+
+
+def canvas(run):
+    low, high = view(run)
+    width, height = high - low
+    figure_width = min(12.0, max(5.0, 2.2 * width))
+    figure, axes = style.subplots(figsize=(figure_width, max(3.0, figure_width * height / width + 1.2)))
+    trajectory.draw_surroundings(axes, run)
+    trajectory.frame_limits(axes, low, high)
+    axes.set_xlabel(r"$x/\sigma$, along the flow")
+    axes.set_ylabel(r"$y/\sigma$")
+    trajectory.draw_guides(axes)
+    axes.set_title(f"{trajectory.described(run)}: {trajectory.verdict(run)}", fontsize=9)
+    return figure, axes
+
+
+def draw(run, num_outlines):
+    """@param run  see trajectory.Trajectory, with outlines"""
+    figure, axes = canvas(run)
+    chosen = trajectory.along_the_way(run.polygons, num_outlines)
+    for frame in chosen:
+        x, y = run.polygons[frame]
+        share = run.times[frame] / run.times[-1] if run.times[-1] > 0 else 1.0
+        is_last = frame == chosen[-1]
+        axes.fill(
+            x, y, facecolor=style.DROPLET if is_last else "none", alpha=0.75 if is_last else 1.0,
+            edgecolor="black" if is_last else style.VIRIDIS(share), linewidth=1.0, zorder=3 if is_last else 2,
+        )
+    scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, run.times[-1]), cmap=style.VIRIDIS)
+    figure.colorbar(scale, ax=axes, label=r"$t/t_0$", fraction=0.03, pad=0.01)
+    return figure

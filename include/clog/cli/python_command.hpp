@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace clog::cli {
+
+/// The folder of the Python module clogsweep, which is installed with this program.
+/// @throws Error  if it is not there
+std::filesystem::path find_python_module();
+
+/// The program goes on as `python3 -m clogsweep`; its exit code is the module's.
+/// @param name  under which the module speaks of itself
+/// @param module  as find_python_module() gives it
+/// @param arguments  a command of the module first
+/// @throws Error  if it cannot be run
+[[noreturn]] void become_python(const std::string& name, const std::filesystem::path& module,
+                                std::vector<std::string> arguments);
+
+/// Such a command, as it is typed.
+std::string python_command(const std::filesystem::path& module, const std::vector<std::string>& arguments);
+
+/// Is there a program of this name in PATH?
+bool is_installed(const std::string& program);
+
+/// The folder this program is in.
+std::filesystem::path own_folder();
+
+}  // namespace clog::cli

@@ -1,0 +1,166 @@
+"""The Python module clogsweep, as a person uses it in a notebook."""
+
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pandas
+
+from drawing import Analysis
+from support import BIN, QUICK, ROOT, SweepTest, table
+
+import clogsweep
+from clogsweep import places, programs
+
+PNG = b"\x89PNG\r\n"
+
+
+class Module(Analysis):
+    def sweep(self, *keys):
+        self.succeed("clogsweep", *QUICK, *(keys or ["line-tension=0.5,3", "seeds=1..4"]), "--output", "s.h5")
+        return clogsweep.open(self.folder / "s.h5", BIN)
+
+    def run_of_one_droplet(self, *options):
+        self.succeed("clogrun", "array", *QUICK, "line-tension=0.5", "seeds=1", "--output", "r.h5", *options)
+        return clogsweep.open(self.folder / "r.h5")
+
+    def test_rows_are_those_of_the_file_with_units(self):
+        sweep = self.sweep()
+        self.assertIsInstance(sweep, clogsweep.Sweep)
+        pandas.testing.assert_frame_equal(sweep.rows, table(self.folder / "s.h5"), check_dtype=False)
+        self.assertEqual(sweep.rows.attrs["units"]["mean_speed"], "sqrt(sigma g)")
+        self.assertIn("terminal-speed", sweep.attributes["config"])
+        self.assertEqual(sweep.status()["runs"], 8)
+
+    def test_groups_are_those_of_clogfit(self):
+        fit = self.sweep().fit()
+        told = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)
+        self.assertEqual(fit.told, told)
+        self.assertEqual(fit.groups.line_tension.tolist(), [0.5, 3])
+        self.assertEqual(fit.groups.clogging_length.tolist(), [group["clogging_length"] for group in told["groups"]])
+        self.assertEqual(fit.survival(1).probability.tolist(), [step["probability"] for step in told["groups"][1]["survival"]])
+        self.assertEqual((fit.units["clogging_length"], fit.confidence), ("sigma", 0.95))
+
+    def test_options_of_a_fit_reach_clogfit(self):
+        options = {"dwell": 20.0, "from_distance": 0.5, "confidence": 0.5}
+        words = [word for name, value in options.items() for word in (f"--{name.replace('_', '-')}", value)]
+        self.assertEqual(self.sweep().fit(**options).told, json.loads(self.succeed("clogfit", "s.h5", "--format", "json", *words).stdout))
+
+    def test_curves_draw_themselves_and_are_saved(self):
+        fit = self.sweep().fit()
+        for picture in (fit.curve(), fit.speeds()):
+            self.assertTrue(picture._repr_png_().startswith(PNG))
+        self.assertEqual(fit.curve().save(self.folder / "curve.png"), self.folder / "curve.png")
+        self.assert_picture("curve")
+        self.write("notes.png", "no picture")
+        with self.assertRaisesRegex(clogsweep.UserError, "will not overwrite .*notes.png"):
+            fit.curve().save(self.folder / "notes")
+
+    def test_clogs_draw_themselves_and_say_what_holds_them(self):
+        sweep = self.sweep("line-tension=3", "seeds=1..8")
+        clogs = sweep.clogs(most=2)
+        clogged = sweep.rows[sweep.rows.status == "clogged"]
+        self.assertEqual([clog.task for clog in clogs], clogged.task.tolist()[:2])
+        self.assertEqual([clog.mechanism for clog in clogs], clogged.mechanism.tolist()[:2])
+        self.assertTrue(all(drawn._repr_png_().startswith(PNG) for drawn in (clogs, clogs[0], clogs[:1])))
+        self.assertEqual([clog.task for clog in sweep.clogs(tasks=[clogs[1].task])], [clogs[1].task])
+        for options in ({"mechanism": "wraped"}, {"tasks": [77]}):
+            with self.assertRaises(clogsweep.UserError):
+                sweep.clogs(**options)
+
+    def test_a_run_of_a_sweep_once_more_is_the_row(self):
+        sweep = self.sweep()
+        run = sweep.replay(3, interval=5)
+        for column in ("status", "distance", "lateral_displacement", "steps"):
+            self.assertEqual(run.row[column], sweep.rows[column][3])
+        self.assertEqual(len(run.times), len(run.polygons))
+        kept = sweep.replay(3, self.folder / "kept.h5", interval=5)
+        np.testing.assert_array_equal(kept.polygons, run.polygons)
+        with self.assertRaisesRegex(clogsweep.UserError, "no task 8; it has 8 rows"):
+            sweep.replay(8)
+
+    def test_a_run_has_its_way_a_picture_and_a_film(self):
+        run = self.run_of_one_droplet("--polygon-interval", 10)
+        self.assertIsInstance(run, clogsweep.Run)
+        pandas.testing.assert_frame_equal(run.samples, pandas.read_hdf(self.folder / "r.h5", "trajectory"))
+        self.assertEqual(run.polygons.shape[::2], (len(run.times), 128))
+        self.assertEqual(run.obstacles.shape[1], 3)
+        self.assertTrue(run._repr_png_().startswith(PNG))
+        film = run.film(self.folder / "film.gif", most_frames=4)
+        self.assertIn("data:image/gif;base64,", film._repr_html_())
+        with self.assertRaisesRegex(clogsweep.UserError, "it exists"):
+            run.film(self.folder / "film.gif")
+        self.assertTrue(run.export_vtk(self.folder / "vtk").exists())
+
+    def test_a_run_without_outlines_says_so(self):
+        run = self.run_of_one_droplet()
+        self.assertGreater(len(run.samples), 2)
+        self.assertIsNone(run._repr_png_())
+        with self.assertRaisesRegex(clogsweep.UserError, "r.h5 .holds no polygons"):
+            run.picture()
+
+    def test_what_is_damaged_or_something_else_is_refused(self):
+        self.sweep()
+        content = bytearray((self.folder / "s.h5").read_bytes())
+        content[len(content) // 2] ^= 1
+        (self.folder / "d.h5").write_bytes(content)
+        with self.assertRaisesRegex(clogsweep.Damaged, "d.h5"):
+            clogsweep.open(self.folder / "d.h5")
+        with self.assertRaisesRegex(clogsweep.UserError, "nope.h5 .no such file"):
+            clogsweep.open("nope.h5")
+        self.write("t.csv", "a,b\n")
+        with self.assertRaisesRegex(clogsweep.UserError, "not an HDF5 file"):
+            clogsweep.open(self.folder / "t.csv")
+
+    def test_a_sweep_of_channels_has_rows_but_no_lengths(self):
+        self.succeed("clogsweep", "obstacle-layout=channel", "orifice=0.6", "line-tension=1", "max-time=50", "--output", "s.h5")
+        sweep = clogsweep.open(self.folder / "s.h5", BIN)
+        self.assertEqual(sweep.fit().groups.status.tolist(), sweep.rows.status.tolist())
+        with self.assertRaisesRegex(clogsweep.UserError, "in a channel"):
+            sweep.fit().curve()
+        with self.assertRaisesRegex(clogsweep.UserError, "in a channel"):
+            sweep.clogs()
+
+    def test_a_report_is_that_of_clogfit(self):
+        self.assertIn("<h2>Curves</h2>", self.sweep().report(self.folder / "r.html", examples=0).read_text())
+
+    def test_programs_that_are_not_there_are_asked_for(self):
+        self.sweep()
+        with self.assertRaisesRegex(clogsweep.UserError, "no clogsweep in /nowhere; .*--programs"):
+            clogsweep.open(self.folder / "s.h5", "/nowhere").fit()
+
+    def test_commands_are_listed_and_found(self):
+        def called(*words):
+            return subprocess.run([sys.executable, "-m", "clogsweep", *words], capture_output=True, text=True,
+                                  cwd=self.folder, env={**os.environ, "PYTHONPATH": str(ROOT / "analysis")})
+
+        listed = called()
+        self.assertEqual((listed.returncode, called("--help").stdout), (0, listed.stdout))
+        modules = {path.stem.replace("_", "-") for path in (ROOT / "analysis/clogsweep/commands").glob("[a-z]*.py")}
+        for command in modules:
+            self.assertIn(f"\n  {command} ", listed.stdout)
+            helped = called(command, "--help")
+            self.assertEqual(helped.returncode, 0, helped.stderr)
+            self.assertTrue(helped.stdout.startswith(f"usage: python3 -m clogsweep {command} "), helped.stdout)
+        wrong = called("draw")
+        self.assertEqual(wrong.returncode, 2)
+        self.assertIn("unknown command: draw", wrong.stderr)
+
+
+class UnderWay(SweepTest):
+    def test_a_sweep_that_runs_can_be_read(self):
+        process = self.start("vertices=64", "box=20", "obstacle-gap=0.4", "line-tension=0.05", "max-time=1e5", "seeds=1..4",
+                             "--report-seconds=0.1", "--output", "s.h5")
+        self.wait_for(lambda: (self.folder / "s.h5").exists() and len(table(self.folder / "s.h5")) > 0 or process.poll() is not None)
+        sweep = clogsweep.open(self.folder / "s.h5", BIN)
+        self.assertEqual(sweep.status()["runs"], 4)
+        self.assertLessEqual(set(sweep.rows.status), {"running"})
+        self.assertEqual(len(sweep.fit().groups), 1)
+
+
+class Places(Analysis):
+    def test_the_source_tree_has_them(self):
+        self.assertEqual(places.JOBS, ROOT / "jobs")
+        self.assertEqual(programs.programs_in(BIN), BIN.resolve())

@@ -1,0 +1,36 @@
+"""The notebook of the gallery, run once more: its cells end well and say what stands in it."""
+
+import os
+import subprocess
+import unittest
+import unittest.mock
+
+import nbclient
+import nbformat
+
+from support import BIN, ROOT, ProgramTest
+
+NOTEBOOK = ROOT / "docs" / "gallery" / "notebook.ipynb"
+
+
+def said(notebook):
+    """In words, by every cell of code. A film is .mp4 or .gif."""
+    return [[output["data"]["text/plain"].replace(".gif>", ".mp4>") for output in cell.outputs if "data" in output]
+            for cell in notebook.cells if cell.cell_type == "code"]
+
+
+class Notebook(ProgramTest):
+    def test_it_says_today_what_stands_in_it(self):
+        settings = subprocess.run(["bash", "-c", f". {ROOT}/jobs/mpi-settings.sh && env -0"], check=True, capture_output=True, text=True)
+        environment = dict(line.split("=", 1) for line in settings.stdout.split("\0") if line)
+        environment |= {"PATH": f"{BIN}:{environment['PATH']}", "PYTHONPATH": str(ROOT / "analysis"), "HOME": str(self.folder)}
+        notebook = nbformat.read(NOTEBOOK, as_version=4)
+        expected = said(notebook)
+        with unittest.mock.patch.dict(os.environ, environment):
+            nbclient.NotebookClient(notebook, timeout=500, kernel_name="python3", resources={"metadata": {"path": str(self.folder)}}).execute()
+        self.assertEqual(said(notebook), expected)
+        self.assertGreater(sum(map(len, expected)), 8)
+
+
+if __name__ == "__main__":
+    unittest.main()
