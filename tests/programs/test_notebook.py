@@ -14,8 +14,9 @@ NOTEBOOK = ROOT / "docs" / "gallery" / "notebook.ipynb"
 
 
 def said(notebook):
-    """In words, by every cell of code. A film is .mp4 or .gif."""
-    return [[output["data"]["text/plain"].replace(".gif>", ".mp4>") for output in cell.outputs if "data" in output]
+    """In words, by every cell of code, without what is only for the eyes of who waits. A film is .mp4 or .gif."""
+    return [[(output["data"]["text/plain"] if "data" in output else output["text"]).replace(".gif>", ".mp4>")
+             for output in cell.outputs if output.get("name") != "stderr"]
             for cell in notebook.cells if cell.cell_type == "code"]
 
 
