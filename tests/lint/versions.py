@@ -1,5 +1,5 @@
-"""The version is the same wherever it is written: CMakeLists.txt, CITATION.cff and the newest release in CHANGELOG.md,
-which has the date of CITATION.cff, too.
+"""The version is the same wherever it is written: in `CMakeLists.txt`, in `CITATION.cff` and, as the newest release, in
+`CHANGELOG.md`. The last two have the same date.
 
     tests/lint/versions.py ROOT
 """
