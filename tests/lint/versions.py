@@ -1,5 +1,5 @@
-"""The version is the same wherever it is written: in `CMakeLists.txt`, in `CITATION.cff` and, as the newest release, in
-`CHANGELOG.md`. The last two have the same date.
+"""The version is the same wherever it is written: in `CMakeLists.txt`, in `CITATION.cff`, in the recipe for Spack and,
+as the newest release, in `CHANGELOG.md`, which has the date of `CITATION.cff`, too.
 
     tests/lint/versions.py ROOT
 """
@@ -15,6 +15,7 @@ WRITTEN = {
         "CMakeLists.txt": rf"^project\(clogsweep VERSION {NUMBER} ",
         "CITATION.cff": rf"^version: {NUMBER}$",
         "CHANGELOG.md": rf"^## \[{NUMBER}\]",
+        "cmake/spack/spack_repo/clogsweep/packages/clogsweep/package.py": rf'^    version\("{NUMBER}", tag="v\1"\)$',
     },
     "date": {
         "CITATION.cff": rf'^date-released: "{DATE}"$',
