@@ -11,7 +11,7 @@ COPY jobs/install-dependencies.sh /clogsweep/jobs/
 RUN /clogsweep/jobs/install-dependencies.sh
 COPY . /clogsweep
 WORKDIR /clogsweep
-RUN cmake --preset release -DCLOG_TESTS=OFF -DCLOG_BENCHMARKS=OFF \
+RUN cmake --preset release -DCLOG_TESTS=OFF \
     && cmake --build --preset release \
     && cd build/release && cpack
 

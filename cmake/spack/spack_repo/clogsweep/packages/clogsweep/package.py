@@ -55,7 +55,6 @@ class Clogsweep(CMakePackage):
     def cmake_args(self):
         return [
             self.define("CLOG_TESTS", False),
-            self.define("CLOG_BENCHMARKS", False),
             self.define("CLOG_PYTHON", self.spec["python"].command.path),
             self.define("CLOG_SPHINX", False),  # no man pages, which need MyST
             self.define("CMAKE_CXX_FLAGS_RELEASE", "-O3"),  # as in CMakePresets.json: assertions stay
