@@ -1,4 +1,4 @@
-# build_info.cpp: version, git hash, compiler. The hash is looked up at every build, and the file is only
+# build_info.cpp: version, what git says of the sources, compiler. Git is asked at every build, and the file is only
 # rewritten, and so recompiled, when something changed.
 set(CLOG_BUILD_INFO "${PROJECT_BINARY_DIR}/generated/build_info.cpp")
 add_custom_target(clog_build_info_file

@@ -5,6 +5,7 @@
 set -euo pipefail
 packages=(
   g++ cmake ninja-build git                          # to build
+  dpkg-dev file                                      # Debian packages, by cpack
   libopenmpi-dev openmpi-bin                         # MPI
   libhdf5-dev zlib1g-dev                             # the table of runs, its checksums
   libeigen3-dev libhwy-dev                           # arrays; vector instructions

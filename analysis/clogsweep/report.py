@@ -202,10 +202,10 @@ def side_by_side(pictures):
     return f'<div class="pictures">{pictures}</div>' if pictures else ""
 
 
-def page(path, groups, sections, progress, about):
-    """@param sections  contents by title"""
-    provenance = "\n".join([f"{key}: {about[key]}" for key in ("command_line", "version", "git_hash", "compiler", "mpi_version", "hdf5_version", "start_time", "num_ranks")
-                            if key in about])
+def page(path, groups, sections, progress, about, fit):
+    """@param sections  contents by title; about  what the sweep's file says of itself; fit  what clogfit says"""
+    provenance = "\n".join([f"{key}: {about[key]}" for key in ("command_line", "version", "git_describe", "git_hash", "compiler", "mpi_version", "hdf5_version", "start_time", "num_ranks")
+                            if key in about] + [f"fitted by clogfit {stored.writer(fit)}"])
     meaning = passages.kind_of(groups).about if groups.are_passages else LENGTHS
     told = "".join(f"<h2>{title}</h2>{content}\n" for title, content in sections.items())
     return f"""<!DOCTYPE html>
@@ -232,7 +232,7 @@ def write(sweep, output, examples, folder):
     sections, numbers = tell(groups, sweep, examples, folder / "clogrun")
     sections |= {"What may spoil these numbers": doubts(groups.members, fit["doubts"], rows), "Table": numbers}
     try:
-        output.write_text(page(sweep, groups, sections, progress_of(status, rows), about))
+        output.write_text(page(sweep, groups, sections, progress_of(status, rows), about, fit))
     except OSError as error:
         raise UserError(f"cannot write {output} ({error.strerror}); give another --output") from error
     return output

@@ -104,6 +104,11 @@ def attributes(file):
     return {name: text(value) for name, value in file.attrs.items()}
 
 
+def writer(attributes):
+    """Version and commit of the program that wrote a file, in words. Older files have the commit's hash alone."""
+    return f"{attributes['version']}, git {attributes.get('git_describe') or attributes['git_hash']}"
+
+
 def read_rows(path):
     """The table of runs, one record per run. @throws as opened()"""
     with opened(path) as file:

@@ -12,6 +12,7 @@
 #include <variant>
 
 #include "clog/campaign/usual_parameters.hpp"
+#include "clog/console/build_info.hpp"
 #include "clog/console/rounded.hpp"
 #include "clog/core/model/model.hpp"
 #include "clog/core/parameters/schema.hpp"
@@ -451,9 +452,15 @@ std::string to_json(const std::vector<Group>& groups, double confidence,
   for (const DoubtText& doubt : doubt_texts) sentences[doubt.word] = doubt.sentence;
   nlohmann::ordered_json columns = nlohmann::ordered_json::array();
   for (const sweep::Column* column : group_columns()) columns.push_back(sweep::to_json(*column));
-  const nlohmann::ordered_json document = {
-      {"confidence", confidence}, {"doubts", sentences}, {"units", field_units(groups.front())},
-      {"columns", columns},       {"lists", lists},      {"groups", list}};
+  const console::BuildInfo build = console::build_info();
+  const nlohmann::ordered_json document = {{"version", build.version},
+                                           {"git_describe", build.git_describe},
+                                           {"confidence", confidence},
+                                           {"doubts", sentences},
+                                           {"units", field_units(groups.front())},
+                                           {"columns", columns},
+                                           {"lists", lists},
+                                           {"groups", list}};
   return document.dump(2) + "\n";
 }
 

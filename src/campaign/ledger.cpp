@@ -77,7 +77,7 @@ Ledger::Ledger(std::string path, const sweep::Plan& plan, const sweep::Settings&
       num_wanted_(num_wanted) {
   for (const auto& [name, circles] : plan.circle_files()) circles_.push_back({name, circles});
   std::string session;
-  for (const char* name : {"start_time", "version", "git_hash", "num_ranks", "command_line"})
+  for (const char* name : {"start_time", "version", "git_describe", "num_ranks", "command_line"})
     session += attribute(provenance_, name) + ' ';
   session.back() = '\n';
 

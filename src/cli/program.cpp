@@ -66,21 +66,18 @@ bool answer_help_or_version(const CommandLine& line, const NamedTexts& libraries
   }
   if (!line.has("version")) return false;
   const BuildInfo build = build_info();
-  fmt::print(std::cout, "{} {} (git {})\ncompiler: {}, {}\n", line.program(), build.version, build.git_hash,
-             build.compiler, build.build_type);
+  fmt::print(std::cout, "{} {} (git {})\ncompiler: {}, {}\n", line.program(), build.version,
+             build.git_describe, build.compiler, build.build_type);
   for (const auto& [name, version] : libraries) fmt::print(std::cout, "{}: {}\n", name, version);
   return true;
 }
 
 NamedTexts origin(const CommandLine& line) {
   const BuildInfo build = build_info();
-  return {{"program", line.program()},
-          {"version", build.version},
-          {"git_hash", build.git_hash},
-          {"compiler", build.compiler},
-          {"config", line.settings().to_config(false)},
-          {"command_line", line.text()},
-          {"start_time", utc_now()}};
+  return {{"program", line.program()},          {"version", build.version},
+          {"git_describe", build.git_describe}, {"git_hash", build.git_hash},
+          {"compiler", build.compiler},         {"config", line.settings().to_config(false)},
+          {"command_line", line.text()},        {"start_time", utc_now()}};
 }
 
 }  // namespace clog::cli

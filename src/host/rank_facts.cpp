@@ -45,7 +45,7 @@ RankFacts find_rank_facts(int rank, double seconds) {
   const console::BuildInfo build = console::build_info();
   return {.rank = rank,
           .host = parallel::Communicator::host_name(),
-          .version = build.version + " (git " + build.git_hash + ")",
+          .version = build.version + " (git " + build.git_describe + ")",
           .instruction_set = instruction_set(),
           .cores = allowed_cores(),
           .cores_granted = granted_cores(),

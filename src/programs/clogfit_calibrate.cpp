@@ -13,6 +13,7 @@
 
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
+#include "clog/console/build_info.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/core/tools/error.hpp"
@@ -164,7 +165,10 @@ void print_json(const std::vector<Text>& files, const std::vector<fit::Calibrati
                       {"clogging_tension", number(found[i].clogging_tension)},
                       {"simulations", found[i].num_simulations},
                       {"warnings", laboratory::warnings(found[i])}});
-  nlohmann::ordered_json document = {{"trials", trials},
+  const console::BuildInfo build = console::build_info();
+  nlohmann::ordered_json document = {{"version", build.version},
+                                     {"git_describe", build.git_describe},
+                                     {"trials", trials},
                                      {"line_tension", all.line_tension},
                                      {"line_tension_deviation", number(all.line_tension_deviation)},
                                      {"near_wall_drag", all.near_wall_drag},

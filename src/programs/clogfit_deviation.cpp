@@ -8,6 +8,7 @@
 
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
+#include "clog/console/build_info.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/laboratory/profile_file.hpp"
@@ -47,7 +48,12 @@ int clogfit_deviation(int argc, const char* const* argv) {
                     {"delta_a", std::isnan(found.shape) ? nlohmann::ordered_json(nullptr)
                                                         : nlohmann::ordered_json(found.shape)}});
   }
-  std::cout << nlohmann::ordered_json{{"measured", files[0]}, {"deviations", list}}.dump(2) << '\n';
+  const console::BuildInfo build = console::build_info();
+  const nlohmann::ordered_json document = {{"version", build.version},
+                                           {"git_describe", build.git_describe},
+                                           {"measured", files[0]},
+                                           {"deviations", list}};
+  std::cout << document.dump(2) << '\n';
   return console::exit_success;
 }
 

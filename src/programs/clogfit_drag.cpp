@@ -10,6 +10,7 @@
 
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
+#include "clog/console/build_info.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/fit/near_wall_drag.hpp"
@@ -79,7 +80,10 @@ int clogfit_drag(int argc, const char* const* argv) {
   const auto number = [](double value) {
     return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
   };
-  const nlohmann::ordered_json document = {{"near_wall_exponent", fit.exponent},
+  const console::BuildInfo build = console::build_info();
+  const nlohmann::ordered_json document = {{"version", build.version},
+                                           {"git_describe", build.git_describe},
+                                           {"near_wall_exponent", fit.exponent},
                                            {"near_wall_exponent_error", number(fit.exponent_error)},
                                            {"near_wall_drag", fit.drag},
                                            {"near_wall_drag_error", number(fit.drag_error)},

@@ -61,7 +61,7 @@ class Sweep(ProgramTest):
             self.assertEqual(set(rows.columns), set(file["runs"].attrs), "every column has its meaning")
             self.assertIn(b"[sigma]", file["runs"].attrs["distance"])
             self.assertIn(b"line-tension = 0.5", file.attrs["config"])
-            for name in "version git_hash command_line start_time mpi_version hdf5_version compiler".split():
+            for name in "version git_describe git_hash command_line start_time mpi_version hdf5_version compiler".split():
                 self.assertTrue(file.attrs[name], name)
             self.assertEqual(file.id.get_create_plist().get_version()[0], 0, "the earliest file format")
 

@@ -20,7 +20,7 @@ from drawing import Analysis
 from support import BIN, QUICK, ROOT, SMALL, table
 
 import clogsweep
-from clogsweep import clogs, film, lengths, programs, rounded, style, survival_curve, trajectory
+from clogsweep import clogs, film, lengths, programs, rounded, stored, style, survival_curve, trajectory
 from clogsweep.groups import Groups
 from clogsweep.paper import arrays
 
@@ -300,6 +300,17 @@ class Pictures(Analysis):
         self.succeed("clogfit", "report", "s.h5", "--output", "report.html", "--examples", 0)
         self.assertEqual(status["runs"], 40)
         self.assertIn(f"{status['over']} of 40 runs finished", (self.folder / "report.html").read_text())
+
+    def test_a_report_says_which_programs_made_it(self):
+        self.succeed("clogsweep", *QUICK, "seeds=1..2", "--output", "s.h5")
+        self.succeed("clogfit", "report", "s.h5", "--output", "report.html", "--examples", 0)
+        with stored.opened(self.folder / "s.h5") as file:
+            about = stored.attributes(file)
+        page = (self.folder / "report.html").read_text()
+        self.assertIn(f"git_describe: {about['git_describe']}\n", page)
+        self.assertIn(f"fitted by clogfit {about['version']}, git {about['git_describe']}", page)
+        older = {"version": "0.1.0", "git_hash": "0123456789ab"}
+        self.assertEqual(stored.writer(older), "0.1.0, git 0123456789ab")
 
     def test_a_doubtful_length_has_an_open_marker_and_the_reason_beside_it(self):
         self.succeed("clogsweep", *QUICK, "line-tension=2,30", "seeds=1..5", "--output", "s.h5")

@@ -163,7 +163,7 @@ class Workshop:
         finished = sum(status not in (b"running", b"interrupted") for status in rows["status"])
         self._sources.append(
             f"{about['command_line']}\n    {finished} of {len(rows)} runs finished, rows 0 to {len(rows) - 1}, "
-            f"seeds {seeds[0]} to {seeds[-1]}; clogsweep {about['version']}, git {about['git_hash']}, begun {about['start_time']}")
+            f"seeds {seeds[0]} to {seeds[-1]}; clogsweep {stored.writer(about)}, begun {about['start_time']}")
 
     # Ways of single droplets
 
@@ -178,7 +178,7 @@ class Workshop:
         for way in ways:
             self._sources.append(
                 f"{way.attributes['command_line']}\n    {way.word('status')} at t = {way.row['time']:.6g}; "
-                f"clogrun {way.attributes['version']}, git {way.attributes['git_hash']}, {way.attributes['start_time']}; file {way.path}")
+                f"clogrun {stored.writer(way.attributes)}, {way.attributes['start_time']}; file {way.path}")
         return ways
 
     # Fits of tables

@@ -19,7 +19,8 @@ using NamedTexts = std::vector<std::pair<std::string, std::string>>;
 /// @param libraries  names and versions, printed after the program's own
 bool answer_help_or_version(const CommandLine& line, const NamedTexts& libraries);
 
-/// Where a file comes from: program, version, git hash, compiler, config, command line, time.
+/// Where a file comes from: program, version, what git says of its sources, compiler, config, command line,
+/// time.
 NamedTexts origin(const CommandLine& line);
 
 }  // namespace clog::cli

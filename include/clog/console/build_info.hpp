@@ -7,7 +7,8 @@ namespace clog::console {
 /// Filled in by the build.
 struct BuildInfo {
   std::string version;
-  std::string git_hash;
+  std::string git_describe;  ///< of the sources: tag, commits since, hash; or the hash alone
+  std::string git_hash;      ///< a tag may be moved, this not
   std::string compiler;
   std::string build_type;
 };
