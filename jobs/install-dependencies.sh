@@ -19,7 +19,7 @@ packages=(
 )
 case ${1:-} in
   "") ;;
-  gates) packages+=(clang clang-format clang-tidy aspell aspell-en shellcheck flake8) ;;
+  gates) packages+=(clang clang-format clang-tidy aspell aspell-en shellcheck flake8 mypy) ;;
   docs) packages+=(libjs-mathjax doxygen python3-nbsphinx pandoc) ;;
   *) echo "usage: install-dependencies.sh [gates|docs]" >&2; exit 2 ;;
 esac
