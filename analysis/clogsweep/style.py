@@ -42,14 +42,14 @@ AXES = {
 
 
 def new_figure(**options: Any) -> Figure:
-    """Not one of pyplot's, which stay in memory and belong to a backend: whoever draws in a notebook has chosen one."""
+    """Not one of `pyplot`'s, which stay in memory and belong to a backend: whoever draws in a notebook has chosen one."""
     made = Figure(**options)
     FigureCanvasAgg(made)
     return made
 
 
 def subplots(rows: int = 1, columns: int = 1, *, figsize: tuple[float, float], **options: Any) -> tuple[Figure, Any]:
-    """A figure laid out by itself, and its axes, as pyplot's."""
+    """A figure laid out by itself, and its axes, as `pyplot`'s."""
     made = new_figure(figsize=figsize, layout="constrained")
     return made, made.subplots(rows, columns, **options)
 
