@@ -20,7 +20,7 @@ packages=(
 )
 case ${1:-} in
   "") ;;
-  gates) packages+=(clang clang-format clang-tidy aspell aspell-en shellcheck flake8) ;;
+  gates) packages+=(clang clang-format clang-tidy aspell aspell-en shellcheck flake8 mypy) ;;
   docs) packages+=(libjs-mathjax doxygen python3-nbsphinx pandoc) ;;
   paper) packages+=(pandoc) ;;
   *) echo "usage: install-dependencies.sh [gates|docs|paper]" >&2; exit 2 ;;

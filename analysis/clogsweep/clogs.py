@@ -17,12 +17,13 @@ from matplotlib.patches import Circle
 
 from . import programs, rounded, stored, style, trajectory
 from .errors import UserError
+from .hints import Numbers, Records
 from .picture import Picture
 
 MECHANISMS = ("wrapped", "squeezed", "hybrid", "other")
 
 
-def of_polygons(rows: np.ndarray, path: object) -> list[np.void]:
+def of_polygons(rows: Records, path: object) -> list[np.void]:
     """Rows of the polygons that have clogged. @param path  of their sweep. @throws UserError  if they were in a channel or on a wall"""
     if len(rows) > 0 and rows["obstacle_filling"][0] in (b"channel", b"wall"):
         raise UserError(f"cannot draw clogs of {path} (its droplets were in a channel or on a wall); clogfit report draws what came out of them")
@@ -54,8 +55,8 @@ class Clog:
     """A droplet at rest. Shows itself in a notebook."""
 
     row: np.void  # of the sweep
-    polygon: np.ndarray  # 2 x N, the interface that walls meet [sigma]
-    obstacles: np.ndarray  # n x 3: x, y, diameter [sigma]
+    polygon: Numbers  # 2 x N, the interface that walls meet [sigma]
+    obstacles: Numbers  # n x 3: x, y, diameter [sigma]
 
     @property
     def task(self) -> int:
@@ -129,7 +130,7 @@ def run_all(clogrun: pathlib.Path, sweep: pathlib.Path, rows: Sequence[np.void],
             raise UserError(f"cannot run clogrun ({error})") from error
 
 
-def distances(polygon: np.ndarray, obstacle: np.ndarray) -> np.ndarray:
+def distances(polygon: Numbers, obstacle: Numbers) -> Numbers:
     """From an obstacle's surface to every edge."""
     begin, way = polygon, np.roll(polygon, -1, axis=1) - polygon
     to_centre = obstacle[:2, None] - begin
@@ -137,15 +138,15 @@ def distances(polygon: np.ndarray, obstacle: np.ndarray) -> np.ndarray:
     return np.hypot(*(to_centre - along * way)) - obstacle[2] / 2
 
 
-def overlaps(row: np.void, polygon: np.ndarray, obstacles: np.ndarray) -> np.ndarray:
+def overlaps(row: np.void, polygon: Numbers, obstacles: Numbers) -> Numbers:
     """How deep every obstacle (rows) is in the contact of every edge (columns) [sigma]; above 0 they touch."""
     return trajectory.contact_range(row) - np.array([distances(polygon, obstacle) for obstacle in obstacles])
 
 
-def hull(points: np.ndarray) -> np.ndarray:
+def hull(points: Numbers) -> Numbers:
     """Corners of the convex hull, counter-clockwise (Andrew's monotone chain)."""
-    def chain(ordered: np.ndarray) -> list[np.ndarray]:
-        corners: list[np.ndarray] = []
+    def chain(ordered: Numbers) -> list[Numbers]:
+        corners: list[Numbers] = []
         for p in ordered:
             while len(corners) > 1 and np.linalg.det([corners[-1] - corners[-2], p - corners[-2]]) <= 0:
                 corners.pop()

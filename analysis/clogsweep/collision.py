@@ -1,6 +1,13 @@
 """Which droplets break up on a single obstacle: up to which line tension, by how far off its centre they fall."""
 
+from __future__ import annotations
+
 import math
+import pathlib
+from collections.abc import Sequence
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from . import programs, stored, style
 
@@ -13,26 +20,28 @@ PRECISION = 0.02
 STEPS = 6  # of a sweep
 CAPILLARY_TICKS = [2, 3, 5, 10, 20, 50, 100]
 
+Threshold = tuple[float | None, float | None]  # the largest line tension of a droplet that breaks up, the next of one that does not
 
-def symmetry(offset):
+
+def symmetry(offset: float) -> float:
     """Of a collision with a droplet of radius 1/2."""
     small = (math.acos(2 * offset) - 2 * offset * math.sqrt(1 - 4 * offset**2)) / math.pi
     return small / (1 - small)
 
 
-def capillary_number(tension):
+def capillary_number(tension: float) -> float:
     return math.pi / 4 / tension
 
 
 class Collisions:
     """Droplets that fall onto the obstacle."""
 
-    def __init__(self, clogsweep, folder, keys):
+    def __init__(self, clogsweep: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]) -> None:
         self.clogsweep, self.folder, self.keys = clogsweep, folder, KEYS | keys
         # A droplet that hangs on until it has had the time to fall four times the way has not broken up.
         self.keys.setdefault("max-time", f"{4 * FALL / float(self.keys['terminal-speed']):g}")
 
-    def break_up(self, offset, tensions):
+    def break_up(self, offset: float, tensions: Sequence[float]) -> list[bool]:
         """Which of the droplets do."""
         circles, sweep = self.folder / "circle.csv", self.folder / "collisions.h5"
         circles.write_text(f"x,y,diameter\n{BOX / 2 + FALL},{BOX / 2 + offset},{DIAMETER}\n")
@@ -42,8 +51,8 @@ class Collisions:
         sweep.unlink()
         return [end == b"broken" for end in ends]
 
-    def threshold(self, offset):
-        """@return the largest line tension found at which the droplet breaks up, the next at which it does not; None beyond TENSIONS"""
+    def threshold(self, offset: float) -> Threshold:
+        """@return the two that it lies between; None beyond TENSIONS"""
         low, high = TENSIONS
         while high / low > 1 + PRECISION:
             tensions = [low * (high / low)**(step / STEPS) for step in range(STEPS + 1)]
@@ -55,7 +64,7 @@ class Collisions:
         return low, high
 
 
-def logarithmic(axes, which, ticks):
+def logarithmic(axes: Axes, which: str, ticks: Sequence[float]) -> None:
     """One of the axes, with plain numbers where they fall within what is drawn."""
     axes.set(**{f"{which}scale": "log"})
     axis, (low, high) = getattr(axes, f"{which}axis"), getattr(axes, f"get_{which}lim")()
@@ -64,7 +73,7 @@ def logarithmic(axes, which, ticks):
     axis.set_ticks([], minor=True)
 
 
-def draw(found):
+def draw(found: dict[float, Threshold]) -> Figure:
     """@param found  thresholds by offset"""
     figure, (left, right) = style.subplots(1, 2, figsize=(9.6, 4.4))
     known = {offset: math.sqrt(low * high) for offset, (low, high) in found.items() if low and high}

@@ -1,5 +1,7 @@
 """How every command here is called, and how it says what went wrong: one line, exit code 2, as the programs do."""
 
+from __future__ import annotations
+
 import argparse
 import contextlib
 import logging
@@ -7,6 +9,8 @@ import os
 import pathlib
 import sys
 import warnings
+from collections.abc import Callable, Iterator
+from typing import NoReturn
 
 from .errors import ProgramFailed, UserError
 
@@ -17,13 +21,13 @@ INTERRUPTED = 75
 _own_name = ""
 
 
-def speak_as(name):
+def speak_as(name: str) -> None:
     """Of a command, how it calls itself; else it has the name of the script."""
     global _own_name
     _own_name = name
 
 
-def name():
+def name() -> str:
     """Of the command in its messages. Whoever calls it under another one, as clogfit report does, wants that."""
     return os.environ.get("CLOG_CALLED_AS") or _own_name or pathlib.Path(sys.argv[0]).name
 
@@ -31,16 +35,16 @@ def name():
 class Parser(argparse.ArgumentParser):
     """Options of a command. @param about  its docstring"""
 
-    def __init__(self, about):
+    def __init__(self, about: str | None) -> None:
         super().__init__(prog=name(), description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
 
-    def error(self, message):
+    def error(self, message: str) -> NoReturn:
         raise UserError(f"{message}; {name()} --help lists the options")
 
 
-def whole(least):
+def whole(least: int) -> Callable[[str], int]:
     """Type of an option: a whole number that is not less."""
-    def number(word):
+    def number(word: str) -> int:
         if not word.lstrip("+-").isdecimal() or int(word) < least:
             raise argparse.ArgumentTypeError(f"invalid value: {word} (must be a whole number, {least} or more)")
         return int(word)
@@ -48,23 +52,23 @@ def whole(least):
     return number
 
 
-def tasks(word):
+def tasks(word: str) -> set[int]:
     """Type of an option: numbers of tasks."""
     if not all(part.isdecimal() for part in word.split(",")):
         raise argparse.ArgumentTypeError(f"invalid value: {word} (must be whole numbers with commas between them) try 3,17,40")
     return {int(part) for part in word.split(",")}
 
 
-def add_output(parser, meaning, *endings, required=False):
+def add_output(parser: argparse.ArgumentParser, meaning: str, *endings: str, required: bool = False) -> None:
     """--output of a command. @param endings  such as ".png", that it gives its files itself: a name may have them or not"""
-    def without_ending(word):
+    def without_ending(word: str) -> pathlib.Path:
         path = pathlib.Path(word)
         return path.with_suffix("") if path.suffix in endings else path
 
     parser.add_argument("-o", "--output", type=without_ending, required=required, help=meaning)
 
 
-def beside(source, ending):
+def beside(source: pathlib.Path, ending: str) -> pathlib.Path:
     """The name of what is made of a file where --output gives none, such as sweep-clogs of sweep.h5."""
     if source.exists() and not source.is_file():
         raise UserError(f"no name for what is made of {source}; give --output")
@@ -75,7 +79,7 @@ def beside(source, ending):
 BEGINNINGS = {"html": b"<!DOCTYPE html>", "png": b"\x89PNG\r\n", "pdf": b"%PDF-", "vtk": b"<?xml", "text": b""}
 
 
-def refuse_unwritable(path, kind, *inputs):
+def refuse_unwritable(path: pathlib.Path, kind: str, *inputs: pathlib.Path) -> None:
     """To be asked before minutes of work, of a file to be made. An earlier one of its kind is replaced, nothing else.
 
     @param kind  of BEGINNINGS; @param inputs  files that the command reads
@@ -92,20 +96,20 @@ def refuse_unwritable(path, kind, *inputs):
         raise UserError(f"will not overwrite {path} (it is no {kind.upper()} file); give another --output, or remove it first")
 
 
-def is_of_kind(path, kind):
+def is_of_kind(path: pathlib.Path, kind: str) -> bool:
     """Does it begin like files of this kind, or hold nothing yet?"""
     with open(path, "rb") as file:
         beginning = file.read(len(BEGINNINGS[kind]))
     return not beginning or beginning == BEGINNINGS[kind]
 
 
-def refuse_unwritable_picture(output, *inputs):
+def refuse_unwritable_picture(output: str | os.PathLike[str], *inputs: pathlib.Path) -> None:
     """Of the two files of style.save(). @param output  path without ending"""
     for kind in ("png", "pdf"):
         refuse_unwritable(pathlib.Path(f"{output}.{kind}"), kind, *inputs)
 
 
-def quieten_libraries():
+def quieten_libraries() -> None:
     """What matplotlib, pandas or PyTables warn their own users of is nothing that ours can mend; python -W shows it."""
     if not sys.warnoptions:
         warnings.simplefilter("ignore")
@@ -113,7 +117,7 @@ def quieten_libraries():
 
 
 @contextlib.contextmanager
-def needs_modules():
+def needs_modules() -> Iterator[None]:
     """For a block that loads modules which a machine may lack."""
     quieten_libraries()
     try:
@@ -122,13 +126,13 @@ def needs_modules():
         sys.exit(_refuse(f"cannot start ({error}); it needs Debian's python3 with h5py, pandas, tables and matplotlib"))
 
 
-def _refuse(reason):
+def _refuse(reason: object) -> int:
     with contextlib.suppress(OSError):  # nobody may be there to read it
         print(f"{name()}: {' '.join(str(reason).split())}", file=sys.stderr, flush=True)
     return USER_FAULT
 
 
-def run(body):
+def run(body: Callable[[], int]) -> int:
     """@param body  what the command does, returns its exit code. @return the exit code"""
     try:
         return body()

@@ -1,17 +1,23 @@
 """The clogging length over the time after which a droplet that has not moved counts as clogged."""
 
+from __future__ import annotations
+
 import pathlib
+from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from . import fit, style
 from .errors import UserError
+from .groups import Groups
+from .hints import Group
 from .picture import Picture
 
 NUM_TIMES = 12
 
 
-def times_of(groups):
+def times_of(groups: Groups) -> list[float]:
     """Evenly spaced on a logarithmic scale, for all groups. @throws UserError  if there are none"""
     known = [group["dwells_known_from"] for group in groups.members]
     if None in known:
@@ -23,13 +29,13 @@ def times_of(groups):
     return [first, *np.geomspace(first, last, NUM_TIMES)[1:-1].tolist(), last]
 
 
-def label_of(groups, member):
+def label_of(groups: Groups, member: Group) -> str:
     """What tells a group from the others."""
     names = [name for name in [groups.abscissa, *groups.curve_parameters()] if groups.varies(name)]
     return ", ".join(groups.said(name, member[name]) for name in names)
 
 
-def draw(times, fits):
+def draw(times: Sequence[float], fits: Sequence[Groups]) -> Figure:
     """@param fits  groups of the same sweep for each of these times"""
     figure, axes = style.subplots(figsize=(6.4, 4.8))
     curves = list(zip(*(groups.members for groups in fits)))

@@ -1,29 +1,32 @@
 """Figures of the article from runs of our own: sweeps, clogfit, picture."""
 
+from __future__ import annotations
+
 import csv
 import datetime
 import pathlib
 
 from . import command_line, programs, style
 from .paper import arrays, channels, hanging  # noqa: F401, they fill the catalogue
-from .paper.plate import CATALOGUE
+from .paper.plate import CATALOGUE, Entry, Plate
+from .paper.workshop import Workshop
 
 ORDER = ["1", "2", "3", "4", "5", "6a", "6b", "6c", "7a", "7b", "7c", "8a", "8b", "8ca", "9a", "9b", "A1", "B1", "B2", "C1", "C2", "D", "E", "W1", "W2"]
 
 
-def print_list():
+def print_list() -> None:
     print(f"{'name':5} {'reduced size':24} {'sweep or settings':24} what")
     for name in ORDER:
         entry = CATALOGUE[name]
         print(f"{name:5} {entry.cost:24} {', '.join(entry.configs) or '-':24} {entry.caption}")
 
 
-def output_of(name, shop):
+def output_of(name: str, shop: Workshop) -> pathlib.Path:
     """Without ending."""
     return shop.folder / f"figure-{name}"
 
 
-def refuse_unwritable(name, shop):
+def refuse_unwritable(name: str, shop: Workshop) -> None:
     """Before minutes of work, of the four files of write()."""
     output = output_of(name, shop)
     command_line.refuse_unwritable_picture(output, *shop.profiles)
@@ -31,7 +34,7 @@ def refuse_unwritable(name, shop):
         command_line.refuse_unwritable(pathlib.Path(f"{output}.{ending}"), "text", *shop.profiles)
 
 
-def write(plate, entry, shop, command):
+def write(plate: Plate, entry: Entry, shop: Workshop, command: str) -> None:
     output = output_of(entry.name, shop)
     sources = shop.take_sources()
     version = programs.run_program(shop.programs / "clogsweep", "--version").splitlines()[0]

@@ -3,31 +3,38 @@
 Names, symbols, units and defaults of the parameters are clogsweep's own; clogfit hands them on (`columns` of its JSON).
 """
 
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Sequence
+from typing import Any
+
+from matplotlib.axes import Axes
 
 from . import style
 from .errors import UserError
+from .hints import Column, Group
 
 
-def tex(unit):
+def tex(unit: str) -> str:
     """A unit as clogsweep writes it, e.g. g rho sigma^2, for matplotlib."""
     for word in ("rho", "sigma"):
         unit = unit.replace(word, rf"\{word}")
     return unit.replace("sqrt(", r"\sqrt{").replace(")", "}").replace("t0", "t_0").replace("degrees", r"{}^\circ").replace(" ", r"\,")
 
 
-def number(value):
+def number(value: float | None) -> str:
     # The density of a saturated mixture is not known beforehand: clogfit has no number for it.
     return r"\mathrm{saturated}" if value is None else f"{value:.4g}"
 
 
-def symbol(column):
+def symbol(column: Column) -> str:
     """Of a parameter as clogsweep describes it, with its unit, so that what follows is a pure number; for words the name itself."""
     if not column["symbol"]:
         return rf"\mathrm{{{column['name'].replace('_', ' ')}}}".replace(" ", r"\ ")
     return column["symbol"] + (f"/({tex(column['unit'])})" if " " in column["unit"] else f"/{tex(column['unit'])}" if column["unit"] else "")
 
 
-def said(column, value):
+def said(column: Column, value: float | str | None) -> str:
     """A parameter and its value in words, e.g. $N_v = 128$."""
     if isinstance(value, str):
         return f"{column['name'].replace('_', ' ')} {value}"
@@ -40,36 +47,36 @@ FINISHED = ("passed", "clogged", "broken", "flowing")
 class Groups:
     """Groups of one sweep that hold runs, drawn over one of its parameters."""
 
-    def __init__(self, fit):
+    def __init__(self, fit: dict[str, Any]) -> None:
         # In a channel and on a wall nothing is random: a group is one run, which has a status.
         self.are_passages = any("status" in group for group in fit["groups"])
-        self.members = [group for group in fit["groups"] if (group["status"] in FINISHED if self.are_passages else group["runs"] > 0)]
-        self.confidence = fit["confidence"]
-        self.columns = {column["name"]: column for column in fit["columns"]}
-        self.lists = fit["lists"]
-        self.abscissa = self._choose_abscissa() if self.members else None
+        self.members: list[Group] = [group for group in fit["groups"] if (group["status"] in FINISHED if self.are_passages else group["runs"] > 0)]
+        self.confidence: float = fit["confidence"]
+        self.columns: dict[str, Column] = {column["name"]: column for column in fit["columns"]}
+        self.lists: Collection[str] = fit["lists"]
+        self.abscissa = self._choose_abscissa() if self.members else ""  # there is nothing to draw
 
-    def refuse_passages(self):
+    def refuse_passages(self) -> None:
         """@raise UserError  for a sweep of channels or walls, which has no clogging lengths"""
         if self.are_passages:
             raise UserError("cannot draw clogging lengths (these droplets were in a channel or on a wall); clogfit report draws what came out of them")
 
     @property
-    def are_polygons(self):
+    def are_polygons(self) -> bool:
         return self.members[0]["model"] == "dp"
 
-    def values(self, name):
+    def values(self, name: str) -> set[Any]:
         return {group[name] for group in self.members}
 
-    def varies(self, name):
+    def varies(self, name: str) -> bool:
         return len(self.values(name)) > 1
 
-    def follows(self, name, others):
+    def follows(self, name: str, others: Iterable[str]) -> bool:
         """Is this parameter's value known once the others' are?"""
-        known = {}
+        known: dict[tuple[Any, ...], Any] = {}
         return all(known.setdefault(tuple(group[o] for o in others), group[name]) == group[name] for group in self.members)
 
-    def _choose_abscissa(self):
+    def _choose_abscissa(self) -> str:
         """What most curves go over, or else the number that takes most values."""
         usual = "line_tension" if self.are_polygons else "wall_stiffness"
         if self.varies(usual) and not self._is_automatic(usual):
@@ -77,10 +84,10 @@ class Groups:
         varied = [name for name in self.columns if self._is_number(name) and self.varies(name) and None not in self.values(name)]
         return max(varied, key=lambda name: (not self._is_automatic(name), len(self.values(name))), default=usual)
 
-    def _is_number(self, name):
+    def _is_number(self, name: str) -> bool:
         return self.columns[name]["kind"] != "word"
 
-    def _is_automatic(self, name):
+    def _is_automatic(self, name: str) -> bool:
         """May its values follow from the others? What the sweep has a list of is given."""
         if name in self.lists:
             return False
@@ -88,7 +95,7 @@ class Groups:
         from_array = (name == "obstacle_density" and fillings <= {"saturated", "lattice"}) or (name == "box" and fillings == {"lattice"})
         return from_array or self.columns[name].get("automatic_in") in ("all", self.members[0]["model"])
 
-    def curve_parameters(self):
+    def curve_parameters(self) -> list[str]:
         """Names of what tells the curves apart."""
         told = [name for name in self.columns if self.varies(name) and name != self.abscissa and self._is_number(name)
                 and not self._is_automatic(name)]
@@ -99,18 +106,18 @@ class Groups:
                 told.append(name)
         return told
 
-    def symbol(self, name):
+    def symbol(self, name: str) -> str:
         return symbol(self.columns[name])
 
-    def said(self, name, value):
+    def said(self, name: str, value: float | str | None) -> str:
         return said(self.columns[name], value)
 
-    def axis_label(self):
+    def axis_label(self) -> str:
         if self.abscissa in style.AXES:
             return style.AXES[self.abscissa]
         return f"{self.abscissa.replace('_', ' ')} ${self.symbol(self.abscissa)}$"
 
-    def curves(self):
+    def curves(self) -> list[tuple[str, list[Group]]]:
         """A label, and the groups that differ in the abscissa only, for every curve."""
         names = self.curve_parameters()
         keys = sorted({tuple(group[name] for name in names) for group in self.members},
@@ -118,11 +125,11 @@ class Groups:
         return [(", ".join(self.said(name, value) for name, value in zip(names, key)),
                  [group for group in self.members if tuple(group[name] for name in names) == key]) for key in keys]
 
-    def is_logarithmic(self):
+    def is_logarithmic(self) -> bool:
         values = self.values(self.abscissa)
         return min(values) > 0 and (self.abscissa in style.AXES or max(values) > 5 * min(values))
 
-    def places(self, members, index, num_curves):
+    def places(self, members: Sequence[Group], index: int, num_curves: int) -> list[float]:
         """Where a curve's points are drawn: apart from those of the others, so that their bars can be told apart."""
         values = self.values(self.abscissa)
         if self.is_logarithmic():
@@ -131,12 +138,12 @@ class Groups:
         shift = step * (max(values) - min(values)) * (index - (num_curves - 1) / 2)
         return [group[self.abscissa] + shift for group in members]
 
-    def draw_abscissa(self, axes):
+    def draw_abscissa(self, axes: Axes) -> None:
         if self.is_logarithmic():
             style.logarithmic_abscissa(axes, [group[self.abscissa] for group in self.members])
         axes.set_xlabel(self.axis_label())
 
-    def caption(self):
+    def caption(self) -> str:
         """What all curves have in common, and how many runs are behind them."""
         first = self.members[0]
         words = ["deformable polygon" if self.are_polygons else "soft disk"]
@@ -149,7 +156,7 @@ class Groups:
             words.append(style.runs_a_point(self.members))
         return ", ".join(words)
 
-    def _is_worth_a_word(self, name, value):
+    def _is_worth_a_word(self, name: str, value: Any) -> bool:
         """What shapes the array, and what is not as by default."""
         column = self.columns[name]
         if self.varies(name) or not self._is_number(name) or value is None or name == self.abscissa or self._is_automatic(name):
@@ -159,7 +166,7 @@ class Groups:
         is_special = column.get("parameter_role") == "physics" and not is_default
         return is_array or is_special or (name == "vertices" and self.are_polygons)
 
-    def note(self, about_bars):
+    def note(self, about_bars: str) -> str:
         """The interface, if it is one, and what bars and markers mean."""
         presets = {group["preset"] for group in self.members if group["model"] == "dp"}
         return (f"interface: {presets.pop()}; " if len(presets) == 1 else "") + about_bars

@@ -1,5 +1,9 @@
 """Finds the built programs and runs them."""
 
+from __future__ import annotations
+
+import argparse
+import os
 import pathlib
 import shlex
 import shutil
@@ -9,14 +13,14 @@ from . import places
 from .errors import ProgramFailed, UserError
 
 
-def reason(text):
+def reason(text: str) -> str:
     """The line in which a program of ours says why it stopped; mpirun talks around it."""
     lines = [line for line in text.splitlines() if line.strip()]
     ours = [line for line in lines if line.startswith(("clogsweep", "clogrun", "clogfit"))]
     return (ours or lines[-1:] or ["no reason given"])[-1]
 
 
-def programs_in(folder=None):
+def programs_in(folder: str | os.PathLike[str] | None = None) -> pathlib.Path:
     """Folder of clogsweep, clogrun and clogfit: the user's own choice, or those of the PATH, or those beside this package.
 
     @throws UserError  if they are not there
@@ -29,13 +33,13 @@ def programs_in(folder=None):
     raise UserError(f"no clogsweep in {place}; build it (cmake --workflow --preset release), or give --programs FOLDER")
 
 
-def add_option(parser):
+def add_option(parser: argparse.ArgumentParser) -> None:
     """--programs, for programs_in()."""
     parser.add_argument("--programs", type=pathlib.Path,
                         help="folder of clogsweep, clogrun and clogfit (that of the PATH, or beside this package)")
 
 
-def run_program(program, *arguments, ranks=1):
+def run_program(program: str | os.PathLike[str], *arguments: object, ranks: int = 1) -> str:
     """@return what it prints"""
     command = [str(program), *map(str, arguments)]
     if ranks > 1:

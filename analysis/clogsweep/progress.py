@@ -1,14 +1,20 @@
 """How far a script is, on the standard error: one line that is renewed on a terminal, now and then a new line elsewhere."""
 
+from __future__ import annotations
+
 import sys
 import time
+from collections.abc import Iterable, Iterator
+from typing import TypeVar
+
+Item = TypeVar("Item")
 
 
-def readable_duration(seconds):
+def readable_duration(seconds: float) -> str:
     return f"{seconds:.0f} s" if seconds < 90 else f"{seconds / 60:.0f} min"
 
 
-def shown(items, what, total):
+def shown(items: Iterable[Item], what: str, total: int) -> Iterator[Item]:
     """Yields the items and tells after each, if it is time to, how many there have been and how long the rest takes."""
     on_terminal = sys.stderr.isatty()
     interval = 0.2 if on_terminal else 10

@@ -1,26 +1,33 @@
 """Rows of a sweep run once more by clogrun, for what is not in them: h, v and A on the way, outlines."""
 
+from __future__ import annotations
+
 import concurrent.futures
 import os
 import pathlib
 import shlex
 import tempfile
+from collections.abc import Iterable
 
-from . import trajectory
+import numpy as np
+
+from . import stored, trajectory
 from .errors import UserError
+from .hints import AnyPath
 from .programs import run_program
+from .trajectory import Trajectory
 
 # What may differ between a row and the same run once more.
 CIRCUMSTANCES = {"task", "wall_seconds", "rank", "host", "attempt"}
 
 
-def is_of(known, row, options):
+def is_of(known: Trajectory, row: np.void, options: list[str]) -> bool:
     """Is this trajectory what the row's run gives with these options?"""
     return shlex.split(known.attributes["command_line"])[4:-2] == options and known.row.dtype == row.dtype and all(
-        known.row[column].tobytes() == row[column].tobytes() for column in set(row.dtype.names) - CIRCUMSTANCES)
+        known.row[column].tobytes() == row[column].tobytes() for column in set(stored.columns_of(row)) - CIRCUMSTANCES)
 
 
-def follow(clogrun, sweep, row, folder, options):
+def follow(clogrun: pathlib.Path | None, sweep: pathlib.Path, row: np.void, folder: AnyPath, options: list[str]) -> Trajectory:
     """The trajectory of a row, in a file of the folder, which is reused if it holds the same already.
 
     @param clogrun  the program; None: nothing is to be run
@@ -39,7 +46,8 @@ def follow(clogrun, sweep, row, folder, options):
     return trajectory.read(file, needs_frames=False)
 
 
-def follow_all(clogrun, sweep, rows, folder, jobs, samples, outlines=None):
+def follow_all(clogrun: pathlib.Path | None, sweep: pathlib.Path, rows: Iterable[np.void], folder: AnyPath, jobs: int, samples: float,
+               outlines: float | None = None) -> list[Trajectory]:
     """The same of several rows, some at a time. @param samples, outlines  time between two of them [t0]"""
     options = ["--sample-interval", f"{samples:.3g}", *(["--polygon-interval", f"{outlines:.3g}"] if outlines else [])]
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:

@@ -1,22 +1,25 @@
 """Numbers as they are printed: counts with their noun, others with as many figures as their uncertainty allows, three
 at least."""
 
+from __future__ import annotations
+
 import math
+from typing import TypeGuard
 
 LEAST_FIGURES = 3
 MOST_FIGURES = 8
 
 
-def is_number(value):
+def is_number(value: float | None) -> TypeGuard[float]:
     return value is not None and math.isfinite(value)
 
 
-def exponent(value):
+def exponent(value: float) -> int:
     """Of ten, of the first figure."""
     return math.floor(math.log10(abs(value))) if value else 0
 
 
-def plain(value, figures=LEAST_FIGURES):
+def plain(value: float | None, figures: int = LEAST_FIGURES) -> str:
     """@param value  a dash stands for None and for what is not finite"""
     if not is_number(value):
         return "-"
@@ -26,12 +29,12 @@ def plain(value, figures=LEAST_FIGURES):
     return f"{rounded:.{max(0, figures - 1 - exponent(rounded))}f}"
 
 
-def counted(number, noun):
+def counted(number: int, noun: str) -> str:
     """Such as 1 run, 2 runs."""
     return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
 
 
-def with_interval(value, lower, upper):
+def with_interval(value: float, lower: float, upper: float) -> str:
     """Such as 223 (102 to 585): two figures of the narrower side of the interval, but three of each number at least."""
     side = min(value - lower, upper - value)
     figures = exponent(value) - exponent(side) + 2 if side > 0 else LEAST_FIGURES
@@ -39,7 +42,7 @@ def with_interval(value, lower, upper):
     return f"{plain(value, figures)} ({plain(lower, figures)} to {plain(upper, figures)})"
 
 
-def with_error(value, error):
+def with_error(value: float | None, error: float | None) -> str:
     """Such as 0.379 ± 0.012: two figures of the error."""
     if not is_number(value) or not is_number(error) or error <= 0:
         return plain(value)

@@ -1,13 +1,22 @@
 """How all figures look: colours, axes, error bars, and what is written beside a picture."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Collection, Sequence
+from typing import TYPE_CHECKING, Any
 
 import matplotlib
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from . import rounded
+from .hints import AnyPath, Group
+
+if TYPE_CHECKING:
+    from .groups import Groups
 
 # Okabe and Ito's palette, safe for colour-blind readers; a marker of its own for every curve besides.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
@@ -32,20 +41,20 @@ AXES = {
 }
 
 
-def new_figure(**options):
-    """Not one of pyplot's, which stay in memory and belong to a backend: whoever draws in a notebook has chosen one."""
+def new_figure(**options: Any) -> Figure:
+    """Not one of `pyplot`'s, which stay in memory and belong to a backend: whoever draws in a notebook has chosen one."""
     made = Figure(**options)
     FigureCanvasAgg(made)
     return made
 
 
-def subplots(rows=1, columns=1, *, figsize, **options):
-    """A figure laid out by itself, and its axes, as pyplot's."""
+def subplots(rows: int = 1, columns: int = 1, *, figsize: tuple[float, float], **options: Any) -> tuple[Figure, Any]:
+    """A figure laid out by itself, and its axes, as `pyplot`'s."""
     made = new_figure(figsize=figsize, layout="constrained")
     return made, made.subplots(rows, columns, **options)
 
 
-def curve_style(index):
+def curve_style(index: int) -> dict[str, Any]:
     """Of no two curves the same: once colours and markers are used up, lines are broken, by more dots each time."""
     round_, which = divmod(index, len(COLOURS))
     line = (0, (6, 2) + (1, 2) * (round_ - 1)) if round_ > 0 else "-"
@@ -62,16 +71,16 @@ OPEN_MARKERS = {
 }
 
 
-def doubts(group):
+def doubts(group: Group) -> list[str]:
     return (group["doubts"] or "").split()
 
 
-def reasons_for_open_marker(group):
+def reasons_for_open_marker(group: Group) -> list[str]:
     """Of a group without clogs, whose marker is a triangle, it goes without saying that they are few."""
     return [doubt for doubt in doubts(group) if doubt in OPEN_MARKERS and (doubt != "few_clogs" or group["clogs"] > 0)]
 
 
-def length_note(groups, confidence):
+def length_note(groups: Collection[Group], confidence: float) -> str:
     """What bars, open markers and triangles of draw_lengths() mean, as far as they are there."""
     note = f"bars: {100 * confidence:g} % confidence"
     for reason in dict.fromkeys(reason for group in groups for reason in reasons_for_open_marker(group)):
@@ -83,12 +92,12 @@ def length_note(groups, confidence):
     return note
 
 
-def main_mechanism(group):
+def main_mechanism(group: Group) -> str:
     """What holds most of the clogs of a group."""
     return max(MECHANISM_MARKERS, key=lambda name: group[name])
 
 
-def finish_lengths(axes, groups, drawn, other="other clogs"):
+def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: str = "other clogs") -> None:
     """The ordinate, legend and caption of a picture of clogging lengths. @param drawn  all that draw_lengths() was given"""
     axes.set_yscale("log")
     axes.set_ylabel(AXES["length"])
@@ -97,7 +106,7 @@ def finish_lengths(axes, groups, drawn, other="other clogs"):
     caption(axes, f"{groups.caption()}\n{groups.note(length_note(drawn, groups.confidence))}")
 
 
-def legend(axes, groups=(), other="other clogs"):
+def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs") -> None:
     """Of the curves if they have names, and of the markers that draw_lengths() gave these groups. That of many is
     beside the axes, in a figure that is as much wider. @param other  what clogs are called that are of no mechanism"""
     curves = [(handle, label) for handle, label in zip(*axes.get_legend_handles_labels()) if label]
@@ -114,7 +123,7 @@ def legend(axes, groups=(), other="other clogs"):
         axes.legend(*zip(*entries), frameon=False)
 
 
-def draw_lengths(axes, places, groups, index, label, linestyle=None):
+def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, linestyle: str | tuple[int, tuple[int, ...]] | None = None) -> None:
     """Clogging lengths with clogfit's intervals, `linestyle` where it is not that of the index. The marker is that of what holds most of the clogs; an open one is a
     length in doubt (OPEN_MARKERS), an open triangle a lower bound, where no run clogged."""
     order = sorted(range(len(groups)), key=lambda i: places[i])
@@ -141,7 +150,7 @@ def draw_lengths(axes, places, groups, index, label, linestyle=None):
     )
 
 
-def draw_speeds(axes, places, groups, index, label):
+def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str) -> None:
     """Mean speeds over the terminal speed, with standard errors from the scatter between runs."""
     points = sorted(
         (place, group["relative_speed"], group["relative_speed_error"] or 0.0)
@@ -153,30 +162,30 @@ def draw_speeds(axes, places, groups, index, label):
     )
 
 
-def logarithmic_margin(values):
+def logarithmic_margin(values: Collection[float]) -> float:
     """Factor by which a logarithmic axis goes on beyond these values."""
     return (max(values) / min(values)) ** 0.05 if max(values) > min(values) else 1.3
 
 
-def side_by_side(index, num_curves, values):
+def side_by_side(index: int, num_curves: int, values: Collection[float]) -> float:
     """Factor on logarithmic abscissae that curves share: moved apart by a percent, or less so that all of them stay off
     the frame, their bars can be told apart."""
     outermost = max(num_curves - 1, 1) / 2
     return min(1.012, logarithmic_margin(values) ** (0.7 / outermost)) ** (index - (num_curves - 1) / 2)
 
 
-def far_apart(values):
+def far_apart(values: Collection[float]) -> list[float]:
     """Of values on a logarithmic axis those whose labels have room side by side."""
-    values = sorted(set(values))
-    room = 0.08 * math.log(values[-1] / values[0])
-    kept = values[:1]
-    for value in values[1:]:
+    ordered = sorted(set(values))
+    room = 0.08 * math.log(ordered[-1] / ordered[0])
+    kept = ordered[:1]
+    for value in ordered[1:]:
         if math.log(value / kept[-1]) >= room:
             kept.append(value)
     return kept
 
 
-def logarithmic_abscissa(axes, values=()):
+def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
     """Plain numbers, at the values themselves where they are few or within a decade."""
     axes.set_xscale("log")
     axis = axes.xaxis
@@ -191,23 +200,23 @@ def logarithmic_abscissa(axes, values=()):
         axes.set_xlim(min(values) / margin, max(values) * margin)
 
 
-def grid(axes):
+def grid(axes: Axes) -> None:
     axes.grid(True, which="major", color="0.9", linewidth=0.6)
     axes.set_axisbelow(True)
 
 
-def runs_a_point(groups):
+def runs_a_point(groups: Collection[Group]) -> str:
     counts = sorted({group["runs"] for group in groups})
     return f"{rounded.counted(counts[0], 'run')} a point" if len(counts) == 1 else f"{counts[0]} to {counts[-1]} runs a point"
 
 
-def caption(axes, text):
+def caption(axes: Axes, text: str) -> None:
     """Above the axes; lines that are wider than these go on below."""
     title = axes.set_title(text, fontsize=8, color="0.25")
     renderer = axes.figure.canvas.get_renderer()
     widest = 1.1 * axes.get_window_extent(renderer).width  # the layout makes axes wider than they are now
 
-    def fits(line):
+    def fits(line: str) -> bool:
         title.set_text(line)
         return title.get_window_extent(renderer).width <= widest
 
@@ -224,7 +233,7 @@ def caption(axes, text):
     title.set_text("\n".join(lines))
 
 
-def save(figure, output, metadata=None):
+def save(figure: Figure, output: AnyPath, metadata: dict[str, str] | None = None) -> None:
     """Writes OUTPUT.png and OUTPUT.pdf. @param output  path without ending"""
     # Not with_suffix(): a name may hold a dot.
     metadata = metadata or {}

@@ -1,15 +1,20 @@
 """What clogrun writes of one droplet, and how its surroundings are drawn."""
 
+from __future__ import annotations
+
 import dataclasses
 import math
 import pathlib
 
 import numpy as np
-from . import stored, style
+import numpy.typing as npt
+from matplotlib.axes import Axes
 from matplotlib.collections import PatchCollection
 from matplotlib.patches import Circle, Polygon
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
+from . import stored, style
+from .hints import AnyPath, Numbers, Point, Records
 
 POINTS_OF_DISK = 128
 
@@ -20,29 +25,29 @@ class Trajectory:
     are those that walls meet, see outlines()."""
 
     path: pathlib.Path
-    table: np.ndarray
+    table: Records
     row: np.void
-    attributes: dict
-    polygons: np.ndarray
-    times: np.ndarray
-    obstacles: np.ndarray
-    wedges: np.ndarray
+    attributes: dict[str, str]
+    polygons: Numbers
+    times: Numbers
+    obstacles: Numbers
+    wedges: Numbers
 
-    def word(self, column):
+    def word(self, column: str) -> str:
         return self.row[column].decode()
 
-    def frame_at(self, column, value):
+    def frame_at(self, column: str, value: float) -> int:
         """Index of the frame at which a column of the trajectory first comes nearest to a value."""
         at_frames = np.interp(self.times, self.table["time"], self.table[column])
         return int(np.argmin(np.abs(at_frames - value)))
 
     @property
-    def middle(self):
+    def middle(self) -> Numbers:
         """Where h = 0 and the axis of a channel are in the coordinates of the polygons; of a wall, a point on it."""
         return self.wedges[:, :2].mean(axis=0)
 
 
-def refined(polygons, row):
+def refined(polygons: Numbers, row: np.void) -> Numbers:
     """Polygons with the middles of their edges, by the four-point rule (docs/explanation/model.md): walls meet these. Those of
     runs in which walls meet vertices alone, or the chords of older versions, stay as they are.
 
@@ -56,7 +61,7 @@ def refined(polygons, row):
     return np.stack([polygons, middles], axis=-1).reshape(*polygons.shape[:-1], -1)
 
 
-def outlines(polygons, row):
+def outlines(polygons: Numbers, row: np.void) -> Numbers:
     """What meets walls: refined polygons, or the circle of a soft disk, of which only the centre is stored."""
     if row["model"] != b"sp" or polygons.size == 0:
         return refined(polygons, row)
@@ -64,14 +69,14 @@ def outlines(polygons, row):
     return polygons + 0.5 * np.stack([np.cos(angle), np.sin(angle)])
 
 
-def contact_range(row):
+def contact_range(row: np.void) -> float:
     """Distance from a wall at which contact begins [sigma]; half a vertex diameter before it was stored."""
-    if "contact_range" in row.dtype.names:
+    if "contact_range" in stored.columns_of(row):
         return row["contact_range"]
     return np.sqrt(np.pi * np.tan(np.pi / row["vertices"]) / row["vertices"]) / 2
 
 
-def read(path, needs_frames=True):
+def read(path: AnyPath, needs_frames: bool = True) -> Trajectory:
     """@throws UserError if it is not a trajectory (with frames)"""
     with stored.opened(path, stored.RUN) as file:
         frames = [file[name][:] if name in file else np.empty(shape)
@@ -85,19 +90,19 @@ def read(path, needs_frames=True):
     return trajectory
 
 
-def require_frames(trajectory):
+def require_frames(trajectory: Trajectory) -> None:
     """@throws UserError if there are no outlines"""
     if len(trajectory.times) == 0:
         raise stored.unreadable(trajectory.path, "holds no polygons", stored.RUN)
 
 
-def wedge_outline(wedge, reach=50.0):
+def wedge_outline(wedge: Numbers, reach: float = 50.0) -> Numbers:
     """Points around a wedge with a rounded tip, cut off far away. @param wedge  a row of /wedges"""
     x, y, axis_x, axis_y, half_angle, radius = wedge
     centre = np.array([x, y]) + radius * np.array([axis_x, axis_y])
     axis = math.atan2(axis_y, axis_x)
 
-    def direction(angle):
+    def direction(angle: float) -> Numbers:
         return np.array([math.cos(angle), math.sin(angle)])
 
     sides = [(direction(axis + sign * half_angle), direction(axis + sign * (half_angle + math.pi / 2))) for sign in (1, -1)]
@@ -109,7 +114,7 @@ def wedge_outline(wedge, reach=50.0):
                      centre + reach * other_flank + radius * other_normal, centre + reach * other_flank + behind])
 
 
-def draw_surroundings(axes, trajectory, origin=(0.0, 0.0)):
+def draw_surroundings(axes: Axes, trajectory: Trajectory, origin: Point = (0.0, 0.0)) -> None:
     """Obstacles and walls, grey."""
     shift = np.asarray(origin)
     circles = [Circle((x - shift[0], y - shift[1]), diameter / 2) for x, y, diameter in trajectory.obstacles]
@@ -117,18 +122,18 @@ def draw_surroundings(axes, trajectory, origin=(0.0, 0.0)):
     draw_walls(axes, trajectory, shift)
 
 
-def draw_droplet(axes, trajectory, frame, origin=(0.0, 0.0)):
+def draw_droplet(axes: Axes, trajectory: Trajectory, frame: int, origin: Point = (0.0, 0.0)) -> None:
     """One outline among its surroundings."""
     draw_surroundings(axes, trajectory, origin)
     axes.fill(*(trajectory.polygons[frame] - np.asarray(origin)[:, None]), facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1)
 
 
-def draw_walls(axes, trajectory, shift=0.0):
+def draw_walls(axes: Axes, trajectory: Trajectory, shift: float | Numbers = 0.0) -> None:
     for wedge in trajectory.wedges:
         axes.add_patch(Polygon(wedge_outline(wedge) - shift, facecolor=style.OBSTACLE, edgecolor="none"))
 
 
-def draw_guides(axes):
+def draw_guides(axes: Axes) -> None:
     """A bar as long as a droplet is wide, and the direction of the flow. Both stay in their corners when axes are moved."""
     bar = AnchoredSizeBar(axes.transData, 1.0, r"$\sigma$", "lower left", pad=0.2, borderpad=0.3, sep=2, label_top=True)
     bar.patch.set(edgecolor="none", alpha=0.7)
@@ -139,7 +144,7 @@ def draw_guides(axes):
     axes.text(0.03, 0.925, "flow", transform=axes.transAxes, va="top", fontsize=9, zorder=6)
 
 
-def described(trajectory):
+def described(trajectory: Trajectory) -> str:
     """What was run, without what came out."""
     row = trajectory.row
     words = [rf"$\Gamma = {row['line_tension']:g}$" if trajectory.word("model") == "dp" else rf"$E_w = {row['wall_stiffness']:g}$"]
@@ -149,24 +154,24 @@ def described(trajectory):
     return ", ".join(words)
 
 
-def mechanism(trajectory):
+def mechanism(trajectory: Trajectory) -> str:
     """Empty if it is not known."""
-    return trajectory.word("mechanism") if "mechanism" in trajectory.row.dtype.names else ""
+    return trajectory.word("mechanism") if "mechanism" in stored.columns_of(trajectory.row) else ""
 
 
-def end_of(trajectory):
+def end_of(trajectory: Trajectory) -> str:
     """How the run ended, in words."""
     ends = {"wrapped": "clogged by wrapping", "squeezed": "clogged by squeezing", "hybrid": "clogged by wrapping and squeezing"}
     status = trajectory.word("status")
     return ends.get(mechanism(trajectory), status) if status == "clogged" else {"flowing": "still flowing", "broken": "broken up"}.get(status, status)
 
 
-def verdict(trajectory):
+def verdict(trajectory: Trajectory) -> str:
     """The same with how far it came, for a picture."""
     return rf"{end_of(trajectory)} after $r = {trajectory.row['distance']:.2f}\,\sigma$"
 
 
-def centroids(polygons):
+def centroids(polygons: Numbers) -> Numbers:
     """Of the enclosed areas. @param polygons  frames x 2 x N. @return frames x 2"""
     reference = polygons[:, :, :1]  # near to the polygon: no digits are lost far from the origin
     x, y = np.moveaxis(polygons - reference, 1, 0)
@@ -176,13 +181,13 @@ def centroids(polygons):
     return reference[:, :, 0] + moments / (3 * cross.sum(axis=-1, keepdims=True))
 
 
-def frame_limits(axes, low, high):
+def frame_limits(axes: Axes, low: Point, high: Point) -> None:
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(low[1], high[1])
     axes.set_aspect("equal")
 
 
-def along_the_way(polygons, number):
+def along_the_way(polygons: Numbers, number: int) -> npt.NDArray[np.intp]:
     """Frames evenly spaced along the way, not in time: a clogged droplet stands still for most of its run."""
     centres = polygons.mean(axis=2)
     way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(centres, axis=0).T))])
@@ -190,7 +195,7 @@ def along_the_way(polygons, number):
     return np.unique(np.append(chosen, len(polygons) - 1))
 
 
-def interface_speeds(trajectory):
+def interface_speeds(trajectory: Trajectory) -> Numbers:
     """Speed of every point of the interface in every frame, by differences between frames [sqrt(sigma g)]."""
     if len(trajectory.times) < 2:
         return np.zeros((len(trajectory.times), trajectory.polygons.shape[2]))

@@ -1,16 +1,23 @@
 """A run for ParaView: the droplet's outline over time, and what it moves among. All files are VTK's XML PolyData, as text."""
 
+from __future__ import annotations
+
 import math
 import os
+import pathlib
 import xml.etree.ElementTree as xml
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
+import numpy.typing as npt
 
-from . import command_line, trajectory
+from . import command_line, stored, trajectory
 from .errors import UserError
+from .hints import Numbers
+from .trajectory import Trajectory
 
 
-def data_array(parent, name, values, components=1):
+def data_array(parent: xml.Element, name: str, values: npt.ArrayLike, components: int = 1) -> xml.Element:
     values = np.asarray(values)
     kind = "Int64" if values.dtype.kind == "i" else "Float64"
     element = xml.SubElement(parent, "DataArray", type=kind, Name=name, format="ascii")
@@ -22,7 +29,8 @@ def data_array(parent, name, values, components=1):
     return element
 
 
-def polydata(outlines, point_data=None, cell_data=None, field_data=None):
+def polydata(outlines: Sequence[Numbers], point_data: Mapping[str, Numbers] | None = None, cell_data: Mapping[str, Numbers] | None = None,
+             field_data: Mapping[str, float] | None = None) -> xml.ElementTree:
     """Closed polygons. @param outlines  arrays n x 2; @param point_data, cell_data  name -> values"""
     root = xml.Element("VTKFile", type="PolyData", version="1.0", byte_order="LittleEndian", header_type="UInt64")
     body = xml.SubElement(root, "PolyData")
@@ -44,7 +52,7 @@ def polydata(outlines, point_data=None, cell_data=None, field_data=None):
     return xml.ElementTree(root)
 
 
-def collection(files, times):
+def collection(files: Iterable[str], times: Iterable[float]) -> xml.ElementTree:
     root = xml.Element("VTKFile", type="Collection", version="1.0", byte_order="LittleEndian")
     body = xml.SubElement(root, "Collection")
     for file, time in zip(files, times):
@@ -52,7 +60,7 @@ def collection(files, times):
     return xml.ElementTree(root)
 
 
-def write(tree, path):
+def write(tree: xml.ElementTree, path: pathlib.Path) -> None:
     """Under another name first: whoever looks in sees whole files."""
     command_line.refuse_unwritable(path, "vtk")
     fresh = path.with_name(path.name + ".new")
@@ -60,7 +68,7 @@ def write(tree, path):
     os.replace(fresh, path)
 
 
-def surroundings(run):
+def surroundings(run: Trajectory) -> xml.ElementTree:
     angle = np.linspace(0, 2 * math.pi, 48, endpoint=False)
     circle = np.column_stack([np.cos(angle), np.sin(angle)])
     discs = [np.array([x, y]) + diameter / 2 * circle for x, y, diameter in run.obstacles]
@@ -70,7 +78,7 @@ def surroundings(run):
     return polydata(discs + walls, cell_data={"diameter": np.array(diameters, dtype=float)})
 
 
-def export(run, output):
+def export(run: Trajectory, output: pathlib.Path) -> pathlib.Path:
     """@return the .pvd file"""
     folder = output.with_name(output.name + "-vtk")
     pvd, around = output.with_name(output.name + ".pvd"), output.with_name(output.name + "-obstacles.vtp")
@@ -78,7 +86,7 @@ def export(run, output):
         command_line.refuse_unwritable(path, "vtk", run.path)
     folder.mkdir(parents=True, exist_ok=True)
     speeds = trajectory.interface_speeds(run)
-    columns = run.table.dtype.names
+    columns = stored.columns_of(run.table)
     names = []
     for frame, (polygon, time) in enumerate(zip(run.polygons, run.times)):
         fields = {name: float(np.interp(time, run.table["time"], run.table[name])) for name in columns if name != "time"}

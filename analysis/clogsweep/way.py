@@ -1,16 +1,22 @@
 """The way of one droplet among obstacles: several moments of a run in one picture."""
 
+from __future__ import annotations
+
 import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from . import style, trajectory
+from .hints import Numbers
+from .trajectory import Trajectory
 
 
-def view(run):
+def view(run: Trajectory) -> tuple[Numbers, Numbers]:
     """Corners of what the droplet comes to."""
     return run.polygons.min(axis=(0, 2)) - 0.5, run.polygons.max(axis=(0, 2)) + 0.5
 
 
-def canvas(run):
+def canvas(run: Trajectory) -> tuple[Figure, Axes]:
     low, high = view(run)
     width, height = high - low
     figure_width = min(12.0, max(5.0, 2.2 * width))
@@ -24,8 +30,8 @@ def canvas(run):
     return figure, axes
 
 
-def draw(run, num_outlines):
-    """@param run  see trajectory.Trajectory, with outlines"""
+def draw(run: Trajectory, num_outlines: int) -> Figure:
+    """@param run  with outlines"""
     figure, axes = canvas(run)
     chosen = trajectory.along_the_way(run.polygons, num_outlines)
     for frame in chosen:

@@ -20,7 +20,7 @@ from ..errors import UserError
 from ..picture import Picture
 
 
-def key_and_value(word):
+def key_and_value(word: str) -> tuple[str, str]:
     """Type of an option: KEY=VALUE."""
     key, equals, value = word.partition("=")
     if not (key and equals and value):
@@ -28,7 +28,7 @@ def key_and_value(word):
     return key, value
 
 
-def offsets(word):
+def offsets(word: str) -> list[float]:
     """Type of an option: offsets from the obstacle's centre at which the droplet touches it [sigma]."""
     try:
         numbers = [float(part) for part in word.split(",")]
@@ -48,7 +48,7 @@ def body() -> int:
     programs.add_option(parser)
     arguments = parser.parse_args()
     command_line.refuse_unwritable_picture(arguments.output)
-    found = {}
+    found: dict[float, collision.Threshold] = {}
     print("offset,symmetry,breaks_up_to,whole_from,capillary_number")
     with tempfile.TemporaryDirectory(prefix="clogsweep-collision-") as folder:
         collisions = collision.Collisions(programs.programs_in(arguments.programs) / "clogsweep", pathlib.Path(folder), dict(arguments.keys))

@@ -8,6 +8,7 @@ The same command goes on with an interrupted sweep, and never repeats finished r
 Beside FOLDER/SIZE/figure-NAME.png are the same as .pdf, the numbers drawn as .csv, and where they came from as .txt.
 """
 
+import argparse
 import pathlib
 import sys
 
@@ -17,7 +18,7 @@ from ..paper.plate import CATALOGUE
 from ..paper.workshop import Override, Workshop, measured
 
 
-def parse():
+def parse() -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
     parser.add_argument("names", nargs="+", metavar="NAME", help="of figures, or list, or all")
     parser.add_argument("--size", choices=["reduced", "full"], default="reduced", help="reduced: minutes on two cores; full: as published")

@@ -1,18 +1,30 @@
 """Figures of droplets among obstacles."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable, Collection, Iterable, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.axes import Axes
+
 from .. import rounded, stored, style, survival_curve, trajectory
-from .plate import Plate, figure, interface_of
 from ..errors import UserError
 from ..groups import said
+from ..hints import Column, Group
+from ..trajectory import Trajectory
+from .plate import Plate, figure, interface_of
+from .workshop import Workshop
+
+if TYPE_CHECKING:
+    import pandas
 
 # Of what all points have in common, a caption names these.
 NAMED = ("obstacle_gap", "obstacle_diameter", "near_wall_drag")
 
 
-def describe(columns, groups, without=()):
+def describe(columns: dict[str, Column], groups: Sequence[Group], without: Collection[str] = ()) -> str:
     """What all points have in common. @param columns  see Workshop.columns()"""
     first = groups[0]
     words = []
@@ -30,7 +42,7 @@ def describe(columns, groups, without=()):
     return ", ".join(words) + "\n" + line
 
 
-def numbers(groups, label, **more):
+def numbers(groups: Sequence[Group], label: str, **more: Sequence[Any]) -> list[dict[str, Any]]:
     """What is drawn of each group, as clogfit gives it."""
     columns = ["model", "line_tension", "wall_stiffness", "obstacle_gap", "obstacle_diameter", "obstacle_density", "near_wall_drag", "runs", "clogs",
                "clogging_length", "clogging_length_lower", "clogging_length_upper", "relative_speed", "relative_speed_error", "capillary_number", "doubts"]
@@ -38,13 +50,20 @@ def numbers(groups, label, **more):
             for i, group in enumerate(groups)]
 
 
-def by(groups, name):
+def by(groups: Iterable[Group], name: str) -> list[tuple[Any, list[Group]]]:
     """Groups of one curve each, by the value that tells the curves apart."""
     return [(value, [group for group in groups if group[name] == value]) for value in sorted({group[name] for group in groups})]
 
 
-def curves(shop, config, abscissa, parameter, quantity):
-    """One curve for each value of a parameter. @param quantity  "length" or "speed" """
+def drawing_of(quantity: str) -> Callable[[Axes, Sequence[float], Sequence[Group], int, str], None]:
+    """@param quantity  "length" or "speed" """
+    if quantity == "length":
+        return style.draw_lengths
+    return style.draw_speeds
+
+
+def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity: str) -> Plate:
+    """One curve for each value of a parameter. @param quantity  as of drawing_of()"""
     groups = shop.sweep(config)
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     data = []
@@ -54,8 +73,7 @@ def curves(shop, config, abscissa, parameter, quantity):
         label = said(shop.columns(config)[parameter], value)
         shift = style.side_by_side(index, len(families), places) if places else 1
         members = [group for group in members if group[abscissa] is not None]
-        draw = style.draw_lengths if quantity == "length" else style.draw_speeds
-        draw(axes, [group[abscissa] * shift for group in members], members, index, label)
+        drawing_of(quantity)(axes, [group[abscissa] * shift for group in members], members, index, label)
         data += numbers(members, label)
     style.logarithmic_abscissa(axes, places)
     if quantity == "length":
@@ -70,43 +88,43 @@ def curves(shop, config, abscissa, parameter, quantity):
 
 
 @figure("6c", "clogging length against line tension for four smallest gaps (deformable polygon)", ["clogging"], "20 min")
-def lengths_of_polygons(shop):
+def lengths_of_polygons(shop: Workshop) -> Plate:
     return curves(shop, "clogging", "line_tension", "obstacle_gap", "length")
 
 
 @figure("7a", "clogging length against wall stiffness for four smallest gaps (soft disk)", ["clogging-sp"], "10 s")
-def lengths_of_disks(shop):
+def lengths_of_disks(shop: Workshop) -> Plate:
     return curves(shop, "clogging-sp", "wall_stiffness", "obstacle_gap", "length")
 
 
 @figure("8a", "mean speed against line tension for four wide gaps (deformable polygon)", ["speed"], "1 min")
-def speeds_of_polygons(shop):
+def speeds_of_polygons(shop: Workshop) -> Plate:
     return curves(shop, "speed", "line_tension", "obstacle_gap", "speed")
 
 
 @figure("8b", "mean speed against line tension for three obstacle diameters", ["speed-diameter"], "1 min")
-def speeds_by_diameter(shop):
+def speeds_by_diameter(shop: Workshop) -> Plate:
     return curves(shop, "speed-diameter", "line_tension", "obstacle_diameter", "speed")
 
 
 @figure("8ca", "the speeds of 8a against the capillary number", ["speed"], "1 min, shared with 8a")
-def speeds_by_capillary_number(shop):
+def speeds_by_capillary_number(shop: Workshop) -> Plate:
     return curves(shop, "speed", "capillary_number", "obstacle_gap", "speed")
 
 
 @figure("9a", "mean speed against wall stiffness for four wide gaps (soft disk)", ["speed-sp"], "5 s")
-def speeds_of_disks(shop):
+def speeds_of_disks(shop: Workshop) -> Plate:
     return curves(shop, "speed-sp", "wall_stiffness", "obstacle_gap", "speed")
 
 
 @figure("E", "mean speed against line tension for three near-wall drags", ["near-wall-drag"], "1 min")
-def speeds_by_drag(shop):
+def speeds_by_drag(shop: Workshop) -> Plate:
     return curves(shop, "near-wall-drag", "line_tension", "near_wall_drag", "speed")
 
 
 # Both models over the sag
 
-def sags(shop, config, groups):
+def sags(shop: Workshop, config: str, groups: Sequence[Group]) -> list[float]:
     """delta_s for each group, from one sweep of walls with all its line tensions or stiffnesses."""
     is_polygon = groups[0]["model"] == "dp"
     column, key = ("line_tension", "line-tension") if is_polygon else ("wall_stiffness", "wall-stiffness")
@@ -118,7 +136,7 @@ def sags(shop, config, groups):
     return [known[group[column]]["sag"] for group in groups]
 
 
-def over_sag(shop, configs, gap, quantity):
+def over_sag(shop: Workshop, configs: Sequence[str], gap: float, quantity: str) -> Plate:
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     data, captions, drawn = [], [], []
     for index, config in enumerate(configs):
@@ -127,7 +145,7 @@ def over_sag(shop, configs, gap, quantity):
             raise UserError(f"sweep {config} has no runs with obstacle-gap={gap}; add it to the list")
         places = sags(shop, config, groups)
         label = "deformable polygon" if groups[0]["model"] == "dp" else "soft disk"
-        (style.draw_lengths if quantity == "length" else style.draw_speeds)(axes, places, groups, index, label)
+        drawing_of(quantity)(axes, places, groups, index, label)
         data += numbers(groups, label, sag=places)
         captions.append(describe(shop.columns(config), groups))
         drawn += groups
@@ -146,17 +164,17 @@ def over_sag(shop, configs, gap, quantity):
 
 
 @figure("7c", "clogging length against sag, deformable polygon and soft disk, smallest gap 0.2", ["clogging", "clogging-sp"], "shared with 6c, 7a")
-def lengths_over_sag(shop):
+def lengths_over_sag(shop: Workshop) -> Plate:
     return over_sag(shop, ["clogging", "clogging-sp"], 0.2, "length")
 
 
 @figure("9b", "mean speed against sag, deformable polygon and soft disk, smallest gap 1.1", ["speed", "speed-sp"], "shared with 8a, 9a")
-def speeds_over_sag(shop):
+def speeds_over_sag(shop: Workshop) -> Plate:
     return over_sag(shop, ["speed", "speed-sp"], 1.1, "speed")
 
 
 @figure("7b", "what the sag is: a soft disk and a polygon on a wall, before and after gravity sets in", ["channel"], "1 s")
-def sag_picture(shop):
+def sag_picture(shop: Workshop) -> Plate:
     line_tension, stiffness = 0.3, 1.0
     on_wall = {"obstacle-layout": "wall"}
     row, = shop.runs("sag-polygon", "channel", {**on_wall, "line-tension": line_tension})
@@ -166,7 +184,7 @@ def sag_picture(shop):
     drawing, panels = style.subplots(1, 2, figsize=(7.2, 4.2), sharey=True)
     wall = polygon.wedges[0, :2]
     # Gravity points along +x in the model; here it points down.
-    outlines = [(shape[1] - wall[1], wall[0] - shape[0]) for shape in polygon.polygons]
+    outlines = [np.array([shape[1] - wall[1], wall[0] - shape[0]]) for shape in polygon.polygons]
     angle = np.linspace(0, 2 * math.pi, 200)
     circle = np.array([0.5 * np.cos(angle), 0.5 + 0.5 * np.sin(angle)])
     for axes, before, after, sag, title in [
@@ -175,7 +193,7 @@ def sag_picture(shop):
     ]:
         axes.axhspan(-0.3, 0, facecolor=style.OBSTACLE)
         axes.fill(*after, facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1.2, label="with weight")
-        axes.plot(*np.append(before, np.asarray(before)[:, :1], axis=1), color="black", linestyle="--", linewidth=1, label="without")
+        axes.plot(*np.append(before, before[:, :1], axis=1), color="black", linestyle="--", linewidth=1, label="without")
         axes.plot([-0.08, 0.08], [0.5, 0.5], color="black", linewidth=1)
         axes.plot([-0.08, 0.08], [0.5 - sag, 0.5 - sag], color="black", linewidth=1)
         axes.annotate("", (0, 0.5 - sag), (0, 0.5), arrowprops={"arrowstyle": "-|>", "color": "black"})
@@ -191,7 +209,7 @@ def sag_picture(shop):
 
 # Clogs
 
-def example(shop, mechanism):
+def example(shop: Workshop, mechanism: str) -> tuple[Trajectory, pandas.Series]:
     """A clog of the sweep, run once more with its outline. By squeezing: the stiffest that went at least half a diameter, if any
     did. By wrapping: the one of median shape, of those that only hang over obstacles, if there are any."""
     shop.sweep("clogging")
@@ -214,17 +232,17 @@ def example(shop, mechanism):
     return run, row
 
 
-def clog_title(run, row):
+def clog_title(run: Trajectory, row: pandas.Series) -> str:
     return (rf"{row.mechanism}: $\Gamma = {row.line_tension:g}$, $w_\mathrm{{ob}} = {row.obstacle_gap:g}\sigma$, seed {row.seed}, "
             rf"$r = {row.distance:.2f}\sigma$" f"\n{row.wrapped_support:.0%} of the support from wrapped obstacles, $N_v = {row.vertices}$\ninterface: {interface_of(row.preset)}")
 
 
-def clog_numbers(run, row, frame):
+def clog_numbers(run: Trajectory, row: pandas.Series, frame: int) -> list[dict[str, Any]]:
     return [{"mechanism": row.mechanism, "line_tension": row.line_tension, "obstacle_gap": row.obstacle_gap, "seed": row.seed,
              "distance": row.distance, "x": x, "y": y} for x, y in run.polygons[frame].T]
 
 
-def snapshot(shop, mechanism):
+def snapshot(shop: Workshop, mechanism: str) -> Plate:
     run, row = example(shop, mechanism)
     drawing, axes = style.subplots(figsize=(5.6, 5.4))
     shape = run.polygons[-1]
@@ -241,17 +259,17 @@ def snapshot(shop, mechanism):
 
 
 @figure("6a", "a clog by wrapping, from the sweep of 6c", ["clogging"], "shared with 6c")
-def wrapped(shop):
+def wrapped(shop: Workshop) -> Plate:
     return snapshot(shop, "wrapped")
 
 
 @figure("6b", "a clog by squeezing, from the sweep of 6c", ["clogging"], "shared with 6c")
-def squeezed(shop):
+def squeezed(shop: Workshop) -> Plate:
     return snapshot(shop, "squeezed")
 
 
 @figure("5", "how droplets wrap around an obstacle and squeeze into a gap: the last outlines before two clogs of 6c", ["clogging"], "shared with 6c")
-def two_ways(shop):
+def two_ways(shop: Workshop) -> Plate:
     drawing, panels = style.subplots(2, 4, figsize=(10.4, 6.0))
     data = []
     for line, mechanism in zip(panels, ["wrapped", "squeezed"]):
@@ -280,7 +298,7 @@ def two_ways(shop):
 # Single runs and P(r)
 
 @figure("C1", "kinetic energy of a droplet that clogs and of one that flows", ["trajectory"], "2 s")
-def kinetic_energy(shop):
+def kinetic_energy(shop: Workshop) -> Plate:
     drawing, axes = style.subplots(figsize=(7.2, 4.8))
     data = []
     gaps = [0.3, 1.1]
@@ -304,7 +322,7 @@ def kinetic_energy(shop):
     return Plate(drawing, data)
 
 
-def draw_band(axes, group):
+def draw_band(axes: Axes, group: Group) -> None:
     """The error of P(r), to the longest way."""
     steps = group["survival"]
     known = [step for step in steps if step["lower"] is not None]  # not of the last one if no run is left
@@ -314,14 +332,14 @@ def draw_band(axes, group):
         step="post", color=style.COLOURS[0], alpha=0.2, linewidth=0, label="95 %, log-log")
 
 
-def lowest_shown(group, end):
+def lowest_shown(group: Group, end: float) -> float:
     """The band, the curve and the exponential to the longest way have room above it, those that have come to zero excepted."""
     lowest = [step[name] for step in group["survival"] for name in ("lower", "probability") if step[name]]
     return 0.7 * min(1.0, *lowest, math.exp(-end / group["clogging_length"]))
 
 
 @figure("C2", "probability P(r) of not having clogged, with its error band and the exponential law", ["survival"], "10 s")
-def survival(shop):
+def survival(shop: Workshop) -> Plate:
     group = shop.sweep("survival")[0]
     if not group["survival"]:
         raise UserError(f"no run has clogged in {shop.sweep_file('survival')}; raise max-time or seeds")
@@ -350,7 +368,7 @@ def survival(shop):
 
 
 @figure("D", "displacement against time for five line tensions, smallest gap 1.1", ["trajectory"], "3 s")
-def displacement(shop):
+def displacement(shop: Workshop) -> Plate:
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     data = []
     line_tensions = [0.04, 0.1, 0.2, 0.5, 1.0]

@@ -1,23 +1,27 @@
 """Figures of droplets in narrow channels and along walls."""
 
 import math
+from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+
 from .. import style, trajectory
 from ..errors import UserError
+from ..trajectory import Trajectory
 from .plate import Plate, figure, interface_of
-from .workshop import measured
+from .workshop import Workshop, measured
 
 SMOOTH = 512  # vertices from which on a passage of w = 0.4 shows no ripple
 
 
-def passages(shop, name, **keys):
+def passages(shop: Workshop, name: str, **keys: object) -> list[np.void]:
     """Rows of a sweep of channels. @param keys  as of Workshop.runs(), with _ for -"""
     start, end = (-10, 3) if shop.size == "full" else (-2, 2)
     return shop.runs(name, "channel", {"obstacle-layout": "channel", "start": start, "end": end} | {key.replace("_", "-"): value for key, value in keys.items()})
 
 
-def profiles(shop, name, outlines=False, **keys):
+def profiles(shop: Workshop, name: str, outlines: bool = False, **keys: object) -> list[Trajectory]:
     """The same with h, v and A on the way, and outlines."""
     rows = passages(shop, name, **keys)
     # Frames a fiftieth of a diameter apart, samples a fifth of that.
@@ -25,25 +29,25 @@ def profiles(shop, name, outlines=False, **keys):
     return shop.ways(name, rows, frame / 5, frame if outlines else None)
 
 
-def parameters(run, orifice):
+def parameters(run: Trajectory, orifice: float) -> str:
     row = run.row
     return (rf"$w = {orifice}\sigma$, $\Gamma = {row['line_tension']:g}$, $b_0/b_\infty = {row['near_wall_drag']:g}$, "
             rf"$V_t = {row['terminal_speed']:g}$, $N_v = {row['vertices']}$")
 
 
-def ending(run):
+def ending(run: Trajectory) -> str:
     """A droplet that did not pass is shown as far as it came; its legend says so."""
     return "" if run.word("status") == "passed" else f" (stops at $h = {run.table['h'][-1]:.2f}$)"
 
 
-def draw_profile(axes, run, column, index, label):
+def draw_profile(axes: Axes, run: Trajectory, column: str, index: int, label: str) -> None:
     style_of = style.curve_style(index)
     axes.plot(run.table["h"], run.table[column], color=style_of["color"], linewidth=1.4, label=label)
     if run.word("status") != "passed":
         axes.plot(run.table["h"][-1:], run.table[column][-1:], color=style_of["color"], marker="x", markersize=7, linestyle="none")
 
 
-def draw_measured(shop, axes, column):
+def draw_measured(shop: Workshop, axes: Axes, column: str) -> None:
     for number, path in enumerate(shop.profiles):
         table = measured(path)
         if column in table:
@@ -51,7 +55,7 @@ def draw_measured(shop, axes, column):
                       label="measured" if number == 0 else None)
 
 
-def finish(axes, ordinate, reach=1.6):
+def finish(axes: Axes, ordinate: str, reach: float = 1.6) -> None:
     axes.set_xlim(-reach, reach)
     axes.set_xlabel(style.AXES["h"])
     axes.set_ylabel(style.AXES[ordinate])
@@ -62,25 +66,25 @@ def finish(axes, ordinate, reach=1.6):
     style.grid(axes)
 
 
-def extremes(run, label):
+def extremes(run: Trajectory, label: str) -> dict[str, Any]:
     """What the row says of the passage."""
     return {"curve": label} | {f"{extreme}{at}": run.row[f"{extreme}{at}"] for at in ("", "_at")
                                for extreme in ("largest_shape_parameter", "smallest_relative_speed", "largest_relative_speed")}
 
 
-def profile_rows(run, label):
+def profile_rows(run: Trajectory, label: str) -> list[dict[str, Any]]:
     step = max(1, len(run.table) // 400)
     return [{"curve": label, "h": frame["h"], "speed_ratio": frame["speed_ratio"], "shape_parameter": frame["shape_parameter"]}
             for frame in run.table[::step]]
 
 
-def narrow(shop):
+def narrow(shop: Workshop) -> Trajectory:
     """The passage of Figs. 1 and 2."""
     return profiles(shop, "channel-0.4", outlines=True, orifice=0.4, line_tension=0.16, near_wall_drag=0.064, terminal_speed=0.08)[0]
 
 
 @figure("1", "geometry: a droplet in a narrow channel, and one among obstacles with its trajectory", ["channel", "trajectory"], "1 s")
-def geometry(shop):
+def geometry(shop: Workshop) -> Plate:
     channel = narrow(shop)
     released, = shop.runs("geometry", "trajectory", {"seeds": 1, "line-tension": 0.3, "obstacle-gap": 1.0, "max-time": 300.0})
     array, = shop.ways("geometry", [released], 1, 4)
@@ -113,7 +117,7 @@ def geometry(shop):
 
 
 @figure("2", "a droplet squeezes through an orifice of 0.4 diameters: outlines, shape parameter, speed", ["channel"], "1 s")
-def squeezing(shop):
+def squeezing(shop: Workshop) -> Plate:
     run = narrow(shop)
     drawing = style.new_figure(figsize=(9.6, 6.2), layout="constrained")
     top, bottom = drawing.subfigures(2, 1, height_ratios=[1, 2.4])
@@ -139,7 +143,7 @@ def squeezing(shop):
 
 
 @figure("3", "shape and speed through orifices of 0.9 and 0.7 diameters", ["channel"], "3 s")
-def two_orifices(shop):
+def two_orifices(shop: Workshop) -> Plate:
     drawing, panels = style.subplots(2, 2, figsize=(9.0, 6.8), sharex=True)
     data = []
     for line, (orifice, line_tension, drag, speed) in enumerate([(0.9, 1.7, 0.21, 0.028), (0.7, 1.08, 0.07, 0.032)]):
@@ -169,7 +173,7 @@ def two_orifices(shop):
 
 
 @figure("4", "speed behind an orifice, which overshoots the terminal speed, for three line tensions", ["channel"], "3 s")
-def overshoot(shop):
+def overshoot(shop: Workshop) -> Plate:
     drawing, panels = style.subplots(1, 2, figsize=(9.6, 4.6))
     data = []
     for axes, (orifice, drag) in zip(panels, [(0.7, 0.02), (0.8, 0.0)]):
@@ -188,7 +192,7 @@ def overshoot(shop):
 
 
 @figure("A1", "near-wall drag: speed between parallel walls against the distance from them, and its exponent", ["channel"], "3 s")
-def near_wall_drag(shop):
+def near_wall_drag(shop: Workshop) -> Plate:
     distances = [0.03, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2]
     rows = passages(shop, "walls", start=-1.5, end=1.5, wedge_angle=0, orifice=[1 + 2 * distance for distance in distances],
                     line_tension=1, near_wall_drag=0.07, terminal_speed=0.03)
@@ -222,7 +226,7 @@ def near_wall_drag(shop):
 
 
 @figure("B1", "speed through an orifice of 0.7 diameters for different numbers of vertices", ["channel"], "4 s")
-def vertices(shop):
+def vertices(shop: Workshop) -> Plate:
     # Up to so many times the config's number of vertices: the finest run takes most of the time.
     line_tension, most = (1.08, 4) if shop.size == "full" else (0.83, 2)
     counts = [count for count in (32, 64, 128, 256, 512, 1024) if count <= most * int(shop.keys("channel")["vertices"])]
@@ -245,7 +249,7 @@ def vertices(shop):
 
 
 @figure("B2", "deviation of the speed profile as the perimeter's springs stiffen", ["channel"], "15 s")
-def perimeter_springs(shop):
+def perimeter_springs(shop: Workshop) -> Plate:
     drawing, axes = style.subplots(figsize=(6.4, 4.8))
     ratios = [1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1.0]
     data = []

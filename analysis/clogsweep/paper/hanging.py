@@ -1,25 +1,33 @@
 """Figures of droplets that hang over obstacles: what holds them, the mesh or a law of walls."""
 
+from collections.abc import Sequence
+from typing import Any
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
 from .. import style
 from ..groups import said
+from ..hints import Group
 from .arrays import by, numbers
 from .plate import Plate, figure, interface_of
+from .workshop import Workshop
 
 HOLDS = ("vertices", "on_mesh", "wrapped", "squeezed", "hybrid")
 
 
-def of_each(curve, *names):
+def of_each(curve: Sequence[Group], *names: str) -> dict[str, list[Any]]:
     return {name: [group[name] for group in curve] for name in names}
 
 
-def title(drawing, shop, config, groups):
+def title(drawing: Figure, shop: Workshop, config: str, groups: Sequence[Group]) -> None:
     """What all points have in common, and what the marks mean."""
     first = groups[0]
     drawing.suptitle(f"{style.runs_a_point(groups)}; saturated arrays, obstacles of {first['obstacle_diameter']:g}$\\sigma$, "
                      f"$T = {first['max_time']:g}\\,t_0$\n{style.length_note(groups, shop.confidence(config))}", fontsize=8, color="0.25")
 
 
-def finish(axes, places, groups, text):
+def finish(axes: Axes, places: Sequence[float], groups: Sequence[Group], text: str) -> None:
     axes.set_yscale("log")
     style.logarithmic_abscissa(axes, places)
     style.grid(axes)
@@ -28,7 +36,7 @@ def finish(axes, places, groups, text):
 
 
 @figure("W1", "what of the clogging length is the mesh's: line tension, numbers of vertices, interfaces", ["hanging-robust", "hanging-elastic"], "32 min")
-def lengths_by_mesh(shop):
+def lengths_by_mesh(shop: Workshop) -> Plate:
     configs = ["hanging-robust", "hanging-elastic"]
     presets = [(config, shop.sweep(config)) for config in configs]
     groups = [group for _, members in presets for group in members]
@@ -54,7 +62,7 @@ def lengths_by_mesh(shop):
 
 
 @figure("W2", "the clogging length with friction of walls: line tension, coefficients of friction, numbers of vertices", ["hanging-friction"], "60 min")
-def lengths_by_friction(shop):
+def lengths_by_friction(shop: Workshop) -> Plate:
     config = "hanging-friction"
     groups = shop.sweep(config)
     columns = shop.columns(config)
@@ -70,7 +78,7 @@ def lengths_by_friction(shop):
             for vertices, curve in by(family, "vertices"):
                 mesh = meshes.index(vertices)
                 shift = style.side_by_side(index * len(meshes) + mesh, len(families) * len(meshes), places)
-                line = "-" if vertices == meshes[-1] else (0, (4, 1 + mesh))
+                line: str | tuple[int, tuple[int, ...]] = "-" if vertices == meshes[-1] else (0, (4, 1 + mesh))
                 style.draw_lengths(axes, [group["line_tension"] * shift for group in curve], curve, index,
                                    f"{said(columns['friction'], friction)}, $N_v = {vertices}$", line)
                 data += numbers(curve, f"friction {friction:g}, gap {gap:g}", **of_each(curve, "friction", *HOLDS))

@@ -1,9 +1,16 @@
 """A finished figure, and the list of all that there are."""
 
-import dataclasses
-from collections.abc import Callable
+from __future__ import annotations
 
-CATALOGUE = {}
+import dataclasses
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from .workshop import Workshop
+
+CATALOGUE: dict[str, Entry] = {}
 # Presets of the interface, in words; docs/explanation/model.md says what is behind them.
 INTERFACES = {
     "robust": "robust, weight on the liquid",
@@ -13,7 +20,7 @@ INTERFACES = {
 }
 
 
-def interface_of(preset):
+def interface_of(preset: str) -> str:
     return INTERFACES.get(preset, preset)
 
 
@@ -21,23 +28,26 @@ def interface_of(preset):
 class Plate:
     """A drawn figure with the numbers in it: one dictionary for each row of the table beside the picture."""
 
-    figure: object
-    data: list
+    figure: Figure
+    data: list[dict[str, Any]]
+
+
+Drawing = Callable[[Workshop], Plate]
 
 
 @dataclasses.dataclass(frozen=True)
 class Entry:
     name: str
     caption: str
-    configs: tuple
+    configs: tuple[str, ...]
     cost: str
-    draw: Callable
+    draw: Drawing
 
 
-def figure(name, caption, configs, cost):
-    """Enters a function Workshop -> Plate into the catalogue. @param cost  time of the reduced size on two cores"""
+def figure(name: str, caption: str, configs: Iterable[str], cost: str) -> Callable[[Drawing], Drawing]:
+    """Enters a function into the catalogue. @param cost  time of the reduced size on two cores"""
 
-    def enter(draw):
+    def enter(draw: Drawing) -> Drawing:
         CATALOGUE[name] = Entry(name, caption, tuple(configs), cost, draw)
         return draw
 

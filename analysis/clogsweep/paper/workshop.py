@@ -1,20 +1,31 @@
 """Runs what a figure needs with clogsweep, clogrun and clogfit, once, and remembers where every number came from."""
 
+from __future__ import annotations
+
 import csv
 import dataclasses
 import itertools
 import json
 import pathlib
 import shlex
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from .. import places, replays, stored
 from ..errors import UserError
+from ..hints import Column, Group
 from ..programs import run_program
+from ..trajectory import Trajectory
+
+if TYPE_CHECKING:
+    import pandas
 
 CONFIGS = places.JOBS / "figures"
 
 
-def config_keys(path):
+def config_keys(path: pathlib.Path) -> dict[str, str]:
     """Keys and values of a config file, as text."""
     keys = {}
     for line in path.read_text().splitlines():
@@ -25,17 +36,17 @@ def config_keys(path):
     return keys
 
 
-def as_text(value):
+def as_text(value: object) -> str:
     """Of a key."""
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def in_row(row, key, otherwise):
+def in_row(row: np.void, key: str, otherwise: str) -> str:
     """The text of a key's value in a row, and that of a key that has no column of numbers."""
     if key == "perimeter-stiffness-ratio":
         return as_text(row["perimeter_stiffness"] / row["line_tension"])
     column = key.replace("-", "_")
-    return as_text(row[column]) if column in row.dtype.names and not isinstance(row[column], bytes) else otherwise
+    return as_text(row[column]) if column in stored.columns_of(row) and not isinstance(row[column], bytes) else otherwise
 
 
 @dataclasses.dataclass(frozen=True)
@@ -47,7 +58,7 @@ class Override:
     value: str
 
     @staticmethod
-    def parse(text):
+    def parse(text: str) -> Override:
         name, equals, value = text.partition("=")
         config, colon, key = name.rpartition(":")
         if not equals or not key or not value:
@@ -61,21 +72,21 @@ class Workshop:
     ranks: int
     folder: pathlib.Path
     programs: pathlib.Path
-    overrides: list
-    profiles: list = dataclasses.field(default_factory=list)
+    overrides: list[Override]
+    profiles: list[pathlib.Path] = dataclasses.field(default_factory=list)
     draw_only: bool = False
 
-    def __post_init__(self):
-        self._complete_sweeps = set()
-        self._fits = {}
-        self._sources = []
+    def __post_init__(self) -> None:
+        self._complete_sweeps: set[str] = set()
+        self._fits: dict[str, dict[str, Any]] = {}
+        self._sources: list[str] = []
 
     # Configs
 
-    def config(self, name):
+    def config(self, name: str) -> pathlib.Path:
         return CONFIGS / f"{name}.{self.size}.cfg"
 
-    def keys(self, name):
+    def keys(self, name: str) -> dict[str, str]:
         """What a config and --set say together."""
         keys = config_keys(self.config(name))
         # What is meant for this config alone has the last word.
@@ -83,7 +94,7 @@ class Workshop:
             keys |= {override.key: override.value for override in self.overrides if override.config == config}
         return keys
 
-    def _arguments(self, name, own_keys):
+    def _arguments(self, name: str, own_keys: dict[str, str]) -> list[str]:
         """The config and what differs from it: first --set, then the figure's own keys, which have the last word."""
         in_file = config_keys(self.config(name))
         keys = self.keys(name) | own_keys
@@ -94,15 +105,15 @@ class Workshop:
 
     # Programs
 
-    def _call(self, program, *arguments, ranks=1):
+    def _call(self, program: str, *arguments: object, ranks: int = 1) -> str:
         return run_program(self.programs / program, *arguments, ranks=ranks)
 
     # Sweeps
 
-    def sweep_file(self, name):
+    def sweep_file(self, name: str) -> pathlib.Path:
         return self.folder / "sweeps" / f"{name}.h5"
 
-    def _complete(self, name, arguments, ranks):
+    def _complete(self, name: str, arguments: list[str], ranks: int) -> None:
         """Runs what is missing of a sweep, once."""
         file = self.sweep_file(name)
         if self.draw_only and not file.exists():
@@ -114,14 +125,14 @@ class Workshop:
             self._complete_sweeps.add(name)
         self._note_sweep(name)
 
-    def sweep(self, name):
+    def sweep(self, name: str) -> list[Group]:
         """Runs what is missing of a config's sweep. @return clogfit's groups"""
         self._complete(name, self._arguments(name, {}), self.ranks)
         if name not in self._fits:
             self._fits[name] = json.loads(self._call("clogfit", self.sweep_file(name), "--format", "json"))
         return [group for group in self._fits[name]["groups"] if group["runs"] > 0]
 
-    def runs(self, name, config, keys):
+    def runs(self, name: str, config: str | None, keys: Mapping[str, object]) -> list[np.void]:
         """Runs what is missing of a sweep of a figure's own keys.
 
         @param config  whose keys hold where these say nothing, or None for the defaults
@@ -144,19 +155,19 @@ class Workshop:
                 raise UserError(f"task {row['task']} of {self.sweep_file(name)} failed ({row['message'].decode()}); clogrun replay shows how far it came")
         return found
 
-    def columns(self, name):
+    def columns(self, name: str) -> dict[str, Column]:
         """What the parameters of a sweep that sweep() has run are called: see clogfit's JSON, by name."""
         return {column["name"]: column for column in self._fits[name]["columns"]}
 
-    def confidence(self, name):
+    def confidence(self, name: str) -> float:
         """Of the intervals of a sweep that sweep() has run."""
         return self._fits[name]["confidence"]
 
-    def rows(self, name):
+    def rows(self, name: str) -> pandas.DataFrame:
         """The table of a sweep that sweep() has run."""
         return stored.read_table(self.sweep_file(name))
 
-    def _note_sweep(self, name):
+    def _note_sweep(self, name: str) -> None:
         with stored.opened(self.sweep_file(name)) as file:
             about, rows = stored.attributes(file), file["runs"][:]
         seeds = sorted(set(rows["seed"].tolist()))
@@ -167,7 +178,7 @@ class Workshop:
 
     # Ways of single droplets
 
-    def ways(self, name, rows, samples, outlines=None):
+    def ways(self, name: str, rows: Iterable[np.void], samples: float, outlines: float | None = None) -> list[Trajectory]:
         """Rows of a sweep run once more, see replays.follow_all(); reused where a file holds the same already."""
         folder = self.folder / "runs"
         if not self.draw_only:
@@ -183,12 +194,12 @@ class Workshop:
 
     # Fits of tables
 
-    def fit(self, *arguments):
+    def fit(self, *arguments: object) -> dict[str, Any]:
         """JSON of clogfit drag, clogfit deviation."""
         self._sources.append("clogfit " + shlex.join(map(str, arguments)))
         return json.loads(self._call("clogfit", *arguments))
 
-    def table(self, name, columns, rows):
+    def table(self, name: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> pathlib.Path:
         """A CSV file that clogfit reads. @param columns  its header, e.g. ["h [sigma]", "v [v_t]"]"""
         file = self.folder / "runs" / f"{name}.csv"
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -196,13 +207,13 @@ class Workshop:
             csv.writer(out).writerows([columns, *rows])
         return file
 
-    def take_sources(self):
+    def take_sources(self) -> list[str]:
         """Where the numbers of the figure drawn last came from; forgets them."""
         sources, self._sources = self._sources, []
         return sources
 
 
-def measured(path):
+def measured(path: pathlib.Path) -> pandas.DataFrame:
     """Columns h, v, A of a measured passage in reduced units, as clogfit calibrate reads it; for display."""
     import pandas  # slow to load, and seldom needed
 

@@ -1,0 +1,17 @@
+"""Names for types that signatures hold again and again."""
+
+import os
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+# Written out in what is public, for help(), and in what has to load without `numpy`.
+AnyPath = str | os.PathLike[str]
+
+Column = dict[str, Any]  # a parameter as clogsweep describes it: its name, symbol, unit, default
+Group = dict[str, Any]  # of clogfit's JSON: parameters that its runs have in common, and what came out of them
+Numbers = npt.NDArray[np.float64]
+Point = Sequence[float] | Numbers  # x and y
+Records = npt.NDArray[np.void]  # rows of a table, whose columns have names
