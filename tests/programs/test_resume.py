@@ -365,7 +365,7 @@ class Batch(ProgramTest):
         return ["vertices=64", "box=20", "obstacle-gap=1.2", "seeds=1..20", *more, "--output", str(self.folder / "s.h5")]
 
     def test_a_warning_of_slurm_ends_the_sweep_and_the_job_queues_again(self):
-        process = self.script("slurm.sh", *self.sweep("max-time=1e5"), SLURM_JOB_ID="77", SLURM_SUBMIT_DIR=str(ROOT))
+        process = self.script("slurm.sh", *self.sweep("max-time=1e5"), SLURM_JOB_ID="77")
         deadline = time.time() + 60
         while not (self.folder / "s.h5").exists() or not (table(self.folder / "s.h5").status == "running").any():
             self.assertLess(time.time(), deadline)
@@ -376,14 +376,18 @@ class Batch(ProgramTest):
         self.assertEqual(self.called(), "scontrol requeue 77\n")
         self.assertGreater((table(self.folder / "s.h5").status == "interrupted").sum(), 0)
 
-    def test_a_warning_that_kills_mpirun_at_its_start_queues_again(self):
-        stub = self.folder / "mpirun"
-        stub.write_text("#!/bin/sh\nkill -USR1 $PPID\nexec sleep 60\n")  # it does not yet know what to do with the signal
-        stub.chmod(0o755)
-        process = self.script("slurm.sh", *self.sweep(), SLURM_JOB_ID="77", SLURM_SUBMIT_DIR=str(ROOT))
-        output, _ = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 75, output)
-        self.assertEqual(self.called(), "scontrol requeue 77\n")
+    def test_a_warning_that_ends_mpirun_at_its_start_queues_again(self):
+        for what, trap in {"it does not yet know what to do with the signal": "-",
+                           "it cannot reach daemons that it has not yet started": "'exit 244'"}.items():
+            with self.subTest(what):
+                stub = self.folder / "mpirun"
+                stub.write_text(f"#!/bin/sh\ntrap {trap} USR1\nkill -USR1 $PPID\nwhile sleep 0.1; do :; done\n")
+                stub.chmod(0o755)
+                process = self.script("slurm.sh", *self.sweep(), SLURM_JOB_ID="77")
+                output, _ = process.communicate(timeout=60)
+                self.assertEqual(process.returncode, 75, output)
+                self.assertEqual(self.called(), "scontrol requeue 77\n")
+                (self.folder / "called").unlink()
 
     def test_a_warning_before_the_sweep_begins_does_not_begin_it(self):
         script = f"""
@@ -397,7 +401,7 @@ class Batch(ProgramTest):
         self.assertEqual(self.snapshot(), {})
 
     def test_a_complete_sweep_does_not_queue_again(self):
-        process = self.script("slurm.sh", *self.sweep("max-time=5"), SLURM_JOB_ID="77", SLURM_SUBMIT_DIR=str(ROOT))
+        process = self.script("slurm.sh", *self.sweep("max-time=5"), SLURM_JOB_ID="77")
         output, _ = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 0, output)
         self.assertEqual(self.called(), "")
