@@ -4,8 +4,8 @@
 . "$(dirname "${BASH_SOURCE[0]}")/mpi-settings.sh"
 
 # run_sweep PROGRAM ARGS...: runs it by mpirun. A warning of the batch system (SIGUSR1, or SIGTERM) goes on to the ranks as SIGUSR1:
-# Open MPI forwards that one and leaves them the time to write what they have. Returns the sweep's exit code, 75 when it
-# is not complete and the same command goes on; was_cancelled is 1 if SIGTERM came, which is no warning but the end.
+# mpirun forwards that one and leaves them the time to write what they have. Returns the sweep's exit code, 75 when it
+# may not be complete and the same command goes on; was_cancelled is 1 if SIGTERM came, which is no warning but the end.
 run_sweep() {
   local code was_warned=0 interrupted=0 sweep
   # shellcheck disable=SC2034  # the scripts that source this one read it
@@ -26,8 +26,9 @@ run_sweep() {
     interrupted=0
   done
   trap - USR1 TERM
-  # The warning has ended mpirun or a rank before they could take it as one: by the signal, or, while daemons start on other
-  # nodes, by an error of Open MPI, 244. Nothing has begun, or what has is kept.
-  if ((code == 128 + $(kill -l USR1) || (was_warned && code > 128))); then code=75; fi
+  # A warning may end mpirun or a rank before they can take it as one: by the signal, or, while daemons start on other nodes, by an
+  # error of Open MPI, 244. MPICH's mpirun may end with 0 then, whatever the sweep said. So after a warning only the sweep's own
+  # failures, 1 and 2, stay what they are. If nothing was left to do, the same command ends at once.
+  if ((code == 128 + $(kill -l USR1) || (was_warned && code != 1 && code != 2))); then code=75; fi
   return "$code"
 }

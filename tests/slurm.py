@@ -100,8 +100,8 @@ class Slurm(SweepTest):
         self.assertEqual(set(zip(rows["rank"], rows.host)), {(0, "node1"), (1, "node2")})
 
     def test_a_job_is_warned_before_its_time_is_up_and_queues_itself_again(self):
-        # Slurm looks twice a minute: the warning comes after 20 to 50 s.
-        job = self.submit("--nodes=2", "--ntasks-per-node=1", "--time=1", "--signal=B:USR1@40", keys=LONG)
+        # Slurm looks twice a minute, and warns half a minute early: after 20 to 50 s.
+        job = self.submit("--nodes=2", "--ntasks-per-node=1", "--time=1", "--signal=B:USR1@10", keys=LONG)
         self.wait_for_state(job, "COMPLETED")
         restarts = int(described("job", job)["Restarts"])
         self.assertGreater(restarts, 0, self.log())

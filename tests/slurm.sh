@@ -65,7 +65,7 @@ head --bytes 1024 /dev/urandom >$folder/munge/key
 chmod 400 $folder/munge/key
 munged --key-file=$folder/munge/key --socket=$folder/munge/socket --seed-file=$folder/munge/seed \
   --pid-file=$folder/munge/pid --log-file=$folder/munge/log
-slurmctld -D -vv >$folder/slurmctld.log 2>&1 &
+slurmctld -D >$folder/slurmctld.log 2>&1 &
 for node in node1 node2; do
   # A node's host has its name.
   unshare --uts sh -c "hostname $node; exec slurmd -D -N $node" >$folder/$node.log 2>&1 &

@@ -13,7 +13,7 @@ import pandas
 
 BIN = pathlib.Path(os.environ["CLOG_BIN"])
 # What mpirun itself does differs: Open MPI, or MPICH?
-MPI = re.search(r"^MPI: (.*) \d", subprocess.run([BIN / "clogsweep", "--version"], check=True, capture_output=True, text=True).stdout, re.MULTILINE)[1]
+MPI = re.search(r"^MPI: (.*) v?\d", subprocess.run([BIN / "clogsweep", "--version"], check=True, capture_output=True, text=True).stdout, re.MULTILINE)[1]
 STEPS_PER_SNAPSHOT = 2**18  # runs that were stopped go on from a snapshot
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MPIRUN = ROOT / "tests" / "mpirun.sh"
