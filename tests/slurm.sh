@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # tests/slurm.sh [TEST...]: sweeps as jobs of a real Slurm, whose controller and two nodes are all on this machine: slurm.py says what is
-# done to them. Needs root; installs Debian's slurm-wlm and munge if they are missing. Run by hand, about ten minutes. CLOG_BIN names
+# done to them. Needs root; installs `slurm-wlm` and `munge` if they are missing. Run by hand, about ten minutes. CLOG_BIN names
 # the folder of the programs, build/release/bin by default. Exit code 1: something of it fails.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -28,7 +28,7 @@ mount -t tmpfs -o mode=755 tmpfs $folder
 mkdir $folder/munge $folder/state $folder/spool $folder/node1 $folder/node2 $folder/sweeps
 export SLURM_CONF=$folder/slurm.conf TMPDIR=$folder/sweeps
 hostname controller
-# Neither Slurm nor Open MPI starts where there is no network but the loopback.
+# Neither Slurm nor Open MPI starts where there is no network but the host's own.
 ip link set lo up
 ip link add cable type veth peer name end
 ip address add 10.77.0.1/24 dev cable
