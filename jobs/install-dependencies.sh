@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing of the Debian 12 packages that clogsweep needs. Does nothing when all are there.
 # With the argument `gates`: those, too, that look at its sources (tests/gates/README.md); with `docs`: those that make
-# the site of docs/, with `paper` the one that makes a page of docs/paper
+# the site of docs/; with `paper` what makes a page of docs/paper; with `mpich` MPICH, beside Open MPI
 set -euo pipefail
 packages=(
   g++ cmake ninja-build git                          # to build
@@ -23,7 +23,8 @@ case ${1:-} in
   gates) packages+=(clang clang-format clang-tidy aspell aspell-en shellcheck flake8 mypy) ;;
   docs) packages+=(libjs-mathjax doxygen python3-nbsphinx pandoc) ;;
   paper) packages+=(pandoc) ;;
-  *) echo "usage: install-dependencies.sh [gates|docs|paper]" >&2; exit 2 ;;
+  mpich) packages+=(mpich libmpich-dev) ;;
+  *) echo "usage: install-dependencies.sh [gates|docs|paper|mpich]" >&2; exit 2 ;;
 esac
 missing=()
 for package in "${packages[@]}"; do

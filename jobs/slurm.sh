@@ -14,7 +14,6 @@
 #SBATCH --requeue
 #SBATCH --open-mode=append
 set -euo pipefail
-cd "${SLURM_SUBMIT_DIR:-.}"
 # What belongs to the programs lies beside them; the batch system runs a copy of this script from somewhere else.
 bin=${CLOG_BIN:-build/release/bin}
 if [ ! -x "$bin/clogsweep" ]; then

@@ -11,17 +11,29 @@ Nothing is fitted or simulated here: the programs are asked.
 
 from __future__ import annotations
 
+import importlib
 import os
+from typing import TYPE_CHECKING, Any
 
-from . import stored
-from .clogs import Clog, Clogs
-from .errors import Damaged, ProgramFailed, UserError
-from .fit import Fit
-from .picture import Picture
-from .run import Film, Run
-from .sweep import Sweep
+if TYPE_CHECKING:
+    from .clogs import Clog, Clogs
+    from .errors import Damaged, ProgramFailed, UserError
+    from .fit import Fit
+    from .picture import Picture
+    from .run import Film, Run
+    from .sweep import Sweep
 
 __all__ = ["Clog", "Clogs", "Damaged", "Film", "Fit", "Picture", "ProgramFailed", "Run", "Sweep", "UserError", "open"]
+
+_MODULES = {"Clog": "clogs", "Clogs": "clogs", "Damaged": "errors", "Film": "run", "Fit": "fit", "Picture": "picture",
+            "ProgramFailed": "errors", "Run": "run", "Sweep": "sweep", "UserError": "errors"}
+
+
+def __getattr__(name: str) -> Any:
+    """Loads what is named, and with it the libraries that a machine may lack, when it is asked for."""
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__} has no attribute {name}")
+    return getattr(importlib.import_module(f".{_MODULES[name]}", __name__), name)
 
 
 def open(path: str | os.PathLike[str], programs: str | os.PathLike[str] | None = None) -> Sweep | Run:
@@ -30,4 +42,6 @@ def open(path: str | os.PathLike[str], programs: str | os.PathLike[str] | None =
     @param programs  folder of clogsweep, clogrun and clogfit, if they are not in the PATH or beside this module
     @throws UserError  if it is neither; Damaged  if anything in it is not as it was written
     """
-    return Run(path) if stored.kind_of(path) == stored.RUN else Sweep(path, programs)
+    from . import run, stored, sweep
+
+    return run.Run(path) if stored.kind_of(path) == stored.RUN else sweep.Sweep(path, programs)

@@ -16,6 +16,7 @@
 
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/parallel/communicator.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::host {
@@ -27,9 +28,18 @@ std::string counted(std::size_t number, const char* noun) {
 
 bool is_set(const char* name) { return std::getenv(name) != nullptr; }
 
+bool is_open_mpi() { return parallel::Communicator::library_version().starts_with("Open MPI"); }
+
+/// How ranks are let off the cores that mpirun has tied them to.
+std::string unbind() {
+  return is_open_mpi() ? "set OMPI_MCA_hwloc_base_binding_policy=none" : "mpirun -bind-to none";
+}
+
 bool lacks_its_ranks(int num_ranks) {
   const char* tasks = std::getenv("SLURM_NTASKS");
-  return num_ranks == 1 && tasks && std::atoi(tasks) > 1 && !is_set("OMPI_COMM_WORLD_SIZE");
+  const bool by_mpirun =
+      is_set("OMPI_COMM_WORLD_SIZE") || is_set("MPI_LOCALNRANKS");  // of Open MPI, of MPICH
+  return num_ranks == 1 && tasks && std::atoi(tasks) > 1 && !by_mpirun;
 }
 
 Finding launcher(int num_ranks) {
@@ -37,7 +47,8 @@ Finding launcher(int num_ranks) {
     return {fmt::format("one rank in a Slurm allocation of {} tasks", std::getenv("SLURM_NTASKS")),
             "srun cannot start this MPI's ranks together: use mpirun, as jobs/slurm.sh does"};
   if (num_ranks > 1) return {fmt::format("{} ranks, started together", num_ranks)};
-  if (geteuid() == 0 && !(is_set("OMPI_ALLOW_RUN_AS_ROOT") && is_set("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM")))
+  if (is_open_mpi() && geteuid() == 0 &&
+      !(is_set("OMPI_ALLOW_RUN_AS_ROOT") && is_set("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM")))
     return {"one rank; mpirun will refuse to start more for root",
             "in a container: source jobs/mpi-settings.sh first; elsewhere use an account of your own"};
   return {"one rank; under mpirun the doctor sees more"};
@@ -73,8 +84,8 @@ Finding cores(const std::string& host, const std::vector<const RankFacts*>& rank
       fmt::format("{}: {}, {}", host, counted(ranks.size(), "rank"), counted(all.size(), "core"));
   if (ranks.size() > all.size())
     return {where, fmt::format("one rank per core is as fast: mpirun -np {}; if there are more cores, ranks "
-                               "are bound: set OMPI_MCA_hwloc_base_binding_policy=none",
-                               all.size())};
+                               "are bound: {}",
+                               all.size(), unbind())};
   if (granted > 0 && granted < static_cast<double>(ranks.size()))
     return {fmt::format("{}, of which {:.3g} are granted (cpu.max of a control group)", where, granted),
             "ask for more cores, or start fewer ranks"};
@@ -83,7 +94,7 @@ Finding cores(const std::string& host, const std::vector<const RankFacts*>& rank
       return {fmt::format("{}, but {} ranks are bound to {}", where, number,
                           set.size() == 1 ? fmt::format("one core ({})", set.front())
                                           : fmt::format("{} of them", set.size())),
-              "set OMPI_MCA_hwloc_base_binding_policy=none, or core where the host is yours alone"};
+              unbind() + ", or core where the host is yours alone"};
   return {where};
 }
 

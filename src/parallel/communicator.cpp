@@ -2,6 +2,7 @@
 
 #include <mpi.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <numeric>
@@ -35,8 +36,12 @@ std::string Communicator::library_version() {
   char text[MPI_MAX_LIBRARY_VERSION_STRING];
   int length = 0;
   MPI_Get_library_version(text, &length);
-  const std::string version(text, length);
-  return version.substr(0, version.find_first_of(",\n"));
+  std::string version(text, length);
+  version.resize(std::min(version.size(), version.find_first_of(",\n")));
+  // MPICH writes "MPICH Version:", a tab, and the number.
+  const std::string label = " Version:\t";
+  if (const auto at = version.find(label); at != std::string::npos) version.replace(at, label.size(), " ");
+  return version;
 }
 
 std::string Communicator::host_name() {

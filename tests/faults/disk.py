@@ -18,6 +18,7 @@ ENOUGH_MEMORY = 2048 * MEGABYTE
 def limit_files(size):
     """What a process writes beyond it fails, as on a full disk."""
     def prepare():
+        os.environ["UCX_TLS"] = "self,tcp"  # MPICH's shared memory is of files, too
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
     return prepare

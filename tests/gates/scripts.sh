@@ -3,7 +3,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 code=0
-git ls-files -z --cached --others --exclude-standard -- '*.sh' .ci/run |
+git ls-files -z --cached --others --exclude-standard -- '*.sh' '.ci/*' |
   xargs -0 shellcheck --external-sources --source-path=SCRIPTDIR || code=1
 git ls-files -z --cached --others --exclude-standard -- '*.py' |
   xargs -0 flake8 --isolated --extend-ignore=E501 || code=1

@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import tempfile
@@ -11,6 +12,8 @@ import unittest
 import pandas
 
 BIN = pathlib.Path(os.environ["CLOG_BIN"])
+# What mpirun itself does differs: Open MPI, or MPICH?
+MPI = re.search(r"^MPI: (.*) v?\d", subprocess.run([BIN / "clogsweep", "--version"], check=True, capture_output=True, text=True).stdout, re.MULTILINE)[1]
 STEPS_PER_SNAPSHOT = 2**18  # runs that were stopped go on from a snapshot
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MPIRUN = ROOT / "tests" / "mpirun.sh"
@@ -40,7 +43,7 @@ class ProgramTest(unittest.TestCase):
         command = [str(BIN / name), *map(str, arguments)]
         if ranks is not None:
             command = [str(MPIRUN), str(ranks), *command]
-        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=timeout)
+        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=timeout, env=env)
 
     def succeed(self, name, *arguments, **options):
         done = self.run_program(name, *arguments, **options)
@@ -96,7 +99,10 @@ class SweepTest(ProgramTest):
         process.stderr.close()
 
     def ranks_of(self, process):
-        return children_of(process.pid)
+        children = children_of(process.pid)
+        if MPI == "MPICH":  # whose mpirun has a process of its own between itself and the ranks
+            return [rank for proxy in children for rank in children_of(proxy)]
+        return children
 
     def wait_for(self, condition, seconds=60):
         deadline = time.time() + seconds

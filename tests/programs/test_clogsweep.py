@@ -13,7 +13,7 @@ import numpy as np
 import pandas
 
 import stored_rows
-from support import BIN, BLOCKED, MPIRUN, QUICK, ROOT, SMALL, STEPS_PER_SNAPSHOT, ProgramTest
+from support import BIN, BLOCKED, MPI, MPIRUN, QUICK, ROOT, SMALL, STEPS_PER_SNAPSHOT, ProgramTest
 
 # Columns that tell where and how fast a row was made, not what came out.
 CIRCUMSTANCES = ["wall_seconds", "rank", "host"]
@@ -213,7 +213,7 @@ class Sweep(ProgramTest):
     def test_help_and_version(self):
         self.assertIn("--line-tension", self.succeed("clogsweep", "--help").stdout)
         version = self.succeed("clogsweep", "--version").stdout
-        for word in ("clogsweep", "git", "compiler", "MPI: Open MPI", "HDF5: 1."):
+        for word in ("clogsweep", "git", "compiler", f"MPI: {MPI} ", "HDF5: 1."):
             self.assertIn(word, version)
 
     def test_it_tells_how_it_is_getting_on(self):

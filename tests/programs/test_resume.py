@@ -15,7 +15,7 @@ import unittest
 
 import numpy as np
 import stored_rows
-from support import BIN, BLOCKED, QUICK, ROOT, SLOW, STEPS_PER_SNAPSHOT, SWEEP, ProgramTest, SweepTest, table
+from support import BIN, BLOCKED, MPI, QUICK, ROOT, SLOW, STEPS_PER_SNAPSHOT, SWEEP, ProgramTest, SweepTest, table
 
 FEW = [word.replace("1..6", "1") for word in SWEEP]
 
@@ -85,11 +85,10 @@ class Resumed(SweepTest):
             _, error = process.communicate(timeout=30)
             if signal_number == signal.SIGUSR1:  # mpirun kills what is left a second after it forwarded the others
                 self.assertIn("the same command goes on", error)
-                self.assertEqual(process.returncode, 75, error)
                 rows = table(self.folder / "s.h5")
                 self.assertGreater((rows.status == "interrupted").sum(), 0)
-            else:
-                self.assertEqual(process.returncode, 1, error)
+            if MPI == "Open MPI":  # MPICH's mpirun may end with 0 after any signal
+                self.assertEqual(process.returncode, 75 if signal_number == signal.SIGUSR1 else 1, error)
         done = self.succeed("clogsweep", *sweep, ranks=2)
         self.assertRegex(done.stderr, "1 goes on where it was|2 go on where they were")
         self.check_equal("s.h5", "whole.h5")
@@ -365,7 +364,7 @@ class Batch(ProgramTest):
         return ["vertices=64", "box=20", "obstacle-gap=1.2", "seeds=1..20", *more, "--output", str(self.folder / "s.h5")]
 
     def test_a_warning_of_slurm_ends_the_sweep_and_the_job_queues_again(self):
-        process = self.script("slurm.sh", *self.sweep("max-time=1e5"), SLURM_JOB_ID="77", SLURM_SUBMIT_DIR=str(ROOT))
+        process = self.script("slurm.sh", *self.sweep("max-time=1e5"), SLURM_JOB_ID="77")
         deadline = time.time() + 60
         while not (self.folder / "s.h5").exists() or not (table(self.folder / "s.h5").status == "running").any():
             self.assertLess(time.time(), deadline)
@@ -376,14 +375,19 @@ class Batch(ProgramTest):
         self.assertEqual(self.called(), "scontrol requeue 77\n")
         self.assertGreater((table(self.folder / "s.h5").status == "interrupted").sum(), 0)
 
-    def test_a_warning_that_kills_mpirun_at_its_start_queues_again(self):
-        stub = self.folder / "mpirun"
-        stub.write_text("#!/bin/sh\nkill -USR1 $PPID\nexec sleep 60\n")  # it does not yet know what to do with the signal
-        stub.chmod(0o755)
-        process = self.script("slurm.sh", *self.sweep(), SLURM_JOB_ID="77", SLURM_SUBMIT_DIR=str(ROOT))
-        output, _ = process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 75, output)
-        self.assertEqual(self.called(), "scontrol requeue 77\n")
+    def test_a_warning_that_ends_mpirun_at_its_start_queues_again(self):
+        for what, trap in {"it does not yet know what to do with the signal": "-",
+                           "it cannot reach daemons that it has not yet started": "'exit 244'",
+                           "it is MPICH's, and says nothing of the sweep's end": "'exit 0'"}.items():
+            with self.subTest(what):
+                stub = self.folder / "mpirun"
+                stub.write_text(f"#!/bin/sh\ntrap {trap} USR1\nkill -USR1 $PPID\nwhile sleep 0.1; do :; done\n")
+                stub.chmod(0o755)
+                process = self.script("slurm.sh", *self.sweep(), SLURM_JOB_ID="77")
+                output, _ = process.communicate(timeout=60)
+                self.assertEqual(process.returncode, 75, output)
+                self.assertEqual(self.called(), "scontrol requeue 77\n")
+                (self.folder / "called").unlink()
 
     def test_a_warning_before_the_sweep_begins_does_not_begin_it(self):
         script = f"""
@@ -397,7 +401,7 @@ class Batch(ProgramTest):
         self.assertEqual(self.snapshot(), {})
 
     def test_a_complete_sweep_does_not_queue_again(self):
-        process = self.script("slurm.sh", *self.sweep("max-time=5"), SLURM_JOB_ID="77", SLURM_SUBMIT_DIR=str(ROOT))
+        process = self.script("slurm.sh", *self.sweep("max-time=5"), SLURM_JOB_ID="77")
         output, _ = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 0, output)
         self.assertEqual(self.called(), "")
@@ -410,7 +414,7 @@ class Batch(ProgramTest):
         output, _ = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 75, output)
         self.assertEqual(self.called(), "qsub -v SWEEP,HOURS,CLOG_BIN,JOB_SCRIPT jobs/pbs.sh\n")
-        self.assertEqual(set(table(self.folder / "s.h5").line_tension), {0.1, 0.2})
+        self.assertEqual(json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)["runs"], 40)
 
     def test_one_rank_of_many_tasks_is_refused(self):
         done = subprocess.run([str(BIN / "clogsweep"), *self.sweep()], capture_output=True, text=True,

@@ -3,7 +3,7 @@
 import json
 import unittest
 
-from scripts import Analysis
+from drawing import Analysis
 from support import BIN, QUICK
 
 from clogsweep.groups import Groups

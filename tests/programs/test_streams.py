@@ -6,7 +6,7 @@ import socket
 import subprocess
 import unittest
 
-from support import BIN, MPIRUN, QUICK, SLOW, SweepTest, table
+from support import BIN, MPI, MPIRUN, QUICK, SLOW, SweepTest, table
 
 SMALL_SWEEP = [*QUICK, "seeds=1..3", "--verbose", "--output", "s.h5"]
 # Everything that prints and ends.
@@ -41,7 +41,8 @@ class Streams(SweepTest):
 
     def test_a_closed_stream_is_a_wish_for_silence(self):
         for redirection in (">&-", "2>&-", "<&-", "<&- >&- 2>&-"):
-            for ranks in (None, 2):
+            # MPICH's mpirun does not start without its streams.
+            for ranks in (None, 2) if MPI == "Open MPI" else (None,):
                 with self.subTest(redirection, ranks=ranks):
                     done = self.redirect(redirection, "clogsweep", *SMALL_SWEEP, ranks=ranks)
                     self.assertEqual(done.returncode, 0, done.stderr)
