@@ -5,8 +5,9 @@ import resource
 import subprocess
 
 import h5py
-import stored
-from command_line import UserError
+from clogsweep import stored
+from clogsweep.errors import UserError
+
 from launch import command, run
 from processes import CPU_SECONDS
 from support import BLOCKED, QUICK, TIMING

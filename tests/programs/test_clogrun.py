@@ -236,7 +236,7 @@ class Run(ProgramTest):
         output, told = process.communicate(timeout=60)
         self.assertEqual(process.returncode, 75)
         self.assertTrue(re.match("interrupted after r = ", output), output)
-        self.assertRegex(told, r"no film is drawn; \S+/droplet.py run.h5 --output=film --film draws what there is\n$")
+        self.assertRegex(told, r"no film is drawn; PYTHONPATH=\S+ \S+ -m clogsweep droplet run.h5 --output=film --film draws what there is\n$")
         self.assertGreater(len(pandas.read_hdf(self.folder / "run.h5", "trajectory")), 10)
 
     def test_a_terminal_is_told_how_far_it_is(self):
