@@ -1,11 +1,20 @@
 """What came out of single droplets: their passage through a channel, or their sag on a wall, over what the sweep varies."""
 
+from __future__ import annotations
+
 import dataclasses
-import html
+import os
+import pathlib
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
+
 from . import replays, style, trajectory
-from .groups import FINISHED
+from .groups import FINISHED, Groups
+
+Group = dict[str, Any]  # of clogfit
 
 
 @dataclasses.dataclass(frozen=True)
@@ -14,9 +23,9 @@ class Kind:
 
     heading: str
     goal: str  # the status of those that came where they should
-    outcomes: dict  # in words, by status
-    curves: dict  # labels of axes, by column: one picture each
-    columns: dict  # headings of the table, by column
+    outcomes: dict[str, str]  # in words, by status
+    curves: dict[str, str]  # labels of axes, by column: one picture each
+    columns: dict[str, str]  # headings of the table, by column
     outline: str
     about: str
 
@@ -37,16 +46,22 @@ WALL = Kind(
     "at the end", "The sag is how far the droplet's centre sinks under its own weight.")
 
 
-def kind_of(groups):
+def kind_of(groups: Groups) -> Kind:
     return CHANNEL if groups.members[0]["obstacle_filling"] == "channel" else WALL
 
 
-def share(kind, members):
+def share(kind: Kind, members: Sequence[Group]) -> str:
     """Of a curve's droplets, how many came where they should."""
     return f"{sum(group['status'] == kind.goal for group in members)} of {len(members)} {kind.outcomes[kind.goal]}"
 
 
-def draw_curves(groups, column):
+def drawn_columns(groups: Groups) -> dict[str, str]:
+    """What there is a curve of, and how it is called."""
+    return {column: column.replace("_", " ") for column in kind_of(groups).curves
+            if groups.are_polygons or column != "largest_shape_parameter"}  # a soft disk stays a circle
+
+
+def draw_curves(groups: Groups, column: str) -> Figure:
     """One point for each droplet; a cross is one that clogged in a channel, an open marker one that was under way at the end."""
     kind = kind_of(groups)
     figure, axes = style.subplots(figsize=(6.4, 4.8))
@@ -55,9 +70,10 @@ def draw_curves(groups, column):
         members = sorted((group for group in members if group[column] is not None), key=lambda group: group[groups.abscissa])
         look = {name: style.curve_style(index)[name] for name in ("color", "linestyle")}
         axes.plot([group[groups.abscissa] for group in members], [group[column] for group in members], linewidth=1, **look,
-                  label=f"{label}: {share(kind, members)}" if label else share(kind, members))
+                  label=f"{label}: {share(kind, members)}" if label else share(kind, members), gid=style.mark("curve", members))
         for group in members:
-            axes.plot(group[groups.abscissa], group[column], color=look["color"], markersize=6, **markers.get(group["status"], {"marker": "X"}))
+            axes.plot(group[groups.abscissa], group[column], color=look["color"], markersize=6, gid=style.mark("point", [group]),
+                      **markers.get(group["status"], {"marker": "X"}))
     groups.draw_abscissa(axes)
     axes.set_ylabel(kind.curves[column])
     style.grid(axes)
@@ -69,31 +85,19 @@ def draw_curves(groups, column):
     return figure
 
 
-def shares(groups, value):
-    """The same for every curve, as a list. @param value  as for table()"""
+def shares(groups: Groups, value: Callable[[Any], str]) -> list[tuple[str, str]]:
+    """The same for every curve, after what tells it apart. @param value  puts a parameter's in words"""
     kind, names = kind_of(groups), groups.curve_parameters()
-    lines = [(", ".join(f"{name.replace('_', ' ')} {value(members[0][name])}" for name in names), share(kind, members)) for _, members in groups.curves()]
-    return "<ul>" + "".join(f"<li>{html.escape(f'{curve}: {said}' if curve else said)}</li>" for curve, said in lines) + "</ul>"
+    return [(", ".join(f"{name.replace('_', ' ')} {value(members[0][name])}" for name in names), share(kind, members)) for _, members in groups.curves()]
 
 
-def table(groups, value):
-    """@param value  makes a cell of a number and its digits"""
-    kind, names = kind_of(groups), [*groups.curve_parameters(), groups.abscissa]
-    lines = ["<tr>" + "".join(f"<th>{title}</th>" for title in [*(name.replace("_", " ") for name in names), "outcome", *kind.columns.values(), "doubts"]) + "</tr>"]
-    for group in groups.members:
-        cells = [*(value(group[name]) for name in names), kind.outcomes[group["status"]], *(value(group[name], 4) for name in kind.columns)]
-        doubts = ", ".join((group["doubts"] or "").split()).replace("_", " ")
-        lines.append("<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + f'<td class="doubt">{html.escape(doubts)}</td></tr>')
-    return '<div class="scroll"><table>' + "\n".join(lines) + "</table></div>"
-
-
-def examples(rows, count):
+def examples(rows: np.ndarray, count: int) -> list[np.void]:
     """Rows that are spread over the sweep, the first and the last among them."""
     over = [row for row in rows if row["status"].decode() in FINISHED and row["model"] == b"dp"]
     return [over[place] for place in sorted({round(place) for place in np.linspace(0, len(over) - 1, min(count, len(over)))})]
 
 
-def draw_outlines(groups, rows, clogrun, sweep, folder):
+def draw_outlines(groups: Groups, rows: Sequence[np.void], clogrun: pathlib.Path, sweep: pathlib.Path, folder: str | os.PathLike[str]) -> list[Figure]:
     """One picture of each row's droplet, run once more in a temporary folder."""
     if len(rows) == 0:
         return []

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from . import style
+
 
 def longest_way(group):
     """Of all runs, those that were still going included [sigma]."""
@@ -18,7 +20,8 @@ def probability(group, distances):
 def draw(axes, group, colour, label, label_of_ticks=None, begin=0.0):
     """The estimate to the longest way, and a tick for every run that was last seen going. @param begin  of the curve [sigma]"""
     corners = [begin, *(step["distance"] for step in group["survival"]), longest_way(group)]
-    axes.step(corners, probability(group, corners), where="post", color=colour, linewidth=1.2, label=label)
+    axes.step(corners, probability(group, corners), where="post", color=colour, linewidth=1.2, label=label,
+              gid=style.mark("point", [group]))
     censored = group["censored_distances"]
     if censored:
         axes.plot(censored, probability(group, censored), linestyle="none", marker="|", markersize=9, markeredgewidth=1.2, color=colour,
