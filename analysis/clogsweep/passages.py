@@ -9,10 +9,12 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from . import replays, style, trajectory
 from .groups import FINISHED, Groups
+from .trajectory import Trajectory
 
 Group = dict[str, Any]  # of clogfit
 
@@ -62,9 +64,14 @@ def drawn_columns(groups: Groups) -> dict[str, str]:
 
 
 def draw_curves(groups: Groups, column: str) -> Figure:
+    figure, axes = style.subplots(figsize=(6.4, 4.8))
+    draw_curves_on(axes, groups, column)
+    return figure
+
+
+def draw_curves_on(axes: Axes, groups: Groups, column: str) -> None:
     """One point for each droplet; a cross is one that clogged in a channel, an open marker one that was under way at the end."""
     kind = kind_of(groups)
-    figure, axes = style.subplots(figsize=(6.4, 4.8))
     markers = {kind.goal: {"marker": "o"}, "flowing": {"marker": "o", "markerfacecolor": "white"}, "broken": {"marker": "^"}}
     for index, (label, members) in enumerate(groups.curves()):
         members = sorted((group for group in members if group[column] is not None), key=lambda group: group[groups.abscissa])
@@ -82,7 +89,6 @@ def draw_curves(groups: Groups, column: str) -> Figure:
     style.caption(axes, "\n".join([groups.caption(), groups.note("; ".join(
         f"{sign}: {kind.outcomes[status]}" for sign, status in (("dots", kind.goal), ("crosses", "clogged"), ("triangles", "broken"), ("open", "flowing"))
         if status in ends and (sign == "dots" or status != kind.goal)))]))
-    return figure
 
 
 def shares(groups: Groups, value: Callable[[Any], str]) -> list[tuple[str, str]]:
@@ -97,25 +103,34 @@ def examples(rows: np.ndarray, count: int) -> list[np.void]:
     return [over[place] for place in sorted({round(place) for place in np.linspace(0, len(over) - 1, min(count, len(over)))})]
 
 
-def draw_outlines(groups: Groups, rows: Sequence[np.void], clogrun: pathlib.Path, sweep: pathlib.Path, folder: str | os.PathLike[str]) -> list[Figure]:
-    """One picture of each row's droplet, run once more in a temporary folder."""
-    if len(rows) == 0:
+def followed(rows: Sequence[np.void], clogrun: pathlib.Path, sweep: pathlib.Path, folder: str | os.PathLike[str]) -> list[Trajectory]:
+    """Each row's droplet, run once more. @param folder  for their files"""
+    if not rows:
         return []
-    kind = kind_of(groups)
-    pictures = []
     # Frames a fiftieth of a diameter apart at terminal speed.
     frame = min(0.02 / row["terminal_speed"] for row in rows)
-    for run in replays.follow_all(clogrun, sweep, rows, folder, 2, frame, frame):
-        shown = run.frame_at("h", run.row["largest_shape_parameter_at"]) if kind is CHANNEL else -1
+    return replays.follow_all(clogrun, sweep, rows, folder, 2, frame, frame)
+
+
+def draw_outlines(groups: Groups, rows: Sequence[np.void], clogrun: pathlib.Path, sweep: pathlib.Path, folder: str | os.PathLike[str]) -> list[Figure]:
+    """One picture of each row's droplet."""
+    pictures = []
+    for run in followed(rows, clogrun, sweep, folder):
         figure, axes = style.subplots(figsize=(4.6, 4.6))
-        low, high = run.polygons[shown].min(axis=1), run.polygons[shown].max(axis=1)
-        trajectory.draw_droplet(axes, run, shown, (low + high) / 2)
-        half = (high - low).max() / 2 + 0.3
-        trajectory.frame_limits(axes, (-half, -half), (half, half))
-        axes.set_xlabel(r"$x/\sigma$ from the droplet's middle, along the flow")
-        axes.set_ylabel(r"$y/\sigma$")
-        names = [*groups.curve_parameters(), groups.abscissa]
-        said = ", ".join(groups.said(name, run.word(name) if run.row[name].dtype.kind == "S" else float(run.row[name])) for name in names)
-        axes.set_title(f"task {run.path.stem.rsplit('-', 1)[1]}: {said}\n{kind.outcomes[run.word('status')]}; {kind.outline}", fontsize=8)
+        draw_outline(axes, groups, run)
         pictures.append(figure)
     return pictures
+
+
+def draw_outline(axes: Axes, groups: Groups, run: Trajectory) -> None:
+    kind = kind_of(groups)
+    shown = run.frame_at("h", run.row["largest_shape_parameter_at"]) if kind is CHANNEL else -1
+    low, high = run.polygons[shown].min(axis=1), run.polygons[shown].max(axis=1)
+    trajectory.draw_droplet(axes, run, shown, (low + high) / 2)
+    half = (high - low).max() / 2 + 0.3
+    trajectory.frame_limits(axes, (-half, -half), (half, half))
+    axes.set_xlabel(r"$x/\sigma$ from the droplet's middle, along the flow")
+    axes.set_ylabel(r"$y/\sigma$")
+    names = [*groups.curve_parameters(), groups.abscissa]
+    said = ", ".join(groups.said(name, run.word(name) if run.row[name].dtype.kind == "S" else float(run.row[name])) for name in names)
+    axes.set_title(f"task {run.path.stem.rsplit('-', 1)[1]}: {said}\n{kind.outcomes[run.word('status')]}; {kind.outline}", fontsize=8)

@@ -40,8 +40,13 @@ def picture(figure: Figure, caption: str) -> str:
 
 
 def survival(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
-    """P(r) of one curve's members to their longest ways, each with the exponential of its length if it is known."""
     figure, axes = style.subplots(figsize=(6.4, 4.8))
+    draw_survival(axes, groups, label, members)
+    return figure
+
+
+def draw_survival(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
+    """P(r) of one curve's members to their longest ways, each with the exponential of its length if it is known."""
     begin = min(0.01 * (group["clogging_length"] or survival_curve.longest_way(group)) for group in members)
     for group, colour in zip(members, style.VIRIDIS(np.linspace(0, 0.9, len(members)))):
         if group["survival"]:
@@ -57,7 +62,6 @@ def survival(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
     mark_steps(axes)
     style.caption(axes, f"{label or groups.caption()}\nsteps: clogs; ticks: runs last seen going; "
                         "dashed: exponential of the same length")
-    return figure
 
 
 def mark_steps(axes: Axes) -> None:
@@ -97,8 +101,13 @@ def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
 
 
 def causes(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
-    """What became of the runs of one curve, as shares."""
     figure, axes = style.subplots(figsize=(6.4, 4.8))
+    draw_causes(axes, groups, label, members)
+    return figure
+
+
+def draw_causes(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
+    """What became of the runs of one curve, as shares."""
     ranks, base = np.arange(len(members)), np.zeros(len(members))
     shares = {name if name == "broken" else f"clogged, {name}": (colour, [(group[name] or 0) / group["runs"] for group in members])
               for name, colour in style.CAUSE_COLOURS.items()}
@@ -112,7 +121,6 @@ def causes(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
     axes.set_xlabel(groups.axis_label())
     axes.set_ylabel("share of the runs")
     axes.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=5, fontsize=8, title=label, title_fontsize=8)
-    return figure
 
 
 def length(group: Group) -> str:

@@ -124,7 +124,8 @@ def legend(axes, groups=(), other="other clogs"):
         made = axes.legend(*zip(*entries), frameon=False, fontsize=7, handlelength=4, ncols=math.ceil(len(entries) / 28),
                            loc="upper left", bbox_to_anchor=(1, 1))
         figure = axes.figure
-        figure.set_figwidth(figure.get_figwidth() + made.get_window_extent(figure.canvas.get_renderer()).width / figure.dpi)
+        if isinstance(figure, Figure):  # not a part of one, whose width is given
+            figure.set_figwidth(figure.get_figwidth() + made.get_window_extent(figure.canvas.get_renderer()).width / figure.dpi)
     elif entries:
         made = axes.legend(*zip(*entries), frameon=False)
     if curves:
