@@ -25,6 +25,7 @@ DARK_PAPER = (0x16, 0x18, 0x1D)
 DARK_INK = (0xE6, 0xE6, 0xE6)
 LEAST_CONTRAST = 3.5  # of a colour on dark paper; WCAG 2.1 asks for 3
 
+BLACK = "000000"
 Colour = tuple[float, float, float]
 
 
@@ -66,7 +67,7 @@ class Charts:
         self._number = 0
 
     def draw(self, figure: Figure, caption: str) -> str:
-        """@return the element svg"""
+        """@return an element of HTML"""
         out = io.StringIO()
         # Letters as shapes: fonts of another machine would put those of a formula over each other. A salt of its own
         # would give what is the same in two charts two names.
@@ -86,14 +87,13 @@ class Charts:
             self._mark(parent)
         return ElementTree.tostring(root, encoding="unicode")
 
-    def colours(self) -> str:
-        """Rules of CSS for what is drawn so far."""
-        def rules(light: Iterable[tuple[str, Colour]]) -> str:
-            return " ".join(f"--c{name}: #{''.join(f'{round(channel):02x}' for channel in colour)};" for name, colour in light)
+    def colours(self) -> tuple[str, str]:
+        """Declarations of CSS for the colours of what is drawn so far: in the light, in the dark."""
+        def declared(colours: Iterable[tuple[str, Colour]]) -> str:
+            return " ".join(f"--c{name}: #{''.join(f'{round(channel):02x}' for channel in colour)};" for name, colour in colours)
 
-        named = {name: (int(name[:2], 16), int(name[2:4], 16), int(name[4:], 16)) for name in sorted(self._colours | {"000000"})}
-        dark = {name: in_the_dark(colour) for name, colour in named.items()}
-        return f":root {{ {rules(named.items())} }}\n@media (prefers-color-scheme: dark) {{ :root {{ {rules(dark.items())} }} }}"
+        named = {name: (int(name[:2], 16), int(name[2:4], 16), int(name[4:], 16)) for name in sorted(self._colours | {BLACK})}
+        return declared(named.items()), declared((name, in_the_dark(colour)) for name, colour in named.items())
 
     def _rename(self, root: ElementTree.Element) -> None:
         """Names of colours for colours; no names for what nothing refers to; clips, which may have those of another chart's, get their own."""

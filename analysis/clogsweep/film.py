@@ -87,7 +87,7 @@ class Layer:
         pixels = pixels_of(figure)
         rows, columns = (np.flatnonzero(pixels[..., 3].any(axis=axis)) for axis in (1, 0))
         self._corner = columns[0], len(pixels) - 1 - rows[-1]
-        # From the bottom to the top, as the renderer takes it.
+        # From the bottom to the top, as matplotlib takes it.
         self._pixels = pixels[rows[0]:rows[-1] + 1, columns[0]:columns[-1] + 1][::-1].copy()
 
     def draw(self, renderer: Any) -> None:
@@ -199,7 +199,7 @@ class Film:
             self._show_end()
         else:
             table, time = self._run.table, self._run.times[frame]
-            self._show_time(time, np.interp(time, table["time"], table["distance"]))
+            self._show_time(time, float(np.interp(time, table["time"], table["distance"])))
 
     def pixels(self, index: int) -> Pixels:
         """A drawn frame, until the next one is."""
@@ -226,7 +226,7 @@ class Film:
 
     def _show_time(self, time: float, distance: float) -> None:
         table = self._run.table
-        until = np.searchsorted(table["time"], time, side="right")
+        until = int(np.searchsorted(table["time"], time, side="right"))
         self._course.set_data(table["time"][:until], table["distance"][:until])
         self._head.set_data([time], [distance])
         self._clock.set_text(f"t = {time:.0f} t\N{SUBSCRIPT ZERO},  r = {distance:.2f} \N{GREEK SMALL LETTER SIGMA}")
@@ -283,14 +283,14 @@ def write_film(film: Film, path: pathlib.Path, rate: int) -> pathlib.Path:
 def write_mp4(film: Film, path: pathlib.Path, rate: int) -> None:
     """@throws UserError  with the reason of ffmpeg"""
     height, width, _ = pixels_of(film.figure).shape
-    # Films are as small with veryfast as with the slower presets. Players ask for yuv420p.
+    # Films are as small with `veryfast` as with the slower presets. Players ask for `yuv420p`.
     command = ["ffmpeg", "-loglevel", "error", "-y", "-f", "rawvideo", "-pix_fmt", "rgba", "-video_size", f"{width}x{height}", "-framerate", str(rate),
                "-i", "pipe:", "-c:v", "libx264", "-preset", "veryfast", "-pix_fmt", "yuv420p", f"file:{path}"]
     with tempfile.TemporaryFile() as said, subprocess.Popen(command, stdin=subprocess.PIPE, stderr=said) as process:
         assert process.stdin is not None
         try:
             for pixels in film.play_and_hold():
-                process.stdin.write(pixels)
+                process.stdin.write(pixels.data)
             process.stdin.close()
         except BrokenPipeError:
             pass  # ffmpeg has ended, and says why

@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -74,7 +75,7 @@ def draw_curves_on(axes: Axes, groups: Groups, column: str) -> None:
     kind = kind_of(groups)
     markers = {kind.goal: {"marker": "o"}, "flowing": {"marker": "o", "markerfacecolor": "white"}, "broken": {"marker": "^"}}
     for index, (label, members) in enumerate(groups.curves()):
-        members = sorted((group for group in members if group[column] is not None), key=lambda group: group[groups.abscissa])
+        members = sorted((group for group in members if group[column] is not None), key=lambda group: float(group[groups.abscissa]))
         look = {name: style.curve_style(index)[name] for name in ("color", "linestyle")}
         axes.plot([group[groups.abscissa] for group in members], [group[column] for group in members], linewidth=1, **look,
                   label=f"{label}: {share(kind, members)}" if label else share(kind, members), gid=style.mark("curve", members))
@@ -97,7 +98,7 @@ def shares(groups: Groups, value: Callable[[Any], str]) -> list[tuple[str, str]]
     return [(", ".join(f"{name.replace('_', ' ')} {value(members[0][name])}" for name in names), share(kind, members)) for _, members in groups.curves()]
 
 
-def examples(rows: np.ndarray, count: int) -> list[np.void]:
+def examples(rows: npt.NDArray[np.void], count: int) -> list[np.void]:
     """Rows that are spread over the sweep, the first and the last among them."""
     over = [row for row in rows if row["status"].decode() in FINISHED and row["model"] == b"dp"]
     return [over[place] for place in sorted({round(place) for place in np.linspace(0, len(over) - 1, min(count, len(over)))})]

@@ -25,7 +25,7 @@ Group = dict[str, Any]  # of clogfit
 PAGE = (11.69, 16.54)  # A3 [inches]; A2 has letters half as large again
 MARGIN = 0.5
 MOST_CURVES = 2  # P(r) and causes are drawn of the first and the last only
-WAY = 8.0  # a droplet that gets so far shows how it moves, and can be seen [sigma]
+WAY = 8.0  # [sigma]: what clogged about there shows how droplets move, and is still large
 FRAMES_OF_WAY = 300
 
 Draw = Callable[[Axes], None]
@@ -64,11 +64,6 @@ def shown_curves(groups: Groups) -> list[tuple[str, list[Group]]]:
     return curves if len(curves) <= MOST_CURVES else [curves[0], curves[-1]]
 
 
-def row_of_way(rows: Sequence[np.void]) -> np.void | None:
-    """The droplet whose way is drawn. @param rows  of the polygons that have clogged"""
-    return min(rows, key=lambda row: abs(row["distance"] - WAY), default=None)
-
-
 def run_way(row: np.void, sweep: pathlib.Path, clogrun: pathlib.Path) -> Trajectory:
     with tempfile.TemporaryDirectory(prefix="clogsweep-poster-") as folder:
         interval = max(row["time"] / FRAMES_OF_WAY, 1e-3)
@@ -101,9 +96,7 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> li
     if clogged:
         again = clogs.run_all(clogrun, sweep, report.examples(clogged, 4), 2)
         rows.append((1.25, [clog_drawing(clog) for clog in again]))
-    droplet = row_of_way(clogged)
-    if droplet is not None:
-        run = run_way(droplet, sweep, clogrun)
+        run = run_way(min(clogged, key=lambda row: abs(float(row["distance"]) - WAY)), sweep, clogrun)
         rows.append((1.0, [lambda axes: draw_way(axes, run)]))
     return rows
 

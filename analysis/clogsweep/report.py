@@ -159,7 +159,7 @@ def doubts_of(group: Group, sentences: dict[str, str]) -> str:
 
 
 def table(titles: Sequence[str], lines: Sequence[Sequence[str]], doubts: Sequence[str]) -> str:
-    """Every number of the page; what points show of it, and how it is sorted, is in page.js.
+    """Every number of the page; what points show of it, and how it is sorted, is in `page.js`.
 
     @param titles  in HTML; @param lines  cells of each group; @param doubts  of each, in HTML
     """
@@ -299,8 +299,9 @@ def page(name: str, groups: Groups, sections: dict[str, str], progress: str, abo
     def part(ending: str) -> str:
         return (places.PACKAGE / "page" / f"page.{ending}").read_text()
 
+    light, dark = charts.colours()
     return string.Template(part("html")).substitute(
-        name=html.escape(name), style=part("css"), colours=charts.colours(), script=part("js"),
+        name=html.escape(name), style=part("css"), light=light, dark=dark, script=part("js"),
         progress=html.escape(f"{progress}, {rounded.counted(len(groups.members), 'point')}"),
         meaning=passages.kind_of(groups).about if groups.are_passages else LENGTHS,
         sections="\n".join(f"<h2>{title}</h2>{content}" for title, content in sections.items() if content),

@@ -1,10 +1,13 @@
 """How all figures look: colours, axes, error bars, and what is written beside a picture."""
 
 import math
+from collections.abc import Collection, Sequence
+from typing import Any
 
 import matplotlib
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 
 from . import rounded
@@ -62,14 +65,14 @@ OPEN_MARKERS = {
 }
 
 
-def mark(kind, groups):
-    """The name (gid) of what stands for groups of a report (report.numbered()); elsewhere they have no numbers.
+def mark(kind: str, groups: Collection[dict[str, Any]]) -> str | None:
+    """The name (`gid`) of what stands for groups of a report (report.numbered()); elsewhere they have no numbers.
     @param kind  point, curve or legend"""
     numbers = [str(group["number"]) for group in groups if "number" in group]
     return f"{kind}-{','.join(numbers)}" if numbers else None
 
 
-def mark_legend(legend, handles):
+def mark_legend(legend: Legend, handles: Sequence[Any]) -> None:
     """Entries of what has a name of mark() stand for the same."""
     for handle, text in zip(handles, legend.get_texts()):
         name = (handle.lines[0] if hasattr(handle, "lines") else handle).get_gid()

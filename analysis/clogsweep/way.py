@@ -1,6 +1,7 @@
 """The way of one droplet among obstacles: several moments of a run in one picture."""
 
 import matplotlib
+from matplotlib.axes import Axes
 
 from . import style, trajectory
 
@@ -20,7 +21,7 @@ def draw(run, num_outlines):
     return figure
 
 
-def draw_on(axes, run, num_outlines):
+def draw_on(axes: Axes, run: trajectory.Trajectory, num_outlines: int) -> None:
     trajectory.draw_surroundings(axes, run)
     trajectory.frame_limits(axes, *view(run))
     axes.set_xlabel(r"$x/\sigma$, along the flow")

@@ -283,7 +283,7 @@ class Looks(Analysis):
         titles = [axes.get_title() for axes in drawing.findobj(Axes)]
         self.assertTrue(any("most" not in title and "2 runs a point" in title for title in titles))
         texts = " ".join(text.get_text() for text in drawing.findobj(Text))
-        for words in ("Clogging length over line tension", "12 runs:", "begun 20", "clogsweep near", "P(r)"):
+        for words in ("Clogging length over line tension", "12 runs:", "begun 20", "\nclogsweep vertices=64", "share of the runs"):
             self.assertIn(words, texts)
 
     def test_many_curves_leave_room_for_themselves_on_a_poster(self):

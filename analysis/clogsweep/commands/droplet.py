@@ -14,6 +14,7 @@ A film has --most-frames at most. A longer run is thinned; if the droplet moved 
 then, the film shows the end of the run alone.
 """
 
+import argparse
 import pathlib
 import sys
 
@@ -42,14 +43,14 @@ def body() -> int:
     return draw_film(arguments)
 
 
-def draw_picture(arguments) -> int:
+def draw_picture(arguments: argparse.Namespace) -> int:
     command_line.refuse_unwritable_picture(arguments.output, arguments.run)
     run = trajectory.read(arguments.run)
     print(f"{Picture(way.draw(run, arguments.outlines)).save(arguments.output)} (and .pdf)")
     return 0
 
 
-def draw_film(arguments) -> int:
+def draw_film(arguments: argparse.Namespace) -> int:
     path = film.path_of(arguments.output) if arguments.film else None
     run = trajectory.read(arguments.run)
     frames = film.chosen_frames(run, arguments.most_frames)
