@@ -40,7 +40,7 @@ class ProgramTest(unittest.TestCase):
         command = [str(BIN / name), *map(str, arguments)]
         if ranks is not None:
             command = [str(MPIRUN), str(ranks), *command]
-        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=timeout)
+        return subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=timeout, env=env)
 
     def succeed(self, name, *arguments, **options):
         done = self.run_program(name, *arguments, **options)
