@@ -23,7 +23,7 @@ file(CREATE_LINK "${PROJECT_SOURCE_DIR}/analysis/clogsweep" "${PROJECT_BINARY_DI
 install(DIRECTORY jobs DESTINATION "${shared}" USE_SOURCE_PERMISSIONS COMPONENT programs
   FILES_MATCHING PATTERN "*.cfg" PATTERN "*.sh" PATTERN "install-dependencies.sh" EXCLUDE PATTERN "laptop.sh" EXCLUDE)
 install(DIRECTORY analysis/clogsweep DESTINATION "${CLOG_PYTHON_DIR}" COMPONENT programs
-  FILES_MATCHING PATTERN "*.py" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
+  FILES_MATCHING PATTERN "*.py" PATTERN "py.typed" PATTERN "page.*" PATTERN "__pycache__" EXCLUDE)
 set(module "${CMAKE_INSTALL_PREFIX}/${CLOG_PYTHON_DIR}/clogsweep")
 file(RELATIVE_PATH PROGRAMS_FOLDER "${module}" "${CMAKE_INSTALL_FULL_BINDIR}")
 file(RELATIVE_PATH JOBS_FOLDER "${module}" "${CMAKE_INSTALL_PREFIX}/${shared}/jobs")

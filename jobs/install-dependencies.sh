@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing of the Debian 12 packages that clogsweep needs. Does nothing when all are there.
-# With the argument `gates`: those, too, that look at its sources (tests/gates/README.md); with `docs`: those that make
-# the site of docs/; with `paper` what makes a page of docs/paper; with `mpich` MPICH, beside Open MPI
+# With the argument `tests`: those, too, that the tests need; with `gates`: those that look at its sources
+# (tests/gates/README.md); with `docs`: those that make the site of docs/; with `paper` what makes a page of docs/paper;
+# with `mpich` MPICH, beside Open MPI
 set -euo pipefail
 packages=(
   g++ cmake ninja-build git                          # to build
@@ -18,13 +19,15 @@ packages=(
   python3 python3-h5py python3-pandas python3-tables python3-matplotlib  # the Python module, and readers for the tests
   python3-nbclient python3-ipykernel                 # a test that runs the notebook of the gallery
 )
+of_tests=(chromium-driver python3-selenium) # a browser that reads a report
 case ${1:-} in
   "") ;;
-  gates) packages+=(clang clang-format clang-tidy aspell aspell-en shellcheck flake8 mypy) ;;
+  tests) packages+=("${of_tests[@]}") ;;
+  gates) packages+=("${of_tests[@]}" clang clang-format clang-tidy aspell aspell-en shellcheck flake8 mypy) ;;
   docs) packages+=(libjs-mathjax doxygen python3-nbsphinx pandoc) ;;
   paper) packages+=(pandoc) ;;
   mpich) packages+=(mpich libmpich-dev) ;;
-  *) echo "usage: install-dependencies.sh [gates|docs|paper|mpich]" >&2; exit 2 ;;
+  *) echo "usage: install-dependencies.sh [tests|gates|docs|paper|mpich]" >&2; exit 2 ;;
 esac
 missing=()
 for package in "${packages[@]}"; do

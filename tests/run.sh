@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=${PRESET:-release}
-./jobs/install-dependencies.sh
+./jobs/install-dependencies.sh tests
 errors=OFF
 if [ "${WARNINGS:-}" = errors ]; then errors=ON; fi
 cmake --preset "$preset" -DCMAKE_COMPILE_WARNING_AS_ERROR=$errors

@@ -13,6 +13,7 @@ from .errors import UserError
 COMMANDS = {
     "figures": "a figure of the article from runs of our own",
     "report": "one page of HTML about a sweep, as clogfit report",
+    "poster": "one page of a sweep to be printed",
     "clogging-length": "the clogging length over what a sweep varies",
     "dwell": "the same over the time after which a droplet that stands counts as clogged",
     "clogs": "the clogs of a sweep on one sheet",

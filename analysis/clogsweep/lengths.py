@@ -9,26 +9,34 @@ from . import style
 from .groups import Groups
 
 
-def over_abscissa(groups: Groups, draw_curve: Callable[..., None]) -> tuple[Figure, Axes]:
+def draw_curves(axes: Axes, groups: Groups, draw_curve: Callable[..., None]) -> None:
     """@param draw_curve  of style: axes, places, groups of the curve, its index, its label"""
-    figure, axes = style.subplots(figsize=(6.4, 4.8))
     curves = groups.curves()
     for index, (label, members) in enumerate(curves):
         draw_curve(axes, groups.places(members, index, len(curves)), members, index, label)
     groups.draw_abscissa(axes)
-    return figure, axes
 
 
 def draw(groups: Groups) -> Figure:
-    figure, axes = over_abscissa(groups, style.draw_lengths)
-    style.finish_lengths(axes, groups, groups.members)
+    figure, axes = style.subplots(figsize=(6.4, 4.8))
+    draw_on(axes, groups)
     return figure
 
 
+def draw_on(axes: Axes, groups: Groups) -> None:
+    draw_curves(axes, groups, style.draw_lengths)
+    style.finish_lengths(axes, groups, groups.members)
+
+
 def draw_speeds(groups: Groups) -> Figure:
-    figure, axes = over_abscissa(groups, style.draw_speeds)
+    figure, axes = style.subplots(figsize=(6.4, 4.8))
+    draw_speeds_on(axes, groups)
+    return figure
+
+
+def draw_speeds_on(axes: Axes, groups: Groups) -> None:
+    draw_curves(axes, groups, style.draw_speeds)
     axes.set_ylabel(style.AXES["speed"])
     style.grid(axes)
     style.legend(axes)
     style.caption(axes, f"{groups.caption()}\n{groups.note('bars: standard error')}")
-    return figure

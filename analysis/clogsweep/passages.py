@@ -1,11 +1,23 @@
 """What came out of single droplets: their passage through a channel, or their sag on a wall, over what the sweep varies."""
 
+from __future__ import annotations
+
 import dataclasses
-import html
+import os
+import pathlib
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
 from . import replays, style, trajectory
-from .groups import FINISHED
+from .groups import FINISHED, Groups
+from .trajectory import Trajectory
+
+Group = dict[str, Any]  # of clogfit
 
 
 @dataclasses.dataclass(frozen=True)
@@ -14,9 +26,9 @@ class Kind:
 
     heading: str
     goal: str  # the status of those that came where they should
-    outcomes: dict  # in words, by status
-    curves: dict  # labels of axes, by column: one picture each
-    columns: dict  # headings of the table, by column
+    outcomes: dict[str, str]  # in words, by status
+    curves: dict[str, str]  # labels of axes, by column: one picture each
+    columns: dict[str, str]  # headings of the table, by column
     outline: str
     about: str
 
@@ -37,27 +49,39 @@ WALL = Kind(
     "at the end", "The sag is how far the droplet's centre sinks under its own weight.")
 
 
-def kind_of(groups):
+def kind_of(groups: Groups) -> Kind:
     return CHANNEL if groups.members[0]["obstacle_filling"] == "channel" else WALL
 
 
-def share(kind, members):
+def share(kind: Kind, members: Sequence[Group]) -> str:
     """Of a curve's droplets, how many came where they should."""
     return f"{sum(group['status'] == kind.goal for group in members)} of {len(members)} {kind.outcomes[kind.goal]}"
 
 
-def draw_curves(groups, column):
+def drawn_columns(groups: Groups) -> dict[str, str]:
+    """What there is a curve of, and how it is called."""
+    return {column: column.replace("_", " ") for column in kind_of(groups).curves
+            if groups.are_polygons or column != "largest_shape_parameter"}  # a soft disk stays a circle
+
+
+def draw_curves(groups: Groups, column: str) -> Figure:
+    figure, axes = style.subplots(figsize=(6.4, 4.8))
+    draw_curves_on(axes, groups, column)
+    return figure
+
+
+def draw_curves_on(axes: Axes, groups: Groups, column: str) -> None:
     """One point for each droplet; a cross is one that clogged in a channel, an open marker one that was under way at the end."""
     kind = kind_of(groups)
-    figure, axes = style.subplots(figsize=(6.4, 4.8))
     markers = {kind.goal: {"marker": "o"}, "flowing": {"marker": "o", "markerfacecolor": "white"}, "broken": {"marker": "^"}}
     for index, (label, members) in enumerate(groups.curves()):
-        members = sorted((group for group in members if group[column] is not None), key=lambda group: group[groups.abscissa])
+        members = sorted((group for group in members if group[column] is not None), key=lambda group: float(group[groups.abscissa]))
         look = {name: style.curve_style(index)[name] for name in ("color", "linestyle")}
         axes.plot([group[groups.abscissa] for group in members], [group[column] for group in members], linewidth=1, **look,
-                  label=f"{label}: {share(kind, members)}" if label else share(kind, members))
+                  label=f"{label}: {share(kind, members)}" if label else share(kind, members), gid=style.mark("curve", members))
         for group in members:
-            axes.plot(group[groups.abscissa], group[column], color=look["color"], markersize=6, **markers.get(group["status"], {"marker": "X"}))
+            axes.plot(group[groups.abscissa], group[column], color=look["color"], markersize=6, gid=style.mark("point", [group]),
+                      **markers.get(group["status"], {"marker": "X"}))
     groups.draw_abscissa(axes)
     axes.set_ylabel(kind.curves[column])
     style.grid(axes)
@@ -66,52 +90,48 @@ def draw_curves(groups, column):
     style.caption(axes, "\n".join([groups.caption(), groups.note("; ".join(
         f"{sign}: {kind.outcomes[status]}" for sign, status in (("dots", kind.goal), ("crosses", "clogged"), ("triangles", "broken"), ("open", "flowing"))
         if status in ends and (sign == "dots" or status != kind.goal)))]))
-    return figure
 
 
-def shares(groups, value):
-    """The same for every curve, as a list. @param value  as for table()"""
+def shares(groups: Groups, value: Callable[[Any], str]) -> list[tuple[str, str]]:
+    """The same for every curve, after what tells it apart. @param value  puts a parameter's in words"""
     kind, names = kind_of(groups), groups.curve_parameters()
-    lines = [(", ".join(f"{name.replace('_', ' ')} {value(members[0][name])}" for name in names), share(kind, members)) for _, members in groups.curves()]
-    return "<ul>" + "".join(f"<li>{html.escape(f'{curve}: {said}' if curve else said)}</li>" for curve, said in lines) + "</ul>"
+    return [(", ".join(f"{name.replace('_', ' ')} {value(members[0][name])}" for name in names), share(kind, members)) for _, members in groups.curves()]
 
 
-def table(groups, value):
-    """@param value  makes a cell of a number and its digits"""
-    kind, names = kind_of(groups), [*groups.curve_parameters(), groups.abscissa]
-    lines = ["<tr>" + "".join(f"<th>{title}</th>" for title in [*(name.replace("_", " ") for name in names), "outcome", *kind.columns.values(), "doubts"]) + "</tr>"]
-    for group in groups.members:
-        cells = [*(value(group[name]) for name in names), kind.outcomes[group["status"]], *(value(group[name], 4) for name in kind.columns)]
-        doubts = ", ".join((group["doubts"] or "").split()).replace("_", " ")
-        lines.append("<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + f'<td class="doubt">{html.escape(doubts)}</td></tr>')
-    return '<div class="scroll"><table>' + "\n".join(lines) + "</table></div>"
-
-
-def examples(rows, count):
+def examples(rows: npt.NDArray[np.void], count: int) -> list[np.void]:
     """Rows that are spread over the sweep, the first and the last among them."""
     over = [row for row in rows if row["status"].decode() in FINISHED and row["model"] == b"dp"]
     return [over[place] for place in sorted({round(place) for place in np.linspace(0, len(over) - 1, min(count, len(over)))})]
 
 
-def draw_outlines(groups, rows, clogrun, sweep, folder):
-    """One picture of each row's droplet, run once more in a temporary folder."""
-    if len(rows) == 0:
+def followed(rows: Sequence[np.void], clogrun: pathlib.Path, sweep: pathlib.Path, folder: str | os.PathLike[str]) -> list[Trajectory]:
+    """Each row's droplet, run once more. @param folder  for their files"""
+    if not rows:
         return []
-    kind = kind_of(groups)
-    pictures = []
     # Frames a fiftieth of a diameter apart at terminal speed.
     frame = min(0.02 / row["terminal_speed"] for row in rows)
-    for run in replays.follow_all(clogrun, sweep, rows, folder, 2, frame, frame):
-        shown = run.frame_at("h", run.row["largest_shape_parameter_at"]) if kind is CHANNEL else -1
+    return replays.follow_all(clogrun, sweep, rows, folder, 2, frame, frame)
+
+
+def draw_outlines(groups: Groups, rows: Sequence[np.void], clogrun: pathlib.Path, sweep: pathlib.Path, folder: str | os.PathLike[str]) -> list[Figure]:
+    """One picture of each row's droplet."""
+    pictures = []
+    for run in followed(rows, clogrun, sweep, folder):
         figure, axes = style.subplots(figsize=(4.6, 4.6))
-        low, high = run.polygons[shown].min(axis=1), run.polygons[shown].max(axis=1)
-        trajectory.draw_droplet(axes, run, shown, (low + high) / 2)
-        half = (high - low).max() / 2 + 0.3
-        trajectory.frame_limits(axes, (-half, -half), (half, half))
-        axes.set_xlabel(r"$x/\sigma$ from the droplet's middle, along the flow")
-        axes.set_ylabel(r"$y/\sigma$")
-        names = [*groups.curve_parameters(), groups.abscissa]
-        said = ", ".join(groups.said(name, run.word(name) if run.row[name].dtype.kind == "S" else float(run.row[name])) for name in names)
-        axes.set_title(f"task {run.path.stem.rsplit('-', 1)[1]}: {said}\n{kind.outcomes[run.word('status')]}; {kind.outline}", fontsize=8)
+        draw_outline(axes, groups, run)
         pictures.append(figure)
     return pictures
+
+
+def draw_outline(axes: Axes, groups: Groups, run: Trajectory) -> None:
+    kind = kind_of(groups)
+    shown = run.frame_at("h", run.row["largest_shape_parameter_at"]) if kind is CHANNEL else -1
+    low, high = run.polygons[shown].min(axis=1), run.polygons[shown].max(axis=1)
+    trajectory.draw_droplet(axes, run, shown, (low + high) / 2)
+    half = (high - low).max() / 2 + 0.3
+    trajectory.frame_limits(axes, (-half, -half), (half, half))
+    axes.set_xlabel(r"$x/\sigma$ from the droplet's middle, along the flow")
+    axes.set_ylabel(r"$y/\sigma$")
+    names = [*groups.curve_parameters(), groups.abscissa]
+    said = ", ".join(groups.said(name, run.word(name) if run.row[name].dtype.kind == "S" else float(run.row[name])) for name in names)
+    axes.set_title(f"task {run.path.stem.rsplit('-', 1)[1]}: {said}\n{kind.outcomes[run.word('status')]}; {kind.outline}", fontsize=8)

@@ -54,17 +54,18 @@ class Run:
         trajectory.require_frames(self.trajectory)
         return Picture(way.draw(self.trajectory, outlines))
 
-    def film(self, output: str | os.PathLike[str], *, colour: str = "speed", rate: int = 20, most_frames: int = 600) -> Film:
+    def film(self, output: str | os.PathLike[str], *, colour: str = "speed", rate: int = 20, most_frames: int = 600, size: str | None = None) -> Film:
         """Writes a film; one that is there is never replaced.
 
         @param output  its file: .mp4 (needs ffmpeg), .gif, or without an ending either of them
         @param colour  "speed" of the interface, or "mechanism": the last frame shows how the droplet clogged
         @param rate  frames a second
+        @param size  "540p", "1080p" or "2160p", of the frames; 1080p if it is not given, 540p of a .gif
         @throws UserError  if it cannot be made
         """
         trajectory.require_frames(self.trajectory)
         path = film.path_of(pathlib.Path(output))
-        moving = film.Film(self.trajectory, film.chosen_frames(self.trajectory, most_frames), colour, rate)
+        moving = film.Film(self.trajectory, film.chosen_frames(self.trajectory, most_frames), colour, rate, size or film.size_for(path))
         return Film(film.write_film(moving, path, rate))
 
     def export_vtk(self, output: str | os.PathLike[str]) -> pathlib.Path:

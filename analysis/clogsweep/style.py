@@ -10,6 +10,7 @@ import matplotlib
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 
 from . import rounded
@@ -71,6 +72,21 @@ OPEN_MARKERS = {
 }
 
 
+def mark(kind: str, groups: Collection[Group]) -> str | None:
+    """The name (`gid`) of what stands for groups of a report (report.numbered()); elsewhere they have no numbers.
+    @param kind  point, curve or legend"""
+    numbers = [str(group["number"]) for group in groups if "number" in group]
+    return f"{kind}-{','.join(numbers)}" if numbers else None
+
+
+def mark_legend(legend: Legend, handles: Sequence[Any]) -> None:
+    """Entries of what has a name of mark() stand for the same."""
+    for handle, text in zip(handles, legend.get_texts()):
+        name = (handle.lines[0] if hasattr(handle, "lines") else handle).get_gid()
+        if name:
+            text.set_gid(f"legend-{name.partition('-')[2]}")
+
+
 def doubts(group: Group) -> list[str]:
     return (group["doubts"] or "").split()
 
@@ -118,9 +134,12 @@ def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs
         made = axes.legend(*zip(*entries), frameon=False, fontsize=7, handlelength=4, ncols=math.ceil(len(entries) / 28),
                            loc="upper left", bbox_to_anchor=(1, 1))
         figure = axes.figure
-        figure.set_figwidth(figure.get_figwidth() + made.get_window_extent(figure.canvas.get_renderer()).width / figure.dpi)
+        if isinstance(figure, Figure):  # not a part of one, whose width is given
+            figure.set_figwidth(figure.get_figwidth() + made.get_window_extent(figure.canvas.get_renderer()).width / figure.dpi)
     elif entries:
-        axes.legend(*zip(*entries), frameon=False)
+        made = axes.legend(*zip(*entries), frameon=False)
+    if curves:
+        mark_legend(made, [handle for handle, _ in curves])
 
 
 def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, linestyle: str | tuple[int, tuple[int, ...]] | None = None) -> None:
@@ -136,30 +155,31 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
     ]
     colour, line = (curve_style(index)[name] for name in ("color", "linestyle"))
     line = linestyle or line
-    axes.errorbar(places, lengths, yerr=bars, color=colour, linestyle=line, linewidth=1, elinewidth=1, capsize=2.5, label=label)
+    axes.errorbar(places, lengths, yerr=bars, color=colour, linestyle=line, linewidth=1, elinewidth=1, capsize=2.5, label=label,
+                  gid=mark("curve", groups))
     for x, y, group in zip(places, lengths, groups):
         face = "white" if reasons_for_open_marker(group) else colour
-        axes.plot(x, y, color=colour, marker=MECHANISM_MARKERS[main_mechanism(group)], markerfacecolor=face, markersize=5.5, zorder=3)
+        axes.plot(x, y, color=colour, marker=MECHANISM_MARKERS[main_mechanism(group)], markerfacecolor=face, markersize=5.5, zorder=3,
+                  gid=mark("point", [group]) if group["clogs"] > 0 else None)
     if any(group["clogs"] == 0 for group in groups):
         through = [group["clogging_length_lower"] if group["clogs"] == 0 else group["clogging_length"] for group in groups]
         axes.plot(places, through, color=colour, linewidth=0.8, linestyle=":", zorder=1)
-    bounds = [(x, group["clogging_length_lower"]) for x, group in zip(places, groups) if group["clogs"] == 0]
+    bounds = [(x, group) for x, group in zip(places, groups) if group["clogs"] == 0]
     axes.plot(
-        [x for x, _ in bounds], [length for _, length in bounds],
-        color=colour, marker="^", markerfacecolor="white", markersize=8, linestyle="none",
+        [x for x, _ in bounds], [group["clogging_length_lower"] for _, group in bounds],
+        color=colour, marker="^", markerfacecolor="white", markersize=8, linestyle="none", gid=mark("point", [group for _, group in bounds]),
     )
 
 
 def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str) -> None:
     """Mean speeds over the terminal speed, with standard errors from the scatter between runs."""
-    points = sorted(
-        (place, group["relative_speed"], group["relative_speed_error"] or 0.0)
-        for place, group in zip(places, groups) if group["relative_speed"] is not None
+    points = sorted(((place, group) for place, group in zip(places, groups) if group["relative_speed"] is not None), key=lambda point: point[0])
+    known = [group for _, group in points]
+    drawn = axes.errorbar(
+        [x for x, _ in points], [group["relative_speed"] for group in known], yerr=[group["relative_speed_error"] or 0.0 for group in known],
+        **curve_style(index), markersize=5, linewidth=1, elinewidth=1, capsize=2.5, label=label, gid=mark("curve", known),
     )
-    axes.errorbar(
-        [x for x, _, _ in points], [speed for _, speed, _ in points], yerr=[error for _, _, error in points],
-        **curve_style(index), markersize=5, linewidth=1, elinewidth=1, capsize=2.5, label=label,
-    )
+    drawn.lines[0].set_gid(mark("point", known))
 
 
 def logarithmic_margin(values: Collection[float]) -> float:

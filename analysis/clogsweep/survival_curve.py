@@ -9,6 +9,8 @@ from matplotlib.axes import Axes
 
 from .hints import Group, Numbers
 
+from . import style
+
 
 def longest_way(group: Group) -> float:
     """Of all runs, those that were still going included [sigma]."""
@@ -25,7 +27,8 @@ def probability(group: Group, distances: Sequence[float] | Numbers) -> Numbers:
 def draw(axes: Axes, group: Group, colour: str | Sequence[float], label: str, label_of_ticks: str | None = None, begin: float = 0.0) -> None:
     """The estimate to the longest way, and a tick for every run that was last seen going. @param begin  of the curve [sigma]"""
     corners = [begin, *(step["distance"] for step in group["survival"]), longest_way(group)]
-    axes.step(corners, probability(group, corners), where="post", color=colour, linewidth=1.2, label=label)
+    axes.step(corners, probability(group, corners), where="post", color=colour, linewidth=1.2, label=label,
+              gid=style.mark("point", [group]))
     censored = group["censored_distances"]
     if censored:
         axes.plot(censored, probability(group, censored), linestyle="none", marker="|", markersize=9, markeredgewidth=1.2, color=colour,

@@ -10,8 +10,9 @@ import tempfile
 from collections.abc import Collection
 from typing import Any
 
-from . import clogs, fit, programs, report, stored
+from . import clogs, fit, poster, programs, report, stored
 from .errors import UserError
+from .picture import Picture
 from .run import Run
 
 
@@ -78,6 +79,10 @@ class Sweep:
     def report(self, output: str | os.PathLike[str], examples: int = 4) -> pathlib.Path:
         """Writes a page of HTML about the sweep. @param examples  clogs to be shown. @return its file. @throws UserError"""
         return report.write(self.path, pathlib.Path(output), examples, programs.programs_in(self._programs))
+
+    def poster(self) -> Picture:
+        """One page of the sweep to be printed, A3: its curves and some of its droplets. @throws UserError"""
+        return Picture(poster.draw(self.path, programs.programs_in(self._programs)))
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{number} {status}" for status, number in self.rows.status.value_counts().items())

@@ -16,23 +16,23 @@ def view(run: Trajectory) -> tuple[Numbers, Numbers]:
     return run.polygons.min(axis=(0, 2)) - 0.5, run.polygons.max(axis=(0, 2)) + 0.5
 
 
-def canvas(run: Trajectory) -> tuple[Figure, Axes]:
+def draw(run: Trajectory, num_outlines: int) -> Figure:
+    """@param run  with outlines"""
     low, high = view(run)
     width, height = high - low
     figure_width = min(12.0, max(5.0, 2.2 * width))
     figure, axes = style.subplots(figsize=(figure_width, max(3.0, figure_width * height / width + 1.2)))
+    draw_on(axes, run, num_outlines)
+    return figure
+
+
+def draw_on(axes: Axes, run: Trajectory, num_outlines: int) -> None:
     trajectory.draw_surroundings(axes, run)
-    trajectory.frame_limits(axes, low, high)
+    trajectory.frame_limits(axes, *view(run))
     axes.set_xlabel(r"$x/\sigma$, along the flow")
     axes.set_ylabel(r"$y/\sigma$")
     trajectory.draw_guides(axes)
     axes.set_title(f"{trajectory.described(run)}: {trajectory.verdict(run)}", fontsize=9)
-    return figure, axes
-
-
-def draw(run: Trajectory, num_outlines: int) -> Figure:
-    """@param run  with outlines"""
-    figure, axes = canvas(run)
     chosen = trajectory.along_the_way(run.polygons, num_outlines)
     for frame in chosen:
         x, y = run.polygons[frame]
@@ -43,5 +43,4 @@ def draw(run: Trajectory, num_outlines: int) -> Figure:
             edgecolor="black" if is_last else style.VIRIDIS(share), linewidth=1.0, zorder=3 if is_last else 2,
         )
     scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, run.times[-1]), cmap=style.VIRIDIS)
-    figure.colorbar(scale, ax=axes, label=r"$t/t_0$", fraction=0.03, pad=0.01)
-    return figure
+    axes.figure.colorbar(scale, ax=axes, label=r"$t/t_0$", fraction=0.03, pad=0.01)

@@ -158,7 +158,7 @@ class Figures(Analysis):
             self.assertIn(heading, page)
         self.assertIn("few clogs", page)
         self.assertIn(html.escape(fit["doubts"]["few_clogs"]), page)
-        self.assertGreaterEqual(page.count("<img"), 3)
+        self.assertGreaterEqual(page.count("<svg"), 3)
         self.assertIn("command_line: clogsweep", page)
 
     def test_single_runs_are_drawn_as_they_were_run(self):

@@ -1,22 +1,27 @@
 """How the commands of the Python module are called, and what their pictures and pages say."""
 
 import json
+import os
 import unittest
+import unittest.mock
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.text import Text
 
 from drawing import Analysis
 from support import BIN, QUICK, SMALL
 
 import stored_rows
-from clogsweep import dwell, film, lengths, report, rounded, stored, style, trajectory
+from clogsweep import dwell, film, lengths, poster, report, rounded, stored, style, trajectory
+from clogsweep.errors import UserError
 from clogsweep.groups import Groups
 
 ONE_CURVE = [*QUICK, "line-tension=0.5,3", "seeds=1..2", "near-wall-drag=0.07", "obstacle-gap=0.35", "terminal-speed=0.032"]
 
 
 class Calls(Analysis):
-    COMMANDS = ["clogging-length", "clogs", "droplet", "dwell", "export-vtk", "report"]
+    COMMANDS = ["clogging-length", "clogs", "droplet", "dwell", "export-vtk", "poster", "report"]
 
     def needs(self, command):
         return [] if command in ("droplet", "export-vtk") else ["--programs", BIN]
@@ -39,7 +44,7 @@ class Calls(Analysis):
     def test_an_output_may_be_left_out_or_have_its_ending(self):
         self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1..2", "--output", "s.h5")
         for command, made in [("clogging-length", "s-clogging-length.png"), ("clogs", "s-clogs.png"), ("dwell", "s-dwell.png"),
-                              ("report", "s-report.html")]:
+                              ("poster", "s-poster.png"), ("report", "s-report.html")]:
             self.assertIn(made, self.draw(command, "s.h5", "--programs", BIN).stdout)
             self.assertTrue((self.folder / made).exists())
         for name in ("cl.png", "cl.pdf", "cl0.2"):
@@ -68,6 +73,7 @@ class Calls(Analysis):
             (["clogs", "s.h5", "--tasks", "7,0"], ["tasks 7:", "no such clogged polygon"]),
             (["clogs", "s.h5", "--mechanism", "wrapped"], ["mechanism wrapped", "no such clogged polygon"]),
             (["clogs", "disk.h5"], ["disk.h5 holds no clogged polygon", "soft disks"]),
+            (["droplet", "s.h5", "-o", "x", "--size", "7p"], ["--size", "7p", "1080p"]),
             (["droplet", "s.h5", "-o", "x", "--rate", "0"], ["--rate", "1 or more"]),
             (["figures", "2", "--ranks", "0"], ["--ranks", "1 or more"]),
             (["figures", "2", "--profile", "none.csv"], ["cannot read none.csv (no such file); check the name"]),
@@ -217,6 +223,73 @@ class Looks(Analysis):
         moving.show(len(moving) - 1)
         end = f"r = {run.row['distance']:.2f} "
         self.assertTrue(any(end in text.get_text() for text in moving.figure.texts), [text.get_text() for text in moving.figure.texts])
+
+    def film_of(self, **options):
+        self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 3, "--output", "run.h5")
+        run = trajectory.read(self.folder / "run.h5")
+        frames = film.chosen_frames(run, 50)
+        return run, frames, film.Film(run, frames, **{"colour": "speed", "rate": 20} | options)
+
+    def test_a_frame_shows_what_is_there_and_nothing_of_another_one(self):
+        run, frames, moving = self.film_of(size="1080p")
+        first, last = (moving.pixels(index).copy() for index in (0, len(moving) - 1))
+        self.assertEqual(first.shape, (1080, 1920, 4))
+        self.assertGreater((first != last).any(axis=2).mean(), 0.01)
+        np.testing.assert_array_equal(moving.pixels(1), moving.pixels(1))
+        axes = moving.figure.axes[0]
+
+        def colour_at(index, point):
+            picture = moving.pixels(index)
+            x, y = axes.transData.transform(point)
+            return picture[len(picture) - 1 - int(y), int(x), :3].astype(int)
+
+        for index in (0, len(moving) // 2):
+            red, green, blue = colour_at(index, trajectory.centroids(run.polygons)[frames[index]])
+            self.assertTrue(red > green > blue, "the droplet is orange")
+            (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+            # In the middle of the picture, where nothing lies over it.
+            inside = [(x, y) for x, y, _ in run.obstacles if left + 0.3 * (right - left) < x < left + 0.6 * (right - left)
+                      and low + 0.4 * (high - low) < y < high - 0.3 * (high - low)]
+            self.assertGreater(len(inside), 0)
+            for place in inside:
+                np.testing.assert_array_equal(colour_at(index, place), 184)
+
+    def test_a_film_goes_to_ffmpeg_frame_by_frame(self):
+        _, _, moving = self.film_of(size="540p")
+        program = self.folder / "ffmpeg"
+        program.write_text('#!/bin/sh\nfor last; do :; done\necho "$@" > "$CALLED"\ncat > "${last#file:}"\n')
+        program.chmod(0o755)
+        environment = {"PATH": f"{self.folder}:{os.environ['PATH']}", "CALLED": str(self.folder / "called")}
+        with unittest.mock.patch.dict(os.environ, environment):
+            film.write_film(moving, self.folder / "film.mp4", 20)
+            sent = (self.folder / "film.mp4").read_bytes()
+            frame = 960 * 540 * 4
+            self.assertEqual(len(sent), (len(moving) + film.SECONDS_OF_VERDICT * 20) * frame)
+            self.assertEqual(sent[-frame:], moving.pixels(len(moving) - 1).tobytes())
+            self.assertIn("-pix_fmt rgba -video_size 960x540 -framerate 20", (self.folder / "called").read_text())
+            program.write_text("#!/bin/sh\necho 'no such encoder' >&2\nexit 1\n")
+            with self.assertRaisesRegex(UserError, "other.*ffmpeg: no such encoder"):
+                film.write_film(moving, self.folder / "other.mp4", 20)
+        self.assertFalse(list(self.folder.glob("other*")))
+
+    def test_posters_of_arrays_channels_and_walls(self):
+        for name, keys in [("arrays", [*ONE_CURVE, "relative-drag=0.5,1,2"]), ("channel", ["orifice=0.7", "vertices=64", "line-tension=0.5,5", "max-time=2000"]),
+                           ("wall", ["obstacle-layout=wall", "vertices=64", "line-tension=0.3,1"])]:
+            with self.subTest(name):
+                self.succeed("clogsweep", *keys, "--output", f"{name}.h5")
+                self.assertEqual(self.draw("poster", f"{name}.h5", "--programs", BIN).stdout, f"{name}-poster.png (and .pdf)\n")
+                self.assert_picture(f"{name}-poster")
+        drawing = poster.draw(self.folder / "arrays.h5", BIN)
+        titles = [axes.get_title() for axes in drawing.findobj(Axes)]
+        self.assertTrue(any("most" not in title and "2 runs a point" in title for title in titles))
+        texts = " ".join(text.get_text() for text in drawing.findobj(Text))
+        for words in ("Clogging length over line tension", "12 runs:", "begun 20", "\nclogsweep vertices=64", "share of the runs"):
+            self.assertIn(words, texts)
+
+    def test_many_curves_leave_room_for_themselves_on_a_poster(self):
+        self.succeed("clogsweep", *QUICK, "line-tension=2,8", "obstacle-gap=lin(0.2,0.35,8)", "seeds=1", "--output", "s.h5")
+        self.draw("poster", "s.h5", "--programs", BIN)
+        self.assert_picture("s-poster")
 
 
 if __name__ == "__main__":

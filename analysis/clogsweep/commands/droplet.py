@@ -35,6 +35,7 @@ def body() -> int:
     parser.add_argument("--colour", choices=["speed", "mechanism"], default="speed", help="of the droplet in a film (speed)")
     parser.add_argument("--rate", type=command_line.whole(1), default=20, help="frames of a film a second (20)")
     parser.add_argument("--most-frames", type=command_line.whole(1), default=600, help="of a film (600)")
+    parser.add_argument("--size", choices=film.SIZES, help="of the frames (1080p; that of a .gif 540p)")
     arguments = parser.parse_args()
     if not arguments.output.parent.is_dir():
         raise UserError(f"no folder {arguments.output.parent}; make it first")
@@ -55,7 +56,7 @@ def draw_film(arguments: argparse.Namespace) -> int:
     path = film.path_of(arguments.output) if arguments.film else None
     run = trajectory.read(arguments.run)
     frames = film.chosen_frames(run, arguments.most_frames)
-    moving = film.Film(run, frames, arguments.colour, arguments.rate)
+    moving = film.Film(run, frames, arguments.colour, arguments.rate, arguments.size or film.size_for(path))
     if frames[0] > 0:
         print(f"{command_line.name()}: the film begins at t = {run.times[frames[0]]:.4g} t0; --most-frames shows more", file=sys.stderr)
     if path:
