@@ -28,7 +28,7 @@ std::string with_others(const std::filesystem::path& folder) {
 std::filesystem::path find_python_module() {
   const std::filesystem::path folder = own_folder() / CLOG_PYTHON_FOLDER;
   std::error_code error;
-  const std::filesystem::path module = std::filesystem::canonical(folder / "clogsweep", error);
+  std::filesystem::path module = std::filesystem::canonical(folder / "clogsweep", error);
   if (error)
     throw Error("cannot draw without " + (folder / "clogsweep").lexically_normal().string() +
                 ", which belongs to this program; install clogsweep as a whole (cmake --install)");
