@@ -22,7 +22,6 @@ if tags.has("site"):  # noqa: F821, Sphinx's
     sys.path.insert(0, str(ROOT / "analysis"))
 else:
     exclude_patterns += ["gallery/notebook.ipynb", "reference/python.md"]
-    suppress_warnings = ["toc.excluded"]
 myst_enable_extensions = ["dollarmath", "deflist", "colon_fence"]
 myst_heading_anchors = 4
 nitpicky = True

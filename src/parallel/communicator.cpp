@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <numeric>
+#include <string_view>
 #include <thread>
 
 namespace clog::parallel {
@@ -39,8 +40,8 @@ std::string Communicator::library_version() {
   std::string version(text, length);
   version.resize(std::min(version.size(), version.find_first_of(",\n")));
   // MPICH writes "MPICH Version:", a tab, and the number.
-  const std::string label = " Version:\t";
-  if (const auto at = version.find(label); at != std::string::npos) version.replace(at, label.size(), " ");
+  const std::string_view label = " Version:\t";
+  if (const auto at = version.find(label); at != std::string::npos) version.erase(at + 1, label.size() - 1);
   return version;
 }
 
