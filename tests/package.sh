@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# tests/package.sh [FOLDER]: the Debian package, made from build/release and installed into an empty Debian 12 in FOLDER
-# (/tmp/clogsweep-root), where a user without a source tree runs a sweep. Needs root and debootstrap, and takes minutes:
-# run by hand, before a release. Exit code 1: something of it fails.
+# tests/package.sh [FOLDER]: the Debian packages, made from build/release and installed into an empty Debian 12 in FOLDER
+# (/tmp/clogsweep-root), where a user without a source tree runs a sweep and builds a program of their own. Needs root and
+# debootstrap, and takes minutes: run by hand, before a release. Exit code 1: something of it fails.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 root=${1:-/tmp/clogsweep-root}
@@ -45,4 +45,15 @@ clogsweep --config /usr/share/clogsweep/jobs/laptop.cfg --print-config | grep li
 ls -l
 VISIT
 inside su - visitor -c "bash visit.sh"
-echo "the package works"
+
+cp build/release/libclogsweep-dev_*.deb "$root/tmp/libclogsweep-dev.deb"
+inside apt-get -qq install -y --no-install-recommends --reinstall /tmp/libclogsweep-dev.deb g++ cmake make >/dev/null
+cat >"$root/home/visitor/build.sh" <<'BUILD'
+set -euxo pipefail
+cd "$(mktemp -d)"
+cmake -S /usr/share/doc/clogsweep/docs/examples/own-program -B . -DCMAKE_BUILD_TYPE=Release
+cmake --build .
+./own-program
+BUILD
+inside su - visitor -c "bash build.sh"
+echo "the packages work"

@@ -85,7 +85,7 @@ class Installed(unittest.TestCase):
 
     def test_a_program_of_ones_own_finds_what_the_sweep_finds(self):
         example = self.folder / "example"
-        shutil.copytree(ROOT / "docs/examples/own-program", example)
+        shutil.copytree(self.prefix / "share/doc/clogsweep/docs/examples/own-program", example)
         build_type = "-DCMAKE_BUILD_TYPE=Release"
         flags = ["-DCMAKE_CXX_FLAGS=-fsanitize=address,undefined"] if "CLOG_SANITIZE:BOOL=ON" in (BIN.parent / "CMakeCache.txt").read_text() else []
         self.called("cmake", "-S", example, "-B", example / "build", f"-DCMAKE_PREFIX_PATH={self.prefix}", build_type, *flags)
