@@ -123,7 +123,7 @@ def needs_modules() -> Iterator[None]:
     try:
         yield
     except ImportError as error:
-        sys.exit(_refuse(f"cannot start ({error}); it needs Debian's python3 with h5py, pandas, tables and matplotlib"))
+        sys.exit(_refuse(f"cannot start ({error}); it needs Debian's python3, /usr/bin/python3, with h5py, pandas, tables and matplotlib"))
 
 
 def _refuse(reason: object) -> int:

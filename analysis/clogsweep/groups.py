@@ -152,6 +152,8 @@ class Groups:
             words.append("saturated arrays")
         if first["obstacle_filling"] == "lattice":
             words.append("square lattice")
+        if first["obstacle_filling"] == "file":
+            words.append("circles of a file")
         if not self.are_passages:
             words.append(style.runs_a_point(self.members))
         return ", ".join(words)
@@ -159,6 +161,8 @@ class Groups:
     def _is_worth_a_word(self, name: str, value: Any) -> bool:
         """What shapes the array, and what is not as by default."""
         column = self.columns[name]
+        if name == "obstacle_diameter" and self.values("obstacle_filling") == {"file"}:
+            return False  # of circles that have none of their own
         if self.varies(name) or not self._is_number(name) or value is None or name == self.abscissa or self._is_automatic(name):
             return False
         is_array = column["shapes_array"] and column.get("parameter_role") == "physics" and value != 0

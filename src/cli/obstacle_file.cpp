@@ -1,5 +1,7 @@
 #include "clog/cli/obstacle_file.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <utility>
 
@@ -19,14 +21,23 @@ Obstacle parse_circle(const std::vector<std::string>& cells) {
   return circle;
 }
 
+/// The names of the columns, if the first line has any. @throws Error  if they are others than ours
+bool is_header(const std::vector<std::string>& cells) {
+  static const std::vector<std::string> names = {"x", "y", "diameter"};
+  if (cells[0].empty() || !std::isalpha(static_cast<unsigned char>(cells[0][0]))) return false;
+  if (cells.size() < 2 || cells.size() > names.size() ||
+      !std::equal(cells.begin(), cells.end(), names.begin()))
+    throw Error("the columns have to be x,y or x,y,diameter");
+  return true;
+}
+
 }  // namespace
 
 OwnCircles read_circles(const std::string& path) {
   std::vector<Obstacle> circles;
   bool is_first = true;
   console::read_csv(path, [&](int, const std::vector<std::string>& cells) {
-    const bool is_header = std::exchange(is_first, false) && cells[0] == "x";
-    if (!is_header) circles.push_back(parse_circle(cells));
+    if (!std::exchange(is_first, false) || !is_header(cells)) circles.push_back(parse_circle(cells));
   });
   if (circles.empty()) throw Error(path + " holds no obstacles; lines are x,y[,diameter]");
   return OwnCircles(std::move(circles), path);

@@ -116,6 +116,7 @@ bool has_met_repetition(const RunRow& row) { return row.distance > repetition_le
 std::string possible_repetition(const Plan& plan) {
   std::int64_t num_groups = 0;
   double farthest = 0, shortest_length = 0, most_boxes = 0;  // of the set that lacks most
+  bool is_of_user = false;                                   // whose circles boxes do not multiply
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
     const RunRow row = describe(plan.task(group));
     const RunParameters& run = row.parameters;
@@ -126,13 +127,15 @@ std::string possible_repetition(const Plan& plan) {
     farthest = way;
     shortest_length = repetition_length(row);
     most_boxes = way / run.obstacles.box;
+    is_of_user = run.obstacles.layout == ObstacleLayout::file;
   }
   if (num_groups == 0) return "";
   return fmt::format(
       "droplets of {} of {} may come farther than their array is long and meet the same obstacles again: "
-      "terminal-speed*max-time is up to {:.4g}, boxes*box {:.4g}; boxes={:.4g} is long enough",
+      "terminal-speed*max-time is up to {:.4g}, boxes*box {:.4g}; {}",
       num_groups, counted(plan.num_groups(), "parameter set"), farthest, shortest_length,
-      std::ceil(most_boxes));
+      is_of_user ? "give a file of circles that is as long, or a shorter max-time"
+                 : fmt::format("boxes={:.4g} is long enough", std::ceil(most_boxes)));
 }
 
 std::vector<std::string> limits_of_results(const Plan& plan) {

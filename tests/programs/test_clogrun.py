@@ -290,6 +290,7 @@ class Run(ProgramTest):
         self.write("twice.csv", "x,y\n3,3\n\n1,1\n# again\n1,1\n")
         self.write("narrow.csv", "# 0.005 apart\n1,1,0.5\n5,5,0.5\n1.505,1,0.5\n")
         self.write("wide.csv", "5,5,20\n")
+        self.write("radius.csv", "x,y,radius\n1,2,0.5\n")
         self.write("nan.csv", "x,y\n1,2\n3,nan\n")
         self.write("infinite.csv", "1,2,inf\n")
         self.write("header.csv", "x,y\n")
@@ -329,6 +330,7 @@ class Run(ProgramTest):
             (["array", "--obstacles", "nan.csv", *out], ["nan.csv line 3", "nan"]),
             (["array", "--obstacles", "infinite.csv", *out], ["infinite.csv line 1", "inf"]),
             (["array", "--obstacles", "header.csv", *out], ["no obstacles"]),
+            (["array", "--obstacles", "radius.csv", *out], ["radius.csv", "the columns have to be x,y or x,y,diameter"]),
             (["array", "--obstacles", "empty.csv", *out], ["no obstacles"]),
             (["array", "--obstacles", "outside.csv", "obstacle-gap=0.3", *out], ["contradict", "the file's own gap"]),
             (["array", "--obstacles", "outside.csv", "obstacle-layout=lattice", *out], ["contradict"]),

@@ -295,6 +295,12 @@ class OwnCircles(ProgramTest):
         self.succeed("clogsweep", "replay", "s.h5", 1)
         self.succeed("clogsweep", "verify", "s.h5")
 
+    def test_a_way_longer_than_the_file_asks_for_a_longer_one(self):
+        keys = [key for key in OWN if not key.startswith("max-time")]
+        told = self.succeed("clogsweep", *keys, "release=anywhere", "max-time=5000", "--dry-run")
+        self.assertIn("give a file of circles that is as long", told.stdout + told.stderr)
+        self.assertNotIn("boxes=", (told.stdout + told.stderr).split("meet the same obstacles again")[1].splitlines()[0])
+
     def test_two_arrays_are_one_sweep(self):
         (self.folder / "few.csv").write_text("x,y,diameter\n5,7,1\n")
         self.succeed("clogsweep", "obstacles=posts.csv,few.csv", *OWN[1:], "--output", "s.h5")

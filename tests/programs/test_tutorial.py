@@ -25,7 +25,8 @@ def outline(line):
 
 class Pages(ProgramTest):
     def follow(self, path):
-        environment = {**os.environ, "PATH": f"{BIN}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT / "analysis")}
+        # Another python3 that comes first in the path may lack what Debian's has.
+        environment = {**os.environ, "PATH": f"{BIN}:{os.path.dirname(sys.executable)}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT / "analysis")}
         page = (ROOT / path).read_text()
         blocks = BLOCK.findall(page)
         self.assertIn("bash", [language for language, _ in blocks])
