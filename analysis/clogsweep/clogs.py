@@ -5,7 +5,6 @@ from __future__ import annotations
 import concurrent.futures
 import dataclasses
 import pathlib
-import subprocess
 import tempfile
 from collections.abc import Collection, Iterator, Sequence
 from typing import overload
@@ -15,8 +14,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
-from . import programs, rounded, stored, style, trajectory
-from .errors import UserError
+from . import replays, rounded, stored, style, trajectory
+from .errors import ProgramFailed, UserError
 from .hints import Numbers, Records
 from .picture import Picture
 
@@ -110,11 +109,10 @@ class Clogs(Sequence[Clog]):
 
 
 def run_again(clogrun: pathlib.Path, sweep: pathlib.Path, row: np.void, folder: str) -> Clog:
-    """@throws CalledProcessError"""
+    """@throws ProgramFailed"""
     output = pathlib.Path(folder) / f"{row['task']}.h5"
     # A certified row describes an equilibrium that the run ends before.
-    subprocess.run([clogrun, "replay", sweep, str(row["task"]), "--to-rest", "--output", output,
-                    "--polygon-interval", "1e9", "--sample-interval", "1e9"], check=True, capture_output=True, text=True)
+    replays.replay(clogrun, sweep, row["task"], output, "--to-rest", "--polygon-interval", "1e9", "--sample-interval", "1e9")
     with stored.opened(output) as file:
         return Clog(row, trajectory.refined(file["polygons"][-1], row), file["obstacles"][:])
 
@@ -124,9 +122,7 @@ def run_all(clogrun: pathlib.Path, sweep: pathlib.Path, rows: Sequence[np.void],
     with tempfile.TemporaryDirectory(prefix="clogsweep-clogs-") as folder, concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         try:
             return Clogs(list(pool.map(lambda row: run_again(clogrun, sweep, row, folder), rows)))
-        except subprocess.CalledProcessError as error:
-            raise UserError(f"cannot run clogrun ({programs.reason(error.stderr)})") from error
-        except OSError as error:
+        except (ProgramFailed, OSError) as error:
             raise UserError(f"cannot run clogrun ({error})") from error
 
 

@@ -21,9 +21,9 @@ from PIL import Image
 
 from . import progress, style, trajectory
 from .errors import UserError
+from .hints import Numbers
 from .trajectory import Trajectory
 
-Numbers = npt.NDArray[np.float64]
 Pixels = npt.NDArray[np.uint8]  # height x width x 4: red, green, blue, alpha
 
 FORMAT = (9.6, 5.4)  # inches

@@ -47,12 +47,16 @@ class Fit:
 
         return pandas.DataFrame(self.told["groups"][group]["survival"])
 
-    def drawable(self, source: object = "the sweep") -> Groups:
-        """The groups that hold finished runs. @throws UserError  if there are none, or no clogging lengths"""
-        self._groups.refuse_passages()
+    def finished(self, source: object = "the sweep") -> Groups:
+        """The groups that hold finished runs. @throws UserError  if there are none"""
         if not self._groups.members:
-            raise UserError(f"{source} holds no finished runs")
+            raise UserError(f"{source} holds no finished runs; let the sweep finish some first")
         return self._groups
+
+    def drawable(self, source: object = "the sweep") -> Groups:
+        """The same, with clogging lengths. @throws UserError  if there are none"""
+        self._groups.refuse_passages()
+        return self.finished(source)
 
     def curve(self) -> Picture:
         """Clogging lengths over what the sweep varies. @throws UserError  as drawable()"""

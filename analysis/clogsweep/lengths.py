@@ -18,9 +18,7 @@ def draw_curves(axes: Axes, groups: Groups, draw_curve: Callable[..., None]) -> 
 
 
 def draw(groups: Groups) -> Figure:
-    figure, axes = style.subplots(figsize=(6.4, 4.8))
-    draw_on(axes, groups)
-    return figure
+    return style.figure_of(draw_on, groups)
 
 
 def draw_on(axes: Axes, groups: Groups) -> None:
@@ -29,9 +27,7 @@ def draw_on(axes: Axes, groups: Groups) -> None:
 
 
 def draw_speeds(groups: Groups) -> Figure:
-    figure, axes = style.subplots(figsize=(6.4, 4.8))
-    draw_speeds_on(axes, groups)
-    return figure
+    return style.figure_of(draw_speeds_on, groups)
 
 
 def draw_speeds_on(axes: Axes, groups: Groups) -> None:

@@ -15,9 +15,8 @@ from matplotlib.figure import Figure
 
 from . import replays, style, trajectory
 from .groups import FINISHED, Groups
+from .hints import Group
 from .trajectory import Trajectory
-
-Group = dict[str, Any]  # of clogfit
 
 
 @dataclasses.dataclass(frozen=True)

@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
-import json
 import pathlib
 import tempfile
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from . import clogs, lengths, passages, programs, replays, report, rounded, stored, style, way
-from .errors import UserError
+from . import clogs, fit, lengths, passages, replays, report, rounded, stored, style, way
 from .groups import Groups
+from .hints import Group
 from .trajectory import Trajectory
 
 if TYPE_CHECKING:
     import pandas
-
-Group = dict[str, Any]  # of clogfit
 
 PAGE = (11.69, 16.54)  # A3 [inches]; A2 has letters half as large again
 MARGIN = 0.5
@@ -50,7 +47,7 @@ def page(title: str, about: str, rows: Sequence[Row], footer: str) -> Figure:
 def source(about: dict[str, str]) -> str:
     """Where the numbers come from. @param about  attributes of the sweep"""
     command = about["command_line"]
-    return f"clogsweep {about['version']}, git {about['git_hash']}, begun {about['start_time']}\n" + (command if len(command) < 150 else f"{command[:147]}...")
+    return f"clogsweep {stored.writer(about)}, begun {about['start_time']}\n" + (command if len(command) < 150 else f"{command[:147]}...")
 
 
 def counted(rows: pandas.DataFrame, words: dict[str, str]) -> str:
@@ -121,9 +118,7 @@ def of_passages(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> l
 
 def draw(sweep: pathlib.Path, folder: pathlib.Path) -> Figure:
     """@param folder  of the programs. @throws UserError, ProgramFailed"""
-    groups = Groups(json.loads(programs.run_program(folder / "clogfit", sweep, "--format", "json")))
-    if not groups.members:
-        raise UserError(f"{sweep} holds no finished runs; let the sweep finish some first")
+    groups = fit.fitted(folder / "clogfit", sweep).finished(sweep)
     with stored.opened(sweep) as file:
         about = stored.attributes(file)
     abscissa = groups.abscissa.replace("_", " ")

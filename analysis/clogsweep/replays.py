@@ -21,6 +21,11 @@ from .trajectory import Trajectory
 CIRCUMSTANCES = {"task", "wall_seconds", "rank", "host", "attempt"}
 
 
+def replay(clogrun: pathlib.Path, sweep: AnyPath, task: int, output: AnyPath, *options: str) -> None:
+    """Runs a row once more. @throws ProgramFailed  with the reason of clogrun"""
+    run_program(clogrun, "replay", sweep, task, *options, "--output", output)
+
+
 def is_of(known: Trajectory, row: np.void, options: list[str]) -> bool:
     """Is this trajectory what the row's run gives with these options?"""
     return shlex.split(known.attributes["command_line"])[4:-2] == options and known.row.dtype == row.dtype and all(
@@ -41,7 +46,7 @@ def follow(clogrun: pathlib.Path | None, sweep: pathlib.Path, row: np.void, fold
     # clogrun never overwrites; the old one goes when the new one is whole. Another script may do the same run.
     with tempfile.TemporaryDirectory(prefix=f"{file.stem}-", dir=folder) as place:
         fresh = pathlib.Path(place) / file.name
-        run_program(clogrun, "replay", sweep, row["task"], *options, "--output", fresh)
+        replay(clogrun, sweep, row["task"], fresh, *options)
         os.replace(fresh, file)
     return trajectory.read(file, needs_frames=False)
 

@@ -16,15 +16,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from . import clogs, lengths, passages, places, programs, rounded, stored, style, survival_curve
+from . import clogs, fit, lengths, passages, places, programs, rounded, stored, style, survival_curve
 from .chart import Charts
 from .errors import UserError
 from .groups import Groups
+from .hints import Group
 
 if TYPE_CHECKING:
     import pandas
-
-Group = dict[str, Any]  # of clogfit
 
 
 def framed(content: str, caption: str, kind: str = "") -> str:
@@ -40,9 +39,7 @@ def picture(figure: Figure, caption: str) -> str:
 
 
 def survival(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
-    figure, axes = style.subplots(figsize=(6.4, 4.8))
-    draw_survival(axes, groups, label, members)
-    return figure
+    return style.figure_of(draw_survival, groups, label, members)
 
 
 def draw_survival(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
@@ -101,9 +98,7 @@ def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
 
 
 def causes(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
-    figure, axes = style.subplots(figsize=(6.4, 4.8))
-    draw_causes(axes, groups, label, members)
-    return figure
+    return style.figure_of(draw_causes, groups, label, members)
 
 
 def draw_causes(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
@@ -309,32 +304,24 @@ def page(name: str, groups: Groups, sections: dict[str, str], progress: str, abo
         config=html.escape(about.get("config", "")))
 
 
-def numbered(fit: dict[str, Any]) -> Groups:
-    """Groups of clogfit's JSON that hold runs, with the number by which a page knows each (style.mark())."""
-    groups = Groups(fit)
-    for number, group in enumerate(groups.members):
-        group["number"] = number
-    return groups
-
-
 def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: pathlib.Path) -> pathlib.Path:
     """@param examples  clogs or outlines to show; @param folder  of the programs. @return the output. @throws UserError, ProgramFailed"""
-    fit = json.loads(programs.run_program(folder / "clogfit", sweep, "--format", "json"))
+    fitted = fit.fitted(folder / "clogfit", sweep)
     status = json.loads(programs.run_program(folder / "clogsweep", "status", sweep, "--format", "json"))
-    groups = numbered(fit)
-    if not groups.members:
-        raise UserError(f"{sweep} holds no finished runs; let the sweep finish some first")
+    groups = fitted.finished(sweep)
+    for number, group in enumerate(groups.members):
+        group["number"] = number  # by which the page knows each (style.mark())
     rows = stored.read_table(sweep)
     with stored.opened(sweep) as file:
         about = stored.attributes(file)
-    sentences = fit["doubts"]
+    sentences = fitted.doubts
     label, tell = (label_of_passage, of_passages) if groups.are_passages else (label_of_length, of_lengths)
     charts = Charts([label(groups, group) for group in groups.members])
     sections = tell(groups, sweep, examples, folder / "clogrun", charts)
     sections |= {"What may spoil these numbers": doubts(groups.members, sentences, rows),
                  "Table": table_of_passages(groups, sentences) if groups.are_passages else table_of_lengths(groups, sentences, rows)}
     try:
-        output.write_text(page(sweep.name, groups, sections, progress_of(status, rows), about, charts, stored.writer(fit)))
+        output.write_text(page(sweep.name, groups, sections, progress_of(status, rows), about, charts, stored.writer(fitted.told)))
     except OSError as error:
         raise UserError(f"cannot write {output} ({error.strerror}); give another --output") from error
     return output

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from typing import TYPE_CHECKING, Any
 
 import matplotlib
@@ -55,6 +55,13 @@ def subplots(rows: int = 1, columns: int = 1, *, figsize: tuple[float, float], *
     return made, made.subplots(rows, columns, **options)
 
 
+def figure_of(draw: Callable[..., None], *what: Any) -> Figure:
+    """A figure with one drawing. @param draw  called with the axes and what follows here"""
+    figure, axes = subplots(figsize=(6.4, 4.8))
+    draw(axes, *what)
+    return figure
+
+
 def curve_style(index: int) -> dict[str, Any]:
     """Of no two curves the same: once colours and markers are used up, lines are broken, by more dots each time."""
     round_, which = divmod(index, len(COLOURS))
@@ -73,7 +80,7 @@ OPEN_MARKERS = {
 
 
 def mark(kind: str, groups: Collection[Group]) -> str | None:
-    """The name (`gid`) of what stands for groups of a report (report.numbered()); elsewhere they have no numbers.
+    """The name (`gid`) of what stands for groups of a report (report.write()); elsewhere they have no numbers.
     @param kind  point, curve or legend"""
     numbers = [str(group["number"]) for group in groups if "number" in group]
     return f"{kind}-{','.join(numbers)}" if numbers else None

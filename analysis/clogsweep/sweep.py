@@ -10,7 +10,7 @@ import tempfile
 from collections.abc import Collection
 from typing import Any
 
-from . import clogs, fit, poster, programs, report, stored
+from . import clogs, fit, poster, programs, replays, report, stored
 from .errors import UserError
 from .picture import Picture
 from .run import Run
@@ -71,7 +71,7 @@ class Sweep:
             raise UserError(f"{self.path} holds no task {task}; it has {len(self._records)} rows")
         options = ["--sample-interval", repr(float(interval)), "--polygon-interval", repr(float(interval))]
         if output is not None:
-            programs.run_program(self._program("clogrun"), "replay", self.path, task, *options, "--output", output)
+            replays.replay(self._program("clogrun"), self.path, task, output, *options)
             return Run(output)
         with tempfile.TemporaryDirectory(prefix="clogsweep-replay-") as folder:
             return self.replay(task, pathlib.Path(folder) / f"{self.path.stem}-{task}.h5", interval=interval)

@@ -24,7 +24,7 @@ def data_array(parent: xml.Element, name: str, values: npt.ArrayLike, components
     if components > 1:
         element.set("NumberOfComponents", str(components))
     if not np.isfinite(values).all():
-        raise UserError(f"{name} holds what is no number, which VTK's readers cannot read; look at the run with clogsweep verify")
+        raise UserError(f"{name} holds what is no number, which VTK's readers cannot read; run the droplet once more (clogrun replay)")
     element.text = " ".join(map(repr, values.ravel().tolist()))
     return element
 

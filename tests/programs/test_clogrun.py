@@ -182,7 +182,7 @@ class Run(ProgramTest):
                 samples = pandas.read_hdf(self.folder / f"{name}.h5", "trajectory")
                 energy = sum(samples[f"{part}_energy"] for part in stored) - samples.spreading_work
                 self.assertGreater(samples.anchor_energy.max(), 0)
-                self.assertLess(energy.diff().max(), 1e-12)
+                self.assertLess(energy.diff().max(), 0)
                 self.assertLess((energy + samples.dissipated_energy).pipe(np.ptp), 1e-4 * samples.dissipated_energy.iloc[-1])
 
     def test_a_channel_run_writes_h_speed_shape_and_polygons(self):

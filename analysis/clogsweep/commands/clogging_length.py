@@ -8,20 +8,13 @@ intervals; markers show by what most droplets clogged; an open marker is a lengt
 why; a triangle pointing up is a lower bound where no run clogged.
 """
 
-import pathlib
-
-from .. import command_line, fit, lengths, programs
+from .. import fit, lengths
 from ..picture import Picture
+from . import sweep_to_draw
 
 
 def body() -> int:
-    parser = command_line.Parser(__doc__)
-    parser.add_argument("sweep", type=pathlib.Path, help="file of clogsweep --output, or output of clogfit --format json")
-    command_line.add_output(parser, "name of the picture; .png and .pdf are made (SWEEP-clogging-length)", ".png", ".pdf")
-    programs.add_option(parser)
-    arguments = parser.parse_args()
-    output = arguments.output or command_line.beside(arguments.sweep, "clogging-length")
-    command_line.refuse_unwritable_picture(output, arguments.sweep)
+    arguments = sweep_to_draw(__doc__, "clogging-length", "file of clogsweep --output, or output of clogfit --format json")
     groups = fit.read(arguments.sweep, arguments.programs).drawable(arguments.sweep)
-    print(f"{Picture(lengths.draw(groups)).save(output)} (and .pdf)")
+    print(f"{Picture(lengths.draw(groups)).save(arguments.output)} (and .pdf)")
     return 0

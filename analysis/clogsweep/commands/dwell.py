@@ -8,21 +8,14 @@ The first time is the shortest of which all rows know who stood for longer, the 
 length there is that of clogs alone. Bars are confidence intervals; a triangle is a lower bound where no run clogged.
 """
 
-import pathlib
-
-from .. import command_line, dwell, programs, stored
+from .. import dwell, programs, stored
+from . import sweep_to_draw
 
 
 def body() -> int:
-    parser = command_line.Parser(__doc__)
-    parser.add_argument("sweep", type=pathlib.Path, help="file of clogsweep --output")
-    command_line.add_output(parser, "name of the picture; .png and .pdf are made (SWEEP-dwell)", ".png", ".pdf")
-    programs.add_option(parser)
-    arguments = parser.parse_args()
-    output = arguments.output or command_line.beside(arguments.sweep, "dwell")
-    command_line.refuse_unwritable_picture(output, arguments.sweep)
+    arguments = sweep_to_draw(__doc__, "dwell")
     with stored.opened(arguments.sweep, stored.SWEEP):
         pass
     picture = dwell.picture(programs.programs_in(arguments.programs) / "clogfit", arguments.sweep)
-    print(f"{picture.save(output)} (and .pdf)")
+    print(f"{picture.save(arguments.output)} (and .pdf)")
     return 0

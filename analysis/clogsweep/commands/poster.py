@@ -7,20 +7,13 @@ The page is A3. Every number comes from clogfit; clogs and the way of a droplet 
 temporary folder. Of droplets in a channel or on a wall it shows the passage or the sag over what the sweep varies.
 """
 
-import pathlib
-
-from .. import command_line, poster, programs
+from .. import poster, programs
 from ..picture import Picture
+from . import sweep_to_draw
 
 
 def body() -> int:
-    parser = command_line.Parser(__doc__)
-    parser.add_argument("sweep", type=pathlib.Path, help="output of clogsweep")
-    command_line.add_output(parser, "name of the poster; .png and .pdf are made (SWEEP-poster)", ".png", ".pdf")
-    programs.add_option(parser)
-    arguments = parser.parse_args()
-    output = arguments.output or command_line.beside(arguments.sweep, "poster")
-    command_line.refuse_unwritable_picture(output, arguments.sweep)
+    arguments = sweep_to_draw(__doc__, "poster")
     made = Picture(poster.draw(arguments.sweep, programs.programs_in(arguments.programs)))
-    print(f"{made.save(output)} (and .pdf)")
+    print(f"{made.save(arguments.output)} (and .pdf)")
     return 0
