@@ -54,6 +54,9 @@ void refuse_useless_keys(const Settings& settings) {
     throw Error(fmt::format("invalid seeds={} (nothing is random with obstacle-layout={}) leave it out",
                             settings.text("seeds"), layout));
   if (layout != "file") return;
+  if (!settings.is_given("box"))
+    throw Error("invalid obstacles=" + settings.text(circles_key) +
+                " (nothing says how wide their array is) give box, the width after which it repeats");
   for (const char* key : {"obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "lattice-angle"})
     if (is_changed(settings, key))
       throw Error(

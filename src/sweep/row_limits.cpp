@@ -6,11 +6,14 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <set>
 #include <string_view>
+#include <tuple>
 
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/units.hpp"
+#include "clog/core/world/bare_stretch.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {
@@ -138,8 +141,33 @@ std::string possible_repetition(const Plan& plan) {
                  : fmt::format("boxes={:.4g} is long enough", std::ceil(most_boxes)));
 }
 
+std::vector<std::string> bare_arrays(const Plan& plan) {
+  std::vector<std::string> all;
+  std::set<std::tuple<std::string, double, int>> seen;
+  for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
+    const RunParameters run = plan.task(group);
+    const ObstacleParameters& obstacles = run.obstacles;
+    if (obstacles.layout != ObstacleLayout::file) continue;
+    if (!seen.emplace(obstacles.own->check_sum(), obstacles.box, obstacles.boxes).second) continue;
+    const std::vector<Obstacle> circles = obstacles.own->circles_or(obstacles.diameter / 2);
+    const std::string file = "obstacles=" + obstacles.own->source();
+    if (const auto bare = conspicuous_bare_stretch(circles, &Obstacle::x, obstacles.period().along()))
+      all.push_back(fmt::format(
+          "{} leaves x={:.4g} to {:.4g} bare, along the flow, before the array repeats at boxes*box={}: "
+          "droplets fall freely there; if that is not meant, make the array shorter",
+          file, bare->begin, bare->end, shortest(obstacles.period().along())));
+    if (const auto bare = conspicuous_bare_stretch(circles, &Obstacle::y, obstacles.period().across()))
+      all.push_back(
+          fmt::format("{} leaves y={:.4g} to {:.4g} bare, across the flow, before the array repeats at "
+                      "box={}: droplets may pass there; if that is not meant, make the box narrower",
+                      file, bare->begin, bare->end, shortest(obstacles.period().across())));
+  }
+  return all;
+}
+
 std::vector<std::string> limits_of_results(const Plan& plan) {
-  std::vector<std::string> all = {possible_repetition(plan), unproven_parameters(plan)};
+  std::vector<std::string> all = bare_arrays(plan);
+  all.insert(all.begin(), {possible_repetition(plan), unproven_parameters(plan)});
   std::erase(all, "");
   return all;
 }

@@ -301,6 +301,15 @@ class OwnCircles(ProgramTest):
         self.assertIn("give a file of circles that is as long", told.stdout + told.stderr)
         self.assertNotIn("boxes=", (told.stdout + told.stderr).split("meet the same obstacles again")[1].splitlines()[0])
 
+    def test_how_wide_their_array_is_has_to_be_said(self):
+        self.refuse("clogsweep", "obstacles=posts.csv", "--output", "s.h5", words=["obstacles=posts.csv", "give box"])
+        self.refuse("clogrun", "array", "obstacles=posts.csv", "--output", "r.h5", words=["obstacles=posts.csv", "give box"])
+        (self.folder / "posts.csv").write_text("x,y\n" + "".join(f"{i % 5 * 2},{i // 5 * 2}\n" for i in range(25)))
+        self.assertNotIn("bare", self.succeed("clogsweep", *OWN, "--dry-run").stdout)
+        told = self.succeed("clogsweep", *OWN, "boxes=4", "--dry-run").stdout
+        self.assertIn("obstacles=posts.csv leaves x=", told)
+        self.assertNotIn("leaves y=", told)
+
     def test_two_arrays_are_one_sweep(self):
         (self.folder / "few.csv").write_text("x,y,diameter\n5,7,1\n")
         self.succeed("clogsweep", "obstacles=posts.csv,few.csv", *OWN[1:], "--output", "s.h5")

@@ -104,6 +104,20 @@ TEST(Plan, NeedsTheCirclesThatItsSettingsName) {
   EXPECT_DOUBLE_EQ(Plan(settings).task(0).obstacles.gap, 2.4);
 }
 
+TEST(Plan, AsksHowWideAnArrayOfCirclesIs) {
+  Settings settings;
+  settings.attach("one.csv", OwnCircles({{5, 5, 0.3}, {8, 5, 0.3}}));
+  settings.set("obstacles", "one.csv");
+  try {
+    const Plan plan(settings);
+    FAIL() << "took a box of " << plan.task(0).obstacles.box;
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("give box"), std::string::npos) << error.what();
+  }
+  settings.set("box", settings.text("box"));
+  EXPECT_EQ(Plan(settings).size(), 1) << "even if it is the default's";
+}
+
 TEST(Plan, TravelsWithItsCircles) {
   Settings settings = among_circles();
   settings.attach("one.csv", OwnCircles({{1.0 / 3, 5, 0.1}, {8, 5, 0}}));

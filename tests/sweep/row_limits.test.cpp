@@ -108,6 +108,27 @@ TEST(Repetition, IsForeseenFromTheLongestTime) {
             "again: terminal-speed*max-time is up to 300, boxes*box 20; boxes=15 is long enough");
 }
 
+TEST(BareArrays, AreThoseThatCirclesOfAFileDoNotFill) {
+  EXPECT_TRUE(bare_arrays(plan_of({{"box", "20"}})).empty());
+  const auto bare_in = [](const char* box, const char* boxes) {
+    Settings settings;
+    settings.attach("posts.csv", OwnCircles({{1, 2, 0.5}, {4, 5, 0.5}, {7, 8, 0}}, "posts.csv"));
+    for (const auto& [name, text] : Keys{{"obstacles", "posts.csv"},
+                                         {"box", box},
+                                         {"boxes", boxes},
+                                         {"line-tension", "0.1,1"},
+                                         {"obstacle-diameter", "1"}})
+      settings.set(name, text);
+    return bare_arrays(Plan(settings));
+  };
+  EXPECT_TRUE(bare_in("9", "1").empty());
+  EXPECT_EQ(bare_in("9", "3"),
+            std::vector<std::string>{
+                "obstacles=posts.csv leaves x=7.5 to 27.5 bare, along the flow, before the array repeats at "
+                "boxes*box=27: droplets fall freely there; if that is not meant, make the array shorter"});
+  EXPECT_EQ(bare_in("15", "1").size(), 2u) << "along and across";
+}
+
 TEST(LimitsOfResults, AreTheLinesThatSaySomething) {
   EXPECT_TRUE(limits_of_results(plan_of({{"box", "20"}, {"max-time", "600"}})).empty());
   const Plan plan = plan_of({{"box", "20"}, {"max-time", "1e3"}, {"line-tension", "30"}});

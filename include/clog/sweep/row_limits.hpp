@@ -23,6 +23,9 @@ bool has_met_repetition(const RunRow& row);
 /// One line that says whether runs of a plan may come so far; empty if none does.
 std::string possible_repetition(const Plan& plan);
 
+/// One line a file of circles that leaves a conspicuous part of its array bare; empty if none does.
+std::vector<std::string> bare_arrays(const Plan& plan);
+
 /// What a plan's results will be worth less for, as far as that is known beforehand: the lines above that say
 /// something.
 std::vector<std::string> limits_of_results(const Plan& plan);

@@ -46,4 +46,11 @@ const std::vector<Obstacle>& OwnCircles::circles() const {
   return *circles_;
 }
 
+std::vector<Obstacle> OwnCircles::circles_or(double radius) const {
+  std::vector<Obstacle> all = circles();
+  for (Obstacle& circle : all)
+    if (circle.radius == 0) circle.radius = radius;
+  return all;
+}
+
 }  // namespace clog

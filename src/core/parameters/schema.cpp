@@ -197,7 +197,8 @@ std::vector<Parameter> make_schema() {
             {.column = "obstacle_diameter",
              .symbol = R"(\sigma_\mathrm{ob})",
              .unit = "sigma",
-             .meaning = "sigma_ob, diameter of the obstacles",
+             .meaning =
+                 "sigma_ob, diameter of the obstacles; of circles of your own, of those whose line has none",
              .scope = &arrays,
              .range = {positive, {}},
              .shapes_array = true}),

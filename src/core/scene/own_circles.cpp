@@ -25,12 +25,8 @@ namespace {
 
 std::string place_of(const Obstacle& circle) { return fmt::format("x={:.6g}, y={:.6g}", circle.x, circle.y); }
 
-/// With radii of their own, all of them.
 std::vector<Obstacle> circles_of(const ObstacleParameters& obstacles) {
-  std::vector<Obstacle> circles = obstacles.own->circles();
-  for (Obstacle& circle : circles)
-    if (circle.radius == 0) circle.radius = obstacles.diameter / 2;
-  return circles;
+  return obstacles.own->circles_or(obstacles.diameter / 2);
 }
 
 double smallest_circle(const RunParameters& run) {

@@ -34,6 +34,8 @@ class OwnCircles {
   bool are_known() const { return circles_ != nullptr; }
   /// @throws Error if only their check sum is known
   const std::vector<Obstacle>& circles() const;
+  /// With radii of their own, all of them. @throws Error if only their check sum is known
+  std::vector<Obstacle> circles_or(double radius) const;
 
   bool operator==(const OwnCircles& other) const { return check_sum_ == other.check_sum_; }
 

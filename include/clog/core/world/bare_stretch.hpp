@@ -1,0 +1,24 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "clog/core/parameters/circles.hpp"
+
+namespace clog {
+
+/// Part of a period over which no circle reaches [sigma].
+struct Stretch {
+  double begin = 0;  ///< within the period
+  double end = 0;    ///< beyond the period if the stretch goes over its border
+};
+
+/// The widest bare stretch of an array along one of its axes, if it is so wide against all others that the
+/// array was probably meant to be shorter: wider than a droplet, and than twice the next one and a droplet.
+/// A single circle is an array of its own and has none.
+/// @param centre  of a circle along the axis: &Obstacle::x or &Obstacle::y
+/// @param period  of the array along it [sigma]; no circle is wider
+std::optional<Stretch> conspicuous_bare_stretch(std::span<const Obstacle> circles, double Obstacle::*centre,
+                                                double period);
+
+}  // namespace clog

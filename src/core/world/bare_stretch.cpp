@@ -1,0 +1,46 @@
+#include "clog/core/world/bare_stretch.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace clog {
+namespace {
+
+double width(const Stretch& stretch) { return stretch.end - stretch.begin; }
+
+/// Between circles whose shadows on the axis do not touch, over the border of the period, too.
+std::vector<Stretch> bare_stretches(std::span<const Obstacle> circles, double Obstacle::*centre,
+                                    double period) {
+  std::vector<Stretch> shadows;
+  for (const Obstacle& circle : circles)
+    shadows.push_back({circle.*centre - circle.radius, circle.*centre + circle.radius});
+  std::sort(shadows.begin(), shadows.end(),
+            [](const Stretch& a, const Stretch& b) { return a.begin < b.begin; });
+  // What reaches over the period's end may cover its begin.
+  double covered = shadows.front().begin;
+  for (const Stretch& shadow : shadows) covered = std::max(covered, shadow.end - period);
+  std::vector<Stretch> bare;
+  for (const Stretch& shadow : shadows) {
+    if (shadow.begin > covered) bare.push_back({covered, shadow.begin});
+    covered = std::max(covered, shadow.end);
+  }
+  if (const double again = shadows.front().begin + period; again > covered) bare.push_back({covered, again});
+  return bare;
+}
+
+}  // namespace
+
+std::optional<Stretch> conspicuous_bare_stretch(std::span<const Obstacle> circles, double Obstacle::*centre,
+                                                double period) {
+  if (circles.size() < 2) return {};
+  constexpr double droplet = 1;  // diameter [sigma]
+  std::vector<Stretch> stretches = bare_stretches(circles, centre, period);
+  if (stretches.empty()) return {};
+  std::sort(stretches.begin(), stretches.end(),
+            [](const Stretch& a, const Stretch& b) { return width(a) > width(b); });
+  const double next = stretches.size() > 1 ? width(stretches[1]) : 0;
+  if (width(stretches.front()) <= 2 * next + droplet) return {};
+  return stretches.front();
+}
+
+}  // namespace clog
