@@ -12,6 +12,7 @@
 #include <cstring>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "clog/core/tools/error.hpp"
@@ -35,17 +36,30 @@ std::string unbind() {
   return is_open_mpi() ? "set OMPI_MCA_hwloc_base_binding_policy=none" : "mpirun -bind-to none";
 }
 
-bool lacks_its_ranks(int num_ranks) {
-  const char* tasks = std::getenv("SLURM_NTASKS");
-  const bool by_mpirun =
-      is_set("OMPI_COMM_WORLD_SIZE") || is_set("MPI_LOCALNRANKS");  // of Open MPI, of MPICH
-  return num_ranks == 1 && tasks && std::atoi(tasks) > 1 && !by_mpirun;
+/// How many processes belong together, as the launcher says; 0 if it says nothing.
+int number_in(const char* name) {
+  const char* text = std::getenv(name);
+  return text ? std::atoi(text) : 0;
+}
+
+/// Of a rank that finds itself alone: why it should not be. A rank that is meant to be alone has none.
+std::optional<Finding> loneliness(int num_ranks) {
+  if (num_ranks > 1) return {};
+  constexpr const char* of_open_mpi = "OMPI_COMM_WORLD_SIZE";
+  const bool by_mpirun = is_set(of_open_mpi) || is_set("MPI_LOCALNRANKS");  // the latter of MPICH
+  if (const int tasks = number_in("SLURM_NTASKS"); tasks > 1 && !by_mpirun)
+    return Finding{fmt::format("one rank in a Slurm allocation of {} tasks", tasks),
+                   "srun cannot start this MPI's ranks together: use mpirun as jobs/slurm.sh does, or mpirun "
+                   "-np 1 if one is meant"};
+  if (const int started = std::max(number_in(of_open_mpi), number_in("PMI_SIZE")); started > 1)
+    return Finding{fmt::format("one rank, where mpirun has started {}", started),
+                   fmt::format("it is another MPI's: use the mpirun of {}, with which this program was built",
+                               parallel::Communicator::library_version())};
+  return {};
 }
 
 Finding launcher(int num_ranks) {
-  if (lacks_its_ranks(num_ranks))
-    return {fmt::format("one rank in a Slurm allocation of {} tasks", std::getenv("SLURM_NTASKS")),
-            "srun cannot start this MPI's ranks together: use mpirun, as jobs/slurm.sh does"};
+  if (const auto finding = loneliness(num_ranks)) return *finding;
   if (num_ranks > 1) return {fmt::format("{} ranks, started together", num_ranks)};
   if (is_open_mpi() && geteuid() == 0 &&
       !(is_set("OMPI_ALLOW_RUN_AS_ROOT") && is_set("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM")))
@@ -174,11 +188,7 @@ std::vector<Finding> examine(const std::vector<RankFacts>& ranks, const std::str
 }
 
 void refuse_to_be_alone(int num_ranks) {
-  if (!lacks_its_ranks(num_ranks)) return;
-  throw Error(
-      fmt::format("one rank in a Slurm allocation of {} tasks (srun cannot start this MPI's ranks together); "
-                  "use mpirun as jobs/slurm.sh does, or mpirun -np 1 if one is meant",
-                  std::getenv("SLURM_NTASKS")));
+  if (const auto finding = loneliness(num_ranks)) throw Error(finding->what + "; " + finding->remedy);
 }
 
 }  // namespace clog::host

@@ -42,6 +42,10 @@ class Doctor(ProgramTest):
     def test_a_lonely_rank_of_many_is_seen(self):
         self.assertIn("use mpirun", self.fault(self.examine(SLURM_NTASKS="8"), "allocation of 8 tasks"))
 
+    def test_the_mpirun_of_another_mpi_is_seen(self):
+        other = {"Open MPI": "PMI_SIZE", "MPICH": "OMPI_COMM_WORLD_SIZE"}[MPI]
+        self.assertIn(f"use the mpirun of {MPI}", self.fault(self.examine(**{other: "2"}), "mpirun has started 2"))
+
     def test_a_rank_that_mpirun_has_started_alone_is_meant_so(self):
         self.assertEqual(self.faults(self.examine(ranks=1, SLURM_NTASKS="8")), {})
 

@@ -423,6 +423,14 @@ class Batch(ProgramTest):
         self.assertIn("allocation of 8 tasks", done.stderr)
         self.assertFalse((self.folder / "s.h5").exists())
 
+    def test_ranks_of_another_mpis_launcher_are_refused(self):
+        other = {"Open MPI": "PMI_SIZE", "MPICH": "OMPI_COMM_WORLD_SIZE"}[MPI]
+        done = subprocess.run([str(BIN / "clogsweep"), *self.sweep()], capture_output=True, text=True,
+                              env={**os.environ, other: "2"}, timeout=60)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(f"use the mpirun of {MPI}", done.stderr)
+        self.assertFalse((self.folder / "s.h5").exists())
+
 
 if __name__ == "__main__":
     unittest.main()

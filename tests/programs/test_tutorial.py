@@ -6,6 +6,7 @@ numbers are, and every file that a page names has to be there in the end.
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 import unittest
@@ -25,8 +26,9 @@ def outline(line):
 
 class Pages(ProgramTest):
     def follow(self, path):
-        # Another python3 that comes first in the path may lack what Debian's has.
-        environment = {**os.environ, "PATH": f"{BIN}:{os.path.dirname(sys.executable)}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT / "analysis")}
+        # Another python3 that comes first in the path may lack what Debian's has. mpirun stays the one it was.
+        folders = [str(BIN), os.path.dirname(shutil.which("mpirun")), os.path.dirname(sys.executable), os.environ["PATH"]]
+        environment = {**os.environ, "PATH": ":".join(folders), "PYTHONPATH": str(ROOT / "analysis")}
         page = (ROOT / path).read_text()
         blocks = BLOCK.findall(page)
         self.assertIn("bash", [language for language, _ in blocks])

@@ -16,7 +16,7 @@ struct Finding {
 /// Would a sweep on these ranks, that writes to `output`, go well?
 std::vector<Finding> examine(const std::vector<RankFacts>& ranks, const std::string& output);
 
-/// srun without PMIx starts as many programs as there are tasks, each of which believes that it is alone.
+/// srun without PMIx, and the mpirun of another MPI, start programs each of which believes that it is alone.
 /// @throws Error if this is one of them
 void refuse_to_be_alone(int num_ranks);
 
