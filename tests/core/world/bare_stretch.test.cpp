@@ -11,6 +11,7 @@ constexpr double period = 20;
 
 std::optional<Stretch> along(const std::vector<double>& places, double radius = 0.5) {
   std::vector<Obstacle> circles;
+  circles.reserve(places.size());
   for (const double x : places) circles.push_back({x, 3, radius});
   return conspicuous_bare_stretch(circles, &Obstacle::x, period);
 }
