@@ -130,7 +130,7 @@ std::string possible_repetition(const Plan& plan) {
     farthest = way;
     shortest_length = repetition_length(row);
     most_boxes = way / run.obstacles.box;
-    is_of_user = run.obstacles.layout == ObstacleLayout::file;
+    is_of_user = scene_of(run).walls_from == WallsFrom::circles;
   }
   if (num_groups == 0) return "";
   return fmt::format(
@@ -147,27 +147,26 @@ std::vector<std::string> bare_arrays(const Plan& plan) {
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
     const RunParameters run = plan.task(group);
     const ObstacleParameters& obstacles = run.obstacles;
-    if (obstacles.layout != ObstacleLayout::file) continue;
+    if (scene_of(run).walls_from != WallsFrom::circles) continue;
     if (!seen.emplace(obstacles.own->check_sum(), obstacles.box, obstacles.boxes).second) continue;
-    const std::vector<Obstacle> circles = obstacles.own->circles_or(obstacles.diameter / 2);
-    const std::string file = "obstacles=" + obstacles.own->source();
-    if (const auto bare = conspicuous_bare_stretch(circles, &Obstacle::x, obstacles.period().along()))
-      all.push_back(fmt::format(
-          "{} leaves x={:.4g} to {:.4g} bare, along the flow, before the array repeats at boxes*box={}: "
-          "droplets fall freely there; if that is not meant, make the array shorter",
-          file, bare->begin, bare->end, shortest(obstacles.period().along())));
-    if (const auto bare = conspicuous_bare_stretch(circles, &Obstacle::y, obstacles.period().across()))
-      all.push_back(
-          fmt::format("{} leaves y={:.4g} to {:.4g} bare, across the flow, before the array repeats at "
-                      "box={}: droplets may pass there; if that is not meant, make the box narrower",
-                      file, bare->begin, bare->end, shortest(obstacles.period().across())));
+    const std::vector<Obstacle> circles = obstacles.own->with_radii(obstacles.diameter / 2);
+    const auto look = [&](char axis, double Obstacle::*centre, double period, const char* keys,
+                          const char* remedy) {
+      if (const auto bare = conspicuous_bare_stretch(circles, centre, period))
+        all.push_back(fmt::format(
+            "obstacles={} leaves {}={:.4g} to {:.4g} bare, before the array repeats at {}={}: "
+            "droplets sink freely there; if that is not meant, {}",
+            obstacles.own->source(), axis, bare->begin, bare->end, keys, shortest(period), remedy));
+    };
+    look('x', &Obstacle::x, obstacles.period().along(), "boxes*box", "give fewer boxes or a smaller box");
+    look('y', &Obstacle::y, obstacles.period().across(), "box", "give a smaller box");
   }
   return all;
 }
 
 std::vector<std::string> limits_of_results(const Plan& plan) {
-  std::vector<std::string> all = bare_arrays(plan);
-  all.insert(all.begin(), {possible_repetition(plan), unproven_parameters(plan)});
+  std::vector<std::string> all = {possible_repetition(plan), unproven_parameters(plan)};
+  for (const std::string& words : bare_arrays(plan)) all.push_back(words);
   std::erase(all, "");
   return all;
 }

@@ -124,8 +124,8 @@ TEST(BareArrays, AreThoseThatCirclesOfAFileDoNotFill) {
   EXPECT_TRUE(bare_in("9", "1").empty());
   EXPECT_EQ(bare_in("9", "3"),
             std::vector<std::string>{
-                "obstacles=posts.csv leaves x=7.5 to 27.5 bare, along the flow, before the array repeats at "
-                "boxes*box=27: droplets fall freely there; if that is not meant, make the array shorter"});
+                "obstacles=posts.csv leaves x=7.5 to 27.5 bare, before the array repeats at boxes*box=27: "
+                "droplets sink freely there; if that is not meant, give fewer boxes or a smaller box"});
   EXPECT_EQ(bare_in("15", "1").size(), 2u) << "along and across";
 }
 

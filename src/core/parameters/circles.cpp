@@ -46,10 +46,10 @@ const std::vector<Obstacle>& OwnCircles::circles() const {
   return *circles_;
 }
 
-std::vector<Obstacle> OwnCircles::circles_or(double radius) const {
+std::vector<Obstacle> OwnCircles::with_radii(double missing) const {
   std::vector<Obstacle> all = circles();
   for (Obstacle& circle : all)
-    if (circle.radius == 0) circle.radius = radius;
+    if (circle.radius == 0) circle.radius = missing;
   return all;
 }
 

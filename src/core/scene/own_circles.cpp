@@ -26,7 +26,7 @@ namespace {
 std::string place_of(const Obstacle& circle) { return fmt::format("x={:.6g}, y={:.6g}", circle.x, circle.y); }
 
 std::vector<Obstacle> circles_of(const ObstacleParameters& obstacles) {
-  return obstacles.own->circles_or(obstacles.diameter / 2);
+  return obstacles.own->with_radii(obstacles.diameter / 2);
 }
 
 double smallest_circle(const RunParameters& run) {

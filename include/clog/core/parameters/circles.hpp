@@ -34,8 +34,9 @@ class OwnCircles {
   bool are_known() const { return circles_ != nullptr; }
   /// @throws Error if only their check sum is known
   const std::vector<Obstacle>& circles() const;
-  /// With radii of their own, all of them. @throws Error if only their check sum is known
-  std::vector<Obstacle> circles_or(double radius) const;
+  /// The circles, each with a radius. @param missing  the radius of those that have none of their own [sigma]
+  /// @throws Error if only their check sum is known
+  std::vector<Obstacle> with_radii(double missing) const;
 
   bool operator==(const OwnCircles& other) const { return check_sum_ == other.check_sum_; }
 
