@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from .run import Film, Run
     from .sweep import Sweep
 
+__version__ = "0.2.0"
+
 __all__ = ["Clog", "Clogs", "Damaged", "Film", "Fit", "Picture", "ProgramFailed", "Run", "Sweep", "UserError", "open"]
 
 _MODULES = {"Clog": "clogs", "Clogs": "clogs", "Damaged": "errors", "Film": "run", "Fit": "fit", "Picture": "picture",
@@ -36,6 +38,10 @@ def __getattr__(name: str) -> Any:
     return getattr(importlib.import_module(f".{_MODULES[name]}", __name__), name)
 
 
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
+
+
 def open(path: str | os.PathLike[str], programs: str | os.PathLike[str] | None = None) -> Sweep | Run:
     """A file of clogsweep, or of clogrun.
 
@@ -44,4 +50,4 @@ def open(path: str | os.PathLike[str], programs: str | os.PathLike[str] | None =
     """
     from . import run, stored, sweep
 
-    return run.Run(path) if stored.kind_of(path) == stored.RUN else sweep.Sweep(path, programs)
+    return run.Run(path) if stored.kind_of(path, programs) == stored.RUN else sweep.Sweep(path, programs)

@@ -88,6 +88,8 @@ def refuse_unwritable(path: pathlib.Path, kind: str, *inputs: pathlib.Path) -> N
         raise UserError(f"cannot write {path} (no folder {path.parent}); make it first")
     if path.is_dir():
         raise UserError(f"cannot write {path} (it is a folder); give the name of a file")
+    if path.exists() and not path.is_file():
+        raise UserError(f"cannot write {path} (not a regular file: a pipe, device or socket); give another name, or move it away")
     if not os.access(path if path.exists() else path.parent, os.W_OK):
         raise UserError(f"cannot write {path} (permission denied); give another --output")
     if any(path.exists() and source.exists() and path.samefile(source) for source in inputs):
@@ -103,8 +105,19 @@ def is_of_kind(path: pathlib.Path, kind: str) -> bool:
     return not beginning or beginning == BEGINNINGS[kind]
 
 
+# Endings of pictures and films that nothing here makes. Others may be a part of the name, as in gap-0.3.
+FOREIGN_ENDINGS = (".jpg", ".jpeg", ".svg", ".eps", ".ps", ".tif", ".tiff", ".bmp", ".webp", ".avi", ".mov", ".mkv", ".webm", ".mpg", ".mpeg", ".apng")
+
+
+def refuse_ending(output: pathlib.Path, made: str) -> None:
+    """@param made  what there is, in words. @throws UserError  if the name asks for something else"""
+    if output.suffix.lower() in FOREIGN_ENDINGS:
+        raise UserError(f"cannot write {output} ({made}); give another ending, or none")
+
+
 def refuse_unwritable_picture(output: str | os.PathLike[str], *inputs: pathlib.Path) -> None:
     """Of the two files of style.save(). @param output  path without ending"""
+    refuse_ending(pathlib.Path(output), "pictures are .png and .pdf")
     for kind in ("png", "pdf"):
         refuse_unwritable(pathlib.Path(f"{output}.{kind}"), kind, *inputs)
 
@@ -126,9 +139,14 @@ def needs_modules() -> Iterator[None]:
         sys.exit(_refuse(f"cannot start ({error}); it needs Debian's python3, /usr/bin/python3, with h5py, pandas, tables and matplotlib"))
 
 
+def printable(text: str) -> str:
+    """Control characters escaped: names and values that are shown may hold what turns a terminal's colours."""
+    return "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in text)
+
+
 def _refuse(reason: object) -> int:
     with contextlib.suppress(OSError):  # nobody may be there to read it
-        print(f"{name()}: {' '.join(str(reason).split())}", file=sys.stderr, flush=True)
+        print(printable(f"{name()}: {' '.join(str(reason).split())}"), file=sys.stderr, flush=True)
     return USER_FAULT
 
 

@@ -19,7 +19,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.path import Path
 from PIL import Image
 
-from . import progress, style, trajectory
+from . import command_line, progress, style, trajectory
 from .errors import UserError
 from .hints import Numbers
 from .trajectory import Trajectory
@@ -33,6 +33,7 @@ ASPECT = FORMAT[0] * PLACE[2] / (FORMAT[1] * PLACE[3])
 LONGEST_STEP = 0.5  # between frames [sigma]: what moves farther cannot be followed by eye
 SECONDS_OF_VERDICT = 2
 ENDINGS = (".mp4", ".gif")
+COLOURS = ("speed", "mechanism")
 
 
 def chosen_frames(run: Trajectory, most: int) -> npt.NDArray[np.int64]:
@@ -259,6 +260,7 @@ def size_for(path: pathlib.Path | None) -> str:
 def path_of(output: pathlib.Path) -> pathlib.Path:
     """The file that a film goes to: the ending that was asked for, or .mp4 with ffmpeg, .gif otherwise.
     @throws UserError if it cannot be made, or is there"""
+    command_line.refuse_ending(output, "films are .mp4 or .gif")
     has_ffmpeg = shutil.which("ffmpeg") is not None
     if output.suffix not in ENDINGS:
         output = output.with_name(output.name + (".mp4" if has_ffmpeg else ".gif"))

@@ -7,7 +7,7 @@ import os
 import pathlib
 from typing import TYPE_CHECKING, Any
 
-from . import lengths, programs
+from . import lengths, programs, rounded
 from .errors import UserError
 from .groups import Groups
 from .picture import Picture
@@ -42,9 +42,12 @@ class Fit:
         return pandas.DataFrame(flat)
 
     def survival(self, group: int) -> pandas.DataFrame:
-        """P(r) of a group, by its index in `groups`: the probability of not having clogged on a way r [sigma]."""
+        """P(r) of a group, by its index in `groups`: the probability of not having clogged on a way r [sigma].
+        @throws UserError  if there is no such group"""
         import pandas
 
+        if group not in range(len(self.told["groups"])):
+            raise UserError(f"no group {group}; there are {len(self.told['groups'])}, the first is 0")
         return pandas.DataFrame(self.told["groups"][group]["survival"])
 
     def finished(self, source: object = "the sweep") -> Groups:
@@ -65,6 +68,10 @@ class Fit:
     def speeds(self) -> Picture:
         """Mean speeds over the speed of a free droplet, over what the sweep varies. @throws UserError  as drawable()"""
         return Picture(lengths.draw_speeds(self.drawable()))
+
+    def __repr__(self) -> str:
+        groups = self.told["groups"]
+        return f"<fit of {rounded.counted(sum(group.get('runs', 1) for group in groups), 'run')} in {rounded.counted(len(groups), 'group')}>"
 
     def _repr_html_(self) -> str:
         return self.groups._repr_html_()
@@ -87,5 +94,7 @@ def read(path: pathlib.Path, folder: pathlib.Path | None) -> Fit:
         return fitted(programs.programs_in(folder) / "clogfit", path)
     try:
         return Fit(json.loads(content))
-    except (ValueError, KeyError, TypeError) as error:
-        raise UserError(f"cannot read {path} ({error}); give a sweep, or the output of clogfit --format json") from error
+    except ValueError as error:
+        raise UserError(f"cannot read {path} (neither HDF5 nor JSON); give a sweep, or the output of clogfit --format json") from error
+    except (KeyError, TypeError) as error:
+        raise UserError(f"cannot read {path} (JSON, but not of clogfit); give a sweep, or the output of clogfit --format json") from error

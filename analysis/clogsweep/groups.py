@@ -28,7 +28,10 @@ def number(value: float | None) -> str:
 
 
 def symbol(column: Column) -> str:
-    """Of a parameter as clogsweep describes it, with its unit, so that what follows is a pure number; for words the name itself."""
+    """Of a parameter as clogsweep describes it, with its unit, so that what follows is a pure number; for words the name itself.
+    One with an axis of its own is a pure number already, the axis says of what."""
+    if column["symbol"] and column["name"] in style.AXES:
+        return column["symbol"]
     if not column["symbol"]:
         return rf"\mathrm{{{column['name'].replace('_', ' ')}}}".replace(" ", r"\ ")
     return column["symbol"] + (f"/({tex(column['unit'])})" if " " in column["unit"] else f"/{tex(column['unit'])}" if column["unit"] else "")

@@ -21,11 +21,12 @@ def reason(text: str) -> str:
 
 
 def programs_in(folder: str | os.PathLike[str] | None = None) -> pathlib.Path:
-    """Folder of clogsweep, clogrun and clogfit: the user's own choice, or those of the PATH, or those beside this package.
+    """Folder of clogsweep, clogrun and clogfit: the user's own choice, or CLOG_BIN, or those of the PATH, or those beside this package.
 
     @throws UserError  if they are not there
     """
     called = shutil.which("clogsweep")
+    folder = folder or os.environ.get("CLOG_BIN")
     candidates = [pathlib.Path(folder)] if folder else [*([pathlib.Path(called).resolve().parent] if called else []), *places.PROGRAMS]
     for place in candidates:
         if (place / "clogsweep").exists():
@@ -36,11 +37,20 @@ def programs_in(folder: str | os.PathLike[str] | None = None) -> pathlib.Path:
 def add_option(parser: argparse.ArgumentParser) -> None:
     """--programs, for programs_in()."""
     parser.add_argument("--programs", type=pathlib.Path,
-                        help="folder of clogsweep, clogrun and clogfit (that of the PATH, or beside this package)")
+                        help="folder of clogsweep, clogrun and clogfit (CLOG_BIN, that of the PATH, or beside this package)")
 
 
 def run_program(program: str | os.PathLike[str], *arguments: object, ranks: int = 1) -> str:
-    """@return what it prints"""
+    """@return what it prints. @throws ProgramFailed  with its reason"""
+    return _outputs(program, *arguments, ranks=ranks)[0]
+
+
+def warnings_of(program: str | os.PathLike[str], *arguments: object) -> str:
+    """Runs it for what it says on its error stream. @throws ProgramFailed  with its reason"""
+    return _outputs(program, *arguments)[1]
+
+
+def _outputs(program: str | os.PathLike[str], *arguments: object, ranks: int = 1) -> tuple[str, str]:
     command = [str(program), *map(str, arguments)]
     if ranks > 1:
         settings = shlex.quote(str(places.JOBS / "mpi-settings.sh"))
@@ -55,4 +65,4 @@ def run_program(program: str | os.PathLike[str], *arguments: object, ranks: int 
                 continue
     if process.returncode != 0:
         raise ProgramFailed(reason(error or out), process.returncode)
-    return out
+    return out, error

@@ -16,7 +16,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from . import clogs, fit, lengths, passages, places, programs, rounded, stored, style, survival_curve
+from . import clogs, command_line, fit, lengths, passages, places, programs, rounded, stored, style, survival_curve
 from .chart import Charts
 from .errors import UserError
 from .groups import Groups
@@ -260,7 +260,7 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib
     survivals += [chart(incidence(groups, label, members), "ends by cause") for label, members in groups.curves()
                   if len(occurring_causes(members)) > 1]
     ends = [chart(causes(groups, label, members), "ends by cause, shares") for label, members in groups.curves()]
-    shown = examples(clogs.of_polygons(stored.read_rows(sweep), sweep), count)
+    shown = examples(clogs.of_polygons(stored.read_rows(sweep, clogrun.parent), sweep), count)
     return {"Curves": side_by_side(curves), "How far droplets get": side_by_side(survivals), "What becomes of them": side_by_side(ends),
             "Example clogs": example_pictures(shown, sweep, clogrun)}
 
@@ -275,7 +275,7 @@ def of_passages(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathli
     kind = passages.kind_of(groups)
     curves = [framed(charts.draw(passages.draw_curves(groups, column), name), name) for column, name in passages.drawn_columns(groups).items()]
     with tempfile.TemporaryDirectory(prefix="clogsweep-report-") as folder:
-        drawn = passages.draw_outlines(groups, passages.examples(stored.read_rows(sweep), count), clogrun, sweep, folder)
+        drawn = passages.draw_outlines(groups, passages.examples(stored.read_rows(sweep, clogrun.parent), count), clogrun, sweep, folder)
     outlines = side_by_side(picture(figure, f"outline {kind.outline}") for figure in drawn)
     reached = "".join(f"<li>{html.escape(f'{curve}: {said}' if curve else said)}</li>" for curve, said in passages.shares(groups, value))
     return {kind.heading: f"<ul>{reached}</ul>{side_by_side(curves)}", "Outlines": outlines or "<p>None.</p>"}
@@ -305,14 +305,16 @@ def page(name: str, groups: Groups, sections: dict[str, str], progress: str, abo
 
 
 def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: pathlib.Path) -> pathlib.Path:
-    """@param examples  clogs or outlines to show; @param folder  of the programs. @return the output. @throws UserError, ProgramFailed"""
+    """@param examples  clogs or outlines to show; @param folder  of the programs. @return the output; an earlier page is replaced, nothing else.
+    @throws UserError, ProgramFailed"""
+    command_line.refuse_unwritable(output, "html", sweep)
     fitted = fit.fitted(folder / "clogfit", sweep)
     status = json.loads(programs.run_program(folder / "clogsweep", "status", sweep, "--format", "json"))
     groups = fitted.finished(sweep)
     for number, group in enumerate(groups.members):
         group["number"] = number  # by which the page knows each (style.mark())
-    rows = stored.read_table(sweep)
-    with stored.opened(sweep) as file:
+    rows = stored.read_table(sweep, folder)
+    with stored.opened(sweep, folder=folder) as file:
         about = stored.attributes(file)
     sentences = fitted.doubts
     label, tell = (label_of_passage, of_passages) if groups.are_passages else (label_of_length, of_lengths)

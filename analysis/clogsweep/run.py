@@ -8,7 +8,7 @@ import pathlib
 
 import pandas
 
-from . import film, stored, trajectory, vtk, way
+from . import checked, film, stored, trajectory, vtk, way
 from .picture import Picture
 
 
@@ -51,6 +51,7 @@ class Run:
 
     def picture(self, outlines: int = 12) -> Picture:
         """So many moments of the run in one picture. @throws UserError  if there are no outlines"""
+        checked.whole("outlines", outlines, 1)
         trajectory.require_frames(self.trajectory)
         return Picture(way.draw(self.trajectory, outlines))
 
@@ -59,10 +60,14 @@ class Run:
 
         @param output  its file: .mp4 (needs ffmpeg), .gif, or without an ending either of them
         @param colour  "speed" of the interface, or "mechanism": the last frame shows how the droplet clogged
-        @param rate  frames a second
+        @param rate  frames a second; @param most_frames  a longer run is thinned
         @param size  "540p", "1080p" or "2160p", of the frames; 1080p if it is not given, 540p of a .gif
         @throws UserError  if it cannot be made
         """
+        checked.one_of("colour", colour, film.COLOURS)
+        checked.one_of("size", size, (*film.SIZES, None))
+        checked.whole("rate", rate, 1)
+        checked.whole("most_frames", most_frames, 1)
         trajectory.require_frames(self.trajectory)
         path = film.path_of(pathlib.Path(output))
         moving = film.Film(self.trajectory, film.chosen_frames(self.trajectory, most_frames), colour, rate, size or film.size_for(path))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import os
 import re
 import sys
@@ -13,7 +14,8 @@ from typing import TYPE_CHECKING
 import h5py
 import numpy as np
 
-from .errors import Damaged, UserError
+from . import programs
+from .errors import Damaged, ProgramFailed, UserError
 from .hints import AnyPath, Records
 
 if TYPE_CHECKING:
@@ -27,26 +29,16 @@ WRITERS: dict[str | None, str] = {
     SWEEP: "the output of clogsweep", RUN: "the output of clogrun with --polygon-interval", None: "a file of clogsweep or clogrun"}
 
 
-def is_sealed(path: AnyPath) -> bool | None:
-    """Is every bit of the file as it was written? None: its end does not say. @throws Damaged if not"""
+def is_sealed(path: AnyPath) -> bool:
+    """Is every bit of the file as it was written? Or does its end not say? @throws Damaged if it is not"""
     with open(path, "rb") as file:
         content = file.read()
     seal = SEAL.fullmatch(content[-SEAL_SIZE:])
     if not seal:
-        return None
+        return False
     if (int(seal[1], 16), int(seal[2])) != (zlib.crc32(content[:-SEAL_SIZE]), len(content) - SEAL_SIZE):
         raise Damaged(f"cannot trust {path} (damaged: its checksum is not that of its bytes); see clogsweep verify")
     return True
-
-
-def check_rows(path: AnyPath, file: h5py.File) -> None:
-    """Of a file without a seal: every row and every attribute against its own checksum. @throws Damaged"""
-    rows, sums = file["runs"][:], file["row_checksums"][:]
-    listed = {name: digits for digits, name in (line.split(" ", 1) for line in text(file.attrs["checksums"]).splitlines())}
-    actual = {name: zlib.crc32(text(file.attrs.get(name, "")).encode()) for name in listed if not name.endswith(" rows")}
-    actual[f"{len(rows)} rows"] = zlib.crc32(sums.tobytes())
-    if actual != {name: int(digits, 16) for name, digits in listed.items()} or [zlib.crc32(row.tobytes()) for row in rows] != sums.tolist():
-        raise Damaged(f"cannot trust {path} (damaged: rows or attributes are not as they were written); see clogsweep verify")
 
 
 def text(value: object) -> str:
@@ -58,9 +50,14 @@ def unreadable(path: AnyPath, reason: object, kind: str | None = None) -> UserEr
     return UserError(f"cannot read {path} ({reason}); give {WRITERS[kind]}")
 
 
+def is_table(part: object) -> bool:
+    """With a row for each of something, and named columns? What pandas writes of its own is a group."""
+    return isinstance(part, h5py.Dataset) and part.ndim == 1 and part.dtype.names is not None
+
+
 def check_kind(path: AnyPath, file: h5py.File, kind: str | None) -> None:
     """@throws UserError"""
-    if "runs" not in file:
+    if "format_version" not in file.attrs or not all(is_table(file[name]) for name in ("runs", "trajectory") if name in file) or "runs" not in file:
         raise unreadable(path, "an HDF5 file, but not one of clogsweep or clogrun", kind)
     if kind == SWEEP and "trajectory" in file:
         raise unreadable(path, "holds one run of clogrun, not a sweep", kind)
@@ -68,21 +65,51 @@ def check_kind(path: AnyPath, file: h5py.File, kind: str | None) -> None:
         raise unreadable(path, "holds a sweep, not one run of clogrun", kind)
 
 
-def kind_of(path: AnyPath) -> str:
+def kind_of(path: AnyPath, folder: AnyPath | None = None) -> str:
     """SWEEP or RUN. @throws as opened()"""
-    with opened(path) as file:
+    with opened(path, folder=folder) as file:
         return RUN if "trajectory" in file else SWEEP
 
 
-def check_checksums(path: AnyPath, file: h5py.File, sealed: bool | None) -> None:
-    """Makes the second of the checks, unless the first has been made. @throws Damaged"""
-    if text(file.attrs.get("format_version", "")) in OLD_VERSIONS:
+def rehearse(path: AnyPath) -> None:
+    """Reads all of a file in a process that may die, as HDF5 does of some damage. @throws Damaged if it does"""
+    process = os.fork()
+    if process == 0:
+        code = 1
+        with contextlib.suppress(Exception), open(os.devnull, "w") as nowhere:
+            os.dup2(nowhere.fileno(), 2)
+            with h5py.File(path, "r") as file:
+                attributes(file)
+                file.visititems(lambda _, part: part[()] if isinstance(part, h5py.Dataset) else None)
+            code = 0
+        os._exit(code)
+    if os.waitpid(process, 0)[1] != 0:
+        raise Damaged(f"cannot trust {path} (damaged: reading it fails); put a copy in its place")
+
+
+def ask_clogsweep(path: AnyPath, folder: AnyPath | None) -> None:
+    """Has the program check rows, attributes and types of a sweep, and say what it has to say. @throws Damaged"""
+    try:
+        said = programs.warnings_of(programs.programs_in(folder) / "clogsweep", "status", path, "--format", "json")
+    except ProgramFailed as failure:
+        raise Damaged(str(failure).removeprefix("clogsweep status: ")) from failure
+    print(said, end="", file=sys.stderr)
+
+
+@functools.lru_cache
+def check_copy(path: str, folder: str | None, _changed: int) -> None:
+    """Of a file without a seal, which another program has copied or changed. Once for each, as it was then. @throws Damaged; UserError"""
+    rehearse(path)
+    with h5py.File(path, "r") as file:
+        is_old = text(file.attrs.get("format_version", "")) in OLD_VERSIONS
+        is_run = "trajectory" in file
+    if is_run and is_old:
         print(f"{path} is of an older format without checksums: damage to it may go unnoticed", file=sys.stderr)
-    elif not sealed:
-        try:
-            check_rows(path, file)
-        except (KeyError, ValueError, OSError) as error:
-            raise Damaged(f"cannot trust {path} (damaged: {error}); see clogsweep verify") from error
+    elif is_run:
+        raise UserError(f"cannot trust {path} (another program copied or changed it, and outlines have no checksums of their own); "
+                        "give the file that clogrun wrote, or run the droplet once more")
+    else:
+        ask_clogsweep(path, folder)
 
 
 def why_not_open(path: AnyPath, error: OSError) -> str:
@@ -92,10 +119,15 @@ def why_not_open(path: AnyPath, error: OSError) -> str:
 
 
 @contextlib.contextmanager
-def opened(path: AnyPath, kind: str | None = None) -> Iterator[h5py.File]:
-    """The file for h5py, read only. @param kind  SWEEP or RUN, if only that will do. @throws Damaged; UserError if it cannot be read"""
+def opened(path: AnyPath, kind: str | None = None, folder: AnyPath | None = None) -> Iterator[h5py.File]:
+    """The file for h5py, read only. @param kind  SWEEP or RUN, if only that will do; @param folder  of the programs.
+    @throws Damaged; UserError if it cannot be read"""
+    if os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path):
+        raise unreadable(path, "not a regular file: a pipe, device or socket", kind)  # which may never end
     try:
-        sealed = is_sealed(path)
+        is_whole = is_sealed(path)
+        if h5py.is_hdf5(path) and not is_whole:
+            check_copy(str(path), str(folder) if folder else None, os.stat(path).st_mtime_ns)
         opened_file = h5py.File(path, "r")
     except FileNotFoundError as error:
         raise UserError(f"cannot read {path} (no such file); check the name") from error
@@ -104,7 +136,6 @@ def opened(path: AnyPath, kind: str | None = None) -> Iterator[h5py.File]:
     with opened_file as file:
         try:
             check_kind(path, file, kind)
-            check_checksums(path, file, sealed)
             yield file
         except (OSError, KeyError, ValueError) as error:
             raise unreadable(path, error, kind) from error
@@ -125,9 +156,9 @@ def columns_of(rows: Records | np.void) -> tuple[str, ...]:
     return rows.dtype.names or ()
 
 
-def read_rows(path: AnyPath) -> Records:
+def read_rows(path: AnyPath, folder: AnyPath | None = None) -> Records:
     """The table of runs, one record per run. @throws as opened()"""
-    with opened(path) as file:
+    with opened(path, folder=folder) as file:
         return file["runs"][:]
 
 
@@ -137,9 +168,9 @@ def unit(meaning: str) -> str:
     return found[1] if found else ""
 
 
-def read_table(path: AnyPath) -> pandas.DataFrame:
+def read_table(path: AnyPath, folder: AnyPath | None = None) -> pandas.DataFrame:
     """The same for pandas, with text as text. `attrs` of the table holds the columns' `units` and `meanings`, by name."""
-    with opened(path) as file:
+    with opened(path, folder=folder) as file:
         return table_of(file)
 
 

@@ -10,7 +10,7 @@ import tempfile
 from collections.abc import Collection
 from typing import Any
 
-from . import clogs, fit, poster, programs, replays, report, stored
+from . import checked, clogs, fit, poster, programs, replays, report, stored
 from .errors import UserError
 from .picture import Picture
 from .run import Run
@@ -31,7 +31,7 @@ class Sweep:
         @throws UserError  if the file is no sweep or is damaged"""
         self.path = pathlib.Path(path)
         self._programs = programs
-        with stored.opened(self.path, stored.SWEEP) as file:
+        with stored.opened(self.path, stored.SWEEP, programs) as file:
             self._records = file["runs"][:]
             self.rows = stored.table_of(file)
             self.attributes: dict[str, str] = stored.attributes(file)
@@ -62,6 +62,8 @@ class Sweep:
         @param most  so many at most, the first; @param jobs  runs at a time
         @throws UserError  if there are none
         """
+        checked.whole("most", most, 1)
+        checked.whole("jobs", jobs, 1)
         rows = clogs.chosen(clogs.of_polygons(self._records, self.path), self.path, mechanism=mechanism, tasks=tasks, most=most)
         return clogs.run_all(self._program("clogrun"), self.path, rows, jobs)
 
@@ -77,7 +79,9 @@ class Sweep:
             return self.replay(task, pathlib.Path(folder) / f"{self.path.stem}-{task}.h5", interval=interval)
 
     def report(self, output: str | os.PathLike[str], examples: int = 4) -> pathlib.Path:
-        """Writes a page of HTML about the sweep. @param examples  clogs to be shown. @return its file. @throws UserError"""
+        """Writes a page of HTML about the sweep; an earlier one is replaced, nothing else. @param examples  clogs to be shown. @return its file.
+        @throws UserError"""
+        checked.whole("examples", examples, 0)
         return report.write(self.path, pathlib.Path(output), examples, programs.programs_in(self._programs))
 
     def poster(self) -> Picture:

@@ -13,12 +13,16 @@
 #include "clog/console/signals.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/memory.hpp"
 
 namespace clog::cli {
 
 using namespace console;
 
 namespace {
+
+/// Of the libraries, before anything is read or computed.
+constexpr std::size_t least_memory = 32'000'000;
 
 /// ISO 8601.
 std::string utc_now() {
@@ -33,6 +37,7 @@ std::string utc_now() {
 
 int run_program(const std::string& program, const std::function<int()>& body) {
   try {
+    require_memory("start", least_memory);
     const int exit_code = body();
     flush_output();
     return exit_code;

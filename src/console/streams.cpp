@@ -19,6 +19,7 @@ void prepare_streams() {
     if (fcntl(descriptor, F_GETFD) < 0 && open("/dev/null", O_RDWR) != descriptor)
       std::_Exit(exit_user_fault);  // there may be nowhere to say why
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file as large as ulimit -f allows is one that cannot be written
   std::cout.exceptions(std::ios_base::badbit);
   std::cerr.tie(nullptr);  // what is wrong is told, whether the output can be written or not
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <cstddef>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -19,6 +20,7 @@
 #include "clog/console/signals.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/memory.hpp"
 #include "clog/host/examination.hpp"
 #include "clog/parallel/communicator.hpp"
 #include "clog/parallel/isolated_jobs.hpp"
@@ -34,6 +36,7 @@ using namespace clog;
 using namespace clog::programs;
 
 constexpr const char* program = "clogsweep";
+constexpr std::size_t memory_of_mpi = 400'000'000;  // Open MPI 4.1 may crash with 200 MB
 constexpr const char* usage = R"(clogsweep runs droplets through obstacle arrays for every combination of the
 given values, on all MPI ranks, and gathers the results in one HDF5 table.
 
@@ -145,6 +148,7 @@ int main(int argc, char** argv) {
   console::catch_stop_signals();  // one that comes before the sweep begins stops it then
   std::optional<parallel::IsolatedJobs> isolated;
   const int exit_code = cli::run_program(program, [&] {
+    require_memory("start MPI", memory_of_mpi);
     isolated.emplace(conduct::assigned_jobs);  // before MPI begins
     return console::exit_success;
   });

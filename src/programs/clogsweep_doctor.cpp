@@ -7,6 +7,7 @@
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/printable.hpp"
 #include "clog/host/examination.hpp"
+#include "clog/store/regular_file.hpp"
 #include "clogsweep_commands.hpp"
 
 namespace clog::programs {
@@ -50,6 +51,7 @@ int clogsweep_doctor(const parallel::Communicator& ranks, int argc, const char* 
                          "where the sweep will write");
       line.parse(argc - 1, argv + 1);
       is_answered = cli::answer_help_or_version(line, {});
+      store::require_regular(line.get("output"));
       return console::exit_success;
     });
   const bool is_over = is_answered || exit_code != console::exit_success;

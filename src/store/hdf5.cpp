@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/memory.hpp"
 #include "clog/store/regular_file.hpp"
 #include "clog/store/run_table.hpp"
 #include "draft.hpp"
@@ -31,6 +32,11 @@ void prepare_library() {
     return true;
   }();
   if (is_prepared) H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // of this thread
+}
+
+void require_memory_of_file(const std::string& purpose, std::size_t size) {
+  constexpr std::size_t image_and_copies = 6, of_the_library = 16'000'000;
+  require_memory(purpose, image_and_copies * size + of_the_library);
 }
 
 namespace {
@@ -109,6 +115,7 @@ std::vector<std::byte> read_file(const std::string& path) {
   try {
     struct stat status {};
     check(fstat(descriptor, &status) == 0, "read", path);
+    require_memory_of_file("read " + path, static_cast<std::size_t>(status.st_size));
     std::vector<std::byte> bytes(static_cast<std::size_t>(status.st_size));
     read_at(descriptor, bytes, 0, path);
     close(descriptor);

@@ -43,6 +43,11 @@ using PropertyList = Handle<H5Pclose>;
 /// has the file open must not make a row fail to be written; they also fail on many cluster file systems).
 void prepare_library();
 
+/// The library takes several times as much memory as a file has bytes, and may crash where there is none.
+/// @param purpose  as in "read sweep.h5"; @param size  of the file [bytes]
+/// @throws Error if there is not so much
+void require_memory_of_file(const std::string& purpose, std::size_t size);
+
 /// Has a file of the earliest format filled in memory, writes it as a draft with a seal at its end and
 /// publishes it: the path never holds half a file. @throws Error if the path exists or cannot be written
 void create_whole(const std::string& path, const std::function<void(hid_t file)>& fill);

@@ -133,6 +133,7 @@ std::string library_version() {
 
 void publish_sweep(const std::string& path, std::span<const RunRow> rows, const Provenance& provenance,
                    std::span<const CircleFile> circles) {
+  require_memory_of_file("write " + path, rows.size() * RowLayout::present().size());
   replace_whole(path, [&](hid_t file) {
     write_runs(file, file_kind, rows, provenance, path);
     write_circles(file, circles, path);

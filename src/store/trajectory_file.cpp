@@ -155,6 +155,10 @@ TrajectoryTable read_trajectory(const std::string& path) {
 }
 
 void write_trajectory(const std::string& path, const Trajectory& trajectory) {
+  std::size_t numbers = 3 * trajectory.obstacles.size();
+  for (const TrajectoryColumn& column : trajectory.columns) numbers += column.values.size();
+  for (const PolygonFrame& frame : trajectory.polygons) numbers += frame.position.size() + 1;
+  require_memory_of_file("write " + path, numbers * sizeof(double));
   create_whole(path, [&](hid_t file) {
     write_columns(file, trajectory.columns);
     if (!trajectory.polygons.empty()) write_polygons(file, trajectory.polygons);

@@ -13,6 +13,7 @@
 #include "clog/core/model/model.hpp"
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/polygon/stability.hpp"
+#include "clog/core/run/dwell_record.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
@@ -29,6 +30,15 @@ constexpr double round_off = 1e-9;
 /// Of a polygon that has neither burst nor lost its area.
 constexpr double most_shape =
     burst_perimeter * burst_perimeter / (4 * std::numbers::pi * units::rest_area * (1 - diverged_area_error));
+
+/// Of whoever waits for a run: a hundred years [s].
+constexpr double longest_patience = 3.2e9;
+
+/// Of obstacles, gaps and arcs. No droplet lies on more.
+constexpr std::int64_t most_contacts = 1'000'000;
+
+/// The same as a part of the weight: x^2/16 of an edge as long as the droplet, on a needle.
+constexpr double most_mesh_hold = 1e6;
 
 bool is_number_below(double value, double bound) { return std::isfinite(value) && std::abs(value) <= bound; }
 
@@ -67,7 +77,8 @@ std::string bookkeeping_fault(const RunRow& row) {
   if (row.task < 0) return "a negative task";
   if (row.rank < 0) return "a negative rank";
   if (row.attempt < 1) return "an attempt before the first";
-  if (!(std::isfinite(row.wall_seconds) && row.wall_seconds >= 0))
+  if (row.model_version < 1) return fmt::format("model_version={} is none", row.model_version);
+  if (!(row.wall_seconds >= 0 && row.wall_seconds <= longest_patience))
     return named("wall_seconds", row.wall_seconds) + " is no time";
   return "";
 }
@@ -105,8 +116,8 @@ std::string motion_fault(const RunRow& row) {
   const double travel_time = std::isnan(row.travel_time) ? time_step_of(row) : row.travel_time;
   if (!std::isnan(row.mean_speed) && !is_number_below(row.mean_speed * travel_time, 2 * farthest))
     return named("mean_speed", row.mean_speed) + " is faster than a droplet can be";
-  if (!std::isnan(row.mean_speed_error) &&
-      !(std::isfinite(row.mean_speed_error) && row.mean_speed_error >= 0))
+  const double fastest = std::sqrt(diverged_energy_ratio) * row.parameters.drag.terminal_speed;
+  if (!std::isnan(row.mean_speed_error) && !(row.mean_speed_error >= 0 && row.mean_speed_error <= fastest))
     return named("mean_speed_error", row.mean_speed_error) + " is no error";
   return "";
 }
@@ -137,7 +148,11 @@ std::string dwells_fault(const RunRow& row) {
   const bool is_known = !std::isnan(dwells.known_from);
   if (std::isnan(dwells.last_distance) == is_known || std::isnan(dwells.last_begin) == is_known)
     return "dwells_known_from, last_dwell_at, last_dwell_from: only some are known";
-  if (is_known && !(dwells.known_from > 0 && dwells.known_from < infinity))
+  // A run too short for any dwell that is kept is over before this time.
+  const RunParameters& run = row.parameters;
+  const double first = DwellRecord::shortest * run.dwell_length / run.drag.terminal_speed;
+  if (is_known &&
+      !(dwells.known_from > 0 && dwells.known_from <= (1 + round_off) * std::max(first, row.time)))
     return named("dwells_known_from", dwells.known_from) + " is no time";
   if (std::string fault = dwell_begin_fault(row, "last_dwell", dwells.last_distance, dwells.last_begin);
       !fault.empty())
@@ -181,9 +196,11 @@ std::string clog_fault(const RunRow& row) {
   if (!std::isnan(row.wrapped_support) &&
       !(is_clogged && row.wrapped_support >= 0 && row.wrapped_support <= 1 + round_off))
     return named("wrapped_support", row.wrapped_support) + " is no share of a clog's support";
-  if (!std::isnan(row.mesh_hold) && !(is_clogged && row.mesh_hold >= 0 && std::isfinite(row.mesh_hold)))
+  if (!std::isnan(row.mesh_hold) && !(is_clogged && row.mesh_hold >= 0 && row.mesh_hold <= most_mesh_hold))
     return named("mesh_hold", row.mesh_hold) + " is no part of a clogged droplet's weight";
-  if (std::min({row.num_wrapped, row.num_gaps, row.num_arcs}) < -1) return "a negative number of contacts";
+  const auto [fewest, most] = std::minmax({row.num_wrapped, row.num_gaps, row.num_arcs});
+  if (fewest < -1) return "a negative number of contacts";
+  if (most > most_contacts) return fmt::format("{} contacts are more than a droplet has", most);
   return "";
 }
 

@@ -3,7 +3,6 @@
 import contextlib
 import os
 import resource
-import signal
 import subprocess
 
 from launch import command, quoted, run
@@ -19,7 +18,6 @@ def limit_files(size):
     """What a process writes beyond it fails, as on a full disk."""
     def prepare():
         os.environ["UCX_TLS"] = "self,tcp"  # MPICH's shared memory is of files, too
-        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
     return prepare
 

@@ -1,5 +1,5 @@
-"""The version is the same wherever it is written: in `CMakeLists.txt`, in `CITATION.cff`, in the recipe for Spack and,
-as the newest release, in `CHANGELOG.md`, which has the date of `CITATION.cff`, too.
+"""The version is the same wherever it is written: in `CMakeLists.txt`, in `CITATION.cff`, in the Python module, in the
+recipe for Spack and, as the newest release, in `CHANGELOG.md`, which has the date of `CITATION.cff`, too.
 
     tests/lint/versions.py ROOT
 """
@@ -14,6 +14,7 @@ WRITTEN = {
     "version": {
         "CMakeLists.txt": rf"^project\(clogsweep VERSION {NUMBER} ",
         "CITATION.cff": rf"^version: {NUMBER}$",
+        "analysis/clogsweep/__init__.py": rf'^__version__ = "{NUMBER}"$',
         "CHANGELOG.md": rf"^## \[{NUMBER}\]",
         "cmake/spack/spack_repo/clogsweep/packages/clogsweep/package.py": rf'^    version\("{NUMBER}", tag="v\1"\)$',
     },

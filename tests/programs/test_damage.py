@@ -1,9 +1,10 @@
 """Files that are not as they were written: who reads them notices, and what is whole can be kept."""
 
+import contextlib
+import io
 import os
 import resource
 import shutil
-import signal
 import struct
 import subprocess
 import sys
@@ -15,10 +16,21 @@ import stored_rows
 from support import BIN, QUICK, ROOT, ProgramTest, table
 
 sys.path.insert(0, str(ROOT / "analysis"))
+import clogsweep  # noqa: E402
 from clogsweep import stored  # noqa: E402
 
 SETTINGS = [*QUICK, "line-tension=0.5,2", "seeds=1..3", "--output", "s.h5"]
 READERS = [("clogsweep", "status", "s.h5"), ("clogsweep", "replay", "s.h5", 0), ("clogfit", "s.h5"), ("clogsweep", *SETTINGS)]
+
+
+def limit_memory(size):
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    resource.setrlimit(resource.RLIMIT_AS, (size, size))
+
+
+def may_limit_memory():
+    """Programs with sanitizers map more than any machine has."""
+    return subprocess.run([BIN / "clogfit", "--version"], capture_output=True, preexec_fn=lambda: limit_memory(2**31)).returncode == 0
 
 
 class Damage(ProgramTest):
@@ -86,11 +98,63 @@ class Damage(ProgramTest):
         with h5py.File(self.folder / "copy.h5", "r+") as copy:
             rows["distance"][2] *= 16
             copy["runs"][:] = rows
-        with self.assertRaises(stored.Damaged):
+        with self.assertRaisesRegex(stored.Damaged, "row 2 .task 2."):
             stored.read_rows(self.folder / "copy.h5")
         done = self.run_program("clogfit", "copy.h5")
         self.assertEqual(done.returncode, 2)
         self.assertIn("row 2 (task 2)", done.stderr)
+
+    def copied(self):
+        """The file as another program writes it: all is there, but no seal."""
+        content = self.file.read_bytes()
+        copy = self.folder / "copy.h5"
+        copy.write_bytes(content[:content.rindex(b"\nclogsweep seal")])
+        return copy
+
+    def test_python_does_not_read_a_copy_whose_description_is_damaged(self):
+        """Checksums are of bytes: other names, types or places would make other numbers of them."""
+        copy = self.copied()
+        whole = copy.read_bytes()
+        self.assertEqual(len(clogsweep.open(copy).rows), 6)
+        begin = whole.index(b"distance\0")
+        refused = 0
+        for place in range(begin, begin + 60):
+            content = bytearray(whole)
+            content[place] ^= 1 << place % 7
+            copy.write_bytes(content)
+            with self.subTest(place=place - begin), contextlib.redirect_stderr(io.StringIO()):
+                if self.run_program("clogsweep", "status", "copy.h5").returncode == 0:
+                    pandas.testing.assert_frame_equal(clogsweep.open(copy).rows, clogsweep.open(self.file).rows)
+                else:
+                    refused += 1
+                    with self.assertRaises(clogsweep.UserError):
+                        clogsweep.open(copy)
+        self.assertGreater(refused, 15)
+
+    def test_python_reads_the_copy_of_a_run_only_if_nobody_can_tell_more(self):
+        self.succeed("clogrun", "array", *QUICK, "seeds=1", "--output", "r.h5", "--polygon-interval", 5)
+        run = self.folder / "r.h5"
+        content = run.read_bytes()
+        run.write_bytes(content[:content.rindex(b"\nclogsweep seal")])
+        with self.assertRaisesRegex(clogsweep.UserError, "cannot trust .*r.h5 .another program copied or changed it"):
+            clogsweep.open(run)
+
+    def test_little_memory_is_no_damage_and_no_crash(self):
+        """HDF5 and Open MPI crash where memory ends; a file that it did not suffice for was called damaged."""
+        if not may_limit_memory():
+            return
+        sweep = [*SETTINGS[:-1], "new.h5"]
+        told = []
+        for megabytes in [*range(30, 100, 6), 128, 200, 300]:
+            for name, *arguments in [("clogfit", "s.h5"), ("clogsweep", "verify", "s.h5"), ("clogsweep", *sweep)]:
+                done = subprocess.run([BIN / name, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True,
+                                      preexec_fn=lambda size=megabytes * 2**20: limit_memory(size))
+                with self.subTest(program=name, arguments=arguments[:1], megabytes=megabytes):
+                    self.assertIn(done.returncode, (0, 2, 127), done.stderr)  # 127: its libraries are not even loaded
+                    self.assertNotIn("damaged", done.stderr)
+                told.append((done.returncode, "out of memory" in done.stderr))
+        self.assertIn((2, True), told)
+        self.assertIn((0, False), told)
 
     def test_old_files_are_read_with_a_word(self):
         stored_rows.make_older(self.file, "4")
@@ -114,8 +178,7 @@ class Damage(ProgramTest):
 
     def test_a_full_disk_ends_with_exit_code_2(self):
         def limit():
-            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-            resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
+            resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))  # SIGXFSZ is not ignored
 
         for name, *arguments in [("clogsweep", *SETTINGS[:-1], "new.h5"), ("clogrun", "array", *QUICK, "seeds=1", "--output", "run.h5")]:
             # Neither a daemon of Open MPI nor shared memory of MPICH that meet the limit, too.

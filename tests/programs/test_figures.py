@@ -442,7 +442,7 @@ class Pictures(Analysis):
             (["text.h5", "--output", "page.html"], ["text.h5", "not an HDF5 file"]),
             (["s.h5", "--output", "nowhere/page.html"], ["no folder nowhere"]),
             (["s.h5", "--output", "folder"], ["is a folder"]),
-            (["s.h5", "--output", "/dev/full"], ["/dev/full", "No space left"]),
+            (["s.h5", "--output", "/dev/full"], ["/dev/full", "not a regular file"]),
             (["s.h5", "--output", "page.html", "--colour", "red"], ["--colour red", "--help"]),
             (["s.h5", "--output", "page.html", "--examples", "-1"], ["--examples", "-1"]),
             (["s.h5", "--output", "page.html", "--programs", "folder"], ["no clogsweep in folder"]),

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 
+import h5py
 import numpy as np
 import pandas
 
@@ -113,6 +114,13 @@ class Module(Analysis):
         self.write("t.csv", "a,b\n")
         with self.assertRaisesRegex(clogsweep.UserError, "not an HDF5 file"):
             clogsweep.open(self.folder / "t.csv")
+        pandas.DataFrame({"a": [1]}).to_hdf(self.folder / "p.h5", key="runs")
+        with h5py.File(self.folder / "f.h5", "w") as file:
+            file["runs"] = [1.0, 2.0]
+            file.attrs["format_version"] = "3"
+        for name in ("p.h5", "f.h5"):
+            with self.assertRaisesRegex(clogsweep.UserError, f"cannot .*{name}"):
+                clogsweep.open(self.folder / name)
 
     def test_a_sweep_of_channels_has_rows_but_no_lengths(self):
         self.succeed("clogsweep", "obstacle-layout=channel", "orifice=0.6", "line-tension=1", "max-time=50", "--output", "s.h5")
@@ -125,6 +133,39 @@ class Module(Analysis):
 
     def test_a_report_is_that_of_clogfit(self):
         self.assertIn("<h2>Curves</h2>", self.sweep().report(self.folder / "r.html", examples=0).read_text())
+
+    def test_a_report_takes_no_other_file_s_place(self):
+        sweep = self.sweep()
+        self.write("notes.html", "my notes")
+        before = self.snapshot()
+        for name in ("s.h5", "notes.html"):
+            with self.subTest(name), self.assertRaisesRegex(clogsweep.UserError, f"will not overwrite .*{name}"):
+                sweep.report(self.folder / name, examples=0)
+        self.assertEqual(self.snapshot(), before)
+
+    def test_arguments_that_cannot_be_are_named(self):
+        sweep, run = self.sweep(), self.run_of_one_droplet("--polygon-interval", 10)
+        film = self.folder / "film.gif"
+        for words, call in {
+            "invalid rate: 0 .must be a whole number, 1 or more": lambda: run.film(film, rate=0),
+            "invalid most_frames: 1.5": lambda: run.film(film, most_frames=1.5),
+            "invalid size: 9p .must be 540p or 1080p or 2160p": lambda: run.film(film, size="9p"),
+            "invalid colour: red": lambda: run.film(film, colour="red"),
+            "films are .mp4 or .gif": lambda: run.film(self.folder / "film.avi"),
+            "pictures are .png and .pdf": lambda: run.picture().save(self.folder / "way.jpg"),
+            "invalid outlines: 0": lambda: run.picture(0),
+            "invalid most: 0": lambda: sweep.clogs(most=0),
+            "invalid jobs: 0": lambda: sweep.clogs(jobs=0),
+            "invalid examples: -1": lambda: sweep.report(self.folder / "r.html", examples=-1),
+            "no group 2; there are 2, the first is 0": lambda: sweep.fit().survival(2),
+        }.items():
+            with self.subTest(words), self.assertRaisesRegex(clogsweep.UserError, words):
+                call()
+
+    def test_what_it_is_can_be_seen(self):
+        self.assertEqual(repr(self.sweep().fit()), "<fit of 8 runs in 2 groups>")
+        self.assertIn("Sweep", dir(clogsweep))
+        self.assertIn(f"clogsweep {clogsweep.__version__} ", self.succeed("clogsweep", "--version").stdout)
 
     def test_programs_that_are_not_there_are_asked_for(self):
         self.sweep()

@@ -122,7 +122,7 @@ class Looks(Analysis):
         self.assert_title_is_whole(drawing)
         axes, = drawing.axes
         self.assertIn("moved by $0.05", axes.get_xlabel())
-        self.assertEqual([curve.get_label() for curve in axes.containers], [r"$\Gamma/(g\,\rho\,\sigma^2) = 0.05$", r"$\Gamma/(g\,\rho\,\sigma^2) = 0.3$"])
+        self.assertEqual([curve.get_label() for curve in axes.containers], [r"$\Gamma = 0.05$", r"$\Gamma = 0.3$"])
         soft, stiff = axes.containers
         # No soft droplet stands: bounds, as open triangles.
         self.assertTrue(np.isnan(soft.lines[0].get_xydata()[:, 1]).all())

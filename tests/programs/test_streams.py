@@ -4,9 +4,13 @@ import os
 import signal
 import socket
 import subprocess
+import sys
 import unittest
 
-from support import BIN, MPI, MPIRUN, QUICK, SLOW, SweepTest, table
+from support import BIN, MPI, MPIRUN, QUICK, ROOT, SLOW, SweepTest, table
+
+sys.path.insert(0, str(ROOT / "analysis"))
+import clogsweep  # noqa: E402
 
 SMALL_SWEEP = [*QUICK, "seeds=1..3", "--verbose", "--output", "s.h5"]
 # Everything that prints and ends.
@@ -99,6 +103,10 @@ class Streams(SweepTest):
         told += self.succeed("clogsweep", "status", name).stdout + self.succeed("clogsweep", "verify", name).stdout
         self.assertNotIn("\x1b", told)
         self.assertEqual(told.count("\\x1b[2J.h5"), 3)
+        for words in (["--examples", "\x1b[31m\x07"], ["--b\x1bus"], ["--output", "\x1b/r.html"]):
+            told = self.run_program("clogfit", "report", name, *words).stderr
+            self.assertIn("\\x1b", told)
+            self.assertNotIn("\x1b", told)
 
 
 class Files(SweepTest):
@@ -114,10 +122,14 @@ class Files(SweepTest):
         for name in self.make_others():
             for command in (["clogsweep", *QUICK, "--output", name], ["clogsweep", "status", name],
                             ["clogsweep", "verify", name], ["clogsweep", "replay", name, "0"], ["clogfit", name],
-                            ["clogfit", "report", name, "--output", "report.html"]):
+                            ["clogfit", "report", name, "--output", "report.html"], ["clogsweep", "doctor", "--output", name]):
                 with self.subTest(command):
                     self.refuse(*command, words=[name, "not a regular file"])
             self.refuse("clogrun", "array", *QUICK, "--output", name, words=["will not overwrite " + name])
+        self.succeed("clogsweep", *SMALL_SWEEP)
+        self.refuse("clogfit", "report", "s.h5", "--output", "pipe", words=["cannot write pipe", "not a regular file"])
+        with self.assertRaisesRegex(clogsweep.UserError, "pipe .not a regular file"):
+            clogsweep.open(self.folder / "pipe")
 
     def test_only_regular_files_are_journals(self):
         self.succeed("clogsweep", *SMALL_SWEEP)

@@ -32,7 +32,7 @@ def body() -> int:
     parser.add_argument("--outlines", type=command_line.whole(1), default=12, help="how many moments to show in a picture (12)")
     parser.add_argument("--film", action="store_true", help="a film instead: .mp4 (ffmpeg) or .gif")
     parser.add_argument("--pictures", action="store_true", help="numbered pictures in OUTPUT-frames instead")
-    parser.add_argument("--colour", choices=["speed", "mechanism"], default="speed", help="of the droplet in a film (speed)")
+    parser.add_argument("--colour", choices=film.COLOURS, default="speed", help="of the droplet in a film (speed)")
     parser.add_argument("--rate", type=command_line.whole(1), default=20, help="frames of a film a second (20)")
     parser.add_argument("--most-frames", type=command_line.whole(1), default=600, help="of a film (600)")
     parser.add_argument("--size", choices=film.SIZES, help="of the frames (1080p; that of a .gif 540p)")

@@ -14,7 +14,7 @@ from . import sweep_to_draw
 
 def body() -> int:
     arguments = sweep_to_draw(__doc__, "dwell")
-    with stored.opened(arguments.sweep, stored.SWEEP):
+    with stored.opened(arguments.sweep, stored.SWEEP, arguments.programs):
         pass
     picture = dwell.picture(programs.programs_in(arguments.programs) / "clogfit", arguments.sweep)
     print(f"{picture.save(arguments.output)} (and .pdf)")

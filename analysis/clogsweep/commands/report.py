@@ -19,6 +19,5 @@ def body() -> int:
     programs.add_option(parser)
     arguments = parser.parse_args()
     output = arguments.output or command_line.beside(arguments.sweep, "report.html")
-    command_line.refuse_unwritable(output, "html", arguments.sweep)
     print(report.write(arguments.sweep, output, arguments.examples, programs.programs_in(arguments.programs)))
     return 0
