@@ -1,8 +1,13 @@
 """How Sphinx makes the site of these pages: docs/build.sh."""
 
 import pathlib
+import posixpath
 import re
 import sys
+
+from docutils import nodes
+from sphinx import addnodes
+from sphinx.transforms.post_transforms import SphinxPostTransform
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
@@ -39,9 +44,61 @@ myst_update_mathjax = False
 mathjax2_config = {"tex2jax": {"processClass": "tex2jax_process|mathjax_process|math"}}
 copybutton_prompt_text = r"\$ "
 copybutton_prompt_is_regexp = True
-man_pages = [(f"reference/{name}", name, what, "the clogsweep authors", 1) for name, what in
-             {"clogsweep": "sweeps of droplets among obstacles, on MPI ranks", "clogrun": "one droplet, watched closely",
-              "clogfit": "clogging lengths and speeds of a sweep"}.items()]
+man_pages = [(f"reference/{page}", name, what, "the clogsweep authors", section) for page, name, what, section in [
+    ("clogsweep", "clogsweep", "sweeps of droplets among obstacles, on MPI ranks", 1),
+    ("clogrun", "clogrun", "one droplet, watched closely", 1),
+    ("clogfit", "clogfit", "clogging lengths and speeds of a sweep", 1),
+    ("keys", "clogsweep-keys", "parameters of a run, on the command line and in config files", 5),
+    ("columns", "clogsweep-columns", "columns of the table of runs", 5),
+    ("files", "clogsweep-files", "what clogsweep, clogrun and clogfit write and read", 5),
+    ("exit-codes", "clogsweep-exit-codes", "how clogsweep, clogrun and clogfit end", 7)]]
+
+
+class ForTerminals(SphinxPostTransform):
+    """Man pages are narrow and plain: a table becomes a list, mathematics words, and a link says where it leads."""
+
+    builders = ("man",)
+    default_priority = 5  # before MyST drops where links lead
+
+    def run(self):
+        for link in list(self.document.findall(addnodes.pending_xref)):
+            self.name_the_page(link)
+        for formula in list(self.document.findall(nodes.math)):
+            words = formula.astext().replace("\\", "").translate(str.maketrans("{}", "()"))
+            formula.replace_self(nodes.Text(words))
+        for table in list(self.document.findall(nodes.table)):
+            table.replace_self(self.listed(table))
+        page = self.document.next_node(nodes.section)
+        title, *rest = page.children
+        first = [node for node in rest if not isinstance(node, nodes.section)]
+        if first:
+            description = nodes.section("", nodes.title("", "Description"), *first, ids=["description"])
+            page.children = []
+            page += [title, description, *rest[len(first):]]
+
+    @staticmethod
+    def name_the_page(link):
+        path = link["reftarget"].partition("#")[0]
+        if not path:
+            return
+        page = posixpath.normpath(f"{posixpath.dirname(link['refdoc'])}/{path}").removesuffix(".md")
+        place = next((f"{name}({section})" for one, name, _, _, section in man_pages if one == page), f"docs/{page}.md")
+        is_name = place.startswith(f"{link.astext()}(")
+        link.replace_self([nodes.Text(place)] if is_name else [*link.children, nodes.Text(f" [{place}]")])
+
+    @staticmethod
+    def listed(table):
+        heads, *rows = [[list(entry.findall(nodes.paragraph)) for entry in row] for row in table.findall(nodes.row)]
+        made = nodes.definition_list()
+        for first, *others in rows:
+            told = nodes.paragraph()
+            for head, cell in zip(heads[1:], others):
+                if cell and cell[0].children:
+                    told += [nodes.Text("; ")] if told.children else []
+                    told += [nodes.emphasis("", head[0].astext()), nodes.Text(": ")] if len(others) > 1 else []
+                    told += cell[0].children
+            made += nodes.definition_list_item("", nodes.term("", "", *first[0].children), nodes.definition("", told))
+        return made
 
 
 def in_fields(app, what, name, thing, options, lines):
@@ -53,5 +110,6 @@ def in_fields(app, what, name, thing, options, lines):
 
 
 def setup(app):
+    app.add_post_transform(ForTerminals)
     if "sphinx.ext.autodoc" in extensions:
         app.connect("autodoc-process-docstring", in_fields)

@@ -31,6 +31,7 @@ set -euxo pipefail
 cd "$(mktemp -d)"
 clogsweep --version
 man clogsweep | grep -- --until-precision >/dev/null
+man clogsweep-keys | grep line-tension >/dev/null
 . /usr/share/bash-completion/bash_completion
 _completion_loader clogsweep || true
 complete -p clogsweep

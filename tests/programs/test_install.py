@@ -1,5 +1,6 @@
 """What cmake --install puts somewhere, tried where nothing else is."""
 
+import json
 import os
 import pathlib
 import pty
@@ -61,12 +62,35 @@ class Installed(unittest.TestCase):
         self.called("clogrun", "array", *KEYS[:-1], "seeds=1", "--polygon-interval", 20, "--output", "r.h5", "--frames", "film.gif")
         self.assertTrue((self.folder / "film.gif").exists())
 
+    def man_page(self, name, section):
+        return (self.prefix / f"share/man/man{section}/{name}.{section}").read_text().replace("\\-", "-")
+
     def test_man_pages_name_every_option(self):
         for program in ("clogsweep", "clogrun", "clogfit"):
-            page = (self.prefix / f"share/man/man1/{program}.1").read_text().replace("\\-", "-")
+            page = self.man_page(program, 1)
             for option in re.findall(r"^  (?:-\w \[ )?(--[a-z][a-z-]*)", self.called(program, "--help").split("\nKeys")[0], re.MULTILINE):
                 if option not in POSITIONAL:
                     self.assertIn(option, page)
+
+    def test_man_pages_have_what_belongs_to_one_and_lead_to_others_that_are_there(self):
+        pages = {(path.stem, path.suffix[1:]) for path in self.prefix.glob("share/man/man*/*")}
+        self.assertEqual(len(pages), 7)
+        for name, section in pages:
+            page = self.man_page(name, section)
+            of_a_program = ["SYNOPSIS", "EXAMPLES", "OPTIONS", "EXIT STATUS", "SEE ALSO"] if section == "1" else []
+            for heading in ["NAME", "DESCRIPTION", *of_a_program]:
+                self.assertRegex(page, f'(?m)^\\.SH "?{heading}"?$', name)
+            self.assertLessEqual(set(re.findall(r"([a-z-]+)\((\d)\)", page)), pages, name)
+            for place in re.findall(r"docs/[^\]\s]+\.md", page):
+                self.assertTrue((self.prefix / "share/doc/clogsweep" / place).exists(), f"{name}: {place}")
+            self.assertEqual([], re.findall(r"\\(?:sigma|sqrt|rho)|^\.TS", page, re.MULTILINE), name)
+
+    def test_man_pages_have_every_key_and_column(self):
+        schema = json.loads(self.called("clogsweep", "--schema"))
+        for kind, naming in (("keys", "key"), ("columns", "name")):
+            terms = re.findall(r"^\.TP\n\.B (?:\\fB)?([\w-]+)", self.man_page(f"clogsweep-{kind}", 5), re.MULTILINE)
+            for entry in schema[kind]:
+                self.assertIn(entry[naming], terms)
 
     def test_pages_that_messages_name_are_there(self):
         said = self.called("clogsweep", *KEYS[1:], "line-tension=30", "--dry-run")
