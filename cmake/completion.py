@@ -15,6 +15,11 @@ import sys
 COMMANDS = {"clogsweep": ["status", "verify", "salvage", "replay", "doctor"], "clogrun": ["array", "channel", "sag", "replay"],
             "clogfit": ["calibrate", "deviation", "drag", "report"]}
 POSITIONAL = {"--file", "--system", "--task"}
+FILES = {"--config", "--frames", "--output", "--programs", "--write-obstacles"}
+# Those of an option are the ones that its help names.
+WORDS = {"--format": ["text", "csv", "json"], "--instruction-set": ["avx512", "avx2", "baseline"], "--isolate": ["yes", "no"],
+         "--master-computes": ["auto", "yes", "no"]}
+ANY_FILE = "/"  # stands for names of files among words
 
 
 def asked(folder, program, *words):
@@ -23,9 +28,15 @@ def asked(folder, program, *words):
 
 
 def options(folder, keys, program, *command):
-    """The long ones of a command, without keys and without those that words without dashes stand for."""
-    named = re.findall(r"^  (?:-\w(?: [A-Z]+)?(?:, | \[ ))?--([a-z][a-z-]*)", asked(folder, program, *command, "--help"), re.MULTILINE)
-    return " ".join(sorted({f"--{name}" for name in named} - {f"--{key}" for key in keys} - POSITIONAL))
+    """Of a command what follows each, None if nothing does; without keys and what words without dashes stand for."""
+    found = {}
+    one = re.compile(r"^  (?:(-\w)(?: [A-Z]+)?(?:, | \[ ))?(--[a-z][a-z-]*)(?: \])?(\sarg|\s[A-Z]+)?(.*(?:\n {20}.*)*)", re.MULTILINE)
+    for short, name, argument, meaning in one.findall(asked(folder, program, *command, "--help")):
+        if name in POSITIONAL or name[2:] in keys:
+            continue
+        words = [word for word in WORDS.get(name, []) if re.search(rf"\b{word}\b", meaning)] + [ANY_FILE] * (name in FILES)
+        found |= {called: " ".join(words) if argument else None for called in (short, name) if called}
+    return found
 
 
 def assigned(table, separator):
@@ -36,19 +47,24 @@ def assigned(table, separator):
 def main(programs, output):
     folder, output = pathlib.Path(programs), pathlib.Path(output)
     keys = json.loads(asked(folder, "clogsweep", "--schema"))["keys"]
-    names = [key["key"] for key in keys]
-    after = {}
+    names = {key["key"] for key in keys}
+    after, arguments = {}, {}
     for program, commands in COMMANDS.items():
-        after |= {f"{program} {command}": options(folder, names, program, command) for command in commands}
-        after[program] = " ".join([*commands, options(folder, names, program)])
-    values = {key["key"]: " ".join(key["words"]) for key in keys}
+        for command in ["", *commands]:
+            called = f"{program} {command}".strip()
+            found = options(folder, names, *called.split())
+            long = sorted(name for name in found if name.startswith("--"))
+            after[called] = " ".join(long if command else [*commands, *long])
+            arguments |= {f"{called} {name}": words for name, words in found.items() if words is not None}
+    values = {key["key"]: " ".join([*key["words"], *[ANY_FILE] * (key["kind"] == "file")]) for key in keys}
     meanings = [f"{key['key']}:{re.split('[;:(]', key['help'])[0].strip()}" for key in keys]
     with_keys = [name for name in after if "\nKeys" in asked(folder, *name.split(), "--help")]
     output.mkdir(parents=True, exist_ok=True)
     for name, template, item in (("clogsweep", "completion.bash.in", "[{}]={}"), ("_clogsweep", "completion.zsh.in", "{} {}")):
         text = pathlib.Path(__file__).with_name(template).read_text()
         text = text.replace("@WITH_KEYS@", " ".join(name.replace(" ", ":") for name in with_keys))
-        text = text.replace("@OPTIONS@", assigned(after, item)).replace("@VALUES@", assigned(values, item))
+        for place, table in (("@OPTIONS@", after), ("@ARGUMENTS@", arguments), ("@VALUES@", values)):
+            text = text.replace(place, assigned(table, item))
         (output / name).write_text(text.replace("@MEANINGS@", "\n".join(f"  {shlex.quote(meaning)}" for meaning in meanings)))
 
 

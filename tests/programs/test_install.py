@@ -139,6 +139,27 @@ class Installed(unittest.TestCase):
         self.assertEqual(self.completed("clogfit", "report", "--out"), ["--output"])
         self.assertEqual(self.completed("clogsweep", "status", "see"), [])
 
+    def test_bash_completes_what_an_option_takes(self):
+        (self.folder / "inputs").mkdir(exist_ok=True)
+        (self.folder / "inputs/mine.csv").touch()
+        for words in (["clogsweep", "--config"], ["clogsweep", "line-tension=1", "--output"], ["clogrun", "array", "--write-obstacles"],
+                      ["clogrun", "array", "--frames"], ["clogfit", "report", "-o"], ["clogsweep", "--obstacles"],
+                      ["clogsweep", "obstacles", "="], ["clogsweep", "--output", "="]):
+            self.assertEqual(self.completed(*words, "inputs/"), ["inputs/mine.csv"], words)
+        self.assertIn("inputs", self.completed("clogsweep", "--config", ""))
+        self.assertIn("inputs", self.completed("clogsweep", "status", ""))
+        for words, offered in ((["clogsweep", "--isolate"], ["yes", "no"]), (["clogsweep", "--master-computes"], ["auto", "yes", "no"]),
+                               (["clogrun", "sag", "--instruction-set"], ["avx512", "avx2", "baseline"]),
+                               (["clogsweep", "status", "--format"], ["text", "json"]), (["clogfit", "--format"], ["text", "csv", "json"]),
+                               (["clogfit", "calibrate", "--format", "="], ["text", "json"]), (["clogsweep", "--model"], ["dp", "sp"]),
+                               (["clogsweep", "--max-hours"], []), (["clogfit", "s.h5", "--dwell"], []), (["clogrun", "array", "--seed"], []),
+                               (["clogsweep", "orifice", "="], []), (["clogsweep", "--orifice"], [])):
+            self.assertEqual(self.completed(*words, ""), offered, words)
+        self.assertEqual(self.completed("clogsweep", "--verbose", "stat"), ["status"])
+        for option, words in (("--isolate", ["yes", "no"]), ("--master-computes", ["auto", "yes", "no"])):
+            for word in words:
+                self.called("clogsweep", option, word, "--print-config")
+
     def test_an_interactive_bash_completes_a_key_and_then_its_value(self):
         pid, terminal = pty.fork()
         if pid == 0:
