@@ -248,7 +248,7 @@ def caption(axes: Axes, text: str) -> None:
         return title.get_window_extent(renderer).width <= widest
 
     lines = []
-    for line in text.split("\n"):
+    for line in text.strip().split("\n"):
         first, *others = line.split(", ")
         lines.append(first)
         for phrase in others:
