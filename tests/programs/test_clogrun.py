@@ -208,6 +208,9 @@ class Run(ProgramTest):
             page = (ROOT / "docs/reference/files.md").read_text()
             for name in [*file["trajectory"].dtype.names, *file.attrs]:
                 self.assertIn(f"`{name}`", page)
+            for name, meaning in file["trajectory"].attrs.items():
+                for unit in re.findall(r"\[(.+?)\]", meaning.decode()):
+                    self.assertRegex(page, rf"(?m)^\|[^|]*`{name}`[^|]*\| {re.escape(unit)} \|")
 
     def test_sag_prints_how_far_the_droplet_sinks(self):
         done = self.succeed("clogrun", "sag", "model=sp", "wall-stiffness=1,4")

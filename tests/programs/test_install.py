@@ -17,6 +17,9 @@ from support import BIN, ROOT
 
 KEYS = ["line-tension=0.5", "obstacle-gap=0.3", "vertices=64", "box=20", "max-time=200", "seeds=1..4"]
 
+COMMANDS = {"clogsweep": ["status", "verify", "salvage", "replay", "doctor"], "clogrun": [],
+            "clogfit": ["calibrate", "deviation", "drag", "report"]}
+
 # What words without dashes stand for.
 POSITIONAL = {"--file", "--system", "--task"}
 
@@ -63,14 +66,20 @@ class Installed(unittest.TestCase):
         self.assertTrue((self.folder / "film.gif").exists())
 
     def man_page(self, name, section):
-        return (self.prefix / f"share/man/man{section}/{name}.{section}").read_text().replace("\\-", "-")
+        """Without fonts."""
+        return re.sub(r"\\f[BIP]", "", (self.prefix / f"share/man/man{section}/{name}.{section}").read_text().replace("\\-", "-"))
 
-    def test_man_pages_name_every_option(self):
-        for program in ("clogsweep", "clogrun", "clogfit"):
-            page = self.man_page(program, 1)
-            for option in re.findall(r"^  (?:-\w \[ )?(--[a-z][a-z-]*)", self.called(program, "--help").split("\nKeys")[0], re.MULTILINE):
-                if option not in POSITIONAL:
-                    self.assertIn(option, page)
+    def test_man_pages_have_every_option_with_its_default_and_no_other(self):
+        for program, commands in COMMANDS.items():
+            told = re.findall(r"^\.B (--[^\n]+)\n(.*?)(?=^\.)", self.man_page(program, 1), re.MULTILINE | re.DOTALL)
+            helped = self.called(program, "--help").split("\nKeys")[0]
+            for option, default in re.findall(r"^  (?:-\w \[ )?(--[a-z][a-z-]*)(?: \])?(?: arg \(=([^)]*)\))?", helped, re.MULTILINE):
+                words = f"(default: {default})" if default else ""
+                is_told = any(option in re.findall(r"--[a-z-]+", options) and words in meaning for options, meaning in told)
+                self.assertTrue(is_told or option in POSITIONAL, f"{program} {option} {words}")
+            known = helped + "".join(self.called(program, command, "--help") for command in commands)
+            for option in re.findall(r"--[a-z-]+", " ".join(options for options, _ in told)):
+                self.assertRegex(known, rf"(?m)^  .*{option}\b")
 
     def test_man_pages_have_what_belongs_to_one_and_lead_to_others_that_are_there(self):
         pages = {(path.stem, path.suffix[1:]) for path in self.prefix.glob("share/man/man*/*")}
@@ -88,7 +97,7 @@ class Installed(unittest.TestCase):
     def test_man_pages_have_every_key_and_column(self):
         schema = json.loads(self.called("clogsweep", "--schema"))
         for kind, naming in (("keys", "key"), ("columns", "name")):
-            terms = re.findall(r"^\.TP\n\.B (?:\\fB)?([\w-]+)", self.man_page(f"clogsweep-{kind}", 5), re.MULTILINE)
+            terms = re.findall(r"^\.TP\n\.B ([\w-]+)", self.man_page(f"clogsweep-{kind}", 5), re.MULTILINE)
             for entry in schema[kind]:
                 self.assertIn(entry[naming], terms)
 
