@@ -103,7 +103,7 @@ def of_lengths(groups: Panels, sweep: pathlib.Path, clogrun: pathlib.Path) -> li
     # Of one curve both are side by side.
     below: list[Row] = [(1.35, survivals + ends)] if len(curves) == 1 else [(1.35, survivals), (1.0, ends)]
     rows: list[Row] = [(1.6, first), *((height, drawings) for height, drawings in below if drawings)]
-    clogged = clogs.of_polygons(stored.read_rows(sweep), sweep)
+    clogged = clogs.of_polygons(stored.read_rows(sweep, clogrun.parent), sweep)
     if clogged:
         again = clogs.run_all(clogrun, sweep, report.examples(clogged, 4), 2)
         rows.append((1.25, [clog_drawing(clog) for clog in again]))
@@ -125,14 +125,14 @@ def of_passages(groups: Panels, sweep: pathlib.Path, clogrun: pathlib.Path) -> l
 
     rows: list[Row] = [(1.2, [column_drawing(column)]) for column in passages.drawn_columns(groups)]
     with tempfile.TemporaryDirectory(prefix="clogsweep-poster-") as folder:
-        runs = passages.followed(passages.examples(stored.read_rows(sweep), 3), clogrun, sweep, folder)
+        runs = passages.followed(passages.examples(stored.read_rows(sweep, clogrun.parent), 3), clogrun, sweep, folder)
     return [*rows, (1.2, [outline_drawing(run) for run in runs])] if runs else rows
 
 
 def draw(sweep: pathlib.Path, folder: pathlib.Path) -> Figure:
     """@param folder  of the programs. @throws UserError, ProgramFailed"""
     groups = fit.fitted(folder / "clogfit", sweep).finished(sweep)
-    with stored.opened(sweep) as file:
+    with stored.opened(sweep, folder=folder) as file:
         about = stored.attributes(file)
     abscissa = groups.abscissa.replace("_", " ")
     if groups.are_passages:
@@ -142,4 +142,4 @@ def draw(sweep: pathlib.Path, folder: pathlib.Path) -> Figure:
     else:
         title, words = f"Clogging length over {abscissa}", {"flowing": "still going"}
         rows = of_lengths(Panels(groups), sweep, folder / "clogrun")
-    return page(title, f"{groups.caption()}\n{groups.note(counted(stored.read_table(sweep), words))}", rows, source(about))
+    return page(title, f"{groups.caption()}\n{groups.note(counted(stored.read_table(sweep, folder), words))}", rows, source(about))
