@@ -1,5 +1,5 @@
 """Every link and every path in the documentation leads somewhere: links in `*.md` to a file of the sources and, with
-`#`, to one of its headings or targets; what stands in backquotes in `*.md` and in the configs of `jobs` and begins with
+`#`, to one of its headings or targets; what is quoted `so` in `*.md` and in the configs of `jobs` and begins with
 a folder of the sources, such as `src/`, to a file or a folder there.
 
     tests/lint/links.py ROOT
