@@ -56,6 +56,7 @@ class Clog:
     row: np.void  # of the sweep
     polygon: Numbers  # 2 x N, the interface that walls meet [sigma]
     obstacles: Numbers  # n x 3: x, y, diameter [sigma]
+    source: str = ""  # where the row comes from
 
     @property
     def task(self) -> int:
@@ -71,7 +72,7 @@ class Clog:
         draw(axes, self)
         axes.set_xlabel(r"$x/\sigma$ from the droplet's middle")
         axes.set_ylabel(r"$y/\sigma$")
-        return Picture(figure)
+        return Picture(figure, f"{self.source}\ntask {self.task}")
 
     def _repr_png_(self) -> bytes:
         return self.picture().png()
@@ -102,26 +103,29 @@ class Clogs(Sequence[Clog]):
         return f"<{rounded.counted(len(self), 'clog')}: {', '.join(f'task {clog.task} {clog.mechanism}' for clog in self)}>"
 
     def picture(self) -> Picture:
-        return Picture(sheet(self._clogs))
+        tasks = ", ".join(str(clog.task) for clog in self)
+        return Picture(sheet(self._clogs), f"{self._clogs[0].source}\ntasks {tasks}")
 
     def _repr_png_(self) -> bytes:
         return self.picture().png(80)
 
 
-def run_again(clogrun: pathlib.Path, sweep: pathlib.Path, row: np.void, folder: str) -> Clog:
+def run_again(clogrun: pathlib.Path, sweep: pathlib.Path, source: str, row: np.void, folder: str) -> Clog:
     """@throws ProgramFailed"""
     output = pathlib.Path(folder) / f"{row['task']}.h5"
     # A certified row describes an equilibrium that the run ends before.
     replays.replay(clogrun, sweep, row["task"], output, "--to-rest", "--polygon-interval", "1e9", "--sample-interval", "1e9")
     with stored.opened(output) as file:
-        return Clog(row, trajectory.refined(file["polygons"][-1], row), file["obstacles"][:])
+        return Clog(row, trajectory.refined(file["polygons"][-1], row), file["obstacles"][:], source)
 
 
 def run_all(clogrun: pathlib.Path, sweep: pathlib.Path, rows: Sequence[np.void], jobs: int) -> Clogs:
     """@param jobs  at a time. @throws UserError  with clogrun's reason"""
+    with stored.opened(sweep, folder=clogrun.parent) as file:
+        source = stored.source(stored.attributes(file))
     with tempfile.TemporaryDirectory(prefix="clogsweep-clogs-") as folder, concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         try:
-            return Clogs(list(pool.map(lambda row: run_again(clogrun, sweep, row, folder), rows)))
+            return Clogs(list(pool.map(lambda row: run_again(clogrun, sweep, source, row, folder), rows)))
         except (ProgramFailed, OSError) as error:
             raise UserError(f"cannot run clogrun ({error})") from error
 

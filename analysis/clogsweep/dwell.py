@@ -54,5 +54,6 @@ def draw(times: Sequence[float], fits: Sequence[Groups]) -> Figure:
 
 def picture(clogfit: pathlib.Path, sweep: pathlib.Path) -> Picture:
     """@throws UserError  if there is nothing to draw; ProgramFailed  with the reason of clogfit"""
-    times = times_of(fit.fitted(clogfit, sweep).drawable(sweep))
-    return Picture(draw(times, [fit.fitted(clogfit, sweep, "--dwell", repr(time)).drawable(sweep) for time in times]))
+    fitted = fit.fitted(clogfit, sweep)
+    times = times_of(fitted.drawable(sweep))
+    return Picture(draw(times, [fit.fitted(clogfit, sweep, "--dwell", repr(time)).drawable(sweep) for time in times]), fitted.source)

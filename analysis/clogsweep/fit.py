@@ -7,7 +7,7 @@ import os
 import pathlib
 from typing import TYPE_CHECKING, Any
 
-from . import lengths, programs, rounded
+from . import lengths, programs, rounded, stored
 from .errors import UserError
 from .groups import Groups
 from .picture import Picture
@@ -32,6 +32,17 @@ class Fit:
         self.units: dict[str, str] = told["units"]
         self.doubts: dict[str, str] = told["doubts"]
         self._groups = Groups(told)
+
+    @property
+    def source(self) -> str:
+        """Where its rows come from, how many they are, and what fitted them. Older programs do not say the first."""
+        sweep = self.told.get("sweep")
+        return "\n".join([*([stored.source(sweep), sweep["config"].strip()] if sweep else []),
+                          f"{self._counted()}, fitted by clogfit {stored.writer(self.told)}"])
+
+    def _counted(self) -> str:
+        groups = self.told["groups"]
+        return f"{rounded.counted(sum(group.get('runs', 1) for group in groups), 'run')} in {rounded.counted(len(groups), 'group')}"
 
     @property
     def groups(self) -> pandas.DataFrame:
@@ -63,15 +74,14 @@ class Fit:
 
     def curve(self) -> Picture:
         """Clogging lengths over what the sweep varies. @throws UserError  as drawable()"""
-        return Picture(lengths.draw(self.drawable()))
+        return Picture(lengths.draw(self.drawable()), self.source)
 
     def speeds(self) -> Picture:
         """Mean speeds over the speed of a free droplet, over what the sweep varies. @throws UserError  as drawable()"""
-        return Picture(lengths.draw_speeds(self.drawable()))
+        return Picture(lengths.draw_speeds(self.drawable()), self.source)
 
     def __repr__(self) -> str:
-        groups = self.told["groups"]
-        return f"<fit of {rounded.counted(sum(group.get('runs', 1) for group in groups), 'run')} in {rounded.counted(len(groups), 'group')}>"
+        return f"<fit of {self._counted()}>"
 
     def _repr_html_(self) -> str:
         return self.groups._repr_html_()

@@ -12,10 +12,12 @@ from . import command_line, style
 
 
 class Picture:
-    """Shows itself in a notebook; `figure` is matplotlib's, to be changed at will."""
+    """Shows itself in a notebook; `figure` is matplotlib's, to be changed at will. `source` says where its numbers come
+    from, and is kept in what is saved: as Description of the .png, as Subject of the .pdf."""
 
-    def __init__(self, figure: Figure) -> None:
+    def __init__(self, figure: Figure, source: str = "") -> None:
         self.figure = figure
+        self.source = source
 
     def png(self, dpi: float = 110) -> bytes:
         out = io.BytesIO()
@@ -28,7 +30,7 @@ class Picture:
         if path.suffix in (".png", ".pdf"):
             path = path.with_suffix("")
         command_line.refuse_unwritable_picture(path)
-        style.save(self.figure, path)
+        style.save(self.figure, path, {"Description": self.source, "Software": "clogsweep"} if self.source else None)
         return pathlib.Path(f"{path}.png")
 
     def __repr__(self) -> str:

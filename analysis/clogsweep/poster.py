@@ -57,10 +57,9 @@ def page(title: str, about: str, rows: Sequence[Row], footer: str) -> Figure:
     return figure
 
 
-def source(about: dict[str, str]) -> str:
-    """Where the numbers come from. @param about  attributes of the sweep"""
-    command = about["command_line"]
-    return f"clogsweep {stored.writer(about)}, begun {about['start_time']}\n" + (command if len(command) < 150 else f"{command[:147]}...")
+def cut(text: str) -> str:
+    """So that its lines are no wider than the page."""
+    return "\n".join(line if len(line) < 150 else f"{line[:147]}..." for line in text.splitlines())
 
 
 def counted(rows: pandas.DataFrame, words: dict[str, str]) -> str:
@@ -142,4 +141,4 @@ def draw(sweep: pathlib.Path, folder: pathlib.Path) -> Figure:
     else:
         title, words = f"Clogging length over {abscissa}", {"flowing": "still going"}
         rows = of_lengths(Panels(groups), sweep, folder / "clogrun")
-    return page(title, f"{groups.caption()}\n{groups.note(counted(stored.read_table(sweep, folder), words))}", rows, source(about))
+    return page(title, f"{groups.caption()}\n{groups.note(counted(stored.read_table(sweep, folder), words))}", rows, cut(stored.source(about)))

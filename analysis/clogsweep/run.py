@@ -53,7 +53,7 @@ class Run:
         """So many moments of the run in one picture. @throws UserError  if there are no outlines"""
         checked.whole("outlines", outlines, 1)
         trajectory.require_frames(self.trajectory)
-        return Picture(way.draw(self.trajectory, outlines))
+        return Picture(way.draw(self.trajectory, outlines), stored.source(self.attributes))
 
     def film(self, output: str | os.PathLike[str], *, colour: str = "speed", rate: int = 20, most_frames: int = 600, size: str | None = None) -> Film:
         """Writes a film; one that is there is never replaced.

@@ -151,6 +151,11 @@ def writer(attributes: dict[str, str]) -> str:
     return f"{attributes['version']}, git {attributes.get('git_describe') or attributes['git_hash']}"
 
 
+def source(attributes: dict[str, str]) -> str:
+    """Where the rows of a file come from, for whoever finds a picture of them. @param attributes  of the file"""
+    return f"clogsweep {writer(attributes)}, begun {attributes['start_time']}\n{attributes['command_line']}"
+
+
 def columns_of(rows: Records | np.void) -> tuple[str, ...]:
     """Names of the columns of a table or a row."""
     return rows.dtype.names or ()

@@ -86,7 +86,7 @@ class Sweep:
 
     def poster(self) -> Picture:
         """One page of the sweep to be printed, A3: its curves and some of its droplets. @throws UserError"""
-        return Picture(poster.draw(self.path, programs.programs_in(self._programs)))
+        return Picture(poster.draw(self.path, programs.programs_in(self._programs)), stored.source(self.attributes))
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{number} {status}" for status, number in self.rows.status.value_counts().items())

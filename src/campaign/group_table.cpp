@@ -11,6 +11,7 @@
 #include <set>
 #include <variant>
 
+#include "clog/campaign/stored_sweep.hpp"
 #include "clog/campaign/usual_parameters.hpp"
 #include "clog/console/build_info.hpp"
 #include "clog/console/rounded.hpp"
@@ -420,7 +421,7 @@ std::string to_csv(const std::vector<Group>& groups) {
 }
 
 std::string to_json(const std::vector<Group>& groups, double confidence,
-                    const std::vector<std::string>& lists) {
+                    const store::Provenance& provenance) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Group& group : groups) {
     nlohmann::ordered_json entry;
@@ -452,6 +453,9 @@ std::string to_json(const std::vector<Group>& groups, double confidence,
   for (const DoubtText& doubt : doubt_texts) sentences[doubt.word] = doubt.sentence;
   nlohmann::ordered_json columns = nlohmann::ordered_json::array();
   for (const sweep::Column* column : group_columns()) columns.push_back(sweep::to_json(*column));
+  nlohmann::ordered_json origin = nlohmann::ordered_json::object();
+  for (const char* name : {"version", "git_describe", "start_time", "command_line", "config"})
+    if (std::string text = attribute(provenance, name); !text.empty()) origin[name] = std::move(text);
   const console::BuildInfo build = console::build_info();
   const nlohmann::ordered_json document = {{"version", build.version},
                                            {"git_describe", build.git_describe},
@@ -459,7 +463,8 @@ std::string to_json(const std::vector<Group>& groups, double confidence,
                                            {"doubts", sentences},
                                            {"units", field_units(groups.front())},
                                            {"columns", columns},
-                                           {"lists", lists},
+                                           {"lists", listed_columns(provenance)},
+                                           {"sweep", origin},
                                            {"groups", list}};
   return document.dump(2) + "\n";
 }

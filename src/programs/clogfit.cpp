@@ -85,7 +85,7 @@ int body(int argc, char** argv) {
       campaign::group_runs(sweep.rows, confidence, from_distance, dwell);
   std::cout << (format == "csv" ? campaign::to_csv(groups)
                 : format == "json"
-                    ? campaign::to_json(groups, confidence, campaign::listed_columns(sweep.provenance))
+                    ? campaign::to_json(groups, confidence, sweep.provenance)
                     : campaign::to_text(
                           groups, confidence,
                           line.has("all-parameters") ? SharedParameters::all : SharedParameters::unusual));

@@ -8,6 +8,7 @@ import sys
 import h5py
 import numpy as np
 import pandas
+from PIL import Image
 
 from drawing import Analysis
 from support import BIN, QUICK, ROOT, SweepTest, table
@@ -49,12 +50,16 @@ class Module(Analysis):
         words = [word for name, value in options.items() for word in (f"--{name.replace('_', '-')}", value)]
         self.assertEqual(self.sweep().fit(**options).told, json.loads(self.succeed("clogfit", "s.h5", "--format", "json", *words).stdout))
 
-    def test_curves_draw_themselves_and_are_saved(self):
-        fit = self.sweep().fit()
+    def test_curves_draw_themselves_are_saved_and_know_where_they_come_from(self):
+        sweep = self.sweep()
+        fit = sweep.fit()
         for picture in (fit.curve(), fit.speeds()):
             self.assertTrue(picture._repr_png_().startswith(PNG))
         self.assertEqual(fit.curve().save(self.folder / "curve.png"), self.folder / "curve.png")
         self.assert_picture("curve")
+        about = Image.open(self.folder / "curve.png").text["Description"]
+        for words in (sweep.attributes["git_describe"], "line-tension=0.5,3", "seeds = 1..4", "8 runs in 2 groups, fitted by clogfit "):
+            self.assertIn(words, about)
         self.write("notes.png", "no picture")
         with self.assertRaisesRegex(clogsweep.UserError, "will not overwrite .*notes.png"):
             fit.curve().save(self.folder / "notes")
@@ -65,6 +70,7 @@ class Module(Analysis):
         clogged = sweep.rows[sweep.rows.status == "clogged"]
         self.assertEqual([clog.task for clog in clogs], clogged.task.tolist()[:2])
         self.assertEqual([clog.mechanism for clog in clogs], clogged.mechanism.tolist()[:2])
+        self.assertIn(f"line-tension=3 seeds=1..8 --output s.h5\ntasks {clogs[0].task}, {clogs[1].task}", clogs.picture().source)
         self.assertTrue(all(drawn._repr_png_().startswith(PNG) for drawn in (clogs, clogs[0], clogs[:1])))
         self.assertEqual([clog.task for clog in sweep.clogs(tasks=[clogs[1].task])], [clogs[1].task])
         for options in ({"mechanism": "wraped"}, {"tasks": [77]}):
@@ -89,6 +95,7 @@ class Module(Analysis):
         self.assertEqual(run.polygons.shape[::2], (len(run.times), 128))
         self.assertEqual(run.obstacles.shape[1], 3)
         self.assertTrue(run._repr_png_().startswith(PNG))
+        self.assertIn("\nclogrun array", run.picture().source)
         film = run.film(self.folder / "film.gif", most_frames=4)
         self.assertIn("data:image/gif;base64,", film._repr_html_())
         with self.assertRaisesRegex(clogsweep.UserError, "it exists"):

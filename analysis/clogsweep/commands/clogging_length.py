@@ -15,6 +15,7 @@ from . import sweep_to_draw
 
 def body() -> int:
     arguments = sweep_to_draw(__doc__, "clogging-length", "file of clogsweep --output, or output of clogfit --format json")
-    groups = fit.read(arguments.sweep, arguments.programs).drawable(arguments.sweep)
-    print(f"{Picture(lengths.draw(groups)).save(arguments.output)} (and .pdf)")
+    fitted = fit.read(arguments.sweep, arguments.programs)
+    picture = Picture(lengths.draw(fitted.drawable(arguments.sweep)), fitted.source)
+    print(f"{picture.save(arguments.output)} (and .pdf)")
     return 0

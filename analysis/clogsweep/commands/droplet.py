@@ -20,7 +20,7 @@ import argparse
 import pathlib
 import sys
 
-from .. import command_line, film, trajectory, way
+from .. import command_line, film, stored, trajectory, way
 from ..errors import UserError
 from ..picture import Picture
 
@@ -48,7 +48,7 @@ def body() -> int:
 def draw_picture(arguments: argparse.Namespace) -> int:
     command_line.refuse_unwritable_picture(arguments.output, arguments.run)
     run = trajectory.read(arguments.run)
-    print(f"{Picture(way.draw(run, arguments.outlines)).save(arguments.output)} (and .pdf)")
+    print(f"{Picture(way.draw(run, arguments.outlines), stored.source(run.attributes)).save(arguments.output)} (and .pdf)")
     return 0
 
 

@@ -7,13 +7,11 @@ The page is A3. Every number comes from clogfit; clogs and the way of a droplet 
 temporary folder. Of droplets in a channel or on a wall it shows the passage or the sag over what the sweep varies.
 """
 
-from .. import poster, programs
-from ..picture import Picture
+from ..sweep import Sweep
 from . import sweep_to_draw
 
 
 def body() -> int:
     arguments = sweep_to_draw(__doc__, "poster")
-    made = Picture(poster.draw(arguments.sweep, programs.programs_in(arguments.programs)))
-    print(f"{made.save(arguments.output)} (and .pdf)")
+    print(f"{Sweep(arguments.sweep, arguments.programs).poster().save(arguments.output)} (and .pdf)")
     return 0

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "clog/campaign/groups.hpp"
+#include "clog/store/run_table.hpp"
 
 namespace clog::campaign {
 
@@ -14,9 +15,8 @@ enum class SharedParameters { unusual, all };
 std::string to_text(const std::vector<Group>& groups, double confidence, SharedParameters shared);
 /// All fields of every group.
 std::string to_csv(const std::vector<Group>& groups);
-/// All fields of every group, and its P(r).
-/// @param lists  columns of which the sweep was given several values, see listed_columns()
-std::string to_json(const std::vector<Group>& groups, double confidence,
-                    const std::vector<std::string>& lists);
+/// All fields of every group, its P(r), and where the rows came from.
+/// @param provenance  of the sweep
+std::string to_json(const std::vector<Group>& groups, double confidence, const store::Provenance& provenance);
 
 }  // namespace clog::campaign
