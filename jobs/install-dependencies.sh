@@ -19,7 +19,7 @@ packages=(
   python3 python3-h5py python3-pandas python3-tables python3-matplotlib  # the Python module, and readers for the tests
   python3-nbclient python3-ipykernel                 # a test that runs the notebook of the gallery
 )
-of_tests=(chromium-driver python3-selenium) # a browser that reads a report
+of_tests=(chromium-driver python3-selenium hdf5-tools) # a browser that reads a report; h5repack
 case ${1:-} in
   "") ;;
   tests) packages+=("${of_tests[@]}") ;;

@@ -212,6 +212,12 @@ class Run(ProgramTest):
                 for unit in re.findall(r"\[(.+?)\]", meaning.decode()):
                     self.assertRegex(page, rf"(?m)^\|[^|]*`{name}`[^|]*\| {re.escape(unit)} \|")
 
+    def test_a_droplet_is_released_whose_springs_would_keep_it_sliding(self):
+        """It was refused, whereas one of half its line tension began."""
+        done = self.succeed("clogrun", "array", "preset=robust", "vertices=64", "box=40", "line-tension=0.1", "obstacle-gap=0.4",
+                            "seeds=1", "max-time=1", "--output", "r.h5")
+        self.assertTrue(done.stdout.startswith("flowing after "), done.stdout)
+
     def test_sag_prints_how_far_the_droplet_sinks(self):
         done = self.succeed("clogrun", "sag", "model=sp", "wall-stiffness=1,4")
         lines = done.stdout.splitlines()

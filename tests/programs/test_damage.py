@@ -156,6 +156,44 @@ class Damage(ProgramTest):
         self.assertIn((2, True), told)
         self.assertIn((0, False), told)
 
+    def test_copies_of_h5repack_are_read(self):
+        subprocess.run(["h5repack", "-f", "GZIP=6", self.file, self.folder / "packed.h5"], check=True)
+        said = self.succeed("clogfit", "packed.h5")
+        self.assertIn("copied or changed by another program", said.stderr)
+        self.assertEqual(said.stdout, self.succeed("clogfit", "s.h5").stdout)
+        pandas.testing.assert_frame_equal(clogsweep.open(self.folder / "packed.h5").rows, clogsweep.open(self.file).rows)
+
+    def test_a_table_of_another_description_is_not_read(self):
+        """What a description says is compared with what is written here before a row is read."""
+        def put(file, rows, **options):
+            meanings = dict(file["runs"].attrs)
+            del file["runs"]
+            file.create_dataset("runs", data=rows, **options)
+            file["runs"].attrs.update(meanings)
+
+        def retyped(file):
+            rows = file["runs"][:]
+            return rows.astype([(name, "<f4" if name == "distance" else rows.dtype[name]) for name in rows.dtype.names])
+
+        def enlarged(file):
+            file["runs"].resize((10**9,))
+
+        for words, harm in {
+            "its table has another shape": lambda file: put(file, file["runs"][:].reshape(2, 3)),
+            "its columns are not those that were written": lambda file: put(file, retyped(file)),
+            "its columns are not": lambda file: put(file, file["runs"][:][list(file["runs"].dtype.names)[:-1]]),
+            "its table cannot hold 1000000000 rows": enlarged,
+            "the rows' checksums are not those of its 5 rows": lambda file: put(file, file["runs"][:5]),
+            "the rows' checksums are gone": lambda file: file.move("row_checksums", "sums"),
+        }.items():
+            copy = self.copied()
+            with h5py.File(copy, "r+") as file:
+                harm(file)
+            with self.subTest(words):
+                self.refuse("clogsweep", "status", "copy.h5", words=["copy.h5", "damaged", words])
+                with self.assertRaises(clogsweep.UserError):
+                    stored.read_rows(copy)
+
     def test_old_files_are_read_with_a_word(self):
         stored_rows.make_older(self.file, "4")
         for name, *arguments in [("clogsweep", "status", "s.h5"), ("clogfit", "s.h5"), ("clogsweep", *SETTINGS)]:
