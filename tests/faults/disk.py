@@ -12,6 +12,7 @@ from support import QUICK
 TRAJECTORY = ["array", *QUICK, "--sample-interval=0.1", "--polygon-interval=0.5", "--output", "r.h5"]
 MEGABYTE = 2**20
 ENOUGH_MEMORY = 2048 * MEGABYTE
+LOADER_GAVE_UP = 127  # libraries did not find room, and the program did not begin
 
 
 def limit_files(size):
@@ -58,7 +59,7 @@ class Faults:
         if may_mount(disk):
             self.faults.append(self.sweep_on_a_small_disk)
         if may_limit_memory():
-            self.faults.append(self.little_memory)
+            self.faults += [self.little_memory, self.sweep_in_little_memory]
 
     def try_one(self, case):
         case.chance.choice(self.faults)(case)
@@ -78,9 +79,14 @@ class Faults:
             self.sweep_and_go_on(case, make_room=lambda: subprocess.run(
                 ["mount", "-o", f"remount,size={MEGABYTE}", case.folder], check=True))
 
-    def sweep_and_go_on(self, case, prepare=None, make_room=lambda: None):
-        """A sweep that cannot write, and the same command when it can."""
-        run(case, "clogsweep", *self.sample.sweep, prepare=prepare, exit_codes={0, 2})
+    def sweep_in_little_memory(self, case):
+        size = case.chance.randrange(20, 600) * MEGABYTE
+        case.note(f"sweep, {size // MEGABYTE} MB of memory")
+        self.sweep_and_go_on(case, prepare=limit_memory(size), exit_codes={0, 2, LOADER_GAVE_UP})
+
+    def sweep_and_go_on(self, case, prepare=None, make_room=lambda: None, exit_codes=frozenset({0, 2})):
+        """A sweep that has no room, and the same command when it has."""
+        run(case, "clogsweep", *self.sample.sweep, prepare=prepare, exit_codes=exit_codes)
         finished = finished_rows(case)
         make_room()
         outcome = run(case, "clogsweep", *self.sample.sweep)
@@ -118,5 +124,4 @@ class Faults:
         size = case.chance.randrange(20, 400) * MEGABYTE
         case.note(f"{quoted(words)}, {size // MEGABYTE} MB of memory")
         (case.folder / FILE).write_bytes(self.sample.content)
-        loader_gave_up = 127  # libraries did not find room, and the program did not begin
-        run(case, *words, prepare=limit_memory(size), exit_codes={0, 2, loader_gave_up})
+        run(case, *words, prepare=limit_memory(size), exit_codes={0, 2, LOADER_GAVE_UP})

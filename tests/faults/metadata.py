@@ -11,6 +11,7 @@ from samples import (FILE, REPORTS, VERIFY, check_complete, check_readers, check
 from support import SMALL
 
 JOURNAL = FILE + ".journal"
+SEAL = b"\nclogsweep seal"
 # The first run has 10^6 steps, and a snapshot after every 2^18 of them.
 STOPPED = [*SMALL, "obstacle-gap=0.4", "line-tension=0.05,0.5", "max-time=3000", "seeds=1", "--output", FILE]
 # After how long it is stopped: the slower the machine, or the busier, the later there is a snapshot.
@@ -55,9 +56,12 @@ class Faults:
         case.chance.choice([self.harm_a_table, self.harm_a_table, self.harm_a_journal])(case)
 
     def harm_a_table(self, case):
+        """As a sweep wrote it, or as another program copies it: then no seal says that it is not whole."""
         sample = case.chance.choice(self.samples)
-        way, content = harm(case.chance, sample.content, self.places[sample.name])
-        case.note(f"{sample.name}: {way}")
+        end = case.chance.choice([len(sample.content), sample.content.rindex(SEAL)])
+        places = [place for place in self.places[sample.name] if place < end]
+        way, content = harm(case.chance, sample.content[:end], places)
+        case.note(f"{sample.name}{'' if end == len(sample.content) else ', a copy'}: {way}")
         (case.folder / FILE).write_bytes(content)
         check_readers(case, sample)
         check_resumed(case, sample.sweep, sample.rows)

@@ -1,6 +1,7 @@
 """Small sweeps to be harmed, and what is said of them while they are whole."""
 
 import multiprocessing
+import os
 import resource
 import subprocess
 
@@ -28,6 +29,7 @@ def in_child(function, *arguments):
     """The value of a function that may crash or spin. @return None and why not if there is no value"""
     def work(connection):
         resource.setrlimit(resource.RLIMIT_CPU, (CPU_SECONDS, CPU_SECONDS))
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # words of caution
         try:
             connection.send((function(*arguments), None))
         except (OSError, UserError) as error:
