@@ -6,12 +6,11 @@ import subprocess
 
 from damage import harm
 from launch import command, run
-from samples import (FILE, REPORTS, VERIFY, check_complete, check_readers, check_resumed, rows_place, samples,
+from samples import (FILE, REPORTS, SEAL, VERIFY, check_complete, check_readers, check_resumed, rows_place, samples,
                      stored_rows)
 from support import SMALL
 
 JOURNAL = FILE + ".journal"
-SEAL = b"\nclogsweep seal"
 # The first run has 10^6 steps, and a snapshot after every 2^18 of them.
 STOPPED = [*SMALL, "obstacle-gap=0.4", "line-tension=0.05,0.5", "max-time=3000", "seeds=1", "--output", FILE]
 # After how long it is stopped: the slower the machine, or the busier, the later there is a snapshot.

@@ -14,6 +14,7 @@ from processes import CPU_SECONDS
 from support import BLOCKED, QUICK, TIMING
 
 FILE = "s.h5"
+SEAL = b"\nclogsweep seal"  # behind all else
 SALVAGED = "salvaged.h5"
 SWEEPS = {
     "polygons": [*QUICK, "obstacle-gap=0.4", "line-tension=0.05,0.5,1", "seeds=1..2"],
@@ -128,7 +129,7 @@ def check_readers(case, sample):
     table, why = in_child(read_with_python, path)
     case.expect(table is None or table == sample.table, "read_table: other numbers than of the whole file")
     case.expect(table is not None or why.startswith("refused"), f"read_table: {str(why).split(':')[0]}")
-    if run(case, *VERIFY).code == 0:
+    if run(case, *VERIFY).code == 0 and SEAL in before:  # of a copy only rows and settings are known to be whole
         check_called_whole(case, sample, path)
     check_salvaged(case, sample)
     case.expect(path.read_bytes() == before, "a reader changed the file")
