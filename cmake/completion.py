@@ -54,7 +54,7 @@ def main(programs, output):
             called = f"{program} {command}".strip()
             found = options(folder, names, *called.split())
             long = sorted(name for name in found if name.startswith("--"))
-            after[called] = " ".join(long if command else [*commands, *long])
+            after[called] = " ".join(long)
             arguments |= {f"{called} {name}": words for name, words in found.items() if words is not None}
     values = {key["key"]: " ".join([*key["words"], *[ANY_FILE] * (key["kind"] == "file")]) for key in keys}
     meanings = [f"{key['key']}:{re.split('[;:(]', key['help'])[0].strip()}" for key in keys]
@@ -63,7 +63,8 @@ def main(programs, output):
     for name, template, item in (("clogsweep", "completion.bash.in", "[{}]={}"), ("_clogsweep", "completion.zsh.in", "{} {}")):
         text = pathlib.Path(__file__).with_name(template).read_text()
         text = text.replace("@WITH_KEYS@", " ".join(name.replace(" ", ":") for name in with_keys))
-        for place, table in (("@OPTIONS@", after), ("@ARGUMENTS@", arguments), ("@VALUES@", values)):
+        commands = {program: " ".join(words) for program, words in COMMANDS.items()}
+        for place, table in (("@OPTIONS@", after), ("@COMMANDS@", commands), ("@ARGUMENTS@", arguments), ("@VALUES@", values)):
             text = text.replace(place, assigned(table, item))
         (output / name).write_text(text.replace("@MEANINGS@", "\n".join(f"  {shlex.quote(meaning)}" for meaning in meanings)))
 

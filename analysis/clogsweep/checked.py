@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Collection
+from typing import Any
 
 from .errors import UserError
 
 
-def whole(name: str, value: object, least: int) -> None:
+def whole(name: str, value: Any, least: int) -> None:
     """@throws UserError  unless it is a whole number that is not less"""
-    if not hasattr(value, "__index__") or value.__index__() < least:
+    try:
+        is_right = operator.index(value) >= least
+    except TypeError:
+        is_right = False
+    if not is_right:
         raise UserError(f"invalid {name}: {value} (must be a whole number, {least} or more)")
 
 

@@ -105,19 +105,20 @@ def is_of_kind(path: pathlib.Path, kind: str) -> bool:
     return not beginning or beginning == BEGINNINGS[kind]
 
 
-# Endings of pictures and films that nothing here makes. Others may be a part of the name, as in gap-0.3.
-FOREIGN_ENDINGS = (".jpg", ".jpeg", ".svg", ".eps", ".ps", ".tif", ".tiff", ".bmp", ".webp", ".avi", ".mov", ".mkv", ".webm", ".mpg", ".mpeg", ".apng")
+# Endings of pictures and films. Others may be a part of the name, as in gap-0.3.
+ENDINGS = (".png", ".pdf", ".mp4", ".gif", ".jpg", ".jpeg", ".svg", ".eps", ".ps", ".tif", ".tiff", ".bmp", ".webp",
+           ".avi", ".mov", ".mkv", ".webm", ".mpg", ".mpeg", ".apng")
 
 
-def refuse_ending(output: pathlib.Path, made: str) -> None:
-    """@param made  what there is, in words. @throws UserError  if the name asks for something else"""
-    if output.suffix.lower() in FOREIGN_ENDINGS:
-        raise UserError(f"cannot write {output} ({made}); give another ending, or none")
+def refuse_ending(output: pathlib.Path, *made: str) -> None:
+    """@param made  the endings that there are. @throws UserError  if the name asks for another one"""
+    if output.suffix.lower() in ENDINGS and output.suffix not in made:
+        raise UserError(f"cannot write {output} (it can only be {' or '.join(made)}); give another ending, or none")
 
 
 def refuse_unwritable_picture(output: str | os.PathLike[str], *inputs: pathlib.Path) -> None:
     """Of the two files of style.save(). @param output  path without ending"""
-    refuse_ending(pathlib.Path(output), "pictures are .png and .pdf")
+    refuse_ending(pathlib.Path(output), ".png", ".pdf")
     for kind in ("png", "pdf"):
         refuse_unwritable(pathlib.Path(f"{output}.{kind}"), kind, *inputs)
 

@@ -260,7 +260,7 @@ def size_for(path: pathlib.Path | None) -> str:
 def path_of(output: pathlib.Path) -> pathlib.Path:
     """The file that a film goes to: the ending that was asked for, or .mp4 with ffmpeg, .gif otherwise.
     @throws UserError if it cannot be made, or is there"""
-    command_line.refuse_ending(output, "films are .mp4 or .gif")
+    command_line.refuse_ending(output, *ENDINGS)
     has_ffmpeg = shutil.which("ffmpeg") is not None
     if output.suffix not in ENDINGS:
         output = output.with_name(output.name + (".mp4" if has_ffmpeg else ".gif"))

@@ -7,7 +7,7 @@ import os
 import pathlib
 from typing import TYPE_CHECKING, Any
 
-from . import lengths, programs, rounded, stored
+from . import checked, lengths, programs, rounded, stored
 from .errors import UserError
 from .groups import Groups
 from .picture import Picture
@@ -36,9 +36,9 @@ class Fit:
     @property
     def source(self) -> str:
         """Where its rows come from, how many they are, and what fitted them. Older programs do not say the first."""
-        sweep = self.told.get("sweep")
-        return "\n".join([*([stored.source(sweep), sweep["config"].strip()] if sweep else []),
-                          f"{self._counted()}, fitted by clogfit {stored.writer(self.told)}"])
+        sweep = self.told.get("sweep", {})
+        lines = [stored.source(sweep) if sweep else "", sweep.get("config", "").strip(), f"{self._counted()}, fitted by clogfit {stored.writer(self.told)}"]
+        return "\n".join(filter(None, lines))
 
     def _counted(self) -> str:
         groups = self.told["groups"]
@@ -57,7 +57,8 @@ class Fit:
         @throws UserError  if there is no such group"""
         import pandas
 
-        if group not in range(len(self.told["groups"])):
+        checked.whole("group", group, 0)
+        if group >= len(self.told["groups"]):
             raise UserError(f"no group {group}; there are {len(self.told['groups'])}, the first is 0")
         return pandas.DataFrame(self.told["groups"][group]["survival"])
 

@@ -57,6 +57,7 @@ class Groups:
         self.confidence: float = fit["confidence"]
         self.columns: dict[str, Column] = {column["name"]: column for column in fit["columns"]}
         self.lists: Collection[str] = fit["lists"]
+        self.tells_what_all_share = True  # in caption() and note()
         self.abscissa = self._choose_abscissa() if self.members else ""  # there is nothing to draw
 
     def refuse_passages(self) -> None:
@@ -148,6 +149,8 @@ class Groups:
 
     def caption(self) -> str:
         """What all curves have in common, and how many runs are behind them."""
+        if not self.tells_what_all_share:
+            return ""
         first = self.members[0]
         words = ["deformable polygon" if self.are_polygons else "soft disk"]
         words += [self.said(name, first[name]) for name in self.columns if self._is_worth_a_word(name, first[name])]
@@ -175,5 +178,5 @@ class Groups:
 
     def note(self, about_bars: str) -> str:
         """The interface, if it is one, and what bars and markers mean."""
-        presets = {group["preset"] for group in self.members if group["model"] == "dp"}
+        presets = {group["preset"] for group in self.members if group["model"] == "dp" and self.tells_what_all_share}
         return (f"interface: {presets.pop()}; " if len(presets) == 1 else "") + about_bars

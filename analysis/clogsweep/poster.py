@@ -29,19 +29,6 @@ Draw = Callable[[Axes], None]
 Row = tuple[float, Sequence[Draw]]  # a share of the height, and what is side by side
 
 
-class Panels(Groups):
-    """What panels draw. The page says at its head what all of them have in common, so that they need not."""
-
-    def __init__(self, groups: Groups) -> None:
-        vars(self).update(vars(groups))
-
-    def caption(self) -> str:
-        return ""
-
-    def note(self, about_bars: str) -> str:
-        return about_bars
-
-
 def page(title: str, about: str, rows: Sequence[Row], footer: str) -> Figure:
     """@param about, footer  one line each, or several"""
     figure = style.new_figure(figsize=PAGE, layout="constrained")
@@ -86,7 +73,7 @@ def draw_way(axes: Axes, run: Trajectory) -> None:
     axes.set_aspect("equal", adjustable="datalim")
 
 
-def of_lengths(groups: Panels, sweep: pathlib.Path, clogrun: pathlib.Path) -> list[Row]:
+def of_lengths(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> list[Row]:
     def clog_drawing(clog: clogs.Clog) -> Draw:
         return lambda axes: clogs.draw(axes, clog)
 
@@ -111,7 +98,7 @@ def of_lengths(groups: Panels, sweep: pathlib.Path, clogrun: pathlib.Path) -> li
     return rows
 
 
-def of_passages(groups: Panels, sweep: pathlib.Path, clogrun: pathlib.Path) -> list[Row]:
+def of_passages(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> list[Row]:
     def outline_drawing(run: Trajectory) -> Draw:
         def draw(axes: Axes) -> None:
             passages.draw_outline(axes, groups, run)
@@ -137,8 +124,10 @@ def draw(sweep: pathlib.Path, folder: pathlib.Path) -> Figure:
     if groups.are_passages:
         kind = passages.kind_of(groups)
         title, words = f"{kind.heading} over {abscissa}", kind.outcomes
-        rows = of_passages(Panels(groups), sweep, folder / "clogrun")
+        rows = of_passages(groups, sweep, folder / "clogrun")
     else:
         title, words = f"Clogging length over {abscissa}", {"flowing": "still going"}
-        rows = of_lengths(Panels(groups), sweep, folder / "clogrun")
-    return page(title, f"{groups.caption()}\n{groups.note(counted(stored.read_table(sweep, folder), words))}", rows, cut(stored.source(about)))
+        rows = of_lengths(groups, sweep, folder / "clogrun")
+    head = f"{groups.caption()}\n{groups.note(counted(stored.read_table(sweep, folder), words))}"
+    groups.tells_what_all_share = False  # the head does, panels need not
+    return page(title, head, rows, cut(stored.source(about)))

@@ -21,13 +21,14 @@ def reason(text: str) -> str:
 
 
 def programs_in(folder: str | os.PathLike[str] | None = None) -> pathlib.Path:
-    """Folder of clogsweep, clogrun and clogfit: the user's own choice, or CLOG_BIN, or those of the PATH, or those beside this package.
+    """Folder of clogsweep, clogrun and clogfit: the user's own choice, or else those of CLOG_BIN, of the PATH, or beside this package.
 
     @throws UserError  if they are not there
     """
     called = shutil.which("clogsweep")
-    folder = folder or os.environ.get("CLOG_BIN")
-    candidates = [pathlib.Path(folder)] if folder else [*([pathlib.Path(called).resolve().parent] if called else []), *places.PROGRAMS]
+    chosen = os.environ.get("CLOG_BIN")
+    candidates = [pathlib.Path(folder)] if folder else [
+        *([pathlib.Path(chosen)] if chosen else []), *([pathlib.Path(called).resolve().parent] if called else []), *places.PROGRAMS]
     for place in candidates:
         if (place / "clogsweep").exists():
             return place.resolve()

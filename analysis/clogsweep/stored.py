@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import json
 import os
+import pathlib
 import re
+import subprocess
 import sys
 import zlib
 from collections.abc import Iterator
@@ -17,6 +20,7 @@ import numpy as np
 from . import programs
 from .errors import Damaged, ProgramFailed, UserError
 from .hints import AnyPath, Records
+from .rehearsal import is_ours, is_run
 
 if TYPE_CHECKING:
     import pandas
@@ -50,66 +54,56 @@ def unreadable(path: AnyPath, reason: object, kind: str | None = None) -> UserEr
     return UserError(f"cannot read {path} ({reason}); give {WRITERS[kind]}")
 
 
-def is_table(part: object) -> bool:
-    """With a row for each of something, and named columns? What pandas writes of its own is a group."""
-    return isinstance(part, h5py.Dataset) and part.ndim == 1 and part.dtype.names is not None
-
-
 def check_kind(path: AnyPath, file: h5py.File, kind: str | None) -> None:
     """@throws UserError"""
-    if "format_version" not in file.attrs or not all(is_table(file[name]) for name in ("runs", "trajectory") if name in file) or "runs" not in file:
+    if not is_ours(file):
         raise unreadable(path, "an HDF5 file, but not one of clogsweep or clogrun", kind)
-    if kind == SWEEP and "trajectory" in file:
+    if kind == SWEEP and is_run(file):
         raise unreadable(path, "holds one run of clogrun, not a sweep", kind)
-    if kind == RUN and "trajectory" not in file:
+    if kind == RUN and not is_run(file):
         raise unreadable(path, "holds a sweep, not one run of clogrun", kind)
 
 
 def kind_of(path: AnyPath, folder: AnyPath | None = None) -> str:
     """SWEEP or RUN. @throws as opened()"""
     with opened(path, folder=folder) as file:
-        return RUN if "trajectory" in file else SWEEP
+        return RUN if is_run(file) else SWEEP
 
 
-def rehearse(path: AnyPath) -> None:
-    """Reads all of a file in a process that may die, as HDF5 does of some damage. @throws Damaged if it does"""
-    process = os.fork()
-    if process == 0:
-        code = 1
-        with contextlib.suppress(Exception), open(os.devnull, "w") as nowhere:
-            os.dup2(nowhere.fileno(), 2)
-            with h5py.File(path, "r") as file:
-                attributes(file)
-                file.visititems(lambda _, part: part[()] if isinstance(part, h5py.Dataset) else None)
-            code = 0
-        os._exit(code)
-    if os.waitpid(process, 0)[1] != 0:
+def look(path: AnyPath) -> dict[str, str | bool]:
+    """What kind of file it is, found by reading all of it in another process. @throws Damaged  if that dies of it"""
+    done = subprocess.run([sys.executable, pathlib.Path(__file__).with_name("rehearsal.py"), path], capture_output=True, text=True)
+    if done.returncode != 0:
         raise Damaged(f"cannot trust {path} (damaged: reading it fails); put a copy in its place")
+    return json.loads(done.stdout)
 
 
 def ask_clogsweep(path: AnyPath, folder: AnyPath | None) -> None:
-    """Has the program check rows, attributes and types of a sweep, and say what it has to say. @throws Damaged"""
+    """Has the program check rows, attributes and types of a sweep, and say what it has to say. @throws Damaged; UserError"""
     try:
-        said = programs.warnings_of(programs.programs_in(folder) / "clogsweep", "status", path, "--format", "json")
+        clogsweep = programs.programs_in(folder) / "clogsweep"
+    except UserError as error:
+        raise UserError(f"cannot check {path}, which has no seal: {error}") from error
+    try:
+        print(programs.warnings_of(clogsweep, "status", path, "--format", "json"), end="", file=sys.stderr)
     except ProgramFailed as failure:
-        raise Damaged(str(failure).removeprefix("clogsweep status: ")) from failure
-    print(said, end="", file=sys.stderr)
+        reason = str(failure).removeprefix("clogsweep status: ")
+        raise (Damaged if "(damaged: " in reason else UserError)(reason) from failure
 
 
 @functools.lru_cache
-def check_copy(path: str, folder: str | None, _changed: int) -> None:
-    """Of a file without a seal, which another program has copied or changed. Once for each, as it was then. @throws Damaged; UserError"""
-    rehearse(path)
-    with h5py.File(path, "r") as file:
-        is_old = text(file.attrs.get("format_version", "")) in OLD_VERSIONS
-        is_run = "trajectory" in file
-    if is_run and is_old:
+def check_copy(path: str, folder: str | None, *_as_it_is: float) -> None:
+    """Of a file without a seal, which another program has copied or changed. Once for each, as it is then. @throws Damaged; UserError"""
+    found = look(path)
+    if not found["is_ours"]:
+        return  # for check_kind()
+    if not found["is_run"]:
+        ask_clogsweep(path, folder)
+    elif found["format_version"] in OLD_VERSIONS:
         print(f"{path} is of an older format without checksums: damage to it may go unnoticed", file=sys.stderr)
-    elif is_run:
+    else:
         raise UserError(f"cannot trust {path} (another program copied or changed it, and outlines have no checksums of their own); "
                         "give the file that clogrun wrote, or run the droplet once more")
-    else:
-        ask_clogsweep(path, folder)
 
 
 def why_not_open(path: AnyPath, error: OSError) -> str:
@@ -127,7 +121,8 @@ def opened(path: AnyPath, kind: str | None = None, folder: AnyPath | None = None
     try:
         is_whole = is_sealed(path)
         if h5py.is_hdf5(path) and not is_whole:
-            check_copy(str(path), str(folder) if folder else None, os.stat(path).st_mtime_ns)
+            now = os.stat(path)
+            check_copy(os.path.realpath(path), str(folder) if folder else None, now.st_dev, now.st_ino, now.st_size, now.st_ctime_ns)
         opened_file = h5py.File(path, "r")
     except FileNotFoundError as error:
         raise UserError(f"cannot read {path} (no such file); check the name") from error
@@ -147,13 +142,15 @@ def attributes(file: h5py.File) -> dict[str, str]:
 
 
 def writer(attributes: dict[str, str]) -> str:
-    """Version and commit of the program that wrote a file, in words. Older files have the commit's hash alone."""
-    return f"{attributes['version']}, git {attributes.get('git_describe') or attributes['git_hash']}"
+    """Version and commit of the program that wrote a file, in words. Older files have the commit's hash alone, or less."""
+    commit = attributes.get("git_describe") or attributes.get("git_hash") or "unknown"
+    return f"{attributes.get('version', 'of unknown version')}, git {commit}"
 
 
 def source(attributes: dict[str, str]) -> str:
     """Where the rows of a file come from, for whoever finds a picture of them. @param attributes  of the file"""
-    return f"clogsweep {writer(attributes)}, begun {attributes['start_time']}\n{attributes['command_line']}"
+    began = f", begun {attributes['start_time']}" if "start_time" in attributes else ""
+    return f"clogsweep {writer(attributes)}{began}\n{attributes.get('command_line', '')}".strip()
 
 
 def columns_of(rows: Records | np.void) -> tuple[str, ...]:

@@ -454,7 +454,7 @@ std::string to_json(const std::vector<Group>& groups, double confidence,
   nlohmann::ordered_json columns = nlohmann::ordered_json::array();
   for (const sweep::Column* column : group_columns()) columns.push_back(sweep::to_json(*column));
   nlohmann::ordered_json origin = nlohmann::ordered_json::object();
-  for (const char* name : {"version", "git_describe", "start_time", "command_line", "config"})
+  for (const char* name : {"version", "git_describe", "git_hash", "start_time", "command_line", "config"})
     if (std::string text = attribute(provenance, name); !text.empty()) origin[name] = std::move(text);
   const console::BuildInfo build = console::build_info();
   const nlohmann::ordered_json document = {{"version", build.version},

@@ -21,7 +21,7 @@ using namespace console;
 
 namespace {
 
-/// Of the libraries, before anything is read or computed.
+/// What the libraries take before anything is read or computed: with 8 MB some of them crashed.
 constexpr std::size_t least_memory = 32'000'000;
 
 /// ISO 8601.

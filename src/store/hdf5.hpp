@@ -43,10 +43,13 @@ using PropertyList = Handle<H5Pclose>;
 /// has the file open must not make a row fail to be written; they also fail on many cluster file systems).
 void prepare_library();
 
-/// The library takes several times as much memory as a file has bytes, and may crash where there is none.
+/// The library's image, which grows by copying, and ours.
+constexpr int copies_in_writing = 3;
+
+/// The library makes copies of what it reads and writes, and may crash where there is no memory for them.
 /// @param purpose  as in "read sweep.h5"; @param size  of the file [bytes]
 /// @throws Error if there is not so much
-void require_memory_of_file(const std::string& purpose, std::size_t size);
+void require_memory_of_file(const std::string& purpose, std::size_t size, int copies = copies_in_writing);
 
 /// Has a file of the earliest format filled in memory, writes it as a draft with a seal at its end and
 /// publishes it: the path never holds half a file. @throws Error if the path exists or cannot be written

@@ -348,8 +348,13 @@ class Pictures(Analysis):
         self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1..2", "--output", "s.h5")
         self.write("fit.json", self.succeed("clogfit", "s.h5", "--format", "json").stdout)
         self.draw("clogging-length", "fit.json", "--output", "from-fit")
-        with unittest.mock.patch.dict(os.environ, {"PATH": f"{BIN}:{os.environ['PATH']}"}):
+        (self.folder / "clogsweep").touch(mode=0o755)
+        with unittest.mock.patch.dict(os.environ, {"CLOG_BIN": "/nowhere", "PATH": f"{BIN}:{os.environ['PATH']}"}):
             self.assertEqual(programs.programs_in(), BIN.resolve())
+            os.environ["CLOG_BIN"] = str(self.folder)
+            self.assertEqual(programs.programs_in(), self.folder.resolve())
+            self.assertEqual(programs.programs_in(BIN), BIN.resolve())
+            del os.environ["CLOG_BIN"]
             self.draw("clogging-length", "s.h5", "--output", "from-sweep")
         self.assertTrue((image.imread(self.folder / "from-fit.png") == image.imread(self.folder / "from-sweep.png")).all())
 

@@ -10,6 +10,7 @@ import numpy as np
 import pandas
 from PIL import Image
 
+import stored_rows
 from drawing import Analysis
 from support import BIN, QUICK, ROOT, SweepTest, table
 
@@ -63,6 +64,16 @@ class Module(Analysis):
         self.write("notes.png", "no picture")
         with self.assertRaisesRegex(clogsweep.UserError, "will not overwrite .*notes.png"):
             fit.curve().save(self.folder / "notes")
+
+    def test_a_sweep_of_older_programs_is_drawn(self):
+        """It says less of where it comes from."""
+        self.sweep()
+        stored_rows.make_older(self.folder / "s.h5", "4")
+        with h5py.File(self.folder / "s.h5", "r+") as file:
+            for name in ("git_describe", "start_time"):
+                del file.attrs[name]
+        fit = clogsweep.open(self.folder / "s.h5", BIN).fit()
+        self.assertRegex(fit.curve().source, r"^clogsweep 0.2.0, git [0-9a-f]+\nclogsweep vertices")
 
     def test_clogs_draw_themselves_and_say_what_holds_them(self):
         sweep = self.sweep("line-tension=3", "seeds=1..8")
@@ -158,13 +169,14 @@ class Module(Analysis):
             "invalid most_frames: 1.5": lambda: run.film(film, most_frames=1.5),
             "invalid size: 9p .must be 540p or 1080p or 2160p": lambda: run.film(film, size="9p"),
             "invalid colour: red": lambda: run.film(film, colour="red"),
-            "films are .mp4 or .gif": lambda: run.film(self.folder / "film.avi"),
-            "pictures are .png and .pdf": lambda: run.picture().save(self.folder / "way.jpg"),
+            "film.avi .it can only be .mp4 or .gif": lambda: run.film(self.folder / "film.avi"),
+            "way.mp4 .it can only be .png or .pdf": lambda: run.picture().save(self.folder / "way.mp4"),
             "invalid outlines: 0": lambda: run.picture(0),
             "invalid most: 0": lambda: sweep.clogs(most=0),
             "invalid jobs: 0": lambda: sweep.clogs(jobs=0),
             "invalid examples: -1": lambda: sweep.report(self.folder / "r.html", examples=-1),
             "no group 2; there are 2, the first is 0": lambda: sweep.fit().survival(2),
+            "invalid group: 1.0": lambda: sweep.fit().survival(1.0),
         }.items():
             with self.subTest(words), self.assertRaisesRegex(clogsweep.UserError, words):
                 call()

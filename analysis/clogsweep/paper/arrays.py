@@ -227,7 +227,7 @@ def example(shop: Workshop, mechanism: str) -> tuple[Trajectory, pandas.Series]:
     else:
         travelled = clogs[clogs.distance >= 0.5]
         row = (clogs if travelled.empty else travelled).sort_values(["line_tension", "task"]).iloc[-1]
-    stored_row = [one for one in stored.read_rows(shop.sweep_file("clogging")) if one["task"] == row.task]
+    stored_row = [one for one in stored.read_rows(shop.sweep_file("clogging"), shop.programs) if one["task"] == row.task]
     run, = shop.ways("clogging", stored_row, 1, max(0.5, row.time / 400))
     return run, row
 

@@ -145,7 +145,7 @@ class Workshop:
         self._complete(name, self._arguments(config, words) if config else [f"{key}={word}" for key, word in words.items()],
                        min(self.ranks, len(wanted)))
         # The file may hold others beside them. What has no column is the same in all of them.
-        known = {tuple(in_row(row, key, values[0]) for key, values in lists.items()): row for row in stored.read_rows(self.sweep_file(name))}
+        known = {tuple(in_row(row, key, values[0]) for key, values in lists.items()): row for row in stored.read_rows(self.sweep_file(name), self.programs)}
         if missing := [values for values in wanted if values not in known]:
             which = ", ".join(map("=".join, zip(lists, missing[0])))
             raise UserError(f"{self.sweep_file(name)} holds no run of {which}; leave out --draw-only, or give another --output")
@@ -165,10 +165,10 @@ class Workshop:
 
     def rows(self, name: str) -> pandas.DataFrame:
         """The table of a sweep that sweep() has run."""
-        return stored.read_table(self.sweep_file(name))
+        return stored.read_table(self.sweep_file(name), self.programs)
 
     def _note_sweep(self, name: str) -> None:
-        with stored.opened(self.sweep_file(name)) as file:
+        with stored.opened(self.sweep_file(name), folder=self.programs) as file:
             about, rows = stored.attributes(file), file["runs"][:]
         seeds = sorted(set(rows["seed"].tolist()))
         finished = sum(status not in (b"running", b"interrupted") for status in rows["status"])
