@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 import pandas
 
-from support import BIN, QUICK, ROOT, SMALL, ProgramTest, table
+from support import BIN, LONGEST, QUICK, ROOT, SMALL, ProgramTest, table
 
 
 def centroid_x(polygon):
@@ -242,7 +242,7 @@ class Run(ProgramTest):
         self.addCleanup(process.kill)
         time.sleep(1)
         process.send_signal(signal.SIGINT)
-        output, told = process.communicate(timeout=60)
+        output, told = process.communicate(timeout=LONGEST)
         self.assertEqual(process.returncode, 75)
         self.assertTrue(re.match("interrupted after r = ", output), output)
         self.assertRegex(told, r"no film is drawn; PYTHONPATH=\S+ \S+ -m clogsweep droplet run.h5 --output=film --film draws what there is\n$")
@@ -260,7 +260,7 @@ class Run(ProgramTest):
         told = b""
 
         def read_on():
-            self.assertTrue(select.select([master], [], [], 60)[0], f"nothing more is told after {told}")
+            self.assertTrue(select.select([master], [], [], LONGEST)[0], f"nothing more is told after {told}")
             return os.read(master, 1000)
 
         while told.count(b" left") < 2:

@@ -13,7 +13,7 @@ import numpy as np
 import pandas
 
 import stored_rows
-from support import BIN, BLOCKED, MPI, MPIRUN, QUICK, ROOT, SMALL, STEPS_PER_SNAPSHOT, ProgramTest
+from support import BIN, BLOCKED, LONGEST, MPI, MPIRUN, QUICK, ROOT, SMALL, STEPS_PER_SNAPSHOT, ProgramTest
 
 # Columns that tell where and how fast a row was made, not what came out.
 CIRCUMSTANCES = ["wall_seconds", "rank", "host"]
@@ -230,17 +230,18 @@ class Sweep(ProgramTest):
 
 
 class Stopped(ProgramTest):
-    LONG = ["vertices=64", "box=20", "obstacle-gap=1.2", "max-time=1e5", "seeds=1..50", "--output", "s.h5"]
+    LONG = ["vertices=64", "box=20", "obstacle-gap=1.2", "max-time=1e5", "seeds=1..50", "--report-seconds=0.1", "--output", "s.h5"]
 
-    def stop(self, command, signal_number, wait):
+    def ranks_that_move(self):
+        return set(table(self.folder / "s.h5").query("status == 'running' and distance > 0")["rank"])
+
+    def stop(self, command, signal_number, ranks):
         process = subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE, text=True)
         self.addCleanup(process.kill)
-        deadline = time.time() + 60
-        while not (self.folder / "s.h5").exists() and time.time() < deadline:
-            time.sleep(0.05)
-        time.sleep(wait)
+        self.wait_for(lambda: process.poll() is not None or
+                      (self.folder / "s.h5").exists() and self.ranks_that_move() == set(range(ranks)))
         process.send_signal(signal_number)
-        _, error = process.communicate(timeout=60)
+        _, error = process.communicate(timeout=LONGEST)
         return process.returncode, error
 
     def check_rows(self):
@@ -251,13 +252,13 @@ class Stopped(ProgramTest):
         self.assertTrue(np.isfinite(interrupted.time).all())
 
     def test_ctrl_c_keeps_the_distances_so_far(self):
-        code, error = self.stop([str(BIN / "clogsweep"), *self.LONG], signal.SIGINT, 1)
+        code, error = self.stop([str(BIN / "clogsweep"), *self.LONG], signal.SIGINT, ranks=1)
         self.assertEqual(code, 75, error)
         self.assertIn("stopped by a signal", error)
         self.check_rows()
 
     def test_ctrl_c_under_mpirun_keeps_the_distances_so_far(self):
-        self.stop([str(MPIRUN), "2", str(BIN / "clogsweep"), *self.LONG], signal.SIGINT, 2)
+        self.stop([str(MPIRUN), "2", str(BIN / "clogsweep"), *self.LONG], signal.SIGINT, ranks=2)
         self.check_rows()
         rows = table(self.folder / "s.h5")
         self.assertEqual(set(rows[rows.status == "interrupted"]["rank"]), {0, 1})
@@ -280,7 +281,7 @@ class Isolated(ProgramTest):
 
     def computing_process(self, rank):
         """The rank's helper starts it."""
-        deadline = time.time() + 60
+        deadline = time.time() + LONGEST
         while time.time() < deadline:
             found = [process for helper in self.children_of(rank.pid) for process in self.children_of(helper)]
             if found:
@@ -290,10 +291,7 @@ class Isolated(ProgramTest):
         self.fail("no process computes")
 
     def wait_for_end_of(self, processes):
-        deadline = time.time() + 10
-        while any(pathlib.Path(f"/proc/{pid}").exists() for pid in processes):
-            self.assertLess(time.time(), deadline, "a process is left")
-            time.sleep(0.05)
+        self.wait_for(lambda: not any(pathlib.Path(f"/proc/{pid}").exists() for pid in processes))
 
     def test_rows_are_the_same_without(self):
         sweep = [*QUICK, "line-tension=0.3,2", "obstacle-gap=0.2,0.6", "seeds=1..4", "--output"]
@@ -305,7 +303,7 @@ class Isolated(ProgramTest):
     def test_a_crash_fails_one_task_and_the_sweep_goes_on(self):
         process = self.start("--attempts=1", "seeds=1..2", "max-time=3000")
         os.kill(self.computing_process(process), signal.SIGSEGV)
-        _, error = process.communicate(timeout=120)
+        _, error = process.communicate(timeout=LONGEST)
         self.assertEqual(process.returncode, 0, error)
         rows = table(self.folder / "s.h5")
         self.assertEqual(list(rows.status), ["failed", "flowing"])
@@ -315,7 +313,7 @@ class Isolated(ProgramTest):
     def test_a_task_that_crashed_is_tried_again(self):
         process = self.start("seeds=1", "max-time=6000")
         os.kill(self.computing_process(process), signal.SIGKILL)
-        _, error = process.communicate(timeout=120)
+        _, error = process.communicate(timeout=LONGEST)
         self.assertEqual(process.returncode, 0, error)
         self.assertIn("attempt 1, will be tried again: its process was ended by SIGKILL", error)
         rows = table(self.folder / "s.h5")
@@ -325,15 +323,12 @@ class Isolated(ProgramTest):
         sweep = ["seeds=1", "max-time=2e4", "--report-seconds=0.1"]
         process = self.start(*sweep)
         computing = self.computing_process(process)
-        deadline = time.time() + 60
         # Before its first snapshot a run would go on from its beginning.
-        while not table(self.folder / "s.h5").steps.gt(STEPS_PER_SNAPSHOT).any():
-            self.assertLess(time.time(), deadline, "no report is published")
-            time.sleep(0.1)
+        self.wait_for(lambda: table(self.folder / "s.h5").steps.gt(STEPS_PER_SNAPSHOT).any())
         os.kill(computing, signal.SIGSTOP)
         time.sleep(0.5)  # reports are asked for meanwhile
         process.send_signal(signal.SIGTERM)
-        _, error = process.communicate(timeout=60)
+        _, error = process.communicate(timeout=LONGEST)
         self.assertEqual(process.returncode, 75, error)
         rows = table(self.folder / "s.h5")
         self.assertEqual(rows.status[0], "interrupted")
@@ -344,7 +339,7 @@ class Isolated(ProgramTest):
         process = self.start(*sweep[:2], "--report-seconds=100")
         os.kill(self.computing_process(process), signal.SIGSTOP)
         process.send_signal(signal.SIGTERM)
-        _, error = process.communicate(timeout=60)
+        _, error = process.communicate(timeout=LONGEST)
         self.assertEqual(process.returncode, 75, error)
         self.assertEqual(table(self.folder / "s.h5").distance[0], hung_at)
         self.assertIn("1 goes on where it was", self.succeed("clogsweep", *self.LONG, *sweep).stderr)
@@ -354,7 +349,7 @@ class Isolated(ProgramTest):
         process = self.start("seeds=1..2", "max-time=3000")
         self.computing_process(process)
         os.kill(self.children_of(process.pid)[0], signal.SIGKILL)
-        _, error = process.communicate(timeout=120)
+        _, error = process.communicate(timeout=LONGEST)
         self.assertEqual(process.returncode, 0, error)
         self.assertEqual(error.count("the helper that starts its rank's processes was killed"), 1, error)
         self.assertEqual(list(table(self.folder / "s.h5").status), ["flowing", "flowing"])
@@ -453,7 +448,7 @@ class Refusals(ProgramTest):
                 self.refuse("clogsweep", *arguments, words=words)
 
     def test_a_mistake_ends_all_ranks(self):
-        done = self.run_program("clogsweep", "line-tension=-1", "--output", "s.h5", ranks=2, timeout=60)
+        done = self.run_program("clogsweep", "line-tension=-1", "--output", "s.h5", ranks=2)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertEqual(done.stderr.count("invalid line-tension=-1"), 1)
 

@@ -4,7 +4,7 @@ import os
 import subprocess
 import unittest
 
-from support import BIN, MPI, MPIRUN, ProgramTest
+from support import BIN, LONGEST, MPI, MPIRUN, ProgramTest
 
 
 class Doctor(ProgramTest):
@@ -12,7 +12,7 @@ class Doctor(ProgramTest):
         variables = {key: value for key, value in os.environ.items() if not key.startswith(("SLURM_", "OMPI_"))}
         command = [*before, *([str(MPIRUN), str(ranks)] if ranks else []), str(BIN / "clogsweep"), "doctor", *arguments]
         return subprocess.run(command, cwd=self.folder, env={**variables, **environment}, capture_output=True, text=True,
-                              timeout=120)
+                              timeout=LONGEST)
 
     def faults(self, done):
         lines = done.stdout.splitlines()

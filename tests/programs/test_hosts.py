@@ -5,7 +5,7 @@ import signal
 import subprocess
 import unittest
 
-from support import ROOT, SWEEP, SweepTest, table
+from support import LONGEST, ROOT, SWEEP, SweepTest, table
 
 TWO_HOSTS = ROOT / "tests" / "two_hosts.sh"
 
@@ -30,7 +30,7 @@ class TwoHosts(SweepTest):
 
     def test_the_rows_do_not_depend_on_hosts(self):
         process = self.start_on_both()
-        _, error = process.communicate(timeout=60)
+        _, error = process.communicate(timeout=LONGEST)
         self.assertEqual(process.returncode, 0, error)
         self.succeed("clogsweep", *SWEEP[:-1], "whole.h5", ranks=2)
         self.check_equal("s.h5", "whole.h5")
@@ -49,7 +49,7 @@ class TwoHosts(SweepTest):
         rank = int(subprocess.run(["pgrep", "--parent", str(daemon)], capture_output=True, text=True).stdout)
         os.kill(rank, signal.SIGKILL)
         os.kill(daemon, signal.SIGKILL)
-        _, error = process.communicate(timeout=30)
+        _, error = process.communicate(timeout=LONGEST)
         self.assertNotEqual(process.returncode, 0, error)
         self.wait_for(lambda: not self.members(process))
         rows = table(self.folder / "s.h5")
@@ -57,7 +57,7 @@ class TwoHosts(SweepTest):
         self.assertFalse(rows[rows.task.isin(over)].status.isin(["running", "interrupted"]).any(), "a finished row was lost")
         self.assertLess((~rows.status.isin(["running", "interrupted"])).sum(), 24, "it was over before its host died")
         process = self.start_on_both()
-        _, error = process.communicate(timeout=60)
+        _, error = process.communicate(timeout=LONGEST)
         self.assertEqual(process.returncode, 0, error)
         self.check_equal("s.h5", "whole.h5")
 

@@ -13,7 +13,7 @@ import unittest
 
 import pandas
 
-from support import BIN, ROOT
+from support import BIN, LONGEST, ROOT
 
 KEYS = ["line-tension=0.5", "obstacle-gap=0.3", "vertices=64", "box=20", "max-time=200", "seeds=1..4"]
 
@@ -42,18 +42,21 @@ class Installed(unittest.TestCase):
         environment = {"PATH": f"{cls.folder}/moved/bin:{BIN.parent}/launcher:/usr/bin:/bin", "HOME": str(cls.folder), "OMPI_ALLOW_RUN_AS_ROOT": "1",
                        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "PYTHONDONTWRITEBYTECODE": "1",
                        "PYTHONPATH": f"{cls.folder}/moved/lib/python3/dist-packages", "ASAN_OPTIONS": os.environ.get("ASAN_OPTIONS", "")}
-        done = subprocess.run([str(word) for word in command], cwd=cls.folder, env=environment, capture_output=True, text=True, timeout=300, **options)
+        done = subprocess.run([str(word) for word in command], cwd=cls.folder, env=environment, capture_output=True, text=True, timeout=LONGEST, **options)
         if done.returncode != 0:
             raise AssertionError(f"{command}: {done.stdout}{done.stderr}")
         return done.stdout
 
     def test_nothing_knows_where_it_was_built(self):
+        cache = (BIN.parent / "CMakeCache.txt").read_text()
+        # The sanitizers' own tables name every source by its full path; nobody installs such a build.
+        sources = [] if "CLOG_SANITIZE:BOOL=ON" in cache else [ROOT]
         for path in self.prefix.rglob("*"):
             self.assertFalse(path.is_symlink(), path)
             if path.is_file() and path.suffix != ".png":  # a picture holds the command that made it
                 content = path.read_bytes()
-                for place in (ROOT, BIN.parent, self.folder / "first"):
-                    self.assertNotIn(str(place).encode() + b"/", content, path)
+                for place in (*sources, BIN.parent, self.folder / "first"):
+                    self.assertFalse(str(place).encode() + b"/" in content, f"{path} knows {place}")
 
     def test_a_sweep_its_fit_its_report_and_its_pictures(self):
         self.called("clogsweep", *KEYS, "--output", "s.h5")
@@ -187,7 +190,7 @@ class Installed(unittest.TestCase):
         """Of a terminal that may be slow."""
         seen = b""
         while text not in seen:
-            ready, _, _ = select.select([terminal], [], [], 120)
+            ready, _, _ = select.select([terminal], [], [], LONGEST)
             self.assertTrue(ready, seen)
             seen += os.read(terminal, 4096)
 

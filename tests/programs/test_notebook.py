@@ -12,7 +12,7 @@ import unittest.mock
 import nbclient
 import nbformat
 
-from support import BIN, ROOT, ProgramTest
+from support import BIN, LONGEST, ROOT, ProgramTest
 
 NOTEBOOK = ROOT / "docs" / "gallery" / "notebook.ipynb"
 NUMBER = re.compile(r"\d+\.\d+(?:e[+-]?\d+)?")  # a count has no point, and is the same
@@ -42,7 +42,7 @@ class Notebook(ProgramTest):
         notebook = nbformat.read(NOTEBOOK, as_version=4)
         expected = said(notebook)
         with unittest.mock.patch.dict(os.environ, environment):
-            nbclient.NotebookClient(notebook, timeout=500, kernel_name="python3", resources={"metadata": {"path": str(self.folder)}}).execute()
+            nbclient.NotebookClient(notebook, timeout=LONGEST, kernel_name="python3", resources={"metadata": {"path": str(self.folder)}}).execute()
         today = said(notebook)
         self.assertEqual(words(today), words(expected))
         for number, known in zip(numbers(today), numbers(expected), strict=True):

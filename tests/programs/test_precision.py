@@ -65,9 +65,11 @@ class Precision(ProgramTest):
 
     def test_less_precision_finishes_what_more_had_begun(self):
         more = [*SWEEP[:-2], "--until-precision=30%", "--most-seeds=60"]
+        hours = 0.00004
         while True:  # stopped when a later round has begun
-            done = self.run_program("clogsweep", *more, "--output", "s.h5", "--max-hours=0.00004")
+            done = self.run_program("clogsweep", *more, "--output", "s.h5", f"--max-hours={hours}")
             self.assertEqual(done.returncode, 75, "it was over too soon")
+            hours *= 1.05  # on a machine that is busy a session may come to nothing
             rows = table(self.folder / "s.h5")
             if len(rows) > 8 and (rows.status == "interrupted").any():
                 break

@@ -11,7 +11,7 @@ import subprocess
 import sys
 import unittest
 
-from support import BIN, ROOT, ProgramTest
+from support import BIN, LONGEST, ROOT, ProgramTest
 
 BLOCK = re.compile(r"^```(bash|python|text)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FILE = re.compile(r"`([\w-]+\.(?:h5|csv|cfg|json|png|pdf|gif|mp4|html))`")
@@ -39,7 +39,7 @@ class Pages(ProgramTest):
                 continue
             command = ["bash", "-c", BEFORE + block] if language == "bash" else [sys.executable, "-c", block]
             done = subprocess.run(command, cwd=self.folder, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                  stderr=subprocess.STDOUT, text=True, timeout=500)
+                                  stderr=subprocess.STDOUT, text=True, timeout=LONGEST)
             self.assertEqual(done.returncode, 0, f"{block}\n{done.stdout}")
             seen.update(map(outline, done.stdout.splitlines()))
         files = FILE.findall(re.sub(r"^```.*?^```$", "", page, flags=re.MULTILINE | re.DOTALL))
