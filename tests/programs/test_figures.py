@@ -17,7 +17,7 @@ from matplotlib import image
 
 import stored_rows
 from drawing import Analysis
-from support import BIN, LONGEST, QUICK, ROOT, SMALL, table
+from support import BIN, QUICK, ROOT, SMALL, table
 
 import clogsweep
 from clogsweep import clogs, film, lengths, programs, rounded, stored, style, survival_curve, trajectory
