@@ -5,6 +5,7 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <system_error>
@@ -86,9 +87,12 @@ bool Socket::read_all(void* bytes, std::size_t num_bytes) const {
 
 void Socket::send(std::int64_t kind, std::int64_t job, std::span<const std::byte> bytes) const {
   const Header header{kind, job, bytes.size()};
+  // In one piece: between two the sender might be stopped, and what it has told would count for nothing.
+  std::vector<std::byte> message(sizeof header + bytes.size());
+  std::memcpy(message.data(), &header, sizeof header);
+  std::ranges::copy(bytes, message.begin() + sizeof header);
   // After half a message no other would be understood.
-  if (!write_all(&header, sizeof header) || !write_all(bytes.data(), bytes.size()))
-    ::shutdown(descriptor_, SHUT_RDWR);
+  if (!write_all(message.data(), message.size())) ::shutdown(descriptor_, SHUT_RDWR);
 }
 
 std::optional<Socket::Message> Socket::receive() const {
