@@ -1,4 +1,5 @@
-"""Pages of the handbook: their commands as they stand, one block after the other, in an empty folder.
+"""Pages of the handbook: their commands as they stand, one block after the other, in an empty folder; those of the tutorial
+in one folder, one page after the other.
 
 Blocks of `bash` and `python` are run. The first line of a block of `text` has to be among what they print, whatever its
 numbers are, and every file that a page names has to be there in the end.
@@ -15,6 +16,7 @@ from support import BIN, LONGEST, ROOT, ProgramTest
 
 BLOCK = re.compile(r"^```(bash|python|text)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FILE = re.compile(r"`([\w-]+\.(?:h5|csv|cfg|json|png|pdf|gif|mp4|html))`")
+TOCTREE = re.compile(r"^```{toctree}\n(?::.*\n)*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 # As on the page before the tutorials; `set` ends a block at the first command that fails.
 BEFORE = f"set -euo pipefail; . {ROOT}/jobs/mpi-settings.sh\n"
 
@@ -47,17 +49,18 @@ class Pages(ProgramTest):
         for name in files:
             self.assertTrue((self.folder / name).exists(), f"{path} names {name}, which is not there")
 
-    def test_the_first_sweep(self):
-        self.follow("docs/tutorial/first-sweep.md")
-
-    def test_the_first_film(self):
-        self.follow("docs/tutorial/first-film.md")
-
-    def test_the_calibrated_droplet(self):
-        self.follow("docs/tutorial/calibrated-droplet.md")
+    def test_the_tutorial(self):
+        """Its pages tell the reader to stay in one folder: what one of them writes must not be in the way of another."""
+        pages = TOCTREE.search((ROOT / "docs/tutorial/index.md").read_text())[1].split()
+        self.assertGreaterEqual(len(pages), 3)
+        for page in pages:
+            self.follow(f"docs/tutorial/{page}.md")
 
     def test_the_sweep_of_the_first_page(self):
         self.follow("README.md")
+
+    def test_other_random_arrays(self):
+        self.follow("docs/how-to/other-arrays.md")
 
     def test_obstacles_of_your_own(self):
         self.follow("docs/how-to/own-obstacles.md")
