@@ -43,8 +43,10 @@ def with_interval(value: float, lower: float, upper: float) -> str:
 
 
 def with_error(value: float | None, error: float | None) -> str:
-    """Such as 0.379 ± 0.012: two figures of the error."""
+    """Such as 0.379 ± 0.012: two figures of the error, eight of the value at most."""
     if not is_number(value) or not is_number(error) or error <= 0:
         return plain(value)
     decimals = max(0, 1 - exponent(float(f"{error:.1e}")))
+    if decimals > MOST_FIGURES - 1 - exponent(value):
+        return f"{plain(value, MOST_FIGURES)} ± {plain(error, 2)}"
     return f"{value:.{decimals}f} ± {error:.{decimals}f}"

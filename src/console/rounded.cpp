@@ -43,6 +43,8 @@ RoundedError with_error(double value, double error) {
   if (!std::isfinite(value) || !std::isfinite(error) || error <= 0) return {plain(value), plain(error)};
   constexpr int error_figures = 2;
   const int decimals = std::max(0, error_figures - 1 - exponent(rounded(error, error_figures)));
+  const bool is_tiny = decimals > most_figures - 1 - exponent(value);
+  if (is_tiny) return {plain(value, most_figures), plain(error, error_figures)};
   return {fixed(value, decimals), fixed(error, decimals)};
 }
 

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <iostream>
 
@@ -26,10 +25,7 @@ void prepare_streams() {
 
 void say(const std::string& line) { std::cerr << printable(line) << std::endl; }
 
-void flush_output() {
-  std::cout.flush();
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw std::ios_base::failure("cannot print");
-}
+void flush_output() { std::cout.flush(); }
 
 bool is_reader_gone() {
   pollfd state{STDOUT_FILENO, POLLOUT, 0};

@@ -43,6 +43,8 @@ TEST(RoundedError, GivesItsPlacesToTheValue) {
   EXPECT_EQ(usual.value + " " + usual.error, "0.3753 0.0069");
   const RoundedError carried = with_error(0.2, 0.000996);
   EXPECT_EQ(carried.value + " " + carried.error, "0.2000 0.0010");
+  const RoundedError tiny = with_error(0.730780239914, 3.8e-11);
+  EXPECT_EQ(tiny.value + " " + tiny.error, "0.73078024 3.8e-11") << "runs that are all alike";
   const RoundedError none = with_error(2, infinite);
   EXPECT_EQ(none.value + " " + none.error, "2.00 -");
 }

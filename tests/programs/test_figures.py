@@ -252,7 +252,7 @@ class Pictures(Analysis):
                               ((1234.5, 1232.1, 1237.2), "1234.5 (1232.1 to 1237.2)")]:
             self.assertEqual(rounded.with_interval(*numbers), text)
         for numbers, text in [((0.3786, 0.01244), "0.379 ± 0.012"), ((0.4451, 0.003992), "0.4451 ± 0.0040"), ((0.5, None), "0.500"),
-                              ((None, None), "-"), ((123.4, 17.2), "123 ± 17")]:
+                              ((None, None), "-"), ((123.4, 17.2), "123 ± 17"), ((0.730780239914, 3.8e-11), "0.73078024 ± 3.8e-11")]:
             self.assertEqual(rounded.with_error(*numbers), text)
         self.assertEqual([rounded.plain(value) for value in (0, 9.999, 1e-9, 2.5e7)], ["0.00", "10.0", "1.00e-09", "2.50e+07"])
 

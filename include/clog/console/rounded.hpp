@@ -21,7 +21,7 @@ RoundedInterval with_interval(double value, double lower, double upper);
 struct RoundedError {
   std::string value, error;
 };
-/// Two figures of the error; where there is none, three of the value.
+/// Two figures of the error; where there is none, three of the value, which has eight at most.
 RoundedError with_error(double value, double error);
 
 }  // namespace clog::console
