@@ -124,6 +124,13 @@ def length(group: Group) -> str:
     return rounded.with_interval(group["clogging_length"], *ends) if group["clogs"] > 0 else f"> {rounded.plain(ends[0])}"
 
 
+def speed(group: Group) -> str:
+    """The mean speed with its error, and of how many runs it is."""
+    if group["relative_speed"] is None:
+        return "-"
+    return f"{rounded.with_error(group['relative_speed'], group['relative_speed_error'])} ({rounded.counted(group['relative_speed_runs'], 'run')})"
+
+
 def value(cell: float | str | None, digits: int = 6) -> str:
     """Of a parameter, as a table shows it."""
     return "-" if cell is None else cell if isinstance(cell, str) else f"{cell:.{digits}g}"
@@ -170,8 +177,7 @@ def table_of_lengths(groups: Groups, sentences: dict[str, str], rows: pandas.Dat
               "&lang;v<sub>g</sub>&rang;/v<sub>t</sub>", "Ca", "seeds"]
     lines = [[*(value(group[name]) for name in names), str(group["runs"]), str(group["clogs"]),
               *(str(group[name]) for name in style.MECHANISM_COLOURS), length(group),
-              rounded.with_error(group["relative_speed"], group["relative_speed_error"]), rounded.plain(group["capillary_number"]),
-              seeds_of(group, names, rows)] for group in groups.members]
+              speed(group), rounded.plain(group["capillary_number"]), seeds_of(group, names, rows)] for group in groups.members]
     return table(titles, lines, [doubts_of(group, sentences) for group in groups.members])
 
 
@@ -238,7 +244,7 @@ LENGTHS = ("&lambda; is the way after which 1/e of the droplets have not clogged
 
 def label_of_length(groups: Groups, group: Group) -> str:
     """What a point says where there is no script."""
-    known = "" if group["relative_speed"] is None else f", speed {rounded.with_error(group['relative_speed'], group['relative_speed_error'])}"
+    known = "" if group["relative_speed"] is None else f", speed {speed(group)}"
     return (f"{valued(groups, group)}: length {length(group)}{known}, {group['clogs']} of {rounded.counted(group['runs'], 'run')} clogged")
 
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 
@@ -45,6 +46,23 @@ class Module(Analysis):
         self.assertEqual(fit.groups.clogging_length.tolist(), [group["clogging_length"] for group in told["groups"]])
         self.assertEqual(fit.survival(1).probability.tolist(), [step["probability"] for step in told["groups"][1]["survival"]])
         self.assertEqual((fit.units["clogging_length"], fit.confidence), ("sigma", 0.95))
+
+    def test_mean_speeds_of_fewer_than_three_runs_are_told_nowhere(self):
+        fit = self.sweep("line-tension=0.1,0.7,1", "obstacle-gap=0.4", "seeds=1..4").fit()
+        self.assertEqual(fit.groups.relative_speed_runs.tolist(), [3, 2, 1])
+        lines = [line.split() for line in self.succeed("clogfit", "s.h5").stdout.splitlines()]
+        heading, = [line for line in lines if line[-3:] == ["<v_g>/v_t", "+-", "note"]]
+        rows = lines[lines.index(heading) + 1:][:3]
+        self.assertEqual([row[-3] == "-" for row in rows], fit.groups.relative_speed.isna().tolist())
+        for name in ("relative_speed_error", "capillary_number"):
+            self.assertEqual(fit.groups[name].isna().tolist(), [False, True, True], name)
+        self.assertIsNotNone(fit.told["groups"][1]["relative_speed"], "told is what clogfit says")
+        axes, = fit.speeds().figure.axes
+        self.assertEqual([bars.lines[0].get_xdata().tolist() for bars in axes.containers], [[0.1]])
+        self.draw("report", "s.h5", "-o", "r.html", "--examples", 0, "--programs", BIN)
+        cells = re.findall(r"<td>(.* \(\d runs?\))</td>", (self.folder / "r.html").read_text())
+        self.assertEqual(len(cells), 1)
+        self.assertTrue(cells[0].endswith("(3 runs)"))
 
     def test_options_of_a_fit_reach_clogfit(self):
         options = {"dwell": 20.0, "from_distance": 0.5, "confidence": 0.5}
