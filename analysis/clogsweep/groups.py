@@ -10,7 +10,7 @@ from typing import Any
 
 from matplotlib.axes import Axes
 
-from . import style
+from . import stored, style
 from .errors import UserError
 from .hints import Column, Group
 
@@ -57,6 +57,7 @@ class Groups:
         self.confidence: float = fit["confidence"]
         self.columns: dict[str, Column] = {column["name"]: column for column in fit["columns"]}
         self.lists: Collection[str] = fit["lists"]
+        self.settings = stored.settings(fit.get("sweep", {}).get("config", ""))  # none of older programs
         self.tells_what_all_share = True  # in caption() and note()
         self.abscissa = self._choose_abscissa() if self.members else ""  # there is nothing to draw
 
@@ -92,12 +93,17 @@ class Groups:
         return self.columns[name]["kind"] != "word"
 
     def _is_automatic(self, name: str) -> bool:
-        """May its values follow from the others? What the sweep has a list of is given."""
-        if name in self.lists:
+        """May its values follow from the others? What the sweep has a number or a list of is given."""
+        if name in self.lists or self._is_given_number(name):
             return False
         fillings = self.values("obstacle_filling")
         from_array = (name == "obstacle_density" and fillings <= {"saturated", "lattice"}) or (name == "box" and fillings == {"lattice"})
         return from_array or self.columns[name].get("automatic_in") in ("all", self.members[0]["model"])
+
+    def _is_given_number(self, name: str) -> bool:
+        """Does the config have it as a number? A box is one for lattices, too, which have their own."""
+        setting = self.settings.get(name.replace("_", "-"), "")
+        return name != "box" and setting.replace(".", "", 1).replace("e-", "").replace("e", "").isdecimal()
 
     def curve_parameters(self) -> list[str]:
         """Names of what tells the curves apart."""

@@ -31,7 +31,7 @@ TINY = {
     "speed": ["vertices=32", "line-tension=0.1,1", "obstacle-gap=1.0,1.1", "seeds=1..3"],
     "speed-sp": ["wall-stiffness=1,10", "obstacle-gap=1.0,1.1", "seeds=1..3"],
     "speed-diameter": ["vertices=32", "line-tension=0.1,1", "seeds=1..3"],
-    "near-wall-drag": ["vertices=32", "line-tension=0.1,1", "seeds=1..3"],
+    "near-wall-drag": ["vertices=32", "line-tension=0.1,1", "seeds=1..3", "max-time=100"],
     "survival": ["vertices=32", "obstacle-density=saturated", "max-time=150"],
     "trajectory": ["vertices=32"],
 }
