@@ -5,6 +5,7 @@ Names, symbols, units and defaults of the parameters are clogsweep's own; clogfi
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterable, Sequence
 from typing import Any
 
@@ -25,6 +26,13 @@ def tex(unit: str) -> str:
 def number(value: float | None) -> str:
     # The density of a saturated mixture is not known beforehand: clogfit has no number for it.
     return r"\mathrm{saturated}" if value is None else f"{value:.4g}"
+
+
+def is_number(word: str) -> bool:
+    try:
+        return math.isfinite(float(word))
+    except ValueError:
+        return False
 
 
 def symbol(column: Column) -> str:
@@ -102,8 +110,7 @@ class Groups:
 
     def _is_given_number(self, name: str) -> bool:
         """Does the config have it as a number? A box is one for lattices, too, which have their own."""
-        setting = self.settings.get(name.replace("_", "-"), "")
-        return name != "box" and setting.replace(".", "", 1).replace("e-", "").replace("e", "").isdecimal()
+        return name != "box" and is_number(self.settings.get(name.replace("_", "-"), ""))
 
     def curve_parameters(self) -> list[str]:
         """Names of what tells the curves apart."""
@@ -177,6 +184,8 @@ class Groups:
             return False  # of circles that have none of their own
         if self.varies(name) or not self._is_number(name) or value is None or name == self.abscissa or self._is_automatic(name):
             return False
+        if name == "obstacle_density":
+            return self.values("obstacle_filling") == {"density"}  # has no role: it is a result of the other arrays
         is_array = column["shapes_array"] and column.get("parameter_role") == "physics" and value != 0
         is_default = str(value) == column.get("default") or f"{value:g}" == column.get("default")
         is_special = column.get("parameter_role") == "physics" and not is_default

@@ -205,6 +205,13 @@ class Looks(Analysis):
         disk = self.fit("model=sp", "wall-stiffness=30", "box=20", "max-time=60", "seeds=1")
         self.assertNotRegex(disk.caption(), "N_v|b_0")
 
+    def test_a_caption_names_vertices_and_density_that_were_given(self):
+        for given, words in [(["vertices=64"], ["$N_v = 64$"]), (["obstacle-density=0.5"], ["= 0.5$"]), ([], [])]:
+            (self.folder / "s.h5").unlink(missing_ok=True)
+            caption = self.fit("box=20", "max-time=20", "line-tension=0.5,1", "seeds=1", *given).caption()
+            for word in ("$N_v = 64$", "= 0.5$"):
+                self.assertEqual(word in caption, word in words, caption)
+
     def test_one_is_no_plural(self):
         self.assertEqual([rounded.counted(number, "run") for number in (0, 1, 2)], ["0 runs", "1 run", "2 runs"])
         self.assertEqual([style.runs_a_point([{"runs": runs} for runs in all_runs]) for all_runs in ([1, 1], [4], [1, 3])],
