@@ -42,6 +42,8 @@ def symbol(column: Column) -> str:
         return column["symbol"]
     if not column["symbol"]:
         return rf"\mathrm{{{column['name'].replace('_', ' ')}}}".replace(" ", r"\ ")
+    if column["unit"].startswith("1/"):
+        return rf"{column['symbol']}\,{tex(column['unit'][2:])}"
     return column["symbol"] + (f"/({tex(column['unit'])})" if " " in column["unit"] else f"/{tex(column['unit'])}" if column["unit"] else "")
 
 

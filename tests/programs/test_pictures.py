@@ -206,10 +206,11 @@ class Looks(Analysis):
         self.assertNotRegex(disk.caption(), "N_v|b_0")
 
     def test_a_caption_names_vertices_and_density_that_were_given(self):
-        for given, words in [(["vertices=64"], ["$N_v = 64$"]), (["obstacle-density=0.5"], ["= 0.5$"]), ([], [])]:
+        density = r"$\rho_\mathrm{ob}\,\sigma^2 = 0.5$"
+        for given, words in [(["vertices=64"], ["$N_v = 64$"]), (["obstacle-density=0.5"], [density]), ([], [])]:
             (self.folder / "s.h5").unlink(missing_ok=True)
             caption = self.fit("box=20", "max-time=20", "line-tension=0.5,1", "seeds=1", *given).caption()
-            for word in ("$N_v = 64$", "= 0.5$"):
+            for word in ("$N_v = 64$", density):
                 self.assertEqual(word in caption, word in words, caption)
 
     def test_one_is_no_plural(self):
