@@ -26,14 +26,14 @@ class Fit:
     fewer than three runs is left out, as in clogfit's table; `told` has it.
     """
 
-    def __init__(self, told: dict[str, Any]) -> None:
-        """@param told  the JSON of clogfit. @throws KeyError, TypeError  if it is not"""
+    def __init__(self, told: dict[str, Any], circle_files: dict[str, str] | None = None) -> None:
+        """@param told  the JSON of clogfit; @param circle_files  see stored.circle_files(). @throws KeyError, TypeError  if it is not"""
         self.told = told
         self.confidence: float = told["confidence"]
         self.units: dict[str, str] = told["units"]
         self.doubts: dict[str, str] = told["doubts"]
         self._told_groups = [mean_speeds.sound(group) for group in told["groups"]]
-        self._groups = Groups(told | {"groups": self._told_groups})
+        self._groups = Groups(told | {"groups": self._told_groups}, circle_files)
 
     @property
     def source(self) -> str:
@@ -92,7 +92,9 @@ class Fit:
 
 def fitted(clogfit: pathlib.Path, sweep: str | os.PathLike[str], *options: str) -> Fit:
     """What clogfit says now. @throws ProgramFailed  with its reason"""
-    return Fit(json.loads(programs.run_program(clogfit, sweep, "--format", "json", *options)))
+    told = json.loads(programs.run_program(clogfit, sweep, "--format", "json", *options))
+    with stored.opened(sweep, folder=clogfit.parent) as file:
+        return Fit(told, stored.circle_files(file))
 
 
 def read(path: pathlib.Path, folder: pathlib.Path | None) -> Fit:

@@ -60,7 +60,8 @@ FINISHED = ("passed", "clogged", "broken", "flowing")
 class Groups:
     """Groups of one sweep that hold runs, drawn over one of its parameters."""
 
-    def __init__(self, fit: dict[str, Any]) -> None:
+    def __init__(self, fit: dict[str, Any], circle_files: dict[str, str] | None = None) -> None:
+        """@param fit  the JSON of clogfit; @param circle_files  see stored.circle_files()"""
         # In a channel and on a wall nothing is random: a group is one run, which has a status.
         self.are_passages = any("status" in group for group in fit["groups"])
         self.members: list[Group] = [group for group in fit["groups"] if (group["status"] in FINISHED if self.are_passages else group["runs"] > 0)]
@@ -68,6 +69,7 @@ class Groups:
         self.columns: dict[str, Column] = {column["name"]: column for column in fit["columns"]}
         self.lists: Collection[str] = fit["lists"]
         self.settings = stored.settings(fit.get("sweep", {}).get("config", ""))  # none of older programs
+        self._circle_files = circle_files or {}
         self.tells_what_all_share = True  # in caption() and note()
         self.abscissa = self._choose_abscissa() if self.members else ""  # there is nothing to draw
 
@@ -104,6 +106,8 @@ class Groups:
 
     def _is_automatic(self, name: str) -> bool:
         """May its values follow from the others? What the sweep has a number or a list of is given."""
+        if name in ("obstacle_gap", "obstacle_density") and self.varies("obstacles"):
+            return True  # of the circles of each file
         if name in self.lists or self._is_given_number(name):
             return False
         fillings = self.values("obstacle_filling")
@@ -129,7 +133,11 @@ class Groups:
         return symbol(self.columns[name])
 
     def said(self, name: str, value: float | str | None) -> str:
-        return said(self.columns[name], value)
+        return said(self.columns[name], self.named(name, value))
+
+    def named(self, name: str, value: Any) -> Any:
+        """A parameter's value, and for the check sum of circles the name of their file, if it is known."""
+        return self._circle_files.get(value, value) if name == "obstacles" else value
 
     def axis_label(self) -> str:
         if self.abscissa in style.AXES:
@@ -174,10 +182,14 @@ class Groups:
         if first["obstacle_filling"] == "lattice":
             words.append("square lattice")
         if first["obstacle_filling"] == "file":
-            words.append("circles of a file")
+            words.append(f"circles of {self._circle_file()}")
         if not self.are_passages:
             words.append(style.runs_a_point(self.members))
         return ", ".join(words)
+
+    def _circle_file(self) -> str:
+        sums = self.values("obstacles")
+        return str(self.named("obstacles", *sums)) if len(sums) == 1 and sums <= self._circle_files.keys() else "a file" if len(sums) == 1 else "files"
 
     def _is_worth_a_word(self, name: str, value: Any) -> bool:
         """What shapes the array, and what is not as by default."""

@@ -136,6 +136,11 @@ def value(cell: float | str | None, digits: int = 6) -> str:
     return "-" if cell is None else cell if isinstance(cell, str) else f"{cell:.{digits}g}"
 
 
+def cell(groups: Groups, group: Group, name: str) -> str:
+    """The same of a group, with a file's name for circles of one's own."""
+    return value(groups.named(name, group[name]))
+
+
 def parameters(groups: Groups) -> list[str]:
     """Names of those that tell groups apart."""
     return [*groups.curve_parameters(), groups.abscissa]
@@ -175,7 +180,7 @@ def table_of_lengths(groups: Groups, sentences: dict[str, str], rows: pandas.Dat
     names = parameters(groups)
     titles = [*(name.replace("_", " ") for name in names), "runs", "clogs", *style.MECHANISM_COLOURS, f"&lambda;/&sigma; ({100 * groups.confidence:g} %)",
               "&lang;v<sub>g</sub>&rang;/v<sub>t</sub>", "Ca", "seeds"]
-    lines = [[*(value(group[name]) for name in names), str(group["runs"]), str(group["clogs"]),
+    lines = [[*(cell(groups, group, name) for name in names), str(group["runs"]), str(group["clogs"]),
               *(str(group[name]) for name in style.MECHANISM_COLOURS), length(group),
               speed(group), rounded.plain(group["capillary_number"]), seeds_of(group, names, rows)] for group in groups.members]
     return table(titles, lines, [doubts_of(group, sentences) for group in groups.members])
@@ -184,7 +189,7 @@ def table_of_lengths(groups: Groups, sentences: dict[str, str], rows: pandas.Dat
 def table_of_passages(groups: Groups, sentences: dict[str, str]) -> str:
     kind, names = passages.kind_of(groups), parameters(groups)
     titles = [*(name.replace("_", " ") for name in names), "outcome", *kind.columns.values()]
-    lines = [[*(value(group[name]) for name in names), kind.outcomes[group["status"]], *(value(group[name], 4) for name in kind.columns)]
+    lines = [[*(cell(groups, group, name) for name in names), kind.outcomes[group["status"]], *(value(group[name], 4) for name in kind.columns)]
              for group in groups.members]
     return table(titles, lines, [doubts_of(group, sentences) for group in groups.members])
 
@@ -249,7 +254,7 @@ def label_of_length(groups: Groups, group: Group) -> str:
 
 
 def valued(groups: Groups, group: Group) -> str:
-    return ", ".join(f"{name.replace('_', ' ')} {value(group[name])}" for name in parameters(groups))
+    return ", ".join(f"{name.replace('_', ' ')} {cell(groups, group, name)}" for name in parameters(groups))
 
 
 def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
@@ -295,6 +300,15 @@ def side_by_side(pictures: Iterable[str]) -> str:
 PROVENANCE = ("command_line", "version", "git_describe", "git_hash", "compiler", "mpi_version", "hdf5_version", "start_time", "num_ranks")
 
 
+RANDOM_ARRAYS = ("obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "obstacle-layout")
+
+
+def settings(config: str) -> str:
+    """Of a sweep, without those that say nothing of its array: that of a file has its own."""
+    own_circles = stored.settings(config).get("obstacles", "none") != "none"
+    return "\n".join(line for line in config.splitlines() if not (own_circles and line.partition(" = ")[0] in RANDOM_ARRAYS))
+
+
 def page(name: str, groups: Groups, sections: dict[str, str], progress: str, about: dict[str, str], charts: Charts, fitted_by: str) -> str:
     """@param sections  contents by title; @param charts  that they hold; @param fitted_by  version of clogfit"""
     def part(ending: str) -> str:
@@ -307,7 +321,7 @@ def page(name: str, groups: Groups, sections: dict[str, str], progress: str, abo
         meaning=passages.kind_of(groups).about if groups.are_passages else LENGTHS,
         sections="\n".join(f"<h2>{title}</h2>{content}" for title, content in sections.items() if content),
         provenance=html.escape("\n".join([*(f"{key}: {about[key]}" for key in PROVENANCE if key in about), f"fitted by clogfit {fitted_by}"])),
-        config=html.escape(about.get("config", "")))
+        config=html.escape(settings(about.get("config", ""))))
 
 
 def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: pathlib.Path) -> pathlib.Path:

@@ -159,6 +159,11 @@ def settings(config: str) -> dict[str, str]:
     return {key: value for key, equals, value in pairs if equals}
 
 
+def circle_files(file: h5py.File) -> dict[str, str]:
+    """Names of the files that circles of one's own come from, by the check sums that rows have of them."""
+    return {sum_: pathlib.Path(text(circles.attrs["file"])).name for sum_, circles in file.get("obstacles", {}).items() if "file" in circles.attrs}
+
+
 def columns_of(rows: Records | np.void) -> tuple[str, ...]:
     """Names of the columns of a table or a row."""
     return rows.dtype.names or ()

@@ -138,6 +138,21 @@ class Module(Analysis):
         with self.assertRaisesRegex(clogsweep.UserError, "r.h5 .holds no polygons"):
             run.picture()
 
+    def test_circles_of_one_s_own_are_called_by_their_file(self):
+        for name, diameter in (("wide.csv", 0.3), ("narrow.csv", 0.5)):
+            self.write(name, "x,y,diameter\n" + "".join(f"{x},{y},{diameter}\n" for x in range(1, 20, 2) for y in range(1, 20, 2)))
+        one = self.sweep("obstacles=wide.csv", "line-tension=0.5,3")
+        self.assertIn("circles of wide.csv", one.fit().curve().figure.axes[0].get_title())
+        page = one.report(self.folder / "r.html", examples=0).read_text()
+        self.assertIn("\nobstacles = wide.csv\n", page)
+        for untrue in ("obstacle-gap", "obstacle-density"):
+            self.assertNotIn(f"\n{untrue} = ", page)
+        (self.folder / "s.h5").unlink()
+        two = self.sweep("obstacles=wide.csv,narrow.csv", "line-tension=0.5,3")
+        _, names = two.fit().curve().figure.axes[0].get_legend_handles_labels()
+        self.assertEqual(sorted(name for name in names if name), ["obstacles narrow.csv", "obstacles wide.csv"])
+        self.assertIn("<td>narrow.csv</td>", two.report(self.folder / "r.html", examples=0).read_text())
+
     def test_what_is_damaged_or_something_else_is_refused(self):
         self.sweep()
         content = bytearray((self.folder / "s.h5").read_bytes())
