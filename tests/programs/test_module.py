@@ -219,6 +219,14 @@ class Module(Analysis):
         self.assertIn("Sweep", dir(clogsweep))
         self.assertIn(f"clogsweep {clogsweep.__version__} ", self.succeed("clogsweep", "--version").stdout)
 
+    def test_a_python_module_that_is_lacking_gets_one_line(self):
+        for lines in ("clogsweep.open('s.h5')", "clogsweep.Sweep"):
+            # None in sys.modules stands for what cannot be imported.
+            done = subprocess.run([sys.executable, "-c", f"import sys; sys.modules['pandas'] = None\nimport clogsweep\n{lines}"],
+                                  cwd=ROOT / "analysis", capture_output=True, text=True)
+            self.assertRegex(done.stderr.splitlines()[-1], "^ImportError: cannot start .*pandas.*; it needs Debian's python3, /usr/bin/python3")
+            self.assertNotIn("ModuleNotFoundError", done.stderr)
+
     def test_programs_that_are_not_there_are_asked_for(self):
         self.sweep()
         with self.assertRaisesRegex(clogsweep.UserError, "no clogsweep in /nowhere; .*--programs"):
