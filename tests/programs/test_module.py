@@ -138,6 +138,10 @@ class Module(Analysis):
         with self.assertRaisesRegex(clogsweep.UserError, "r.h5 .holds no polygons"):
             run.picture()
 
+    def test_a_run_has_no_fit(self):
+        with self.assertRaisesRegex(clogsweep.UserError, "a run has no fit; give a sweep"):
+            self.run_of_one_droplet().fit()
+
     def test_circles_of_one_s_own_are_called_by_their_file(self):
         for name, diameter in (("wide.csv", 0.3), ("narrow.csv", 0.5)):
             self.write(name, "x,y,diameter\n" + "".join(f"{x},{y},{diameter}\n" for x in range(1, 20, 2) for y in range(1, 20, 2)))
