@@ -71,7 +71,7 @@ class Calls(Analysis):
             (["clogs", "s.h5", "--tasks", "1-3"], ["--tasks", "1-3", "try 3,17,40"]),
             (["clogs", "s.h5", "--tasks", "7,0"], ["tasks 7:", "no such clogged polygon"]),
             (["clogs", "s.h5", "--mechanism", "wrapped"], ["mechanism wrapped", "no such clogged polygon"]),
-            (["clogs", "disk.h5"], ["disk.h5 holds no clogged polygon", "soft disks"]),
+            (["clogs", "disk.h5"], ["disk.h5 holds no clogged polygon", "soft disks", "longer max-time into another file"]),
             (["droplet", "s.h5", "-o", "x", "--size", "7p"], ["--size", "7p", "1080p"]),
             (["droplet", "s.h5", "-o", "x", "--rate", "0"], ["--rate", "1 or more"]),
             (["figures", "2", "--ranks", "0"], ["--ranks", "1 or more"]),
