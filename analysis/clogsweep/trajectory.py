@@ -147,9 +147,9 @@ def draw_guides(axes: Axes) -> None:
 def described(trajectory: Trajectory) -> str:
     """What was run, without what came out."""
     row = trajectory.row
-    words = [rf"$\Gamma = {row['line_tension']:g}$" if trajectory.word("model") == "dp" else rf"$E_w = {row['wall_stiffness']:g}$"]
+    words = [rf"$\Gamma = {row['line_tension']:.4g}$" if trajectory.word("model") == "dp" else rf"$E_w = {row['wall_stiffness']:.4g}$"]
     if np.isfinite(row["obstacle_gap"]):
-        words.append(rf"smallest gap ${row['obstacle_gap']:.3g}\,\sigma$")
+        words.append(rf"smallest gap ${row['obstacle_gap']:.4g}\,\sigma$")
         words.append(f"seed {row['seed']}")
     return ", ".join(words)
 
