@@ -209,9 +209,13 @@ def doubts(groups: Sequence[Group], sentences: dict[str, str], rows: pandas.Data
 def examples(clogs_of_sweep: Sequence[np.void], count: int) -> list[np.void]:
     """Clogs to be shown: the typical one of every mechanism, the others spread from the least to the most deformed.
 
+    Those that went a diameter come first: what clogs where it was released tells of its void, not of the array.
+
     @param clogs_of_sweep  rows as clogs.of_polygons() gives them
     """
-    ordered = sorted(clogs_of_sweep, key=lambda row: (row["shape_parameter"], row["task"]))
+    farthest = sorted(clogs_of_sweep, key=lambda row: -row["distance"])
+    travelled = sum(row["distance"] >= 1 for row in farthest)
+    ordered = sorted(farthest[:max(travelled, count)], key=lambda row: (row["shape_parameter"], row["task"]))
     if not ordered or count == 0:
         return []
     kinds: dict[bytes, list[np.void]] = {}
@@ -220,7 +224,7 @@ def examples(clogs_of_sweep: Sequence[np.void], count: int) -> list[np.void]:
     typical = [kind[len(kind) // 2] for kind in kinds.values()]
     # The extremes themselves are often the least sound runs.
     spread = [ordered[int(place)] for place in np.linspace(0.05, 0.95, count) * (len(ordered) - 1)]
-    return list({row["task"]: row for row in typical + spread}.values())[:count]
+    return list({row["task"]: row for row in typical + spread + ordered}.values())[:count]
 
 
 def example_pictures(shown: Sequence[np.void], sweep: pathlib.Path, clogrun: pathlib.Path) -> str:

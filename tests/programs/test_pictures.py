@@ -12,7 +12,7 @@ from drawing import Analysis
 from support import BIN, QUICK, SMALL
 
 import stored_rows
-from clogsweep import dwell, film, lengths, poster, report, rounded, stored, style, trajectory
+from clogsweep import clogs, dwell, film, lengths, poster, report, rounded, stored, style, trajectory
 from clogsweep.errors import UserError
 from clogsweep.groups import Groups
 
@@ -212,6 +212,19 @@ class Looks(Analysis):
             caption = self.fit("box=20", "max-time=20", "line-tension=0.5,1", "seeds=1", *given).caption()
             for word in ("$N_v = 64$", density):
                 self.assertEqual(word in caption, word in words, caption)
+
+    def test_numbers_in_titles_have_four_figures_at_most(self):
+        self.succeed("clogsweep", *QUICK, "line-tension=3", "seeds=1", "--output", "s.h5")
+        row, = stored.read_rows(self.folder / "s.h5")
+        row["obstacle_gap"] = 0.22190123
+        self.assertIn(r"smallest gap $0.2219\,\sigma$", clogs.title(row))
+
+    def test_examples_are_of_droplets_that_came_a_diameter_far_if_there_are_any(self):
+        columns = [("task", int), ("distance", float), ("shape_parameter", float), ("mechanism", "S8")]
+        rows = np.array([(task, distance, 1 + task % 3, b"squeezed") for task, distance in enumerate([0.1, 3, 0.2, 2, 0.5, 9, 0.4, 1])], columns)
+        self.assertEqual({row["task"] for row in report.examples(rows, 4)}, {1, 3, 5, 7})
+        self.assertEqual({row["task"] for row in report.examples(rows, 2)} - {1, 3, 5, 7}, set())
+        self.assertTrue({1, 3, 5, 7} < {row["task"] for row in report.examples(rows, 6)})
 
     def test_one_is_no_plural(self):
         self.assertEqual([rounded.counted(number, "run") for number in (0, 1, 2)], ["0 runs", "1 run", "2 runs"])
