@@ -11,12 +11,15 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.collections import PatchCollection
 from matplotlib.patches import Circle, Polygon
+from matplotlib.patheffects import withStroke
+from matplotlib.text import Text
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
 from . import stored, style
 from .hints import AnyPath, Numbers, Point, Records
 
 POINTS_OF_DISK = 128
+HALO = withStroke(linewidth=3, foreground="white")  # of what may lie over obstacles, and hides none of them
 
 
 @dataclasses.dataclass
@@ -135,13 +138,14 @@ def draw_walls(axes: Axes, trajectory: Trajectory, shift: float | Numbers = 0.0)
 
 def draw_guides(axes: Axes) -> None:
     """A bar as long as a droplet is wide, and the direction of the flow. Both stay in their corners when axes are moved."""
-    bar = AnchoredSizeBar(axes.transData, 1.0, r"$\sigma$", "lower left", pad=0.2, borderpad=0.3, sep=2, label_top=True)
-    bar.patch.set(edgecolor="none", alpha=0.7)
+    bar = AnchoredSizeBar(axes.transData, 1.0, r"$\sigma$", "lower left", pad=0.2, borderpad=0.3, sep=2, label_top=True, frameon=False)
     bar.set_zorder(6)
     axes.add_artist(bar)
-    axes.annotate("", (0.17, 0.95), (0.02, 0.95), xycoords="axes fraction", zorder=6,
-                  arrowprops={"arrowstyle": "-|>", "linewidth": 1.5, "color": "black"})
-    axes.text(0.03, 0.925, "flow", transform=axes.transAxes, va="top", fontsize=9, zorder=6)
+    arrow = axes.annotate("", (0.17, 0.95), (0.02, 0.95), xycoords="axes fraction", zorder=6,
+                          arrowprops={"arrowstyle": "-|>", "linewidth": 1.5, "color": "black"})
+    word = axes.text(0.03, 0.925, "flow", transform=axes.transAxes, va="top", fontsize=9, zorder=6)
+    for artist in (bar.size_bar.get_children()[0], *bar.findobj(Text), arrow.arrow_patch, word):
+        artist.set_path_effects([HALO])
 
 
 def described(trajectory: Trajectory) -> str:
