@@ -19,6 +19,7 @@ from .errors import ProgramFailed, UserError
 from .hints import Numbers, Records
 from .picture import Picture
 
+MARGIN = 0.15  # above a sheet [inches]
 MECHANISMS = ("wrapped", "squeezed", "hybrid", "other")
 
 
@@ -186,8 +187,10 @@ def draw(axes: Axes, clog: Clog) -> None:
 def sheet(clogs: Sequence[Clog]) -> Figure:
     across = min(6, len(clogs))
     down = -(-len(clogs) // across)
-    figure, axes = style.subplots(down, across, figsize=(2.8 * across, 3.9 * down), squeeze=False)
-    figure.get_layout_engine().set(h_pad=0.1)  # or the titles of the first row leave the sheet
+    height = 3.9 * down + MARGIN
+    figure, axes = style.subplots(down, across, figsize=(2.8 * across, height), squeeze=False)
+    # Or the titles of the first row leave the sheet.
+    figure.get_layout_engine().set(h_pad=0.1, rect=(0, 0, 1, 1 - MARGIN / height))
     for place in axes.flat:
         place.axis("off")
     for place, clog in zip(axes.flat, clogs):

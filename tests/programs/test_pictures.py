@@ -15,6 +15,7 @@ import stored_rows
 from clogsweep import clogs, dwell, film, lengths, poster, report, rounded, stored, style, trajectory
 from clogsweep.errors import UserError
 from clogsweep.groups import Groups
+from clogsweep.sweep import Sweep
 
 ONE_CURVE = [*QUICK, "line-tension=0.5,3", "seeds=1..2", "near-wall-drag=0.07", "obstacle-gap=0.35", "terminal-speed=0.032"]
 
@@ -212,6 +213,13 @@ class Looks(Analysis):
             caption = self.fit("box=20", "max-time=20", "line-tension=0.5,1", "seeds=1", *given).caption()
             for word in ("$N_v = 64$", density):
                 self.assertEqual(word in caption, word in words, caption)
+
+    def test_titles_of_a_sheet_of_clogs_stay_off_its_edge(self):
+        self.succeed("clogsweep", *QUICK, "line-tension=3", "seeds=1..4", "--output", "s.h5")
+        drawing = Sweep(self.folder / "s.h5", BIN).clogs().picture().figure
+        drawing.canvas.draw()
+        for axes in drawing.axes:
+            self.assertLess(axes.title.get_window_extent().y1, drawing.bbox.y1 - 0.1 * drawing.dpi)
 
     def test_numbers_in_titles_have_four_figures_at_most(self):
         self.succeed("clogsweep", *QUICK, "line-tension=3", "seeds=1", "--output", "s.h5")
