@@ -12,7 +12,7 @@ from drawing import Analysis
 from support import BIN, QUICK, SMALL
 
 import stored_rows
-from clogsweep import clogs, dwell, film, lengths, poster, report, rounded, stored, style, trajectory
+from clogsweep import clogs, dwell, film, lengths, poster, report, rounded, stored, style, trajectory, way
 from clogsweep.errors import UserError
 from clogsweep.groups import Groups
 from clogsweep.sweep import Sweep
@@ -213,6 +213,16 @@ class Looks(Analysis):
             caption = self.fit("box=20", "max-time=20", "line-tension=0.5,1", "seeds=1", *given).caption()
             for word in ("$N_v = 64$", density):
                 self.assertEqual(word in caption, word in words, caption)
+
+    def test_a_passage_is_drawn_over_h_with_a_colour_bar_as_high_as_the_axes(self):
+        self.succeed("clogrun", "channel", "vertices=64", "orifice=0.8", "start=-1", "end=1", "--polygon-interval", 10, "--output", "run.h5")
+        drawing = way.draw(trajectory.read(self.folder / "run.h5"), 4)
+        drawing.canvas.draw()
+        axes, = drawing.axes
+        self.assertIn("from the orifice $h", axes.get_xlabel())
+        np.testing.assert_allclose(axes.patches[2].get_xy().mean(axis=0), [-1, 0], atol=0.02)
+        bar, = axes.child_axes
+        self.assertAlmostEqual(bar.get_window_extent().height, axes.get_window_extent().height)
 
     def test_titles_of_a_sheet_of_clogs_stay_off_its_edge(self):
         self.succeed("clogsweep", *QUICK, "line-tension=3", "seeds=1..4", "--output", "s.h5")
