@@ -6,6 +6,7 @@ import unittest
 import unittest.mock
 
 import numpy as np
+from PIL import Image
 from matplotlib.text import Text
 
 from drawing import Analysis
@@ -291,6 +292,29 @@ class Looks(Analysis):
             self.assertGreater(len(inside), 0)
             for place in inside:
                 np.testing.assert_array_equal(colour_at(index, place), 184)
+
+    def test_colours_of_a_gif_are_those_of_its_frames(self):
+        for colour in film.COLOURS:
+            (self.folder / "run.h5").unlink(missing_ok=True)
+            _, _, moving = self.film_of(size="540p", colour=colour)
+            film.write_gif(moving, self.folder / "film.gif", 20)
+            with Image.open(self.folder / "film.gif") as shown:
+                for index in (0, len(moving) - 1):
+                    shown.seek(index)
+                    pixels = np.asarray(shown.convert("RGB")).astype(int)
+                    drawn = moving.pixels(index)[..., :3].astype(int)
+                    self.assertLess(np.abs(pixels - drawn).max(axis=2).mean(), 1)
+                    self.assertLess(np.percentile(np.abs(pixels - drawn).max(axis=2)[100:440, 885:894], 99), 12, "the colour bar")
+                    self.assertEqual(pixels[20, 480].tolist(), [255, 255, 255])
+                    self.assertLess(pixels[-3:, 100:500].min(axis=0).mean(), 128, "the line of the frame below")
+
+    def test_without_a_colour_bar_its_place_is_the_film_s(self):
+        widths = []
+        for colour in film.COLOURS:
+            (self.folder / "run.h5").unlink(missing_ok=True)
+            widths.append(self.film_of(colour=colour)[2].figure.axes[0].get_position().width)
+        self.assertLess(widths[0], 0.92)
+        self.assertGreater(widths[1], 0.99)
 
     def test_a_film_goes_to_ffmpeg_frame_by_frame(self):
         _, _, moving = self.film_of(size="540p")
