@@ -122,7 +122,7 @@ def main_mechanism(group: Group) -> str:
 
 def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: str = "other clogs") -> None:
     """The ordinate, legend and caption of a picture of clogging lengths. @param drawn  all that draw_lengths() was given"""
-    axes.set_yscale("log")
+    logarithmic_ordinate(axes)
     axes.set_ylabel(AXES["length"])
     grid(axes)
     legend(axes, drawn, other)
@@ -225,6 +225,24 @@ def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
         # Ticks widen an axis without a margin: what is drawn at the last one would lie on the frame.
         margin = logarithmic_margin(values)
         axes.set_xlim(min(values) / margin, max(values) * margin)
+
+
+def logarithmic_ordinate(axes: Axes) -> None:
+    """Plain numbers where it has fewer than two decades, at 1, 2 and 5, or at every mark of less than half a decade: powers
+    of ten would be too few."""
+    axes.set_yscale("log")
+    axis = axes.yaxis
+    usual = axis.get_major_formatter()
+
+    def label(value: float, digits: tuple[int, ...], otherwise: str) -> str:
+        low, high = axes.get_ylim()
+        if high >= 100 * low:
+            return otherwise
+        first = value / 10.0 ** rounded.exponent(value)
+        return f"{value:.4g}" if high < 5 * low or any(math.isclose(first, digit) for digit in digits) else ""
+
+    axis.set_minor_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: label(value, (2, 5), "")))
+    axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, position: label(value, (1, 10), usual(value, position))))
 
 
 def grid(axes: Axes) -> None:

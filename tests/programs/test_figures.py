@@ -285,6 +285,15 @@ class Pictures(Analysis):
             self.assertTrue(all(end < begin for (_, end), (begin, _) in zip(places, places[1:])), f"{values}: {places}")
             self.assertTrue(all(float(label.get_text()) > 0 for label in labels))
 
+    def test_a_logarithmic_ordinate_has_several_labels(self):
+        for ends, expected in [((3, 30), ["5", "10", "20"]), ((0.9, 6), ["1", "2", "5"]), ((2.1, 4.9), ["3", "4"]), ((1, 1e4), ["$\\mathdefault{10^{%d}}$" % n for n in (1, 2, 3)])]:
+            axes = style.new_figure().subplots()
+            style.logarithmic_ordinate(axes)
+            axes.set_ylim(ends)
+            axes.figure.canvas.draw()
+            shown = [label for label in axes.get_yticklabels() + axes.get_yticklabels(minor=True) if label.get_text() and ends[0] < label.get_position()[1] < ends[1]]
+            self.assertEqual([label.get_text() for label in sorted(shown, key=lambda label: label.get_position()[1])], expected)
+
     def test_warnings_of_libraries_stay_away_from_the_terminal(self):
         lines = "from clogsweep import command_line\nwith command_line.needs_modules():\n    import warnings\n    warnings.warn('of a library')"
         for switches, expected in [([], ""), (["-W", "default"], "of a library")]:

@@ -77,7 +77,7 @@ def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity:
         data += numbers(members, label)
     style.logarithmic_abscissa(axes, places)
     if quantity == "length":
-        axes.set_yscale("log")
+        style.logarithmic_ordinate(axes)
     axes.set_xlabel(style.AXES[abscissa])
     axes.set_ylabel(style.AXES[quantity])
     style.grid(axes)
@@ -151,7 +151,7 @@ def over_sag(shop: Workshop, configs: Sequence[str], gap: float, quantity: str) 
         drawn += groups
     style.logarithmic_abscissa(axes)
     if quantity == "length":
-        axes.set_yscale("log")
+        style.logarithmic_ordinate(axes)
     axes.set_xlabel(style.AXES["sag"])
     axes.set_ylabel(style.AXES[quantity])
     axes.axvline(0.25, color="0.75", linewidth=0.8, linestyle=":", zorder=0)

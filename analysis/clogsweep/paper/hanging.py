@@ -28,7 +28,7 @@ def title(drawing: Figure, shop: Workshop, config: str, groups: Sequence[Group])
 
 
 def finish(axes: Axes, places: Sequence[float], groups: Sequence[Group], text: str) -> None:
-    axes.set_yscale("log")
+    style.logarithmic_ordinate(axes)
     style.logarithmic_abscissa(axes, places)
     style.grid(axes)
     axes.set_title(text, fontsize=9)
