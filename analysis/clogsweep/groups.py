@@ -208,4 +208,5 @@ class Groups:
     def note(self, about_bars: str) -> str:
         """The interface, if it is one, and what bars and markers mean."""
         presets = {group["preset"] for group in self.members if group["model"] == "dp" and self.tells_what_all_share}
-        return (f"interface: {presets.pop()}; " if len(presets) == 1 else "") + about_bars
+        interface = [f"interface: {presets.pop()}"] if len(presets) == 1 else []
+        return "; ".join(filter(None, [*interface, about_bars]))

@@ -225,6 +225,21 @@ class Looks(Analysis):
         bar, = axes.child_axes
         self.assertAlmostEqual(bar.get_window_extent().height, axes.get_window_extent().height)
 
+    def test_a_caption_explains_only_what_is_drawn(self):
+        groups = self.fit(*SMALL, "max-time=20", "line-tension=0.05,0.1", "seeds=1..2")
+        bars, dotted, triangles = "bars: ", "dotted: ", "open triangles: "
+
+        def explained(drawing):
+            title = drawing.axes[0].get_title()
+            return [words for words in (bars, dotted, triangles) if words in title]
+
+        self.assertEqual(explained(lengths.draw(groups)), [dotted, triangles])
+        self.assertEqual(explained(lengths.draw_speeds(groups)), [])
+        groups.members = groups.members[:1]
+        self.assertEqual(explained(lengths.draw(groups)), [triangles])
+        groups.members[0].update(clogs=2, clogging_length=1.0, clogging_length_upper=4.0)
+        self.assertEqual(explained(lengths.draw(groups)), [bars])
+
     def test_titles_of_a_sheet_of_clogs_stay_off_its_edge(self):
         self.succeed("clogsweep", *QUICK, "line-tension=3", "seeds=1..4", "--output", "s.h5")
         drawing = Sweep(self.folder / "s.h5", BIN).clogs().picture().figure

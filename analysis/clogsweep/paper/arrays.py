@@ -82,7 +82,7 @@ def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity:
     axes.set_ylabel(style.AXES[quantity])
     style.grid(axes)
     style.legend(axes, groups if quantity == "length" else ())
-    note = style.length_note(groups, shop.confidence(config)) if quantity == "length" else "bars: standard error"
+    note = style.length_note(groups, shop.confidence(config), [axes]) if quantity == "length" else "bars: standard error"
     style.caption(axes, f"{describe(shop.columns(config), groups, [parameter])}\n{note}")
     return Plate(drawing, data)
 
@@ -158,7 +158,7 @@ def over_sag(shop: Workshop, configs: Sequence[str], gap: float, quantity: str) 
     axes.text(0.25, 0.02, r"$\delta_s = 0.25\sigma$ ", ha="right", color="0.4", fontsize=8, transform=axes.get_xaxis_transform())
     style.grid(axes)
     axes.legend(frameon=False)
-    note = style.length_note(drawn, shop.confidence(config)) if quantity == "length" else "bars: standard error"
+    note = style.length_note(drawn, shop.confidence(config), [axes]) if quantity == "length" else "bars: standard error"
     style.caption(axes, "\n".join(captions) + f"\n{note}")
     return Plate(drawing, data)
 
