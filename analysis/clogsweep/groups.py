@@ -6,6 +6,7 @@ Names, symbols, units and defaults of the parameters are clogsweep's own; clogfi
 from __future__ import annotations
 
 import math
+import pathlib
 from collections.abc import Collection, Iterable, Sequence
 from typing import Any
 
@@ -69,7 +70,7 @@ class Groups:
         self.columns: dict[str, Column] = {column["name"]: column for column in fit["columns"]}
         self.lists: Collection[str] = fit["lists"]
         self.settings = stored.settings(fit.get("sweep", {}).get("config", ""))  # none of older programs
-        self._circle_files = circle_files or {}
+        self._circle_files = circle_files or self._only_circle_file()
         self.tells_what_all_share = True  # in caption() and note()
         self.abscissa = self._choose_abscissa() if self.members else ""  # there is nothing to draw
 
@@ -106,11 +107,11 @@ class Groups:
 
     def _is_automatic(self, name: str) -> bool:
         """May its values follow from the others? What the sweep has a number or a list of is given."""
-        if name in ("obstacle_gap", "obstacle_density") and self.varies("obstacles"):
+        fillings = self.values("obstacle_filling")
+        if name in ("obstacle_gap", "obstacle_density") and fillings == {"file"} and self.varies("obstacles"):
             return True  # of the circles of each file
         if name in self.lists or self._is_given_number(name):
             return False
-        fillings = self.values("obstacle_filling")
         from_array = (name == "obstacle_density" and fillings <= {"saturated", "lattice"}) or (name == "box" and fillings == {"lattice"})
         return from_array or self.columns[name].get("automatic_in") in ("all", self.members[0]["model"])
 
@@ -186,6 +187,13 @@ class Groups:
         if not self.are_passages:
             words.append(style.runs_a_point(self.members))
         return ", ".join(words)
+
+    def _only_circle_file(self) -> dict[str, str]:
+        """As the config names it, for a fit without its sweep; of several it does not say which is which."""
+        name = self.settings.get("obstacles", "none")
+        if name == "none" or "," in name:
+            return {}
+        return {check_sum: pathlib.Path(name).name for check_sum in self.values("obstacles")}
 
     def _circle_file(self) -> str:
         sums = self.values("obstacles")

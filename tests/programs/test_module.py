@@ -17,6 +17,7 @@ from support import BIN, QUICK, ROOT, SweepTest, table
 
 import clogsweep.__main__
 from clogsweep import places, programs
+from clogsweep.groups import Groups
 
 PNG = b"\x89PNG\r\n"
 
@@ -147,6 +148,7 @@ class Module(Analysis):
             self.write(name, "x,y,diameter\n" + "".join(f"{x},{y},{diameter}\n" for x in range(1, 20, 2) for y in range(1, 20, 2)))
         one = self.sweep("obstacles=wide.csv", "line-tension=0.5,3")
         self.assertIn("circles of wide.csv", one.fit().curve().figure.axes[0].get_title())
+        self.assertIn("circles of wide.csv", Groups(one.fit().told).caption())
         page = one.report(self.folder / "r.html", examples=0).read_text()
         self.assertIn("\nobstacles = wide.csv\n", page)
         for untrue in ("obstacle-gap", "obstacle-density"):
