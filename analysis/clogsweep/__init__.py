@@ -15,6 +15,8 @@ import importlib
 import os
 from typing import TYPE_CHECKING, Any
 
+from . import errors
+
 if TYPE_CHECKING:
     from .clogs import Clog, Clogs
     from .errors import Damaged, ProgramFailed, UserError
@@ -35,7 +37,15 @@ def __getattr__(name: str) -> Any:
     """Loads what is named, and with it the libraries that a machine may lack, when it is asked for."""
     if name not in _MODULES:
         raise AttributeError(f"module {__name__} has no attribute {name}")
-    return getattr(importlib.import_module(f".{_MODULES[name]}", __name__), name)
+    return getattr(_loaded(_MODULES[name]), name)
+
+
+def _loaded(module: str) -> Any:
+    """A module of this package. @throws ImportError  that says in one line what the machine lacks"""
+    try:
+        return importlib.import_module(f".{module}", __name__)
+    except ImportError as error:
+        raise ImportError(errors.lacking(error)) from None
 
 
 def __dir__() -> list[str]:
@@ -47,7 +57,7 @@ def open(path: str | os.PathLike[str], programs: str | os.PathLike[str] | None =
 
     @param programs  folder of clogsweep, clogrun and clogfit, if they are not in the PATH or beside this module
     @throws UserError  if it is neither; Damaged  if anything in it is not as it was written
+    @throws ImportError  if this python3 lacks a module
     """
-    from . import run, stored, sweep
-
+    run, stored, sweep = (_loaded(module) for module in ("run", "stored", "sweep"))
     return run.Run(path) if stored.kind_of(path, programs) == stored.RUN else sweep.Sweep(path, programs)

@@ -19,6 +19,7 @@ from .errors import ProgramFailed, UserError
 from .hints import Numbers, Records
 from .picture import Picture
 
+MARGIN = 0.15  # above a sheet [inches]
 MECHANISMS = ("wrapped", "squeezed", "hybrid", "other")
 
 
@@ -38,7 +39,7 @@ def mechanism_of(row: np.void) -> str:
 def chosen(rows: list[np.void], path: object, *, mechanism: str | None, tasks: Collection[int] | None, most: int) -> list[np.void]:
     """@param rows  clogs of the sweep. @throws UserError  where there is none, or not all of the tasks"""
     if not rows:
-        raise UserError(f"{path} holds no clogged polygon (soft disks are none); let it go on, or farther (max-time)")
+        raise UserError(f"{path} holds no clogged polygon (soft disks are none); let it go on, or sweep with a longer max-time into another file")
     if mechanism not in (None, *MECHANISMS):
         raise UserError(f"no mechanism {mechanism}; they are {', '.join(MECHANISMS)}")
     left = [row for row in rows if mechanism in (None, mechanism_of(row))]
@@ -160,7 +161,7 @@ def title(row: np.void) -> str:
     """What clogged and how, in words."""
     wrapped = f"{row['num_wrapped']} wrapped (bears {100 * row['wrapped_support']:.0f} %)" if row["num_wrapped"] > 0 else "none wrapped"
     return (rf"task {row['task']}: {mechanism_of(row)} after $r = {rounded.plain(row['distance'])}\,\sigma$" "\n"
-            rf"$\Gamma = {row['line_tension']:g}$, smallest gap ${row['obstacle_gap']:g}\,\sigma$, seed {row['seed']}" "\n"
+            rf"$\Gamma = {row['line_tension']:.4g}$, smallest gap ${row['obstacle_gap']:.4g}\,\sigma$, seed {row['seed']}" "\n"
             f"{wrapped}, {rounded.counted(row['num_gaps'], 'gap')}, {rounded.counted(row['num_arcs'], 'contact')}")
 
 
@@ -186,8 +187,10 @@ def draw(axes: Axes, clog: Clog) -> None:
 def sheet(clogs: Sequence[Clog]) -> Figure:
     across = min(6, len(clogs))
     down = -(-len(clogs) // across)
-    figure, axes = style.subplots(down, across, figsize=(2.8 * across, 3.9 * down), squeeze=False)
-    figure.get_layout_engine().set(h_pad=0.1)  # or the titles of the first row leave the sheet
+    height = 3.9 * down + MARGIN
+    figure, axes = style.subplots(down, across, figsize=(2.8 * across, height), squeeze=False)
+    # Or the titles of the first row leave the sheet.
+    figure.get_layout_engine().set(h_pad=0.1, rect=(0, 0, 1, 1 - MARGIN / height))
     for place in axes.flat:
         place.axis("off")
     for place, clog in zip(axes.flat, clogs):

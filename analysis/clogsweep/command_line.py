@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from typing import NoReturn
 
-from .errors import ProgramFailed, UserError
+from .errors import ProgramFailed, UserError, lacking
 
 USER_FAULT = 2
 INTERRUPTED = 75
@@ -137,7 +137,7 @@ def needs_modules() -> Iterator[None]:
     try:
         yield
     except ImportError as error:
-        sys.exit(_refuse(f"cannot start ({error}); it needs Debian's python3, /usr/bin/python3, with h5py, pandas, tables and matplotlib"))
+        sys.exit(_refuse(lacking(error)))
 
 
 def printable(text: str) -> str:

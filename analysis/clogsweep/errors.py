@@ -1,6 +1,11 @@
 """What can go wrong and is not a mistake of this package."""
 
 
+def lacking(error: ImportError) -> str:
+    """What to say where a machine lacks a module."""
+    return f"cannot start ({error}); it needs Debian's python3, /usr/bin/python3, with h5py, pandas, tables and matplotlib"
+
+
 class UserError(Exception):
     """What the user can mend, in one line: what, why, remedy. Commands end with exit code 2."""
 

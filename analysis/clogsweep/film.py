@@ -28,12 +28,14 @@ Pixels = npt.NDArray[np.uint8]  # height x width x 4: red, green, blue, alpha
 
 FORMAT = (9.6, 5.4)  # inches
 SIZES = {"540p": 100, "1080p": 200, "2160p": 400}  # pixels an inch
-PLACE = (0.0, 0.0, 0.91, 0.93)  # of the droplet's surroundings in the figure: left, bottom, width, height
-ASPECT = FORMAT[0] * PLACE[2] / (FORMAT[1] * PLACE[3])
+LINE = 0.002  # of the figure: without it half of the frame's line would be outside
+HEIGHT = 0.93  # of the droplet's surroundings in the figure
+WIDTHS = {"speed": 0.91, "mechanism": 1 - 2 * LINE}  # the same, with room for a colour bar or not
 LONGEST_STEP = 0.5  # between frames [sigma]: what moves farther cannot be followed by eye
 SECONDS_OF_VERDICT = 2
 ENDINGS = (".mp4", ".gif")
-COLOURS = ("speed", "mechanism")
+COLOURS = tuple(WIDTHS)
+SHADES = 96  # of the first frame and of the colour bar in a palette
 
 
 def chosen_frames(run: Trajectory, most: int) -> npt.NDArray[np.int64]:
@@ -63,16 +65,18 @@ class Camera:
     HALF_HEIGHT = 2.0  # at least [sigma]
     LEAD = 0.12  # of the width: more is seen ahead of the droplet than behind it
 
-    def __init__(self, polygons: Numbers, frames_of_a_turn: int) -> None:
+    def __init__(self, polygons: Numbers, frames_of_a_turn: int, aspect: float) -> None:
+        """@param aspect  width over height of what it sees"""
         low, high = polygons.min(axis=2), polygons.max(axis=2)
         length, height = (high - low).T
-        half_height = np.maximum(self.HALF_HEIGHT, 0.75 * np.maximum(length / ASPECT, height))
+        half_height = np.maximum(self.HALF_HEIGHT, 0.75 * np.maximum(length / aspect, height))
+        self._aspect = aspect
         self._middle = np.stack([smoothed(middle, frames_of_a_turn) for middle in ((low + high) / 2).T], axis=1)
         # Of the largest nearby, so that the average is nowhere too small.
         self._half_height = smoothed(around(half_height, frames_of_a_turn).max(axis=1), frames_of_a_turn)
 
     def corners(self, frame: int) -> tuple[Numbers, Numbers]:
-        half = self._half_height[frame] * np.array([ASPECT, 1.0])
+        half = self._half_height[frame] * np.array([self._aspect, 1.0])
         middle = self._middle[frame] + [2 * self.LEAD * half[0], 0]
         return middle - half, middle + half
 
@@ -113,10 +117,11 @@ class Film:
         self._run = run
         self._frames = frames
         self._rate = rate
-        self._camera = Camera(run.polygons[frames], rate)
+        width = WIDTHS[colour]
+        self._camera = Camera(run.polygons[frames], rate, FORMAT[0] * width / (FORMAT[1] * HEIGHT))
         self._centres = trajectory.centroids(run.polygons)
         self.figure = style.new_figure(figsize=FORMAT, dpi=SIZES[size])
-        self._axes = self.figure.add_axes(PLACE)
+        self._axes = self.figure.add_axes((LINE, LINE, width, HEIGHT))
         self._axes.axis("off")
         self.figure.text(0.01, 0.965, trajectory.described(run), va="center", fontsize=11)
         self._draw_surroundings()
@@ -126,7 +131,7 @@ class Film:
         trajectory.draw_guides(self._axes)
         self._bar, = self._axes.artists
         arrow = list(self._axes.texts)
-        self._clock = self.figure.text(0.9, 0.965, "", va="center", ha="right", fontsize=11)
+        self._clock = self.figure.text(width - 0.01, 0.965, "", va="center", ha="right", fontsize=11)
         self._verdict = self._axes.text(0.5, 0.9, "", transform=self._axes.transAxes, ha="center", fontsize=14,
                                         bbox={"facecolor": "white", "edgecolor": "0.5", "alpha": 0.9, "pad": 6})
         self._verdict.set_visible(False)
@@ -301,9 +306,24 @@ def write_mp4(film: Film, path: pathlib.Path, rate: int) -> None:
             raise UserError(f"cannot write {path} (ffmpeg: {' '.join(said.read().decode(errors='replace').split())}); look at the folder and its disk")
 
 
+def palette_of(first: Pixels) -> Image.Image:
+    """For all frames: the colours of the first, shades of the colour bar however small it is, greys, and what may come at the end."""
+    seen = np.reshape(Image.fromarray(first[..., :3]).quantize(SHADES).getpalette()[:3 * SHADES], (-1, 3)) / 255
+    bar = style.VIRIDIS(np.linspace(0, 1, SHADES))[:, :3]
+    greys = np.repeat(np.linspace(0, 1, 32), 3).reshape(-1, 3)
+    ends = matplotlib.colors.to_rgba_array(list(style.MECHANISM_COLOURS.values()))[:, :3]
+    all_ = np.concatenate([seen, bar, greys, ends, 0.25 + 0.75 * ends])
+    # Pillow takes what is nearest to some bits of a colour only: white would become a lighter grey.
+    is_white = all_.min(axis=1) > 0.97
+    palette = Image.new("P", (1, 1))
+    palette.putpalette([255, 255, 255, *(255 * all_[~is_white]).round().astype(int).ravel().tolist()])
+    return palette
+
+
 def write_gif(film: Film, path: pathlib.Path, rate: int) -> None:
+    palette = palette_of(film.pixels(0))
     # One byte a pixel: all frames are held until the last.
-    frames = (Image.fromarray(pixels[..., :3]).quantize(64) for pixels in film.play_and_hold())
+    frames = (Image.fromarray(pixels[..., :3]).quantize(palette=palette, dither=Image.Dither.NONE) for pixels in film.play_and_hold())
     next(frames).save(path, save_all=True, append_images=frames, duration=1000 / rate, loop=0)
 
 

@@ -5,12 +5,14 @@ Names, symbols, units and defaults of the parameters are clogsweep's own; clogfi
 
 from __future__ import annotations
 
+import math
+import pathlib
 from collections.abc import Collection, Iterable, Sequence
 from typing import Any
 
 from matplotlib.axes import Axes
 
-from . import style
+from . import stored, style
 from .errors import UserError
 from .hints import Column, Group
 
@@ -27,6 +29,13 @@ def number(value: float | None) -> str:
     return r"\mathrm{saturated}" if value is None else f"{value:.4g}"
 
 
+def is_number(word: str) -> bool:
+    try:
+        return math.isfinite(float(word))
+    except ValueError:
+        return False
+
+
 def symbol(column: Column) -> str:
     """Of a parameter as clogsweep describes it, with its unit, so that what follows is a pure number; for words the name itself.
     One with an axis of its own is a pure number already, the axis says of what."""
@@ -34,6 +43,8 @@ def symbol(column: Column) -> str:
         return column["symbol"]
     if not column["symbol"]:
         return rf"\mathrm{{{column['name'].replace('_', ' ')}}}".replace(" ", r"\ ")
+    if column["unit"].startswith("1/"):
+        return rf"{column['symbol']}\,{tex(column['unit'][2:])}"
     return column["symbol"] + (f"/({tex(column['unit'])})" if " " in column["unit"] else f"/{tex(column['unit'])}" if column["unit"] else "")
 
 
@@ -50,13 +61,16 @@ FINISHED = ("passed", "clogged", "broken", "flowing")
 class Groups:
     """Groups of one sweep that hold runs, drawn over one of its parameters."""
 
-    def __init__(self, fit: dict[str, Any]) -> None:
+    def __init__(self, fit: dict[str, Any], circle_files: dict[str, str] | None = None) -> None:
+        """@param fit  the JSON of clogfit; @param circle_files  see stored.circle_files()"""
         # In a channel and on a wall nothing is random: a group is one run, which has a status.
         self.are_passages = any("status" in group for group in fit["groups"])
         self.members: list[Group] = [group for group in fit["groups"] if (group["status"] in FINISHED if self.are_passages else group["runs"] > 0)]
         self.confidence: float = fit["confidence"]
         self.columns: dict[str, Column] = {column["name"]: column for column in fit["columns"]}
         self.lists: Collection[str] = fit["lists"]
+        self.settings = stored.settings(fit.get("sweep", {}).get("config", ""))  # none of older programs
+        self._circle_files = circle_files or self._only_circle_file()
         self.tells_what_all_share = True  # in caption() and note()
         self.abscissa = self._choose_abscissa() if self.members else ""  # there is nothing to draw
 
@@ -92,12 +106,18 @@ class Groups:
         return self.columns[name]["kind"] != "word"
 
     def _is_automatic(self, name: str) -> bool:
-        """May its values follow from the others? What the sweep has a list of is given."""
-        if name in self.lists:
-            return False
+        """May its values follow from the others? What the sweep has a number or a list of is given."""
         fillings = self.values("obstacle_filling")
+        if name in ("obstacle_gap", "obstacle_density") and fillings == {"file"} and self.varies("obstacles"):
+            return True  # of the circles of each file
+        if name in self.lists or self._is_given_number(name):
+            return False
         from_array = (name == "obstacle_density" and fillings <= {"saturated", "lattice"}) or (name == "box" and fillings == {"lattice"})
         return from_array or self.columns[name].get("automatic_in") in ("all", self.members[0]["model"])
+
+    def _is_given_number(self, name: str) -> bool:
+        """Does the config have it as a number? A box is one for lattices, too, which have their own."""
+        return name != "box" and is_number(self.settings.get(name.replace("_", "-"), ""))
 
     def curve_parameters(self) -> list[str]:
         """Names of what tells the curves apart."""
@@ -114,7 +134,11 @@ class Groups:
         return symbol(self.columns[name])
 
     def said(self, name: str, value: float | str | None) -> str:
-        return said(self.columns[name], value)
+        return said(self.columns[name], self.named(name, value))
+
+    def named(self, name: str, value: Any) -> Any:
+        """A parameter's value, and for the check sum of circles the name of their file, if it is known."""
+        return self._circle_files.get(value, value) if name == "obstacles" else value
 
     def axis_label(self) -> str:
         if self.abscissa in style.AXES:
@@ -159,10 +183,21 @@ class Groups:
         if first["obstacle_filling"] == "lattice":
             words.append("square lattice")
         if first["obstacle_filling"] == "file":
-            words.append("circles of a file")
+            words.append(f"circles of {self._circle_file()}")
         if not self.are_passages:
             words.append(style.runs_a_point(self.members))
         return ", ".join(words)
+
+    def _only_circle_file(self) -> dict[str, str]:
+        """As the config names it, for a fit without its sweep; of several it does not say which is which."""
+        name = self.settings.get("obstacles", "none")
+        if name == "none" or "," in name:
+            return {}
+        return {check_sum: pathlib.Path(name).name for check_sum in self.values("obstacles")}
+
+    def _circle_file(self) -> str:
+        sums = self.values("obstacles")
+        return str(self.named("obstacles", *sums)) if len(sums) == 1 and sums <= self._circle_files.keys() else "a file" if len(sums) == 1 else "files"
 
     def _is_worth_a_word(self, name: str, value: Any) -> bool:
         """What shapes the array, and what is not as by default."""
@@ -171,6 +206,8 @@ class Groups:
             return False  # of circles that have none of their own
         if self.varies(name) or not self._is_number(name) or value is None or name == self.abscissa or self._is_automatic(name):
             return False
+        if name == "obstacle_density":
+            return self.values("obstacle_filling") == {"density"}  # has no role: it is a result of the other arrays
         is_array = column["shapes_array"] and column.get("parameter_role") == "physics" and value != 0
         is_default = str(value) == column.get("default") or f"{value:g}" == column.get("default")
         is_special = column.get("parameter_role") == "physics" and not is_default
@@ -179,4 +216,5 @@ class Groups:
     def note(self, about_bars: str) -> str:
         """The interface, if it is one, and what bars and markers mean."""
         presets = {group["preset"] for group in self.members if group["model"] == "dp" and self.tells_what_all_share}
-        return (f"interface: {presets.pop()}; " if len(presets) == 1 else "") + about_bars
+        interface = [f"interface: {presets.pop()}"] if len(presets) == 1 else []
+        return "; ".join(filter(None, [*interface, about_bars]))

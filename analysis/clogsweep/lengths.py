@@ -35,4 +35,4 @@ def draw_speeds_on(axes: Axes, groups: Groups) -> None:
     axes.set_ylabel(style.AXES["speed"])
     style.grid(axes)
     style.legend(axes)
-    style.caption(axes, f"{groups.caption()}\n{groups.note('bars: standard error')}")
+    style.caption(axes, f"{groups.caption()}\n{groups.note('bars: standard error' if any(curve.lines[0].get_xdata().size for curve in axes.containers) else '')}")

@@ -124,9 +124,21 @@ def length(group: Group) -> str:
     return rounded.with_interval(group["clogging_length"], *ends) if group["clogs"] > 0 else f"> {rounded.plain(ends[0])}"
 
 
+def speed(group: Group) -> str:
+    """The mean speed with its error, and of how many runs it is."""
+    if group["relative_speed"] is None:
+        return "-"
+    return f"{rounded.with_error(group['relative_speed'], group['relative_speed_error'])} ({rounded.counted(group['relative_speed_runs'], 'run')})"
+
+
 def value(cell: float | str | None, digits: int = 6) -> str:
     """Of a parameter, as a table shows it."""
     return "-" if cell is None else cell if isinstance(cell, str) else f"{cell:.{digits}g}"
+
+
+def cell(groups: Groups, group: Group, name: str) -> str:
+    """The same of a group, with a file's name for circles of one's own."""
+    return value(groups.named(name, group[name]))
 
 
 def parameters(groups: Groups) -> list[str]:
@@ -168,17 +180,16 @@ def table_of_lengths(groups: Groups, sentences: dict[str, str], rows: pandas.Dat
     names = parameters(groups)
     titles = [*(name.replace("_", " ") for name in names), "runs", "clogs", *style.MECHANISM_COLOURS, f"&lambda;/&sigma; ({100 * groups.confidence:g} %)",
               "&lang;v<sub>g</sub>&rang;/v<sub>t</sub>", "Ca", "seeds"]
-    lines = [[*(value(group[name]) for name in names), str(group["runs"]), str(group["clogs"]),
+    lines = [[*(cell(groups, group, name) for name in names), str(group["runs"]), str(group["clogs"]),
               *(str(group[name]) for name in style.MECHANISM_COLOURS), length(group),
-              rounded.with_error(group["relative_speed"], group["relative_speed_error"]), rounded.plain(group["capillary_number"]),
-              seeds_of(group, names, rows)] for group in groups.members]
+              speed(group), rounded.plain(group["capillary_number"]), seeds_of(group, names, rows)] for group in groups.members]
     return table(titles, lines, [doubts_of(group, sentences) for group in groups.members])
 
 
 def table_of_passages(groups: Groups, sentences: dict[str, str]) -> str:
     kind, names = passages.kind_of(groups), parameters(groups)
     titles = [*(name.replace("_", " ") for name in names), "outcome", *kind.columns.values()]
-    lines = [[*(value(group[name]) for name in names), kind.outcomes[group["status"]], *(value(group[name], 4) for name in kind.columns)]
+    lines = [[*(cell(groups, group, name) for name in names), kind.outcomes[group["status"]], *(value(group[name], 4) for name in kind.columns)]
              for group in groups.members]
     return table(titles, lines, [doubts_of(group, sentences) for group in groups.members])
 
@@ -198,9 +209,13 @@ def doubts(groups: Sequence[Group], sentences: dict[str, str], rows: pandas.Data
 def examples(clogs_of_sweep: Sequence[np.void], count: int) -> list[np.void]:
     """Clogs to be shown: the typical one of every mechanism, the others spread from the least to the most deformed.
 
+    Those that went a diameter come first: what clogs where it was released tells of its void, not of the array.
+
     @param clogs_of_sweep  rows as clogs.of_polygons() gives them
     """
-    ordered = sorted(clogs_of_sweep, key=lambda row: (row["shape_parameter"], row["task"]))
+    farthest = sorted(clogs_of_sweep, key=lambda row: -row["distance"])
+    travelled = sum(row["distance"] >= 1 for row in farthest)
+    ordered = sorted(farthest[:max(travelled, count)], key=lambda row: (row["shape_parameter"], row["task"]))
     if not ordered or count == 0:
         return []
     kinds: dict[bytes, list[np.void]] = {}
@@ -209,7 +224,7 @@ def examples(clogs_of_sweep: Sequence[np.void], count: int) -> list[np.void]:
     typical = [kind[len(kind) // 2] for kind in kinds.values()]
     # The extremes themselves are often the least sound runs.
     spread = [ordered[int(place)] for place in np.linspace(0.05, 0.95, count) * (len(ordered) - 1)]
-    return list({row["task"]: row for row in typical + spread}.values())[:count]
+    return list({row["task"]: row for row in typical + spread + ordered}.values())[:count]
 
 
 def example_pictures(shown: Sequence[np.void], sweep: pathlib.Path, clogrun: pathlib.Path) -> str:
@@ -238,12 +253,12 @@ LENGTHS = ("&lambda; is the way after which 1/e of the droplets have not clogged
 
 def label_of_length(groups: Groups, group: Group) -> str:
     """What a point says where there is no script."""
-    known = "" if group["relative_speed"] is None else f", speed {rounded.with_error(group['relative_speed'], group['relative_speed_error'])}"
+    known = "" if group["relative_speed"] is None else f", speed {speed(group)}"
     return (f"{valued(groups, group)}: length {length(group)}{known}, {group['clogs']} of {rounded.counted(group['runs'], 'run')} clogged")
 
 
 def valued(groups: Groups, group: Group) -> str:
-    return ", ".join(f"{name.replace('_', ' ')} {value(group[name])}" for name in parameters(groups))
+    return ", ".join(f"{name.replace('_', ' ')} {cell(groups, group, name)}" for name in parameters(groups))
 
 
 def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
@@ -289,6 +304,15 @@ def side_by_side(pictures: Iterable[str]) -> str:
 PROVENANCE = ("command_line", "version", "git_describe", "git_hash", "compiler", "mpi_version", "hdf5_version", "start_time", "num_ranks")
 
 
+RANDOM_ARRAYS = ("obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "obstacle-layout")
+
+
+def settings(config: str) -> str:
+    """Of a sweep, without those that say nothing of its array: that of a file has its own."""
+    own_circles = stored.settings(config).get("obstacles", "none") != "none"
+    return "\n".join(line for line in config.splitlines() if not (own_circles and line.partition(" = ")[0] in RANDOM_ARRAYS))
+
+
 def page(name: str, groups: Groups, sections: dict[str, str], progress: str, about: dict[str, str], charts: Charts, fitted_by: str) -> str:
     """@param sections  contents by title; @param charts  that they hold; @param fitted_by  version of clogfit"""
     def part(ending: str) -> str:
@@ -301,7 +325,7 @@ def page(name: str, groups: Groups, sections: dict[str, str], progress: str, abo
         meaning=passages.kind_of(groups).about if groups.are_passages else LENGTHS,
         sections="\n".join(f"<h2>{title}</h2>{content}" for title, content in sections.items() if content),
         provenance=html.escape("\n".join([*(f"{key}: {about[key]}" for key in PROVENANCE if key in about), f"fitted by clogfit {fitted_by}"])),
-        config=html.escape(about.get("config", "")))
+        config=html.escape(settings(about.get("config", ""))))
 
 
 def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: pathlib.Path) -> pathlib.Path:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import base64
 import os
 import pathlib
+from typing import NoReturn
 
 import pandas
 
 from . import checked, film, stored, trajectory, vtk, way
+from .errors import UserError
 from .picture import Picture
 
 
@@ -80,6 +82,10 @@ class Run:
 
     def _repr_png_(self) -> bytes | None:
         return self.picture().png() if len(self.times) > 0 else None
+
+    def fit(self) -> NoReturn:
+        """There is none. @throws UserError"""
+        raise UserError("a run has no fit; give a sweep")
 
     def __repr__(self) -> str:
         return f"<run {self.path.name}: {trajectory.end_of(self.trajectory)}>"

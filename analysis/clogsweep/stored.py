@@ -153,6 +153,17 @@ def source(attributes: dict[str, str]) -> str:
     return f"clogsweep {writer(attributes)}{began}\n{attributes.get('command_line', '')}".strip()
 
 
+def settings(config: str) -> dict[str, str]:
+    """Keys and values of a config as it is stored: of all keys, `auto` and the like where nothing else was given."""
+    pairs = (line.partition(" = ") for line in config.splitlines())
+    return {key: value for key, equals, value in pairs if equals}
+
+
+def circle_files(file: h5py.File) -> dict[str, str]:
+    """Names of the files that circles of one's own come from, by the check sums that rows have of them."""
+    return {sum_: pathlib.Path(text(circles.attrs["file"])).name for sum_, circles in file.get("obstacles", {}).items() if "file" in circles.attrs}
+
+
 def columns_of(rows: Records | np.void) -> tuple[str, ...]:
     """Names of the columns of a table or a row."""
     return rows.dtype.names or ()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import matplotlib
@@ -103,16 +103,21 @@ def reasons_for_open_marker(group: Group) -> list[str]:
     return [doubt for doubt in doubts(group) if doubt in OPEN_MARKERS and (doubt != "few_clogs" or group["clogs"] > 0)]
 
 
-def length_note(groups: Collection[Group], confidence: float) -> str:
-    """What bars, open markers and triangles of draw_lengths() mean, as far as they are there."""
-    note = f"bars: {100 * confidence:g} % confidence"
+THROUGH_BOUNDS = "_through bounds"  # label of a line, in no legend
+
+
+def length_note(groups: Collection[Group], confidence: float, panels: Iterable[Axes]) -> str:
+    """What bars, open markers, triangles and dotted lines of draw_lengths() mean, as far as they are there.
+    @param panels  that they were drawn on"""
+    notes = [f"bars: {100 * confidence:g} % confidence"] if any(group["clogs"] > 0 for group in groups) else []
     for reason in dict.fromkeys(reason for group in groups for reason in reasons_for_open_marker(group)):
-        note += f"\nopen markers: {OPEN_MARKERS[reason]}"
+        notes.append(f"open markers: {OPEN_MARKERS[reason]}")
     if any(group["clogs"] == 0 for group in groups):
-        note += "\nopen triangles: lower bound, no run clogged, dotted: through bounds"
+        are_dotted = any(line.get_label() == THROUGH_BOUNDS for axes in panels for line in axes.lines)
+        notes.append("open triangles: lower bound, no run clogged" + (", dotted: through bounds" if are_dotted else ""))
     if num_incomplete := sum("incomplete" in doubts(group) for group in groups):
-        note += f"\nnot complete: {num_incomplete} of {rounded.counted(len(groups), 'point')} with runs that are under way, interrupted or failed"
-    return note
+        notes.append(f"not complete: {num_incomplete} of {rounded.counted(len(groups), 'point')} with runs that are under way, interrupted or failed")
+    return "\n".join(notes)
 
 
 def main_mechanism(group: Group) -> str:
@@ -122,11 +127,11 @@ def main_mechanism(group: Group) -> str:
 
 def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: str = "other clogs") -> None:
     """The ordinate, legend and caption of a picture of clogging lengths. @param drawn  all that draw_lengths() was given"""
-    axes.set_yscale("log")
+    logarithmic_ordinate(axes)
     axes.set_ylabel(AXES["length"])
     grid(axes)
     legend(axes, drawn, other)
-    caption(axes, f"{groups.caption()}\n{groups.note(length_note(drawn, groups.confidence))}")
+    caption(axes, f"{groups.caption()}\n{groups.note(length_note(drawn, groups.confidence, [axes]))}")
 
 
 def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs") -> None:
@@ -168,9 +173,9 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
         face = "white" if reasons_for_open_marker(group) else colour
         axes.plot(x, y, color=colour, marker=MECHANISM_MARKERS[main_mechanism(group)], markerfacecolor=face, markersize=5.5, zorder=3,
                   gid=mark("point", [group]) if group["clogs"] > 0 else None)
-    if any(group["clogs"] == 0 for group in groups):
+    if len(groups) > 1 and any(group["clogs"] == 0 for group in groups):
         through = [group["clogging_length_lower"] if group["clogs"] == 0 else group["clogging_length"] for group in groups]
-        axes.plot(places, through, color=colour, linewidth=0.8, linestyle=":", zorder=1)
+        axes.plot(places, through, color=colour, linewidth=0.8, linestyle=":", zorder=1, label=THROUGH_BOUNDS)
     bounds = [(x, group) for x, group in zip(places, groups) if group["clogs"] == 0]
     axes.plot(
         [x for x, _ in bounds], [group["clogging_length_lower"] for _, group in bounds],
@@ -225,6 +230,24 @@ def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
         # Ticks widen an axis without a margin: what is drawn at the last one would lie on the frame.
         margin = logarithmic_margin(values)
         axes.set_xlim(min(values) / margin, max(values) * margin)
+
+
+def logarithmic_ordinate(axes: Axes) -> None:
+    """Plain numbers where it has fewer than two decades, at 1, 2 and 5, or at every mark of less than half a decade: powers
+    of ten would be too few."""
+    axes.set_yscale("log")
+    axis = axes.yaxis
+    usual = axis.get_major_formatter()
+
+    def label(value: float, digits: tuple[int, ...], otherwise: str) -> str:
+        low, high = axes.get_ylim()
+        if high >= 100 * low:
+            return otherwise
+        first = value / 10.0 ** rounded.exponent(value)
+        return f"{value:.4g}" if high < 5 * low or any(math.isclose(first, digit) for digit in digits) else ""
+
+    axis.set_minor_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: label(value, (2, 5), "")))
+    axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, position: label(value, (1, 10), usual(value, position))))
 
 
 def grid(axes: Axes) -> None:

@@ -11,12 +11,15 @@ import numpy.typing as npt
 from matplotlib.axes import Axes
 from matplotlib.collections import PatchCollection
 from matplotlib.patches import Circle, Polygon
+from matplotlib.patheffects import withStroke
+from matplotlib.text import Text
 from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
 from . import stored, style
 from .hints import AnyPath, Numbers, Point, Records
 
 POINTS_OF_DISK = 128
+HALO = withStroke(linewidth=3, foreground="white")  # of what may lie over obstacles, and hides none of them
 
 
 @dataclasses.dataclass
@@ -135,21 +138,22 @@ def draw_walls(axes: Axes, trajectory: Trajectory, shift: float | Numbers = 0.0)
 
 def draw_guides(axes: Axes) -> None:
     """A bar as long as a droplet is wide, and the direction of the flow. Both stay in their corners when axes are moved."""
-    bar = AnchoredSizeBar(axes.transData, 1.0, r"$\sigma$", "lower left", pad=0.2, borderpad=0.3, sep=2, label_top=True)
-    bar.patch.set(edgecolor="none", alpha=0.7)
+    bar = AnchoredSizeBar(axes.transData, 1.0, r"$\sigma$", "lower left", pad=0.2, borderpad=0.3, sep=2, label_top=True, frameon=False)
     bar.set_zorder(6)
     axes.add_artist(bar)
-    axes.annotate("", (0.17, 0.95), (0.02, 0.95), xycoords="axes fraction", zorder=6,
-                  arrowprops={"arrowstyle": "-|>", "linewidth": 1.5, "color": "black"})
-    axes.text(0.03, 0.925, "flow", transform=axes.transAxes, va="top", fontsize=9, zorder=6)
+    arrow = axes.annotate("", (0.17, 0.95), (0.02, 0.95), xycoords="axes fraction", zorder=6,
+                          arrowprops={"arrowstyle": "-|>", "linewidth": 1.5, "color": "black"})
+    word = axes.text(0.03, 0.925, "flow", transform=axes.transAxes, va="top", fontsize=9, zorder=6)
+    for artist in (bar.size_bar.get_children()[0], *bar.findobj(Text), arrow.arrow_patch, word):
+        artist.set_path_effects([HALO])
 
 
 def described(trajectory: Trajectory) -> str:
     """What was run, without what came out."""
     row = trajectory.row
-    words = [rf"$\Gamma = {row['line_tension']:g}$" if trajectory.word("model") == "dp" else rf"$E_w = {row['wall_stiffness']:g}$"]
+    words = [rf"$\Gamma = {row['line_tension']:.4g}$" if trajectory.word("model") == "dp" else rf"$E_w = {row['wall_stiffness']:.4g}$"]
     if np.isfinite(row["obstacle_gap"]):
-        words.append(rf"smallest gap ${row['obstacle_gap']:.3g}\,\sigma$")
+        words.append(rf"smallest gap ${row['obstacle_gap']:.4g}\,\sigma$")
         words.append(f"seed {row['seed']}")
     return ", ".join(words)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -27,15 +28,18 @@ def draw(run: Trajectory, num_outlines: int) -> Figure:
 
 
 def draw_on(axes: Axes, run: Trajectory, num_outlines: int) -> None:
-    trajectory.draw_surroundings(axes, run)
-    trajectory.frame_limits(axes, *view(run))
-    axes.set_xlabel(r"$x/\sigma$, along the flow")
+    is_passage = len(run.wedges) == 2
+    origin = run.middle if is_passage else np.zeros(2)
+    trajectory.draw_surroundings(axes, run, origin)
+    low, high = view(run)
+    trajectory.frame_limits(axes, low - origin, high - origin)
+    axes.set_xlabel(style.AXES["h"] if is_passage else r"$x/\sigma$, along the flow")
     axes.set_ylabel(r"$y/\sigma$")
     trajectory.draw_guides(axes)
     axes.set_title(f"{trajectory.described(run)}: {trajectory.verdict(run)}", fontsize=9)
     chosen = trajectory.along_the_way(run.polygons, num_outlines)
     for frame in chosen:
-        x, y = run.polygons[frame]
+        x, y = run.polygons[frame] - origin[:, None]
         share = run.times[frame] / run.times[-1] if run.times[-1] > 0 else 1.0
         is_last = frame == chosen[-1]
         axes.fill(
@@ -43,4 +47,5 @@ def draw_on(axes: Axes, run: Trajectory, num_outlines: int) -> None:
             edgecolor="black" if is_last else style.VIRIDIS(share), linewidth=1.0, zorder=3 if is_last else 2,
         )
     scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, run.times[-1]), cmap=style.VIRIDIS)
-    axes.figure.colorbar(scale, ax=axes, label=r"$t/t_0$", fraction=0.03, pad=0.01)
+    # As high as the axes, whose shape is given: a colour bar of its own would be as high as the figure.
+    axes.figure.colorbar(scale, cax=axes.inset_axes((1.01, 0, 0.02, 1)), label=r"$t/t_0$")

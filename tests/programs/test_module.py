@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 
@@ -16,6 +17,7 @@ from support import BIN, QUICK, ROOT, SweepTest, table
 
 import clogsweep.__main__
 from clogsweep import places, programs
+from clogsweep.groups import Groups
 
 PNG = b"\x89PNG\r\n"
 
@@ -45,6 +47,23 @@ class Module(Analysis):
         self.assertEqual(fit.groups.clogging_length.tolist(), [group["clogging_length"] for group in told["groups"]])
         self.assertEqual(fit.survival(1).probability.tolist(), [step["probability"] for step in told["groups"][1]["survival"]])
         self.assertEqual((fit.units["clogging_length"], fit.confidence), ("sigma", 0.95))
+
+    def test_mean_speeds_of_fewer_than_three_runs_are_told_nowhere(self):
+        fit = self.sweep("line-tension=0.1,0.7,1", "obstacle-gap=0.4", "seeds=1..4").fit()
+        self.assertEqual(fit.groups.relative_speed_runs.tolist(), [3, 2, 1])
+        lines = [line.split() for line in self.succeed("clogfit", "s.h5").stdout.splitlines()]
+        heading, = [line for line in lines if line[-3:] == ["<v_g>/v_t", "+-", "note"]]
+        rows = lines[lines.index(heading) + 1:][:3]
+        self.assertEqual([row[-3] == "-" for row in rows], fit.groups.relative_speed.isna().tolist())
+        for name in ("relative_speed_error", "capillary_number"):
+            self.assertEqual(fit.groups[name].isna().tolist(), [False, True, True], name)
+        self.assertIsNotNone(fit.told["groups"][1]["relative_speed"], "told is what clogfit says")
+        axes, = fit.speeds().figure.axes
+        self.assertEqual([bars.lines[0].get_xdata().tolist() for bars in axes.containers], [[0.1]])
+        self.draw("report", "s.h5", "-o", "r.html", "--examples", 0, "--programs", BIN)
+        cells = re.findall(r"<td>(.* \(\d runs?\))</td>", (self.folder / "r.html").read_text())
+        self.assertEqual(len(cells), 1)
+        self.assertTrue(cells[0].endswith("(3 runs)"))
 
     def test_options_of_a_fit_reach_clogfit(self):
         options = {"dwell": 20.0, "from_distance": 0.5, "confidence": 0.5}
@@ -120,6 +139,26 @@ class Module(Analysis):
         with self.assertRaisesRegex(clogsweep.UserError, "r.h5 .holds no polygons"):
             run.picture()
 
+    def test_a_run_has_no_fit(self):
+        with self.assertRaisesRegex(clogsweep.UserError, "a run has no fit; give a sweep"):
+            self.run_of_one_droplet().fit()
+
+    def test_circles_of_one_s_own_are_called_by_their_file(self):
+        for name, diameter in (("wide.csv", 0.3), ("narrow.csv", 0.5)):
+            self.write(name, "x,y,diameter\n" + "".join(f"{x},{y},{diameter}\n" for x in range(1, 20, 2) for y in range(1, 20, 2)))
+        one = self.sweep("obstacles=wide.csv", "line-tension=0.5,3")
+        self.assertIn("circles of wide.csv", one.fit().curve().figure.axes[0].get_title())
+        self.assertIn("circles of wide.csv", Groups(one.fit().told).caption())
+        page = one.report(self.folder / "r.html", examples=0).read_text()
+        self.assertIn("\nobstacles = wide.csv\n", page)
+        for untrue in ("obstacle-gap", "obstacle-density"):
+            self.assertNotIn(f"\n{untrue} = ", page)
+        (self.folder / "s.h5").unlink()
+        two = self.sweep("obstacles=wide.csv,narrow.csv", "line-tension=0.5,3")
+        _, names = two.fit().curve().figure.axes[0].get_legend_handles_labels()
+        self.assertEqual(sorted(name for name in names if name), ["obstacles narrow.csv", "obstacles wide.csv"])
+        self.assertIn("<td>narrow.csv</td>", two.report(self.folder / "r.html", examples=0).read_text())
+
     def test_what_is_damaged_or_something_else_is_refused(self):
         self.sweep()
         content = bytearray((self.folder / "s.h5").read_bytes())
@@ -185,6 +224,14 @@ class Module(Analysis):
         self.assertEqual(repr(self.sweep().fit()), "<fit of 8 runs in 2 groups>")
         self.assertIn("Sweep", dir(clogsweep))
         self.assertIn(f"clogsweep {clogsweep.__version__} ", self.succeed("clogsweep", "--version").stdout)
+
+    def test_a_python_module_that_is_lacking_gets_one_line(self):
+        for lines in ("clogsweep.open('s.h5')", "clogsweep.Sweep"):
+            # None in sys.modules stands for what cannot be imported.
+            done = subprocess.run([sys.executable, "-c", f"import sys; sys.modules['pandas'] = None\nimport clogsweep\n{lines}"],
+                                  cwd=ROOT / "analysis", capture_output=True, text=True)
+            self.assertRegex(done.stderr.splitlines()[-1], "^ImportError: cannot start .*pandas.*; it needs Debian's python3, /usr/bin/python3")
+            self.assertNotIn("ModuleNotFoundError", done.stderr)
 
     def test_programs_that_are_not_there_are_asked_for(self):
         self.sweep()

@@ -6,15 +6,17 @@ import unittest
 import unittest.mock
 
 import numpy as np
+from PIL import Image
 from matplotlib.text import Text
 
 from drawing import Analysis
 from support import BIN, QUICK, SMALL
 
 import stored_rows
-from clogsweep import dwell, film, lengths, poster, report, rounded, stored, style, trajectory
+from clogsweep import clogs, dwell, film, lengths, poster, report, rounded, stored, style, trajectory, way
 from clogsweep.errors import UserError
 from clogsweep.groups import Groups
+from clogsweep.sweep import Sweep
 
 ONE_CURVE = [*QUICK, "line-tension=0.5,3", "seeds=1..2", "near-wall-drag=0.07", "obstacle-gap=0.35", "terminal-speed=0.032"]
 
@@ -71,7 +73,7 @@ class Calls(Analysis):
             (["clogs", "s.h5", "--tasks", "1-3"], ["--tasks", "1-3", "try 3,17,40"]),
             (["clogs", "s.h5", "--tasks", "7,0"], ["tasks 7:", "no such clogged polygon"]),
             (["clogs", "s.h5", "--mechanism", "wrapped"], ["mechanism wrapped", "no such clogged polygon"]),
-            (["clogs", "disk.h5"], ["disk.h5 holds no clogged polygon", "soft disks"]),
+            (["clogs", "disk.h5"], ["disk.h5 holds no clogged polygon", "soft disks", "longer max-time into another file"]),
             (["droplet", "s.h5", "-o", "x", "--size", "7p"], ["--size", "7p", "1080p"]),
             (["droplet", "s.h5", "-o", "x", "--rate", "0"], ["--rate", "1 or more"]),
             (["figures", "2", "--ranks", "0"], ["--ranks", "1 or more"]),
@@ -205,6 +207,59 @@ class Looks(Analysis):
         disk = self.fit("model=sp", "wall-stiffness=30", "box=20", "max-time=60", "seeds=1")
         self.assertNotRegex(disk.caption(), "N_v|b_0")
 
+    def test_a_caption_names_vertices_and_density_that_were_given(self):
+        density = r"$\rho_\mathrm{ob}\,\sigma^2 = 0.5$"
+        for given, words in [(["vertices=64"], ["$N_v = 64$"]), (["obstacle-density=0.5"], [density]), ([], [])]:
+            (self.folder / "s.h5").unlink(missing_ok=True)
+            caption = self.fit("box=20", "max-time=20", "line-tension=0.5,1", "seeds=1", *given).caption()
+            for word in ("$N_v = 64$", density):
+                self.assertEqual(word in caption, word in words, caption)
+
+    def test_a_passage_is_drawn_over_h_with_a_colour_bar_as_high_as_the_axes(self):
+        self.succeed("clogrun", "channel", "vertices=64", "orifice=0.8", "start=-1", "end=1", "--polygon-interval", 10, "--output", "run.h5")
+        drawing = way.draw(trajectory.read(self.folder / "run.h5"), 4)
+        drawing.canvas.draw()
+        axes, = drawing.axes
+        self.assertIn("from the orifice $h", axes.get_xlabel())
+        np.testing.assert_allclose(axes.patches[2].get_xy().mean(axis=0), [-1, 0], atol=0.02)
+        bar, = axes.child_axes
+        self.assertAlmostEqual(bar.get_window_extent().height, axes.get_window_extent().height)
+
+    def test_a_caption_explains_only_what_is_drawn(self):
+        groups = self.fit(*SMALL, "max-time=20", "line-tension=0.05,0.1", "seeds=1..2")
+        bars, dotted, triangles = "bars: ", "dotted: ", "open triangles: "
+
+        def explained(drawing):
+            title = drawing.axes[0].get_title()
+            return [words for words in (bars, dotted, triangles) if words in title]
+
+        self.assertEqual(explained(lengths.draw(groups)), [dotted, triangles])
+        self.assertEqual(explained(lengths.draw_speeds(groups)), [])
+        groups.members = groups.members[:1]
+        self.assertEqual(explained(lengths.draw(groups)), [triangles])
+        groups.members[0].update(clogs=2, clogging_length=1.0, clogging_length_upper=4.0)
+        self.assertEqual(explained(lengths.draw(groups)), [bars])
+
+    def test_titles_of_a_sheet_of_clogs_stay_off_its_edge(self):
+        self.succeed("clogsweep", *QUICK, "line-tension=3", "seeds=1..4", "--output", "s.h5")
+        drawing = Sweep(self.folder / "s.h5", BIN).clogs().picture().figure
+        drawing.canvas.draw()
+        for axes in drawing.axes:
+            self.assertLess(axes.title.get_window_extent().y1, drawing.bbox.y1 - 0.1 * drawing.dpi)
+
+    def test_numbers_in_titles_have_four_figures_at_most(self):
+        self.succeed("clogsweep", *QUICK, "line-tension=3", "seeds=1", "--output", "s.h5")
+        row, = stored.read_rows(self.folder / "s.h5")
+        row["obstacle_gap"] = 0.22190123
+        self.assertIn(r"smallest gap $0.2219\,\sigma$", clogs.title(row))
+
+    def test_examples_are_of_droplets_that_came_a_diameter_far_if_there_are_any(self):
+        columns = [("task", int), ("distance", float), ("shape_parameter", float), ("mechanism", "S8")]
+        rows = np.array([(task, distance, 1 + task % 3, b"squeezed") for task, distance in enumerate([0.1, 3, 0.2, 2, 0.5, 9, 0.4, 1])], columns)
+        self.assertEqual({row["task"] for row in report.examples(rows, 4)}, {1, 3, 5, 7})
+        self.assertEqual({row["task"] for row in report.examples(rows, 2)} - {1, 3, 5, 7}, set())
+        self.assertTrue({1, 3, 5, 7} < {row["task"] for row in report.examples(rows, 6)})
+
     def test_one_is_no_plural(self):
         self.assertEqual([rounded.counted(number, "run") for number in (0, 1, 2)], ["0 runs", "1 run", "2 runs"])
         self.assertEqual([style.runs_a_point([{"runs": runs} for runs in all_runs]) for all_runs in ([1, 1], [4], [1, 3])],
@@ -252,6 +307,29 @@ class Looks(Analysis):
             self.assertGreater(len(inside), 0)
             for place in inside:
                 np.testing.assert_array_equal(colour_at(index, place), 184)
+
+    def test_colours_of_a_gif_are_those_of_its_frames(self):
+        for colour in film.COLOURS:
+            (self.folder / "run.h5").unlink(missing_ok=True)
+            _, _, moving = self.film_of(size="540p", colour=colour)
+            film.write_gif(moving, self.folder / "film.gif", 20)
+            with Image.open(self.folder / "film.gif") as shown:
+                for index in (0, len(moving) - 1):
+                    shown.seek(index)
+                    pixels = np.asarray(shown.convert("RGB")).astype(int)
+                    drawn = moving.pixels(index)[..., :3].astype(int)
+                    self.assertLess(np.abs(pixels - drawn).max(axis=2).mean(), 1)
+                    self.assertLess(np.percentile(np.abs(pixels - drawn).max(axis=2)[100:440, 885:894], 99), 12, "the colour bar")
+                    self.assertEqual(pixels[20, 480].tolist(), [255, 255, 255])
+                    self.assertLess(pixels[-3:, 100:500].min(axis=0).mean(), 128, "the line of the frame below")
+
+    def test_without_a_colour_bar_its_place_is_the_film_s(self):
+        widths = []
+        for colour in film.COLOURS:
+            (self.folder / "run.h5").unlink(missing_ok=True)
+            widths.append(self.film_of(colour=colour)[2].figure.axes[0].get_position().width)
+        self.assertLess(widths[0], 0.92)
+        self.assertGreater(widths[1], 0.99)
 
     def test_a_film_goes_to_ffmpeg_frame_by_frame(self):
         _, _, moving = self.film_of(size="540p")

@@ -77,12 +77,12 @@ def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity:
         data += numbers(members, label)
     style.logarithmic_abscissa(axes, places)
     if quantity == "length":
-        axes.set_yscale("log")
+        style.logarithmic_ordinate(axes)
     axes.set_xlabel(style.AXES[abscissa])
     axes.set_ylabel(style.AXES[quantity])
     style.grid(axes)
     style.legend(axes, groups if quantity == "length" else ())
-    note = style.length_note(groups, shop.confidence(config)) if quantity == "length" else "bars: standard error"
+    note = style.length_note(groups, shop.confidence(config), [axes]) if quantity == "length" else "bars: standard error"
     style.caption(axes, f"{describe(shop.columns(config), groups, [parameter])}\n{note}")
     return Plate(drawing, data)
 
@@ -151,14 +151,14 @@ def over_sag(shop: Workshop, configs: Sequence[str], gap: float, quantity: str) 
         drawn += groups
     style.logarithmic_abscissa(axes)
     if quantity == "length":
-        axes.set_yscale("log")
+        style.logarithmic_ordinate(axes)
     axes.set_xlabel(style.AXES["sag"])
     axes.set_ylabel(style.AXES[quantity])
     axes.axvline(0.25, color="0.75", linewidth=0.8, linestyle=":", zorder=0)
     axes.text(0.25, 0.02, r"$\delta_s = 0.25\sigma$ ", ha="right", color="0.4", fontsize=8, transform=axes.get_xaxis_transform())
     style.grid(axes)
     axes.legend(frameon=False)
-    note = style.length_note(drawn, shop.confidence(config)) if quantity == "length" else "bars: standard error"
+    note = style.length_note(drawn, shop.confidence(config), [axes]) if quantity == "length" else "bars: standard error"
     style.caption(axes, "\n".join(captions) + f"\n{note}")
     return Plate(drawing, data)
 

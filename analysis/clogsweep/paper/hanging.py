@@ -24,11 +24,11 @@ def title(drawing: Figure, shop: Workshop, config: str, groups: Sequence[Group])
     """What all points have in common, and what the marks mean."""
     first = groups[0]
     drawing.suptitle(f"{style.runs_a_point(groups)}; saturated arrays, obstacles of {first['obstacle_diameter']:g}$\\sigma$, "
-                     f"$T = {first['max_time']:g}\\,t_0$\n{style.length_note(groups, shop.confidence(config))}", fontsize=8, color="0.25")
+                     f"$T = {first['max_time']:g}\\,t_0$\n{style.length_note(groups, shop.confidence(config), drawing.axes)}", fontsize=8, color="0.25")
 
 
 def finish(axes: Axes, places: Sequence[float], groups: Sequence[Group], text: str) -> None:
-    axes.set_yscale("log")
+    style.logarithmic_ordinate(axes)
     style.logarithmic_abscissa(axes, places)
     style.grid(axes)
     axes.set_title(text, fontsize=9)
