@@ -35,6 +35,15 @@ class Meant(ProgramTest):
                             ("frobnicate=1", "unknown key frobnicate; clogsweep --help lists the options")]:
             self.refuse("clogsweep", typed, "--output", "s.h5", words=[told])
 
+    def test_a_missing_folder_is_named(self):
+        run = ["array", *QUICK, "--output"]
+        for words in (["clogsweep", *QUICK, "--output", "none/a.h5"], ["clogrun", *run, "none/a.h5"],
+                      ["clogrun", *run, "a.h5", "--write-obstacles", "none/a.h5"],
+                      ["clogrun", *run, "a.h5", "--polygon-interval=1", "--frames", "none/a"]):
+            with self.subTest(words=words):
+                self.refuse(*words, words=[" none/a", "(no folder none); make it first"])
+        self.refuse("clogsweep", "status", "none/a.h5", words=["cannot read none/a.h5 (no such file)"])
+
     def test_h_is_help(self):
         for program in ("clogsweep", "clogrun", "clogfit"):
             self.assertEqual(self.succeed(program, "-h").stdout, self.succeed(program, "--help").stdout)
