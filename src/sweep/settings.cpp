@@ -10,6 +10,7 @@
 #include "clog/core/polygon/automatic_values.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/joined.hpp"
 
 namespace clog::sweep {
 namespace {
@@ -131,6 +132,32 @@ std::vector<Key> make_keys() {
   return all;
 }
 
+std::string replaced(std::string text, std::string_view part, std::string_view other) {
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + other.size()))
+    text.replace(at, part.size(), other);
+  return text;
+}
+
+/// What the ways to type a symbol have in common: \Gamma, Gamma and the letter, or w_\mathrm{ob}, w_ob and
+/// wob.
+std::string plain_symbol(std::string text) {
+  constexpr std::pair<const char*, const char*> words[] = {
+      {"\\mathrm", ""}, {"\\", ""},     {"{", ""},      {"}", ""},      {"_", ""},
+      {"$", ""},        {"Γ", "Gamma"}, {"Δ", "Delta"}, {"α", "alpha"}, {"β", "beta"},
+      {"γ", "gamma"},   {"δ", "delta"}, {"θ", "theta"}, {"μ", "mu"},    {"µ", "mu"},
+      {"ρ", "rho"},     {"σ", "sigma"}, {"τ", "tau"},   {"∞", "infty"}};
+  for (const auto& [typed, plain] : words) text = replaced(std::move(text), typed, plain);
+  return text;
+}
+
+/// Empty if no key has this symbol.
+std::string key_of_symbol(std::string_view symbol) {
+  const std::string plain = plain_symbol(std::string(symbol));
+  for (const Parameter& parameter : parameter_schema())
+    if (!plain.empty() && plain_symbol(parameter.symbol) == plain) return parameter.key;
+  return "";
+}
+
 }  // namespace
 
 const std::vector<Key>& keys() {
@@ -150,14 +177,24 @@ void Key::apply(RunParameters& run, const std::string& value) const {
     parameter->set(run, to_number(value));
 }
 
+std::vector<std::string> meant_names(std::string_view word, const std::vector<std::string>& names) {
+  constexpr std::size_t most_named = 3;
+  if (const std::string key = key_of_symbol(word); std::ranges::find(names, key) != names.end()) return {key};
+  std::vector<std::string> all = with_part(word, names);
+  if (all.size() > most_named) all.resize(most_named);
+  if (!all.empty()) return all;
+  const std::string near = did_you_mean(word, names);
+  return near.empty() ? all : std::vector{near};
+}
+
 const Key& find_key(std::string_view name) {
   const auto key = std::find_if(keys().begin(), keys().end(), [&](const Key& k) { return k.name == name; });
   if (key != keys().end()) return *key;
   std::vector<std::string> names;
   for (const Key& k : keys()) names.push_back(k.name);
-  const std::string near = did_you_mean(name, names);
-  throw Error(near.empty() ? fmt::format("unknown key '{}'; --help lists the keys", name)
-                           : fmt::format("unknown key '{}'; did you mean {}?", name, near));
+  const std::vector<std::string> meant = meant_names(name, names);
+  throw Error(meant.empty() ? fmt::format("unknown key '{}'; --help lists the keys", name)
+                            : fmt::format("unknown key '{}'; did you mean {}?", name, joined(meant, " or ")));
 }
 
 bool is_same_value(const std::string& a, const std::string& b) {

@@ -35,6 +35,23 @@ class Meant(ProgramTest):
                             ("frobnicate=1", "unknown key frobnicate; clogsweep --help lists the options")]:
             self.refuse("clogsweep", typed, "--output", "s.h5", words=[told])
 
+    def test_a_part_of_a_key_or_its_symbol_is_answered_with_the_key(self):
+        for typed, told in [("gap=0.3", "unknown key gap; did you mean obstacle-gap?"),
+                            ("--gap=0.3", "unknown option --gap; did you mean --obstacle-gap?"),
+                            ("contact=edge", "unknown key contact; did you mean wall-contact or self-contact?"),
+                            ("Gamma=0.3", "unknown key Gamma; did you mean line-tension?"),
+                            ("Γ=0.3", "unknown key Γ; did you mean line-tension?"),
+                            ("w_ob=0.3", "unknown key w_ob; did you mean obstacle-gap?"),
+                            ("Nv=64", "unknown key Nv; did you mean vertices?"),
+                            ("Frobnicate=0.3", "unknown key Frobnicate; clogsweep --help lists the options")]:
+            with self.subTest(typed=typed):
+                self.refuse("clogsweep", typed, "--output", "s.h5", words=[told + "\n"])
+        self.refuse("clogrun", "array", "Gamma=0.3", "--output", "r.h5", words=["did you mean line-tension?"])
+        self.refuse("clogfit", "--N_v=64", words=["unknown option --N_v; clogfit --help lists the options"])
+        self.write("bad.cfg", "gap = 0.3\n")
+        self.refuse("clogsweep", "--config", "bad.cfg", words=["unknown key 'gap'; did you mean obstacle-gap?"])
+        self.refuse("clogsweep", "folder/a=1.h5", words=["no place for 'folder/a=1.h5'"])
+
     def test_a_missing_folder_is_named(self):
         run = ["array", *QUICK, "--output"]
         for words in (["clogsweep", *QUICK, "--output", "none/a.h5"], ["clogrun", *run, "none/a.h5"],
