@@ -165,7 +165,9 @@ std::vector<std::string> bare_arrays(const Plan& plan) {
 }
 
 std::vector<std::string> limits_of_results(const Plan& plan) {
-  std::vector<std::string> all = {possible_repetition(plan), unproven_parameters(plan)};
+  std::vector<std::string> all = plan.possible_decimals();
+  all.push_back(possible_repetition(plan));
+  all.push_back(unproven_parameters(plan));
   for (const std::string& words : bare_arrays(plan)) all.push_back(words);
   std::erase(all, "");
   return all;

@@ -2,7 +2,7 @@
 
 import unittest
 
-from support import BLOCKED, QUICK, ProgramTest
+from support import BLOCKED, QUICK, SMALL, ProgramTest
 
 
 class Meant(ProgramTest):
@@ -83,6 +83,12 @@ class Meant(ProgramTest):
         self.refuse("clogrun", "array", "obstacle-gap=0,3", "--output", "s.h5", words=[question])
         self.refuse("clogrun", "channel", "--orifice", "0,7", "--output", "r.h5", words=["did you mean 0.7?"])
         self.assertIn("line-tension = 1,3\n", self.succeed("clogsweep", "line-tension=1,3", "--print-config").stdout)
+
+    def test_a_list_that_could_be_a_decimal_is_run_with_a_line_about_it(self):
+        told = "line-tension=0,5 is a list of 0 and 5; decimals have a point, 0.5\n"
+        sweep = [*SMALL, "line-tension=0,5", "max-time=1", "seeds=1", "--output", "s.h5"]
+        self.assertIn("# " + told, self.succeed("clogsweep", *sweep, "--dry-run").stdout)
+        self.assertEqual(self.succeed("clogsweep", *sweep, ranks=2).stderr.count(told), 1)
 
     def test_a_range_of_numbers_is_pointed_to_lin(self):
         self.refuse("clogsweep", "line-tension=0.1..0.5", "--output", "s.h5", words=["lin(0.1,0.5,5)"])
