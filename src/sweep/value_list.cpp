@@ -195,7 +195,7 @@ std::vector<std::string> with_part(std::string_view word, const std::vector<std:
     return all;
   };
   if (word.empty()) return {};
-  const auto ending = all_that([&](const std::string& candidate) { return candidate.ends_with(end); });
+  auto ending = all_that([&](const std::string& candidate) { return candidate.ends_with(end); });
   if (!ending.empty()) return ending;
   return all_that([&](const std::string& candidate) {
     return fmt::format("-{}-", candidate).find(end + '-') != std::string::npos;
