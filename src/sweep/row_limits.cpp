@@ -180,6 +180,8 @@ bool may_hang_on_mesh(const RunRow& row) {
 }
 
 double obstacle_spacing(const RunRow& row) {
+  const bool is_of_user = scene_of(row.parameters).walls_from == WallsFrom::circles;
+  if (is_of_user && row.obstacle_density > 0) return 1 / std::sqrt(row.obstacle_density);
   return row.parameters.obstacles.diameter + row.parameters.obstacles.gap;
 }
 
