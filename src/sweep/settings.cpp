@@ -138,8 +138,7 @@ std::string replaced(std::string text, std::string_view part, std::string_view o
   return text;
 }
 
-/// What the ways to type a symbol have in common: \Gamma, Gamma and the letter, or w_\mathrm{ob}, w_ob and
-/// wob.
+/// One text for all ways to type a symbol: as TeX writes it, in Latin letters, without the dash below.
 std::string plain_symbol(std::string text) {
   constexpr std::pair<const char*, const char*> words[] = {
       {"\\mathrm", ""}, {"\\", ""},     {"{", ""},      {"}", ""},      {"_", ""},
