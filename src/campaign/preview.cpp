@@ -93,6 +93,8 @@ struct Stored {
   std::vector<WaitingRuns> waiting;  ///< of each parameter set what is not in the sample
   std::int64_t num_done = 0;         ///< tasks that are not to be done again
   double seconds = 0;                ///< that its tasks have taken so far
+
+  bool knows_enough() const { return sample.costs.size() >= fewest_stored_runs; }
 };
 Stored stored_runs(const sweep::Plan& plan, const std::string& path) {
   Stored stored;
@@ -184,6 +186,52 @@ SweepCost plus(SweepCost cost, double seconds) {
   return cost;
 }
 
+void print_expected(const sweep::Plan& plan, const Sample& sample, const SweepCost& cost) {
+  const double us_per_step = 1e6 * cost.seconds_per_work * work_per_step(plan.task(0));
+  fmt::print(
+      std::cout,
+      "# at most {:.3g} core-hours on this machine, {:.3g} us per step measured; runs that clog end sooner\n",
+      cost.bound / hour, us_per_step);
+  const auto num_over =
+      std::count_if(sample.costs.begin(), sample.costs.end(), [](const RunCost& run) { return run.is_over; });
+  const auto num_runs = static_cast<std::int64_t>(sample.costs.size());
+  fmt::print(std::cout,
+             "# expected {:.2g} core-hours (95 %: {:.2g} to {:.2g}), from {} {}, {} of them over\n",
+             cost.expected / hour, cost.lower / hour, cost.upper / hour, sweep::counted(num_runs, "run"),
+             sample.source, num_over);
+}
+
+/// @param cost  of the whole plan
+void print_left(const sweep::Plan& plan, const std::string& output, const Stored& stored,
+                const SweepCost& cost) {
+  const SweepCost left = plus(cost, -stored.seconds);
+  fmt::print(std::cout,
+             "# {} has {} of {}; {} to go: expected {:.2g} core-hours more (95 %: {:.2g} to {:.2g})\n",
+             console::printable(output), stored.num_done, sweep::counted(plan.size(), "task"),
+             plan.size() - stored.num_done, left.expected / hour, left.lower / hour, left.upper / hour);
+}
+
+/// What a sweep that adds seeds may come to.
+/// @param expected, bound  of its first round [s]
+void print_rounds(const SeedRule& rule, std::int64_t first_seeds, double expected, double bound) {
+  const std::int64_t needed = rule.clogs_needed();
+  fmt::print(std::cout, "# this is the first round: +-{} % takes {} a parameter set\n",
+             sweep::shortest(100 * rule.precision()), sweep::counted(needed, "clog"));
+  if (rule.most_seeds() < needed)
+    fmt::print(std::cout, "# --most-seeds={} ends it before that; give {} or more\n", rule.most_seeds(),
+               needed);
+  const auto hours = [&](double seconds, std::int64_t num_seeds) {
+    return seconds / hour * static_cast<double>(num_seeds) / static_cast<double>(first_seeds);
+  };
+  const std::int64_t fewest = std::clamp(needed, first_seeds, rule.most_seeds());
+  fmt::print(std::cout,
+             "# all rounds: {} each if every run clogs, expected {:.2g} core-hours; {} each (--most-seeds) "
+             "if few do, expected {:.2g}, at most {:.3g}\n",
+             sweep::counted(fewest, "seed"), hours(expected, fewest),
+             sweep::counted(rule.most_seeds(), "seed"), hours(expected, rule.most_seeds()),
+             hours(bound, rule.most_seeds()));
+}
+
 }  // namespace
 
 void print_tasks(const sweep::Plan& plan) {
@@ -211,40 +259,26 @@ void print_limits(const sweep::Plan& plan) {
   for (const std::string& words : sweep::limits_of_results(plan)) std::cout << "# " << words << '\n';
 }
 
-int print_cost(const sweep::Plan& plan, const std::string& output) {
+int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRule* rule) {
   const Stored stored = stored_runs(plan, output);
-  if (stored.num_done == plan.size()) {
-    fmt::print(std::cout, "# {} has all {}, which took {:.2g} core-hours; nothing is left to do\n",
-               console::printable(output), sweep::counted(plan.size(), "task"), stored.seconds / hour);
-    return console::exit_success;
-  }
-  const bool knows_enough = stored.sample.costs.size() >= fewest_stored_runs;
-  const Sample sample = knows_enough ? stored.sample : tried_sample(plan);
+  const bool is_done = stored.num_done == plan.size();
+  if (is_done)
+    fmt::print(std::cout, "# {} has all {}, which took {:.2g} core-hours{}\n", console::printable(output),
+               sweep::counted(plan.size(), "task"), stored.seconds / hour,
+               rule ? "" : "; nothing is left to do");
+  if (is_done && !rule) return console::exit_success;
+  const Sample sample = stored.knows_enough() ? stored.sample : tried_sample(plan);
   if (console::stop_signalled()) return console::exit_incomplete;
   if (sample.costs.empty()) {
     console::say("clogsweep: none of the runs that were tried can begin, the first one: " + sample.failure);
     return console::exit_internal_fault;
   }
+  const SweepCost alike = tried_cost(plan, sample);
   const SweepCost cost =
-      knows_enough ? plus(cost_left(sample.costs, stored.waiting), stored.seconds) : tried_cost(plan, sample);
-  const SweepCost left = plus(cost, -stored.seconds);
-  const double us_per_step = 1e6 * cost.seconds_per_work * work_per_step(plan.task(0));
-  fmt::print(
-      std::cout,
-      "# at most {:.3g} core-hours on this machine, {:.3g} us per step measured; runs that clog end sooner\n",
-      cost.bound / hour, us_per_step);
-  const auto num_over =
-      std::count_if(sample.costs.begin(), sample.costs.end(), [](const RunCost& run) { return run.is_over; });
-  const auto num_runs = static_cast<std::int64_t>(sample.costs.size());
-  fmt::print(std::cout,
-             "# expected {:.2g} core-hours (95 %: {:.2g} to {:.2g}), from {} {}, {} of them over\n",
-             cost.expected / hour, cost.lower / hour, cost.upper / hour, sweep::counted(num_runs, "run"),
-             sample.source, num_over);
-  if (stored.seconds == 0) return console::exit_success;
-  fmt::print(std::cout,
-             "# {} has {} of {}; {} to go: expected {:.2g} core-hours more (95 %: {:.2g} to {:.2g})\n",
-             console::printable(output), stored.num_done, sweep::counted(plan.size(), "task"),
-             plan.size() - stored.num_done, left.expected / hour, left.lower / hour, left.upper / hour);
+      stored.knows_enough() ? plus(cost_left(sample.costs, stored.waiting), stored.seconds) : alike;
+  if (!is_done) print_expected(plan, sample, cost);
+  if (!is_done && stored.seconds > 0) print_left(plan, output, stored, cost);
+  if (rule) print_rounds(*rule, plan.size() / plan.num_groups(), cost.expected, alike.bound);
   return console::exit_success;
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double confidence = 0.95;
 
-std::int64_t clogs_needed(double precision) {
+std::int64_t clogs_for(double precision) {
   std::int64_t enough = 1;
   while (fit::relative_half_width(enough, confidence) > precision) enough *= 2;
   std::int64_t too_few = enough / 2;
@@ -34,8 +34,10 @@ SeedRule::SeedRule(double precision, std::int64_t num_groups, std::int64_t first
       most_seeds_(most_seeds),
       num_seeds_(static_cast<std::size_t>(num_groups), first_seeds) {}
 
+std::int64_t SeedRule::clogs_needed() const { return clogs_for(precision_); }
+
 std::vector<std::int64_t> SeedRule::next_round(const std::function<bool(std::int64_t task)>& has_clogged) {
-  const std::int64_t needed = clogs_needed(precision_);
+  const std::int64_t needed = clogs_needed();
   std::vector<std::int64_t> tasks;
   num_reached_ = 0;
   for (std::int64_t group = 0; group < num_groups(); ++group) {
@@ -59,7 +61,7 @@ std::string SeedRule::text() const {
   return fmt::format(
       "seeds are added, in rounds, to every parameter set with fewer than {} clogs (a 95 % interval of "
       "lambda within +-{} %), up to {}",
-      clogs_needed(precision_), sweep::shortest(100 * precision_), sweep::counted(most_seeds_, "seed"));
+      clogs_needed(), sweep::shortest(100 * precision_), sweep::counted(most_seeds_, "seed"));
 }
 
 GrowingSweep growing_sweep(const sweep::Settings& settings, double precision, std::int64_t most_seeds) {

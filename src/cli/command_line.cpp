@@ -17,6 +17,7 @@
 #include "clog/console/text_file.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/instruction_set.hpp"
+#include "clog/core/tools/joined.hpp"
 
 namespace clog::cli {
 namespace {
@@ -35,6 +36,12 @@ bool is_assignment(const std::string& word) {
   const auto equals = word.find('=');
   return equals != std::string::npos && equals > 0 && word[0] != '-' &&
          word.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == equals;
+}
+
+/// Or is it like `Key=value`, where no key is called so, and no file?
+bool begins_like_key(const std::string& word) {
+  const auto equals = word.find('=');
+  return equals != std::string::npos && equals > 0 && word.find_first_of("./ ") > equals;
 }
 
 }  // namespace
@@ -110,6 +117,7 @@ void CommandLine::refuse_surplus_words() const {
     if (sweep_keys_ == SweepKeys::accepted && is_key(key))
       throw Error(fmt::format("no place for '{}'; did you mean {}{}?", word, key,
                               equals < word.size() ? word.substr(equals) : "=VALUE"));
+    if (sweep_keys_ == SweepKeys::accepted && begins_like_key(word)) refuse_unknown(word, {});
     all += (all.empty() ? "'" : ", '") + word + "'";
   }
   throw Error(fmt::format("no place for {} ({}); see {} --help", all, surplus_remedy_, program_));
@@ -124,10 +132,12 @@ void CommandLine::refuse_unknown(const std::string& word, std::span<const char* 
   // The dashes of `key=value` are not the user's.
   const bool has_dashes =
       std::any_of(typed.begin(), typed.end(), [&](std::string_view one) { return one.starts_with(option); });
-  const std::string near = sweep::did_you_mean(bare, names);
+  std::vector<std::string> meant = sweep::meant_names(bare, names);
+  if (has_dashes)
+    for (std::string& name : meant) name.insert(0, "--");
   throw Error((has_dashes ? "unknown option " + option : "unknown key " + bare) +
-              (near.empty() ? fmt::format("; {} --help lists the options", program_)
-                            : fmt::format("; did you mean {}{}?", has_dashes ? "--" : "", near)));
+              (meant.empty() ? fmt::format("; {} --help lists the options", program_)
+                             : fmt::format("; did you mean {}?", joined(meant, " or "))));
 }
 
 /// Boost would find it out, too, but puts the line into a message where it replaces %names%: one with such a

@@ -1,5 +1,7 @@
 #include "clog/cli/obstacle_file.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cctype>
 #include <fstream>
@@ -7,18 +9,24 @@
 
 #include "clog/console/csv.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/joined.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::cli {
 namespace {
 
 Obstacle parse_circle(const std::vector<std::string>& cells) {
-  if (cells.size() < 2 || cells.size() > 3) throw Error("needs x,y or x,y,diameter");
+  if (cells.size() < 2 || cells.size() > 3) throw Error("needs x,y or x,y,diameter, separated by commas");
   Obstacle circle{sweep::to_number(cells[0]), sweep::to_number(cells[1])};
   if (cells.size() == 2) return circle;
   circle.radius = sweep::to_number(cells[2]) / 2;
   if (!(circle.radius > 0)) throw Error("diameter must be positive");
   return circle;
+}
+
+std::string shortened(const std::string& text) {
+  constexpr std::size_t longest = 60;
+  return text.size() > longest ? text.substr(0, longest) + "..." : text;
 }
 
 /// The names of the columns, if the first line has any. @throws Error  if they are others than ours
@@ -27,7 +35,10 @@ bool is_header(const std::vector<std::string>& cells) {
   if (cells[0].empty() || !std::isalpha(static_cast<unsigned char>(cells[0][0]))) return false;
   if (cells.size() < 2 || cells.size() > names.size() ||
       !std::equal(cells.begin(), cells.end(), names.begin()))
-    throw Error("the columns have to be x,y or x,y,diameter");
+    throw Error(
+        fmt::format("the columns have to be x,y or x,y,diameter, separated by commas, in droplet "
+                    "diameters; here they are '{}'",
+                    shortened(joined(cells, ","))));
   return true;
 }
 

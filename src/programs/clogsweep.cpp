@@ -79,14 +79,14 @@ std::optional<int> prepare(const cli::CommandLine& line) {
   attempts(line);
   assignment(line, line.settings());
   const sweep::Plan plan(line.settings());
-  growing_sweep(line);
+  const std::optional<campaign::GrowingSweep> growing = growing_sweep(line);
   if (line.has("print-config")) campaign::print_config(line.settings(), plan);
   if (line.has("dry-run")) {
     campaign::print_tasks(plan);
     console::flush_output();
     if (console::stop_signalled()) return console::exit_incomplete;
     campaign::print_limits(plan);
-    return campaign::print_cost(plan, lead_options(line).output);
+    return campaign::print_cost(plan, lead_options(line).output, growing ? &growing->rule : nullptr);
   }
   if (line.has("print-config")) return console::exit_success;
   line.require("output");

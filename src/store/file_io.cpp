@@ -14,8 +14,22 @@ namespace clog::store {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// The folder that a file is to be made in; empty if it is there.
+std::string missing_folder(const std::string& path) {
+  const fs::path folder = fs::path(path).parent_path();
+  std::error_code none;
+  return folder.empty() || fs::exists(folder, none) ? "" : folder.string();
+}
+
+}  // namespace
+
 void check(bool succeeded, const std::string& what, const std::string& path) {
   if (succeeded) return;
+  if (errno == ENOENT && (what == "create" || what == "write"))
+    if (const std::string folder = missing_folder(path); !folder.empty())
+      throw Error("cannot " + what + " " + path + " (no folder " + folder + "); make it first");
   const std::string reason = errno != 0 ? std::string(" (") + std::strerror(errno) + ")" : "";
   throw Error("cannot " + what + " " + path + reason + "; check the disk and the permissions");
 }

@@ -6,9 +6,11 @@
 #include <cassert>
 #include <string>
 #include <unordered_map>
+#include <utility>
 
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/joined.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/value_list.hpp"
 
@@ -70,6 +72,15 @@ void refuse_useless_keys(const Settings& settings) {
                     settings.text("seeds")));
 }
 
+/// Empty unless the list could be a decimal below one.
+std::string possible_decimal(const Key& key, const Settings& settings) {
+  const std::string& text = settings.text(key.name);
+  const std::string meant = with_decimal_point(text);
+  if (key.kind != ValueKind::number || !meant.starts_with("0.")) return "";
+  return fmt::format("{}={} is a list of {}; decimals have a point, {}", key.name, text,
+                     joined(settings.values(key.name), " and "), meant);
+}
+
 /// The parameters of a task. A list like 0,3 may have been meant as 0.3: where one of its values is refused,
 /// the message asks.
 RunParameters checked_task(const Plan& plan, std::int64_t index, const Settings& settings) try {
@@ -92,6 +103,8 @@ Plan::Plan(const Settings& settings) : circle_files_(settings.circle_files()) {
   for (const Key& key : keys()) {
     const std::vector<std::string>& values = settings.values(key.name);
     axes_.push_back({&key, values});
+    if (std::string words = possible_decimal(key, settings); !words.empty())
+      possible_decimals_.push_back(std::move(words));
     size_ *= static_cast<std::int64_t>(values.size());
     if (size_ > largest_sweep)
       throw Error("the sweep has more than a hundred million runs; shorten its lists");

@@ -165,7 +165,9 @@ std::vector<std::string> bare_arrays(const Plan& plan) {
 }
 
 std::vector<std::string> limits_of_results(const Plan& plan) {
-  std::vector<std::string> all = {possible_repetition(plan), unproven_parameters(plan)};
+  std::vector<std::string> all = plan.possible_decimals();
+  all.push_back(possible_repetition(plan));
+  all.push_back(unproven_parameters(plan));
   for (const std::string& words : bare_arrays(plan)) all.push_back(words);
   std::erase(all, "");
   return all;
@@ -178,6 +180,8 @@ bool may_hang_on_mesh(const RunRow& row) {
 }
 
 double obstacle_spacing(const RunRow& row) {
+  const bool is_of_user = scene_of(row.parameters).walls_from == WallsFrom::circles;
+  if (is_of_user && row.obstacle_density > 0) return 1 / std::sqrt(row.obstacle_density);
   return row.parameters.obstacles.diameter + row.parameters.obstacles.gap;
 }
 

@@ -3,12 +3,14 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <charconv>
 #include <sstream>
 #include <utility>
 
 #include "clog/core/polygon/automatic_values.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/joined.hpp"
 
 namespace clog::sweep {
 namespace {
@@ -75,6 +77,29 @@ std::string written(const ParameterValue& value, const Parameter& parameter) {
   return parameter.words.front();  // automatic
 }
 
+/// Does an item of the list begin with a number, and go on with what may be a unit?
+bool has_unit(const std::string& text) {
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find_first_of(",()", begin), text.size());
+    double number = 0;
+    const char* const rest = std::from_chars(text.data() + begin, text.data() + end, number).ptr;
+    const std::string unit(rest, text.data() + end);
+    const std::size_t first = unit.find_first_not_of(' ');
+    if (rest != text.data() + begin && first != std::string::npos &&
+        std::string_view(".+-*/0123456789").find(unit[first]) == std::string_view::npos)
+      return true;
+    begin = end + 1;
+  }
+  return false;
+}
+
+std::string remedy_of_unit(const Key& key, const std::string& text) {
+  if (!key.parameter || !has_unit(text)) return "";
+  if (key.kind != ValueKind::number && key.kind != ValueKind::integer) return "";
+  const std::string unit = key.parameter->unit;
+  return "; numbers have no unit here: this one is " + (unit.empty() ? "a pure number" : "in " + unit);
+}
+
 Key key_of(const Parameter& parameter) {
   const bool is_ensemble = parameter.role == ParameterRole::ensemble;
   const std::string unit = *parameter.unit ? fmt::format(" [{}]", parameter.unit) : "";
@@ -107,6 +132,31 @@ std::vector<Key> make_keys() {
   return all;
 }
 
+std::string replaced(std::string text, std::string_view part, std::string_view other) {
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + other.size()))
+    text.replace(at, part.size(), other);
+  return text;
+}
+
+/// One text for all ways to type a symbol: as TeX writes it, in Latin letters, without the dash below.
+std::string plain_symbol(std::string text) {
+  constexpr std::pair<const char*, const char*> words[] = {
+      {"\\mathrm", ""}, {"\\", ""},     {"{", ""},      {"}", ""},      {"_", ""},
+      {"$", ""},        {"Γ", "Gamma"}, {"Δ", "Delta"}, {"α", "alpha"}, {"β", "beta"},
+      {"γ", "gamma"},   {"δ", "delta"}, {"θ", "theta"}, {"μ", "mu"},    {"µ", "mu"},
+      {"ρ", "rho"},     {"σ", "sigma"}, {"τ", "tau"},   {"∞", "infty"}};
+  for (const auto& [typed, plain] : words) text = replaced(std::move(text), typed, plain);
+  return text;
+}
+
+/// Empty if no key has this symbol.
+std::string key_of_symbol(std::string_view symbol) {
+  const std::string plain = plain_symbol(std::string(symbol));
+  for (const Parameter& parameter : parameter_schema())
+    if (!plain.empty() && plain_symbol(parameter.symbol) == plain) return parameter.key;
+  return "";
+}
+
 }  // namespace
 
 const std::vector<Key>& keys() {
@@ -126,14 +176,24 @@ void Key::apply(RunParameters& run, const std::string& value) const {
     parameter->set(run, to_number(value));
 }
 
+std::vector<std::string> meant_names(std::string_view word, const std::vector<std::string>& names) {
+  constexpr std::size_t most_named = 3;
+  if (const std::string key = key_of_symbol(word); std::ranges::find(names, key) != names.end()) return {key};
+  std::vector<std::string> all = with_part(word, names);
+  if (all.size() > most_named) all.resize(most_named);
+  if (!all.empty()) return all;
+  const std::string near = did_you_mean(word, names);
+  return near.empty() ? all : std::vector{near};
+}
+
 const Key& find_key(std::string_view name) {
   const auto key = std::find_if(keys().begin(), keys().end(), [&](const Key& k) { return k.name == name; });
   if (key != keys().end()) return *key;
   std::vector<std::string> names;
   for (const Key& k : keys()) names.push_back(k.name);
-  const std::string near = did_you_mean(name, names);
-  throw Error(near.empty() ? fmt::format("unknown key '{}'; --help lists the keys", name)
-                           : fmt::format("unknown key '{}'; did you mean {}?", name, near));
+  const std::vector<std::string> meant = meant_names(name, names);
+  throw Error(meant.empty() ? fmt::format("unknown key '{}'; --help lists the keys", name)
+                            : fmt::format("unknown key '{}'; did you mean {}?", name, joined(meant, " or ")));
 }
 
 bool is_same_value(const std::string& a, const std::string& b) {
@@ -264,7 +324,7 @@ void Settings::assign(const std::string& name, const std::string& text) {
     if (key.kind == ValueKind::word && values.size() > 1) throw Error("takes one value, not a list");
   } catch (const Error& error) {
     const std::string shown = text.size() > 60 ? text.substr(0, 60) + "..." : text;
-    throw Error(fmt::format("invalid {}={} ({})", name, shown, error.what()));
+    throw Error(fmt::format("invalid {}={} ({}{})", name, shown, error.what(), remedy_of_unit(key, text)));
   }
   texts_[name] = text;
   values_[name] = std::move(values);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "clog/core/tools/error.hpp"
@@ -184,6 +185,21 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string>& 
       best = candidate;
     }
   return best;
+}
+
+std::vector<std::string> with_part(std::string_view word, const std::vector<std::string>& candidates) {
+  const std::string end = fmt::format("-{}", word);
+  const auto all_that = [&](const auto& holds) {
+    std::vector<std::string> all;
+    std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(all), holds);
+    return all;
+  };
+  if (word.empty()) return {};
+  auto ending = all_that([&](const std::string& candidate) { return candidate.ends_with(end); });
+  if (!ending.empty()) return ending;
+  return all_that([&](const std::string& candidate) {
+    return fmt::format("-{}-", candidate).find(end + '-') != std::string::npos;
+  });
 }
 
 }  // namespace clog::sweep

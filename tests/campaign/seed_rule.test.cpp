@@ -26,6 +26,11 @@ TEST(SeedRule, AsksForMoreOnlyWhereTheIntervalIsWide) {
   EXPECT_EQ(rule.num_reached(), 2);
 }
 
+TEST(SeedRule, SaysHowManyClogsAPrecisionTakes) {
+  EXPECT_EQ(SeedRule(0.6, 2, 16, 100).clogs_needed(), 14);
+  EXPECT_EQ(SeedRule(0.2, 1, 10, 50).clogs_needed(), 100) << "the budget does not matter";
+}
+
 TEST(SeedRule, StopsWhereTheIntervalIsNarrowEnough) {
   for (const int censored_of_three : {0, 1, 2})
     for (const double precision : {0.1, 0.3, 0.6}) {

@@ -2,7 +2,7 @@
 
 import unittest
 
-from support import BLOCKED, QUICK, ProgramTest
+from support import BLOCKED, QUICK, SMALL, ProgramTest
 
 
 class Meant(ProgramTest):
@@ -35,6 +35,32 @@ class Meant(ProgramTest):
                             ("frobnicate=1", "unknown key frobnicate; clogsweep --help lists the options")]:
             self.refuse("clogsweep", typed, "--output", "s.h5", words=[told])
 
+    def test_a_part_of_a_key_or_its_symbol_is_answered_with_the_key(self):
+        for typed, told in [("gap=0.3", "unknown key gap; did you mean obstacle-gap?"),
+                            ("--gap=0.3", "unknown option --gap; did you mean --obstacle-gap?"),
+                            ("contact=edge", "unknown key contact; did you mean wall-contact or self-contact?"),
+                            ("Gamma=0.3", "unknown key Gamma; did you mean line-tension?"),
+                            ("Γ=0.3", "unknown key Γ; did you mean line-tension?"),
+                            ("w_ob=0.3", "unknown key w_ob; did you mean obstacle-gap?"),
+                            ("Nv=64", "unknown key Nv; did you mean vertices?"),
+                            ("Frobnicate=0.3", "unknown key Frobnicate; clogsweep --help lists the options")]:
+            with self.subTest(typed=typed):
+                self.refuse("clogsweep", typed, "--output", "s.h5", words=[told + "\n"])
+        self.refuse("clogrun", "array", "Gamma=0.3", "--output", "r.h5", words=["did you mean line-tension?"])
+        self.refuse("clogfit", "--N_v=64", words=["unknown option --N_v; clogfit --help lists the options"])
+        self.write("bad.cfg", "gap = 0.3\n")
+        self.refuse("clogsweep", "--config", "bad.cfg", words=["unknown key 'gap'; did you mean obstacle-gap?"])
+        self.refuse("clogsweep", "folder/a=1.h5", words=["no place for 'folder/a=1.h5'"])
+
+    def test_a_missing_folder_is_named(self):
+        run = ["array", *QUICK, "--output"]
+        for words in (["clogsweep", *QUICK, "--output", "none/a.h5"], ["clogrun", *run, "none/a.h5"],
+                      ["clogrun", *run, "a.h5", "--write-obstacles", "none/a.h5"],
+                      ["clogrun", *run, "a.h5", "--polygon-interval=1", "--frames", "none/a"]):
+            with self.subTest(words=words):
+                self.refuse(*words, words=[" none/a", "(no folder none); make it first"])
+        self.refuse("clogsweep", "status", "none/a.h5", words=["cannot read none/a.h5 (no such file)"])
+
     def test_h_is_help(self):
         for program in ("clogsweep", "clogrun", "clogfit"):
             self.assertEqual(self.succeed(program, "-h").stdout, self.succeed(program, "--help").stdout)
@@ -57,6 +83,12 @@ class Meant(ProgramTest):
         self.refuse("clogrun", "array", "obstacle-gap=0,3", "--output", "s.h5", words=[question])
         self.refuse("clogrun", "channel", "--orifice", "0,7", "--output", "r.h5", words=["did you mean 0.7?"])
         self.assertIn("line-tension = 1,3\n", self.succeed("clogsweep", "line-tension=1,3", "--print-config").stdout)
+
+    def test_a_list_that_could_be_a_decimal_is_run_with_a_line_about_it(self):
+        told = "line-tension=0,5 is a list of 0 and 5; decimals have a point, 0.5\n"
+        sweep = [*SMALL, "line-tension=0,5", "max-time=1", "seeds=1", "--output", "s.h5"]
+        self.assertIn("# " + told, self.succeed("clogsweep", *sweep, "--dry-run").stdout)
+        self.assertEqual(self.succeed("clogsweep", *sweep, ranks=2).stderr.count(told), 1)
 
     def test_a_range_of_numbers_is_pointed_to_lin(self):
         self.refuse("clogsweep", "line-tension=0.1..0.5", "--output", "s.h5", words=["lin(0.1,0.5,5)"])

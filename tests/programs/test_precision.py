@@ -1,6 +1,7 @@
 """--until-precision: seeds are added where lambda is not known well enough, the same ones however the sweep goes."""
 
 import json
+import re
 import unittest
 
 import h5py
@@ -88,6 +89,32 @@ class Precision(ProgramTest):
         status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format=json").stdout)
         self.assertEqual(status["over"], status["runs"])
         self.assertEqual(status["runs"], len(table(self.folder / "s.h5")))
+
+    def test_a_dry_run_tells_between_what_limits_all_rounds_cost(self):
+        def told(*words):
+            lines = self.succeed("clogsweep", *SWEEP[:-2], "--dry-run", *words).stdout.splitlines()
+            return [line for line in lines if line.startswith("# ")]
+
+        self.assertFalse(any("round" in line for line in self.succeed("clogsweep", *SWEEP[:-2], "--dry-run").stdout.splitlines()))
+        *_, bound, expected, first, rounds = told("--until-precision=20%", "--most-seeds=400")
+        self.assertEqual(first, "# this is the first round: +-20 % takes 100 clogs a parameter set")
+        bound = float(re.search("at most ([^ ]+) core-hours", bound)[1])
+        expected = float(re.search("expected ([^ ]+) core-hours", expected)[1])
+        found = re.fullmatch(r"# all rounds: 100 seeds each if every run clogs, expected (\S+) core-hours; "
+                             r"400 seeds each \(--most-seeds\) if few do, expected (\S+), at most (\S+)", rounds)
+        fewest, most, longest = map(float, found.groups())
+        self.assertAlmostEqual(fewest / expected / 25, 1, delta=0.11)  # of two figures
+        self.assertAlmostEqual(most / expected / 100, 1, delta=0.11)
+        self.assertAlmostEqual(longest / bound / 100, 1, delta=0.02)
+        self.assertIn("# --most-seeds=30 ends it before that; give 100 or more", told("--until-precision=20%", "--most-seeds=30"))
+
+    def test_a_dry_run_after_the_first_round_does_not_call_the_sweep_done(self):
+        self.succeed("clogsweep", *SWEEP[:-2], "--output", "s.h5")
+        told = self.succeed("clogsweep", *SWEEP, "--output", "s.h5", "--dry-run").stdout
+        self.assertNotIn("nothing is left", told)
+        hours = table(self.folder / "s.h5").wall_seconds.sum() / 3600
+        self.assertIn(f"# s.h5 has all 8 tasks, which took {hours:.2g} core-hours\n", told)
+        self.assertIn(f"14 seeds each (--most-seeds) if few do, expected {hours * 14 / 4:.2g}, ", told)
 
     def test_mistakes_get_one_line_and_exit_code_2(self):
         plain = [*QUICK, "--output", "s.h5"]

@@ -144,5 +144,18 @@ TEST(Plan, RefusesWhatCirclesOfOnesOwnLeaveWithoutEffect) {
   EXPECT_EQ(Plan(anywhere).size(), 3);
 }
 
+TEST(Plan, AsksAfterListsThatCouldBeDecimals) {
+  const auto asked = [](const char* key, const char* text) {
+    Settings settings;
+    settings.set(key, text);
+    return Plan(settings).possible_decimals();
+  };
+  EXPECT_EQ(asked("line-tension", "0,05"),
+            std::vector<std::string>{"line-tension=0,05 is a list of 0 and 5; decimals have a point, 0.05"});
+  for (const char* other : {"0", "0.05", "0,0.5", "0,1,2", "1,5", "0, 5"})
+    EXPECT_TRUE(asked("line-tension", other).empty()) << other;
+  EXPECT_TRUE(asked("seeds", "0,5").empty()) << "integers";
+}
+
 }  // namespace
 }  // namespace clog::sweep

@@ -140,5 +140,17 @@ TEST(ObstacleSpacing, IsFromCentreToCentre) {
   EXPECT_DOUBLE_EQ(obstacle_spacing(row_of({{"obstacle-gap", "0.4"}, {"obstacle-diameter", "0.5"}})), 0.9);
 }
 
+TEST(ObstacleSpacing, OfOwnCirclesFollowsFromHowManyThereAre) {
+  Settings settings;
+  // Four in 8 x 8, of which two are near to each other and none is as wide as obstacle-diameter.
+  settings.attach("posts.csv", OwnCircles({{1, 1, 0.2}, {2, 1, 0.2}, {5, 3, 0.2}, {3, 6, 0.2}}, "posts.csv"));
+  settings.set("obstacles", "posts.csv");
+  settings.set("box", "8");
+  RunRow row = describe(Plan(settings).task(0));
+  EXPECT_DOUBLE_EQ(obstacle_spacing(row), 4);
+  row.obstacle_density = RunRow::not_known;
+  EXPECT_DOUBLE_EQ(obstacle_spacing(row), row.parameters.obstacles.diameter + row.parameters.obstacles.gap);
+}
+
 }  // namespace
 }  // namespace clog::sweep

@@ -51,6 +51,20 @@ TEST(Settings, RefuseWhatTheyCannotRead) {
   EXPECT_NE(refusal("seeds", "5000000000").find("out of range"), std::string::npos);
 }
 
+TEST(Settings, SayInWhichUnitANumberIs) {
+  EXPECT_EQ(
+      refusal("obstacle-gap", "0.3mm"),
+      "invalid obstacle-gap=0.3mm ('0.3mm' is not a finite number; numbers have no unit here: this one is "
+      "in sigma)");
+  EXPECT_NE(refusal("obstacle-gap", "lin(0.2,0.3 sigma,3)").find("this one is in sigma"), std::string::npos);
+  EXPECT_NE(refusal("receding-angle", "90\u00b0").find("this one is in degrees"), std::string::npos);
+  EXPECT_NE(refusal("friction", "5%").find("this one is a pure number"), std::string::npos);
+  EXPECT_NE(refusal("vertices", "2k").find("this one is a pure number"), std::string::npos);
+  for (const char* other : {"soft", "0.1..0.5", "1,,2", "2,2", "inf", "1e999", "1.2.3", "lin(1,2)"})
+    EXPECT_EQ(refusal("line-tension", other).find("unit"), std::string::npos) << other;
+  EXPECT_EQ(refusal("model", "2d").find("unit"), std::string::npos);
+}
+
 TEST(Settings, APresetSetsTheKeysThatWereNotGiven) {
   Settings settings;
   settings.set("gravity", "area");

@@ -93,6 +93,16 @@ TEST(ToNumber, AsksAfterADecimalComma) {
     EXPECT_EQ(with_decimal_point(other), "") << other;
 }
 
+TEST(WithPart, PrefersEndings) {
+  const std::vector<std::string> names = {"obstacle-diameter", "obstacle-diameter-spread", "box", "dry-run"};
+  using All = std::vector<std::string>;
+  EXPECT_EQ(with_part("diameter", names), All{"obstacle-diameter"});
+  EXPECT_EQ(with_part("obstacle", names), (All{"obstacle-diameter", "obstacle-diameter-spread"}));
+  EXPECT_EQ(with_part("diameter-spread", names), All{"obstacle-diameter-spread"});
+  for (const char* other : {"", "iameter", "spread-", "ox"})
+    EXPECT_TRUE(with_part(other, names).empty()) << other;
+}
+
 TEST(Lists, OfAnyNumbersHaveNoRanges) {
   try {
     expand_list("0.1..0.5", ValueKind::number, {});

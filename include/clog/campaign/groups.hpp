@@ -56,7 +56,7 @@ inline constexpr DoubtText doubt_texts[] = {
      "again"},
     {Doubt::below_spacing, 'v', "below_spacing",
      "lambda is below one obstacle spacing (diameter + gap): it says how deep the void of release is, "
-     "not how often gaps clog droplets"},
+     "not how often gaps clog droplets (of circles of your own the spacing is 1/sqrt(circles per area))"},
     {Doubt::not_proved_sound, 'u', "not_proved_sound",
      "line tension, preset, vertices or obstacles are outside of what was proved sound "
      "(docs/explanation/soundness.md)"}};

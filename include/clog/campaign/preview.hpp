@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "clog/campaign/seed_rule.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/settings.hpp"
 
@@ -18,7 +19,8 @@ void print_limits(const sweep::Plan& plan);
 /// Then what `output` has of the sweep, and what is left.
 /// Returns the exit code: a fault if no run can begin.
 /// @param output  the sweep's file, which need not be there; empty: none is named
-int print_cost(const sweep::Plan& plan, const std::string& output);
+/// @param rule  of a sweep of which `plan` is the first round: then what the other rounds may add; or nullptr
+int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRule* rule);
 /// Every key with its value, and what stands behind `auto`.
 void print_config(const sweep::Settings& settings, const sweep::Plan& plan);
 

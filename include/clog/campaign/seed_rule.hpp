@@ -26,6 +26,10 @@ class SeedRule {
   std::vector<std::int64_t> next_round(const std::function<bool(std::int64_t task)>& has_clogged);
 
   std::int64_t num_groups() const { return static_cast<std::int64_t>(num_seeds_.size()); }
+  /// Of a parameter set that is precise enough.
+  std::int64_t clogs_needed() const;
+  double precision() const { return precision_; }
+  std::int64_t most_seeds() const { return most_seeds_; }
   /// Parameter sets that were precise enough when next_round() looked last.
   std::int64_t num_reached() const { return num_reached_; }
   /// The rule in words, as it is stored with the result.

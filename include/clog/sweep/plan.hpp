@@ -22,6 +22,8 @@ class Plan {
   RunParameters task(std::int64_t index) const;
   /// Circles that its tasks are among.
   const CircleFiles& circle_files() const { return circle_files_; }
+  /// Lists that were typed like a decimal with a comma, 0,5, one line each.
+  const std::vector<std::string>& possible_decimals() const { return possible_decimals_; }
   /// Number of parameter sets without the seeds.
   std::int64_t num_groups() const;
 
@@ -32,6 +34,7 @@ class Plan {
   };
   std::vector<Axis> axes_;  // the first varies slowest
   CircleFiles circle_files_;
+  std::vector<std::string> possible_decimals_;
   std::int64_t size_ = 1;
 };
 

@@ -38,7 +38,8 @@ inline constexpr double tolerated_mesh_hold = 0.01;
 bool may_hang_on_mesh(const RunRow& row);
 
 /// Distance between the centres of two obstacles as near to each other as they may be, of a mixture the mean
-/// [sigma]. The void in which a droplet is released is about as large.
+/// [sigma]. Of a user's own circles, which may have diameters of their own and one gap narrower than all
+/// others: 1/sqrt(circles per area). The void in which a droplet is released is about as large.
 double obstacle_spacing(const RunRow& row);
 
 }  // namespace clog::sweep

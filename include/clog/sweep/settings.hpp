@@ -34,6 +34,9 @@ inline constexpr const char* circles_key = "obstacles";
 
 /// Every key, in the order in which they are shown. The one place that knows them.
 const std::vector<Key>& keys();
+/// What a word that is none of the names may have meant: the key of a paper's symbol (Gamma, w_ob), up to
+/// three names that it is a part of, or the nearest name. Empty if there is none.
+std::vector<std::string> meant_names(std::string_view word, const std::vector<std::string>& names);
 /// @throws Error that names the nearest key
 const Key& find_key(std::string_view name);
 

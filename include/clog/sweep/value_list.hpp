@@ -34,4 +34,8 @@ std::string with_decimal_point(std::string_view text);
 /// The candidate nearest to a mistyped word, or empty if none is near.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& candidates);
 
+/// The candidates that end with the word, as wall-contact ends with contact; if there are none, those of
+/// which it is another part between dashes.
+std::vector<std::string> with_part(std::string_view word, const std::vector<std::string>& candidates);
+
 }  // namespace clog::sweep
