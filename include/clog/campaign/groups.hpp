@@ -43,7 +43,7 @@ inline constexpr DoubtText doubt_texts[] = {
      "P(r) is not exponential (p < 0.05, Holm's test of all groups of ten clogs or more): one length does "
      "not describe these runs"},
     {Doubt::censored_by_time, 't', "censored_by_time",
-     "runs ended by max-time: right if slow droplets are as likely to clog as fast ones"},
+     "runs ended by max-time: lambda is right only if slow droplets are as likely to clog as fast ones"},
     {Doubt::incomplete, 'i', "incomplete",
      "runs are under way or interrupted (they count as not clogged so far) or have failed (left out)"},
     {Doubt::damaged, 'd', "damaged",
