@@ -49,9 +49,6 @@ class Slurm(SweepTest):
         super().setUp()
         self.wait_for(lambda: all(described("node", node)["State"] == "IDLE" for node in NODES))
 
-    def wait_for(self, condition, seconds=1800):
-        super().wait_for(condition, seconds)
-
     def submit(self, *options, keys=KEYS):
         """A job of two ranks that sweeps to s.h5. @return its number"""
         words = slurm("sbatch", "--parsable", f"--chdir={self.folder}", "--output=job.log", "--ntasks=2", *options,
