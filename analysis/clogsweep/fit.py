@@ -7,7 +7,7 @@ import os
 import pathlib
 from typing import TYPE_CHECKING, Any
 
-from . import checked, lengths, mean_speeds, programs, rounded, stored
+from . import checked, lengths, programs, rounded, stored
 from .errors import UserError
 from .groups import Groups
 from .picture import Picture
@@ -22,8 +22,8 @@ class Fit:
     """Clogging lengths and mean speeds, a group for each set of parameters. Nothing is fitted here.
 
     `groups` is a table with a row for each group, and clogfit's columns: the clogging length and its interval in droplet
-    diameters, how many runs clogged and by what, doubts, all parameters. `units` names the unit of each. A mean speed of
-    fewer than three runs is left out, as in clogfit's table; `told` has it.
+    diameters, how many runs clogged and by what, doubts, all parameters. `units` names the unit of each. Fewer than three
+    runs have no mean speed.
     """
 
     def __init__(self, told: dict[str, Any], circle_files: dict[str, str] | None = None) -> None:
@@ -32,8 +32,7 @@ class Fit:
         self.confidence: float = told["confidence"]
         self.units: dict[str, str] = told["units"]
         self.doubts: dict[str, str] = told["doubts"]
-        self._told_groups = [mean_speeds.sound(group) for group in told["groups"]]
-        self._groups = Groups(told | {"groups": self._told_groups}, circle_files)
+        self._groups = Groups(told, circle_files)
 
     @property
     def source(self) -> str:
@@ -51,7 +50,7 @@ class Fit:
         """What is known of each group as one number or word; P(r) and incidence are in survival() and `told`."""
         import pandas
 
-        flat = [{name: value for name, value in group.items() if not isinstance(value, list | dict)} for group in self._told_groups]
+        flat = [{name: value for name, value in group.items() if not isinstance(value, list | dict)} for group in self.told["groups"]]
         return pandas.DataFrame(flat)
 
     def survival(self, group: int) -> pandas.DataFrame:

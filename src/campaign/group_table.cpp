@@ -133,12 +133,8 @@ std::string interval_text(const Group& group) {
   return has_length(group) ? length.lower + " .. " + length.upper : "-";
 }
 
-/// One or two runs that happened to come far enough to have a speed say little of all.
 console::RoundedError speed_of(const Group& group) {
-  constexpr int fewest_speeds = 3;
-  const fit::MeanSpeed& speed = group.relative_speed;
-  if (speed.num_runs < fewest_speeds) return {"-", "-"};
-  return console::with_error(speed.mean, speed.standard_error);
+  return console::with_error(group.relative_speed.mean, group.relative_speed.standard_error);
 }
 console::RoundedError slope_of(const Group& group) {
   return console::with_error(group.migration.slope, group.migration.standard_error);

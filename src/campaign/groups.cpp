@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -210,6 +211,14 @@ void append_causes(const Group& group, std::vector<Field>& fields) {
   }
 }
 
+/// One or two runs that happened to come far enough to have a speed say little of all: their mean is not told.
+fit::MeanSpeed of_enough_runs(fit::MeanSpeed speed) {
+  constexpr int fewest_runs = 3;
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  if (speed.num_runs < fewest_runs) speed.mean = speed.standard_error = unknown;
+  return speed;
+}
+
 constexpr std::pair<std::string_view, std::string_view> units_of_results[] = {
     {"dwell", "t0"},
     {"total_distance", "sigma"},
@@ -274,8 +283,8 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
       displacements.push_back({run->distance, run->lateral_displacement});
     }
     fit_clogging(group, counted, confidence, from_distance);
-    group.relative_speed = fit::fit_mean_speed(speeds);
-    group.relative_speed_pooled = fit::fit_pooled_speed(travels);
+    group.relative_speed = of_enough_runs(fit::fit_mean_speed(speeds));
+    group.relative_speed_pooled = of_enough_runs(fit::fit_pooled_speed(travels));
     group.migration = fit::fit_migration(displacements);
     group.doubts = doubts_about(group);
     groups.push_back(std::move(group));

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <charconv>
 #include <sstream>
 #include <utility>
 
@@ -77,27 +76,15 @@ std::string written(const ParameterValue& value, const Parameter& parameter) {
   return parameter.words.front();  // automatic
 }
 
-/// Does an item of the list begin with a number, and go on with what may be a unit?
-bool has_unit(const std::string& text) {
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find_first_of(",()", begin), text.size());
-    double number = 0;
-    const char* const rest = std::from_chars(text.data() + begin, text.data() + end, number).ptr;
-    const std::string unit(rest, text.data() + end);
-    const std::size_t first = unit.find_first_not_of(' ');
-    if (rest != text.data() + begin && first != std::string::npos &&
-        std::string_view(".+-*/0123456789").find(unit[first]) == std::string_view::npos)
-      return true;
-    begin = end + 1;
-  }
-  return false;
+[[noreturn]] void refuse_value(const std::string& name, const std::string& text, const std::string& why) {
+  constexpr std::size_t longest_shown = 60;
+  const std::string shown = text.size() > longest_shown ? text.substr(0, longest_shown) + "..." : text;
+  throw Error(fmt::format("invalid {}={} ({})", name, shown, why));
 }
 
-std::string remedy_of_unit(const Key& key, const std::string& text) {
-  if (!key.parameter || !has_unit(text)) return "";
-  if (key.kind != ValueKind::number && key.kind != ValueKind::integer) return "";
-  const std::string unit = key.parameter->unit;
-  return "; numbers have no unit here: this one is " + (unit.empty() ? "a pure number" : "in " + unit);
+std::string unit_in_words(const Key& key) {
+  const std::string unit = key.parameter ? key.parameter->unit : "";
+  return unit.empty() ? "a pure number" : "in " + unit;
 }
 
 Key key_of(const Parameter& parameter) {
@@ -322,9 +309,11 @@ void Settings::assign(const std::string& name, const std::string& text) {
       key.apply(scratch, value);
     }
     if (key.kind == ValueKind::word && values.size() > 1) throw Error("takes one value, not a list");
+  } catch (const NumberWithUnit& error) {
+    refuse_value(name, text,
+                 fmt::format("{}; numbers have no unit here: this one is {}", error.what(), unit_in_words(key)));
   } catch (const Error& error) {
-    const std::string shown = text.size() > 60 ? text.substr(0, 60) + "..." : text;
-    throw Error(fmt::format("invalid {}={} ({}{})", name, shown, error.what(), remedy_of_unit(key, text)));
+    refuse_value(name, text, error.what());
   }
   texts_[name] = text;
   values_[name] = std::move(values);

@@ -110,6 +110,15 @@ std::vector<std::string> expand_item(std::string_view item, ValueKind kind,
   return {shortest(to_number(item))};
 }
 
+/// @param rest  what follows the number that the text begins with
+[[noreturn]] void refuse_number(std::string_view text, std::string_view rest, const std::string& why) {
+  constexpr std::string_view no_unit = ".+-*/0123456789";
+  rest = trimmed(rest);
+  const bool has_unit = rest.size() < text.size() && !rest.empty() && no_unit.find(rest[0]) == no_unit.npos;
+  if (has_unit) throw NumberWithUnit(fmt::format("'{}' {}", text, why));
+  refuse(text, why);
+}
+
 std::string question_of_comma(std::string_view text) {
   const std::string meant = with_decimal_point(text);
   return meant.empty() ? "" : fmt::format("; did you mean {}?", meant);
@@ -150,16 +159,18 @@ double to_number(std::string_view text) {
   double value = 0;
   const bool has_plus = text.starts_with('+') && !text.starts_with("+-");  // which from_chars does not know
   const char* begin = text.data() + (has_plus ? 1 : 0);
-  const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    refuse(text, "is not a finite number" + question_of_comma(text));
+  const char* const text_end = text.data() + text.size();
+  const auto [end, error] = std::from_chars(begin, text_end, value);
+  if (error != std::errc() || end != text_end || !std::isfinite(value))
+    refuse_number(text, {end, text_end}, "is not a finite number" + question_of_comma(text));
   return value;
 }
 
 long long to_integer(std::string_view text) {
   long long value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) refuse(text, "is not an integer");
+  const char* const text_end = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), text_end, value);
+  if (error != std::errc() || end != text_end) refuse_number(text, {end, text_end}, "is not an integer");
   return value;
 }
 

@@ -20,7 +20,7 @@ from drawing import Analysis
 from support import BIN, QUICK, ROOT, SMALL, table
 
 import clogsweep
-from clogsweep import clogs, film, lengths, mean_speeds, programs, report, rounded, stored, style, survival_curve, trajectory
+from clogsweep import clogs, film, lengths, programs, report, rounded, stored, style, survival_curve, trajectory
 from clogsweep.groups import Groups
 from clogsweep.paper import arrays
 
@@ -86,7 +86,7 @@ class Figures(Analysis):
 
     def assert_groups(self, name, sweep, quantity):
         """The numbers beside the picture are clogfit's, every one of them."""
-        groups = [group for group in map(mean_speeds.sound, self.fit(sweep)) if group[quantity] is not None]
+        groups = [group for group in self.fit(sweep) if group[quantity] is not None]
         self.assertGreater(len(groups), 0)
         points = [row for row in self.drawn(name) if row["model"] == groups[0]["model"] and row[quantity]]
         keys = ["obstacle_gap", "obstacle_diameter", "near_wall_drag", "line_tension" if groups[0]["model"] == "dp" else "wall_stiffness"]
@@ -153,7 +153,7 @@ class Figures(Analysis):
         page = (self.folder / "report.html").read_text()
         self.assertNotRegex(page, r"(src|href)=\"(?!data:|#)", "nothing from elsewhere")
         fit = json.loads(self.succeed("clogfit", sweep, "--format", "json").stdout)
-        for group in map(mean_speeds.sound, fit["groups"]):
+        for group in fit["groups"]:
             self.assertIn(f"<td>{report.speed(group)}</td>", page)
         for heading in ("How far droplets get", "What becomes of them"):
             self.assertIn(heading, page)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .. import mean_speeds, places, replays, stored
+from .. import places, replays, stored
 from ..errors import UserError
 from ..hints import Column, Group
 from ..programs import run_program
@@ -126,11 +126,11 @@ class Workshop:
         self._note_sweep(name)
 
     def sweep(self, name: str) -> list[Group]:
-        """Runs what is missing of a config's sweep. @return clogfit's groups, see mean_speeds.sound()"""
+        """Runs what is missing of a config's sweep. @return clogfit's groups"""
         self._complete(name, self._arguments(name, {}), self.ranks)
         if name not in self._fits:
             self._fits[name] = json.loads(self._call("clogfit", self.sweep_file(name), "--format", "json"))
-        return [mean_speeds.sound(group) for group in self._fits[name]["groups"] if group["runs"] > 0]
+        return [group for group in self._fits[name]["groups"] if group["runs"] > 0]
 
     def runs(self, name: str, config: str | None, keys: Mapping[str, object]) -> list[np.void]:
         """Runs what is missing of a sweep of a figure's own keys.

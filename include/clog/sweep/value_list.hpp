@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "clog/core/tools/error.hpp"
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/tools/number_text.hpp"
 
@@ -23,9 +24,13 @@ using clog::shortest;
 /// `1 run`, `2 runs`.
 std::string counted(std::int64_t number, const std::string& noun);
 
-/// @throws Error if the whole text is not one finite number
+/// What a text is that begins with a number and goes on with something like a unit.
+struct NumberWithUnit : Error {
+  using Error::Error;
+};
+/// @throws Error if the whole text is not one finite number, NumberWithUnit if it has one
 double to_number(std::string_view text);
-/// @throws Error if the whole text is not one integer
+/// @throws Error if the whole text is not one integer, NumberWithUnit if it has one
 long long to_integer(std::string_view text);
 
 /// What a text like `0,3` means to whoever writes a decimal comma, `0.3`; empty for any other text.
