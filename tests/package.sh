@@ -35,7 +35,7 @@ man clogsweep-keys | grep line-tension >/dev/null
 . /usr/share/bash-completion/bash_completion
 _completion_loader clogsweep || true
 complete -p clogsweep
-keys="obstacle-gap=0.3 vertices=64 box=20 max-time=200"
+keys="obstacle-gap=0.3 obstacle-density=saturated vertices=64 box=20 max-time=200"
 mpirun --oversubscribe -np 2 clogsweep $keys line-tension=0.3,0.5 seeds=1..4 --output sweep.h5
 clogfit sweep.h5
 clogfit report sweep.h5 --output report.html

@@ -7,11 +7,11 @@ import datetime
 import pathlib
 
 from . import command_line, programs, style
-from .paper import arrays, channels, hanging  # noqa: F401, they fill the catalogue
+from .paper import arrays, channels, density, hanging  # noqa: F401, they fill the catalogue
 from .paper.plate import CATALOGUE, Entry, Plate
 from .paper.workshop import Workshop
 
-ORDER = ["1", "2", "3", "4", "5", "6a", "6b", "6c", "7a", "7b", "7c", "8a", "8b", "8ca", "9a", "9b", "A1", "B1", "B2", "C1", "C2", "D", "E", "W1", "W2"]
+ORDER = ["1", "2", "3", "4", "5", "6a", "6b", "6c", "7a", "7b", "7c", "8a", "8b", "8ca", "9a", "9b", "A1", "B1", "B2", "C1", "C2", "D", "E", "W1", "W2", "density"]
 
 
 def print_list() -> None:

@@ -112,8 +112,14 @@ class Groups:
             return True  # of the circles of each file
         if name in self.lists or self._is_given_number(name):
             return False
-        from_array = (name == "obstacle_density" and fillings <= {"saturated", "lattice"}) or (name == "box" and fillings == {"lattice"})
+        of_filling = fillings <= {"saturated", "lattice"} or bool(self._share_of_saturated())
+        from_array = (name == "obstacle_density" and of_filling) or (name == "box" and fillings == {"lattice"})
         return from_array or self.columns[name].get("automatic_in") in ("all", self.members[0]["model"])
+
+    def _share_of_saturated(self) -> str:
+        """How densely all random arrays are filled, such as `12%`; empty if that is not one share."""
+        share = self.settings.get("obstacle-density", "")
+        return share if share.endswith("%") and is_number(share[:-1]) and self.values("obstacle_filling") == {"density"} else ""
 
     def _is_given_number(self, name: str) -> bool:
         """Does the config have it as a number? A box is one for lattices, too, which have their own."""
@@ -180,6 +186,8 @@ class Groups:
         words += [self.said(name, first[name]) for name in self.columns if self._is_worth_a_word(name, first[name])]
         if self.values("obstacle_filling") == {"saturated"}:
             words.append("saturated arrays")
+        if share := self._share_of_saturated():
+            words.append(f"{share[:-1]} % of the saturated density")
         if first["obstacle_filling"] == "lattice":
             words.append("square lattice")
         if first["obstacle_filling"] == "file":

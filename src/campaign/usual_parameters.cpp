@@ -40,7 +40,7 @@ RunParameters resolved_in_any_layout(RunParameters run) {
   run.obstacles.layout = ObstacleLayout::random;
   run.obstacles.own.reset();
   run.obstacles.release = Release::centre;
-  run.obstacles.density.reset();
+  run.obstacles.density = ObstacleParameters().density;
   run = resolve(run);
   run.obstacles = own;
   return run;
@@ -59,10 +59,15 @@ std::vector<Field> usual_parameters(const sweep::RunRow& row) try {
   const std::vector<Field> with_usual_step = fields_of(run);
   run.time_step = row.parameters.time_step;
   const std::vector<Field> with_own_step = fields_of(run);
+  // A share of the saturated density is another number for each gap and diameter.
+  RunParameters filled_as_usual = run;
+  filled_as_usual.obstacles.density = ObstacleParameters().density;
+  const std::vector<Field> with_usual_density = fields_of(filled_as_usual);
   std::vector<Field> usual = fields_of(defaults_for(row));
   for (std::size_t i = 0; i < usual.size(); ++i) {
     const sweep::Column& column = *group_columns()[i];
-    if (column.name == "obstacle_density" && !run.obstacles.density) usual[i] = with_own_step[i];
+    if (column.name == "obstacle_density")
+      usual[i] = (run.obstacles.density.per_area ? with_usual_density : with_own_step)[i];
     if (!column.may_be_automatic(run)) continue;
     usual[i] = (column.name == "vertices"    ? with_usual_vertices
                 : column.name == "time_step" ? with_usual_step

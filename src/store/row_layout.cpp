@@ -14,6 +14,7 @@ namespace {
 Type hdf5_type(const Column& column) {
   switch (column.kind) {
     case ValueKind::number:
+    case ValueKind::number_or_share:
       return Type(H5Tcopy(H5T_NATIVE_DOUBLE));
     case ValueKind::integer:
       return Type(H5Tcopy(H5T_NATIVE_INT64));

@@ -164,17 +164,18 @@ Column filling_column() {
           .get = [=](const RunRow& row) -> Value {
             const ObstacleParameters& obstacles = row.parameters.obstacles;
             if (obstacles.layout != ObstacleLayout::random) return name(obstacles.layout);
-            return obstacles.density ? to_density : until_full;
+            return obstacles.density.is_saturated() ? until_full : to_density;
           },
           .set =
               [=](RunRow& row, const Value& value) {
                 ObstacleParameters& obstacles = row.parameters.obstacles;
                 const std::string& word = std::get<std::string>(value);
-                obstacles.density.reset();
-                if (word == to_density)
-                  obstacles.density = RunRow::not_known;  // the column of this name has it
+                obstacles.density = ObstacleParameters().density;
                 if (word == to_density || word == until_full) {
                   obstacles.layout = ObstacleLayout::random;
+                  obstacles.density = {};
+                  if (word == to_density)
+                    obstacles.density = RunRow::not_known;  // the column of this name has it
                 } else {
                   const std::optional<ObstacleLayout> layout = meant_by<ObstacleLayout>(word);
                   if (!layout || *layout == ObstacleLayout::random) throw Error("is unknown");
@@ -192,7 +193,7 @@ Column density_column() {
   column.shapes_array = true;
   column.set = [](RunRow& row, const Value& value) {
     take(value, row.obstacle_density);
-    if (row.parameters.obstacles.density) row.parameters.obstacles.density = row.obstacle_density;
+    if (row.parameters.obstacles.density.per_area) row.parameters.obstacles.density = row.obstacle_density;
   };
   return column;
 }

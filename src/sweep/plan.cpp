@@ -76,7 +76,8 @@ void refuse_useless_keys(const Settings& settings) {
 std::string possible_decimal(const Key& key, const Settings& settings) {
   const std::string& text = settings.text(key.name);
   const std::string meant = with_decimal_point(text);
-  if (key.kind != ValueKind::number || !meant.starts_with("0.")) return "";
+  const bool is_number = key.kind == ValueKind::number || key.kind == ValueKind::number_or_share;
+  if (!is_number || !meant.starts_with("0.")) return "";
   return fmt::format("{}={} is a list of {}; decimals have a point, {}", key.name, text,
                      joined(settings.values(key.name), " and "), meant);
 }

@@ -13,6 +13,8 @@ const char* name_of(ValueKind kind) {
   switch (kind) {
     case ValueKind::number:
       return "number";
+    case ValueKind::number_or_share:
+      return "number or share";
     case ValueKind::integer:
       return "integer";
     case ValueKind::file:

@@ -159,6 +159,8 @@ void Key::apply(RunParameters& run, const std::string& value) const {
     parameter->set(run, {});
   else if (kind == ValueKind::integer)
     parameter->set(run, std::int64_t{to_integer(value)});
+  else if (value.ends_with('%'))
+    parameter->set(run, value);
   else
     parameter->set(run, to_number(value));
 }
@@ -310,8 +312,9 @@ void Settings::assign(const std::string& name, const std::string& text) {
     }
     if (key.kind == ValueKind::word && values.size() > 1) throw Error("takes one value, not a list");
   } catch (const NumberWithUnit& error) {
-    refuse_value(name, text,
-                 fmt::format("{}; numbers have no unit here: this one is {}", error.what(), unit_in_words(key)));
+    refuse_value(
+        name, text,
+        fmt::format("{}; numbers have no unit here: this one is {}", error.what(), unit_in_words(key)));
   } catch (const Error& error) {
     refuse_value(name, text, error.what());
   }

@@ -107,6 +107,8 @@ std::vector<std::string> expand_item(std::string_view item, ValueKind kind,
                      item.substr(0, dots), item.substr(dots + 2)));
   }
   if (kind == ValueKind::integer) return {std::to_string(to_integer(item))};
+  if (kind == ValueKind::number_or_share && item.ends_with('%'))
+    return {shortest(to_number(item.substr(0, item.size() - 1))) + '%'};
   return {shortest(to_number(item))};
 }
 
@@ -141,6 +143,10 @@ std::vector<std::string> expand_list(std::string_view text, ValueKind kind,
 }
 
 std::string with_decimal_point(std::string_view text) {
+  if (text.ends_with('%')) {
+    const std::string number = with_decimal_point(text.substr(0, text.size() - 1));
+    return number.empty() ? "" : number + '%';
+  }
   constexpr std::string_view digits = "0123456789";
   const auto comma = text.find(',');
   if (comma == 0 || comma == std::string_view::npos || comma + 1 == text.size()) return "";

@@ -17,7 +17,7 @@ import time
 import h5py
 
 MPIRUN = pathlib.Path(__file__).resolve().parents[1] / "mpirun.sh"
-SWEEP = ["vertices=64", "box=20", "obstacle-gap=1.2", "max-time=4000", "seeds=1..24"]
+SWEEP = ["vertices=64", "box=20", "obstacle-density=saturated", "obstacle-gap=1.2", "max-time=4000", "seeds=1..24"]
 REPEATS = 3
 
 

@@ -8,7 +8,7 @@ from samples import FILE, Sample, check_complete, in_child, stored_rows
 
 PROFILE = "h [sigma], v [v_t], A\n-1,1,1\n-0.5,0.9,1.02\n0,0.5,1.1\n0.5,0.7,1.05\n1,1,1\n"
 WALL = "d [sigma], v [v_t]\n0.01,0.2\n0.1,0.5\n0.3,0.7\n1,0.9\n"
-SHORT = ["vertices=64", "box=20", "max-time=1", "obstacle-gap=0.4"]
+SHORT = ["vertices=64", "box=20", "obstacle-density=saturated", "max-time=1", "obstacle-gap=0.4"]
 REPORTS = [
     ["clogsweep", "--help"], ["clogsweep", "--version"], ["clogsweep", "--print-config"],
     ["clogsweep", *SHORT, "--dry-run"], ["clogsweep", "status", FILE],

@@ -18,7 +18,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PATCH = pathlib.Path(__file__).with_name("quiet_checks.patch")
-SWEEP = ["model=sp", "wall-stiffness=30", "box=20", "seeds=1..2", "max-time=300", "clog-detection=threshold", "quiet-checks=1,50"]
+SWEEP = ["model=sp", "wall-stiffness=30", "box=20", "obstacle-density=saturated", "seeds=1..2", "max-time=300", "clog-detection=threshold", "quiet-checks=1,50"]
 
 
 def output(*command, **options):

@@ -22,16 +22,16 @@ MPIRUN = ROOT / "tests" / "mpirun.sh"
 LONGEST = 1500
 
 # Small droplets in a small box: a run takes some hundredths of a second.
-SMALL = ["vertices=64", "box=20"]
+SMALL = ["vertices=64", "box=20", "obstacle-density=saturated"]
 QUICK = [*SMALL, "max-time=60"]
 # Long runs, each of several snapshots (four a second).
-SWEEP = ["vertices=64", "box=20", "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=4000", "seeds=1..6",
+SWEEP = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=4000", "seeds=1..6",
          "--report-seconds=0.1", "--output", "s.h5"]
 # Two runs of seconds each: whoever stops them at their first snapshot meets both under way.
-SLOW = ["vertices=64", "box=20", "obstacle-gap=0.4,0.5", "line-tension=0.05", "max-time=2e4", "seeds=1",
+SLOW = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05", "max-time=2e4", "seeds=1",
         "--report-seconds=0.1", "--output", "s.h5"]
 # Obstacles so near to each other that some seeds (53 and 64 of 51..70) leave no void to release the droplet in.
-BLOCKED = ["vertices=64", "box=13", "max-time=5", "obstacle-diameter=3", "obstacle-gap=0.06", "self-contact-range=0.1"]
+BLOCKED = ["vertices=64", "box=13", "obstacle-density=saturated", "max-time=5", "obstacle-diameter=3", "obstacle-gap=0.06", "self-contact-range=0.1"]
 # What a second computation of the same run may change: who did it, and how long it took.
 TIMING = ["wall_seconds", "rank", "host"]
 

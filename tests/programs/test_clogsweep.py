@@ -99,7 +99,7 @@ class Sweep(ProgramTest):
         done = self.succeed("clogsweep", "--config", "sweep.cfg", "--print-config", "seeds=7", "--box", "40")
         for line in ("line-tension = 1,2", "seeds = 7", "box = 40", "vertices = 128"):
             self.assertIn(line + "\n", done.stdout)
-        self.assertRegex(done.stdout, r"\n# wall-stiffness = 0\.0\d+\n# vertices = 128\n# time-step = 0\.00\d+\n# area-stiffness = \d+\n# perimeter-stiffness = 0\.1\n# receding-angle = 180\n# advancing-angle = 180\n$")
+        self.assertRegex(done.stdout, r"\n# wall-stiffness = 0\.0\d+\n# obstacle-density = 0\.362\d*\n# vertices = 128\n# time-step = 0\.00\d+\n# area-stiffness = \d+\n# perimeter-stiffness = 0\.1\n# receding-angle = 180\n# advancing-angle = 180\n$")
         self.write("printed.cfg", done.stdout)
         self.assertEqual(self.succeed("clogsweep", "--config", "printed.cfg", "--print-config").stdout, done.stdout)
 
@@ -453,18 +453,19 @@ class Refusals(ProgramTest):
         self.assertEqual(done.stderr.count("invalid line-tension=-1"), 1)
 
     def test_a_density_that_not_every_seed_reaches_is_refused_with_the_largest(self):
+        keys = ["vertices=64", "box=20", "max-time=60"]
         # The second of each pair is four digits' last one above the largest.
         for geometry, too_large in [([], ["9", "2.623"]), (["obstacle-diameter-spread=0.5"], ["6", "3.766"])]:
             largest = f"{float(too_large[1]) - 0.001:.3f}"
             for density in too_large:
-                sweep = [*QUICK, *geometry, f"obstacle-density=1,{density}", "seeds=1..3"]
+                sweep = [*keys, *geometry, f"obstacle-density=1,{density}", "seeds=1..3"]
                 for program, arguments in [("clogsweep", sweep), ("clogsweep", [*sweep, "--dry-run"]),
-                                           ("clogrun", ["array", *QUICK, *geometry, f"obstacle-density={density}"])]:
+                                           ("clogrun", ["array", *keys, *geometry, f"obstacle-density={density}"])]:
                     self.refuse(program, *arguments, "--output", "s.h5",
                                 words=[f"invalid obstacle-density={density} ", f"use at most {largest}, or saturated"])
-            self.succeed("clogsweep", *QUICK, *geometry, f"obstacle-density={largest}", "seeds=1..20", "--output", "s.h5")
+            self.succeed("clogsweep", *keys, *geometry, f"obstacle-density={largest}", "seeds=1..20", "--output", "s.h5")
             self.assertNotIn("failed", set(table(self.folder / "s.h5").status))
-            self.succeed("clogrun", "array", *QUICK, *geometry, f"obstacle-density={largest}", "--output", "r.h5")
+            self.succeed("clogrun", "array", *keys, *geometry, f"obstacle-density={largest}", "--output", "r.h5")
             for name in ("s.h5", "r.h5"):
                 (self.folder / name).unlink()
 

@@ -15,7 +15,7 @@ import pandas
 
 from support import BIN, LONGEST, ROOT
 
-KEYS = ["line-tension=0.5", "obstacle-gap=0.3", "vertices=64", "box=20", "max-time=200", "seeds=1..4"]
+KEYS = ["line-tension=0.5", "obstacle-density=saturated", "obstacle-gap=0.3", "vertices=64", "box=20", "max-time=200", "seeds=1..4"]
 
 COMMANDS = {"clogsweep": ["status", "verify", "salvage", "replay", "doctor"], "clogrun": [],
             "clogfit": ["calibrate", "deviation", "drag", "report"]}

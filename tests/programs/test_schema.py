@@ -12,12 +12,13 @@ from clogsweep.groups import Groups
 SURROUNDINGS = {
     "lattice-angle": ["obstacle-layout=lattice", "box=60", "obstacle-gap=0.5"],
     "perimeter-stiffness-ratio": ["preset=elastic"],
-    "box": ["vertices=64", "max-time=60"],
-    "vertices": ["box=20", "max-time=60"],
-    "max-time": ["box=20", "vertices=64"],
-    "advancing-angle": ["wall-tension=0.5", "box=20", "vertices=64", "max-time=60"],
-    "friction": ["preset=elastic", "box=20", "vertices=64", "max-time=60"],
-    "yield-traction": ["preset=elastic", "box=20", "vertices=64", "max-time=60"],
+    "box": ["obstacle-density=saturated", "vertices=64", "max-time=60"],
+    "vertices": ["obstacle-density=saturated", "box=20", "max-time=60"],
+    "max-time": ["obstacle-density=saturated", "box=20", "vertices=64"],
+    "obstacle-density": ["box=20", "vertices=64", "max-time=60"],
+    "advancing-angle": ["obstacle-density=saturated", "wall-tension=0.5", "box=20", "vertices=64", "max-time=60"],
+    "friction": ["obstacle-density=saturated", "preset=elastic", "box=20", "vertices=64", "max-time=60"],
+    "yield-traction": ["obstacle-density=saturated", "preset=elastic", "box=20", "vertices=64", "max-time=60"],
     "obstacles": ["box=10", "vertices=64", "max-time=300"],
 }
 # These belong to channels, which have passages and no clogging lengths: test_scenes.

@@ -19,19 +19,21 @@ import time
 import h5py
 
 CIRCUMSTANCES = {"wall_seconds", "rank", "host", "attempt"}
-SMALL = ["box=20", "max-time=40", "vertices=64", "seeds=3..4"]
+SATURATED = "obstacle-density=saturated"  # the default of versions to compare with differs
+DILUTE = ["box=20", "max-time=40", "vertices=64", "seeds=3..4"]
+SMALL = [*DILUTE, SATURATED]
 # Name, arguments of clogsweep.
 SWEEPS = {
     **{preset: [*SMALL, f"preset={preset}", "line-tension=0.1,1"] for preset in ("robust", "heavy-interface", "elastic", "literal")},
     **{f"robust-{name}": [*SMALL, "line-tension=0.1,1", f"--instruction-set={name}"] for name in ("baseline", "avx2", "avx512")},
-    "many-vertices": ["box=20", "max-time=10", "vertices=256", "seeds=1"],
-    "soft-disk": ["model=sp", "wall-stiffness=0.5,5", "box=20", "max-time=100", "seeds=1..3"],
+    "many-vertices": [SATURATED, "box=20", "max-time=10", "vertices=256", "seeds=1"],
+    "soft-disk": [SATURATED, "model=sp", "wall-stiffness=0.5,5", "box=20", "max-time=100", "seeds=1..3"],
     "lattice": ["obstacle-layout=lattice", "lattice-angle=10", "obstacle-gap=0.8", "box=60", "max-time=40", "vertices=64", "seeds=3..4"],
-    "dilute": [*SMALL, "obstacle-density=0.5", "boxes=3", "obstacle-gap=0.3"],
+    "dilute": [*DILUTE, "obstacle-density=0.5", "boxes=3", "obstacle-gap=0.3"],
     "mixture": [*SMALL, "obstacle-diameter-spread=0.3", "obstacle-gap=0.4"],
     "near-wall": [*SMALL, "near-wall-drag=0.07", "relative-drag=0.5", "wall-tension=0.6"],
     "threshold": [*SMALL, "clog-detection=threshold", "clog-energy=1e-5", "line-tension=3"],
-    "large-array": ["box=200", "max-time=5", "vertices=64", "seeds=1"],
+    "large-array": [SATURATED, "box=200", "max-time=5", "vertices=64", "seeds=1"],
 }
 RUNS = {
     "channel": ["channel", "orifice=0.7", "start=-1.5", "end=1", "vertices=64", "line-tension=1"],
@@ -40,7 +42,7 @@ RUNS = {
     "own-circles": ["array", "--obstacles=own.csv", "box=10", "max-time=30", "vertices=64"],
 }
 OWN_CIRCLES = "x,y,diameter\n2,5,0.5\n3.2,4.4,0.3\n3.4,5.9,0.4\n5,5.1,0.6\n7,4.2,0.3\n8.5,6.4,1\n"
-INTERRUPTED = ["box=20", "max-time=2000", "vertices=64", "seeds=1..4", "line-tension=0.1", "obstacle-gap=0.6"]
+INTERRUPTED = [SATURATED, "box=20", "max-time=2000", "vertices=64", "seeds=1..4", "line-tension=0.1", "obstacle-gap=0.6"]
 
 
 def sweep(programs, name, folder):

@@ -168,7 +168,7 @@ void for_all(std::size_t num_cases, unsigned num_threads, Work work) {
   work_on();
 }
 
-double density_of(const RunParameters& run) { return run.obstacles.density.value_or(0); }
+double density_of(const RunParameters& run) { return run.obstacles.density.per_area.value_or(0); }
 
 std::string text(const char* format, double value) {
   char buffer[64];
@@ -177,7 +177,7 @@ std::string text(const char* format, double value) {
 }
 
 std::string density_text(const RunParameters& run) {
-  return run.obstacles.density ? text("%g", *run.obstacles.density) : "saturated";
+  return run.obstacles.density.is_saturated() ? "saturated" : text("%g", density_of(run));
 }
 
 std::string describe(const CaseReport& report) {

@@ -23,7 +23,8 @@ using Keys = std::vector<std::pair<const char*, const char*>>;
 
 Plan plan_of(const Keys& keys) {
   Settings settings;
-  for (const auto& [name, text] : Keys{{"box", "20"}, {"seeds", "1"}}) settings.set(name, text);
+  for (const auto& [name, text] : Keys{{"box", "20"}, {"obstacle-density", "saturated"}, {"seeds", "1"}})
+    settings.set(name, text);
   for (const auto& [name, text] : keys) settings.set(name, text);
   if (settings.text("model") == "dp") settings.set("vertices", "64");
   return Plan(settings);

@@ -42,6 +42,7 @@ TEST(RunJob, TurnsAnImpossibleReleaseIntoAFailedRow) {
   Settings settings;
   settings.set("obstacle-diameter", "3");
   settings.set("obstacle-gap", "0.06");
+  settings.set("obstacle-density", "saturated");
   settings.set("vertices", "64");
   settings.set("self-contact-range", "0.1");
   settings.set("box", "13");

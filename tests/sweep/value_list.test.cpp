@@ -89,7 +89,9 @@ TEST(ToNumber, AsksAfterADecimalComma) {
     EXPECT_STREQ(error.what(), "'0,7' is not a finite number; did you mean 0.7?");
   }
   EXPECT_EQ(with_decimal_point("12,50"), "12.50");
-  for (const char* other : {"", ",", "1,", ",5", "1,2,3", "0.1,5", "1..3,5", "a,b"})
+  EXPECT_EQ(with_decimal_point("12,5%"), "12.5%");
+  for (const char* other :
+       {"", "%", ",%", "12%", "12%,5%", ",", "1,", ",5", "1,2,3", "0.1,5", "1..3,5", "a,b"})
     EXPECT_EQ(with_decimal_point(other), "") << other;
 }
 
@@ -101,6 +103,14 @@ TEST(WithPart, PrefersEndings) {
   EXPECT_EQ(with_part("diameter-spread", names), All{"obstacle-diameter-spread"});
   for (const char* other : {"", "iameter", "spread-", "ox"})
     EXPECT_TRUE(with_part(other, names).empty()) << other;
+}
+
+TEST(Lists, TakeSharesWhereTheKeyDoes) {
+  EXPECT_EQ(expand_list("12.0%, 0.35, saturated", ValueKind::number_or_share, {"saturated"}),
+            (List{"12%", "0.35", "saturated"}));
+  EXPECT_THROW(expand_list("12%", ValueKind::number, {}), NumberWithUnit);
+  for (const char* other : {"%", "12%%", "a%", "1..3%", "12 %5"})
+    EXPECT_THROW(expand_list(other, ValueKind::number_or_share, {}), Error) << other;
 }
 
 TEST(Lists, OfAnyNumbersHaveNoRanges) {

@@ -8,8 +8,12 @@
 
 namespace clog {
 
+[[noreturn]] inline void refuse(const char* key, const std::string& value,
+                                const std::string& reason_and_remedy) {
+  throw Error(std::string("invalid ") + key + '=' + value + " (" + reason_and_remedy);
+}
 [[noreturn]] inline void refuse(const char* key, double value, const std::string& reason_and_remedy) {
-  throw Error(std::string("invalid ") + key + '=' + shortest(value) + " (" + reason_and_remedy);
+  refuse(key, shortest(value), reason_and_remedy);
 }
 
 inline void require(bool holds, const char* key, double value, const char* reason_and_remedy) {

@@ -98,6 +98,22 @@ struct Outside<Enum> {
 };
 
 template <>
+struct Outside<ObstacleDensity> {
+  static constexpr ValueKind kind = ValueKind::number_or_share;
+  static std::vector<std::string> words() { return {}; }
+  static ParameterValue get(const ObstacleDensity& density) {
+    if (density.share) return share_text(*density.share);
+    return density.per_area ? ParameterValue(*density.per_area) : ParameterValue();
+  }
+  static ObstacleDensity set(const ParameterValue& value) {
+    if (const auto* share = std::get_if<std::string>(&value))
+      return ObstacleDensity::share_of_saturated(share_of(*share));
+    const auto* number = std::get_if<double>(&value);
+    return number ? ObstacleDensity(*number) : ObstacleDensity();
+  }
+};
+
+template <>
 struct Outside<std::optional<OwnCircles>> {
   static constexpr ValueKind kind = ValueKind::file;
   static std::vector<std::string> words() { return {"none"}; }
@@ -216,8 +232,9 @@ std::vector<Parameter> make_schema() {
             {.column = "obstacle_density",
              .symbol = R"(\rho_\mathrm{ob})",
              .unit = "1/sigma^2",
-             .meaning = "obstacles per area; saturated: until not one more fits. More than every seed "
-                        "reaches is refused",
+             .meaning =
+                 "obstacles per area; 13%: of the mean density of saturated arrays; saturated: until not one "
+                 "more fits. More than every seed reaches is refused",
              .scope = &arrays,
              .automatic_in = &arrays,
              .range = {positive, {}},
@@ -583,6 +600,14 @@ void check_range(const Parameter& parameter, double number, const ParameterValue
     refuse(parameter, value, upper->reason, upper->remedy);
 }
 
+/// A share is checked as the number it stands for.
+std::optional<double> number_of(const ParameterValue& value, ValueKind kind) {
+  if (const auto* number = std::get_if<double>(&value)) return *number;
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return static_cast<double>(*integer);
+  const auto* text = std::get_if<std::string>(&value);
+  return text && kind == ValueKind::number_or_share ? std::optional(share_of(*text)) : std::nullopt;
+}
+
 void check_one(const Parameter& parameter, const RunParameters& run) {
   static const RunParameters defaults;
   const ParameterValue value = parameter.get(run);
@@ -591,9 +616,8 @@ void check_one(const Parameter& parameter, const RunParameters& run) {
       refuse(parameter, value, parameter.scope->reason, parameter.scope->remedy);
     return;
   }
-  if (const auto* number = std::get_if<double>(&value)) check_range(parameter, *number, value);
-  if (const auto* integer = std::get_if<std::int64_t>(&value))
-    check_range(parameter, static_cast<double>(*integer), value);
+  if (const std::optional<double> number = number_of(value, parameter.kind))
+    check_range(parameter, *number, value);
 }
 
 }  // namespace

@@ -6,9 +6,15 @@
 #include <limits>
 
 #include "clog/core/model/model.hpp"
+#include "clog/core/tools/number_text.hpp"
 #include "core/parameters/refusal.hpp"
 
 namespace clog {
+
+std::string density_text(const ObstacleDensity& density) {
+  if (density.share) return share_text(*density.share);
+  return density.per_area ? shortest(*density.per_area) : "saturated";
+}
 
 void check_spacing(const RunParameters& run) {
   const ObstacleParameters& obstacles = run.obstacles;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "clog/core/droplet/droplet_state.hpp"
 #include "clog/core/parameters/parameters.hpp"
 #include "clog/core/world/obstacle_array.hpp"
@@ -8,6 +10,9 @@ namespace clog {
 
 /// What both arrays that follow from a gap and a diameter have in common. @throws Error
 void check_spacing(const RunParameters& run);
+
+/// As the key `obstacle-density` has it: `0.35`, `13%`, `saturated`.
+std::string density_text(const ObstacleDensity& density);
 
 /// The interface bends around obstacles.
 double smallest_diameter(const RunParameters& run);

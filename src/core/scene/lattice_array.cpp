@@ -20,8 +20,8 @@ namespace {
 void find_period(RunParameters& run) {
   ObstacleParameters& obstacles = run.obstacles;
   const double angle = obstacles.lattice_angle;
-  if (obstacles.density)
-    refuse("obstacle-density", *obstacles.density,
+  if (!obstacles.density.is_saturated() && obstacles.density != ObstacleParameters().density)
+    refuse("obstacle-density", density_text(obstacles.density),
            "a lattice has one obstacle per (obstacle-gap + obstacle-diameter)^2) leave it out, or use "
            "obstacle-layout=random");
   require(obstacles.boxes == 1, "boxes", obstacles.boxes,

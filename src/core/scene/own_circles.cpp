@@ -123,7 +123,7 @@ ObstacleArray shifted_circles(const RunParameters& run) {
 }
 
 double density(const ObstacleParameters& obstacles) {
-  return obstacles.density.value_or(std::numeric_limits<double>::quiet_NaN());
+  return obstacles.density.per_area.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/units.hpp"
@@ -13,26 +14,29 @@ namespace clog {
 
 namespace {
 
-/// Whether a density comes out must not depend on the seed: a sweep would find out row by row.
-void check_density(RunParameters& run) {
-  const ObstacleParameters& obstacles = run.obstacles;
-  if (!obstacles.density) return;
+/// Makes a share of the saturated density a density. Whether that comes out must not depend on the seed: a
+/// sweep would find out row by row.
+void find_density(RunParameters& run) {
+  ObstacleParameters& obstacles = run.obstacles;
+  const std::optional<double> density = wanted_density(obstacles);
+  if (!density) return;
   const double largest = largest_density(obstacles);
   // The value in the message, rounded, may be the least bit larger.
-  require(*obstacles.density <= (1 + 1e-9) * largest, "obstacle-density", *obstacles.density, [&] {
-    return fmt::format(
-        "more than every seed finds room for, with obstacle-gap={:.3g} and box={:.3g}) use at most "
-        "{:.4g}, or saturated: as many as fit",
-        obstacles.gap, obstacles.box, rounded_down(largest, 4));
-  });
+  if (*density > (1 + 1e-9) * largest)
+    refuse("obstacle-density", density_text(obstacles.density),
+           fmt::format(
+               "more than every seed finds room for, with obstacle-gap={:.3g} and box={:.3g}) use at most "
+               "{:.4g}, or saturated: as many as fit",
+               obstacles.gap, obstacles.box, rounded_down(largest, 4)));
+  obstacles.density = *density;
 }
 
 ObstacleArray sample(const RunParameters& run) { return sample_obstacles(run.obstacles, run.seed); }
 
 double density(const ObstacleParameters& obstacles) {
   constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-  if (!obstacles.density && obstacles.diameter_spread > 0) return not_known;
-  return obstacles.density.value_or(saturated_density(obstacles.diameter, obstacles.gap));
+  if (obstacles.density.is_saturated() && obstacles.diameter_spread > 0) return not_known;
+  return wanted_density(obstacles).value_or(saturated_density(obstacles.diameter, obstacles.gap));
 }
 
 }  // namespace
@@ -42,7 +46,7 @@ const Scene random_array_scene = {.finding = Finding::clogging_length,
                                   .is_random = true,
                                   .gap_key = "obstacle-gap",
                                   .check = check_spacing,
-                                  .resolve = check_density,
+                                  .resolve = find_density,
                                   .sharpest_bend = smallest_diameter,
                                   .density = density,
                                   .walls = sample,

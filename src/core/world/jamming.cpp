@@ -16,6 +16,11 @@ struct Spacings {
   double edge;  // of a square of the same area
 };
 
+Spacings spacings_of(const ObstacleParameters& obstacles) {
+  return {obstacles.smallest_diameter() + obstacles.gap, obstacles.largest_diameter() + obstacles.gap,
+          std::sqrt(obstacles.period().area())};
+}
+
 /// Mean density of saturated arrays. Measured from widest/smallest = 1 to 5, in boxes of 10 widest spacings
 /// and more (in smaller ones it is the same); the fit lies below what was measured, by up to 0.5 %.
 double mean_density(const Spacings& spacings) {
@@ -48,9 +53,13 @@ double saturated_density(double diameter, double gap) {
   return jamming_coverage / (std::numbers::pi / 4 * (diameter + gap) * (diameter + gap));
 }
 
+std::optional<double> wanted_density(const ObstacleParameters& obstacles) {
+  const ObstacleDensity& density = obstacles.density;
+  return density.share ? *density.share * mean_density(spacings_of(obstacles)) : density.per_area;
+}
+
 double largest_density(const ObstacleParameters& obstacles) {
-  const Spacings spacings{obstacles.smallest_diameter() + obstacles.gap,
-                          obstacles.largest_diameter() + obstacles.gap, std::sqrt(obstacles.period().area())};
+  const Spacings spacings = spacings_of(obstacles);
   return std::max(covering_density(spacings), mean_density(spacings) - 8 * standard_deviation(spacings));
 }
 

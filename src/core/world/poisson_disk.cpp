@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "clog/core/tools/error.hpp"
+#include "clog/core/world/jamming.hpp"
 #include "clog/core/world/obstacle_array.hpp"
 #include "core/tools/portable_exponential.hpp"
 #include "core/tools/vector_targets.hpp"
@@ -446,10 +447,10 @@ HWY_EXPORT(add_circles);
 
 ObstacleArray sample_obstacles(const ObstacleParameters& parameters, std::uint32_t seed) {
   std::size_t target = SIZE_MAX;
-  if (parameters.density)
-    target = static_cast<std::size_t>(std::llround(*parameters.density * parameters.period().area()));
+  const std::optional<double> density = wanted_density(parameters);
+  if (density) target = static_cast<std::size_t>(std::llround(*density * parameters.period().area()));
   std::vector<Obstacle> obstacles = HWY_DYNAMIC_DISPATCH(add_circles)(parameters, target, seed);
-  if (parameters.density && obstacles.size() < target) {
+  if (density && obstacles.size() < target) {
     const double reached = static_cast<double>(obstacles.size()) / parameters.period().area();
     const std::string largest =
         parameters.diameter_spread > 0 ? fmt::format(" to {:.6g}", parameters.largest_diameter()) : "";
@@ -457,7 +458,7 @@ ObstacleArray sample_obstacles(const ObstacleParameters& parameters, std::uint32
         fmt::format("invalid obstacle-density={:.6g} (no more than {:.6g} obstacles per sigma^2 of diameter "
                     "{:.6g}{} fit with gap "
                     "{:.6g}) use a lower density, a smaller gap, or obstacle-density=saturated",
-                    *parameters.density, reached, parameters.smallest_diameter(), largest, parameters.gap));
+                    *density, reached, parameters.smallest_diameter(), largest, parameters.gap));
   }
   return {parameters.period(), std::move(obstacles)};
 }

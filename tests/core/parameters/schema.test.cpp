@@ -60,7 +60,7 @@ TEST_P(EveryParameter, GivesBackWhatIsSet) {
   ParameterValue other = value;
   if (auto* number = std::get_if<double>(&other)) *number += 0.25;
   if (auto* integer = std::get_if<std::int64_t>(&other)) *integer += 1;
-  if (std::holds_alternative<std::monostate>(other))
+  if (std::holds_alternative<std::monostate>(other) || parameter.kind == ValueKind::number_or_share)
     other = parameter.kind == ValueKind::integer ? ParameterValue(std::int64_t{20}) : ParameterValue(0.25);
   if (parameter.kind == ValueKind::file) other = OwnCircles({{1, 2, 3}}).check_sum();
   if (parameter.kind == ValueKind::word)

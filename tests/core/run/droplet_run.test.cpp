@@ -19,6 +19,7 @@ RunParameters small_run(double line_tension = 1, int vertices = 64) {
   run.dp.line_tension = line_tension;
   run.dp.vertices = vertices;
   run.obstacles.box = 20;
+  run.obstacles.density = {};
   run.max_time = 40;
   run.seed = 3;
   return resolve(run);
@@ -65,6 +66,7 @@ TEST(DropletRun, IsTheSameHoweverItIsSliced) {
 RunParameters long_run(Model model) {
   RunParameters run;
   run.obstacles.box = 20;
+  run.obstacles.density = {};
   run.obstacles.gap = 0.5;
   run.time_step = 1e-3;
   run.max_time = 850;
@@ -84,6 +86,7 @@ TEST(DropletRun, GoesOnFromASnapshotWithItsAnchors) {
   for (const bool by_friction : {true, false}) {
     RunParameters run;
     run.obstacles.box = 20;
+    run.obstacles.density = {};
     run.obstacles.gap = 0.4;
     run.time_step = 2e-3;
     run.max_time = 600;
@@ -186,6 +189,7 @@ TEST(DropletRun, OfAnotherSeedDiffers) {
 TEST(DropletRun, EndsFlowingWhenItsTimeIsUp) {
   RunParameters parameters = small_run();
   parameters.obstacles.gap = 1.2;
+  parameters.obstacles.density = {};
   const RunResult result = result_of(parameters, 100);
   EXPECT_EQ(result.status, RunStatus::flowing);
   EXPECT_NEAR(result.time, 40, 1e-3);  // a whole number of steps
@@ -251,6 +255,7 @@ TEST(DropletRun, ABurstPolygonIsAResultToo) {
 TEST(DropletRun, ADropletThatHasNotFallenYetIsNotClogged) {
   RunParameters parameters = small_run();
   parameters.obstacles.gap = 1.2;
+  parameters.obstacles.density = {};
   parameters.drag.terminal_speed = 10;
   parameters.clog_energy = 5e-4;  // it is slower than this at its first checks
   DropletRun run(parameters);
@@ -264,6 +269,7 @@ TEST(DropletRun, RunsWithSpringsToTheRestLength) {
     parameters.dp.perimeter_spring = PerimeterSpring::rest;
     parameters.dp.vertices = 128;
     parameters.obstacles.box = 20;
+    parameters.obstacles.density = {};
     parameters.max_time = 3;
     parameters.seed = seed;
     EXPECT_EQ(result_of(resolve(parameters), 10).status, RunStatus::flowing) << "seed " << seed;
@@ -275,6 +281,7 @@ TEST(DropletRun, FollowsASoftDiskToo) {
   parameters.model = Model::sp;
   parameters.wall_stiffness = 5;
   parameters.obstacles.box = 20;
+  parameters.obstacles.density = {};
   parameters.max_time = 2000;
   const RunResult result = result_of(resolve(parameters), 1000);
   EXPECT_EQ(result.status, RunStatus::clogged);
@@ -347,6 +354,7 @@ TEST(BreakUp, ComesBeforeACertifiedClog) {
   run.dp.vertices = 64;
   run.obstacles.gap = 0.3;
   run.obstacles.box = 40;
+  run.obstacles.density = {};
   run.max_time = 3000;
   run.seed = 3;
   run = resolve(run);

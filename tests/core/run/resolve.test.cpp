@@ -122,6 +122,15 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"obstacle-density=2.8 (more than every seed finds room for, with obstacle-gap=0.2 and "
                 "box=500) use at most 2.779, or saturated",
                 [](auto& run) { run.obstacles.density = 2.8; }},
+        Refusal{"obstacle-density=101% (more than every seed finds room for",
+                [](auto& run) { run.obstacles.density = ObstacleDensity::share_of_saturated(1.01); }},
+        Refusal{"obstacle-density=-5% (must be positive)",
+                [](auto& run) { run.obstacles.density = ObstacleDensity::share_of_saturated(-0.05); }},
+        Refusal{"obstacle-density=20% (a lattice has one",
+                [](auto& run) {
+                  run.obstacles.layout = ObstacleLayout::lattice;
+                  run.obstacles.density = ObstacleDensity::share_of_saturated(0.2);
+                }},
         Refusal{"obstacle-density=1e300 (more than", [](auto& run) { run.obstacles.density = 1e300; }},
         Refusal{"obstacle-diameter-spread=1 (the smallest obstacles would have no diameter) use less than 1",
                 [](auto& run) { run.obstacles.diameter_spread = 1; }},

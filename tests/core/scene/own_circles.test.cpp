@@ -54,7 +54,7 @@ TEST(OwnCircles, AreKnownByAStandardCheckSum) {
 TEST(OwnCircles, HaveTheGapAndTheDensityOfTheirFile) {
   const RunParameters run = resolve(among({{2, 5, 0.25}, {3, 5, 0}}));
   EXPECT_NEAR(run.obstacles.gap, 1 - 0.25 - 0.15, 1e-12) << "a radius of 0 is half of obstacle-diameter";
-  EXPECT_DOUBLE_EQ(run.obstacles.density.value(), 0.02);
+  EXPECT_DOUBLE_EQ(run.obstacles.density.per_area.value(), 0.02);
   EXPECT_EQ(scene_of(run).walls(run).obstacles().size(), 2u);
   EXPECT_EQ(resolve(run).obstacles, run.obstacles) << "resolved once more nothing changes";
 }

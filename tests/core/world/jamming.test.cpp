@@ -17,7 +17,7 @@ struct Geometry {
   double gap, diameter, spread, box;
   int num_seeds;
 
-  ObstacleParameters obstacles(std::optional<double> density = {}) const {
+  ObstacleParameters obstacles(ObstacleDensity density = {}) const {
     return {.gap = gap, .diameter = diameter, .diameter_spread = spread, .density = density, .box = box};
   }
 };
@@ -73,6 +73,24 @@ TEST(LargestDensity, LiesEightToTenStandardDeviationsBelowTheMean) {
     const double below = mean - largest_density(geometry.obstacles()) * geometry.box * geometry.box;
     EXPECT_GT(below / deviation, 7.5) << testing::PrintToString(geometry);
     EXPECT_LT(below / deviation, 10) << testing::PrintToString(geometry);
+  }
+}
+
+/// What resolve() makes of a share of the saturated density, against counted obstacles of saturated arrays.
+TEST(ShareOfSaturated, IsThatOfTheMeanOfSaturatedArrays) {
+  for (const Geometry& geometry :
+       {Geometry{0.2, 0.3, 0, 40, 20}, Geometry{0.5, 0.3, 0, 60, 20}, Geometry{0.2, 0.3, 0.5, 40, 20}}) {
+    double number = 0;
+    for (int seed = 1; seed <= geometry.num_seeds; ++seed)
+      number += static_cast<double>(sample_obstacles(geometry.obstacles(), seed).obstacles().size());
+    const double saturated = number / geometry.num_seeds / (geometry.box * geometry.box);
+    RunParameters run;
+    run.obstacles = geometry.obstacles(ObstacleDensity::share_of_saturated(0.25));
+    const std::optional<double> density = resolve(run).obstacles.density.per_area;
+    ASSERT_TRUE(density);
+    EXPECT_NEAR(*density, 0.25 * saturated, 0.01 * *density) << testing::PrintToString(geometry);
+    const auto sampled = static_cast<double>(sample_obstacles(run.obstacles, 3).obstacles().size());
+    EXPECT_EQ(sampled, std::round(*density * geometry.box * geometry.box));
   }
 }
 

@@ -64,7 +64,7 @@ TEST(SampleObstacles, LeavesNoRoomForOneMoreWhenSaturated) {
 }
 
 /// @param boxes  in a row along the flow, of 10 sigma each
-ObstacleParameters long_array(int boxes, std::optional<double> density = {}) {
+ObstacleParameters long_array(int boxes, ObstacleDensity density = {}) {
   return {.gap = 0.4, .diameter = 0.3, .density = density, .box = 10, .boxes = boxes};
 }
 
@@ -168,7 +168,7 @@ TEST(SampleObstacles, GivesDiscsOfOneSizeThatNeverChange) {
   EXPECT_EQ(digest(sample_obstacles({.gap = 1.1, .density = {}, .box = 17.3}, 11)), 0x9241ec7695805bf0u);
 }
 
-ObstacleParameters mixture(double spread, double box, std::optional<double> density = {}) {
+ObstacleParameters mixture(double spread, double box, ObstacleDensity density = {}) {
   return {.gap = 0.2, .diameter = 0.3, .diameter_spread = spread, .density = density, .box = box};
 }
 

@@ -125,14 +125,37 @@ struct Period {
   bool operator==(const Period&) const = default;
 };
 
+/// How densely a random array is filled.
+struct ObstacleDensity {
+  std::optional<double> per_area;  ///< obstacles per sigma^2
+  std::optional<double> share;     ///< of the mean density of saturated arrays; resolve() makes it per_area
+
+  /// Saturated: obstacles are added until not one more fits.
+  ObstacleDensity() = default;
+  // The number of obstacles per sigma^2 is the density; nothing is lost in the conversion.
+  ObstacleDensity(double number_per_area) : per_area(number_per_area) {}
+  static ObstacleDensity share_of_saturated(double share) {
+    ObstacleDensity density;
+    density.share = share;
+    return density;
+  }
+  bool is_saturated() const { return !per_area && !share; }
+  bool operator==(const ObstacleDensity&) const = default;
+};
+
+/// Cheng et al. publish lambda = 24 +- 1 for Gamma = 1.09 and a gap of 0.2, but no density. This share of the
+/// saturated density reproduces it (docs/explanation/density.md).
+inline constexpr double published_share_of_saturated = 0.13;
+
 /// Periodic array of circular obstacles, Cheng et al., "Geometry".
 struct ObstacleParameters {
-  double gap = 0.2;                    ///< w_ob, smallest surface-to-surface distance [sigma]
-  double diameter = 0.3;               ///< sigma_ob, of a mixture the mean of the arriving ones [sigma]
-  double diameter_spread = 0;          ///< diameters are uniform in diameter (1 -+ spread)
-  std::optional<double> density = {};  ///< obstacles per sigma^2; empty: saturated, or given by the lattice
-  double box = 500;                    ///< period L across the flow [sigma]
-  int boxes = 1;                       ///< period along the flow over that across it
+  double gap = 0.2;            ///< w_ob, smallest surface-to-surface distance [sigma]
+  double diameter = 0.3;       ///< sigma_ob, of a mixture the mean of the arriving ones [sigma]
+  double diameter_spread = 0;  ///< diameters are uniform in diameter (1 -+ spread)
+  /// Of random arrays; what a lattice or a user's own circles come to is not kept here.
+  ObstacleDensity density = ObstacleDensity::share_of_saturated(published_share_of_saturated);
+  double box = 500;  ///< period L across the flow [sigma]
+  int boxes = 1;     ///< period along the flow over that across it
   ObstacleLayout layout = ObstacleLayout::random;
   double lattice_angle = 0;            ///< of the lattice's rows from +x to +y [degrees]
   std::optional<OwnCircles> own = {};  ///< of layout file; gap and density are then theirs

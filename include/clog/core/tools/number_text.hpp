@@ -1,7 +1,10 @@
 #pragma once
 
 #include <charconv>
+#include <limits>
 #include <string>
+#include <string_view>
+#include <system_error>
 
 namespace clog {
 
@@ -16,6 +19,24 @@ inline std::string shortest(double value) {
     if (text[begin] == '0') text.erase(begin, 1);
   }
   return text;
+}
+
+/// A share as people write it: 0.13 is `13%`. Twelve digits spare the text 28.999999999999996%.
+inline std::string share_text(double share) {
+  char digits[32];
+  const auto end =
+      std::to_chars(digits, digits + sizeof digits, 100 * share, std::chars_format::general, 12).ptr;
+  double percent = 0;
+  std::from_chars(digits, end, percent);
+  return shortest(percent) + '%';
+}
+/// And back. NaN if the text is not a number and a `%`.
+inline double share_of(std::string_view text) {
+  double percent = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, percent);
+  const bool is_share = error == std::errc() && std::string_view(rest, end) == "%";
+  return is_share ? percent / 100 : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace clog

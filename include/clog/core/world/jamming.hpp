@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "clog/core/parameters/parameters.hpp"
 
 namespace clog {
@@ -8,6 +10,10 @@ namespace clog {
 /// plane at the jamming limit of random sequential addition (Feder 1980; value of Wang, Int. J. Mod. Phys. C
 /// 5, 707 (1994)).
 double saturated_density(double diameter, double gap);
+
+/// Obstacles per area that a random array is to have [1/sigma^2]; nothing: as many as fit. A share is that of
+/// the mean density of saturated arrays of these diameters and this gap, whatever the box.
+std::optional<double> wanted_density(const ObstacleParameters& obstacles);
 
 /// The largest density of a random array that every seed can be relied on to reach [1/sigma^2]: eight
 /// standard deviations below the mean number of obstacles of saturated arrays of this box. In small boxes,

@@ -1,0 +1,101 @@
+"""Which density the published arrays had: the article gives one clogging length as a number, and no density."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from .. import rounded, style
+from ..hints import Group
+from .arrays import numbers
+from .plate import Plate, figure
+from .workshop import Workshop
+
+PUBLISHED_LENGTH, PUBLISHED_ERROR = 24.0, 1.0  # [sigma], at Gamma = 1.09 and a smallest gap of 0.2 sigma
+NORMAL_QUANTILE = 1.96  # two-sided 95 %
+CONFIGS = {"density-robust": "robust", "density-elastic": "elastic", "density-friction": r"elastic, walls with friction, $\mu = 0.05$"}
+
+
+@dataclasses.dataclass(frozen=True)
+class DensityFit:
+    """A parabola through log lambda over log density, and where it has the published length.
+
+    A length of n clogs is known to a relative error of 1/sqrt(n), which is the error of its logarithm.
+    """
+
+    coefficients: np.ndarray  # highest power first
+    covariance: np.ndarray
+    chi_squared: float
+    degrees_of_freedom: int
+    density: float  # [1/sigma^2]
+    lower: float  # of its 95 % interval, which holds the fit's error and the published one
+    upper: float
+
+    def length(self, density: np.ndarray) -> np.ndarray:
+        return np.exp(np.polyval(self.coefficients, np.log(density)))
+
+
+def fit_density(densities: Sequence[float], lengths: Sequence[float], clogs: Sequence[int]) -> DensityFit:
+    """@throws ValueError  unless there are four densities or more, and the published length lies between the shortest and the longest"""
+    x, y = np.log(densities), np.log(lengths)
+    if len(x) < 4 or not min(lengths) < PUBLISHED_LENGTH < max(lengths):
+        raise ValueError("needs four densities or more, on both sides of the published length")
+    errors = 1 / np.sqrt(clogs)
+    coefficients, covariance = np.polyfit(x, y, 2, w=1 / errors, cov="unscaled")
+    residuals = (y - np.polyval(coefficients, x)) / errors
+    target = math.log(PUBLISHED_LENGTH)
+    roots = [root.real for root in np.roots(coefficients - [0, 0, target]) if abs(root.imag) < 1e-9]
+    place = min(roots, key=lambda root: abs(root - float(np.mean(x))))
+    slope = 2 * coefficients[0] * place + coefficients[1]
+    powers = np.array([place**2, place, 1])
+    error = math.sqrt(powers @ covariance @ powers + (PUBLISHED_ERROR / PUBLISHED_LENGTH) ** 2) / abs(slope)
+    return DensityFit(coefficients, covariance, float(residuals @ residuals), len(x) - 3, math.exp(place),
+                      math.exp(place - NORMAL_QUANTILE * error), math.exp(place + NORMAL_QUANTILE * error))
+
+
+def fitted(groups: Sequence[Group]) -> DensityFit:
+    closed = [group for group in groups if group["clogs"] > 0]
+    return fit_density(*([group[name] for group in closed] for name in ("obstacle_density", "clogging_length", "clogs")))
+
+
+@figure("density", "clogging length of stiff droplets over the density of obstacles, and the density of the published arrays", CONFIGS, "6 min")
+def density_of_the_published_arrays(shop: Workshop) -> Plate:
+    drawing, axes = style.subplots(figsize=(6.8, 5.0))
+    families = {label: shop.sweep(config) for config, label in CONFIGS.items()}
+    everyone = [group for groups in families.values() for group in groups]
+    places = sorted({group["obstacle_density"] for group in everyone})
+    data = []
+    for index, (label, groups) in enumerate(families.items()):
+        fit = fitted(groups)
+        text = rounded.with_interval(fit.density, fit.lower, fit.upper)
+        shift = style.side_by_side(index, len(families), places)
+        style.draw_lengths(axes, [group["obstacle_density"] * shift for group in groups], groups, index, f"{label}: {text}", linestyle="none")
+        line = np.geomspace(places[0], places[-1], 100)
+        axes.plot(line, fit.length(line), color=style.COLOURS[index], linewidth=1)
+        share = [number / saturated_density(groups[0]) for number in (fit.density, fit.lower, fit.upper)]
+        data += numbers(groups, label)
+        data.append({"curve": label, "published_length": PUBLISHED_LENGTH, "density": fit.density, "density_lower": fit.lower, "density_upper": fit.upper,
+                     "share_of_saturated": share[0], "share_lower": share[1], "share_upper": share[2],
+                     "chi_squared": fit.chi_squared, "degrees_of_freedom": fit.degrees_of_freedom})
+        print(f"{label}: {text} per sigma^2, {rounded.with_interval(*(100 * number for number in share))} % of the saturated density", flush=True)
+    axes.axhspan(PUBLISHED_LENGTH - PUBLISHED_ERROR, PUBLISHED_LENGTH + PUBLISHED_ERROR, color="0.85", zorder=0, label="published: 24 \u00b1 1")
+    style.logarithmic_ordinate(axes)
+    style.logarithmic_abscissa(axes, places)
+    style.grid(axes)
+    axes.set_xlabel(r"obstacles per area $\rho_\mathrm{ob}\,\sigma^2$")
+    axes.set_ylabel(style.AXES["length"])
+    style.legend(axes, everyone)
+    first = everyone[0]
+    style.caption(axes, rf"$\Gamma = {first['line_tension']:g}$, $w_\mathrm{{ob}} = {first['obstacle_gap']:g}\,\sigma$, "
+                        rf"$\sigma_\mathrm{{ob}} = {first['obstacle_diameter']:g}\,\sigma$, {style.runs_a_point(everyone)}" + "\n"
+                        "legend: density at which the fitted curve has the published length, with its 95 % interval; "
+                        + style.length_note(everyone, shop.confidence("density-robust"), [axes]))
+    return Plate(drawing, data)
+
+
+def saturated_density(group: Group) -> float:
+    """Of equal circles, at the jamming limit of random sequential addition [1/sigma^2]: they cover 0.547069 of the plane (Feder 1980)."""
+    return 0.547069 / (math.pi / 4 * (group["obstacle_diameter"] + group["obstacle_gap"]) ** 2)
