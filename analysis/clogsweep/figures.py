@@ -7,18 +7,18 @@ import datetime
 import pathlib
 
 from . import command_line, programs, style
-from .paper import arrays, channels, density, hanging  # noqa: F401, they fill the catalogue
+from .paper import arrays, channels, density, dilute, hanging  # noqa: F401, they fill the catalogue
 from .paper.plate import CATALOGUE, Entry, Plate
 from .paper.workshop import Workshop
 
-ORDER = ["1", "2", "3", "4", "5", "6a", "6b", "6c", "7a", "7b", "7c", "8a", "8b", "8ca", "9a", "9b", "A1", "B1", "B2", "C1", "C2", "D", "E", "W1", "W2", "density"]
+ORDER = ["1", "2", "3", "4", "5", "6a", "6b", "6c", "6c-saturated", "7a", "7a-saturated", "7b", "7c", "7c-saturated", "map", "density", "8a", "8b", "8ca", "9a", "9b", "A1", "B1", "B2", "C1", "C2", "D", "E", "W1", "W2"]
 
 
 def print_list() -> None:
-    print(f"{'name':5} {'reduced size':24} {'sweep or settings':24} what")
+    print(f"{'name':12} {'reduced size':24} {'sweep or settings':24} what")
     for name in ORDER:
         entry = CATALOGUE[name]
-        print(f"{name:5} {entry.cost:24} {', '.join(entry.configs) or '-':24} {entry.caption}")
+        print(f"{name:12} {entry.cost:24} {', '.join(entry.configs) or '-':24} {entry.caption}")
 
 
 def output_of(name: str, shop: Workshop) -> pathlib.Path:

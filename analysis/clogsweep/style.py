@@ -154,8 +154,9 @@ def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs
         mark_legend(made, [handle for handle, _ in curves])
 
 
-def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, linestyle: str | tuple[int, tuple[int, ...]] | None = None) -> None:
-    """Clogging lengths with clogfit's intervals, `linestyle` where it is not that of the index. The marker is that of what holds most of the clogs; an open one is a
+def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, linestyle: str | tuple[int, tuple[int, ...]] | None = None,
+                 size: float = 5.5) -> None:
+    """Clogging lengths with clogfit's intervals, `linestyle` where it is not that of the index, markers of `size` points. The marker is that of what holds most of the clogs; an open one is a
     length in doubt (OPEN_MARKERS), an open triangle a lower bound, where no run clogged."""
     order = sorted(range(len(groups)), key=lambda i: places[i])
     places, groups = [places[i] for i in order], [groups[i] for i in order]
@@ -171,7 +172,7 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
                   gid=mark("curve", groups))
     for x, y, group in zip(places, lengths, groups):
         face = "white" if reasons_for_open_marker(group) else colour
-        axes.plot(x, y, color=colour, marker=MECHANISM_MARKERS[main_mechanism(group)], markerfacecolor=face, markersize=5.5, zorder=3,
+        axes.plot(x, y, color=colour, marker=MECHANISM_MARKERS[main_mechanism(group)], markerfacecolor=face, markersize=size, zorder=3,
                   gid=mark("point", [group]) if group["clogs"] > 0 else None)
     if len(groups) > 1 and any(group["clogs"] == 0 for group in groups):
         through = [group["clogging_length_lower"] if group["clogs"] == 0 else group["clogging_length"] for group in groups]
@@ -179,7 +180,7 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
     bounds = [(x, group) for x, group in zip(places, groups) if group["clogs"] == 0]
     axes.plot(
         [x for x, _ in bounds], [group["clogging_length_lower"] for _, group in bounds],
-        color=colour, marker="^", markerfacecolor="white", markersize=8, linestyle="none", gid=mark("point", [group for _, group in bounds]),
+        color=colour, marker="^", markerfacecolor="white", markersize=size + 2.5, linestyle="none", gid=mark("point", [group for _, group in bounds]),
     )
 
 

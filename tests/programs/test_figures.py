@@ -26,8 +26,14 @@ from clogsweep.paper import arrays
 
 # A few seconds for all of them: coarse droplets, short ways.
 TINY = {
-    "clogging": ["vertices=32", "line-tension=0.3,3", "obstacle-gap=0.2,0.4"],
+    **{name: ["vertices=32", "line-tension=0.3,3", "obstacle-gap=0.2,0.4", "obstacle-density=1"]
+       for name in ("clogging-robust", "clogging-friction", "clogging-elastic", "clogging-saturated")},
+    **{f"{name}-mesh": ["vertices=64", "line-tension=3", "obstacle-gap=0.2", "obstacle-density=1"]
+       for name in ("clogging-robust", "clogging-friction", "clogging-elastic")},
+    **{name: ["vertices=32", "line-tension=0.3,3", "obstacle-gap=0.2,0.4", "obstacle-density=0.35,saturated", "seeds=1..10"]
+       for name in ("map-robust", "map-friction")},
     "clogging-sp": ["wall-stiffness=1,10", "obstacle-gap=0.2,0.4"],
+    "clogging-sp-saturated": ["wall-stiffness=1,10", "obstacle-gap=0.2,0.4"],
     "speed": ["vertices=32", "line-tension=0.1,1", "obstacle-gap=1.0,1.1", "seeds=1..3"],
     "speed-sp": ["wall-stiffness=1,10", "obstacle-gap=1.0,1.1", "seeds=1..3"],
     "speed-diameter": ["vertices=32", "line-tension=0.1,1", "seeds=1..3"],
@@ -94,12 +100,13 @@ class Figures(Analysis):
                          sorted([*(group[key] for key in keys), group[quantity]] for group in groups))
 
     def test_curves_show_what_clogfit_says(self):
-        names = {"6c": ("clogging", "clogging_length"), "7a": ("clogging-sp", "clogging_length"), "8a": ("speed", "relative_speed"),
+        names = {"6c-saturated": ("clogging-saturated", "clogging_length"), "7a": ("clogging-sp", "clogging_length"),
+                 "7a-saturated": ("clogging-sp-saturated", "clogging_length"), "8a": ("speed", "relative_speed"),
                  "8b": ("speed-diameter", "relative_speed"), "8ca": ("speed", "capillary_number"), "9a": ("speed-sp", "relative_speed"),
                  "E": ("near-wall-drag", "relative_speed")}
-        done = self.figures(*names, "7c", "9b", "--ranks", 1)
+        done = self.figures(*names, "6c", "7c", "7c-saturated", "9b", "--ranks", 1)
         self.assertNotIn("Warning", done.stderr)
-        for name in [*names, "7c", "9b"]:
+        for name in [*names, "6c", "7c", "7c-saturated", "9b"]:
             with self.subTest(figure=name):
                 self.assert_picture(f"{self.PLACE}/figure-{name}")
                 about = (self.folder / self.PLACE / f"figure-{name}.txt").read_text()
@@ -113,10 +120,18 @@ class Figures(Analysis):
             if point["model"] == "sp":
                 self.assertAlmostEqual(float(point["sag"]), math.pi / 16 / float(point["wall_stiffness"]), delta=1e-4)
 
-        file = self.folder / self.PLACE / "sweeps" / "clogging.h5"
+        # Of 6c, all families, both meshes, every point.
+        drawn = {(row["curve"].split(",")[0], row["vertices"], row["friction"], row["obstacle_gap"], row["line_tension"], row["clogging_length_lower"]) for row in self.drawn("6c")}
+        told = {(config, *(str(group[name]) for name in ("vertices", "friction", "obstacle_gap", "line_tension", "clogging_length_lower")))
+                for config in ("clogging-robust", "clogging-friction", "clogging-elastic")
+                for sweep in (config, f"{config}-mesh") for group in self.fit(sweep)}
+        self.assertEqual(len({curve for curve, *_ in told}), 3)
+        self.assertEqual(drawn, told)
+
+        file = self.folder / self.PLACE / "sweeps" / "clogging-friction.h5"
         self.draw_clogs(file)
         # Other settings than the file's are refused by clogsweep, in its words.
-        self.refuse_analysis("figures", "6c", "--output", ".", "--programs", BIN, *SET, "--set", "clogging:box=30", words=["box"])
+        self.refuse_analysis("figures", "6c", "--output", ".", "--programs", BIN, *SET, "--set", "clogging-friction:box=30", words=["box"])
         self.make_report(file)
 
     def call_wrapped(self, sweep, number):
@@ -142,11 +157,11 @@ class Figures(Analysis):
         clogs = before[before.status == "clogged"]
         self.assertEqual(float(wrapped["distance"]), clogs.distance.iloc[-1])
         task = clogs.task.iloc[-1]
-        with h5py.File(sweep.parent.parent / "runs" / f"clogging-{task}.h5") as file:
+        with h5py.File(sweep.parent.parent / "runs" / f"clogging-friction-{task}.h5") as file:
             self.assertEqual(file["runs"]["distance"][0], float(wrapped["distance"]), "the same run, bit for bit")
         # What is drawn from files alone is not labelled as another droplet.
         self.call_wrapped(sweep, 0)
-        self.refuse_analysis("figures", "6a", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["clogging-", "leave out --draw-only"])
+        self.refuse_analysis("figures", "6a", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["clogging-friction-", "leave out --draw-only"])
 
     def make_report(self, sweep):
         self.succeed("clogfit", "report", sweep, "--output", "report.html", "--examples", 2)
@@ -161,6 +176,15 @@ class Figures(Analysis):
         self.assertIn(html.escape(fit["doubts"]["few_clogs"]), page)
         self.assertGreaterEqual(page.count("<svg"), 3)
         self.assertIn("command_line: clogsweep", page)
+
+    def test_the_map_shows_every_density(self):
+        self.figures("map")
+        self.assert_picture(f"{self.PLACE}/figure-map")
+        points = self.drawn("map")
+        told = [group for sweep in ("map-robust", "map-friction") for group in self.fit(sweep)]
+        for name in ("obstacle_gap", "obstacle_filling", "line_tension", "friction", "clogging_length_lower"):
+            self.assertEqual(sorted(point[name] for point in points), sorted(str(group[name]) for group in told))
+        self.assertEqual({point["obstacle_filling"] for point in points}, {"density", "saturated"})
 
     def test_single_runs_are_drawn_as_they_were_run(self):
         measured = "\n".join(["h [sigma], v [v_t], A", *(f"{h / 10},{0.5 + 0.01 * h},1.0{abs(h)}" for h in range(-9, 10))])
@@ -216,7 +240,7 @@ class Figures(Analysis):
         for arguments, words in [
             (["6c", "13"], ["no figure 13", "list"]),
             (["6c", "--programs", "nowhere"], ["no clogsweep in nowhere"]),
-            (["6c", "--programs", BIN, "--draw-only", "--output", "."], ["clogging.h5", "--draw-only"]),
+            (["6c", "--programs", BIN, "--draw-only", "--output", "."], ["clogging-robust.h5", "--draw-only"]),
             (["6c", "--programs", BIN, "--set", "seeds"], ["--set seeds", "KEY=VALUE"]),
             (["6c", "--programs", BIN, "--output", ".", "--ranks", "1", "--set", "obstacle-gap=-1"], ["obstacle-gap=-1"]),
             (["2", "--programs", BIN, "--output", ".", *SET, "--profile", "no.csv"], ["cannot read no.csv"]),

@@ -20,6 +20,8 @@ from .workshop import Workshop
 if TYPE_CHECKING:
     import pandas
 
+# By what droplets are held, as clogfit counts them, and the mesh.
+HOLDS = ("vertices", "on_mesh", "wrapped", "squeezed", "hybrid")
 # Of what all points have in common, a caption names these.
 NAMED = ("obstacle_gap", "obstacle_diameter", "near_wall_drag")
 
@@ -48,6 +50,10 @@ def numbers(groups: Sequence[Group], label: str, **more: Sequence[Any]) -> list[
                "clogging_length", "clogging_length_lower", "clogging_length_upper", "relative_speed", "relative_speed_error", "capillary_number", "doubts"]
     return [{"curve": label, **{name: group[name] for name in columns}, **{name: values[i] for name, values in more.items()}}
             for i, group in enumerate(groups)]
+
+
+def of_each(curve: Sequence[Group], *names: str) -> dict[str, list[Any]]:
+    return {name: [group[name] for group in curve] for name in names}
 
 
 def by(groups: Iterable[Group], name: str) -> list[tuple[Any, list[Group]]]:
@@ -87,14 +93,19 @@ def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity:
     return Plate(drawing, data)
 
 
-@figure("6c", "clogging length against line tension for four smallest gaps (deformable polygon)", ["clogging"], "20 min")
-def lengths_of_polygons(shop: Workshop) -> Plate:
-    return curves(shop, "clogging", "line_tension", "obstacle_gap", "length")
+@figure("6c-saturated", "the same as 6c in saturated arrays, walls without friction", ["clogging-saturated"], "20 min")
+def lengths_of_polygons_in_saturated_arrays(shop: Workshop) -> Plate:
+    return curves(shop, "clogging-saturated", "line_tension", "obstacle_gap", "length")
 
 
-@figure("7a", "clogging length against wall stiffness for four smallest gaps (soft disk)", ["clogging-sp"], "10 s")
+@figure("7a", "clogging length against wall stiffness for four smallest gaps (soft disk), dilute arrays", ["clogging-sp"], "1 min")
 def lengths_of_disks(shop: Workshop) -> Plate:
     return curves(shop, "clogging-sp", "wall_stiffness", "obstacle_gap", "length")
+
+
+@figure("7a-saturated", "the same as 7a in saturated arrays", ["clogging-sp-saturated"], "10 s")
+def lengths_of_disks_in_saturated_arrays(shop: Workshop) -> Plate:
+    return curves(shop, "clogging-sp-saturated", "wall_stiffness", "obstacle_gap", "length")
 
 
 @figure("8a", "mean speed against line tension for four wide gaps (deformable polygon)", ["speed"], "1 min")
@@ -136,15 +147,18 @@ def sags(shop: Workshop, config: str, groups: Sequence[Group]) -> list[float]:
     return [known[group[column]]["sag"] for group in groups]
 
 
-def over_sag(shop: Workshop, configs: Sequence[str], gap: float, quantity: str) -> Plate:
+# A sweep, the label of a curve, and its groups among those of the sweep.
+Curve = tuple[str, str, Callable[[Sequence[Group]], list[Group]]]
+
+
+def over_sag(shop: Workshop, curves: Sequence[Curve], gap: float, quantity: str) -> Plate:
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     data, captions, drawn = [], [], []
-    for index, config in enumerate(configs):
-        groups = [group for group in shop.sweep(config) if math.isclose(group["obstacle_gap"], gap)]
+    for index, (config, label, chosen) in enumerate(curves):
+        groups = [group for group in chosen(shop.sweep(config)) if math.isclose(group["obstacle_gap"], gap)]
         if not groups:
             raise UserError(f"sweep {config} has no runs with obstacle-gap={gap}; add it to the list")
         places = sags(shop, config, groups)
-        label = "deformable polygon" if groups[0]["model"] == "dp" else "soft disk"
         drawing_of(quantity)(axes, places, groups, index, label)
         data += numbers(groups, label, sag=places)
         captions.append(describe(shop.columns(config), groups))
@@ -159,18 +173,18 @@ def over_sag(shop: Workshop, configs: Sequence[str], gap: float, quantity: str) 
     style.grid(axes)
     axes.legend(frameon=False)
     note = style.length_note(drawn, shop.confidence(config), [axes]) if quantity == "length" else "bars: standard error"
-    style.caption(axes, "\n".join(captions) + f"\n{note}")
+    style.caption(axes, "\n".join(dict.fromkeys(captions)) + f"\n{note}")
     return Plate(drawing, data)
 
 
-@figure("7c", "clogging length against sag, deformable polygon and soft disk, smallest gap 0.2", ["clogging", "clogging-sp"], "shared with 6c, 7a")
-def lengths_over_sag(shop: Workshop) -> Plate:
-    return over_sag(shop, ["clogging", "clogging-sp"], 0.2, "length")
+@figure("7c-saturated", "the same as 7c in saturated arrays, walls without friction", ["clogging-saturated", "clogging-sp-saturated"], "shared with 6c-saturated, 7a-saturated")
+def lengths_over_sag_in_saturated_arrays(shop: Workshop) -> Plate:
+    return over_sag(shop, [("clogging-saturated", "deformable polygon", list), ("clogging-sp-saturated", "soft disk", list)], 0.2, "length")
 
 
 @figure("9b", "mean speed against sag, deformable polygon and soft disk, smallest gap 1.1", ["speed", "speed-sp"], "shared with 8a, 9a")
 def speeds_over_sag(shop: Workshop) -> Plate:
-    return over_sag(shop, ["speed", "speed-sp"], 1.1, "speed")
+    return over_sag(shop, [("speed", "deformable polygon", list), ("speed-sp", "soft disk", list)], 1.1, "speed")
 
 
 @figure("7b", "what the sag is: a soft disk and a polygon on a wall, before and after gravity sets in", ["channel"], "1 s")
@@ -209,26 +223,29 @@ def sag_picture(shop: Workshop) -> Plate:
 
 # Clogs
 
+CLOGS = "clogging-friction"  # walls with friction hold droplets that wrap, whatever the mesh
+
+
 def example(shop: Workshop, mechanism: str) -> tuple[Trajectory, pandas.Series]:
     """A clog of the sweep, run once more with its outline. By squeezing: the stiffest that went at least half a diameter, if any
     did. By wrapping: the one of median shape, of those that only hang over obstacles, if there are any."""
-    shop.sweep("clogging")
-    rows = shop.rows("clogging")
+    shop.sweep(CLOGS)
+    rows = shop.rows(CLOGS)
     if "mechanism" not in rows or not rows.mechanism.any():
-        raise UserError(f"{shop.sweep_file('clogging')} does not know how droplets clogged (it is of an earlier version); remove it and sweep again")
+        raise UserError(f"{shop.sweep_file(CLOGS)} does not know how droplets clogged (it is of an earlier version); remove it and sweep again")
     is_wrapped = mechanism == "wrapped"
     clogs = rows[(rows.status == "clogged") & (rows.mechanism == mechanism)]
     if is_wrapped and clogs.empty:
         clogs = rows[(rows.status == "clogged") & (rows.mechanism == "hybrid")]
     if clogs.empty:
-        raise UserError(f"no {mechanism} clog in {shop.sweep_file('clogging')}; more seeds, or other line tensions")
+        raise UserError(f"no {mechanism} clog in {shop.sweep_file(CLOGS)}; more seeds, or other line tensions")
     if is_wrapped:
         row = clogs.sort_values(["shape_parameter", "task"]).iloc[len(clogs) // 2]
     else:
         travelled = clogs[clogs.distance >= 0.5]
         row = (clogs if travelled.empty else travelled).sort_values(["line_tension", "task"]).iloc[-1]
-    stored_row = [one for one in stored.read_rows(shop.sweep_file("clogging"), shop.programs) if one["task"] == row.task]
-    run, = shop.ways("clogging", stored_row, 1, max(0.5, row.time / 400))
+    stored_row = [one for one in stored.read_rows(shop.sweep_file(CLOGS), shop.programs) if one["task"] == row.task]
+    run, = shop.ways(CLOGS, stored_row, 1, max(0.5, row.time / 400))
     return run, row
 
 
@@ -258,17 +275,17 @@ def snapshot(shop: Workshop, mechanism: str) -> Plate:
     return Plate(drawing, clog_numbers(run, row, -1))
 
 
-@figure("6a", "a clog by wrapping, from the sweep of 6c", ["clogging"], "shared with 6c")
+@figure("6a", "a clog by wrapping, from the sweep of 6c", [CLOGS], "shared with 6c")
 def wrapped(shop: Workshop) -> Plate:
     return snapshot(shop, "wrapped")
 
 
-@figure("6b", "a clog by squeezing, from the sweep of 6c", ["clogging"], "shared with 6c")
+@figure("6b", "a clog by squeezing, from the sweep of 6c", [CLOGS], "shared with 6c")
 def squeezed(shop: Workshop) -> Plate:
     return snapshot(shop, "squeezed")
 
 
-@figure("5", "how droplets wrap around an obstacle and squeeze into a gap: the last outlines before two clogs of 6c", ["clogging"], "shared with 6c")
+@figure("5", "how droplets wrap around an obstacle and squeeze into a gap: the last outlines before two clogs of 6c", [CLOGS], "shared with 6c")
 def two_ways(shop: Workshop) -> Plate:
     drawing, panels = style.subplots(2, 4, figsize=(10.4, 6.0))
     data = []

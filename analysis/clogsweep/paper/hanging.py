@@ -1,7 +1,6 @@
 """Figures of droplets that hang over obstacles: what holds them, the mesh or a law of walls."""
 
 from collections.abc import Sequence
-from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -9,15 +8,9 @@ from matplotlib.figure import Figure
 from .. import style
 from ..groups import said
 from ..hints import Group
-from .arrays import by, numbers
+from .arrays import HOLDS, by, numbers, of_each
 from .plate import Plate, figure, interface_of
 from .workshop import Workshop
-
-HOLDS = ("vertices", "on_mesh", "wrapped", "squeezed", "hybrid")
-
-
-def of_each(curve: Sequence[Group], *names: str) -> dict[str, list[Any]]:
-    return {name: [group[name] for group in curve] for name in names}
 
 
 def title(drawing: Figure, shop: Workshop, config: str, groups: Sequence[Group]) -> None:

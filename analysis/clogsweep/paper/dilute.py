@@ -1,0 +1,212 @@
+"""Clogging lengths in dilute arrays, the published ones: what walls hold, both models over the sag, and the map."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure, SubFigure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
+
+from .. import style
+from ..groups import said
+from ..hints import Group
+from .arrays import HOLDS, by, numbers, of_each, over_sag
+from .plate import Plate, figure, interface_of
+from .workshop import Workshop
+
+# The one clogging length that was published, with its error: Appendix C. The density is not; `python3 -m clogsweep density` finds it from the length.
+PUBLISHED = {"line_tension": 1.09, "obstacle_gap": 0.2, "clogging_length": 24.0, "error": 1.0, "obstacle_density": 0.35}
+ENOUGH_CLOGS = 10  # from which on clogfit asks whether P(r) is exponential
+FINER = (0, (4, 2))
+
+
+@dataclasses.dataclass(frozen=True)
+class Family:
+    """Curves of one law of walls. A sweep may hold those of several coefficients of friction."""
+
+    config: str
+    name: str
+    friction: float = 0.0
+
+    @property
+    def label(self) -> str:
+        return rf"{self.name}, $\mu = {self.friction:g}$" if self.friction else self.name
+
+    def of(self, groups: Sequence[Group]) -> list[Group]:
+        return [group for group in groups if math.isclose(group["friction"], self.friction, abs_tol=1e-12)]
+
+
+FAMILIES = [
+    Family("clogging-robust", "walls that hold nothing"),
+    Family("clogging-friction", "walls with friction", 0.05),
+    Family("clogging-friction", "walls with friction", 0.1),
+    Family("clogging-elastic", "no friction: corners of the polygon hold"),
+]
+FRICTIONLESS, FRICTION = FAMILIES[:2]
+
+
+def draw_published(axes: Axes) -> None:
+    axes.errorbar([PUBLISHED["line_tension"]], [PUBLISHED["clogging_length"]], yerr=[PUBLISHED["error"]], color="black", marker="*",
+                  markersize=11, markerfacecolor="gold", linestyle="none", zorder=5)
+
+
+def legend(below: SubFigure, axes: Axes, groups: Sequence[Group], has_finer: bool) -> None:
+    """Below all panels: the gaps, the mechanisms, the finer mesh, the published point."""
+    curves = [(handle, label) for handle, label in zip(*axes.get_legend_handles_labels()) if label]
+    held = {style.main_mechanism(group) for group in groups if group["clogs"] > 0}
+    marks = [(Line2D([], [], color="0.4", marker=marker, linestyle="none"), f"most clogs {name}")
+             for name, marker in style.MECHANISM_MARKERS.items() if name in held]
+    if has_finer:
+        marks.append((Line2D([], [], color="0.4", marker="s", markersize=3, linestyle=FINER), "a finer mesh"))
+    marks.append((Line2D([], [], color="black", marker="*", markersize=11, markerfacecolor="gold", linestyle="none"), r"published, $w_\mathrm{ob} = 0.2\sigma$"))
+    below.legend(*zip(*curves, *marks), loc="center", ncols=4, frameon=False, fontsize=8)
+
+
+def density_of(groups: Sequence[Group]) -> str:
+    densities = sorted({group["obstacle_density"] for group in groups})
+    if {group["obstacle_filling"] for group in groups} == {"saturated"}:
+        return "saturated arrays"
+    if len(densities) == 1:
+        return rf"$\rho_\mathrm{{ob}}\sigma^2 = {densities[0]:g}$"
+    return rf"$\rho_\mathrm{{ob}}\sigma^2 = {densities[0]:.3g}$ to ${densities[-1]:.3g}$"
+
+
+def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
+    """A panel for each family, a curve for each gap. @param finer  draw the second mesh, too, that of CONFIG-mesh"""
+    kinds = [(family, family.of(shop.sweep(family.config)), family.of(shop.sweep(f"{family.config}-mesh")) if finer else []) for family in chosen]
+    kinds = [(family, coarse, fine) for family, coarse, fine in kinds if coarse]
+    every = [group for _, coarse, fine in kinds for group in [*coarse, *fine]]
+    gaps = sorted({group["obstacle_gap"] for group in every})
+    places = [group["line_tension"] for group in every]
+    rows = math.ceil(len(kinds) / 2)
+    drawing = style.new_figure(figsize=(10.4, 4.2 * rows + 1.2), layout="constrained")
+    above, below = drawing.subfigures(2, 1, height_ratios=[4.2 * rows + 0.5, 0.7])
+    panels = above.subplots(rows, 2, sharex=True, sharey=True, squeeze=False)
+    data = []
+    for (family, coarse, fine), axes in zip(kinds, panels.flat):
+        columns = shop.columns(family.config)
+        for groups, mesh in ((coarse, {}), (fine, {"linestyle": FINER, "size": 3.5})):
+            for gap, curve in by(groups, "obstacle_gap"):
+                index = gaps.index(gap)
+                shift = style.side_by_side(index, len(gaps), places)
+                label = "_finer" if mesh else said(columns["obstacle_gap"], gap)
+                style.draw_lengths(axes, [group["line_tension"] * shift for group in curve], curve, index, label, **mesh)
+                data += numbers(curve, f"{family.config}, friction {family.friction:g}, gap {gap:g}, {curve[0]['vertices']} vertices",
+                                **of_each(curve, "friction", *HOLDS))
+        draw_published(axes)
+        style.logarithmic_ordinate(axes)
+        style.logarithmic_abscissa(axes, places)
+        style.grid(axes)
+        axes.set_title(f"{family.label}\n{interface_of(coarse[0]['preset'])}", fontsize=9)
+    for axes in list(panels.flat)[len(kinds):]:
+        axes.axis("off")
+    for line in panels:
+        line[0].set_ylabel(style.AXES["length"])
+    for axes in panels[-1]:
+        axes.set_xlabel(style.AXES["line_tension"])
+    legend(below, max(panels.flat, key=lambda axes: len(axes.get_legend_handles_labels()[1])), every, any(fine for _, _, fine in kinds))
+    title(drawing, panels.flat, shop, kinds[0][0].config, every)
+    return Plate(drawing, data)
+
+
+def title(drawing: Figure, panels: Iterable[Axes], shop: Workshop, config: str, groups: Sequence[Group]) -> None:
+    first = groups[0]
+    meshes = sorted({group["vertices"] for group in groups})
+    longest = max(group["max_time"] for group in groups)
+    drawing.suptitle(f"{style.runs_a_point(groups)}; {density_of(groups)}, obstacles of {first['obstacle_diameter']:g}$\\sigma$, $N_v = {', '.join(map(str, meshes))}$, "
+                     f"$T \\leq {longest:g}\\,t_0$\n{style.length_note(groups, shop.confidence(config), panels)}", fontsize=8, color="0.25")
+
+
+@figure("6c", "clogging length against line tension for four smallest gaps, dilute arrays: what walls hold, on two meshes",
+        ["clogging-robust", "clogging-robust-mesh", "clogging-friction", "clogging-friction-mesh", "clogging-elastic", "clogging-elastic-mesh"], "35 min")
+def lengths_of_polygons(shop: Workshop) -> Plate:
+    return families(shop, FAMILIES, True)
+
+
+@figure("7c", "clogging length against sag, deformable polygons and soft disk, smallest gap 0.2, dilute arrays",
+        ["clogging-robust", "clogging-friction", "clogging-elastic", "clogging-sp"], "shared with 6c, 7a")
+def lengths_over_sag(shop: Workshop) -> Plate:
+    return over_sag(shop, [*((family.config, family.label, family.of) for family in FAMILIES), ("clogging-sp", "soft disk", list)], 0.2, "length")
+
+
+# The map
+
+MAPS = [Family("map-robust", "walls that hold nothing"), Family("map-friction", "walls with friction", 0.05)]
+
+
+def is_exponential(group: Group) -> bool | None:
+    """Is Weibull's shape compatible with 1, and lambda no void of release? None if there are too few clogs to tell."""
+    if group["clogs"] < ENOUGH_CLOGS or group["weibull_p_value"] is None:
+        return None
+    return group["weibull_p_value"] >= 0.05 and "below_spacing" not in style.doubts(group)
+
+
+def known_length(group: Group) -> float:
+    """Or the lower bound, where no run clogged."""
+    return group["clogging_length_lower"] if group["clogs"] == 0 else group["clogging_length"]
+
+
+def density_key(group: Group) -> tuple[bool, float]:
+    """Saturated arrays last, whatever their density at this gap."""
+    return (True, 0.0) if group["obstacle_filling"] == "saturated" else (False, group["obstacle_density"])
+
+
+def place_of(values: Sequence[float], value: float) -> float:
+    """Of a value between the columns or rows of a map, which are as wide as each other."""
+    return float(np.interp(math.log(value), np.log(values), np.arange(len(values))))
+
+
+def draw_cell(axes: Axes, x: int, y: int, group: Group, norm: LogNorm) -> None:
+    length = known_length(group)
+    face = style.VIRIDIS(norm(length))
+    axes.add_patch(Rectangle((x - 0.5, y - 0.5), 1, 1, facecolor=face, edgecolor="white", linewidth=0.6,
+                             hatch="///" if group["clogs"] == 0 else None))
+    if is_exponential(group):
+        axes.add_patch(Rectangle((x - 0.43, y - 0.43), 0.86, 0.86, fill=False, edgecolor="black", linewidth=1.4))
+    ink = "black" if norm(length) > 0.55 else "white"
+    text = f"{float(f'{length:.2g}'):g}" if length < 1e5 else f"{length:.1g}"
+    axes.text(x, y, ("> " if group["clogs"] == 0 else "") + text, ha="center", va="center", fontsize=7.5, color=ink)
+
+
+@figure("map", "clogging length over line tension, obstacle density and gap, walls without and with friction", ["map-robust", "map-friction"], "35 min")
+def lengths_on_a_map(shop: Workshop) -> Plate:
+    kinds = [(family, shop.sweep(family.config)) for family in MAPS]
+    every = [group for _, groups in kinds for group in groups]
+    gaps = sorted({group["obstacle_gap"] for group in every})
+    tensions = sorted({group["line_tension"] for group in every})
+    lines = sorted({density_key(group) for group in every})
+    norm = LogNorm(0.1, max(1e3, *map(known_length, every)), clip=True)
+    drawing, panels = style.subplots(len(kinds), len(gaps), figsize=(1.0 + 4.0 * len(gaps), 1.4 + 3.2 * len(kinds)), sharex=True, sharey=True, squeeze=False)
+    data = []
+    for (family, groups), row in zip(kinds, panels):
+        for (gap, members), axes in zip(by(groups, "obstacle_gap"), row):
+            for group in members:
+                draw_cell(axes, tensions.index(group["line_tension"]), lines.index(density_key(group)), group, norm)
+            axes.set_title(f"{family.label}\n{said(shop.columns(family.config)['obstacle_gap'], gap)}", fontsize=9)
+            data += numbers(members, family.config, **of_each(members, "friction", "obstacle_filling", "weibull_shape", "weibull_p_value", *HOLDS))
+        row[0].set_ylabel(r"obstacle density $\rho_\mathrm{ob}\sigma^2$")
+    for axes in panels.flat:
+        axes.set_xlim(-0.5, len(tensions) - 0.5)
+        axes.set_ylim(-0.5, len(lines) - 0.5)
+        axes.set_xticks(range(len(tensions)), [f"{value:g}" for value in tensions])
+        axes.set_yticks(range(len(lines)), ["saturated" if is_saturated else f"{value:g}" for is_saturated, value in lines])
+    for axes in panels[-1]:
+        axes.set_xlabel(style.AXES["line_tension"])
+    numbered = [value for is_saturated, value in lines if not is_saturated]
+    for axes in [axes for axes, gap in zip(panels.T, gaps) if math.isclose(gap, PUBLISHED["obstacle_gap"]) for axes in axes]:
+        axes.plot(place_of(tensions, PUBLISHED["line_tension"]) + 0.33, place_of(numbered, PUBLISHED["obstacle_density"]) + 0.28, marker="*", color="black",
+                  markerfacecolor="gold", markersize=11)
+    drawing.colorbar(ScalarMappable(norm, style.VIRIDIS), ax=panels, label=style.AXES["length"], shrink=0.8)
+    drawing.suptitle(f"{style.runs_a_point(every)}, obstacles of {every[0]['obstacle_diameter']:g}$\\sigma$, $T = {every[0]['max_time']:g}\\,t_0$; "
+                     f"framed: $P(r)$ is exponential (Weibull's shape compatible with 1, {ENOUGH_CLOGS} clogs or more, $\\lambda$ longer than a spacing)"
+                     "\nhatched, >: lower bound, no run clogged; star: published, $\\lambda = 24\\sigma$, which asks for about 0.35 obstacles per $\\sigma^2$",
+                     fontsize=8, color="0.25")
+    return Plate(drawing, data)
