@@ -17,6 +17,7 @@ COMMANDS = {
     "clogging-length": "the clogging length over what a sweep varies",
     "dwell": "the same over the time after which a droplet that stands counts as clogged",
     "clogs": "the clogs of a sweep on one sheet",
+    "predict": "the clogging length of stiff droplets in an array in which none has run",
     "collision": "which droplets break up on a single obstacle",
     "droplet": "one run as a picture or a film",
     "export-vtk": "one run for ParaView",

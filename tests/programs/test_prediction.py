@@ -1,0 +1,97 @@
+"""Clogging lengths that are foretold from droplets on two obstacles, where the answer is known on paper."""
+
+import math
+import pathlib
+import unittest
+
+import numpy as np
+
+from drawing import Analysis
+from support import BIN, table
+
+from clogsweep import prediction, stored
+
+SLACK = 1e-9
+
+
+class Geometry(unittest.TestCase):
+    def test_pairs_are_found_across_the_borders_and_once(self):
+        circles = np.array([[0.1, 0.1], [9.6, 4.8], [5, 2.5], [5, 3.4]])
+        ways = np.concatenate(list(prediction.pairs_of(circles, width=5, length=10, nearest=1.3)))
+        np.testing.assert_allclose(sorted(map(tuple, np.abs(ways))), [(0, 0.9), (0.5, 0.3)], atol=SLACK)
+
+    def test_a_pair_of_all_directions_is_as_wide_as_its_mean_projection(self):
+        held = [True] * round(90 / prediction.ANGLE_STEP)
+        _, mean = prediction.capture_widths(0.4, 0.3, held)
+        self.assertAlmostEqual(mean, 0.7 * 2 / math.pi, delta=SLACK)
+        self.assertEqual(prediction.capture_widths(0.4, 0.3, [False] * 5)[1], 0)
+
+    def test_a_rigid_disc_rests_on_two_obstacles_up_to_the_angle_at_which_it_stands_over_the_lower(self):
+        for gap, diameter in [(0.2, 0.3), (0.7, 0.3), (0.5, 0.9)]:
+            angle = math.radians(prediction.largest_angle(gap, diameter))
+            apart, reach = gap + diameter, (1 + diameter) / 2
+            lower = apart / 2 * np.array([math.cos(angle), -math.sin(angle)])  # y upwards
+            above = math.sqrt(reach**2 - (apart / 2)**2)
+            disc = above * np.array([math.sin(angle), math.cos(angle)])
+            self.assertAlmostEqual(disc[0], lower[0], delta=SLACK)
+            self.assertAlmostEqual(math.hypot(*(disc - lower)), reach, delta=SLACK)
+        self.assertEqual(prediction.largest_angle(1, 0.3), 90)
+
+    def test_lengths_that_may_be_wrong_are_doubted(self):
+        self.assertEqual(prediction.doubts_of(1.09, 25), [])
+        self.assertEqual(prediction.doubts_of(0.5, 25), ["soft"])
+        self.assertEqual(prediction.doubts_of(0.5, 1), ["soft", "crowded"])
+
+
+class Predicted(Analysis):
+    """One pair of obstacles, of a gap of 0.5, in a box of 20."""
+
+    def pair(self, name, degrees, beside=0.0, fall=3):
+        half_x, half_y = (0.4 * part(math.radians(degrees)) for part in (math.sin, math.cos))
+        x, y = 10 + fall + half_x, 10 - beside
+        self.write(name, f"x,y,diameter\n{x - half_x},{y - half_y},0.3\n{x + half_x},{y + half_y},0.3\n")
+
+    def predict(self, *words):
+        head, *lines = self.draw("predict", "--programs", BIN, "vertices=64", *words).stdout.splitlines()
+        self.assertEqual(head, "line_tension,clogging_length,doubts")
+        return [line.split(",") for line in lines]
+
+    def test_a_droplet_is_stopped_between_the_middles_of_two_obstacles_and_nowhere_else(self):
+        edge = 0.4 * math.cos(math.radians(15))
+        offsets = {-edge - 0.03: "flowing", -edge + 0.03: "clogged", 0.0: "clogged", edge - 0.03: "clogged", edge + 0.03: "flowing"}
+        files = [f"{index}.csv" for index in range(len(offsets))]
+        for file, offset in zip(files, offsets):
+            self.pair(file, 15, offset)
+        self.succeed("clogsweep", "obstacles=" + ",".join(files), "box=20", "line-tension=3", "vertices=64", "max-time=400", "--output", "s.h5")
+        with stored.opened(self.folder / "s.h5") as file:
+            names = stored.circle_files(file)
+        ends = {names[row.obstacles]: row.status for row in table(self.folder / "s.h5").itertuples()}
+        self.assertEqual(ends, dict(zip(files, offsets.values())))
+
+    def test_a_pair_across_the_flow_catches_on_its_whole_width(self):
+        self.pair("pair.csv", 0)
+        (tension, length, doubts), = self.predict("obstacles=pair.csv", "box=20", "line-tension=3")
+        self.assertEqual((tension, doubts), ("3", ""))
+        self.assertAlmostEqual(float(length), 20 * 20 / 0.8, delta=0.1)
+
+    def test_a_tilted_pair_catches_on_its_projection(self):
+        self.pair("pair.csv", 20)
+        soft, stiff = self.predict("obstacles=pair.csv", "box=20", "line-tension=0.1,3")
+        self.assertEqual(soft, ["0.1", "", "soft"])
+        self.assertAlmostEqual(float(stiff[1]), 20 * 20 / 0.8 / math.cos(math.radians(20)), delta=0.1)
+
+    def test_a_pair_along_the_flow_catches_nothing(self):
+        self.pair("pair.csv", 80)
+        self.assertEqual(self.predict("obstacles=pair.csv", "box=20", "line-tension=3"), [["3", "", ""]])
+
+    def test_what_it_cannot_use_is_refused(self):
+        self.write("two.csv", "x,y,diameter\n5,5,0.3\n5,5.8,0.4\n")
+        self.write("far.csv", "x,y,diameter\n5,5,0.3\n")
+        for words, said in [(["seeds=1..5"], "seeds"), (["obstacle-gap=0.2,0.3"], "one value"), (["obstacles=two.csv", "box=10"], "differ in diameter"),
+                            (["terminal-speed=x"], "terminal-speed"), (["obstacles=far.csv", "box=10"], "no two obstacles"), (["frobnicate=1", "obstacles=two.csv"], "")]:
+            self.refuse_analysis("predict", "--programs", BIN, *words, words=[said])
+        self.assertEqual(sorted(path.name for path in pathlib.Path(self.folder).glob("*.h5")), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
