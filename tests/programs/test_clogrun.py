@@ -150,7 +150,7 @@ class Run(ProgramTest):
         self.assertEqual(header, "x,y,diameter")
         # A config's density does not matter then, even if no array of the file's gap could have it.
         self.write("dense.cfg", "obstacle-density = 2.5\n")
-        self.succeed("clogrun", "array", "vertices=64", "box=20", "max-time=60", "seeds=2", "--config", "dense.cfg", "obstacle-density=13%", "--obstacles", "array.csv", "--output", "b.h5")
+        self.succeed("clogrun", "array", "vertices=64", "box=20", "max-time=60", "seeds=2", "--config", "dense.cfg", "obstacle-density=12.5%", "--obstacles", "array.csv", "--output", "b.h5")
         first = pandas.read_hdf(self.folder / "a.h5", "runs").iloc[0]
         second = pandas.read_hdf(self.folder / "b.h5", "runs").iloc[0]
         self.assertEqual(first.distance, second.distance)

@@ -143,7 +143,7 @@ class Parameters(ProgramTest):
             (["preset=literal"], f"all runs: model=dp preset=literal {ours}"),
             (["model=sp", "wall-stiffness=1"], f"all runs: model=sp {ours}"),
             (["obstacle-density=1"], f"all runs: model=dp obstacle_density=1 {ours}"),
-            (["obstacle-density=13%", "obstacle-gap=0.3"], f"all runs: model=dp {ours}"),
+            (["obstacle-density=12.5%", "obstacle-gap=0.3"], f"all runs: model=dp {ours}"),
             (["obstacle-density=saturated"], f"all runs: model=dp obstacle_filling=saturated {ours}"),
             (["obstacle-layout=lattice"], f"all runs: model=dp obstacle_filling=lattice lattice_angle=0 {ours}"),
             (["vertices=64", "time-step=2e-3"], f"all runs: model=dp {ours} vertices=64 time_step=0.002"),

@@ -228,19 +228,20 @@ std::vector<Parameter> make_schema() {
              .shapes_array = true,
              .elsewhere = 0.0,
              .before = 0.0}),
-      entry("obstacle-density", [](auto& run) -> auto& { return run.obstacles.density; },
-            {.column = "obstacle_density",
-             .symbol = R"(\rho_\mathrm{ob})",
-             .unit = "1/sigma^2",
-             .meaning =
-                 "obstacles per area; 13%: of the mean density of saturated arrays; saturated: until not one "
-                 "more fits. More than every seed reaches is refused",
-             .scope = &arrays,
-             .automatic_in = &arrays,
-             .range = {positive, {}},
-             .has_own_column = false,
-             .shapes_array = true,
-             .words = {"saturated"}}),
+      entry(
+          "obstacle-density", [](auto& run) -> auto& { return run.obstacles.density; },
+          {.column = "obstacle_density",
+           .symbol = R"(\rho_\mathrm{ob})",
+           .unit = "1/sigma^2",
+           .meaning =
+               "obstacles per area; 12.5%: of the mean density of saturated arrays; saturated: until not one "
+               "more fits. More than every seed reaches is refused",
+           .scope = &arrays,
+           .automatic_in = &arrays,
+           .range = {positive, {}},
+           .has_own_column = false,
+           .shapes_array = true,
+           .words = {"saturated"}}),
       entry("obstacle-layout", [](auto& run) -> auto& { return run.obstacles.layout; },
             {.column = "obstacle_filling",
              .meaning =

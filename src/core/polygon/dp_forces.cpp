@@ -232,7 +232,8 @@ DpForces::WettingForces DpForces::wetting_forces(const DropletState& state) cons
 
 WallYield DpForces::let_walls_yield(DropletState& state, WallTouches& touches,
                                     std::span<const WallContacts::Item> circles, Purpose purpose) const {
-  if (friction_.is_on()) return friction_.follow(state, touches.find(state, circles), purpose);
+  if (friction_.is_on())
+    return friction_.follow(state, touches.find(state, circles), purpose, touches.known_anchors());
   return contact_line_.follow(state, contact_line_.ends(state, adhesive_walls_.items()), purpose);
 }
 

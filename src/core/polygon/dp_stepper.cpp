@@ -38,7 +38,8 @@ DpStepper::DpStepper(const RunParameters& run, const ObstacleArray& obstacles, c
       terms_(terms_of(run)),
       kernel_(kernel::step_kernel(terms_)),
       n_(*run.dp.vertices),
-      touches_(run, obstacles) {
+      touches_(run, obstacles),
+      friction_(Eigen::ArrayXd::Zero(Eigen::Index{2} * n_)) {
   // Every array on a cache line, with room for an entry before and a group behind it.
   constexpr int line = 8;
   const int stride = (n_ + line - 1) / line * line + 3 * line;
@@ -97,9 +98,13 @@ void DpStepper::look(const Travel& travel) {
   keep_near(self, self_gaps_, 2 * (travel.relative + unforeseen), near_self_);
 }
 
-void DpStepper::store(DropletState& state) const {
+void DpStepper::store_position(DropletState& state) const {
   std::copy_n(arrays_.x, n_, state.position.data());
   std::copy_n(arrays_.y, n_, state.position.data() + n_);
+}
+
+void DpStepper::store(DropletState& state) const {
+  store_position(state);
   std::copy_n(arrays_.vx, n_, state.velocity.data());
   std::copy_n(arrays_.vy, n_, state.velocity.data() + n_);
 }
@@ -173,8 +178,11 @@ kernel::Contact DpStepper::contact(double stiffness) const {
 void DpStepper::push_off_everything(DropletState& droplet, const kernel::KickCoefficients& coefficients,
                                     double impulse, Droplet::Work* work) {
   const double stiffness = impulse * forces_->contact_stiffness();
-  const bool slides = forces_->friction().is_on();
-  if (!wedges_.empty() || forces_->wets() || slides) kernel_.clear_pushes(n_, arrays_);
+  const bool touches = !near_walls_.empty() || !wedges_.empty() || !droplet.anchors.empty();
+  const bool slides = forces_->friction().is_on() && touches;
+  // Whatever these add, to vertices beyond the listed groups too, is gone before the next step.
+  if (!wedges_.empty() || forces_->wets() || slides || are_pushes_spread_) kernel_.clear_pushes(n_, arrays_);
+  are_pushes_spread_ = slides;
   kernel_.push(n_, near_walls_.data(), near_walls_.size(), near_self_.data(), near_self_.size(),
                contact(stiffness), arrays_);
   if (!wedges_.empty())
@@ -217,13 +225,13 @@ void DpStepper::let_walls_yield(DropletState& droplet, Droplet::Work* work) {
 
 /// Walls yield where they have to, and hold the vertices by what they bear.
 void DpStepper::hold_by_friction(DropletState& droplet, double impulse, Droplet::Work* work) {
-  store(droplet);
+  store_position(droplet);
   let_walls_yield(droplet, work);
-  Eigen::ArrayXd force = Eigen::ArrayXd::Zero(Eigen::Index{2} * n_);
-  forces_->friction().add_forces(droplet, force);
-  for (int i = 0; i < n_; ++i) {
-    arrays_.push_x[i] += impulse * force[i];
-    arrays_.push_y[i] += impulse * force[n_ + i];
+  forces_->friction().add_forces(droplet, friction_);
+  for (const WallAnchor& anchor : droplet.anchors) {  // of two of one vertex the first hands over both
+    const Eigen::Index x = anchor.holder, y = n_ + x;
+    arrays_.push_x[x] += impulse * std::exchange(friction_[x], 0.0);
+    arrays_.push_y[x] += impulse * std::exchange(friction_[y], 0.0);
   }
 }
 

@@ -51,11 +51,14 @@ class DpStepper {
   std::vector<double> wall_gaps_, self_gaps_;  // of the lists' items at the last look
   std::vector<kernel::WedgePlace> wedges_;
   WallTouches touches_;
+  Eigen::ArrayXd friction_;              // on vertices, all x then all y; zero between steps
+  bool are_pushes_spread_ = false;       // did friction push vertices in the last step?
   Eigen::Array2d wetting_spread_{0, 0};  // of wetting, see DpForces::wetting_forces()
   kernel::Sums sums_{};
   double open_step_ = 0;      // length of the step whose last half kick is to come; 0: none is
   Droplet::Work open_power_;  // at its beginning
 
+  void store_position(DropletState& state) const;
   void store(DropletState& state) const;
   kernel::Contact contact(double stiffness) const;
   void kick_and_drift(DropletState& droplet, const kernel::KickCoefficients& coefficients, double drift_time,

@@ -1,9 +1,6 @@
 #include "clog/core/polygon/wall_friction.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <utility>
-#include <vector>
 
 namespace clog {
 
@@ -23,7 +20,7 @@ WallFriction::Foot WallFriction::foot(const WallPlace& wall, const DropletState&
   return {from_centre - distance * normal, {-normal[1], normal[0]}, 1};
 }
 
-void WallFriction::add_forces(const DropletState& state, Eigen::ArrayXd& force) const {
+void WallFriction::add_forces(const DropletState& state, Eigen::Ref<Eigen::ArrayXd> force) const {
   const Eigen::Index n = state.size();
   for (const WallAnchor& anchor : state.anchors) {
     const Foot at = foot(anchor.wall, state, anchor.holder);
@@ -43,27 +40,21 @@ double WallFriction::energy(const DropletState& state) const {
   return energy;
 }
 
-WallYield WallFriction::follow(DropletState& state, std::span<const WallTouch> touches,
-                               Purpose purpose) const {
+WallYield WallFriction::follow(DropletState& state, std::span<const WallTouch> touches, Purpose purpose,
+                               KnownAnchors& known) const {
   WallYield yield;
-  std::vector<WallAnchor> before = std::exchange(state.anchors, {});
-  state.anchors.reserve(touches.size());
-  auto next = before.begin();  // touches are found in the same order as a step before, but for few
+  if (state.anchors.empty() && touches.empty()) return yield;
+  known.take(state.anchors, state.size());
   for (const WallTouch& touch : touches) {
     const Foot at = foot(touch.wall, state, touch.vertex);
     if (!(at.gradient > 0)) continue;  // a sharp tip: there is nothing to slip along
-    const auto is_its = [&](const WallAnchor& one) {
-      return one.holder == touch.vertex && one.wall.is(touch.wall);
-    };
-    auto known = std::find_if(next, before.end(), is_its);
-    if (known == before.end()) known = std::find_if(before.begin(), before.end(), is_its);
-    if (known == before.end()) {
+    WallAnchor* const before = known.find(touch.vertex, touch.wall);
+    if (before == nullptr) {
       state.anchors.push_back({touch.vertex, touch.wall, at.point[0], at.point[1]});
       continue;
     }
-    next = known + 1;
-    WallAnchor anchor = *known;
-    known->holder = -1;  // it is not lost
+    WallAnchor anchor = *before;
+    before->holder = -1;  // it is not lost
     const double slip = (at.along * (at.point - Eigen::Array2d(anchor.x, anchor.y))).sum();
     const double most = (coefficient_ * touch.push + traction_ * touch.wetted) / (stiffness_ * at.gradient);
     const double held = yield.hold(anchor, slip, -most, most, stiffness_, purpose);
@@ -74,7 +65,7 @@ WallYield WallFriction::follow(DropletState& state, std::span<const WallTouch> t
     }
     state.anchors.push_back(anchor);
   }
-  for (const WallAnchor& anchor : before)
+  for (const WallAnchor& anchor : known.all())
     if (anchor.holder >= 0) yield.forget(anchor, stiffness_);
   return yield;
 }

@@ -32,6 +32,13 @@ void WallTouches::add_edge(const Eigen::ArrayXd& position, int edge, const WallP
   for (int k = 0; k < 4; ++k) middle += shares[k] * vertex(k);
   const Eigen::Array2d centre{circle.x, circle.y};
   const double reach = circle.radius + range_;
+  // Most edges of the list touch nothing. No half is longer than the sum of its two components, which takes
+  // no root.
+  const auto is_far = [&](int end) {
+    const double farthest = reach + (middle - vertex(end)).abs().sum();
+    return (vertex(end) - centre).square().sum() > (1 + 1e-12) * farthest * farthest;
+  };
+  if (is_far(1) && is_far(2)) return;
   Eigen::Array2d pushes[4] = {{0, 0}, {0, 0}, {0, 0}, {0, 0}};
   double wetted[4] = {0, 0, 0, 0};
   bool touches = false;

@@ -11,7 +11,7 @@ namespace clog {
 /// What both arrays that follow from a gap and a diameter have in common. @throws Error
 void check_spacing(const RunParameters& run);
 
-/// As the key `obstacle-density` has it: `0.35`, `13%`, `saturated`.
+/// As the key `obstacle-density` has it: `0.35`, `12.5%`, `saturated`.
 std::string density_text(const ObstacleDensity& density);
 
 /// The interface bends around obstacles.

@@ -186,6 +186,7 @@ class Rope {
   double weight_, edge_;
   int num_first_, n_;
   WallFriction friction_;
+  KnownAnchors known_;
   DropletState state_;
 
   /// One step of 1 with a mass that makes it stable, and a drag that hardly lets the rope swing.
@@ -219,7 +220,7 @@ class Rope {
     }
     force[0] += first_pull;
     force[n_ - 1] += second_pull;
-    friction_.follow(state_, touches, Purpose::motion);
+    friction_.follow(state_, touches, Purpose::motion, known_);
     friction_.add_forces(state_, force);
     state_.velocity = kept * (state_.velocity + force / mass);
     state_.position += state_.velocity;

@@ -3,7 +3,10 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "clog/core/world/wedge.hpp"
 
@@ -42,6 +45,33 @@ struct WallAnchor {
   Eigen::Index yields = 0;
 
   double slip_of_force(double slip_now) const { return yields != 0 ? slip : slip_now; }
+};
+
+/// Anchors by what they hold. It keeps its memory from one use to the next, so that a step allocates none.
+class KnownAnchors {
+ public:
+  /// Takes the anchors over and leaves none. @param num_holders  anchors of others are never found
+  void take(std::vector<WallAnchor>& anchors, Eigen::Index num_holders) {
+    std::swap(anchors_, anchors);
+    anchors.clear();
+    first_.assign(static_cast<std::size_t>(num_holders), none);
+    next_.assign(anchors_.size(), none);
+    for (std::size_t k = anchors_.size(); k-- > 0;)
+      if (const Eigen::Index holder = anchors_[k].holder; holder >= 0 && holder < num_holders)
+        next_[k] = std::exchange(first_[static_cast<std::size_t>(holder)], k);
+  }
+  /// nullptr if there is none
+  WallAnchor* find(Eigen::Index holder, const WallPlace& wall) {
+    std::size_t k = first_[static_cast<std::size_t>(holder)];
+    while (k != none && !anchors_[k].wall.is(wall)) k = next_[k];
+    return k == none ? nullptr : &anchors_[k];
+  }
+  const std::vector<WallAnchor>& all() const { return anchors_; }
+
+ private:
+  static constexpr std::size_t none = std::size_t(-1);
+  std::vector<WallAnchor> anchors_;
+  std::vector<std::size_t> first_, next_;  // of a holder; of the same holder
 };
 
 /// Why walls are asked.

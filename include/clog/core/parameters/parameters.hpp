@@ -145,7 +145,7 @@ struct ObstacleDensity {
 
 /// Cheng et al. publish lambda = 24 +- 1 for Gamma = 1.09 and a gap of 0.2, but no density. This share of the
 /// saturated density reproduces it (docs/explanation/density.md).
-inline constexpr double published_share_of_saturated = 0.13;
+inline constexpr double published_share_of_saturated = 0.125;
 
 /// Periodic array of circular obstacles, Cheng et al., "Geometry".
 struct ObstacleParameters {

@@ -18,7 +18,7 @@ namespace clog {
 /// The value of a parameter. Nothing: an automatic value, or one that means nothing to the run.
 using ParameterValue = std::variant<std::monostate, double, std::int64_t, std::string>;
 
-/// `number_or_share`: a number, or a share of the largest one, as text like `13%`. `file`: the key has the
+/// `number_or_share`: a number, or a share of the largest one, as text like `12.5%`. `file`: the key has the
 /// name of a file, the parameter what stands in it.
 enum class ValueKind { number, number_or_share, integer, word, file };
 

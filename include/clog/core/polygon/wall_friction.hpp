@@ -27,11 +27,13 @@ class WallFriction {
   bool is_on() const { return coefficient_ > 0 || traction_ > 0; }
 
   /// Of the springs as they are anchored: all x, then all y [g rho sigma^2].
-  void add_forces(const DropletState& state, Eigen::ArrayXd& force) const;
+  void add_forces(const DropletState& state, Eigen::Ref<Eigen::ArrayXd> force) const;
   /// [g rho sigma^3]
   double energy(const DropletState& state) const;
   /// Lets walls yield: anchors follow, new touches get one, those of touches that are no more are forgotten.
-  WallYield follow(DropletState& state, std::span<const WallTouch> touches, Purpose purpose) const;
+  /// @param known  memory; what it holds before and after means nothing
+  WallYield follow(DropletState& state, std::span<const WallTouch> touches, Purpose purpose,
+                   KnownAnchors& known) const;
 
  private:
   double coefficient_, traction_, stiffness_;

@@ -27,6 +27,9 @@ class WallTouches {
   /// @param circles  all that may touch  @return valid until the next call
   const std::vector<WallTouch>& find(const DropletState& state, std::span<const WallContacts::Item> circles);
 
+  /// Memory of whoever asks walls what they hold of what was found.
+  KnownAnchors& known_anchors() { return known_anchors_; }
+
  private:
   /// What is known so far of a vertex and a wall.
   struct Part {
@@ -42,6 +45,7 @@ class WallTouches {
   std::vector<int> first_part_;  // of each vertex
   std::vector<Part> parts_;
   std::vector<WallTouch> touches_;
+  KnownAnchors known_anchors_;
 
   Part& part(int vertex, const WallPlace& wall);
   void add_edge(const Eigen::ArrayXd& position, int edge, const WallPlace& circle);
