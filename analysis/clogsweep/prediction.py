@@ -76,8 +76,8 @@ class Pairs:
         sweep = self.folder / "pairs.h5"
         programs.run_program(self.clogsweep, "obstacles=" + ",".join(map(str, files)), f"box={BOX}", "seeds=1",
                              *(f"{key}={value}" for key, value in self.keys.items()), "--output", sweep, "--quiet")
-        with stored.opened(sweep) as file:
-            rows, names = file["runs"][:], stored.circle_files(file)
+        with stored.opened(sweep) as stored_sweep:
+            rows, names = stored_sweep["runs"][:], stored.circle_files(stored_sweep)
         sweep.unlink()
         found: dict[float, list[bool]] = {}
         for row in rows:

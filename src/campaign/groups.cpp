@@ -211,7 +211,8 @@ void append_causes(const Group& group, std::vector<Field>& fields) {
   }
 }
 
-/// One or two runs that happened to come far enough to have a speed say little of all: their mean is not told.
+/// One or two runs that happened to come far enough to have a speed say little of all: their mean is not
+/// told.
 fit::MeanSpeed of_enough_runs(fit::MeanSpeed speed) {
   constexpr int fewest_runs = 3;
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();

@@ -22,7 +22,8 @@ def range_of(key):
     words = "".join(f"`{word}` or " for word in key["words"])
     if key["kind"] == "file":
         return words + "a file's name"
-    return words + (key.get("range") or "any number")
+    share = ", or a share such as `50%`" if key["kind"] == "number or share" else ""
+    return words + (key.get("range") or "any number") + share
 
 
 def keys(schema):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -26,15 +27,15 @@ class DensityFit:
     A length of n clogs is known to a relative error of 1/sqrt(n), which is the error of its logarithm.
     """
 
-    coefficients: np.ndarray  # highest power first
-    covariance: np.ndarray
+    coefficients: np.ndarray[Any, Any]  # highest power first
+    covariance: np.ndarray[Any, Any]
     chi_squared: float
     degrees_of_freedom: int
     density: float  # [1/sigma^2]
     lower: float  # of its 95 % interval, which holds the fit's error and the published one
     upper: float
 
-    def length(self, density: np.ndarray) -> np.ndarray:
+    def length(self, density: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
         return np.exp(np.polyval(self.coefficients, np.log(density)))
 
 

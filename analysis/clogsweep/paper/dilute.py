@@ -93,7 +93,8 @@ def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
     data = []
     for (family, coarse, fine), axes in zip(kinds, panels.flat):
         columns = shop.columns(family.config)
-        for groups, mesh in ((coarse, {}), (fine, {"linestyle": FINER, "size": 3.5})):
+        meshes: list[tuple[list[Group], dict[str, Any]]] = [(coarse, {}), (fine, {"linestyle": FINER, "size": 3.5})]
+        for groups, mesh in meshes:
             for gap, curve in by(groups, "obstacle_gap"):
                 index = gaps.index(gap)
                 shift = style.side_by_side(index, len(gaps), places)

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "clog/core/tools/error.hpp"
 #include "clog/core/parameters/schema.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/core/tools/number_text.hpp"
 
 namespace clog::sweep {
