@@ -20,8 +20,8 @@ from .hints import Numbers
 GAP_STEP = 0.04  # of pairs that are tried [sigma]: a twentieth of the range in which they can hold a droplet
 ANGLE_STEP = 3  # [degrees]
 SPEED = 0.03  # terminal speed by default [sqrt(sigma g)]
-SMALLEST_LENGTH = 4  # [sigma]: where it was too long by a third and more, measured lengths are shorter
-SOFTEST = 1  # line tension: of softer droplets a fifth of all clogs and more hang on three obstacles
+SMALLEST_LENGTH = 4  # [sigma]: shorter ones were too long by a third and more
+SOFTEST = 1  # line tension: of softer droplets up to 42 % of all clogs, and then most, hang on three obstacles
 ARRAYS, ARRAY_BOX = 4, 60  # of random arrays, pairs of so many are counted
 
 # What describes the array. All other keys are the droplet's, and `obstacle-diameter` is one of both.

@@ -5,8 +5,8 @@
 
 KEY=VALUE are keys of clogsweep. Pairs of obstacles of all gaps and directions are tried, one droplet each, some ten
 seconds for a line tension; then the pairs of the array that hold a droplet are counted. Prints the clogging length as
-CSV, with the reasons to doubt it: soft (line tension below 1: too long, many droplets hang on three obstacles and
-more), crowded (below 4 sigma: too long, other obstacles come between). docs/explanation/predicted.md says how far it holds.
+CSV, with the reasons to doubt it: soft (line tension below 1: many droplets hang on three obstacles and more; up to a
+fifth off at 0.5, ten times too long at 0.3), crowded (below 4 sigma: too long, other obstacles come between). docs/explanation/predicted.md says how far it holds.
 """
 
 import math
