@@ -26,13 +26,13 @@ from clogsweep.paper import arrays
 
 # A few seconds for all of them: coarse droplets, short ways.
 TINY = {
-    **{name: ["vertices=32", "line-tension=0.3,3", "obstacle-gap=0.2,0.4", "obstacle-density=1"]
+    **{name: ["vertices=32", "line-tension=0.3,3", "obstacle-gap=0.2,0.4", "obstacle-density=80%"]
        for name in ("clogging-robust", "clogging-friction", "clogging-elastic", "clogging-saturated")},
-    **{f"{name}-mesh": ["vertices=64", "line-tension=3", "obstacle-gap=0.2", "obstacle-density=1"]
+    **{f"{name}-mesh": ["vertices=64", "line-tension=3", "obstacle-gap=0.2", "obstacle-density=80%"]
        for name in ("clogging-robust", "clogging-friction", "clogging-elastic")},
     **{name: ["vertices=32", "line-tension=0.3,3", "obstacle-gap=0.2,0.4", "obstacle-density=0.35,saturated", "seeds=1..10"]
        for name in ("map-robust", "map-friction")},
-    "clogging-sp": ["wall-stiffness=1,10", "obstacle-gap=0.2,0.4"],
+    "clogging-sp": ["wall-stiffness=1,10", "obstacle-gap=0.2,0.4", "obstacle-density=80%"],
     "clogging-sp-saturated": ["wall-stiffness=1,10", "obstacle-gap=0.2,0.4"],
     "speed": ["vertices=32", "line-tension=0.1,1", "obstacle-gap=1.0,1.1", "seeds=1..3"],
     "speed-sp": ["wall-stiffness=1,10", "obstacle-gap=1.0,1.1", "seeds=1..3"],
