@@ -27,6 +27,10 @@ class Module(Analysis):
         self.succeed("clogsweep", *QUICK, *(keys or ["line-tension=0.5,3", "seeds=1..4"]), "--output", "s.h5")
         return clogsweep.open(self.folder / "s.h5", BIN)
 
+    def sweep_of_own(self, *keys):
+        self.succeed("clogsweep", "vertices=64", "box=20", "max-time=60", "line-tension=0.5,3", *keys, "--output", "s.h5")
+        return clogsweep.open(self.folder / "s.h5", BIN)
+
     def run_of_one_droplet(self, *options):
         self.succeed("clogrun", "array", *QUICK, "line-tension=0.5", "seeds=1", "--output", "r.h5", *options)
         return clogsweep.open(self.folder / "r.h5")
@@ -146,7 +150,7 @@ class Module(Analysis):
     def test_circles_of_one_s_own_are_called_by_their_file(self):
         for name, diameter in (("wide.csv", 0.3), ("narrow.csv", 0.5)):
             self.write(name, "x,y,diameter\n" + "".join(f"{x},{y},{diameter}\n" for x in range(1, 20, 2) for y in range(1, 20, 2)))
-        one = self.sweep("obstacles=wide.csv", "line-tension=0.5,3")
+        one = self.sweep_of_own("obstacles=wide.csv")
         self.assertIn("circles of wide.csv", one.fit().curve().figure.axes[0].get_title())
         self.assertIn("circles of wide.csv", Groups(one.fit().told).caption())
         page = one.report(self.folder / "r.html", examples=0).read_text()
@@ -154,7 +158,7 @@ class Module(Analysis):
         for untrue in ("obstacle-gap", "obstacle-density"):
             self.assertNotIn(f"\n{untrue} = ", page)
         (self.folder / "s.h5").unlink()
-        two = self.sweep("obstacles=wide.csv,narrow.csv", "line-tension=0.5,3")
+        two = self.sweep_of_own("obstacles=wide.csv,narrow.csv")
         _, names = two.fit().curve().figure.axes[0].get_legend_handles_labels()
         self.assertEqual(sorted(name for name in names if name), ["obstacles narrow.csv", "obstacles wide.csv"])
         self.assertIn("<td>narrow.csv</td>", two.report(self.folder / "r.html", examples=0).read_text())

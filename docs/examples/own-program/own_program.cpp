@@ -12,6 +12,7 @@ int main() {
   clog::sweep::Settings settings;  // the keys of clogsweep, as text
   settings.set("line-tension", "0.5");
   settings.set("obstacle-gap", "0.3");
+  settings.set("obstacle-density", "saturated");
   settings.set("vertices", "64");
   settings.set("box", "20");
   settings.set("max-time", "200");
