@@ -24,7 +24,7 @@ inline std::string shortest(double value) {
 /// A share as people write it: 0.125 is `12.5%`. Twelve digits spare the text 28.999999999999996%.
 inline std::string share_text(double share) {
   char digits[32];
-  const auto end =
+  const char* const end =
       std::to_chars(digits, digits + sizeof digits, 100 * share, std::chars_format::general, 12).ptr;
   double percent = 0;
   std::from_chars(digits, end, percent);
