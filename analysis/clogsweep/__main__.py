@@ -12,6 +12,7 @@ from .errors import UserError
 
 COMMANDS = {
     "figures": "a figure of the article from runs of our own",
+    "agreement": "the statements of the article against what comes out here",
     "report": "one page of HTML about a sweep, as clogfit report",
     "poster": "one page of a sweep to be printed",
     "clogging-length": "the clogging length over what a sweep varies",

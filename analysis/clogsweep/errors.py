@@ -10,6 +10,10 @@ class UserError(Exception):
     """What the user can mend, in one line: what, why, remedy. Commands end with exit code 2."""
 
 
+class NotThere(UserError):
+    """Nothing was to be run, and what is asked for has not been run before."""
+
+
 class ProgramFailed(Exception):
     """A program of ours said why in one line, and left with this exit code."""
 

@@ -11,7 +11,9 @@ from .paper import arrays, channels, density, dilute, hanging  # noqa: F401, the
 from .paper.plate import CATALOGUE, Entry, Plate
 from .paper.workshop import Workshop
 
-ORDER = ["1", "2", "3", "4", "5", "6a", "6b", "6c", "6c-saturated", "7a", "7a-saturated", "7b", "7c", "7c-saturated", "map", "density", "8a", "8b", "8ca", "9a", "9b", "A1", "B1", "B2", "C1", "C2", "D", "E", "W1", "W2"]
+ORDER = [
+    "1", "2", "3", "4", "5", "6a", "6b", "6c", "6c-filling", "6c-saturated", "7a", "7a-saturated", "7b", "7c", "7c-saturated", "map", "density",
+    "8a", "8b", "8ca", "9a", "9b", "A1", "B1", "B2", "C1", "C2", "D", "E", "W1", "W2"]
 
 
 def print_list() -> None:

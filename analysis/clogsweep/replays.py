@@ -12,7 +12,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from . import stored, trajectory
-from .errors import UserError
+from .errors import NotThere
 from .hints import AnyPath
 from .programs import run_program
 from .trajectory import Trajectory
@@ -42,7 +42,7 @@ def follow(clogrun: pathlib.Path | None, sweep: pathlib.Path, row: np.void, fold
     if known is not None and is_of(known, row, options):
         return known
     if clogrun is None:
-        raise UserError(f"{file} is {'not there' if known is None else 'another run'}; leave out --draw-only")
+        raise NotThere(f"{file} is {'not there' if known is None else 'another run'}; leave out --draw-only")
     # clogrun never overwrites; the old one goes when the new one is whole. Another script may do the same run.
     with tempfile.TemporaryDirectory(prefix=f"{file.stem}-", dir=folder) as place:
         fresh = pathlib.Path(place) / file.name

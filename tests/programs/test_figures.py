@@ -27,7 +27,7 @@ from clogsweep.paper import arrays
 # A few seconds for all of them: coarse droplets, short ways.
 TINY = {
     **{name: ["vertices=32", "line-tension=0.3,3", "obstacle-gap=0.2,0.4", "obstacle-density=80%"]
-       for name in ("clogging-robust", "clogging-friction", "clogging-elastic", "clogging-saturated")},
+       for name in ("clogging-robust", "clogging-friction", "clogging-elastic", "clogging-filling", "clogging-saturated")},
     **{f"{name}-mesh": ["vertices=64", "line-tension=3", "obstacle-gap=0.2", "obstacle-density=80%"]
        for name in ("clogging-robust", "clogging-friction", "clogging-elastic")},
     **{name: ["vertices=32", "line-tension=0.3,3", "obstacle-gap=0.2,0.4", "obstacle-density=0.35,saturated", "seeds=1..10"]
@@ -104,9 +104,10 @@ class Figures(Analysis):
                  "7a-saturated": ("clogging-sp-saturated", "clogging_length"), "8a": ("speed", "relative_speed"),
                  "8b": ("speed-diameter", "relative_speed"), "8ca": ("speed", "capillary_number"), "9a": ("speed-sp", "relative_speed"),
                  "E": ("near-wall-drag", "relative_speed")}
-        done = self.figures(*names, "6c", "7c", "7c-saturated", "9b", "--ranks", 1)
+        more = ["6c", "6c-filling", "7c", "7c-saturated", "9b"]
+        done = self.figures(*names, *more, "--ranks", 1)
         self.assertNotIn("Warning", done.stderr)
-        for name in [*names, "6c", "7c", "7c-saturated", "9b"]:
+        for name in [*names, *more]:
             with self.subTest(figure=name):
                 self.assert_picture(f"{self.PLACE}/figure-{name}")
                 about = (self.folder / self.PLACE / f"figure-{name}.txt").read_text()

@@ -142,12 +142,22 @@ def squeezing(shop: Workshop) -> Plate:
     return Plate(drawing, profile_rows(run, "w=0.4"))
 
 
+# Line tension, near-wall drag and terminal speed that the article calibrated, by the orifice of Fig. 3.
+CALIBRATED = {0.9: (1.7, 0.21, 0.028), 0.7: (1.08, 0.07, 0.032)}
+
+
+def passage(shop: Workshop, orifice: float) -> Trajectory:
+    """A passage of Fig. 3. @param orifice  0.9 or 0.7"""
+    line_tension, drag, speed = CALIBRATED[orifice]
+    return profiles(shop, f"channel-{orifice}", outlines=True, orifice=orifice, line_tension=line_tension, near_wall_drag=drag, terminal_speed=speed)[0]
+
+
 @figure("3", "shape and speed through orifices of 0.9 and 0.7 diameters", ["channel"], "3 s")
 def two_orifices(shop: Workshop) -> Plate:
     drawing, panels = style.subplots(2, 2, figsize=(9.0, 6.8), sharex=True)
     data = []
-    for line, (orifice, line_tension, drag, speed) in enumerate([(0.9, 1.7, 0.21, 0.028), (0.7, 1.08, 0.07, 0.032)]):
-        run, = profiles(shop, f"channel-{orifice}", outlines=True, orifice=orifice, line_tension=line_tension, near_wall_drag=drag, terminal_speed=speed)
+    for line, orifice in enumerate(CALIBRATED):
+        run = passage(shop, orifice)
         for place, (column, ordinate) in enumerate([("shape_parameter", "shape"), ("speed_ratio", "profile")]):
             axes = panels[line][place]
             draw_profile(axes, run, column, line, "simulation" + ending(run))
@@ -172,14 +182,22 @@ def two_orifices(shop: Workshop) -> Plate:
     return Plate(drawing, data)
 
 
+OVERSHOOTS = {0.7: 0.02, 0.8: 0.0}  # near-wall drag, by the orifice of Fig. 4
+
+
+def overshooting(shop: Workshop, orifice: float) -> dict[float, Trajectory]:
+    """Passages of Fig. 4, by line tension. @param orifice  0.7 or 0.8"""
+    line_tensions = [1.85, 1.11, 0.83]
+    return dict(zip(line_tensions, profiles(shop, f"overshoot-{orifice}", orifice=orifice, line_tension=line_tensions, near_wall_drag=OVERSHOOTS[orifice],
+                                            terminal_speed=0.032)))
+
+
 @figure("4", "speed behind an orifice, which overshoots the terminal speed, for three line tensions", ["channel"], "3 s")
 def overshoot(shop: Workshop) -> Plate:
     drawing, panels = style.subplots(1, 2, figsize=(9.6, 4.6))
     data = []
-    for axes, (orifice, drag) in zip(panels, [(0.7, 0.02), (0.8, 0.0)]):
-        line_tensions = [1.85, 1.11, 0.83]
-        runs = profiles(shop, f"overshoot-{orifice}", orifice=orifice, line_tension=line_tensions, near_wall_drag=drag, terminal_speed=0.032)
-        for index, (line_tension, run) in enumerate(zip(line_tensions, runs)):
+    for axes, (orifice, drag) in zip(panels, OVERSHOOTS.items()):
+        for index, (line_tension, run) in enumerate(overshooting(shop, orifice).items()):
             draw_profile(axes, run, "speed_ratio", index, rf"$\Gamma = {line_tension:g}$" + ending(run))
             data += profile_rows(run, f"w={orifice} b_0={drag:g} Gamma={line_tension:g}")
         finish(axes, "profile")
@@ -191,17 +209,22 @@ def overshoot(shop: Workshop) -> Plate:
     return Plate(drawing, data)
 
 
-@figure("A1", "near-wall drag: speed between parallel walls against the distance from them, and its exponent", ["channel"], "3 s")
-def near_wall_drag(shop: Workshop) -> Plate:
+def drag_of_walls(shop: Workshop) -> tuple[list[float], list[np.void], list[float], dict[str, Any]]:
+    """Droplets midway between two walls, Fig. A1. @return distances from a wall, rows, speeds [v_t], and the fit of clogfit drag"""
     distances = [0.03, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2]
     rows = passages(shop, "walls", start=-1.5, end=1.5, wedge_angle=0, orifice=[1 + 2 * distance for distance in distances],
                     line_tension=1, near_wall_drag=0.07, terminal_speed=0.03)
     speeds = [row["mean_speed"] / row["terminal_speed"] for row in rows]
     if not np.isfinite(speeds).all():
         raise UserError(f"droplets of {shop.sweep_file('walls')} went too short a way for a mean speed; raise max-time, e.g. --set channel:max-time=3000")
+    return distances, rows, speeds, shop.fit("drag", shop.table("walls", ["d [sigma]", "v [v_t]"], zip(distances, speeds)), "--format", "json")
+
+
+@figure("A1", "near-wall drag: speed between parallel walls against the distance from them, and its exponent", ["channel"], "3 s")
+def near_wall_drag(shop: Workshop) -> Plate:
+    distances, rows, speeds, fit = drag_of_walls(shop)
     data = [{"distance": distance, "speed_ratio": speed, "ratio": speed / (1 - speed)} for distance, speed in zip(distances, speeds)]
     row = rows[0]
-    fit = shop.fit("drag", shop.table("walls", ["d [sigma]", "v [v_t]"], zip(distances, speeds)), "--format", "json")
     drawing, axes = style.subplots(figsize=(6.4, 4.8))
     ratio = np.array([point["ratio"] for point in data])
     axes.plot(distances, ratio, "o", color=style.COLOURS[0], label="droplet midway between two walls")
@@ -225,16 +248,19 @@ def near_wall_drag(shop: Workshop) -> Plate:
     return Plate(drawing, data)
 
 
-@figure("B1", "speed through an orifice of 0.7 diameters for different numbers of vertices", ["channel"], "4 s")
-def vertices(shop: Workshop) -> Plate:
-    # Up to so many times the config's number of vertices: the finest run takes most of the time.
+def meshes(shop: Workshop) -> dict[int, Trajectory]:
+    """Passages of Fig. B1, by the number of vertices: up to so many times the config's, since the finest run takes most of the time."""
     line_tension, most = (1.08, 4) if shop.size == "full" else (0.83, 2)
     counts = [count for count in (32, 64, 128, 256, 512, 1024) if count <= most * int(shop.keys("channel")["vertices"])]
+    return dict(zip(counts, profiles(shop, "vertices", orifice=0.7, line_tension=line_tension, near_wall_drag=0.07, terminal_speed=0.032, vertices=counts)))
+
+
+@figure("B1", "speed through an orifice of 0.7 diameters for different numbers of vertices", ["channel"], "4 s")
+def vertices(shop: Workshop) -> Plate:
     drawing, axes = style.subplots(figsize=(7.2, 5.0))
     inset = axes.inset_axes([0.74, 0.1, 0.25, 0.36])
     data = []
-    runs = profiles(shop, "vertices", orifice=0.7, line_tension=line_tension, near_wall_drag=0.07, terminal_speed=0.032, vertices=counts)
-    for index, (count, run) in enumerate(zip(counts, runs)):
+    for index, (count, run) in enumerate(meshes(shop).items()):
         for panel in (axes, inset):
             draw_profile(panel, run, "speed_ratio", index, rf"$N_v = {count}$, slowest ${round(run.row['smallest_relative_speed'], 3) + 0.0:.3f}\,v_t$" + ending(run))
         data += [*profile_rows(run, f"N_v={count}"), extremes(run, f"N_v={count}")]
@@ -243,7 +269,7 @@ def vertices(shop: Workshop) -> Plate:
     inset.set_ylim(0, 0.5)
     inset.tick_params(labelsize=7)
     axes.legend(frameon=False, fontsize=8, loc="lower left")
-    style.caption(axes, rf"$w = 0.7\sigma$, $\Gamma = {line_tension:g}$, $b_0/b_\infty = 0.07$, $V_t = 0.032$; interface: {interface_of(run.word('preset'))}"
+    style.caption(axes, rf"$w = 0.7\sigma$, $\Gamma = {run.row['line_tension']:g}$, $b_0/b_\infty = 0.07$, $V_t = 0.032$; interface: {interface_of(run.word('preset'))}"
                   "\ninset: near the first minimum; a cross ends the curve of a droplet that stops")
     return Plate(drawing, data)
 

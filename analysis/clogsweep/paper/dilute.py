@@ -22,7 +22,7 @@ from .arrays import HOLDS, by, numbers, of_each, over_sag
 from .plate import Plate, figure, interface_of
 from .workshop import Workshop
 
-# The one clogging length that was published, with its error: Appendix C. The density is not; `python3 -m clogsweep density` finds it from the length.
+# The one clogging length that was published, with its error: Appendix C. The density was not: figure `density` finds it from the length.
 PUBLISHED = {"line_tension": 1.09, "obstacle_gap": 0.2, "clogging_length": 24.0, "error": 1.0, "obstacle_density": 0.35}
 ENOUGH_CLOGS = 10  # from which on clogfit asks whether P(r) is exponential
 FINER = (0, (4, 2))
@@ -39,6 +39,10 @@ class Family:
     @property
     def label(self) -> str:
         return rf"{self.name}, $\mu = {self.friction:g}$" if self.friction else self.name
+
+    @property
+    def in_words(self) -> str:
+        return f"{self.name} ({self.friction:g})" if self.friction else self.name
 
     def of(self, groups: Sequence[Group]) -> list[Group]:
         return [group for group in groups if math.isclose(group["friction"], self.friction, abs_tol=1e-12)]
@@ -130,6 +134,15 @@ def title(drawing: Figure, panels: Iterable[Axes], shop: Workshop, config: str, 
         ["clogging-robust", "clogging-robust-mesh", "clogging-friction", "clogging-friction-mesh", "clogging-elastic", "clogging-elastic-mesh"], "35 min")
 def lengths_of_polygons(shop: Workshop) -> Plate:
     return families(shop, FAMILIES, True)
+
+
+FILLINGS = [Family("clogging-elastic", "the same density in every array"), Family("clogging-filling", "an eighth of the saturated density of each gap")]
+
+
+@figure("6c-filling", "6c without friction at the same density for every gap, and at the same share of the saturated density",
+        ["clogging-elastic", "clogging-filling"], "15 min")
+def lengths_at_one_filling(shop: Workshop) -> Plate:
+    return families(shop, FILLINGS, False)
 
 
 @figure("7c", "clogging length against sag, deformable polygons and soft disk, smallest gap 0.2, dilute arrays",

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import places, replays, stored
-from ..errors import UserError
+from ..errors import NotThere, UserError
 from ..hints import Column, Group
 from ..programs import run_program
 from ..trajectory import Trajectory
@@ -80,6 +80,7 @@ class Workshop:
         self._complete_sweeps: set[str] = set()
         self._fits: dict[str, dict[str, Any]] = {}
         self._sources: list[str] = []
+        self._model_versions: dict[str, set[int]] = {}
 
     # Configs
 
@@ -117,7 +118,7 @@ class Workshop:
         """Runs what is missing of a sweep, once."""
         file = self.sweep_file(name)
         if self.draw_only and not file.exists():
-            raise UserError(f"{file} is not there; leave out --draw-only, or run clogsweep {shlex.join(arguments)}")
+            raise NotThere(f"{file} is not there; leave out --draw-only, or run clogsweep {shlex.join(arguments)}")
         if not self.draw_only and name not in self._complete_sweeps:
             file.parent.mkdir(parents=True, exist_ok=True)
             print(f"sweep {name}: {file}", flush=True)
@@ -148,7 +149,7 @@ class Workshop:
         known = {tuple(in_row(row, key, values[0]) for key, values in lists.items()): row for row in stored.read_rows(self.sweep_file(name), self.programs)}
         if missing := [values for values in wanted if values not in known]:
             which = ", ".join(map("=".join, zip(lists, missing[0])))
-            raise UserError(f"{self.sweep_file(name)} holds no run of {which}; leave out --draw-only, or give another --output")
+            raise NotThere(f"{self.sweep_file(name)} holds no run of {which}; leave out --draw-only, or give another --output")
         found = [known[values] for values in wanted]
         for row in found:
             if row["status"] == b"failed":
@@ -170,6 +171,7 @@ class Workshop:
     def _note_sweep(self, name: str) -> None:
         with stored.opened(self.sweep_file(name), folder=self.programs) as file:
             about, rows = stored.attributes(file), file["runs"][:]
+        self._model_versions[name] = set(rows["model_version"].tolist())
         seeds = sorted(set(rows["seed"].tolist()))
         finished = sum(status not in (b"running", b"interrupted") for status in rows["status"])
         self._sources.append(
@@ -206,6 +208,10 @@ class Workshop:
         with open(file, "w", newline="") as out:
             csv.writer(out).writerows([columns, *rows])
         return file
+
+    def model_versions(self) -> dict[str, set[int]]:
+        """Of the rows of every sweep used so far."""
+        return self._model_versions
 
     def take_sources(self) -> list[str]:
         """Where the numbers of the figure drawn last came from; forgets them."""

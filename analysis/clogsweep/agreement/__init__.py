@@ -1,0 +1,7 @@
+"""The statements of the article against what comes out here: see python3 -m clogsweep agreement."""
+
+from . import lengths, passages, speeds  # noqa: F401  each registers its statements
+from .statements import Judged, judge_all
+from .table import WRITERS
+
+__all__ = ["WRITERS", "Judged", "judge_all"]

@@ -1,0 +1,92 @@
+"""What counts as a clear difference, and numbers as the table prints them.
+
+Lengths differ *clearly* if their confidence intervals do not overlap, speeds if they differ by more than two standard
+errors of the difference.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+from .. import rounded
+from ..hints import Group
+from .statements import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding
+
+
+def bounds(group: Group) -> tuple[float, float]:
+    """The confidence interval of a clogging length, open above where no run clogged."""
+    return group["clogging_length_lower"], math.inf if group["clogging_length_upper"] is None else group["clogging_length_upper"]
+
+
+def shorter(first: Group, second: Group) -> bool:
+    """Is the first clogging length clearly shorter?"""
+    return bounds(first)[1] < bounds(second)[0]
+
+
+def slower(first: Group, second: Group) -> bool:
+    """Is the first mean speed clearly lower?"""
+    error = math.hypot(first["relative_speed_error"] or 0.0, second["relative_speed_error"] or 0.0)
+    return second["relative_speed"] - first["relative_speed"] > 2 * error
+
+
+def length_of(group: Group) -> str:
+    if group["clogs"] == 0:
+        return f"> {rounded.plain(group['clogging_length_lower'])}"
+    return rounded.with_interval(group["clogging_length"], group["clogging_length_lower"], group["clogging_length_upper"])
+
+
+def speed_of(group: Group) -> str:
+    return rounded.with_error(group["relative_speed"], group["relative_speed_error"])
+
+
+def curves(groups: Iterable[Group], parameter: str) -> dict[Any, list[Group]]:
+    """One curve for each value of the parameter, in ascending order."""
+    found: dict[Any, list[Group]] = {}
+    for group in groups:
+        found.setdefault(group[parameter], []).append(group)
+    return dict(sorted(found.items()))
+
+
+def rises(curve: Sequence[Group], is_less: Callable[[Group, Group], bool]) -> bool:
+    """Is any point clearly below a later one?"""
+    return any(is_less(curve[i], curve[j]) for i in range(len(curve)) for j in range(i + 1, len(curve)))
+
+
+def falls(curve: Sequence[Group], is_less: Callable[[Group, Group], bool]) -> bool:
+    return rises(curve[::-1], is_less)
+
+
+def overall(verdicts: Sequence[str]) -> str:
+    """One verdict for several curves: theirs if all are alike, `in kind` if only some of those known agree."""
+    known = set(verdicts) - {NOT_KNOWN}
+    if not known:
+        return NOT_KNOWN
+    return known.pop() if len(known) == 1 else IN_KIND
+
+
+def by_tolerance(value: float, published: float, tolerance: float) -> str:
+    """`agrees` within the tolerance, `in kind` within four times the tolerance."""
+    difference = abs(value - published)
+    return AGREES if difference <= tolerance else IN_KIND if difference <= 4 * tolerance else DOES_NOT
+
+
+def fisher_p_value(hits: int, number: int, other_hits: int, other_number: int) -> float:
+    """Fisher's exact test, one-sided: the probability that the first sample has that many hits or more by chance."""
+    total, total_hits = number + other_number, hits + other_hits
+    return sum(math.comb(number, k) * math.comb(other_number, total_hits - k)
+               for k in range(hits, min(number, total_hits) + 1)) / math.comb(total, total_hits)
+
+
+def grow_with_gap(ranges: Mapping[float, tuple[float, float]]) -> Finding:
+    """Do ranges of the line tension lie higher for wider gaps? Compares the narrowest gap with the widest."""
+    words = "; ".join(f"gap {gap:g}: {low:g} to {high:g}" for gap, (low, high) in ranges.items())
+    if len(ranges) < 2:
+        return Finding(NOT_KNOWN, words or "in no gap")
+    (low, high), *_, (last_low, last_high) = ranges.values()
+    if last_low > high:
+        return Finding(AGREES, words)
+    if last_high < low:
+        return Finding(DOES_NOT, words)
+    return Finding(IN_KIND if last_low * last_high > low * high else NOT_KNOWN, words)

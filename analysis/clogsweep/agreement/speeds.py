@@ -1,0 +1,128 @@
+"""Section 4.3, appendices D and E: mean speeds among obstacles."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ..hints import Group
+from ..paper.arrays import sags
+from ..paper.workshop import Workshop
+from .evidence import by_tolerance, curves, falls, overall, rises, slower, speed_of
+from .statements import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding, statement
+
+
+def speed_curves(shop: Workshop, config: str, parameter: str, abscissa: str) -> dict[Any, list[Group]]:
+    groups = [group for group in shop.sweep(config) if group["relative_speed"] is not None]
+    return {value: sorted(curve, key=lambda group: group[abscissa]) for value, curve in curves(groups, parameter).items()}
+
+
+def speeds_rise(shop: Workshop, config: str, parameter: str, name: str) -> Finding:
+    """Does the mean speed rise monotonically with Gamma?"""
+    verdicts, words = [], []
+    for value, curve in speed_curves(shop, config, parameter, "line_tension").items():
+        up, down = rises(curve, slower), falls(curve, slower)
+        verdicts.append(AGREES if up and not down else IN_KIND if up else DOES_NOT if down else NOT_KNOWN)
+        top = max(curve, key=lambda group: group["relative_speed"])
+        words.append(f"{name} {value:g}: " + ", ".join(f"{speed_of(group)} at {group['line_tension']:g}" for group in (curve[0], top, curve[-1])))
+    return Finding(overall(verdicts), "; ".join(words))
+
+
+@statement("4.3, figure 8a", "the mean speed rises with Γ in gaps of 1 and wider", "8a",
+           in_kind="it has a maximum, then falls to the plateau", does_not_agree="without friction, walls do not slow soft droplets down")
+def speeds_rise_with_tension(shop: Workshop) -> Finding:
+    return speeds_rise(shop, "speed", "obstacle_gap", "gap")
+
+
+def plateau(shop: Workshop, config: str, parameter: str) -> list[Group]:
+    return [curve[-1] for curve in speed_curves(shop, config, parameter, "line_tension").values()]
+
+
+@statement("4.3, figure 8a, b", "at large Γ the speed reaches a plateau set by the gap", "8a")
+def plateau_by_gap(shop: Workshop) -> Finding:
+    stiff = plateau(shop, "speed", "obstacle_gap")
+    return Finding(AGREES if slower(stiff[0], stiff[-1]) else DOES_NOT if slower(stiff[-1], stiff[0]) else NOT_KNOWN,
+                   ", ".join(f"{speed_of(group)} in gaps of {group['obstacle_gap']:g}" for group in stiff))
+
+
+@statement("4.3, figure 8b", "at large Γ the speed does not depend on the obstacle diameter", "8b")
+def plateau_by_diameter(shop: Workshop) -> Finding:
+    stiff = plateau(shop, "speed-diameter", "obstacle_diameter")
+    differ = rises(stiff, slower) or falls(stiff, slower)
+    return Finding(DOES_NOT if differ else AGREES, ", ".join(f"{speed_of(group)} of {group['obstacle_diameter']:g}" for group in stiff))
+
+
+@statement("4.3, figure 8b", "at small Γ droplets pass larger obstacles faster", "8b", not_known="the errors are as large as the difference")
+def soft_by_diameter(shop: Workshop) -> Finding:
+    soft = [curve[0] for curve in speed_curves(shop, "speed-diameter", "obstacle_diameter", "line_tension").values()]
+    verdict = AGREES if slower(soft[0], soft[-1]) else DOES_NOT if slower(soft[-1], soft[0]) else NOT_KNOWN
+    return Finding(verdict, ", ".join(f"{speed_of(group)} of {group['obstacle_diameter']:g}" for group in soft))
+
+
+@statement("4.3, figure 8ca", "the speed is nearly constant at small Ca and falls at large Ca", "8ca", in_kind="at small Ca it is not constant")
+def speed_by_capillary_number(shop: Workshop) -> Finding:
+    verdicts, words = [], []
+    for gap, curve in speed_curves(shop, "speed", "obstacle_gap", "capillary_number").items():
+        small = [group for group in curve if group["capillary_number"] < 1]
+        spread = max(group["relative_speed"] for group in small) - min(group["relative_speed"] for group in small) if small else math.nan
+        verdicts.append(NOT_KNOWN if not small else DOES_NOT if not falls(curve, slower) else AGREES if spread < 0.05 else IN_KIND)
+        words.append(f"gap {gap:g}: within {spread:.2f} below Ca = 1, {speed_of(curve[-1])} at {curve[-1]['capillary_number']:.2g}")
+    return Finding(overall(verdicts), "; ".join(words))
+
+
+@statement("4.3, figure 9a", "the speed of soft disks falls with E_w", "9a")
+def disks_slow_down(shop: Workshop) -> Finding:
+    verdicts, words = [], []
+    for gap, curve in speed_curves(shop, "speed-sp", "obstacle_gap", "wall_stiffness").items():
+        down, up = falls(curve, slower), rises(curve, slower)
+        verdicts.append(AGREES if down and not up else IN_KIND if down else DOES_NOT if up else NOT_KNOWN)
+        words.append(f"gap {gap:g}: {speed_of(curve[0])} at {curve[0]['wall_stiffness']:g}, {speed_of(curve[-1])} at {curve[-1]['wall_stiffness']:g}")
+    return Finding(overall(verdicts), "; ".join(words))
+
+
+@statement("4.3, figure 9a", "the speed of soft disks tends to v_t as E_w tends to 0", "9a", in_kind="the softest are not soft enough")
+def soft_disks_are_free(shop: Workshop) -> Finding:
+    soft = [curve[0] for curve in speed_curves(shop, "speed-sp", "obstacle_gap", "wall_stiffness").values()]
+    return Finding(overall([by_tolerance(group["relative_speed"], 1, 0.02) for group in soft]), ", ".join(f"{speed_of(group)} at {group['wall_stiffness']:g}" for group in soft))
+
+
+def speed_pairs(shop: Workshop) -> list[tuple[float, Group, float, Group]]:
+    """Stiffest and softest polygon and disk in gaps of 1.1, with their sags."""
+    found = []
+    for config in ("speed", "speed-sp"):
+        groups = [group for group in shop.sweep(config) if math.isclose(group["obstacle_gap"], 1.1) and group["relative_speed"] is not None]
+        found.append(sorted(zip(sags(shop, config, groups), groups), key=lambda point: point[0]))
+    return [(*found[0][end], *found[1][end]) for end in (0, -1)]
+
+
+@statement("4.3, figure 9b", "stiff droplets of both models have the same speed", "9b")
+def stiff_models_agree(shop: Workshop) -> Finding:
+    _, polygon, _, disk = speed_pairs(shop)[0]
+    return Finding(DOES_NOT if slower(polygon, disk) or slower(disk, polygon) else AGREES, f"polygon {speed_of(polygon)}, disk {speed_of(disk)}")
+
+
+@statement("4.3, figure 9b", "soft polygons are slower than soft disks", "9b")
+def soft_models_differ(shop: Workshop) -> Finding:
+    sag, polygon, disk_sag, disk = speed_pairs(shop)[1]
+    return Finding(AGREES if slower(polygon, disk) else DOES_NOT, f"polygon {speed_of(polygon)} at a sag of {sag:.2f}, disk {speed_of(disk)} at {disk_sag:.2f}")
+
+
+@statement("4.3, appendix D", "no droplet clogs in gaps wider than 1", "8a", in_kind="few do", does_not_agree="soft droplets hang over obstacles, held by corner pinning (`m`)")
+def nothing_clogs_in_wide_gaps(shop: Workshop) -> Finding:
+    groups = [group for group in shop.sweep("speed") if group["obstacle_gap"] > 1.0]
+    runs, clogs, on_mesh = (sum(group[name] for group in groups) for name in ("runs", "clogs", "on_mesh"))
+    return Finding(AGREES if clogs == 0 else IN_KIND if clogs <= 0.05 * runs else DOES_NOT, f"{clogs} of {runs} runs clogged, {on_mesh} of them by corner pinning")
+
+
+@statement("appendix E, figure E", "near-wall drag slows droplets down", "E")
+def drag_slows_down(shop: Workshop) -> Finding:
+    lines = list(speed_curves(shop, "near-wall-drag", "near_wall_drag", "line_tension").values())
+    pairs = [(first, last) for first in lines[0] for last in lines[-1] if first["line_tension"] == last["line_tension"]]
+    right = [slower(last, first) for first, last in pairs]
+    return Finding(AGREES if all(right) else IN_KIND if any(right) else DOES_NOT,
+                   "; ".join(f"{speed_of(first)} and {speed_of(last)} at {first['line_tension']:g}" for first, last in pairs))
+
+
+@statement("appendix E, figure E", "the speed rises monotonically with Γ for every near-wall drag", "E", in_kind="it has a maximum")
+def speeds_rise_with_drag(shop: Workshop) -> Finding:
+    return speeds_rise(shop, "near-wall-drag", "near_wall_drag", "b_0")

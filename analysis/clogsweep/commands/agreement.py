@@ -1,0 +1,33 @@
+"""Compares the statements of the article with what comes out here, one by one.
+
+    python3 -m clogsweep agreement
+    python3 -m clogsweep agreement --run --format csv
+
+Judges every statement from the sweeps of the figures, and prints what comes out here with its interval, and the verdict:
+agrees, in kind, does not agree, not known (too few clogs to tell), not run. All rows must be of one model version.
+"""
+
+import argparse
+import pathlib
+
+from .. import agreement, command_line, programs
+from ..paper.workshop import Workshop
+
+
+def parse() -> argparse.Namespace:
+    parser = command_line.Parser(__doc__)
+    parser.add_argument("--size", choices=["reduced", "full"], default="reduced", help="of the figures' sweeps (reduced)")
+    parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("results/figures"), help="folder of python3 -m clogsweep figures (results/figures)")
+    parser.add_argument("--run", action="store_true", help="first run the sweeps that are missing: hours for the reduced size")
+    parser.add_argument("--ranks", type=command_line.whole(1), default=2, help="MPI ranks of the sweeps (2)")
+    parser.add_argument("--format", choices=sorted(agreement.WRITERS), default="markdown", help="of the table (markdown)")
+    programs.add_option(parser)
+    return parser.parse_args()
+
+
+def body() -> int:
+    arguments = parse()
+    shop = Workshop(size=arguments.size, ranks=arguments.ranks, folder=arguments.output / arguments.size,
+                    programs=programs.programs_in(arguments.programs), overrides=[], draw_only=not arguments.run)
+    print(agreement.WRITERS[arguments.format](agreement.judge_all(shop)), end="")
+    return 0
