@@ -72,6 +72,17 @@ struct Sample {
   std::vector<RunCost> costs;
   std::string source;
   std::string failure;  ///< of the first that could not begin; these are not among the costs
+  std::int64_t num_clogged = 0;
+  std::int64_t num_short = 0;  ///< of those, within one obstacle spacing of their release
+  double spacing = 0;          ///< of the obstacles of such a run [sigma]
+
+  void count(const sweep::RunRow& row) {
+    if (row.status != RunStatus::clogged) return;
+    ++num_clogged;
+    if (!(row.distance < sweep::obstacle_spacing(row))) return;
+    ++num_short;
+    spacing = sweep::obstacle_spacing(row);
+  }
 };
 
 /// Of the last row of a run. @param first  of the same run, when it had just begun
@@ -116,6 +127,7 @@ Stored stored_runs(const sweep::Plan& plan, const std::string& path) {
     stored.num_done += is_over;
     stored.seconds += row.wall_seconds;
     if (has_moved) stored.sample.costs.push_back(cost_of(row, {}, run, set));
+    stored.sample.count(row);
     if (is_over || has_moved) --stored.waiting[set].number;
   }
   return stored;
@@ -162,6 +174,7 @@ Sample tried_sample(const sweep::Plan& plan) {
     while (!is_over && elapsed() < std::max(end, least_end) && !console::stop_signalled())
       is_over = job.advance();
     const sweep::RunRow row = job.row();
+    sample.count(row);
     if (row.steps > 0)
       sample.costs.push_back(cost_of(row, first, plan.task(tasks[i]), tasks[i] % plan.num_groups()));
     else if (sample.failure.empty())
@@ -209,6 +222,18 @@ void print_left(const sweep::Plan& plan, const std::string& output, const Stored
              "# {} has {} of {}; {} to go: expected {:.2g} core-hours more (95 %: {:.2g} to {:.2g})\n",
              console::printable(output), stored.num_done, sweep::counted(plan.size(), "task"),
              plan.size() - stored.num_done, left.expected / hour, left.lower / hour, left.upper / hour);
+}
+
+/// Clogging lengths below an obstacle spacing would be doubted (`v`): said before the runs, not after.
+void print_short_lengths(const Sample& sample) {
+  constexpr std::int64_t fewest = 3;
+  constexpr std::int64_t one_in = 4;  // of lengths of five spacings one clog in six is that short
+  if (sample.num_short < fewest || one_in * sample.num_short < sample.num_clogged) return;
+  fmt::print(std::cout,
+             "# {} of {} clogged within one obstacle spacing ({:.3g} sigma) of their release: such lengths "
+             "reflect the release site, not clogging (v); give fewer obstacles, e.g. the default "
+             "obstacle-density\n",
+             sample.num_short, sweep::counted(sample.num_clogged, "run"), sample.spacing);
 }
 
 /// What a sweep that adds seeds may come to.
@@ -276,6 +301,7 @@ int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRul
   const SweepCost alike = tried_cost(plan, sample);
   const SweepCost cost =
       stored.knows_enough() ? plus(cost_left(sample.costs, stored.waiting), stored.seconds) : alike;
+  if (!is_done) print_short_lengths(sample);
   if (!is_done) print_expected(plan, sample, cost);
   if (!is_done && stored.seconds > 0) print_left(plan, output, stored, cost);
   if (rule) print_rounds(*rule, plan.size() / plan.num_groups(), cost.expected, alike.bound);

@@ -109,7 +109,7 @@ class Sweep(ProgramTest):
         begin = time.time()
         done = self.succeed("clogsweep", *QUICK, "line-tension=lin(0.5,1.5,3)", "seeds=1..4", "--dry-run", "--output", "s.h5")
         elapsed = time.time() - begin
-        lines = done.stdout.splitlines()
+        lines = [line for line in done.stdout.splitlines() if "obstacle spacing" not in line]
         self.assertEqual(len(lines), 1 + 12 + 3)
         self.assertIn("12 tasks: 3 parameter sets, 4 seeds each", lines[-3])
         self.assertRegex(lines[-2], "^# at most [0-9.e+-]+ core-hours on this machine")
@@ -164,6 +164,16 @@ class Sweep(ProgramTest):
         self.assertEqual(self.succeed("clogsweep", *sweep, ranks=2).stderr.count(repeats), 1)
         self.assertNotIn(repeats, self.succeed("clogsweep", *sweep).stderr, "nothing is left to do")
         self.assertEqual(self.succeed("clogsweep", *sweep[:-1], "quiet.h5", "--quiet").stderr, "")
+
+    def test_a_dry_run_warns_of_lengths_below_an_obstacle_spacing(self):
+        keys = ["line-tension=1", "vertices=32", "box=20", "max-time=3000", "seeds=1..8"]
+        self.assertNotIn("obstacle spacing", self.succeed("clogsweep", *keys, "--dry-run").stdout)
+        saturated = [*keys, "obstacle-density=saturated"]
+        self.assertRegex(self.succeed("clogsweep", *saturated, "--dry-run").stdout, r"# \d of \d runs clogged within one obstacle spacing \(0.5 sigma\)")
+        # Of runs that the file holds, too, and as clogfit says it.
+        self.succeed("clogsweep", *saturated, "--output", "s.h5")
+        self.assertIn("clogged within one obstacle spacing", self.succeed("clogsweep", *saturated, "seeds=1..9", "--dry-run", "--output", "s.h5").stdout)
+        self.assertIn("below_spacing", self.succeed("clogfit", "s.h5", "--format", "csv").stdout)
 
     def test_a_dry_run_of_runs_that_cannot_begin_fails(self):
         done = self.run_program("clogsweep", *BLOCKED, "seeds=64", "--dry-run")
