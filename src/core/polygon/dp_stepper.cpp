@@ -98,13 +98,9 @@ void DpStepper::look(const Travel& travel) {
   keep_near(self, self_gaps_, 2 * (travel.relative + unforeseen), near_self_);
 }
 
-void DpStepper::store_position(DropletState& state) const {
+void DpStepper::store(DropletState& state) const {
   std::copy_n(arrays_.x, n_, state.position.data());
   std::copy_n(arrays_.y, n_, state.position.data() + n_);
-}
-
-void DpStepper::store(DropletState& state) const {
-  store_position(state);
   std::copy_n(arrays_.vx, n_, state.velocity.data());
   std::copy_n(arrays_.vy, n_, state.velocity.data() + n_);
 }
@@ -225,9 +221,11 @@ void DpStepper::let_walls_yield(DropletState& droplet, Droplet::Work* work) {
 
 /// Walls yield where they have to, and hold the vertices by what they bear.
 void DpStepper::hold_by_friction(DropletState& droplet, double impulse, Droplet::Work* work) {
-  store_position(droplet);
-  let_walls_yield(droplet, work);
-  forces_->friction().add_forces(droplet, friction_);
+  const std::vector<WallTouch>& touches =
+      touches_.find({n_, arrays_.x, arrays_.y}, droplet.frame, near_walls_);
+  const WallYield yield =
+      forces_->friction().follow(droplet, touches, Purpose::motion, touches_.known_anchors(), &friction_);
+  if (work != nullptr) work->dissipated += yield.dissipated;
   for (const WallAnchor& anchor : droplet.anchors) {  // of two of one vertex the first hands over both
     const Eigen::Index x = anchor.holder, y = n_ + x;
     arrays_.push_x[x] += impulse * std::exchange(friction_[x], 0.0);

@@ -58,7 +58,6 @@ class DpStepper {
   double open_step_ = 0;      // length of the step whose last half kick is to come; 0: none is
   Droplet::Work open_power_;  // at its beginning
 
-  void store_position(DropletState& state) const;
   void store(DropletState& state) const;
   kernel::Contact contact(double stiffness) const;
   void kick_and_drift(DropletState& droplet, const kernel::KickCoefficients& coefficients, double drift_time,

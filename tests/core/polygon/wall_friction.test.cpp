@@ -216,7 +216,8 @@ class Rope {
         touches.back().wetted += edge_ / 2;
         wetted = edge_ / 2;
       }
-      touches.push_back({i, {0, 0, radius}, push, wetted});
+      const WallPlace disc{0, 0, radius};
+      touches.push_back({i, disc, foot_on(disc, {}, {x[i], y[i]}), push, wetted});
     }
     force[0] += first_pull;
     force[n_ - 1] += second_pull;

@@ -31,21 +31,18 @@ class WallFriction {
   /// [g rho sigma^3]
   double energy(const DropletState& state) const;
   /// Lets walls yield: anchors follow, new touches get one, those of touches that are no more are forgotten.
+  /// @param state  of which the anchors are read and written  @param touches  where the droplet is now
   /// @param known  memory; what it holds before and after means nothing
+  /// @param force  if not null, the forces of the springs are added: all x, then all y [g rho sigma^2]
   WallYield follow(DropletState& state, std::span<const WallTouch> touches, Purpose purpose,
-                   KnownAnchors& known) const;
+                   KnownAnchors& known, Eigen::ArrayXd* force = nullptr) const;
 
  private:
   double coefficient_, traction_, stiffness_;
   std::span<const Wedge> wedges_;
 
-  /// The point of a wall next to a vertex, from the wall's centre; it moves along `along` by `gradient` times
-  /// as much as the vertex.
-  struct Foot {
-    Eigen::Array2d point, along;
-    double gradient;
-  };
-  Foot foot(const WallPlace& wall, const DropletState& state, Eigen::Index vertex) const;
+  WallFoot foot(const DropletState& state, const WallAnchor& anchor) const;
+  void add_force(const WallAnchor& anchor, const WallFoot& at, Eigen::Ref<Eigen::ArrayXd> force) const;
 };
 
 }  // namespace clog

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -10,12 +11,29 @@
 
 namespace clog {
 
+/// The point of a wall next to a vertex, from the wall's centre; it moves along `along` by `gradient` times
+/// as much as the vertex.
+struct WallFoot {
+  Eigen::Array2d point, along;
+  double gradient;
+};
+/// @param wedges  of the scene  @param from_centre  of the wall, to the vertex
+WallFoot foot_on(const WallPlace& wall, std::span<const Wedge> wedges, const Eigen::Array2d& from_centre);
+
 /// A vertex that a wall pushes.
 struct WallTouch {
   int vertex;
   WallPlace wall;
+  WallFoot foot;
   double push;    ///< off the wall, as the contact hands it to the vertex [g rho sigma^2]
   double wetted;  ///< length of the interface on the wall that is the vertex' own [sigma]
+};
+
+/// A droplet's vertices. Readable from [-1] to [size + WallContacts::edges_per_group - 1]: entries beyond the
+/// ends repeat the contour.
+struct Contour {
+  int size;
+  const double *x, *y;
 };
 
 /// Finds the vertices that walls push. Same contact as in DpForces.
@@ -25,6 +43,8 @@ class WallTouches {
   WallTouches(const RunParameters& run, const ObstacleArray& obstacles);
 
   /// @param circles  all that may touch  @return valid until the next call
+  const std::vector<WallTouch>& find(const Contour& contour, const LocalFrame& frame,
+                                     std::span<const WallContacts::Item> circles);
   const std::vector<WallTouch>& find(const DropletState& state, std::span<const WallContacts::Item> circles);
 
   /// Memory of whoever asks walls what they hold of what was found.
@@ -44,13 +64,18 @@ class WallTouches {
   bool meets_edges_;
   std::vector<int> first_part_;  // of each vertex
   std::vector<Part> parts_;
+  std::vector<WallPlace> wedges_;
   std::vector<WallTouch> touches_;
+  std::vector<double> closed_contour_;
+  // Of the parts: from the wall, the wall's radius, normal, radius over distance.
+  std::array<std::vector<double>, 6> directions_;
   KnownAnchors known_anchors_;
 
-  Part& part(int vertex, const WallPlace& wall);
-  void add_edge(const Eigen::ArrayXd& position, int edge, const WallPlace& circle);
-  void add_vertex(const Eigen::ArrayXd& position, int vertex, const WallPlace& wall, double distance,
+  int part(int vertex, const WallPlace& wall);
+  void add_edges(const Contour& contour, const WallContacts::Item& item, const WallPlace& circle);
+  void add_vertex(const Contour& contour, int vertex, const WallPlace& wall, double distance,
                   const Eigen::Array2d& normal);
+  void keep_pushed(const Contour& contour);
 };
 
 }  // namespace clog
