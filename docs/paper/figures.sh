@@ -16,7 +16,9 @@ draw() { /usr/bin/python3 -m clogsweep "$@" --programs "$bin"; }
 for name in "$@"; do
   case $name in
     clogging-length) # 5 to 10 minutes on two idle cores; docs/pictures/clogging-length.png
-      mpirun -np 2 "$bin/clogsweep" --config jobs/laptop.cfg --output "$folder/sweep.h5"
+      sweep=(mpirun -np 2 "$bin/clogsweep" --config jobs/laptop.cfg --output "$folder/sweep.h5")
+      "${sweep[@]}"
+      "${sweep[@]}" friction=0 line-tension=0.3,0.5,1
       draw clogging-length "$folder/sweep.h5" --output "$folder/clogging-length"
       ;;
     clogs) # a minute; docs/pictures/figure-5.png
