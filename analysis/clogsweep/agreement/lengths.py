@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
@@ -21,8 +21,9 @@ DENSITY = "the density of the published arrays is unknown, and λ depends on it"
 
 def peak(curve: Sequence[Group]) -> Group | None:
     """The highest of the points that lie clearly above one on their left and one on their right."""
-    found = [point for i, point in enumerate(curve) if any(shorter(other, point) for other in curve[:i]) and any(shorter(other, point) for other in curve[i + 1:])]
-    return max(found, key=dilute.known_length, default=None)
+    found = [point for i, point in enumerate(curve)
+             if any(shorter(other, point) for other in curve[:i]) and any(shorter(other, point) for other in curve[i + 1:])]
+    return max(found, key=dilute.known_length) if found else None
 
 
 def peak_range(curve: Sequence[Group]) -> tuple[float, float]:
@@ -32,7 +33,8 @@ def peak_range(curve: Sequence[Group]) -> tuple[float, float]:
 
 
 @statement_of_walls("4.2, figure 6c", "λ(Γ) is non-monotonic: it rises, peaks and falls",
-                    does_not_agree="nothing holds a soft droplet that hangs over an obstacle; it slides off", not_known="too few clogs")
+                    does_not_agree="nothing holds a soft droplet that hangs over an obstacle; it slides off",
+                    not_known="too few clogs")
 def is_not_monotonic(groups: list[Group]) -> Finding:
     verdicts, words = [], []
     for gap, curve in curves(groups, "obstacle_gap").items():
@@ -46,7 +48,8 @@ def is_not_monotonic(groups: list[Group]) -> Finding:
 
 
 @statement_of_walls("4.2, figure 6c", "the peak moves to larger Γ as gaps widen",
-                    in_kind="the peak's ranges for the narrowest and the widest gap overlap", not_known="fewer than two curves have a peak, or their ranges overlap")
+                    in_kind="the peak's ranges for the narrowest and the widest gap overlap",
+                    not_known="fewer than two curves have a peak, or their ranges overlap")
 def peak_moves(groups: list[Group]) -> Finding:
     return grow_with_gap({gap: peak_range(curve) for gap, curve in curves(groups, "obstacle_gap").items() if peak(curve)})
 
@@ -61,7 +64,9 @@ def transition(curve: Sequence[Group]) -> tuple[float, float] | None:
 
 
 @statement_of_walls("4.2, figure 6c", "wrapping gives way to squeezing at larger Γ as gaps widen",
-                    does_not_agree="wrapped clogs nowhere prevail", in_kind="the ranges for the narrowest and the widest gap overlap", not_known="the branches meet in fewer than two gaps, or their ranges overlap")
+                    does_not_agree="wrapped clogs nowhere prevail",
+                    in_kind="the ranges for the narrowest and the widest gap overlap",
+                    not_known="the branches meet in fewer than two gaps, or their ranges overlap")
 def transition_moves(groups: list[Group]) -> Finding:
     found = {gap: range_ for gap, curve in curves(groups, "obstacle_gap").items() if (range_ := transition(curve))}
     if not found and sum(group["clogs"] for group in groups) >= 20:
@@ -69,7 +74,8 @@ def transition_moves(groups: list[Group]) -> Finding:
     return grow_with_gap(found)
 
 
-@statement_of_walls("4.2, figure 6a, b", "soft droplets clog by wrapping, stiff ones by squeezing", in_kind="not in every gap", does_not_agree="soft droplets slide off")
+@statement_of_walls("4.2, figure 6a, b", "soft droplets clog by wrapping, stiff ones by squeezing",
+                    in_kind="not in every gap", does_not_agree="soft droplets slide off")
 def two_mechanisms(groups: list[Group]) -> Finding:
     verdicts, words = [], []
     for gap, curve in curves(groups, "obstacle_gap").items():
@@ -99,18 +105,23 @@ def grows_with_gap(groups: Iterable[Group], abscissa: str) -> Finding:
     return Finding(verdict, "; ".join(words) or "no clear difference between the narrowest and the widest gap")
 
 
-@statement_of_walls("4.2, figure 6c", "λ grows with the gap", in_kind="at some line tensions it shrinks", not_known="too few clogs")
+@statement_of_walls("4.2, figure 6c", "λ grows with the gap", in_kind="at some line tensions it shrinks",
+                    not_known="too few clogs")
 def longer_in_wide_gaps(groups: list[Group]) -> Finding:
     return grows_with_gap(groups, "line_tension")
 
 
 @statement_of_walls("5", "hybrid clogs (wrapping and squeezing at once) occur where the two branches meet",
-                    in_kind="more often there than elsewhere, but not significantly", does_not_agree="not more often there than elsewhere", not_known="the branches do not meet, or no clog is hybrid")
+                    in_kind="more often there than elsewhere, but not significantly",
+                    does_not_agree="not more often there than elsewhere",
+                    not_known="the branches do not meet, or no clog is hybrid")
 def hybrids_between(groups: list[Group]) -> Finding:
     inside, outside = np.zeros(2, int), np.zeros(2, int)
     for curve in curves(groups, "obstacle_gap").values():
         range_ = transition(curve)
-        for point in curve if range_ else []:
+        if range_ is None:
+            continue
+        for point in curve:
             count = inside if range_[0] <= point["line_tension"] <= range_[1] else outside
             count += [point["hybrid"], point["clogs"]]
     hybrid, clogs = (int(number) for number in inside)
@@ -152,7 +163,8 @@ def is_law_exponential(group: Group) -> Finding:
     return Finding(verdict, f"Weibull's shape {group['weibull_shape']:.2f} of {group['clogs']} clogs, p = {group['weibull_p_value']:.2g}")
 
 
-@statement("4.2, appendix C", "P(r) is exponential", "C2", does_not_agree="λ is no longer than the void of release, or the runs differ")
+@statement("4.2, appendix C", "P(r) is exponential", "C2",
+           does_not_agree="λ is no longer than the void of release, or the runs differ")
 def is_exponential(shop: Workshop) -> Finding:
     return is_law_exponential(shop.sweep("survival")[0])
 

@@ -53,7 +53,8 @@ def first_minimum(shop: Workshop) -> Finding:
     return Finding(by_tolerance(h, -0.25, 0.1), f"{h:.2f}")
 
 
-@statement("4.1, figure 3d", "w = 0.7: the speed overshoots v_t near h = 0.3", "3", in_kind="the speed peaks there, but below v_t", does_not_agree="no maximum behind the orifice")
+@statement("4.1, figure 3d", "w = 0.7: the speed overshoots v_t near h = 0.3", "3",
+           in_kind="the speed peaks there, but below v_t", does_not_agree="no maximum behind the orifice")
 def overshoots(shop: Workshop) -> Finding:
     way = channels.passage(shop, 0.7).table
     behind = way[(way["h"] > 0) & (way["h"] < 0.6)]
@@ -65,7 +66,8 @@ def overshoots(shop: Workshop) -> Finding:
 
 
 @statement("4.1, figure 4", "w = 0.7: the overshoot shrinks as the tilt grows (Γ = 1.85, 1.11, 0.83)", "4",
-           in_kind="the stiffest droplet does not pass the orifice", does_not_agree="the stiffer droplets do not pass the orifice")
+           in_kind="the stiffest droplet does not pass the orifice",
+           does_not_agree="the stiffer droplets do not pass the orifice")
 def overshoot_shrinks(shop: Workshop) -> Finding:
     runs = channels.overshooting(shop, 0.7)
     tops = {tension: run.table["speed_ratio"][run.table["h"] > 0].max() for tension, run in runs.items() if run.word("status") == "passed"}
@@ -82,7 +84,8 @@ def drag_exponent(shop: Workshop) -> Finding:
     return Finding(by_tolerance(value, 4 / 3, max(0.05, 2 * error)), f"{rounded.with_error(value, error)}")
 
 
-@statement("appendix B, figure B1", "speed profiles are noisy up to 64 vertices, smooth from 128 on", "B1", in_kind="smooth only from a finer mesh on")
+@statement("appendix B, figure B1", "speed profiles are noisy up to 64 vertices, smooth from 128 on", "B1",
+           in_kind="smooth only from a finer mesh on")
 def profiles_are_smooth(shop: Workshop) -> Finding:
     noise = {count: roughness(run.table) for count, run in channels.meshes(shop).items()}
     smooth = [count for count, value in noise.items() if value < 0.01]
@@ -102,7 +105,8 @@ def roughness(way: Any) -> float:
     return float(np.sqrt(np.mean((speed[width // 2:-(width // 2)] - mean) ** 2)))
 
 
-@statement("4.1", "Γ_exp = 0.57, 5.80, 3.47 for the three tilts and diameters", in_kind="the interfacial tension of 10 mN/m is a rounded value")
+@statement("4.1", "Γ_exp = 0.57, 5.80, 3.47 for the three tilts and diameters",
+           in_kind="the interfacial tension of 10 mN/m is a rounded value")
 def tensions_of_experiments(shop: Workshop) -> Finding:
     tension, oil, water, gravity = 0.010, 703.0, 997.0, 9.81  # N/m, kg/m^3, m/s^2
     found = [tension / (math.sin(math.radians(tilt)) * gravity * (water - oil) * diameter**2) for tilt, diameter in ((28, 3.5e-3), (8.5, 1.98e-3), (5.0, 3.3e-3))]

@@ -29,7 +29,8 @@ def speeds_rise(shop: Workshop, config: str, parameter: str, name: str) -> Findi
 
 
 @statement("4.3, figure 8a", "the mean speed rises with Γ in gaps of 1 and wider", "8a",
-           in_kind="it has a maximum, then falls to the plateau", does_not_agree="without friction, walls do not slow soft droplets down")
+           in_kind="it has a maximum, then falls to the plateau",
+           does_not_agree="without friction, walls do not slow soft droplets down")
 def speeds_rise_with_tension(shop: Workshop) -> Finding:
     return speeds_rise(shop, "speed", "obstacle_gap", "gap")
 
@@ -52,14 +53,16 @@ def plateau_by_diameter(shop: Workshop) -> Finding:
     return Finding(DOES_NOT if differ else AGREES, ", ".join(f"{speed_of(group)} of {group['obstacle_diameter']:g}" for group in stiff))
 
 
-@statement("4.3, figure 8b", "at small Γ droplets pass larger obstacles faster", "8b", not_known="the errors are as large as the difference")
+@statement("4.3, figure 8b", "at small Γ droplets pass larger obstacles faster", "8b",
+           not_known="the errors are as large as the difference")
 def soft_by_diameter(shop: Workshop) -> Finding:
     soft = [curve[0] for curve in speed_curves(shop, "speed-diameter", "obstacle_diameter", "line_tension").values()]
     verdict = AGREES if slower(soft[0], soft[-1]) else DOES_NOT if slower(soft[-1], soft[0]) else NOT_KNOWN
     return Finding(verdict, ", ".join(f"{speed_of(group)} of {group['obstacle_diameter']:g}" for group in soft))
 
 
-@statement("4.3, figure 8ca", "the speed is nearly constant at small Ca and falls at large Ca", "8ca", in_kind="at small Ca it is not constant")
+@statement("4.3, figure 8ca", "the speed is nearly constant at small Ca and falls at large Ca", "8ca",
+           in_kind="at small Ca it is not constant")
 def speed_by_capillary_number(shop: Workshop) -> Finding:
     verdicts, words = [], []
     for gap, curve in speed_curves(shop, "speed", "obstacle_gap", "capillary_number").items():
@@ -80,7 +83,8 @@ def disks_slow_down(shop: Workshop) -> Finding:
     return Finding(overall(verdicts), "; ".join(words))
 
 
-@statement("4.3, figure 9a", "the speed of soft disks tends to v_t as E_w tends to 0", "9a", in_kind="the softest are not soft enough")
+@statement("4.3, figure 9a", "the speed of soft disks tends to v_t as E_w tends to 0", "9a",
+           in_kind="the softest are not soft enough")
 def soft_disks_are_free(shop: Workshop) -> Finding:
     soft = [curve[0] for curve in speed_curves(shop, "speed-sp", "obstacle_gap", "wall_stiffness").values()]
     return Finding(overall([by_tolerance(group["relative_speed"], 1, 0.02) for group in soft]), ", ".join(f"{speed_of(group)} at {group['wall_stiffness']:g}" for group in soft))
@@ -107,7 +111,8 @@ def soft_models_differ(shop: Workshop) -> Finding:
     return Finding(AGREES if slower(polygon, disk) else DOES_NOT, f"polygon {speed_of(polygon)} at a sag of {sag:.2f}, disk {speed_of(disk)} at {disk_sag:.2f}")
 
 
-@statement("4.3, appendix D", "no droplet clogs in gaps wider than 1", "8a", in_kind="few do", does_not_agree="soft droplets hang over obstacles, held by corner pinning (`m`)")
+@statement("4.3, appendix D", "no droplet clogs in gaps wider than 1", "8a", in_kind="few do",
+           does_not_agree="soft droplets hang over obstacles, held by corner pinning (`m`)")
 def nothing_clogs_in_wide_gaps(shop: Workshop) -> Finding:
     groups = [group for group in shop.sweep("speed") if group["obstacle_gap"] > 1.0]
     runs, clogs, on_mesh = (sum(group[name] for group in groups) for name in ("runs", "clogs", "on_mesh"))
@@ -123,6 +128,7 @@ def drag_slows_down(shop: Workshop) -> Finding:
                    "; ".join(f"{speed_of(first)} and {speed_of(last)} at {first['line_tension']:g}" for first, last in pairs))
 
 
-@statement("appendix E, figure E", "the speed rises monotonically with Γ for every near-wall drag", "E", in_kind="it has a maximum")
+@statement("appendix E, figure E", "the speed rises monotonically with Γ for every near-wall drag", "E",
+           in_kind="it has a maximum")
 def speeds_rise_with_drag(shop: Workshop) -> Finding:
     return speeds_rise(shop, "near-wall-drag", "near_wall_drag", "b_0")
