@@ -3,7 +3,7 @@
 # clang-tidy looks at what changed, with --all at everything. Exit code 1: a gate has found something. See README.md.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-every=(format width spelling scripts types docs warnings tidy)
+every=(format width spelling phrases scripts types docs warnings tidy)
 limits=(--changed --most 40)
 if [ "${1:-}" = --all ]; then
   limits=()
@@ -20,7 +20,7 @@ look() {
     format | scripts) "tests/gates/$1.sh" ;;
     types) mypy --config-file tests/gates/mypy.ini analysis/clogsweep ;;
     docs) docs/build.sh ;;
-    width | spelling) python3 "tests/gates/$1.py" ;;
+    width | spelling | phrases) python3 "tests/gates/$1.py" ;;
     warnings) python3 tests/gates/clang.py warnings ;;
     tidy) python3 tests/gates/clang.py tidy "${limits[@]}" ;;
   esac

@@ -1,0 +1,70 @@
+#!/usr/bin/env python3
+"""Phrases that were retired from prose, and the words to use instead: phrases.txt lists them.
+
+Phrases under `[everywhere]` are searched in *.md, comments, docstrings and messages, those under `[documentation]` in
+*.md only. Code, `quoted` text and the dated pages (docs/notes, CHANGELOG.md) are skipped. A phrase may span two lines.
+"""
+
+import re
+import sys
+
+import known
+import spelling
+
+PHRASES = known.ROOT / "tests/gates/phrases.txt"
+DATED = ("docs/notes/", "CHANGELOG.md")
+SOURCES = ("*.cpp", "*.hpp", "*.py", "*.sh", "*.cmake", "*CMakeLists.txt", "*.cfg")
+LINE = re.compile(r"(?P<phrase>[^#\[\]:]+): (?P<instead>.+)")
+
+
+def listed():
+    """The phrases of each section, as patterns with the words to use instead."""
+    section = None
+    for number, line in enumerate(PHRASES.read_text().splitlines(), 1):
+        entry = LINE.fullmatch(line)
+        if line in ("[everywhere]", "[documentation]"):
+            section = line
+        elif entry and section:
+            words = r"\s+".join(map(re.escape, entry["phrase"].split()))
+            yield section, re.compile(rf"\b{words}\b", re.IGNORECASE), entry["instead"]
+        elif line and not line.startswith("#"):
+            sys.exit(f"{PHRASES.name}:{number}: neither '[section]', '# comment' nor 'phrase: words to use instead'")
+
+
+def paragraphs(name):
+    """Consecutive lines of prose, joined by line feeds, with the number of the first."""
+    first, lines = 0, []
+    for number, line in spelling.prose(name):
+        line = re.sub(r"^[\s/*<!#>\"']+", "", spelling.CODE.sub(" ", line)) if line.strip() else ""
+        if lines and (number != first + len(lines) or not line):
+            yield first, "\n".join(lines)
+            lines = []
+        if line:
+            first = first if lines else number
+            lines.append(line)
+    if lines:
+        yield first, "\n".join(lines)
+
+
+def main():
+    phrases = list(listed())
+    pages = [name for name in known.files("*.md") if not name.startswith(DATED)]
+    # The list and its reader quote what they forbid.
+    sources = [name for name in known.files(*SOURCES) if not name.startswith("tests/gates/")]
+    faults = 0
+    for name in pages + sources:
+        for first, text in paragraphs(name):
+            for section, pattern, instead in phrases:
+                if section == "[documentation]" and not name.endswith(".md"):
+                    continue
+                for found in pattern.finditer(text):
+                    number = first + text.count("\n", 0, found.start())
+                    print(f"{name}:{number}: '{' '.join(found[0].split())}' is retired; write {instead}")
+                    faults += 1
+    if faults:
+        sys.exit(f"{faults} retired phrases")
+    print(f"{len(phrases)} retired phrases are absent from {len(pages)} pages and {len(sources)} sources")
+
+
+if __name__ == "__main__":
+    main()
