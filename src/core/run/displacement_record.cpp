@@ -1,7 +1,12 @@
 #include "clog/core/run/displacement_record.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <span>
+
+#include "clog/core/tools/error.hpp"
 
 namespace clog {
 namespace {
@@ -29,10 +34,16 @@ void DisplacementRecord::save(ByteWriter& bytes) const {
   bytes.put(count_);
 }
 
-void DisplacementRecord::restore(ByteReader& bytes) {
+void DisplacementRecord::restore(ByteReader& bytes, double time) {
   bytes.get(samples_);
   bytes.get(stride_);
   bytes.get(count_);
+  const bool are_whole = std::ranges::all_of(samples_, [&](const TravelSample& sample) {
+    return sample.time > 0 && sample.time <= time && std::isfinite(sample.displacement);
+  });
+  const bool is_power = stride_ > 0 && std::has_single_bit(static_cast<std::uint64_t>(stride_));
+  if (!are_whole || !is_power || count_ < 0 || samples_.size() > capacity)
+    throw Error("its displacements are out of range");
 }
 
 TravelSpeed DisplacementRecord::travel_speed() const {

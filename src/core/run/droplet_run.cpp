@@ -34,6 +34,36 @@ constexpr double rise_of_a_moving_droplet = 10;
 /// Changes with what a snapshot holds.
 constexpr std::uint64_t snapshot_kind = 0x636c6f6773000003;
 
+/// Of a frame that a snapshot holds. @param way  no droplet of the run gets farther [sigma]
+bool is_in_range(const LocalFrame& frame, const Period& period, double way) {
+  return frame.period[0] == period.along() && frame.period[1] == period.across() &&
+         (frame.origin >= 0).all() && (frame.origin < frame.period).all() &&
+         (frame.image.cast<double>().abs() * frame.period <= way + frame.period).all();
+}
+
+/// Twice as far as a droplet falls without obstacles [sigma].
+double farthest_way(const RunParameters& run) { return 2 * run.drag.terminal_speed * run.max_time; }
+
+/// Of a state that a snapshot holds, before anything is computed with it.
+void check_state(const DropletState& state, const RunParameters& run, const ObstacleArray& obstacles) {
+  const Period& period = obstacles.period();
+  if (state.size() != model_of(run).num_points(run) || state.velocity.size() != state.position.size() ||
+      state.frame.period[0] != period.along() || state.frame.period[1] != period.across())
+    throw Error("the snapshot is of another run");
+  const bool is_placed =
+      (state.position.abs() < burst_perimeter).all() && is_in_range(state.frame, period, farthest_way(run));
+  const double fastest = std::sqrt(diverged_energy_ratio * static_cast<double>(state.size()));
+  const bool is_moving = (state.velocity.abs() < fastest * run.drag.terminal_speed).all();
+  const auto num_wedges = static_cast<Eigen::Index>(obstacles.wedges().size());
+  const bool is_held = std::ranges::all_of(state.anchors, [&](const WallAnchor& anchor) {
+    const Eigen::Array3d places{anchor.x, anchor.y, anchor.slip}, wall{anchor.wall.x, anchor.wall.y, 0};
+    return anchor.holder >= 0 && anchor.holder < state.size() && (places.abs() < burst_perimeter).all() &&
+           (wall.abs() < burst_perimeter).all() && anchor.wall.radius >= 0 &&
+           anchor.wall.radius < burst_perimeter && anchor.wall.wedge >= -1 && anchor.wall.wedge < num_wedges;
+  });
+  if (!is_placed || !is_moving || !is_held) throw Error("its droplet is out of range");
+}
+
 }  // namespace
 
 DropletRun::DropletRun(const RunParameters& run)
@@ -105,10 +135,7 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
     ByteReader rest = bytes;
     DropletState state;
     state.restore(bytes);
-    const Period& period = obstacles->period();
-    if (state.size() != model_of(run).num_points(run) || state.frame.period[0] != period.along() ||
-        state.frame.period[1] != period.across())
-      throw Error("the snapshot is of another run");
+    check_state(state, run, *obstacles);
     DropletRun resumed(run, std::move(obstacles), std::move(state), scene_of(run).way(run));
     resumed.droplet_->restore(rest);
     resumed.start_frame_.restore(rest);
@@ -116,7 +143,8 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
     rest.get(resumed.steps_done_);
     rest.get(resumed.quiet_checks_);
     rest.get(resumed.next_search_);
-    resumed.record_.restore(rest);
+    if (!resumed.is_in_range()) throw Error("its progress is out of range");
+    resumed.record_.restore(rest, resumed.time());
     resumed.dwells_.restore(rest);
     if (resumed.is_passage()) resumed.passage_.restore(rest);
     rest.get(resumed.neck_);
@@ -128,6 +156,15 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
   } catch (const Error& error) {
     throw Error(std::string("cannot resume the run (") + error.what() + "); start it anew");
   }
+}
+
+/// Of what a snapshot tells beside the droplet itself.
+bool DropletRun::is_in_range() const {
+  return (start_.abs() < burst_perimeter).all() &&
+         clog::is_in_range(start_frame_, obstacles_->period(), farthest_way(run_)) && steps_done_ > 0 &&
+         steps_done_ <= max_steps_ && steps_done_ % steps_per_snapshot == 0 && quiet_checks_ >= 0 &&
+         quiet_checks_ <= 1 && next_search_ > 0 && std::isfinite(next_search_) &&
+         kinetic_energy_ratio() < diverged_energy_ratio;
 }
 
 void DropletRun::check() {

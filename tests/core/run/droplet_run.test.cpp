@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
+#include <cstring>
+#include <limits>
 #include <numbers>
 
 #include "clog/core/model/model.hpp"
@@ -151,6 +154,53 @@ TEST(DropletRun, RefusesASnapshotThatIsTornOrOfAnotherRun) {
   bytes.pop_back();
   bytes[0] = ~bytes[0];
   EXPECT_THROW(resume_in_array(run, bytes), Error);
+}
+
+/// Snapshots whose checksum is right and whose content is not: any of their numbers may be anything. Either
+/// they are refused, or the run goes on to its end without a crash, and it does not spin.
+TEST(DropletRun, EndsWhateverItsSnapshotHolds) {
+  RunParameters run;
+  run.obstacles.box = 20;
+  run.obstacles.density = {};
+  run.obstacles.gap = 0.4;
+  run.time_step = 2e-3;
+  run.max_time = 600;
+  run.dp.vertices = 32;
+  run.dp.line_tension = 0.1;
+  run.dp.perimeter_spring = PerimeterSpring::rest;
+  run.dp.perimeter_stiffness_ratio = 0.1;
+  run.dp.gravity = Gravity::vertex;
+  run.dp.friction = 0.02;
+  run = resolve(run);
+  const auto obstacles = std::make_shared<ObstacleArray>(sample_obstacles(run.obstacles, run.seed));
+  DropletRun whole(run);
+  while (whole.snapshot().empty()) ASSERT_FALSE(whole.advance(64));
+  ASSERT_GT(whole.droplet().state().anchors.size(), 0u);
+  std::vector<std::byte> bytes = whole.snapshot();
+  const auto resume_and_go_on = [&] {
+    DropletRun resumed = DropletRun::resume(run, obstacles, bytes);
+    resumed.advance(2);
+    return resumed.result();
+  };
+  ASSERT_NO_THROW(resume_and_go_on());
+  constexpr std::size_t word = sizeof(double);
+  int refused = 0;
+  for (std::size_t at = 0; at + word <= bytes.size(); at += word)
+    for (const double value :
+         {std::numeric_limits<double>::infinity(), std::nan(""), -1e300, 0.0,
+          std::bit_cast<double>(std::int64_t{-1}), std::bit_cast<double>(std::int64_t{3})}) {
+      std::byte before[word];
+      std::memcpy(before, &bytes[at], word);
+      std::memcpy(&bytes[at], &value, word);
+      try {
+        resume_and_go_on();
+      } catch (const Error&) {
+        ++refused;
+      }
+      std::memcpy(&bytes[at], before, word);
+    }
+  const auto numbers_of_shape = static_cast<int>(4 * 32);
+  EXPECT_GT(refused, 3 * numbers_of_shape);  // infinite, not a number, too large
 }
 
 /// What a droplet stood for before it clogged is the same however the clog is found.

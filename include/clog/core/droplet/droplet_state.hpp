@@ -100,10 +100,12 @@ struct DropletState {
   }
 
   /// Keeps local coordinates of order one: moves the frame by whole units when the centre has left the unit
-  /// square around the origin. Returns the step taken (usually zero).
+  /// square around the origin. A droplet that has diverged, and may be infinitely far away, stays where it is
+  /// until the next check of its run. Returns the step taken (usually zero).
   Eigen::Array2d recentre() {
+    constexpr double diverged = 1e6;  // [sigma]
     const Eigen::Array2d centre_now = centre();
-    if ((centre_now.abs() <= 1).all()) return {0, 0};
+    if ((centre_now.abs() <= 1).all() || !(centre_now.abs() < diverged).all()) return {0, 0};
     Eigen::Array2d step = centre_now.round();
     x() -= step[0];
     y() -= step[1];

@@ -21,7 +21,8 @@ class DisplacementRecord {
   TravelSpeed travel_speed() const;
 
   void save(ByteWriter& bytes) const;
-  void restore(ByteReader& bytes);
+  /// @throws Error if it cannot be what save() wrote after a check at this time [t0]
+  void restore(ByteReader& bytes, double time);
 
  private:
   std::vector<TravelSample> samples_;

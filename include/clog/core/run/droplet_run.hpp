@@ -144,6 +144,7 @@ class DropletRun {
   ThinnestNeck neck_;
   std::vector<std::byte> snapshot_;
 
+  bool is_in_range() const;
   bool is_passage() const;
   bool has_fallen() const { return time() > first_quiet_time_; }
   void check();
