@@ -20,8 +20,12 @@ from drawing import Analysis
 from support import BIN, QUICK, ROOT, SMALL, table
 
 import clogsweep
-from clogsweep import clogs, film, lengths, programs, report, rounded, stored, style, survival_curve, trajectory
-from clogsweep.groups import Groups
+from clogsweep import style
+from clogsweep.drawing import clogs, film, lengths, survival_curve
+from clogsweep.pages import report
+from clogsweep.reading import programs, stored, trajectory
+from clogsweep.tools import rounded
+from clogsweep.labels.groups import Groups
 from clogsweep.paper import arrays
 
 # A few seconds for all of them: coarse droplets, short ways.
@@ -320,7 +324,7 @@ class Pictures(Analysis):
             self.assertEqual([label.get_text() for label in sorted(shown, key=lambda label: label.get_position()[1])], expected)
 
     def test_warnings_of_libraries_stay_away_from_the_terminal(self):
-        lines = "from clogsweep import command_line\nwith command_line.needs_modules():\n    import warnings\n    warnings.warn('of a library')"
+        lines = "from clogsweep.commands import command_line\nwith command_line.needs_modules():\n    import warnings\n    warnings.warn('of a library')"
         for switches, expected in [([], ""), (["-W", "default"], "of a library")]:
             done = subprocess.run([sys.executable, *switches, "-c", lines], cwd=ROOT / "analysis", capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stderr)

@@ -16,8 +16,8 @@ from drawing import Analysis
 from support import BIN, QUICK, ROOT, SweepTest, table
 
 import clogsweep.__main__
-from clogsweep import places, programs
-from clogsweep.groups import Groups
+from clogsweep.reading import places, programs
+from clogsweep.labels.groups import Groups
 
 PNG = b"\x89PNG\r\n"
 

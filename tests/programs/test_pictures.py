@@ -13,10 +13,14 @@ from drawing import Analysis
 from support import BIN, QUICK, SMALL
 
 import stored_rows
-from clogsweep import clogs, dwell, film, lengths, poster, report, rounded, stored, style, trajectory, way
-from clogsweep.errors import UserError
-from clogsweep.groups import Groups
-from clogsweep.sweep import Sweep
+from clogsweep import style
+from clogsweep.drawing import clogs, dwell, film, lengths, way
+from clogsweep.pages import poster, report
+from clogsweep.reading import stored, trajectory
+from clogsweep.tools import rounded
+from clogsweep.tools.errors import UserError
+from clogsweep.labels.groups import Groups
+from clogsweep.results.sweep import Sweep
 
 ONE_CURVE = [*QUICK, "line-tension=0.5,3", "seeds=1..2", "near-wall-drag=0.07", "obstacle-gap=0.35", "terminal-speed=0.032"]
 

@@ -10,8 +10,10 @@ import stored_rows
 from drawing import Analysis
 from support import BIN, ProgramTest, table
 
-from clogsweep import passages, stored, style
-from clogsweep.groups import Groups
+from clogsweep import style
+from clogsweep.drawing import passages
+from clogsweep.reading import stored
+from clogsweep.labels.groups import Groups
 
 EXTREMES = [f"{extreme}{at}" for extreme in ("largest_shape_parameter", "smallest_relative_speed", "largest_relative_speed") for at in ("", "_at")]
 CHANNEL = ["obstacle-layout=channel", "orifice=0.7", "near-wall-drag=0.07", "terminal-speed=0.05", "start=-1.5", "end=1", "vertices=64"]

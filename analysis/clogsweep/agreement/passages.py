@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from .. import rounded
 from ..paper import channels
 from ..paper.workshop import Workshop
+from ..tools import rounded
 from .evidence import by_tolerance
 from .statements import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding, statement
 

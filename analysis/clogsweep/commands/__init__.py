@@ -3,7 +3,8 @@
 import argparse
 import pathlib
 
-from .. import command_line, programs
+from ..reading import programs
+from . import command_line
 
 
 def sweep_to_draw(about: str | None, ending: str, what: str = "file of clogsweep --output") -> argparse.Namespace:

@@ -8,8 +8,9 @@ intervals; markers show by what most droplets clogged; an open marker is a lengt
 why; a triangle pointing up is a lower bound where no run clogged.
 """
 
-from .. import fit, lengths
-from ..picture import Picture
+from ..drawing import lengths
+from ..results import fit
+from ..style.picture import Picture
 from . import sweep_to_draw
 
 

@@ -10,8 +10,10 @@ clogged, how many obstacles it wraps and which part of its support they bear, an
 
 import pathlib
 
-from .. import clogs, command_line, programs
-from ..sweep import Sweep
+from ..drawing import clogs
+from ..reading import programs
+from ..results.sweep import Sweep
+from . import command_line
 
 
 def body() -> int:

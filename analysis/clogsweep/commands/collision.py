@@ -15,9 +15,11 @@ import math
 import pathlib
 import tempfile
 
-from .. import collision, command_line, programs
-from ..errors import UserError
-from ..picture import Picture
+from ..collisions import collision
+from ..reading import programs
+from ..style.picture import Picture
+from ..tools.errors import UserError
+from . import command_line
 
 
 def key_and_value(word: str) -> tuple[str, str]:

@@ -20,9 +20,11 @@ import argparse
 import pathlib
 import sys
 
-from .. import command_line, film, stored, trajectory, way
-from ..errors import UserError
-from ..picture import Picture
+from ..drawing import film, way
+from ..reading import stored, trajectory
+from ..style.picture import Picture
+from ..tools.errors import UserError
+from . import command_line
 
 
 def body() -> int:

@@ -8,7 +8,8 @@ The first time is the shortest of which all rows know who stood for longer, the 
 length there is that of clogs alone. Bars are confidence intervals; a triangle is a lower bound where no run clogged.
 """
 
-from .. import dwell, programs, stored
+from ..drawing import dwell
+from ..reading import programs, stored
 from . import sweep_to_draw
 
 

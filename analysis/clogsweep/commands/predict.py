@@ -13,8 +13,10 @@ import math
 import pathlib
 import tempfile
 
-from .. import command_line, prediction, programs
-from ..errors import UserError
+from ..collisions import prediction
+from ..reading import programs
+from ..tools.errors import UserError
+from . import command_line
 from .collision import key_and_value
 
 

@@ -9,11 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from .. import rounded, stored, style, survival_curve, trajectory
-from ..errors import UserError
-from ..groups import said
-from ..hints import Column, Group
-from ..trajectory import Trajectory
+from .. import style
+from ..drawing import survival_curve
+from ..labels.groups import said
+from ..reading import stored, trajectory
+from ..reading.trajectory import Trajectory
+from ..tools import rounded
+from ..tools.errors import UserError
+from ..tools.hints import Column, Group
 from .plate import Plate, figure, interface_of
 from .workshop import Workshop
 

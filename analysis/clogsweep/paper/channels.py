@@ -6,9 +6,10 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from .. import style, trajectory
-from ..errors import UserError
-from ..trajectory import Trajectory
+from .. import style
+from ..reading import trajectory
+from ..reading.trajectory import Trajectory
+from ..tools.errors import UserError
 from .plate import Plate, figure, interface_of
 from .workshop import Workshop, measured
 

@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from .. import rounded, style
-from ..hints import Group
+from .. import style
+from ..tools import rounded
+from ..tools.hints import Group
 from .arrays import numbers
 from .plate import Plate, figure
 from .workshop import Workshop

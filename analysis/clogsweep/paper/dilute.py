@@ -16,8 +16,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from .. import style
-from ..groups import said
-from ..hints import Group
+from ..labels.groups import said
+from ..tools.hints import Group
 from .arrays import HOLDS, by, numbers, of_each, over_sag
 from .plate import Plate, figure, interface_of
 from .workshop import Workshop

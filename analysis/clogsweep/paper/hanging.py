@@ -6,8 +6,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import style
-from ..groups import said
-from ..hints import Group
+from ..labels.groups import said
+from ..tools.hints import Group
 from .arrays import HOLDS, by, numbers, of_each
 from .plate import Plate, figure, interface_of
 from .workshop import Workshop

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .. import places, replays, stored
-from ..errors import NotThere, UserError
-from ..hints import Column, Group
-from ..programs import run_program
-from ..trajectory import Trajectory
+from ..reading import places, replays, stored
+from ..reading.programs import run_program
+from ..reading.trajectory import Trajectory
+from ..tools.errors import NotThere, UserError
+from ..tools.hints import Column, Group
 
 if TYPE_CHECKING:
     import pandas
