@@ -13,7 +13,7 @@ from drawing import Analysis
 from support import BIN, QUICK, SMALL
 
 import stored_rows
-from clogsweep import style
+from clogsweep import labels, style
 from clogsweep.drawing import clogs, dwell, film, lengths, way
 from clogsweep.pages import poster, report
 from clogsweep.reading import stored, trajectory
@@ -266,7 +266,7 @@ class Looks(Analysis):
 
     def test_one_is_no_plural(self):
         self.assertEqual([rounded.counted(number, "run") for number in (0, 1, 2)], ["0 runs", "1 run", "2 runs"])
-        self.assertEqual([style.runs_a_point([{"runs": runs} for runs in all_runs]) for all_runs in ([1, 1], [4], [1, 3])],
+        self.assertEqual([labels.runs_a_point([{"runs": runs} for runs in all_runs]) for all_runs in ([1, 1], [4], [1, 3])],
                          ["1 run a point", "4 runs a point", "1 to 3 runs a point"])
         self.succeed("clogsweep", *QUICK, "seeds=1", "--output", "s.h5")
         self.succeed("clogfit", "report", "s.h5", "--output", "s.html", "--examples", 0)

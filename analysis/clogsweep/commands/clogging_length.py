@@ -11,12 +11,12 @@ why; a triangle pointing up is a lower bound where no run clogged.
 from ..drawing import lengths
 from ..results import fit
 from ..style.picture import Picture
-from . import sweep_to_draw
+from .command_line import sweep_to_draw
 
 
 def body() -> int:
     arguments = sweep_to_draw(__doc__, "clogging-length", "file of clogsweep --output, or output of clogfit --format json")
     fitted = fit.read(arguments.sweep, arguments.programs)
-    picture = Picture(lengths.draw(fitted.drawable(arguments.sweep)), fitted.source)
+    picture = Picture(lengths.draw(fitted.known.with_lengths(arguments.sweep)), fitted.source)
     print(f"{picture.save(arguments.output)} (and .pdf)")
     return 0

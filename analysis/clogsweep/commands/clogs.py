@@ -13,6 +13,7 @@ import pathlib
 from ..drawing import clogs
 from ..reading import programs
 from ..results.sweep import Sweep
+from ..tools import outputs
 from . import command_line
 
 
@@ -27,7 +28,7 @@ def body() -> int:
     parser.add_argument("--jobs", type=command_line.whole(1), default=2, help="runs at a time (%(default)s)")
     arguments = parser.parse_args()
     output = arguments.output or command_line.beside(arguments.sweep, "clogs")
-    command_line.refuse_unwritable_picture(output, arguments.sweep)
+    outputs.refuse_unwritable_picture(output, arguments.sweep)
     found = Sweep(arguments.sweep, arguments.programs).clogs(
         mechanism=arguments.mechanism, tasks=arguments.tasks, most=arguments.most, jobs=arguments.jobs)
     print(f"{found.picture().save(output)} (and .pdf)")

@@ -18,6 +18,7 @@ import tempfile
 from ..collisions import collision
 from ..reading import programs
 from ..style.picture import Picture
+from ..tools import outputs
 from ..tools.errors import UserError
 from . import command_line
 
@@ -49,7 +50,7 @@ def body() -> int:
     parser.add_argument("--offsets", type=offsets, default="0,0.01,0.02,0.05,0.1,0.15,0.2,0.25,0.3,0.35", help="of the droplet's way from the obstacle's centre [sigma]")
     programs.add_option(parser)
     arguments = parser.parse_args()
-    command_line.refuse_unwritable_picture(arguments.output)
+    outputs.refuse_unwritable_picture(arguments.output)
     found: dict[float, collision.Threshold] = {}
     print("offset,symmetry,breaks_up_to,whole_from,capillary_number")
     with tempfile.TemporaryDirectory(prefix="clogsweep-collision-") as folder:

@@ -12,6 +12,8 @@ import warnings
 from collections.abc import Callable, Iterator
 from typing import NoReturn
 
+from ..reading import programs
+from ..tools import outputs
 from ..tools.errors import ProgramFailed, UserError, lacking
 
 USER_FAULT = 2
@@ -75,52 +77,20 @@ def beside(source: pathlib.Path, ending: str) -> pathlib.Path:
     return source.with_name(f"{source.stem}-{ending}")
 
 
-# How the files begin that commands here make.
-BEGINNINGS = {"html": b"<!DOCTYPE html>", "png": b"\x89PNG\r\n", "pdf": b"%PDF-", "vtk": b"<?xml", "text": b""}
+def sweep_to_draw(about: str | None, ending: str, what: str = "file of clogsweep --output") -> argparse.Namespace:
+    """Options of a command that makes one picture of a sweep: sweep, output, programs.
 
-
-def refuse_unwritable(path: pathlib.Path, kind: str, *inputs: pathlib.Path) -> None:
-    """To be asked before minutes of work, of a file to be made. An earlier one of its kind is replaced, nothing else.
-
-    @param kind  of BEGINNINGS; @param inputs  files that the command reads
+    @param about  the command's docstring; @param ending  of the picture's name, which begins with that of the sweep
+    @param what  is given as the sweep. @throws UserError  if the picture could not be written
     """
-    if not path.parent.is_dir():
-        raise UserError(f"cannot write {path} (no folder {path.parent}); make it first")
-    if path.is_dir():
-        raise UserError(f"cannot write {path} (it is a folder); give the name of a file")
-    if path.exists() and not path.is_file():
-        raise UserError(f"cannot write {path} (not a regular file: a pipe, device or socket); give another name, or move it away")
-    if not os.access(path if path.exists() else path.parent, os.W_OK):
-        raise UserError(f"cannot write {path} (permission denied); give another --output")
-    if any(path.exists() and source.exists() and path.samefile(source) for source in inputs):
-        raise UserError(f"will not overwrite {path} (it is what is to be read); give another --output")
-    if path.is_file() and not is_of_kind(path, kind):
-        raise UserError(f"will not overwrite {path} (it is no {kind.upper()} file); give another --output, or remove it first")
-
-
-def is_of_kind(path: pathlib.Path, kind: str) -> bool:
-    """Does it begin like files of this kind, or hold nothing yet?"""
-    with open(path, "rb") as file:
-        beginning = file.read(len(BEGINNINGS[kind]))
-    return not beginning or beginning == BEGINNINGS[kind]
-
-
-# Endings of pictures and films. Others may be a part of the name, as in gap-0.3.
-ENDINGS = (".png", ".pdf", ".mp4", ".gif", ".jpg", ".jpeg", ".svg", ".eps", ".ps", ".tif", ".tiff", ".bmp", ".webp",
-           ".avi", ".mov", ".mkv", ".webm", ".mpg", ".mpeg", ".apng")
-
-
-def refuse_ending(output: pathlib.Path, *made: str) -> None:
-    """@param made  the endings that there are. @throws UserError  if the name asks for another one"""
-    if output.suffix.lower() in ENDINGS and output.suffix not in made:
-        raise UserError(f"cannot write {output} (it can only be {' or '.join(made)}); give another ending, or none")
-
-
-def refuse_unwritable_picture(output: str | os.PathLike[str], *inputs: pathlib.Path) -> None:
-    """Of the two files of style.save(). @param output  path without ending"""
-    refuse_ending(pathlib.Path(output), ".png", ".pdf")
-    for kind in ("png", "pdf"):
-        refuse_unwritable(pathlib.Path(f"{output}.{kind}"), kind, *inputs)
+    parser = Parser(about)
+    parser.add_argument("sweep", type=pathlib.Path, help=what)
+    add_output(parser, f"name of the picture; .png and .pdf are made (SWEEP-{ending})", ".png", ".pdf")
+    programs.add_option(parser)
+    arguments = parser.parse_args()
+    arguments.output = arguments.output or beside(arguments.sweep, ending)
+    outputs.refuse_unwritable_picture(arguments.output, arguments.sweep)
+    return arguments
 
 
 def quieten_libraries() -> None:

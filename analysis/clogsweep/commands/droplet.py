@@ -23,6 +23,7 @@ import sys
 from ..drawing import film, way
 from ..reading import stored, trajectory
 from ..style.picture import Picture
+from ..tools import outputs
 from ..tools.errors import UserError
 from . import command_line
 
@@ -48,7 +49,7 @@ def body() -> int:
 
 
 def draw_picture(arguments: argparse.Namespace) -> int:
-    command_line.refuse_unwritable_picture(arguments.output, arguments.run)
+    outputs.refuse_unwritable_picture(arguments.output, arguments.run)
     run = trajectory.read(arguments.run)
     print(f"{Picture(way.draw(run, arguments.outlines), stored.source(run.attributes)).save(arguments.output)} (and .pdf)")
     return 0

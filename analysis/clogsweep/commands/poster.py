@@ -8,7 +8,7 @@ temporary folder. Of droplets in a channel or on a wall it shows the passage or 
 """
 
 from ..results.sweep import Sweep
-from . import sweep_to_draw
+from .command_line import sweep_to_draw
 
 
 def body() -> int:

@@ -20,6 +20,7 @@ from ..style.picture import Picture
 from ..tools import rounded
 from ..tools.errors import ProgramFailed, UserError
 from ..tools.hints import Numbers, Records
+from . import surroundings
 
 MARGIN = 0.15  # above a sheet [inches]
 MECHANISMS = ("wrapped", "squeezed", "hybrid", "other")
@@ -180,9 +181,9 @@ def draw(axes: Axes, clog: Clog) -> None:
         axes.add_patch(Circle(obstacle[:2] - middle, obstacle[2] / 2, color="#0072B2" if len(touches) else "0.85"))
         for edge in touches:
             axes.plot(*interface[:, [edge, (edge + 1) % interface.shape[1]]], color="#D00000", linewidth=1.8)
-    trajectory.frame_limits(axes, (-half, -1.2 * half), (half, 1.2 * half))  # with room for the guides
+    surroundings.frame_limits(axes, (-half, -1.2 * half), (half, 1.2 * half))  # with room for the guides
     axes.locator_params(nbins=5)
-    trajectory.draw_guides(axes)
+    surroundings.draw_guides(axes)
     axes.set_title(title(row), fontsize=8)
 
 

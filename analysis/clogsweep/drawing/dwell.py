@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pathlib
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,8 +9,6 @@ from matplotlib.figure import Figure
 
 from .. import style
 from ..labels.groups import Groups
-from ..results import fit
-from ..style.picture import Picture
 from ..tools.errors import UserError
 from ..tools.hints import Group
 
@@ -51,10 +48,3 @@ def draw(times: Sequence[float], fits: Sequence[Groups]) -> Figure:
     everyone = [group for groups in fits for group in groups.members]
     style.finish_lengths(axes, fits[-1], everyone, "most went on later, or other clogs")
     return figure
-
-
-def picture(clogfit: pathlib.Path, sweep: pathlib.Path) -> Picture:
-    """@throws UserError  if there is nothing to draw; ProgramFailed  with the reason of clogfit"""
-    fitted = fit.fitted(clogfit, sweep)
-    times = times_of(fitted.drawable(sweep))
-    return Picture(draw(times, [fit.fitted(clogfit, sweep, "--dwell", repr(time)).drawable(sweep) for time in times]), fitted.source)

@@ -20,12 +20,12 @@ from matplotlib.path import Path
 from PIL import Image
 
 from .. import style
-from ..commands import command_line
 from ..reading import trajectory
 from ..reading.trajectory import Trajectory
-from ..tools import progress
+from ..tools import outputs, progress
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
+from . import surroundings
 
 Pixels = npt.NDArray[np.uint8]  # height x width x 4: red, green, blue, alpha
 
@@ -131,7 +131,7 @@ class Film:
         self._draw_droplet(colour)
         self._frame = self._axes.add_patch(Rectangle((0, 0), 1, 1, transform=self._axes.transAxes, fill=False, linewidth=0.8, clip_on=False))
         inset = self._draw_course()
-        trajectory.draw_guides(self._axes)
+        surroundings.draw_guides(self._axes)
         self._bar, = self._axes.artists
         arrow = list(self._axes.texts)
         self._clock = self.figure.text(width - 0.01, 0.965, "", va="center", ha="right", fontsize=11)
@@ -153,7 +153,7 @@ class Film:
         self._background = self.figure.canvas.copy_from_bbox(self.figure.bbox)
 
     def _draw_surroundings(self) -> None:
-        trajectory.draw_walls(self._axes, self._run)
+        surroundings.draw_walls(self._axes, self._run)
         self._num_walls = len(self._axes.patches)
         self._discs = [Path.circle((x, y), diameter / 2) for x, y, diameter in self._run.obstacles]
         self._obstacles = self._axes.add_collection(PathCollection([], facecolor=style.OBSTACLE, edgecolor="none"))
@@ -228,7 +228,7 @@ class Film:
             self._bar_layer = Layer(self.figure, [self._bar])
 
     def _look(self, low: Numbers, high: Numbers) -> None:
-        trajectory.frame_limits(self._axes, low, high)
+        surroundings.frame_limits(self._axes, low, high)
         centres, radii = self._run.obstacles[:, :2], self._run.obstacles[:, 2:] / 2
         near = np.all((centres + radii > low) & (centres - radii < high), axis=1)
         self._obstacles.set_paths([self._discs[index] for index in np.flatnonzero(near)])
@@ -268,7 +268,7 @@ def size_for(path: pathlib.Path | None) -> str:
 def path_of(output: pathlib.Path) -> pathlib.Path:
     """The file that a film goes to: the ending that was asked for, or .mp4 with ffmpeg, .gif otherwise.
     @throws UserError if it cannot be made, or is there"""
-    command_line.refuse_ending(output, *ENDINGS)
+    outputs.refuse_ending(output, *ENDINGS)
     has_ffmpeg = shutil.which("ffmpeg") is not None
     if output.suffix not in ENDINGS:
         output = output.with_name(output.name + (".mp4" if has_ffmpeg else ".gif"))

@@ -14,10 +14,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import style
+from ..labels import AXES
 from ..labels.groups import FINISHED, Groups
-from ..reading import replays, trajectory
+from ..reading import replays
 from ..reading.trajectory import Trajectory
 from ..tools.hints import Group
+from . import lengths, surroundings
 
 
 @dataclasses.dataclass(frozen=True)
@@ -44,7 +46,7 @@ CHANNEL = Kind(
     "h is the distance of the droplet's centre from the orifice, v<sub>t</sub> the speed of a free droplet.")
 WALL = Kind(
     "Sags", "clogged", {"clogged": "at rest", "broken": "broken up", "flowing": "not yet at rest"},
-    {"sag": style.AXES["sag"], "top_sag": r"sag of the top $/\sigma$"},
+    {"sag": AXES["sag"], "top_sag": r"sag of the top $/\sigma$"},
     {"sag": "sag/&sigma;", "top_sag": "sag of the top/&sigma;", "shape_parameter": "A"},
     "at the end", "The sag is how far the droplet's centre sinks under its own weight.")
 
@@ -82,7 +84,7 @@ def draw_curves_on(axes: Axes, groups: Groups, column: str) -> None:
         for group in members:
             axes.plot(group[groups.abscissa], group[column], color=look["color"], markersize=6, gid=style.mark("point", [group]),
                       **markers.get(group["status"], {"marker": "X"}))
-    groups.draw_abscissa(axes)
+    lengths.draw_abscissa(axes, groups)
     axes.set_ylabel(kind.curves[column])
     style.grid(axes)
     style.legend(axes)
@@ -127,9 +129,9 @@ def draw_outline(axes: Axes, groups: Groups, run: Trajectory) -> None:
     kind = kind_of(groups)
     shown = run.frame_at("h", run.row["largest_shape_parameter_at"]) if kind is CHANNEL else -1
     low, high = run.polygons[shown].min(axis=1), run.polygons[shown].max(axis=1)
-    trajectory.draw_droplet(axes, run, shown, (low + high) / 2)
+    surroundings.draw_droplet(axes, run, shown, (low + high) / 2)
     half = (high - low).max() / 2 + 0.3
-    trajectory.frame_limits(axes, (-half, -half), (half, half))
+    surroundings.frame_limits(axes, (-half, -half), (half, half))
     axes.set_xlabel(r"$x/\sigma$ from the droplet's middle, along the flow")
     axes.set_ylabel(r"$y/\sigma$")
     names = [*groups.curve_parameters(), groups.abscissa]

@@ -11,9 +11,9 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from ..commands import command_line
 from ..reading import stored, trajectory
 from ..reading.trajectory import Trajectory
+from ..tools import outputs
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
 
@@ -63,7 +63,7 @@ def collection(files: Iterable[str], times: Iterable[float]) -> xml.ElementTree:
 
 def write(tree: xml.ElementTree, path: pathlib.Path) -> None:
     """Under another name first: whoever looks in sees whole files."""
-    command_line.refuse_unwritable(path, "vtk")
+    outputs.refuse_unwritable(path, "vtk")
     fresh = path.with_name(path.name + ".new")
     tree.write(fresh, encoding="utf-8", xml_declaration=True)
     os.replace(fresh, path)
@@ -84,7 +84,7 @@ def export(run: Trajectory, output: pathlib.Path) -> pathlib.Path:
     folder = output.with_name(output.name + "-vtk")
     pvd, around = output.with_name(output.name + ".pvd"), output.with_name(output.name + "-obstacles.vtp")
     for path in (pvd, around):
-        command_line.refuse_unwritable(path, "vtk", run.path)
+        outputs.refuse_unwritable(path, "vtk", run.path)
     folder.mkdir(parents=True, exist_ok=True)
     speeds = trajectory.interface_speeds(run)
     columns = stored.columns_of(run.table)

@@ -8,9 +8,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import style
+from ..labels import AXES
 from ..reading import trajectory
 from ..reading.trajectory import Trajectory
 from ..tools.hints import Numbers
+from . import surroundings
 
 
 def view(run: Trajectory) -> tuple[Numbers, Numbers]:
@@ -31,12 +33,12 @@ def draw(run: Trajectory, num_outlines: int) -> Figure:
 def draw_on(axes: Axes, run: Trajectory, num_outlines: int) -> None:
     is_passage = len(run.wedges) == 2
     origin = run.middle if is_passage else np.zeros(2)
-    trajectory.draw_surroundings(axes, run, origin)
+    surroundings.draw_surroundings(axes, run, origin)
     low, high = view(run)
-    trajectory.frame_limits(axes, low - origin, high - origin)
-    axes.set_xlabel(style.AXES["h"] if is_passage else r"$x/\sigma$, along the flow")
+    surroundings.frame_limits(axes, low - origin, high - origin)
+    axes.set_xlabel(AXES["h"] if is_passage else r"$x/\sigma$, along the flow")
     axes.set_ylabel(r"$y/\sigma$")
-    trajectory.draw_guides(axes)
+    surroundings.draw_guides(axes)
     axes.set_title(f"{trajectory.described(run)}: {trajectory.verdict(run)}", fontsize=9)
     chosen = trajectory.along_the_way(run.polygons, num_outlines)
     for frame in chosen:

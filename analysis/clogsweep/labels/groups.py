@@ -1,60 +1,15 @@
-"""The groups of runs that clogfit tells of: what varies between them, what to draw them over, and how all this is called.
-
-Names, symbols, units and defaults of the parameters are clogsweep's own; clogfit hands them on (`columns` of its JSON).
-"""
+"""The groups of runs that clogfit tells of: what varies between them, what to draw them over, and how all this is called."""
 
 from __future__ import annotations
 
-import math
 import pathlib
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable
 from typing import Any
 
-from matplotlib.axes import Axes
-
-from .. import style
 from ..reading import stored
 from ..tools.errors import UserError
 from ..tools.hints import Column, Group
-
-
-def tex(unit: str) -> str:
-    """A unit as clogsweep writes it, e.g. g rho sigma^2, for matplotlib."""
-    for word in ("rho", "sigma"):
-        unit = unit.replace(word, rf"\{word}")
-    return unit.replace("sqrt(", r"\sqrt{").replace(")", "}").replace("t0", "t_0").replace("degrees", r"{}^\circ").replace(" ", r"\,")
-
-
-def number(value: float | None) -> str:
-    # The density of a saturated mixture is not known beforehand: clogfit has no number for it.
-    return r"\mathrm{saturated}" if value is None else f"{value:.4g}"
-
-
-def is_number(word: str) -> bool:
-    try:
-        return math.isfinite(float(word))
-    except ValueError:
-        return False
-
-
-def symbol(column: Column) -> str:
-    """Of a parameter as clogsweep describes it, with its unit, so that what follows is a pure number; for words the name itself.
-    One with an axis of its own is a pure number already, the axis says of what."""
-    if column["symbol"] and column["name"] in style.AXES:
-        return column["symbol"]
-    if not column["symbol"]:
-        return rf"\mathrm{{{column['name'].replace('_', ' ')}}}".replace(" ", r"\ ")
-    if column["unit"].startswith("1/"):
-        return rf"{column['symbol']}\,{tex(column['unit'][2:])}"
-    return column["symbol"] + (f"/({tex(column['unit'])})" if " " in column["unit"] else f"/{tex(column['unit'])}" if column["unit"] else "")
-
-
-def said(column: Column, value: float | str | None) -> str:
-    """A parameter and its value in words, e.g. $N_v = 128$."""
-    if isinstance(value, str):
-        return f"{column['name'].replace('_', ' ')} {value}"
-    return f"${symbol(column)} = {number(value)}$"
-
+from . import AXES, is_number, runs_a_point, said, symbol
 
 FINISHED = ("passed", "clogged", "broken", "flowing")
 
@@ -75,10 +30,17 @@ class Groups:
         self.tells_what_all_share = True  # in caption() and note()
         self.abscissa = self._choose_abscissa() if self.members else ""  # there is nothing to draw
 
-    def refuse_passages(self) -> None:
-        """@raise UserError  for a sweep of channels or walls, which has no clogging lengths"""
+    def finished(self, source: object = "the sweep") -> Groups:
+        """@throws UserError  if no run of theirs has finished"""
+        if not self.members:
+            raise UserError(f"{source} holds no finished runs; let the sweep finish some first")
+        return self
+
+    def with_lengths(self, source: object = "the sweep") -> Groups:
+        """The same. @throws UserError  for a sweep of channels or walls, too, which has no clogging lengths"""
         if self.are_passages:
             raise UserError("cannot draw clogging lengths (these droplets were in a channel or on a wall); clogfit report draws what came out of them")
+        return self.finished(source)
 
     @property
     def are_polygons(self) -> bool:
@@ -148,8 +110,8 @@ class Groups:
         return self._circle_files.get(value, value) if name == "obstacles" else value
 
     def axis_label(self) -> str:
-        if self.abscissa in style.AXES:
-            return style.AXES[self.abscissa]
+        if self.abscissa in AXES:
+            return AXES[self.abscissa]
         return f"{self.abscissa.replace('_', ' ')} ${self.symbol(self.abscissa)}$"
 
     def curves(self) -> list[tuple[str, list[Group]]]:
@@ -162,21 +124,7 @@ class Groups:
 
     def is_logarithmic(self) -> bool:
         values = self.values(self.abscissa)
-        return min(values) > 0 and (self.abscissa in style.AXES or max(values) > 5 * min(values))
-
-    def places(self, members: Sequence[Group], index: int, num_curves: int) -> list[float]:
-        """Where a curve's points are drawn: apart from those of the others, so that their bars can be told apart."""
-        values = self.values(self.abscissa)
-        if self.is_logarithmic():
-            return [group[self.abscissa] * style.side_by_side(index, num_curves, values) for group in members]
-        step = min(0.006, 0.06 / max(num_curves - 1, 1))
-        shift = step * (max(values) - min(values)) * (index - (num_curves - 1) / 2)
-        return [group[self.abscissa] + shift for group in members]
-
-    def draw_abscissa(self, axes: Axes) -> None:
-        if self.is_logarithmic():
-            style.logarithmic_abscissa(axes, [group[self.abscissa] for group in self.members])
-        axes.set_xlabel(self.axis_label())
+        return min(values) > 0 and (self.abscissa in AXES or max(values) > 5 * min(values))
 
     def caption(self) -> str:
         """What all curves have in common, and how many runs are behind them."""
@@ -194,7 +142,7 @@ class Groups:
         if first["obstacle_filling"] == "file":
             words.append(f"circles of {self._circle_file()}")
         if not self.are_passages:
-            words.append(style.runs_a_point(self.members))
+            words.append(runs_a_point(self.members))
         return ", ".join(words)
 
     def _only_circle_file(self) -> dict[str, str]:

@@ -14,9 +14,8 @@ from matplotlib.figure import Figure
 from .. import style
 from ..drawing import clogs, lengths, passages, way
 from ..labels.groups import Groups
-from ..reading import replays, stored
+from ..reading import fits, replays, stored
 from ..reading.trajectory import Trajectory
-from ..results import fit
 from ..tools import rounded
 from ..tools.hints import Group
 from . import report
@@ -122,7 +121,7 @@ def of_passages(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> l
 
 def draw(sweep: pathlib.Path, folder: pathlib.Path) -> Figure:
     """@param folder  of the programs. @throws UserError, ProgramFailed"""
-    groups = fit.fitted(folder / "clogfit", sweep).finished(sweep)
+    groups = Groups(*fits.fitted(folder / "clogfit", sweep)).finished(sweep)
     with stored.opened(sweep, folder=folder) as file:
         about = stored.attributes(file)
     abscissa = groups.abscissa.replace("_", " ")

@@ -17,12 +17,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import style
-from ..commands import command_line
 from ..drawing import clogs, lengths, passages, survival_curve
 from ..labels.groups import Groups
-from ..reading import programs, stored
-from ..results import fit
-from ..tools import rounded
+from ..reading import fits, programs, stored
+from ..tools import outputs, rounded
 from ..tools.errors import UserError
 from ..tools.hints import Group
 from .chart import Charts
@@ -336,23 +334,23 @@ def page(name: str, groups: Groups, sections: dict[str, str], progress: str, abo
 def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: pathlib.Path) -> pathlib.Path:
     """@param examples  clogs or outlines to show; @param folder  of the programs. @return the output; an earlier page is replaced, nothing else.
     @throws UserError, ProgramFailed"""
-    command_line.refuse_unwritable(output, "html", sweep)
-    fitted = fit.fitted(folder / "clogfit", sweep)
+    outputs.refuse_unwritable(output, "html", sweep)
+    told, circle_files = fits.fitted(folder / "clogfit", sweep)
     status = json.loads(programs.run_program(folder / "clogsweep", "status", sweep, "--format", "json"))
-    groups = fitted.finished(sweep)
+    groups = Groups(told, circle_files).finished(sweep)
     for number, group in enumerate(groups.members):
         group["number"] = number  # by which the page knows each (style.mark())
     rows = stored.read_table(sweep, folder)
     with stored.opened(sweep, folder=folder) as file:
         about = stored.attributes(file)
-    sentences = fitted.doubts
+    sentences = told["doubts"]
     label, tell = (label_of_passage, of_passages) if groups.are_passages else (label_of_length, of_lengths)
     charts = Charts([label(groups, group) for group in groups.members])
     sections = tell(groups, sweep, examples, folder / "clogrun", charts)
     sections |= {"What may spoil these numbers": doubts(groups.members, sentences, rows),
                  "Table": table_of_passages(groups, sentences) if groups.are_passages else table_of_lengths(groups, sentences, rows)}
     try:
-        output.write_text(page(sweep.name, groups, sections, progress_of(status, rows), about, charts, stored.writer(fitted.told)))
+        output.write_text(page(sweep.name, groups, sections, progress_of(status, rows), about, charts, stored.writer(told)))
     except OSError as error:
         raise UserError(f"cannot write {output} ({error.strerror}); give another --output") from error
     return output

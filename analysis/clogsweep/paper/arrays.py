@@ -10,8 +10,8 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from .. import style
-from ..drawing import survival_curve
-from ..labels.groups import said
+from ..drawing import surroundings, survival_curve
+from ..labels import AXES, runs_a_point, said
 from ..reading import stored, trajectory
 from ..reading.trajectory import Trajectory
 from ..tools import rounded
@@ -38,7 +38,7 @@ def describe(columns: dict[str, Column], groups: Sequence[Group], without: Colle
             words.append(said(columns[name], first[name]))
     words.append("saturated arrays" if first["obstacle_filling"] == "saturated" else rf"$\rho_\mathrm{{ob}}\sigma^2 = {first['obstacle_density']:g}$")
     words += [f"$V_t = {first['terminal_speed']:g}$", f"$T = {first['max_time']:g}\\,t_0$", f"$L = {first['box']:g}\\sigma$"]
-    line = style.runs_a_point(groups)
+    line = runs_a_point(groups)
     if first["model"] == "dp":
         words.insert(0, f"$N_v = {first['vertices']}$")
         line += f"; interface: {interface_of(first['preset'])}"
@@ -87,8 +87,8 @@ def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity:
     style.logarithmic_abscissa(axes, places)
     if quantity == "length":
         style.logarithmic_ordinate(axes)
-    axes.set_xlabel(style.AXES[abscissa])
-    axes.set_ylabel(style.AXES[quantity])
+    axes.set_xlabel(AXES[abscissa])
+    axes.set_ylabel(AXES[quantity])
     style.grid(axes)
     style.legend(axes, groups if quantity == "length" else ())
     note = style.length_note(groups, shop.confidence(config), [axes]) if quantity == "length" else "bars: standard error"
@@ -169,8 +169,8 @@ def over_sag(shop: Workshop, curves: Sequence[Curve], gap: float, quantity: str)
     style.logarithmic_abscissa(axes)
     if quantity == "length":
         style.logarithmic_ordinate(axes)
-    axes.set_xlabel(style.AXES["sag"])
-    axes.set_ylabel(style.AXES[quantity])
+    axes.set_xlabel(AXES["sag"])
+    axes.set_ylabel(AXES[quantity])
     axes.axvline(0.25, color="0.75", linewidth=0.8, linestyle=":", zorder=0)
     axes.text(0.25, 0.02, r"$\delta_s = 0.25\sigma$ ", ha="right", color="0.4", fontsize=8, transform=axes.get_xaxis_transform())
     style.grid(axes)
@@ -215,7 +215,7 @@ def sag_picture(shop: Workshop) -> Plate:
         axes.plot([-0.08, 0.08], [0.5 - sag, 0.5 - sag], color="black", linewidth=1)
         axes.annotate("", (0, 0.5 - sag), (0, 0.5), arrowprops={"arrowstyle": "-|>", "color": "black"})
         axes.text(0, 0.46 - sag, rf"$\delta_s = {sag:.3f}\sigma$", ha="center", va="top")
-        trajectory.frame_limits(axes, (-0.85, -0.25), (0.85, 1.1))
+        surroundings.frame_limits(axes, (-0.85, -0.25), (0.85, 1.1))
         axes.set_xlabel(r"along the wall $/\sigma$")
         style.caption(axes, title)
     panels[0].set_ylabel(r"height above the wall $/\sigma$")
@@ -267,9 +267,9 @@ def snapshot(shop: Workshop, mechanism: str) -> Plate:
     drawing, axes = style.subplots(figsize=(5.6, 5.4))
     shape = run.polygons[-1]
     centre = shape.mean(axis=1)
-    trajectory.draw_droplet(axes, run, -1, centre)
+    surroundings.draw_droplet(axes, run, -1, centre)
     half = 0.6 + np.abs(shape - centre[:, None]).max()
-    trajectory.frame_limits(axes, (-half, -half), (half, half))
+    surroundings.frame_limits(axes, (-half, -half), (half, half))
     axes.annotate("flow", (0.22, 0.94), (0.04, 0.94), xycoords="axes fraction", va="center",
                   arrowprops={"arrowstyle": "-|>", "color": "black"}, bbox={"facecolor": "white", "edgecolor": "none", "pad": 1})
     axes.set_xlabel(r"$x/\sigma$")
@@ -302,9 +302,9 @@ def two_ways(shop: Workshop) -> Plate:
         shown = run.polygons[chosen]
         low, high = shown.min(axis=(0, 2)) - 0.3, shown.max(axis=(0, 2)) + 0.3
         for axes, frame in zip(line, chosen):
-            trajectory.draw_droplet(axes, run, frame)
+            surroundings.draw_droplet(axes, run, frame)
             half = max(high - low) / 2
-            trajectory.frame_limits(axes, (low + high) / 2 - half, (low + high) / 2 + half)
+            surroundings.frame_limits(axes, (low + high) / 2 - half, (low + high) / 2 + half)
             axes.set_xticks([]), axes.set_yticks([])
             axes.set_title(f"$t = {run.times[frame]:.0f}\\,t_0$", fontsize=9)
         for axes in line[len(chosen):]:

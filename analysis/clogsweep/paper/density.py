@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from .. import style
+from ..labels import AXES, runs_a_point
 from ..tools import rounded
 from ..tools.hints import Group
 from .arrays import numbers
@@ -88,11 +89,11 @@ def density_of_the_published_arrays(shop: Workshop) -> Plate:
     style.logarithmic_abscissa(axes, places)
     style.grid(axes)
     axes.set_xlabel(r"obstacles per area $\rho_\mathrm{ob}\,\sigma^2$")
-    axes.set_ylabel(style.AXES["length"])
+    axes.set_ylabel(AXES["length"])
     style.legend(axes, everyone)
     first = everyone[0]
     style.caption(axes, rf"$\Gamma = {first['line_tension']:g}$, $w_\mathrm{{ob}} = {first['obstacle_gap']:g}\,\sigma$, "
-                        rf"$\sigma_\mathrm{{ob}} = {first['obstacle_diameter']:g}\,\sigma$, {style.runs_a_point(everyone)}" + "\n"
+                        rf"$\sigma_\mathrm{{ob}} = {first['obstacle_diameter']:g}\,\sigma$, {runs_a_point(everyone)}" + "\n"
                         "legend: density at which the fitted curve has the published length, with its 95 % interval; "
                         + style.length_note(everyone, shop.confidence("density-robust"), [axes]))
     return Plate(drawing, data)

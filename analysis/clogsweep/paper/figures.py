@@ -7,8 +7,8 @@ import datetime
 import pathlib
 
 from .. import style
-from ..commands import command_line
 from ..reading import programs
+from ..tools import outputs
 from . import arrays, channels, density, dilute, hanging  # noqa: F401, they fill the catalogue
 from .plate import CATALOGUE, Entry, Plate
 from .workshop import Workshop
@@ -33,9 +33,9 @@ def output_of(name: str, shop: Workshop) -> pathlib.Path:
 def refuse_unwritable(name: str, shop: Workshop) -> None:
     """Before minutes of work, of the four files of write()."""
     output = output_of(name, shop)
-    command_line.refuse_unwritable_picture(output, *shop.profiles)
+    outputs.refuse_unwritable_picture(output, *shop.profiles)
     for ending in ("csv", "txt"):
-        command_line.refuse_unwritable(pathlib.Path(f"{output}.{ending}"), "text", *shop.profiles)
+        outputs.refuse_unwritable(pathlib.Path(f"{output}.{ending}"), "text", *shop.profiles)
 
 
 def write(plate: Plate, entry: Entry, shop: Workshop, command: str) -> None:

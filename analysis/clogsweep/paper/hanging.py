@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import style
-from ..labels.groups import said
+from ..labels import AXES, runs_a_point, said
 from ..tools.hints import Group
 from .arrays import HOLDS, by, numbers, of_each
 from .plate import Plate, figure, interface_of
@@ -16,7 +16,7 @@ from .workshop import Workshop
 def title(drawing: Figure, shop: Workshop, config: str, groups: Sequence[Group]) -> None:
     """What all points have in common, and what the marks mean."""
     first = groups[0]
-    drawing.suptitle(f"{style.runs_a_point(groups)}; saturated arrays, obstacles of {first['obstacle_diameter']:g}$\\sigma$, "
+    drawing.suptitle(f"{runs_a_point(groups)}; saturated arrays, obstacles of {first['obstacle_diameter']:g}$\\sigma$, "
                      f"$T = {first['max_time']:g}\\,t_0$\n{style.length_note(groups, shop.confidence(config), drawing.axes)}", fontsize=8, color="0.25")
 
 
@@ -47,9 +47,9 @@ def lengths_by_mesh(shop: Workshop) -> Plate:
                 data += numbers(curve, f"{config}, gap {gap:g}", **of_each(curve, *HOLDS))
             finish(axes, places, [group for _, curve in families for group in curve],
                    f"{interface_of(members[0]['preset'])}\n{said(shop.columns(config)['obstacle_gap'], gap)}")
-        line[0].set_ylabel(style.AXES["length"])
+        line[0].set_ylabel(AXES["length"])
     for axes in panels[-1]:
-        axes.set_xlabel(style.AXES["line_tension"])
+        axes.set_xlabel(AXES["line_tension"])
     title(drawing, shop, configs[0], groups)
     return Plate(drawing, data)
 
@@ -76,7 +76,7 @@ def lengths_by_friction(shop: Workshop) -> Plate:
                                    f"{said(columns['friction'], friction)}, $N_v = {vertices}$", line)
                 data += numbers(curve, f"friction {friction:g}, gap {gap:g}", **of_each(curve, "friction", *HOLDS))
         finish(axes, places, members, f"{interface_of(groups[0]['preset'])}\n{said(columns['obstacle_gap'], gap)}")
-        axes.set_xlabel(style.AXES["line_tension"])
-    panels[0][0].set_ylabel(style.AXES["length"])
+        axes.set_xlabel(AXES["line_tension"])
+    panels[0][0].set_ylabel(AXES["length"])
     title(drawing, shop, config, groups)
     return Plate(drawing, data)

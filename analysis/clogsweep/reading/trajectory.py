@@ -1,4 +1,4 @@
-"""What clogrun writes of one droplet, and how its surroundings are drawn."""
+"""What clogrun writes of one droplet."""
 
 from __future__ import annotations
 
@@ -8,19 +8,11 @@ import pathlib
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.axes import Axes
-from matplotlib.collections import PatchCollection
-from matplotlib.patches import Circle, Polygon
-from matplotlib.patheffects import withStroke
-from matplotlib.text import Text
-from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
-from .. import style
-from ..tools.hints import AnyPath, Numbers, Point, Records
+from ..tools.hints import AnyPath, Numbers, Records
 from . import stored
 
 POINTS_OF_DISK = 128
-HALO = withStroke(linewidth=3, foreground="white")  # of what may lie over obstacles, and hides none of them
 
 
 @dataclasses.dataclass
@@ -118,37 +110,6 @@ def wedge_outline(wedge: Numbers, reach: float = 50.0) -> Numbers:
                      centre + reach * other_flank + radius * other_normal, centre + reach * other_flank + behind])
 
 
-def draw_surroundings(axes: Axes, trajectory: Trajectory, origin: Point = (0.0, 0.0)) -> None:
-    """Obstacles and walls, grey."""
-    shift = np.asarray(origin)
-    circles = [Circle((x - shift[0], y - shift[1]), diameter / 2) for x, y, diameter in trajectory.obstacles]
-    axes.add_collection(PatchCollection(circles, facecolor=style.OBSTACLE, edgecolor="none"))
-    draw_walls(axes, trajectory, shift)
-
-
-def draw_droplet(axes: Axes, trajectory: Trajectory, frame: int, origin: Point = (0.0, 0.0)) -> None:
-    """One outline among its surroundings."""
-    draw_surroundings(axes, trajectory, origin)
-    axes.fill(*(trajectory.polygons[frame] - np.asarray(origin)[:, None]), facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1)
-
-
-def draw_walls(axes: Axes, trajectory: Trajectory, shift: float | Numbers = 0.0) -> None:
-    for wedge in trajectory.wedges:
-        axes.add_patch(Polygon(wedge_outline(wedge) - shift, facecolor=style.OBSTACLE, edgecolor="none"))
-
-
-def draw_guides(axes: Axes) -> None:
-    """A bar as long as a droplet is wide, and the direction of the flow. Both stay in their corners when axes are moved."""
-    bar = AnchoredSizeBar(axes.transData, 1.0, r"$\sigma$", "lower left", pad=0.2, borderpad=0.3, sep=2, label_top=True, frameon=False)
-    bar.set_zorder(6)
-    axes.add_artist(bar)
-    arrow = axes.annotate("", (0.17, 0.95), (0.02, 0.95), xycoords="axes fraction", zorder=6,
-                          arrowprops={"arrowstyle": "-|>", "linewidth": 1.5, "color": "black"})
-    word = axes.text(0.03, 0.925, "flow", transform=axes.transAxes, va="top", fontsize=9, zorder=6)
-    for artist in (bar.size_bar.get_children()[0], *bar.findobj(Text), arrow.arrow_patch, word):
-        artist.set_path_effects([HALO])
-
-
 def described(trajectory: Trajectory) -> str:
     """What was run, without what came out."""
     row = trajectory.row
@@ -184,12 +145,6 @@ def centroids(polygons: Numbers) -> Numbers:
     cross = x * next_y - next_x * y
     moments = np.stack([((x + next_x) * cross).sum(axis=-1), ((y + next_y) * cross).sum(axis=-1)], axis=-1)
     return reference[:, :, 0] + moments / (3 * cross.sum(axis=-1, keepdims=True))
-
-
-def frame_limits(axes: Axes, low: Point, high: Point) -> None:
-    axes.set_xlim(low[0], high[0])
-    axes.set_ylim(low[1], high[1])
-    axes.set_aspect("equal")
 
 
 def along_the_way(polygons: Numbers, number: int) -> npt.NDArray[np.intp]:

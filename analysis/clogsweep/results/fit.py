@@ -1,15 +1,14 @@
-"""What clogfit says of a sweep."""
+"""The fit of a sweep: a table, curves of lengths and speeds."""
 
 from __future__ import annotations
 
 import json
-import os
 import pathlib
 from typing import TYPE_CHECKING, Any
 
 from ..drawing import lengths
 from ..labels.groups import Groups
-from ..reading import programs, stored
+from ..reading import fits, programs, stored
 from ..style.picture import Picture
 from ..tools import checked, rounded
 from ..tools.errors import UserError
@@ -34,7 +33,7 @@ class Fit:
         self.confidence: float = told["confidence"]
         self.units: dict[str, str] = told["units"]
         self.doubts: dict[str, str] = told["doubts"]
-        self._groups = Groups(told, circle_files)
+        self.known = Groups(told, circle_files)
 
     @property
     def source(self) -> str:
@@ -65,37 +64,19 @@ class Fit:
             raise UserError(f"no group {group}; there are {len(self.told['groups'])}, the first is 0")
         return pandas.DataFrame(self.told["groups"][group]["survival"])
 
-    def finished(self, source: object = "the sweep") -> Groups:
-        """The groups that hold finished runs. @throws UserError  if there are none"""
-        if not self._groups.members:
-            raise UserError(f"{source} holds no finished runs; let the sweep finish some first")
-        return self._groups
-
-    def drawable(self, source: object = "the sweep") -> Groups:
-        """The same, with clogging lengths. @throws UserError  if there are none"""
-        self._groups.refuse_passages()
-        return self.finished(source)
-
     def curve(self) -> Picture:
-        """Clogging lengths over what the sweep varies. @throws UserError  as drawable()"""
-        return Picture(lengths.draw(self.drawable()), self.source)
+        """Clogging lengths over what the sweep varies. @throws UserError  if there are none"""
+        return Picture(lengths.draw(self.known.with_lengths()), self.source)
 
     def speeds(self) -> Picture:
-        """Mean speeds over the speed of a free droplet, over what the sweep varies. @throws UserError  as drawable()"""
-        return Picture(lengths.draw_speeds(self.drawable()), self.source)
+        """Mean speeds over the speed of a free droplet, over what the sweep varies. @throws UserError  if there are none"""
+        return Picture(lengths.draw_speeds(self.known.with_lengths()), self.source)
 
     def __repr__(self) -> str:
         return f"<fit of {self._counted()}>"
 
     def _repr_html_(self) -> str:
         return self.groups._repr_html_()
-
-
-def fitted(clogfit: pathlib.Path, sweep: str | os.PathLike[str], *options: str) -> Fit:
-    """What clogfit says now. @throws ProgramFailed  with its reason"""
-    told = json.loads(programs.run_program(clogfit, sweep, "--format", "json", *options))
-    with stored.opened(sweep, folder=clogfit.parent) as file:
-        return Fit(told, stored.circle_files(file))
 
 
 def read(path: pathlib.Path, folder: pathlib.Path | None) -> Fit:
@@ -107,7 +88,7 @@ def read(path: pathlib.Path, folder: pathlib.Path | None) -> Fit:
     except OSError as error:
         raise UserError(f"cannot read {path} ({error.strerror}); give a sweep, or the output of clogfit --format json") from error
     if content.startswith(HDF5_BEGINNING):
-        return fitted(programs.programs_in(folder) / "clogfit", path)
+        return Fit(*fits.fitted(programs.programs_in(folder) / "clogfit", path))
     try:
         return Fit(json.loads(content))
     except ValueError as error:

@@ -12,7 +12,7 @@ from typing import Any
 
 from ..drawing import clogs
 from ..pages import poster, report
-from ..reading import programs, replays, stored
+from ..reading import fits, programs, replays, stored
 from ..style.picture import Picture
 from ..tools import checked
 from ..tools.errors import UserError
@@ -53,7 +53,7 @@ class Sweep:
         """
         given = {"--dwell": dwell, "--from-distance": from_distance, "--confidence": confidence}
         options = [word for name, value in given.items() if value is not None for word in (name, repr(float(value)))]
-        return fit.fitted(self._program("clogfit"), self.path, *options)
+        return fit.Fit(*fits.fitted(self._program("clogfit"), self.path, *options))
 
     def status(self) -> dict[str, Any]:
         """How far the sweep is, as clogsweep status says."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import matplotlib
 from matplotlib.axes import Axes
@@ -13,11 +13,10 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 
+from ..labels import AXES
+from ..labels.groups import Groups
 from ..tools import rounded
 from ..tools.hints import AnyPath, Group
-
-if TYPE_CHECKING:
-    from ..labels.groups import Groups
 
 # Okabe and Ito's palette, safe for colour-blind readers; a marker of its own for every curve besides.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
@@ -28,19 +27,6 @@ MECHANISM_MARKERS = {"wrapped": "o", "squeezed": "s", "hybrid": "D", "other": "X
 VIRIDIS = matplotlib.colormaps["viridis"]
 OBSTACLE = "0.72"
 DROPLET = "#D55E00"
-
-AXES = {
-    "line_tension": r"line tension $\Gamma = \gamma/(g\rho\sigma^2)$",
-    "wall_stiffness": r"wall stiffness $E_w = \epsilon_w/(g\rho\sigma^3)$",
-    "capillary_number": r"capillary number $Ca = (v_g/v_t)\,\pi/(4\Gamma)$",
-    "sag": r"sag under its own weight $\delta_s/\sigma$",
-    "length": r"clogging length $\lambda/\sigma$",
-    "speed": r"mean speed $\langle v_g\rangle/v_t$",
-    "h": r"distance from the orifice $h/\sigma$",
-    "shape": r"shape parameter $\mathcal{A} = P^2/(4\pi a)$",
-    "profile": r"speed $v_g/v_t$",
-}
-
 
 def new_figure(**options: Any) -> Figure:
     """Not one of `pyplot`'s, which stay in memory and belong to a backend: whoever draws in a notebook has chosen one."""
@@ -254,11 +240,6 @@ def logarithmic_ordinate(axes: Axes) -> None:
 def grid(axes: Axes) -> None:
     axes.grid(True, which="major", color="0.9", linewidth=0.6)
     axes.set_axisbelow(True)
-
-
-def runs_a_point(groups: Collection[Group]) -> str:
-    counts = sorted({group["runs"] for group in groups})
-    return f"{rounded.counted(counts[0], 'run')} a point" if len(counts) == 1 else f"{counts[0]} to {counts[-1]} runs a point"
 
 
 def caption(axes: Axes, text: str) -> None:

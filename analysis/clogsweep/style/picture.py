@@ -9,7 +9,7 @@ import pathlib
 from matplotlib.figure import Figure
 
 from .. import style
-from ..commands import command_line
+from ..tools import outputs
 
 
 class Picture:
@@ -30,7 +30,7 @@ class Picture:
         path = pathlib.Path(output)
         if path.suffix in (".png", ".pdf"):
             path = path.with_suffix("")
-        command_line.refuse_unwritable_picture(path)
+        outputs.refuse_unwritable_picture(path)
         style.save(self.figure, path, {"Description": self.source, "Software": "clogsweep"} if self.source else None)
         return pathlib.Path(f"{path}.png")
 
