@@ -13,11 +13,11 @@ from __future__ import annotations
 
 import importlib
 import os
-from typing import TYPE_CHECKING, Any
 
-from .tools import errors
-
+TYPE_CHECKING = False  # to mypy it is true; `typing` takes longer to load than this module
 if TYPE_CHECKING:
+    from typing import Any
+
     from .drawing.clogs import Clog, Clogs
     from .results.fit import Fit
     from .results.run import Film, Run
@@ -45,6 +45,8 @@ def _loaded(module: str) -> Any:
     try:
         return importlib.import_module(f".{module}", __name__)
     except ImportError as error:
+        from .tools import errors
+
         raise ImportError(errors.lacking(error)) from None
 
 

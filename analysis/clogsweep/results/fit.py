@@ -6,15 +6,15 @@ import json
 import pathlib
 from typing import TYPE_CHECKING, Any
 
-from ..drawing import lengths
 from ..labels.groups import Groups
 from ..reading import fits, programs, stored
-from ..style.picture import Picture
 from ..tools import checked, rounded
 from ..tools.errors import UserError
 
 if TYPE_CHECKING:
     import pandas
+
+    from ..style.picture import Picture
 
 HDF5_BEGINNING = b"\x89HDF\r\n\x1a\n"
 
@@ -66,10 +66,16 @@ class Fit:
 
     def curve(self) -> Picture:
         """Clogging lengths over what the sweep varies. @throws UserError  if there are none"""
+        from ..drawing import lengths  # slow to load, as all that draws
+        from ..style.picture import Picture
+
         return Picture(lengths.draw(self.known.with_lengths()), self.source)
 
     def speeds(self) -> Picture:
         """Mean speeds over the speed of a free droplet, over what the sweep varies. @throws UserError  if there are none"""
+        from ..drawing import lengths
+        from ..style.picture import Picture
+
         return Picture(lengths.draw_speeds(self.known.with_lengths()), self.source)
 
     def __repr__(self) -> str:

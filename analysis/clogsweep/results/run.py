@@ -5,15 +5,14 @@ from __future__ import annotations
 import base64
 import os
 import pathlib
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
-import pandas
-
-from ..drawing import film, vtk, way
 from ..reading import stored, trajectory
-from ..style.picture import Picture
 from ..tools import checked
 from ..tools.errors import UserError
+
+if TYPE_CHECKING:
+    from ..style.picture import Picture
 
 
 class Film:
@@ -43,6 +42,8 @@ class Run:
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         """@throws UserError  if the file is no run or is damaged"""
+        import pandas
+
         self.path = pathlib.Path(path)
         self.trajectory = trajectory.read(self.path, needs_frames=False)
         self.samples = pandas.DataFrame(self.trajectory.table)
@@ -55,6 +56,9 @@ class Run:
 
     def picture(self, outlines: int = 12) -> Picture:
         """So many moments of the run in one picture. @throws UserError  if there are no outlines"""
+        from ..drawing import way  # slow to load, as all that draws
+        from ..style.picture import Picture
+
         checked.whole("outlines", outlines, 1)
         trajectory.require_frames(self.trajectory)
         return Picture(way.draw(self.trajectory, outlines), stored.source(self.attributes))
@@ -68,6 +72,8 @@ class Run:
         @param size  "540p", "1080p" or "2160p", of the frames; 1080p if it is not given, 540p of a .gif
         @throws UserError  if it cannot be made
         """
+        from ..drawing import film
+
         checked.one_of("colour", colour, film.COLOURS)
         checked.one_of("size", size, (*film.SIZES, None))
         checked.whole("rate", rate, 1)
@@ -79,6 +85,8 @@ class Run:
 
     def export_vtk(self, output: str | os.PathLike[str]) -> pathlib.Path:
         """Writes files for ParaView. @return the one to be opened, OUTPUT.pvd. @throws UserError"""
+        from ..drawing import vtk
+
         trajectory.require_frames(self.trajectory)
         return vtk.export(self.trajectory, pathlib.Path(output))
 

@@ -8,16 +8,17 @@ import os
 import pathlib
 import tempfile
 from collections.abc import Collection
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ..drawing import clogs
-from ..pages import poster, report
 from ..reading import fits, programs, replays, stored
-from ..style.picture import Picture
 from ..tools import checked
 from ..tools.errors import UserError
-from . import fit
+from .fit import Fit
 from .run import Run
+
+if TYPE_CHECKING:
+    from ..drawing.clogs import Clogs
+    from ..style.picture import Picture
 
 
 class Sweep:
@@ -43,7 +44,7 @@ class Sweep:
     def _program(self, name: str) -> pathlib.Path:
         return programs.programs_in(self._programs) / name
 
-    def fit(self, *, dwell: float | None = None, from_distance: float | None = None, confidence: float | None = None) -> fit.Fit:
+    def fit(self, *, dwell: float | None = None, from_distance: float | None = None, confidence: float | None = None) -> Fit:
         """Clogging lengths and mean speeds, from clogfit.
 
         @param dwell  a droplet that has not moved for so long counts as clogged [t0]
@@ -53,19 +54,21 @@ class Sweep:
         """
         given = {"--dwell": dwell, "--from-distance": from_distance, "--confidence": confidence}
         options = [word for name, value in given.items() if value is not None for word in (name, repr(float(value)))]
-        return fit.Fit(*fits.fitted(self._program("clogfit"), self.path, *options))
+        return Fit(*fits.fitted(self._program("clogfit"), self.path, *options))
 
     def status(self) -> dict[str, Any]:
         """How far the sweep is, as clogsweep status says."""
         return json.loads(programs.run_program(self._program("clogsweep"), "status", self.path, "--format", "json"))
 
-    def clogs(self, *, mechanism: str | None = None, tasks: Collection[int] | None = None, most: int = 6, jobs: int = 2) -> clogs.Clogs:
+    def clogs(self, *, mechanism: str | None = None, tasks: Collection[int] | None = None, most: int = 6, jobs: int = 2) -> Clogs:
         """Clogged polygons, run once more until they rest.
 
         @param mechanism  only "wrapped", "squeezed", "hybrid" or "other"; @param tasks  only these
         @param most  so many at most, the first; @param jobs  runs at a time
         @throws UserError  if there are none
         """
+        from ..drawing import clogs  # slow to load, as all that draws
+
         checked.whole("most", most, 1)
         checked.whole("jobs", jobs, 1)
         rows = clogs.chosen(clogs.of_polygons(self._records, self.path), self.path, mechanism=mechanism, tasks=tasks, most=most)
@@ -85,11 +88,16 @@ class Sweep:
     def report(self, output: str | os.PathLike[str], examples: int = 4) -> pathlib.Path:
         """Writes a page of HTML about the sweep; an earlier one is replaced, nothing else. @param examples  clogs to be shown. @return its file.
         @throws UserError"""
+        from ..pages import report
+
         checked.whole("examples", examples, 0)
         return report.write(self.path, pathlib.Path(output), examples, programs.programs_in(self._programs))
 
     def poster(self) -> Picture:
         """One page of the sweep to be printed, A3: its curves and some of its droplets. @throws UserError"""
+        from ..pages import poster
+        from ..style.picture import Picture
+
         return Picture(poster.draw(self.path, programs.programs_in(self._programs)), stored.source(self.attributes))
 
     def __repr__(self) -> str:
