@@ -294,7 +294,7 @@ class Pictures(Analysis):
     def test_markers_show_by_what_droplets_clog_and_open_ones_a_doubt(self):
         axes = style.new_figure().subplots()
         groups = [self.group((4, 1, 0, 0), doubts="few_clogs held_by_mesh"), self.group((1, 4, 0, 0)), self.group((0, 1, 3, 0)), self.group((0, 0, 0, 0))]
-        style.draw_lengths(axes, [1, 2, 3, 4], groups, 0, "")
+        lengths.draw_lengths(axes, [1, 2, 3, 4], groups, 0, "")
         drawn = {line.get_xdata()[0]: (line.get_marker(), line.get_markerfacecolor() == "white") for line in axes.lines
                  if len(line.get_xdata()) == 1 and np.isfinite(line.get_ydata()[0])}
         self.assertEqual(drawn, {1: ("o", True), 2: ("s", False), 3: ("D", False), 4: ("^", True)})
@@ -355,7 +355,7 @@ class Pictures(Analysis):
         self.succeed("clogsweep", *QUICK, "line-tension=2,30", "seeds=1..5", "--output", "s.h5")
         groups = Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
         for group, doubts in zip(groups.members, (["below_spacing"], ["below_spacing", "not_proved_sound"])):
-            self.assertEqual(style.reasons_for_open_marker(group), doubts)
+            self.assertEqual(lengths.reasons_for_open_marker(group), doubts)
 
         def open_places():
             """With the caption."""

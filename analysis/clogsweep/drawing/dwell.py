@@ -11,6 +11,7 @@ from .. import style
 from ..labels.groups import Groups
 from ..tools.errors import UserError
 from ..tools.hints import Group
+from .lengths import draw_lengths, finish_lengths
 
 NUM_TIMES = 12
 
@@ -39,12 +40,12 @@ def draw(times: Sequence[float], fits: Sequence[Groups]) -> Figure:
     curves = list(zip(*(groups.members for groups in fits)))
     for index, members in enumerate(curves):
         places = [time * style.side_by_side(index, len(curves), times) for time in times]
-        style.draw_lengths(axes, places, members, index, label_of(fits[-1], members[-1]))
+        draw_lengths(axes, places, members, index, label_of(fits[-1], members[-1]))
     style.logarithmic_abscissa(axes, times)
     axes.xaxis.set_major_formatter("{x:g}")  # times may be long
     lengths = fits[-1].values("dwell_length")
     moved = f"{lengths.pop():g}" + r"\,\sigma" if len(lengths) == 1 else r"\delta_\mathrm{d}"
     axes.set_xlabel(f"time without having moved by ${moved}$ that counts as clogged $/t_0$")
     everyone = [group for groups in fits for group in groups.members]
-    style.finish_lengths(axes, fits[-1], everyone, "most went on later, or other clogs")
+    finish_lengths(axes, fits[-1], everyone, "most went on later, or other clogs")
     return figure

@@ -272,7 +272,7 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib
 
     curves = [chart(lengths.draw(groups), "clogging length")]
     if any(group["relative_speed"] is not None for group in groups.members):
-        curves.append(chart(lengths.draw_speeds(groups), "mean speed over terminal speed"))
+        curves.append(chart(lengths.speeds(groups), "mean speed over terminal speed"))
     survivals = [chart(survival(groups, label, members), "P(r), to the longest way") for label, members in groups.curves()
                  if any(group["survival"] for group in members)]
     survivals += [chart(incidence(groups, label, members), "ends by cause") for label, members in groups.curves()

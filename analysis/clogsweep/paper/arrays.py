@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 
 from .. import style
 from ..drawing import surroundings, survival_curve
+from ..drawing.lengths import draw_lengths, draw_speeds, length_note
 from ..labels import AXES, runs_a_point, said
 from ..reading import stored, trajectory
 from ..reading.trajectory import Trajectory
@@ -67,8 +68,8 @@ def by(groups: Iterable[Group], name: str) -> list[tuple[Any, list[Group]]]:
 def drawing_of(quantity: str) -> Callable[[Axes, Sequence[float], Sequence[Group], int, str], None]:
     """@param quantity  "length" or "speed" """
     if quantity == "length":
-        return style.draw_lengths
-    return style.draw_speeds
+        return draw_lengths
+    return draw_speeds
 
 
 def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity: str) -> Plate:
@@ -91,7 +92,7 @@ def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity:
     axes.set_ylabel(AXES[quantity])
     style.grid(axes)
     style.legend(axes, groups if quantity == "length" else ())
-    note = style.length_note(groups, shop.confidence(config), [axes]) if quantity == "length" else "bars: standard error"
+    note = length_note(groups, shop.confidence(config), [axes]) if quantity == "length" else "bars: standard error"
     style.caption(axes, f"{describe(shop.columns(config), groups, [parameter])}\n{note}")
     return Plate(drawing, data)
 
@@ -175,7 +176,7 @@ def over_sag(shop: Workshop, curves: Sequence[Curve], gap: float, quantity: str)
     axes.text(0.25, 0.02, r"$\delta_s = 0.25\sigma$ ", ha="right", color="0.4", fontsize=8, transform=axes.get_xaxis_transform())
     style.grid(axes)
     axes.legend(frameon=False)
-    note = style.length_note(drawn, shop.confidence(config), [axes]) if quantity == "length" else "bars: standard error"
+    note = length_note(drawn, shop.confidence(config), [axes]) if quantity == "length" else "bars: standard error"
     style.caption(axes, "\n".join(dict.fromkeys(captions)) + f"\n{note}")
     return Plate(drawing, data)
 

@@ -16,6 +16,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from .. import style
+from ..drawing.lengths import draw_lengths, length_note
 from ..labels import AXES, runs_a_point, said
 from ..tools.hints import Group
 from .arrays import HOLDS, by, numbers, of_each, over_sag
@@ -103,7 +104,7 @@ def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
                 index = gaps.index(gap)
                 shift = style.side_by_side(index, len(gaps), places)
                 label = "_finer" if mesh else said(columns["obstacle_gap"], gap)
-                style.draw_lengths(axes, [group["line_tension"] * shift for group in curve], curve, index, label, **mesh)
+                draw_lengths(axes, [group["line_tension"] * shift for group in curve], curve, index, label, **mesh)
                 data += numbers(curve, f"{family.config}, friction {family.friction:g}, gap {gap:g}, {curve[0]['vertices']} vertices",
                                 **of_each(curve, "friction", *HOLDS))
         draw_published(axes)
@@ -127,7 +128,7 @@ def title(drawing: Figure, panels: Iterable[Axes], shop: Workshop, config: str, 
     meshes = sorted({group["vertices"] for group in groups})
     longest = max(group["max_time"] for group in groups)
     drawing.suptitle(f"{runs_a_point(groups)}; {density_of(groups)}, obstacles of {first['obstacle_diameter']:g}$\\sigma$, $N_v = {', '.join(map(str, meshes))}$, "
-                     f"$T \\leq {longest:g}\\,t_0$\n{style.length_note(groups, shop.confidence(config), panels)}", fontsize=8, color="0.25")
+                     f"$T \\leq {longest:g}\\,t_0$\n{length_note(groups, shop.confidence(config), panels)}", fontsize=8, color="0.25")
 
 
 @figure("6c", "clogging length against line tension for four smallest gaps, dilute arrays: what walls hold, on two meshes",

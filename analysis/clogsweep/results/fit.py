@@ -76,7 +76,7 @@ class Fit:
         from ..drawing import lengths
         from ..style.picture import Picture
 
-        return Picture(lengths.draw_speeds(self.known.with_lengths()), self.source)
+        return Picture(lengths.speeds(self.known.with_lengths()), self.source)
 
     def __repr__(self) -> str:
         return f"<fit of {self._counted()}>"

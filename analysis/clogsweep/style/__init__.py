@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from typing import Any
 
 import matplotlib
@@ -13,8 +13,6 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 
-from ..labels import AXES
-from ..labels.groups import Groups
 from ..tools import rounded
 from ..tools.hints import AnyPath, Group
 
@@ -55,16 +53,6 @@ def curve_style(index: int) -> dict[str, Any]:
     return {"color": COLOURS[which], "marker": MARKERS[which], "linestyle": line}
 
 
-# Doubts of clogfit in a length itself, and what to say of them under a picture.
-OPEN_MARKERS = {
-    "few_clogs": "fewer than 5 clogs: more seeds are needed",
-    "held_by_mesh": "the polygon's corners may hold droplets: more vertices are needed",
-    "array_repeats": "droplets went farther than the array is long, which repeats",
-    "below_spacing": "shorter than one obstacle spacing, the depth of the void of release",
-    "not_proved_sound": "outside of what was proved sound",
-}
-
-
 def mark(kind: str, groups: Collection[Group]) -> str | None:
     """The name (`gid`) of what stands for groups of a report (report.write()); elsewhere they have no numbers.
     @param kind  point, curve or legend"""
@@ -84,40 +72,9 @@ def doubts(group: Group) -> list[str]:
     return (group["doubts"] or "").split()
 
 
-def reasons_for_open_marker(group: Group) -> list[str]:
-    """Of a group without clogs, whose marker is a triangle, it goes without saying that they are few."""
-    return [doubt for doubt in doubts(group) if doubt in OPEN_MARKERS and (doubt != "few_clogs" or group["clogs"] > 0)]
-
-
-THROUGH_BOUNDS = "_through bounds"  # label of a line, in no legend
-
-
-def length_note(groups: Collection[Group], confidence: float, panels: Iterable[Axes]) -> str:
-    """What bars, open markers, triangles and dotted lines of draw_lengths() mean, as far as they are there.
-    @param panels  that they were drawn on"""
-    notes = [f"bars: {100 * confidence:g} % confidence"] if any(group["clogs"] > 0 for group in groups) else []
-    for reason in dict.fromkeys(reason for group in groups for reason in reasons_for_open_marker(group)):
-        notes.append(f"open markers: {OPEN_MARKERS[reason]}")
-    if any(group["clogs"] == 0 for group in groups):
-        are_dotted = any(line.get_label() == THROUGH_BOUNDS for axes in panels for line in axes.lines)
-        notes.append("open triangles: lower bound, no run clogged" + (", dotted: through bounds" if are_dotted else ""))
-    if num_incomplete := sum("incomplete" in doubts(group) for group in groups):
-        notes.append(f"not complete: {num_incomplete} of {rounded.counted(len(groups), 'point')} with runs that are under way, interrupted or failed")
-    return "\n".join(notes)
-
-
 def main_mechanism(group: Group) -> str:
     """What holds most of the clogs of a group."""
     return max(MECHANISM_MARKERS, key=lambda name: group[name])
-
-
-def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: str = "other clogs") -> None:
-    """The ordinate, legend and caption of a picture of clogging lengths. @param drawn  all that draw_lengths() was given"""
-    logarithmic_ordinate(axes)
-    axes.set_ylabel(AXES["length"])
-    grid(axes)
-    legend(axes, drawn, other)
-    caption(axes, f"{groups.caption()}\n{groups.note(length_note(drawn, groups.confidence, [axes]))}")
 
 
 def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs") -> None:
@@ -138,47 +95,6 @@ def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs
         made = axes.legend(*zip(*entries), frameon=False)
     if curves:
         mark_legend(made, [handle for handle, _ in curves])
-
-
-def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, linestyle: str | tuple[int, tuple[int, ...]] | None = None,
-                 size: float = 5.5) -> None:
-    """Clogging lengths with clogfit's intervals, `linestyle` where it is not that of the index, markers of `size` points. The marker is that of what holds most of the clogs; an open one is a
-    length in doubt (OPEN_MARKERS), an open triangle a lower bound, where no run clogged."""
-    order = sorted(range(len(groups)), key=lambda i: places[i])
-    places, groups = [places[i] for i in order], [groups[i] for i in order]
-    # Not a number where no run clogged: the line is broken there, and goes on dotted.
-    lengths = [math.nan if group["clogs"] == 0 else group["clogging_length"] for group in groups]
-    bars = [
-        [math.nan if group["clogs"] == 0 else abs(group["clogging_length"] - group[end]) for group in groups]
-        for end in ("clogging_length_lower", "clogging_length_upper")
-    ]
-    colour, line = (curve_style(index)[name] for name in ("color", "linestyle"))
-    line = linestyle or line
-    axes.errorbar(places, lengths, yerr=bars, color=colour, linestyle=line, linewidth=1, elinewidth=1, capsize=2.5, label=label,
-                  gid=mark("curve", groups))
-    for x, y, group in zip(places, lengths, groups):
-        face = "white" if reasons_for_open_marker(group) else colour
-        axes.plot(x, y, color=colour, marker=MECHANISM_MARKERS[main_mechanism(group)], markerfacecolor=face, markersize=size, zorder=3,
-                  gid=mark("point", [group]) if group["clogs"] > 0 else None)
-    if len(groups) > 1 and any(group["clogs"] == 0 for group in groups):
-        through = [group["clogging_length_lower"] if group["clogs"] == 0 else group["clogging_length"] for group in groups]
-        axes.plot(places, through, color=colour, linewidth=0.8, linestyle=":", zorder=1, label=THROUGH_BOUNDS)
-    bounds = [(x, group) for x, group in zip(places, groups) if group["clogs"] == 0]
-    axes.plot(
-        [x for x, _ in bounds], [group["clogging_length_lower"] for _, group in bounds],
-        color=colour, marker="^", markerfacecolor="white", markersize=size + 2.5, linestyle="none", gid=mark("point", [group for _, group in bounds]),
-    )
-
-
-def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str) -> None:
-    """Mean speeds over the terminal speed, with standard errors from the scatter between runs."""
-    points = sorted(((place, group) for place, group in zip(places, groups) if group["relative_speed"] is not None), key=lambda point: point[0])
-    known = [group for _, group in points]
-    drawn = axes.errorbar(
-        [x for x, _ in points], [group["relative_speed"] for group in known], yerr=[group["relative_speed_error"] or 0.0 for group in known],
-        **curve_style(index), markersize=5, linewidth=1, elinewidth=1, capsize=2.5, label=label, gid=mark("curve", known),
-    )
-    drawn.lines[0].set_gid(mark("point", known))
 
 
 def logarithmic_margin(values: Collection[float]) -> float:
