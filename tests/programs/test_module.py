@@ -16,7 +16,7 @@ from drawing import Analysis
 from support import BIN, QUICK, ROOT, SweepTest, table
 
 import clogsweep.__main__
-from clogsweep.reading import places, programs
+from clogsweep.reading import programs
 from clogsweep.labels.groups import Groups
 
 PNG = b"\x89PNG\r\n"
@@ -274,5 +274,5 @@ class UnderWay(SweepTest):
 
 class Places(Analysis):
     def test_the_source_tree_has_them(self):
-        self.assertEqual(places.JOBS, ROOT / "jobs")
+        self.assertEqual(programs.JOBS, ROOT / "jobs")
         self.assertEqual(programs.programs_in(BIN), BIN.resolve())

@@ -4,8 +4,6 @@ Lengths differ *clearly* if their confidence intervals do not overlap, speeds if
 errors of the difference.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any

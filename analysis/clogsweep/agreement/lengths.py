@@ -1,7 +1,5 @@
 """Section 4.2, appendix C: clogging lengths of polygons and disks."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Sequence
 

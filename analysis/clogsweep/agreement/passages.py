@@ -1,7 +1,5 @@
 """Section 4.1, appendices A and B: channels, where nothing is random and runs have no intervals; and what was measured."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Section 4.3, appendices D and E: mean speeds among obstacles."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

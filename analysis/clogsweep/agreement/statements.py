@@ -4,8 +4,6 @@ A statement knows where the article makes it, what it says, and how to judge it 
 verdict is computed. Only the reason for a verdict other than `agrees` is written by hand.
 """
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Callable, Iterable, Mapping
 

@@ -3,8 +3,6 @@
 docs/explanation/predicted.md has the law and where it holds.
 """
 
-from __future__ import annotations
-
 import dataclasses
 import math
 import pathlib

@@ -16,6 +16,7 @@ import pathlib
 import tempfile
 
 from ..collisions import collision
+from ..drawing import break_up
 from ..reading import programs
 from ..style.picture import Picture
 from ..tools import outputs
@@ -61,5 +62,5 @@ def body() -> int:
             print(offset, f"{collision.symmetry(offset):.4f}", *(f"{end:.4g}" if end else "" for end in (low, high)), middle, sep=",", flush=True)
     if not any(low and high for low, high in found.values()):
         raise UserError(f"nothing to draw (no offset has a threshold between line tensions of {collision.TENSIONS[0]} and {collision.TENSIONS[1]}); try smaller --offsets")
-    Picture(collision.draw(found)).save(arguments.output)
+    Picture(break_up.draw(found)).save(arguments.output)
     return 0

@@ -1,7 +1,5 @@
 """How every command here is called, and how it says what went wrong: one line, exit code 2, as the programs do."""
 
-from __future__ import annotations
-
 import argparse
 import contextlib
 import logging

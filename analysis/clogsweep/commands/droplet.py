@@ -14,8 +14,6 @@ A film has --most-frames at most. A longer run is thinned; if the droplet moved 
 then, the film shows the end of the run alone.
 """
 
-from __future__ import annotations
-
 import argparse
 import pathlib
 import sys

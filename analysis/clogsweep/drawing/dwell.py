@@ -1,7 +1,5 @@
 """The clogging length over the time after which a droplet that has not moved counts as clogged."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A film of one droplet: the camera follows it, r(t) grows beside it, and the last frame says how it ended."""
 
-from __future__ import annotations
-
 import pathlib
 import shutil
 import subprocess
@@ -21,7 +19,6 @@ from PIL import Image
 
 from .. import style
 from ..reading import trajectory
-from ..reading.trajectory import Trajectory
 from ..tools import outputs, progress
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
@@ -41,7 +38,7 @@ COLOURS = tuple(WIDTHS)
 SHADES = 96  # of the first frame and of the colour bar in a palette
 
 
-def chosen_frames(run: Trajectory, most: int) -> npt.NDArray[np.int64]:
+def chosen_frames(run: trajectory.Trajectory, most: int) -> npt.NDArray[np.int64]:
     """Every n-th frame, so that there are no more than `most`; where the droplet moves too far in n frames, n is less and
     the film has the end of the run alone."""
     count = len(run.times)
@@ -116,7 +113,7 @@ class Film:
     @param size  of SIZES
     """
 
-    def __init__(self, run: Trajectory, frames: Sequence[int] | npt.NDArray[np.int64], colour: str, rate: int, size: str = "1080p") -> None:
+    def __init__(self, run: trajectory.Trajectory, frames: Sequence[int] | npt.NDArray[np.int64], colour: str, rate: int, size: str = "1080p") -> None:
         self._run = run
         self._frames = frames
         self._rate = rate

@@ -1,7 +1,5 @@
 """What came out of single droplets: their passage through a channel, or their sag on a wall, over what the sweep varies."""
 
-from __future__ import annotations
-
 import dataclasses
 import os
 import pathlib

@@ -1,7 +1,5 @@
 """A droplet among obstacles and walls, and what guides the eye there."""
 
-from __future__ import annotations
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import PatchCollection

@@ -1,7 +1,5 @@
 """P(r) of a group of clogfit's JSON, the probability of not having clogged on a way r, as a curve."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

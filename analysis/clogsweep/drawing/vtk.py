@@ -1,7 +1,5 @@
 """A run for ParaView: the droplet's outline over time, and what it moves among. All files are VTK's XML PolyData, as text."""
 
-from __future__ import annotations
-
 import math
 import os
 import pathlib
@@ -12,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 
 from ..reading import stored, trajectory
-from ..reading.trajectory import Trajectory
 from ..tools import outputs
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
@@ -69,7 +66,7 @@ def write(tree: xml.ElementTree, path: pathlib.Path) -> None:
     os.replace(fresh, path)
 
 
-def surroundings(run: Trajectory) -> xml.ElementTree:
+def surroundings(run: trajectory.Trajectory) -> xml.ElementTree:
     angle = np.linspace(0, 2 * math.pi, 48, endpoint=False)
     circle = np.column_stack([np.cos(angle), np.sin(angle)])
     discs = [np.array([x, y]) + diameter / 2 * circle for x, y, diameter in run.obstacles]
@@ -79,7 +76,7 @@ def surroundings(run: Trajectory) -> xml.ElementTree:
     return polydata(discs + walls, cell_data={"diameter": np.array(diameters, dtype=float)})
 
 
-def export(run: Trajectory, output: pathlib.Path) -> pathlib.Path:
+def export(run: trajectory.Trajectory, output: pathlib.Path) -> pathlib.Path:
     """@return the .pvd file"""
     folder = output.with_name(output.name + "-vtk")
     pvd, around = output.with_name(output.name + ".pvd"), output.with_name(output.name + "-obstacles.vtp")

@@ -1,7 +1,5 @@
 """The way of one droplet among obstacles: several moments of a run in one picture."""
 
-from __future__ import annotations
-
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
@@ -10,17 +8,16 @@ from matplotlib.figure import Figure
 from .. import style
 from ..labels import AXES
 from ..reading import trajectory
-from ..reading.trajectory import Trajectory
 from ..tools.hints import Numbers
 from . import surroundings
 
 
-def view(run: Trajectory) -> tuple[Numbers, Numbers]:
+def view(run: trajectory.Trajectory) -> tuple[Numbers, Numbers]:
     """Corners of what the droplet comes to."""
     return run.polygons.min(axis=(0, 2)) - 0.5, run.polygons.max(axis=(0, 2)) + 0.5
 
 
-def draw(run: Trajectory, num_outlines: int) -> Figure:
+def draw(run: trajectory.Trajectory, num_outlines: int) -> Figure:
     """@param run  with outlines"""
     low, high = view(run)
     width, height = high - low
@@ -30,7 +27,7 @@ def draw(run: Trajectory, num_outlines: int) -> Figure:
     return figure
 
 
-def draw_on(axes: Axes, run: Trajectory, num_outlines: int) -> None:
+def draw_on(axes: Axes, run: trajectory.Trajectory, num_outlines: int) -> None:
     is_passage = len(run.wedges) == 2
     origin = run.middle if is_passage else np.zeros(2)
     surroundings.draw_surroundings(axes, run, origin)

@@ -3,8 +3,6 @@
 What that is, the drawing functions say themselves, by style.mark().
 """
 
-from __future__ import annotations
-
 import io
 import re
 from collections.abc import Iterable, Sequence

@@ -14,7 +14,6 @@ from ..drawing import surroundings, survival_curve
 from ..drawing.lengths import draw_lengths, draw_speeds, length_note
 from ..labels import AXES, runs_a_point, said
 from ..reading import stored, trajectory
-from ..reading.trajectory import Trajectory
 from ..tools import rounded
 from ..tools.errors import UserError
 from ..tools.hints import Column, Group
@@ -230,7 +229,7 @@ def sag_picture(shop: Workshop) -> Plate:
 CLOGS = "clogging-friction"  # walls with friction hold droplets that wrap, whatever the mesh
 
 
-def example(shop: Workshop, mechanism: str) -> tuple[Trajectory, pandas.Series]:
+def example(shop: Workshop, mechanism: str) -> tuple[trajectory.Trajectory, pandas.Series]:
     """A clog of the sweep, run once more with its outline. By squeezing: the stiffest that went at least half a diameter, if any
     did. By wrapping: the one of median shape, of those that only hang over obstacles, if there are any."""
     shop.sweep(CLOGS)
@@ -253,12 +252,12 @@ def example(shop: Workshop, mechanism: str) -> tuple[Trajectory, pandas.Series]:
     return run, row
 
 
-def clog_title(run: Trajectory, row: pandas.Series) -> str:
+def clog_title(run: trajectory.Trajectory, row: pandas.Series) -> str:
     return (rf"{row.mechanism}: $\Gamma = {row.line_tension:g}$, $w_\mathrm{{ob}} = {row.obstacle_gap:g}\sigma$, seed {row.seed}, "
             rf"$r = {row.distance:.2f}\sigma$" f"\n{row.wrapped_support:.0%} of the support from wrapped obstacles, $N_v = {row.vertices}$\ninterface: {interface_of(row.preset)}")
 
 
-def clog_numbers(run: Trajectory, row: pandas.Series, frame: int) -> list[dict[str, Any]]:
+def clog_numbers(run: trajectory.Trajectory, row: pandas.Series, frame: int) -> list[dict[str, Any]]:
     return [{"mechanism": row.mechanism, "line_tension": row.line_tension, "obstacle_gap": row.obstacle_gap, "seed": row.seed,
              "distance": row.distance, "x": x, "y": y} for x, y in run.polygons[frame].T]
 

@@ -1,7 +1,5 @@
 """Which density the published arrays had: the article gives one clogging length as a number, and no density."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """Clogging lengths in dilute arrays, the published ones: what walls hold, both models over the sag, and the map."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections.abc import Iterable, Sequence

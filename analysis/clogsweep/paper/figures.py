@@ -1,7 +1,5 @@
 """Figures of the article from runs of our own: sweeps, clogfit, picture."""
 
-from __future__ import annotations
-
 import csv
 import datetime
 import pathlib

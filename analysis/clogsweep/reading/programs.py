@@ -1,6 +1,4 @@
-"""Finds the built programs and runs them."""
-
-from __future__ import annotations
+"""Finds the built programs and what belongs to them, and runs them."""
 
 import argparse
 import os
@@ -10,7 +8,18 @@ import shutil
 import subprocess
 
 from ..tools.errors import ProgramFailed, UserError
-from . import places
+
+PACKAGE = pathlib.Path(__file__).resolve().parents[1]
+
+try:
+    from .._installed import JOBS_FOLDER, PROGRAMS_FOLDER  # relative to this package; cmake --install writes it
+except ImportError:  # the source tree
+    _SOURCE = PACKAGE.parents[1]
+    JOBS = _SOURCE / "jobs"
+    PROGRAMS = [_SOURCE / "build" / preset / "bin" for preset in ("release", "laptop")]
+else:
+    JOBS = (PACKAGE / JOBS_FOLDER).resolve()
+    PROGRAMS = [(PACKAGE / PROGRAMS_FOLDER).resolve()]
 
 
 def reason(text: str) -> str:
@@ -28,7 +37,7 @@ def programs_in(folder: str | os.PathLike[str] | None = None) -> pathlib.Path:
     called = shutil.which("clogsweep")
     chosen = os.environ.get("CLOG_BIN")
     candidates = [pathlib.Path(folder)] if folder else [
-        *([pathlib.Path(chosen)] if chosen else []), *([pathlib.Path(called).resolve().parent] if called else []), *places.PROGRAMS]
+        *([pathlib.Path(chosen)] if chosen else []), *([pathlib.Path(called).resolve().parent] if called else []), *PROGRAMS]
     for place in candidates:
         if (place / "clogsweep").exists():
             return place.resolve()
@@ -54,7 +63,7 @@ def warnings_of(program: str | os.PathLike[str], *arguments: object) -> str:
 def _outputs(program: str | os.PathLike[str], *arguments: object, ranks: int = 1) -> tuple[str, str]:
     command = [str(program), *map(str, arguments)]
     if ranks > 1:
-        settings = shlex.quote(str(places.JOBS / "mpi-settings.sh"))
+        settings = shlex.quote(str(JOBS / "mpi-settings.sh"))
         command = ["bash", "-c", f'. {settings} && exec mpirun -np {ranks} "$@"', "mpirun", *command]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         while True:

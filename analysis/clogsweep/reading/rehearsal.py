@@ -1,7 +1,5 @@
 """What kind of file is this? Reads all of it, and may die of it: HDF5 does of some damage. So it is run by itself, as a script."""
 
-from __future__ import annotations
-
 import json
 import os
 import resource

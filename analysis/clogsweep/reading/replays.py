@@ -1,7 +1,5 @@
 """Rows of a sweep run once more by clogrun, for what is not in them: h, v and A on the way, outlines."""
 
-from __future__ import annotations
-
 import concurrent.futures
 import os
 import pathlib

@@ -1,7 +1,5 @@
 """What clogrun writes of one droplet."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 import pathlib

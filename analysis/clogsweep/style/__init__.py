@@ -1,7 +1,5 @@
 """How all figures look: colours, axes, error bars, and what is written beside a picture."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Collection, Sequence
 from typing import Any

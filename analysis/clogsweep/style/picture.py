@@ -1,7 +1,5 @@
 """A drawn figure."""
 
-from __future__ import annotations
-
 import io
 import os
 import pathlib

@@ -1,7 +1,5 @@
 """Arguments of the module that cannot be, refused as the commands refuse theirs."""
 
-from __future__ import annotations
-
 import operator
 from collections.abc import Collection
 from typing import Any

@@ -1,7 +1,5 @@
 """Files that are made: where one may be written, and what it may replace."""
 
-from __future__ import annotations
-
 import os
 import pathlib
 

@@ -1,7 +1,5 @@
 """How far a script is, on the standard error: one line that is renewed on a terminal, now and then a new line elsewhere."""
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Iterable, Iterator

@@ -1,8 +1,6 @@
 """Numbers as they are printed: counts with their noun, others with as many figures as their uncertainty allows, three
 at least."""
 
-from __future__ import annotations
-
 import math
 from typing import TypeGuard
 
