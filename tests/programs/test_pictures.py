@@ -105,13 +105,13 @@ class Looks(Analysis):
 
     def test_one_curve_has_its_whole_title_the_interface_and_room_at_the_frame(self):
         groups = self.fit(*ONE_CURVE)
-        for drawing in (lengths.draw(groups), lengths.draw_speeds(groups), report.survival(groups, "", groups.members)):
+        for drawing in (lengths.draw(groups), lengths.speeds(groups), style.figure_of(report.draw_survival, groups, "", groups.members)):
             self.assert_title_is_whole(drawing)
             self.assertIn("2 runs a point", drawing.axes[0].get_title())
         # The speed of the stiffer droplets, which clog at once, is not known.
         for group, speed in zip(groups.members, (0.4, None)):
             group.update(relative_speed=speed, relative_speed_error=0.1)
-        drawing = lengths.draw_speeds(groups)
+        drawing = lengths.speeds(groups)
         axes = drawing.axes[0]
         self.assertIn("interface: robust", axes.get_title())
         low, high = axes.get_xlim()
@@ -161,7 +161,7 @@ class Looks(Analysis):
             groups = self.fit(*QUICK, tensions, *arrays, "seeds=1")
             for group in groups.members:
                 group.update(relative_speed=0.4, relative_speed_error=0.1)
-            for drawing in (lengths.draw(groups), lengths.draw_speeds(groups)):
+            for drawing in (lengths.draw(groups), lengths.speeds(groups)):
                 self.assert_title_is_whole(drawing)
                 axes, = drawing.axes
                 legend, frame = axes.get_legend().get_window_extent(), axes.get_window_extent()
@@ -191,7 +191,7 @@ class Looks(Analysis):
         for group, ways in zip(groups.members, ({"clogging_length": None, "survival": [], "censored_distances": [40.0]},
                                                 {"clogging_length": 8.0, "survival": steps, "censored_distances": [3.0, 9.0]})):
             group.update(ways)
-        drawing = report.survival(groups, "two", groups.members)
+        drawing = style.figure_of(report.draw_survival, groups, "two", groups.members)
         curves = [line.get_xydata() for line in drawing.axes[0].lines if line.get_drawstyle() == "steps-post"]
         self.assertEqual([curve[-1].tolist() for curve in curves], [[40, 1], [9, 0.75]])
         self.assertTrue(all(curve[0, 0] > 0 and curve[0, 1] == 1 for curve in curves), "it begins where the scale does")
@@ -238,7 +238,7 @@ class Looks(Analysis):
             return [words for words in (bars, dotted, triangles) if words in title]
 
         self.assertEqual(explained(lengths.draw(groups)), [dotted, triangles])
-        self.assertEqual(explained(lengths.draw_speeds(groups)), [])
+        self.assertEqual(explained(lengths.speeds(groups)), [])
         groups.members = groups.members[:1]
         self.assertEqual(explained(lengths.draw(groups)), [triangles])
         groups.members[0].update(clogs=2, clogging_length=1.0, clogging_length_upper=4.0)

@@ -10,7 +10,7 @@ import stored_rows
 from drawing import Analysis
 from support import BIN, ProgramTest, table
 
-from clogsweep import labels
+from clogsweep import labels, style
 from clogsweep.drawing import passages
 from clogsweep.reading import stored
 from clogsweep.labels.groups import Groups
@@ -145,7 +145,7 @@ class Channels(Analysis):
         self.assertEqual((page.count("<svg"), page.count("<img")), (3, 0))
 
         # Each point is a group's number, and each marker says how its run ended.
-        axes = passages.draw_curves(Groups(fit), "largest_shape_parameter").axes[0]
+        axes = style.figure_of(passages.draw_curves, Groups(fit), "largest_shape_parameter").axes[0]
         self.assertEqual(axes.get_xlabel(), labels.AXES["line_tension"])
         drawn = [(line.get_xdata()[0], line.get_ydata()[0], line.get_marker()) for line in axes.lines if len(line.get_xdata()) == 1]
         self.assertEqual(drawn, [(group["line_tension"], group["largest_shape_parameter"], {"passed": "o", "clogged": "X"}[group["status"]])

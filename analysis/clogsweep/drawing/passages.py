@@ -64,13 +64,7 @@ def drawn_columns(groups: Groups) -> dict[str, str]:
             if groups.are_polygons or column != "largest_shape_parameter"}  # a soft disk stays a circle
 
 
-def draw_curves(groups: Groups, column: str) -> Figure:
-    figure, axes = style.subplots(figsize=(6.4, 4.8))
-    draw_curves_on(axes, groups, column)
-    return figure
-
-
-def draw_curves_on(axes: Axes, groups: Groups, column: str) -> None:
+def draw_curves(axes: Axes, groups: Groups, column: str) -> None:
     """One point for each droplet; a cross is one that clogged in a channel, an open marker one that was under way at the end."""
     kind = kind_of(groups)
     markers = {kind.goal: {"marker": "o"}, "flowing": {"marker": "o", "markerfacecolor": "white"}, "broken": {"marker": "^"}}

@@ -111,7 +111,7 @@ def of_passages(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> l
         return draw
 
     def column_drawing(column: str) -> Draw:
-        return lambda axes: passages.draw_curves_on(axes, groups, column)
+        return lambda axes: passages.draw_curves(axes, groups, column)
 
     rows: list[Row] = [(1.2, [column_drawing(column)]) for column in passages.drawn_columns(groups)]
     with tempfile.TemporaryDirectory(prefix="clogsweep-poster-") as folder:

@@ -41,10 +41,6 @@ def picture(figure: Figure, caption: str) -> str:
     return framed(f'<img alt="{html.escape(caption)}" src="data:image/png;base64,{data}">', caption)
 
 
-def survival(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
-    return style.figure_of(draw_survival, groups, label, members)
-
-
 def draw_survival(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
     """P(r) of one curve's members to their longest ways, each with the exponential of its length if it is known."""
     begin = min(0.01 * (group["clogging_length"] or survival_curve.longest_way(group)) for group in members)
@@ -98,10 +94,6 @@ def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
     mark_steps(all_axes[0][0])
     figure.suptitle(label or groups.caption(), fontsize=8, wrap=True)
     return figure
-
-
-def causes(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
-    return style.figure_of(draw_causes, groups, label, members)
 
 
 def draw_causes(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
@@ -273,11 +265,11 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib
     curves = [chart(lengths.draw(groups), "clogging length")]
     if any(group["relative_speed"] is not None for group in groups.members):
         curves.append(chart(lengths.speeds(groups), "mean speed over terminal speed"))
-    survivals = [chart(survival(groups, label, members), "P(r), to the longest way") for label, members in groups.curves()
+    survivals = [chart(style.figure_of(draw_survival, groups, label, members), "P(r), to the longest way") for label, members in groups.curves()
                  if any(group["survival"] for group in members)]
     survivals += [chart(incidence(groups, label, members), "ends by cause") for label, members in groups.curves()
                   if len(occurring_causes(members)) > 1]
-    ends = [chart(causes(groups, label, members), "ends by cause, shares") for label, members in groups.curves()]
+    ends = [chart(style.figure_of(draw_causes, groups, label, members), "ends by cause, shares") for label, members in groups.curves()]
     shown = examples(clogs.of_polygons(stored.read_rows(sweep, clogrun.parent), sweep), count)
     return {"Curves": side_by_side(curves), "How far droplets get": side_by_side(survivals), "What becomes of them": side_by_side(ends),
             "Example clogs": example_pictures(shown, sweep, clogrun)}
@@ -291,7 +283,7 @@ def label_of_passage(groups: Groups, group: Group) -> str:
 def of_passages(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
     """The same of droplets in a channel or on a wall. @param count  outlines to show"""
     kind = passages.kind_of(groups)
-    curves = [framed(charts.draw(passages.draw_curves(groups, column), name), name) for column, name in passages.drawn_columns(groups).items()]
+    curves = [framed(charts.draw(style.figure_of(passages.draw_curves, groups, column), name), name) for column, name in passages.drawn_columns(groups).items()]
     with tempfile.TemporaryDirectory(prefix="clogsweep-report-") as folder:
         drawn = passages.draw_outlines(groups, passages.examples(stored.read_rows(sweep, clogrun.parent), count), clogrun, sweep, folder)
     outlines = side_by_side(picture(figure, f"outline {kind.outline}") for figure in drawn)

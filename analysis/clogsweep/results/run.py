@@ -7,6 +7,8 @@ import os
 import pathlib
 from typing import TYPE_CHECKING, NoReturn
 
+import pandas
+
 from ..reading import stored, trajectory
 from ..tools import checked
 from ..tools.errors import UserError
@@ -42,8 +44,6 @@ class Run:
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         """@throws UserError  if the file is no run or is damaged"""
-        import pandas
-
         self.path = pathlib.Path(path)
         self.trajectory = trajectory.read(self.path, needs_frames=False)
         self.samples = pandas.DataFrame(self.trajectory.table)
