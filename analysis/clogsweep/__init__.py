@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from .results.fit import Fit
     from .results.run import Film, Run
     from .results.sweep import Sweep
-    from .style.picture import Picture
+    from .style import Picture
     from .tools.errors import Damaged, ProgramFailed, UserError
 
 __version__ = "0.2.0"
@@ -30,7 +30,7 @@ __version__ = "0.2.0"
 __all__ = ["Clog", "Clogs", "Damaged", "Film", "Fit", "Picture", "ProgramFailed", "Run", "Sweep", "UserError", "open"]
 
 _MODULES = {"Clog": "drawing.clogs", "Clogs": "drawing.clogs", "Damaged": "tools.errors", "Film": "results.run", "Fit": "results.fit",
-            "Picture": "style.picture", "ProgramFailed": "tools.errors", "Run": "results.run", "Sweep": "results.sweep", "UserError": "tools.errors"}
+            "Picture": "style", "ProgramFailed": "tools.errors", "Run": "results.run", "Sweep": "results.sweep", "UserError": "tools.errors"}
 
 
 def __getattr__(name: str) -> Any:

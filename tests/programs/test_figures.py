@@ -359,7 +359,7 @@ class Pictures(Analysis):
 
         def open_places():
             """With the caption."""
-            axes = lengths.draw(groups).axes[0]
+            axes = style.figure_of(lengths.draw_on, groups).axes[0]
             return [line.get_xdata()[0] for line in axes.lines if line.get_markerfacecolor() == "white" and line.get_marker() != "^"], axes.get_title()
 
         groups.members[0]["doubts"] = "censored_by_time"

@@ -105,13 +105,13 @@ class Looks(Analysis):
 
     def test_one_curve_has_its_whole_title_the_interface_and_room_at_the_frame(self):
         groups = self.fit(*ONE_CURVE)
-        for drawing in (lengths.draw(groups), lengths.speeds(groups), style.figure_of(report.draw_survival, groups, "", groups.members)):
+        for drawing in (style.figure_of(lengths.draw_on, groups), style.figure_of(lengths.draw_speeds_on, groups), style.figure_of(report.draw_survival, groups, "", groups.members)):
             self.assert_title_is_whole(drawing)
             self.assertIn("2 runs a point", drawing.axes[0].get_title())
         # The speed of the stiffer droplets, which clog at once, is not known.
         for group, speed in zip(groups.members, (0.4, None)):
             group.update(relative_speed=speed, relative_speed_error=0.1)
-        drawing = lengths.speeds(groups)
+        drawing = style.figure_of(lengths.draw_speeds_on, groups)
         axes = drawing.axes[0]
         self.assertIn("interface: robust", axes.get_title())
         low, high = axes.get_xlim()
@@ -161,7 +161,7 @@ class Looks(Analysis):
             groups = self.fit(*QUICK, tensions, *arrays, "seeds=1")
             for group in groups.members:
                 group.update(relative_speed=0.4, relative_speed_error=0.1)
-            for drawing in (lengths.draw(groups), lengths.speeds(groups)):
+            for drawing in (style.figure_of(lengths.draw_on, groups), style.figure_of(lengths.draw_speeds_on, groups)):
                 self.assert_title_is_whole(drawing)
                 axes, = drawing.axes
                 legend, frame = axes.get_legend().get_window_extent(), axes.get_window_extent()
@@ -237,12 +237,12 @@ class Looks(Analysis):
             title = drawing.axes[0].get_title()
             return [words for words in (bars, dotted, triangles) if words in title]
 
-        self.assertEqual(explained(lengths.draw(groups)), [dotted, triangles])
-        self.assertEqual(explained(lengths.speeds(groups)), [])
+        self.assertEqual(explained(style.figure_of(lengths.draw_on, groups)), [dotted, triangles])
+        self.assertEqual(explained(style.figure_of(lengths.draw_speeds_on, groups)), [])
         groups.members = groups.members[:1]
-        self.assertEqual(explained(lengths.draw(groups)), [triangles])
+        self.assertEqual(explained(style.figure_of(lengths.draw_on, groups)), [triangles])
         groups.members[0].update(clogs=2, clogging_length=1.0, clogging_length_upper=4.0)
-        self.assertEqual(explained(lengths.draw(groups)), [bars])
+        self.assertEqual(explained(style.figure_of(lengths.draw_on, groups)), [bars])
 
     def test_titles_of_a_sheet_of_clogs_stay_off_its_edge(self):
         self.succeed("clogsweep", *QUICK, "line-tension=3", "seeds=1..4", "--output", "s.h5")

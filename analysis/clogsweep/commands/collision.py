@@ -18,18 +18,10 @@ import tempfile
 from ..collisions import collision
 from ..drawing import break_up
 from ..reading import programs
-from ..style.picture import Picture
+from ..style import Picture
 from ..tools import outputs
 from ..tools.errors import UserError
 from . import command_line
-
-
-def key_and_value(word: str) -> tuple[str, str]:
-    """Type of an option: KEY=VALUE."""
-    key, equals, value = word.partition("=")
-    if not (key and equals and value):
-        raise argparse.ArgumentTypeError(f"invalid key: {word} (must be KEY=VALUE) try vertices=256")
-    return key, value
 
 
 def offsets(word: str) -> list[float]:
@@ -45,7 +37,7 @@ def offsets(word: str) -> list[float]:
 
 def body() -> int:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("keys", type=key_and_value, nargs="*", metavar="KEY=VALUE", help="of clogsweep; vertices, terminal-speed, break-up-neck, max-time have values "
+    parser.add_argument("keys", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUE", help="of clogsweep; vertices, terminal-speed, break-up-neck, max-time have values "
                         "of their own here")
     command_line.add_output(parser, "name of the picture; .png and .pdf are made", ".png", ".pdf", required=True)
     parser.add_argument("--offsets", type=offsets, default="0,0.01,0.02,0.05,0.1,0.15,0.2,0.25,0.3,0.35", help="of the droplet's way from the obstacle's centre [sigma]")

@@ -59,6 +59,14 @@ def tasks(word: str) -> set[int]:
     return {int(part) for part in word.split(",")}
 
 
+def key_and_value(word: str) -> tuple[str, str]:
+    """Type of an option: KEY=VALUE."""
+    key, equals, value = word.partition("=")
+    if not (key and equals and value):
+        raise argparse.ArgumentTypeError(f"invalid key: {word} (must be KEY=VALUE) try vertices=256")
+    return key, value
+
+
 def add_output(parser: argparse.ArgumentParser, meaning: str, *endings: str, required: bool = False) -> None:
     """--output of a command. @param endings  such as ".png", that it gives its files itself: a name may have them or not"""
     def without_ending(word: str) -> pathlib.Path:
@@ -75,16 +83,18 @@ def beside(source: pathlib.Path, ending: str) -> pathlib.Path:
     return source.with_name(f"{source.stem}-{ending}")
 
 
-def sweep_to_draw(about: str | None, ending: str, what: str = "file of clogsweep --output") -> argparse.Namespace:
+def sweep_to_draw(about: str | None, ending: str, what: str = "file of clogsweep --output",
+                  more: Callable[[argparse.ArgumentParser], None] = lambda _: None) -> argparse.Namespace:
     """Options of a command that makes one picture of a sweep: sweep, output, programs.
 
     @param about  the command's docstring; @param ending  of the picture's name, which begins with that of the sweep
-    @param what  is given as the sweep. @throws UserError  if the picture could not be written
+    @param what  is given as the sweep; @param more  adds other options. @throws UserError  if the picture could not be written
     """
     parser = Parser(about)
     parser.add_argument("sweep", type=pathlib.Path, help=what)
     add_output(parser, f"name of the picture; .png and .pdf are made (SWEEP-{ending})", ".png", ".pdf")
     programs.add_option(parser)
+    more(parser)
     arguments = parser.parse_args()
     arguments.output = arguments.output or beside(arguments.sweep, ending)
     outputs.refuse_unwritable_picture(arguments.output, arguments.sweep)

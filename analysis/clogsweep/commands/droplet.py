@@ -20,7 +20,7 @@ import sys
 
 from ..drawing import film, way
 from ..reading import stored, trajectory
-from ..style.picture import Picture
+from ..style import Picture
 from ..tools import outputs
 from ..tools.errors import UserError
 from . import command_line

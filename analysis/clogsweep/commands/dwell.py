@@ -12,7 +12,7 @@ from ..drawing import dwell
 from ..labels.groups import Groups
 from ..reading import fits, programs, stored
 from ..results.fit import Fit
-from ..style.picture import Picture
+from ..style import Picture
 from .command_line import sweep_to_draw
 
 

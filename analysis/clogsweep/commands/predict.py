@@ -17,12 +17,11 @@ from ..collisions import prediction
 from ..reading import programs
 from ..tools.errors import UserError
 from . import command_line
-from .collision import key_and_value
 
 
 def body() -> int:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("keys", type=key_and_value, nargs="*", metavar="KEY=VALUE", help="of clogsweep, line-tension with a list if you like")
+    parser.add_argument("keys", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUE", help="of clogsweep, line-tension with a list if you like")
     programs.add_option(parser)
     arguments = parser.parse_args()
     keys = dict(arguments.keys)

@@ -16,7 +16,6 @@ from matplotlib.patches import Circle
 
 from .. import style
 from ..reading import replays, stored, trajectory
-from ..style.picture import Picture
 from ..tools import rounded
 from ..tools.errors import ProgramFailed, UserError
 from ..tools.hints import Numbers, Records
@@ -71,12 +70,12 @@ class Clog:
         """wrapped, squeezed, hybrid or other"""
         return mechanism_of(self.row)
 
-    def picture(self) -> Picture:
+    def picture(self) -> style.Picture:
         figure, axes = style.subplots(figsize=(4.6, 4.6))
         draw(axes, self)
         axes.set_xlabel(r"$x/\sigma$ from the droplet's middle")
         axes.set_ylabel(r"$y/\sigma$")
-        return Picture(figure, f"{self.source}\ntask {self.task}")
+        return style.Picture(figure, f"{self.source}\ntask {self.task}")
 
     def _repr_png_(self) -> bytes:
         return self.picture().png()
@@ -106,9 +105,9 @@ class Clogs(Sequence[Clog]):
     def __repr__(self) -> str:
         return f"<{rounded.counted(len(self), 'clog')}: {', '.join(f'task {clog.task} {clog.mechanism}' for clog in self)}>"
 
-    def picture(self) -> Picture:
+    def picture(self) -> style.Picture:
         tasks = ", ".join(str(clog.task) for clog in self)
-        return Picture(sheet(self._clogs), f"{self._clogs[0].source}\ntasks {tasks}")
+        return style.Picture(sheet(self._clogs), f"{self._clogs[0].source}\ntasks {tasks}")
 
     def _repr_png_(self) -> bytes:
         return self.picture().png(80)

@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable, Collection, Iterable, Sequence
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from .. import style
 from ..labels import AXES
@@ -61,10 +60,8 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
     places, groups = [places[i] for i in order], [groups[i] for i in order]
     # Not a number where no run clogged: the line is broken there, and goes on dotted.
     lengths = [math.nan if group["clogs"] == 0 else group["clogging_length"] for group in groups]
-    bars = [
-        [math.nan if group["clogs"] == 0 else abs(group["clogging_length"] - group[end]) for group in groups]
-        for end in ("clogging_length_lower", "clogging_length_upper")
-    ]
+    bars = [[math.nan if group["clogs"] == 0 else abs(group["clogging_length"] - group[end]) for group in groups]
+            for end in ("clogging_length_lower", "clogging_length_upper")]
     colour, line = (style.curve_style(index)[name] for name in ("color", "linestyle"))
     line = linestyle or line
     axes.errorbar(places, lengths, yerr=bars, color=colour, linestyle=line, linewidth=1, elinewidth=1, capsize=2.5, label=label,
@@ -77,10 +74,8 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
         through = [group["clogging_length_lower"] if group["clogs"] == 0 else group["clogging_length"] for group in groups]
         axes.plot(places, through, color=colour, linewidth=0.8, linestyle=":", zorder=1, label=THROUGH_BOUNDS)
     bounds = [(x, group) for x, group in zip(places, groups) if group["clogs"] == 0]
-    axes.plot(
-        [x for x, _ in bounds], [group["clogging_length_lower"] for _, group in bounds],
-        color=colour, marker="^", markerfacecolor="white", markersize=size + 2.5, linestyle="none", gid=style.mark("point", [group for _, group in bounds]),
-    )
+    axes.plot([x for x, _ in bounds], [group["clogging_length_lower"] for _, group in bounds], color=colour, marker="^", markerfacecolor="white",
+              markersize=size + 2.5, linestyle="none", gid=style.mark("point", [group for _, group in bounds]))
 
 
 def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str) -> None:
@@ -118,17 +113,9 @@ def draw_abscissa(axes: Axes, groups: Groups) -> None:
     axes.set_xlabel(groups.axis_label())
 
 
-def draw(groups: Groups) -> Figure:
-    return style.figure_of(draw_on, groups)
-
-
 def draw_on(axes: Axes, groups: Groups) -> None:
     draw_curves(axes, groups, draw_lengths)
     finish_lengths(axes, groups, groups.members)
-
-
-def speeds(groups: Groups) -> Figure:
-    return style.figure_of(draw_speeds_on, groups)
 
 
 def draw_speeds_on(axes: Axes, groups: Groups) -> None:

@@ -262,9 +262,9 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib
         is_wide = figure.get_figwidth() > 1.5 * figure.get_figheight()
         return framed(charts.draw(figure, caption), caption, "wide" if is_wide else "")
 
-    curves = [chart(lengths.draw(groups), "clogging length")]
+    curves = [chart(style.figure_of(lengths.draw_on, groups), "clogging length")]
     if any(group["relative_speed"] is not None for group in groups.members):
-        curves.append(chart(lengths.speeds(groups), "mean speed over terminal speed"))
+        curves.append(chart(style.figure_of(lengths.draw_speeds_on, groups), "mean speed over terminal speed"))
     survivals = [chart(style.figure_of(draw_survival, groups, label, members), "P(r), to the longest way") for label, members in groups.curves()
                  if any(group["survival"] for group in members)]
     survivals += [chart(incidence(groups, label, members), "ends by cause") for label, members in groups.curves()
@@ -297,8 +297,6 @@ def side_by_side(pictures: Iterable[str]) -> str:
 
 
 PROVENANCE = ("command_line", "version", "git_describe", "git_hash", "compiler", "mpi_version", "hdf5_version", "start_time", "num_ranks")
-
-
 RANDOM_ARRAYS = ("obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "obstacle-layout")
 
 

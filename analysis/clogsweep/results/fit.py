@@ -14,7 +14,7 @@ from ..tools.errors import UserError
 if TYPE_CHECKING:
     import pandas
 
-    from ..style.picture import Picture
+    from ..style import Picture
 
 HDF5_BEGINNING = b"\x89HDF\r\n\x1a\n"
 
@@ -66,17 +66,17 @@ class Fit:
 
     def curve(self) -> Picture:
         """Clogging lengths over what the sweep varies. @throws UserError  if there are none"""
-        from ..drawing import lengths  # slow to load, as all that draws
-        from ..style.picture import Picture
+        from .. import style  # slow to load, as all that draws
+        from ..drawing import lengths
 
-        return Picture(lengths.draw(self.known.with_lengths()), self.source)
+        return style.Picture(style.figure_of(lengths.draw_on, self.known.with_lengths()), self.source)
 
     def speeds(self) -> Picture:
         """Mean speeds over the speed of a free droplet, over what the sweep varies. @throws UserError  if there are none"""
+        from .. import style
         from ..drawing import lengths
-        from ..style.picture import Picture
 
-        return Picture(lengths.speeds(self.known.with_lengths()), self.source)
+        return style.Picture(style.figure_of(lengths.draw_speeds_on, self.known.with_lengths()), self.source)
 
     def __repr__(self) -> str:
         return f"<fit of {self._counted()}>"

@@ -14,7 +14,7 @@ from ..tools import checked
 from ..tools.errors import UserError
 
 if TYPE_CHECKING:
-    from ..style.picture import Picture
+    from ..style import Picture
 
 
 class Film:
@@ -57,7 +57,7 @@ class Run:
     def picture(self, outlines: int = 12) -> Picture:
         """So many moments of the run in one picture. @throws UserError  if there are no outlines"""
         from ..drawing import way  # slow to load, as all that draws
-        from ..style.picture import Picture
+        from ..style import Picture
 
         checked.whole("outlines", outlines, 1)
         trajectory.require_frames(self.trajectory)

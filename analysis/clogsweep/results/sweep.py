@@ -18,7 +18,7 @@ from .run import Run
 
 if TYPE_CHECKING:
     from ..drawing.clogs import Clogs
-    from ..style.picture import Picture
+    from ..style import Picture
 
 
 class Sweep:
@@ -96,7 +96,7 @@ class Sweep:
     def poster(self) -> Picture:
         """One page of the sweep to be printed, A3: its curves and some of its droplets. @throws UserError"""
         from ..pages import poster
-        from ..style.picture import Picture
+        from ..style import Picture
 
         return Picture(poster.draw(self.path, programs.programs_in(self._programs)), stored.source(self.attributes))
 

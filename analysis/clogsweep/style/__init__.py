@@ -1,6 +1,9 @@
-"""How all figures look: colours, axes, error bars, and what is written beside a picture."""
+"""How all figures look: colours, axes, markers, what is written beside a picture; and how one is shown and saved."""
 
+import io
 import math
+import os
+import pathlib
 from collections.abc import Callable, Collection, Sequence
 from typing import Any
 
@@ -11,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 
-from ..tools import rounded
+from ..tools import outputs, rounded
 from ..tools.hints import AnyPath, Group
 
 # Okabe and Ito's palette, safe for colour-blind readers; a marker of its own for every curve besides.
@@ -23,6 +26,7 @@ MECHANISM_MARKERS = {"wrapped": "o", "squeezed": "s", "hybrid": "D", "other": "X
 VIRIDIS = matplotlib.colormaps["viridis"]
 OBSTACLE = "0.72"
 DROPLET = "#D55E00"
+
 
 def new_figure(**options: Any) -> Figure:
     """Not one of `pyplot`'s, which stay in memory and belong to a backend: whoever draws in a notebook has chosen one."""
@@ -188,3 +192,32 @@ def save(figure: Figure, output: AnyPath, metadata: dict[str, str] | None = None
     figure.set_layout_engine("none")
     subject = {"Title": metadata.get("Title"), "Subject": metadata.get("Description")}
     figure.savefig(f"{output}.pdf", metadata={key: value for key, value in subject.items() if value})
+
+
+class Picture:
+    """Shows itself in a notebook; `figure` is matplotlib's, to be changed at will. `source` says where its numbers come
+    from, and is kept in what is saved: as Description of the .png, as Subject of the .pdf."""
+
+    def __init__(self, figure: Figure, source: str = "") -> None:
+        self.figure = figure
+        self.source = source
+
+    def png(self, dpi: float = 110) -> bytes:
+        out = io.BytesIO()
+        self.figure.savefig(out, format="png", dpi=dpi)
+        return out.getvalue()
+
+    def save(self, output: str | os.PathLike[str]) -> pathlib.Path:
+        """Writes OUTPUT.png and OUTPUT.pdf. @return the first. @throws UserError  if something else is there"""
+        path = pathlib.Path(output)
+        if path.suffix in (".png", ".pdf"):
+            path = path.with_suffix("")
+        outputs.refuse_unwritable_picture(path)
+        save(self.figure, path, {"Description": self.source, "Software": "clogsweep"} if self.source else None)
+        return pathlib.Path(f"{path}.png")
+
+    def __repr__(self) -> str:
+        return f"<picture of {' x '.join(f'{side:g}' for side in self.figure.get_size_inches())} inches>"
+
+    def _repr_png_(self) -> bytes:
+        return self.png()
