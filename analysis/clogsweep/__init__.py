@@ -14,7 +14,7 @@ from __future__ import annotations
 import importlib
 import os
 
-TYPE_CHECKING = False  # to mypy it is true; `typing` takes longer to load than this module
+TYPE_CHECKING = False  # type checkers take it for true; `typing` takes longer to load than this module
 if TYPE_CHECKING:
     from typing import Any
 

@@ -237,6 +237,17 @@ class Module(Analysis):
             self.assertRegex(done.stderr.splitlines()[-1], "^ImportError: cannot start .*pandas.*; it needs Debian's python3, /usr/bin/python3")
             self.assertNotIn("ModuleNotFoundError", done.stderr)
 
+    def test_nothing_is_loaded_that_a_call_does_not_need(self):
+        self.sweep()
+        libraries = ("numpy", "h5py", "pandas", "matplotlib", "PIL")
+        for lines, loaded in (("", []), ("clogsweep.UserError", []), ("clogsweep.Fit", ["numpy", "h5py"]),
+                              ("len(clogsweep.open('s.h5').rows)", ["numpy", "h5py", "pandas"]),
+                              ("import clogsweep.commands.predict", ["numpy", "h5py"])):
+            with self.subTest(lines=lines):
+                told = subprocess.run([sys.executable, "-c", f"import sys, clogsweep\n{lines}\nprint([name for name in {libraries} if name in sys.modules])"],
+                                      cwd=self.folder, env={**os.environ, "PYTHONPATH": str(ROOT / "analysis")}, capture_output=True, text=True, check=True)
+                self.assertEqual(told.stdout, f"{loaded}\n")
+
     def test_programs_that_are_not_there_are_asked_for(self):
         self.sweep()
         with self.assertRaisesRegex(clogsweep.UserError, "no clogsweep in /nowhere; .*--programs"):
