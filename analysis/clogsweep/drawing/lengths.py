@@ -63,8 +63,7 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
     bars = [[math.nan if group["clogs"] == 0 else abs(group["clogging_length"] - group[end]) for group in groups]
             for end in ("clogging_length_lower", "clogging_length_upper")]
     colour, line = (style.curve_style(index)[name] for name in ("color", "linestyle"))
-    line = linestyle or line
-    axes.errorbar(places, lengths, yerr=bars, color=colour, linestyle=line, linewidth=1, elinewidth=1, capsize=2.5, label=label,
+    axes.errorbar(places, lengths, yerr=bars, color=colour, linestyle=linestyle or line, linewidth=1, elinewidth=1, capsize=2.5, label=label,
                   gid=style.mark("curve", groups))
     for x, y, group in zip(places, lengths, groups):
         face = "white" if reasons_for_open_marker(group) else colour
@@ -84,8 +83,7 @@ def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], in
     known = [group for _, group in points]
     drawn = axes.errorbar(
         [x for x, _ in points], [group["relative_speed"] for group in known], yerr=[group["relative_speed_error"] or 0.0 for group in known],
-        **style.curve_style(index), markersize=5, linewidth=1, elinewidth=1, capsize=2.5, label=label, gid=style.mark("curve", known),
-    )
+        **style.curve_style(index), markersize=5, linewidth=1, elinewidth=1, capsize=2.5, label=label, gid=style.mark("curve", known))
     drawn.lines[0].set_gid(style.mark("point", known))
 
 

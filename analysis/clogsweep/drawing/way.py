@@ -44,8 +44,7 @@ def draw_on(axes: Axes, run: trajectory.Trajectory, num_outlines: int) -> None:
         is_last = frame == chosen[-1]
         axes.fill(
             x, y, facecolor=style.DROPLET if is_last else "none", alpha=0.75 if is_last else 1.0,
-            edgecolor="black" if is_last else style.VIRIDIS(share), linewidth=1.0, zorder=3 if is_last else 2,
-        )
+            edgecolor="black" if is_last else style.VIRIDIS(share), linewidth=1.0, zorder=3 if is_last else 2)
     scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, run.times[-1]), cmap=style.VIRIDIS)
     # As high as the axes, whose shape is given: a colour bar of its own would be as high as the figure.
     axes.figure.colorbar(scale, cax=axes.inset_axes((1.01, 0, 0.02, 1)), label=r"$t/t_0$")

@@ -1,5 +1,7 @@
 """How all figures look: colours, axes, markers, what is written beside a picture; and how one is shown and saved."""
 
+from __future__ import annotations
+
 import io
 import math
 import os
