@@ -13,24 +13,24 @@ from __future__ import annotations
 
 import importlib
 import os
-from typing import TYPE_CHECKING, Any
 
-from . import errors
-
+TYPE_CHECKING = False  # type checkers take it for true; `typing` takes longer to load than this module
 if TYPE_CHECKING:
-    from .clogs import Clog, Clogs
-    from .errors import Damaged, ProgramFailed, UserError
-    from .fit import Fit
-    from .picture import Picture
-    from .run import Film, Run
-    from .sweep import Sweep
+    from typing import Any
+
+    from .drawing.clogs import Clog, Clogs
+    from .results.fit import Fit
+    from .results.run import Film, Run
+    from .results.sweep import Sweep
+    from .style import Picture
+    from .tools.errors import Damaged, ProgramFailed, UserError
 
 __version__ = "0.2.0"
 
 __all__ = ["Clog", "Clogs", "Damaged", "Film", "Fit", "Picture", "ProgramFailed", "Run", "Sweep", "UserError", "open"]
 
-_MODULES = {"Clog": "clogs", "Clogs": "clogs", "Damaged": "errors", "Film": "run", "Fit": "fit", "Picture": "picture",
-            "ProgramFailed": "errors", "Run": "run", "Sweep": "sweep", "UserError": "errors"}
+_MODULES = {"Clog": "drawing.clogs", "Clogs": "drawing.clogs", "Damaged": "tools.errors", "Film": "results.run", "Fit": "results.fit",
+            "Picture": "style", "ProgramFailed": "tools.errors", "Run": "results.run", "Sweep": "results.sweep", "UserError": "tools.errors"}
 
 
 def __getattr__(name: str) -> Any:
@@ -45,6 +45,8 @@ def _loaded(module: str) -> Any:
     try:
         return importlib.import_module(f".{module}", __name__)
     except ImportError as error:
+        from .tools import errors
+
         raise ImportError(errors.lacking(error)) from None
 
 
@@ -59,5 +61,5 @@ def open(path: str | os.PathLike[str], programs: str | os.PathLike[str] | None =
     @throws UserError  if it is neither; Damaged  if anything in it is not as it was written
     @throws ImportError  if this python3 lacks a module
     """
-    run, stored, sweep = (_loaded(module) for module in ("run", "stored", "sweep"))
+    run, stored, sweep = (_loaded(module) for module in ("results.run", "reading.stored", "results.sweep"))
     return run.Run(path) if stored.kind_of(path, programs) == stored.RUN else sweep.Sweep(path, programs)

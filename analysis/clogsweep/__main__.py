@@ -7,8 +7,8 @@
 import importlib
 import sys
 
-from . import command_line
-from .errors import UserError
+from .commands import command_line
+from .tools.errors import UserError
 
 COMMANDS = {
     "figures": "a figure of the article from runs of our own",

@@ -6,8 +6,8 @@ import resource
 import subprocess
 
 import h5py
-from clogsweep import stored
-from clogsweep.errors import UserError
+from clogsweep.reading import stored
+from clogsweep.tools.errors import UserError
 
 from launch import command, run
 from processes import CPU_SECONDS

@@ -13,7 +13,7 @@ from support import BIN
 from clogsweep import agreement
 from clogsweep.agreement import evidence, lengths, statements
 from clogsweep.agreement.statements import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, NOT_RUN
-from clogsweep.errors import UserError
+from clogsweep.tools.errors import UserError
 
 FACTOR = 1.5  # of a confidence interval, on both sides
 

@@ -15,8 +15,8 @@ import stored_rows
 from support import BIN, ROOT, SMALL, ProgramTest
 
 sys.path.insert(0, str(ROOT / "analysis"))
-from clogsweep import rounded  # noqa: E402
-from clogsweep import stored  # noqa: E402
+from clogsweep.tools import rounded  # noqa: E402
+from clogsweep.reading import stored  # noqa: E402
 
 # Such droplets might get a hundred diameters far: rows of theirs can be given any distance up to that.
 FAR = ["max-time=1", "terminal-speed=100"]

@@ -17,7 +17,7 @@ from support import BIN, QUICK, ROOT, ProgramTest, table
 
 sys.path.insert(0, str(ROOT / "analysis"))
 import clogsweep  # noqa: E402
-from clogsweep import stored  # noqa: E402
+from clogsweep.reading import stored  # noqa: E402
 
 SETTINGS = [*QUICK, "line-tension=0.5,2", "seeds=1..3", "--output", "s.h5"]
 READERS = [("clogsweep", "status", "s.h5"), ("clogsweep", "replay", "s.h5", 0), ("clogfit", "s.h5"), ("clogsweep", *SETTINGS)]

@@ -20,8 +20,12 @@ from drawing import Analysis
 from support import BIN, QUICK, ROOT, SMALL, table
 
 import clogsweep
-from clogsweep import clogs, film, lengths, programs, report, rounded, stored, style, survival_curve, trajectory
-from clogsweep.groups import Groups
+from clogsweep import style
+from clogsweep.drawing import clogs, film, lengths, survival_curve
+from clogsweep.pages import report
+from clogsweep.reading import programs, stored, trajectory
+from clogsweep.tools import rounded
+from clogsweep.labels.groups import Groups
 from clogsweep.paper import arrays
 
 # A few seconds for all of them: coarse droplets, short ways.
@@ -290,7 +294,7 @@ class Pictures(Analysis):
     def test_markers_show_by_what_droplets_clog_and_open_ones_a_doubt(self):
         axes = style.new_figure().subplots()
         groups = [self.group((4, 1, 0, 0), doubts="few_clogs held_by_mesh"), self.group((1, 4, 0, 0)), self.group((0, 1, 3, 0)), self.group((0, 0, 0, 0))]
-        style.draw_lengths(axes, [1, 2, 3, 4], groups, 0, "")
+        lengths.draw_lengths(axes, [1, 2, 3, 4], groups, 0, "")
         drawn = {line.get_xdata()[0]: (line.get_marker(), line.get_markerfacecolor() == "white") for line in axes.lines
                  if len(line.get_xdata()) == 1 and np.isfinite(line.get_ydata()[0])}
         self.assertEqual(drawn, {1: ("o", True), 2: ("s", False), 3: ("D", False), 4: ("^", True)})
@@ -320,7 +324,7 @@ class Pictures(Analysis):
             self.assertEqual([label.get_text() for label in sorted(shown, key=lambda label: label.get_position()[1])], expected)
 
     def test_warnings_of_libraries_stay_away_from_the_terminal(self):
-        lines = "from clogsweep import command_line\nwith command_line.needs_modules():\n    import warnings\n    warnings.warn('of a library')"
+        lines = "from clogsweep.commands import command_line\nwith command_line.needs_modules():\n    import warnings\n    warnings.warn('of a library')"
         for switches, expected in [([], ""), (["-W", "default"], "of a library")]:
             done = subprocess.run([sys.executable, *switches, "-c", lines], cwd=ROOT / "analysis", capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stderr)
@@ -351,11 +355,11 @@ class Pictures(Analysis):
         self.succeed("clogsweep", *QUICK, "line-tension=2,30", "seeds=1..5", "--output", "s.h5")
         groups = Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
         for group, doubts in zip(groups.members, (["below_spacing"], ["below_spacing", "not_proved_sound"])):
-            self.assertEqual(style.reasons_for_open_marker(group), doubts)
+            self.assertEqual(lengths.reasons_for_open_marker(group), doubts)
 
         def open_places():
             """With the caption."""
-            axes = lengths.draw(groups).axes[0]
+            axes = style.figure_of(lengths.draw_on, groups).axes[0]
             return [line.get_xdata()[0] for line in axes.lines if line.get_markerfacecolor() == "white" and line.get_marker() != "^"], axes.get_title()
 
         groups.members[0]["doubts"] = "censored_by_time"

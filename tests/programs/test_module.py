@@ -16,8 +16,8 @@ from drawing import Analysis
 from support import BIN, QUICK, ROOT, SweepTest, table
 
 import clogsweep.__main__
-from clogsweep import places, programs
-from clogsweep.groups import Groups
+from clogsweep.reading import programs
+from clogsweep.labels.groups import Groups
 
 PNG = b"\x89PNG\r\n"
 
@@ -237,6 +237,17 @@ class Module(Analysis):
             self.assertRegex(done.stderr.splitlines()[-1], "^ImportError: cannot start .*pandas.*; it needs Debian's python3, /usr/bin/python3")
             self.assertNotIn("ModuleNotFoundError", done.stderr)
 
+    def test_nothing_is_loaded_that_a_call_does_not_need(self):
+        self.sweep()
+        libraries = ("numpy", "h5py", "pandas", "matplotlib", "PIL")
+        for lines, loaded in (("", []), ("clogsweep.UserError", []), ("clogsweep.Fit", ["numpy", "h5py"]),
+                              ("len(clogsweep.open('s.h5').rows)", ["numpy", "h5py", "pandas"]),
+                              ("import clogsweep.commands.predict", ["numpy", "h5py"])):
+            with self.subTest(lines=lines):
+                told = subprocess.run([sys.executable, "-c", f"import sys, clogsweep\n{lines}\nprint([name for name in {libraries} if name in sys.modules])"],
+                                      cwd=self.folder, env={**os.environ, "PYTHONPATH": str(ROOT / "analysis")}, capture_output=True, text=True, check=True)
+                self.assertEqual(told.stdout, f"{loaded}\n")
+
     def test_programs_that_are_not_there_are_asked_for(self):
         self.sweep()
         with self.assertRaisesRegex(clogsweep.UserError, "no clogsweep in /nowhere; .*--programs"):
@@ -249,7 +260,7 @@ class Module(Analysis):
 
         listed = called()
         self.assertEqual((listed.returncode, called("--help").stdout), (0, listed.stdout))
-        modules = {path.stem.replace("_", "-") for path in (ROOT / "analysis/clogsweep/commands").glob("[a-z]*.py")}
+        modules = {path.stem.replace("_", "-") for path in (ROOT / "analysis/clogsweep/commands").glob("[a-z]*.py")} - {"command-line"}
         self.assertEqual(modules, set(clogsweep.__main__.COMMANDS))
         for command in modules:
             self.assertIn(f"\n  {command} ", listed.stdout)
@@ -274,5 +285,5 @@ class UnderWay(SweepTest):
 
 class Places(Analysis):
     def test_the_source_tree_has_them(self):
-        self.assertEqual(places.JOBS, ROOT / "jobs")
+        self.assertEqual(programs.JOBS, ROOT / "jobs")
         self.assertEqual(programs.programs_in(BIN), BIN.resolve())

@@ -13,10 +13,14 @@ from drawing import Analysis
 from support import BIN, QUICK, SMALL
 
 import stored_rows
-from clogsweep import clogs, dwell, film, lengths, poster, report, rounded, stored, style, trajectory, way
-from clogsweep.errors import UserError
-from clogsweep.groups import Groups
-from clogsweep.sweep import Sweep
+from clogsweep import labels, style
+from clogsweep.drawing import clogs, dwell, film, lengths, way
+from clogsweep.pages import poster, report
+from clogsweep.reading import stored, trajectory
+from clogsweep.tools import rounded
+from clogsweep.tools.errors import UserError
+from clogsweep.labels.groups import Groups
+from clogsweep.results.sweep import Sweep
 
 ONE_CURVE = [*QUICK, "line-tension=0.5,3", "seeds=1..2", "near-wall-drag=0.07", "obstacle-gap=0.35", "terminal-speed=0.032"]
 
@@ -101,13 +105,13 @@ class Looks(Analysis):
 
     def test_one_curve_has_its_whole_title_the_interface_and_room_at_the_frame(self):
         groups = self.fit(*ONE_CURVE)
-        for drawing in (lengths.draw(groups), lengths.draw_speeds(groups), report.survival(groups, "", groups.members)):
+        for drawing in (style.figure_of(lengths.draw_on, groups), style.figure_of(lengths.draw_speeds_on, groups), style.figure_of(report.draw_survival, groups, "", groups.members)):
             self.assert_title_is_whole(drawing)
             self.assertIn("2 runs a point", drawing.axes[0].get_title())
         # The speed of the stiffer droplets, which clog at once, is not known.
         for group, speed in zip(groups.members, (0.4, None)):
             group.update(relative_speed=speed, relative_speed_error=0.1)
-        drawing = lengths.draw_speeds(groups)
+        drawing = style.figure_of(lengths.draw_speeds_on, groups)
         axes = drawing.axes[0]
         self.assertIn("interface: robust", axes.get_title())
         low, high = axes.get_xlim()
@@ -157,7 +161,7 @@ class Looks(Analysis):
             groups = self.fit(*QUICK, tensions, *arrays, "seeds=1")
             for group in groups.members:
                 group.update(relative_speed=0.4, relative_speed_error=0.1)
-            for drawing in (lengths.draw(groups), lengths.draw_speeds(groups)):
+            for drawing in (style.figure_of(lengths.draw_on, groups), style.figure_of(lengths.draw_speeds_on, groups)):
                 self.assert_title_is_whole(drawing)
                 axes, = drawing.axes
                 legend, frame = axes.get_legend().get_window_extent(), axes.get_window_extent()
@@ -187,7 +191,7 @@ class Looks(Analysis):
         for group, ways in zip(groups.members, ({"clogging_length": None, "survival": [], "censored_distances": [40.0]},
                                                 {"clogging_length": 8.0, "survival": steps, "censored_distances": [3.0, 9.0]})):
             group.update(ways)
-        drawing = report.survival(groups, "two", groups.members)
+        drawing = style.figure_of(report.draw_survival, groups, "two", groups.members)
         curves = [line.get_xydata() for line in drawing.axes[0].lines if line.get_drawstyle() == "steps-post"]
         self.assertEqual([curve[-1].tolist() for curve in curves], [[40, 1], [9, 0.75]])
         self.assertTrue(all(curve[0, 0] > 0 and curve[0, 1] == 1 for curve in curves), "it begins where the scale does")
@@ -233,12 +237,12 @@ class Looks(Analysis):
             title = drawing.axes[0].get_title()
             return [words for words in (bars, dotted, triangles) if words in title]
 
-        self.assertEqual(explained(lengths.draw(groups)), [dotted, triangles])
-        self.assertEqual(explained(lengths.draw_speeds(groups)), [])
+        self.assertEqual(explained(style.figure_of(lengths.draw_on, groups)), [dotted, triangles])
+        self.assertEqual(explained(style.figure_of(lengths.draw_speeds_on, groups)), [])
         groups.members = groups.members[:1]
-        self.assertEqual(explained(lengths.draw(groups)), [triangles])
+        self.assertEqual(explained(style.figure_of(lengths.draw_on, groups)), [triangles])
         groups.members[0].update(clogs=2, clogging_length=1.0, clogging_length_upper=4.0)
-        self.assertEqual(explained(lengths.draw(groups)), [bars])
+        self.assertEqual(explained(style.figure_of(lengths.draw_on, groups)), [bars])
 
     def test_titles_of_a_sheet_of_clogs_stay_off_its_edge(self):
         self.succeed("clogsweep", *QUICK, "line-tension=3", "seeds=1..4", "--output", "s.h5")
@@ -262,7 +266,7 @@ class Looks(Analysis):
 
     def test_one_is_no_plural(self):
         self.assertEqual([rounded.counted(number, "run") for number in (0, 1, 2)], ["0 runs", "1 run", "2 runs"])
-        self.assertEqual([style.runs_a_point([{"runs": runs} for runs in all_runs]) for all_runs in ([1, 1], [4], [1, 3])],
+        self.assertEqual([labels.runs_a_point([{"runs": runs} for runs in all_runs]) for all_runs in ([1, 1], [4], [1, 3])],
                          ["1 run a point", "4 runs a point", "1 to 3 runs a point"])
         self.succeed("clogsweep", *QUICK, "seeds=1", "--output", "s.h5")
         self.succeed("clogfit", "report", "s.h5", "--output", "s.html", "--examples", 0)

@@ -9,7 +9,8 @@ import numpy as np
 from drawing import Analysis
 from support import BIN, table
 
-from clogsweep import prediction, stored
+from clogsweep.collisions import prediction
+from clogsweep.reading import stored
 
 SLACK = 1e-9
 

@@ -16,7 +16,8 @@ from selenium.webdriver.support.ui import WebDriverWait
 from drawing import Analysis
 from support import SMALL
 
-from clogsweep import chart, rounded
+from clogsweep.pages import chart
+from clogsweep.tools import rounded
 
 SECONDS = 120  # more than a machine with much else to do needs
 POINT = "svg.chart .point"

@@ -10,8 +10,10 @@ import stored_rows
 from drawing import Analysis
 from support import BIN, ProgramTest, table
 
-from clogsweep import passages, stored, style
-from clogsweep.groups import Groups
+from clogsweep import labels, style
+from clogsweep.drawing import passages
+from clogsweep.reading import stored
+from clogsweep.labels.groups import Groups
 
 EXTREMES = [f"{extreme}{at}" for extreme in ("largest_shape_parameter", "smallest_relative_speed", "largest_relative_speed") for at in ("", "_at")]
 CHANNEL = ["obstacle-layout=channel", "orifice=0.7", "near-wall-drag=0.07", "terminal-speed=0.05", "start=-1.5", "end=1", "vertices=64"]
@@ -143,8 +145,8 @@ class Channels(Analysis):
         self.assertEqual((page.count("<svg"), page.count("<img")), (3, 0))
 
         # Each point is a group's number, and each marker says how its run ended.
-        axes = passages.draw_curves(Groups(fit), "largest_shape_parameter").axes[0]
-        self.assertEqual(axes.get_xlabel(), style.AXES["line_tension"])
+        axes = style.figure_of(passages.draw_curves, Groups(fit), "largest_shape_parameter").axes[0]
+        self.assertEqual(axes.get_xlabel(), labels.AXES["line_tension"])
         drawn = [(line.get_xdata()[0], line.get_ydata()[0], line.get_marker()) for line in axes.lines if len(line.get_xdata()) == 1]
         self.assertEqual(drawn, [(group["line_tension"], group["largest_shape_parameter"], {"passed": "o", "clogged": "X"}[group["status"]])
                                  for group in fit["groups"]])

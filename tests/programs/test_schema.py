@@ -6,7 +6,7 @@ import unittest
 from drawing import Analysis
 from support import BIN, QUICK
 
-from clogsweep.groups import Groups
+from clogsweep.labels.groups import Groups
 
 # Of keys that mean something in certain runs only, and of words, which take no list.
 SURROUNDINGS = {

@@ -4,14 +4,12 @@ Lengths differ *clearly* if their confidence intervals do not overlap, speeds if
 errors of the difference.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
-from .. import rounded
-from ..hints import Group
+from ..tools import rounded
+from ..tools.hints import Group
 from .statements import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding
 
 

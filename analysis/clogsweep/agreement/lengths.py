@@ -1,17 +1,15 @@
 """Section 4.2, appendix C: clogging lengths of polygons and disks."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterable, Sequence
 
 import numpy as np
 
-from ..hints import Group
 from ..paper import dilute
 from ..paper.arrays import sags
 from ..paper.dilute import PUBLISHED, Family
 from ..paper.workshop import Workshop
+from ..tools.hints import Group
 from .evidence import bounds, curves, falls, fisher_p_value, grow_with_gap, length_of, overall, rises, shorter
 from .statements import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding, statement, statement_of_family, statement_of_walls
 

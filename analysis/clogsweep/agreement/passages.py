@@ -1,15 +1,13 @@
 """Section 4.1, appendices A and B: channels, where nothing is random and runs have no intervals; and what was measured."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
 import numpy as np
 
-from .. import rounded
 from ..paper import channels
 from ..paper.workshop import Workshop
+from ..tools import rounded
 from .evidence import by_tolerance
 from .statements import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding, statement
 

@@ -1,13 +1,11 @@
 """Section 4.3, appendices D and E: mean speeds among obstacles."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 
-from ..hints import Group
 from ..paper.arrays import sags
 from ..paper.workshop import Workshop
+from ..tools.hints import Group
 from .evidence import by_tolerance, curves, falls, overall, rises, slower, speed_of
 from .statements import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding, statement
 

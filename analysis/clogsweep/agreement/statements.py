@@ -4,15 +4,13 @@ A statement knows where the article makes it, what it says, and how to judge it 
 verdict is computed. Only the reason for a verdict other than `agrees` is written by hand.
 """
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Callable, Iterable, Mapping
 
-from ..errors import NotThere, UserError
-from ..hints import Group
 from ..paper.dilute import FAMILIES, Family
 from ..paper.workshop import Workshop
+from ..tools.errors import NotThere, UserError
+from ..tools.hints import Group
 
 AGREES, IN_KIND, DOES_NOT, NOT_KNOWN, NOT_RUN = "agrees", "in kind", "does not agree", "not known", "not run"
 

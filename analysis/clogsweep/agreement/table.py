@@ -1,7 +1,5 @@
 """The judged statements as a table."""
 
-from __future__ import annotations
-
 import collections
 import csv
 import io

@@ -10,8 +10,10 @@ agrees, in kind, does not agree, not known (too few clogs to tell), not run. All
 import argparse
 import pathlib
 
-from .. import agreement, command_line, programs
+from .. import agreement
 from ..paper.workshop import Workshop
+from ..reading import programs
+from . import command_line
 
 
 def parse() -> argparse.Namespace:

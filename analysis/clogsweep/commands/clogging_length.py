@@ -8,14 +8,15 @@ intervals; markers show by what most droplets clogged; an open marker is a lengt
 why; a triangle pointing up is a lower bound where no run clogged.
 """
 
-from .. import fit, lengths
-from ..picture import Picture
-from . import sweep_to_draw
+from .. import style
+from ..drawing import lengths
+from ..results import fit
+from .command_line import sweep_to_draw
 
 
 def body() -> int:
     arguments = sweep_to_draw(__doc__, "clogging-length", "file of clogsweep --output, or output of clogfit --format json")
     fitted = fit.read(arguments.sweep, arguments.programs)
-    picture = Picture(lengths.draw(fitted.drawable(arguments.sweep)), fitted.source)
+    picture = style.Picture(style.figure_of(lengths.draw_on, fitted.known.with_lengths(arguments.sweep)), fitted.source)
     print(f"{picture.save(arguments.output)} (and .pdf)")
     return 0

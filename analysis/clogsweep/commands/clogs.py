@@ -8,25 +8,23 @@ obstacles are blue, arcs of contact red, the droplet's convex hull dashed. Title
 clogged, how many obstacles it wraps and which part of its support they bear, and how many gaps and contacts it has.
 """
 
-import pathlib
+import argparse
 
-from .. import clogs, command_line, programs
-from ..sweep import Sweep
+from ..drawing import clogs
+from ..results.sweep import Sweep
+from .command_line import sweep_to_draw, tasks, whole
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--most", type=whole(1), default=30, help="draw so many clogs at most, the first (%(default)s)")
+    parser.add_argument("--tasks", type=tasks, help="only these, e.g. 3,17,40")
+    parser.add_argument("--mechanism", choices=clogs.MECHANISMS, help="only these")
+    parser.add_argument("--jobs", type=whole(1), default=2, help="runs at a time (%(default)s)")
 
 
 def body() -> int:
-    parser = command_line.Parser(__doc__)
-    parser.add_argument("sweep", type=pathlib.Path, help="file of clogsweep --output")
-    command_line.add_output(parser, "name of the picture; .png and .pdf are made (SWEEP-clogs)", ".png", ".pdf")
-    programs.add_option(parser)
-    parser.add_argument("--most", type=command_line.whole(1), default=30, help="draw so many clogs at most, the first (%(default)s)")
-    parser.add_argument("--tasks", type=command_line.tasks, help="only these, e.g. 3,17,40")
-    parser.add_argument("--mechanism", choices=clogs.MECHANISMS, help="only these")
-    parser.add_argument("--jobs", type=command_line.whole(1), default=2, help="runs at a time (%(default)s)")
-    arguments = parser.parse_args()
-    output = arguments.output or command_line.beside(arguments.sweep, "clogs")
-    command_line.refuse_unwritable_picture(output, arguments.sweep)
+    arguments = sweep_to_draw(__doc__, "clogs", more=add_options)
     found = Sweep(arguments.sweep, arguments.programs).clogs(
         mechanism=arguments.mechanism, tasks=arguments.tasks, most=arguments.most, jobs=arguments.jobs)
-    print(f"{found.picture().save(output)} (and .pdf)")
+    print(f"{found.picture().save(arguments.output)} (and .pdf)")
     return 0

@@ -15,17 +15,13 @@ import math
 import pathlib
 import tempfile
 
-from .. import collision, command_line, programs
-from ..errors import UserError
-from ..picture import Picture
-
-
-def key_and_value(word: str) -> tuple[str, str]:
-    """Type of an option: KEY=VALUE."""
-    key, equals, value = word.partition("=")
-    if not (key and equals and value):
-        raise argparse.ArgumentTypeError(f"invalid key: {word} (must be KEY=VALUE) try vertices=256")
-    return key, value
+from ..collisions import collision
+from ..drawing import break_up
+from ..reading import programs
+from ..style import Picture
+from ..tools import outputs
+from ..tools.errors import UserError
+from . import command_line
 
 
 def offsets(word: str) -> list[float]:
@@ -41,13 +37,13 @@ def offsets(word: str) -> list[float]:
 
 def body() -> int:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("keys", type=key_and_value, nargs="*", metavar="KEY=VALUE", help="of clogsweep; vertices, terminal-speed, break-up-neck, max-time have values "
+    parser.add_argument("keys", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUE", help="of clogsweep; vertices, terminal-speed, break-up-neck, max-time have values "
                         "of their own here")
     command_line.add_output(parser, "name of the picture; .png and .pdf are made", ".png", ".pdf", required=True)
     parser.add_argument("--offsets", type=offsets, default="0,0.01,0.02,0.05,0.1,0.15,0.2,0.25,0.3,0.35", help="of the droplet's way from the obstacle's centre [sigma]")
     programs.add_option(parser)
     arguments = parser.parse_args()
-    command_line.refuse_unwritable_picture(arguments.output)
+    outputs.refuse_unwritable_picture(arguments.output)
     found: dict[float, collision.Threshold] = {}
     print("offset,symmetry,breaks_up_to,whole_from,capillary_number")
     with tempfile.TemporaryDirectory(prefix="clogsweep-collision-") as folder:
@@ -58,5 +54,5 @@ def body() -> int:
             print(offset, f"{collision.symmetry(offset):.4f}", *(f"{end:.4g}" if end else "" for end in (low, high)), middle, sep=",", flush=True)
     if not any(low and high for low, high in found.values()):
         raise UserError(f"nothing to draw (no offset has a threshold between line tensions of {collision.TENSIONS[0]} and {collision.TENSIONS[1]}); try smaller --offsets")
-    Picture(collision.draw(found)).save(arguments.output)
+    Picture(break_up.draw(found)).save(arguments.output)
     return 0

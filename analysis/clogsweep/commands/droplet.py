@@ -14,15 +14,16 @@ A film has --most-frames at most. A longer run is thinned; if the droplet moved 
 then, the film shows the end of the run alone.
 """
 
-from __future__ import annotations
-
 import argparse
 import pathlib
 import sys
 
-from .. import command_line, film, stored, trajectory, way
-from ..errors import UserError
-from ..picture import Picture
+from ..drawing import film, way
+from ..reading import stored, trajectory
+from ..style import Picture
+from ..tools import outputs
+from ..tools.errors import UserError
+from . import command_line
 
 
 def body() -> int:
@@ -46,7 +47,7 @@ def body() -> int:
 
 
 def draw_picture(arguments: argparse.Namespace) -> int:
-    command_line.refuse_unwritable_picture(arguments.output, arguments.run)
+    outputs.refuse_unwritable_picture(arguments.output, arguments.run)
     run = trajectory.read(arguments.run)
     print(f"{Picture(way.draw(run, arguments.outlines), stored.source(run.attributes)).save(arguments.output)} (and .pdf)")
     return 0

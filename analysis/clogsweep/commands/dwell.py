@@ -8,14 +8,21 @@ The first time is the shortest of which all rows know who stood for longer, the 
 length there is that of clogs alone. Bars are confidence intervals; a triangle is a lower bound where no run clogged.
 """
 
-from .. import dwell, programs, stored
-from . import sweep_to_draw
+from ..drawing import dwell
+from ..labels.groups import Groups
+from ..reading import fits, programs, stored
+from ..results.fit import Fit
+from ..style import Picture
+from .command_line import sweep_to_draw
 
 
 def body() -> int:
     arguments = sweep_to_draw(__doc__, "dwell")
     with stored.opened(arguments.sweep, stored.SWEEP, arguments.programs):
         pass
-    picture = dwell.picture(programs.programs_in(arguments.programs) / "clogfit", arguments.sweep)
-    print(f"{picture.save(arguments.output)} (and .pdf)")
+    clogfit = programs.programs_in(arguments.programs) / "clogfit"
+    fit = Fit(*fits.fitted(clogfit, arguments.sweep))
+    times = dwell.times_of(fit.known.with_lengths(arguments.sweep))
+    known = [Groups(*fits.fitted(clogfit, arguments.sweep, "--dwell", repr(time))).with_lengths(arguments.sweep) for time in times]
+    print(f"{Picture(dwell.draw(times, known), fit.source).save(arguments.output)} (and .pdf)")
     return 0

@@ -12,7 +12,9 @@ the trajectory at that time. Units are those of docs/reference/files.md.
 
 import pathlib
 
-from .. import command_line, trajectory, vtk
+from ..drawing import vtk
+from ..reading import trajectory
+from . import command_line
 
 
 def body() -> int:

@@ -12,10 +12,12 @@ import argparse
 import pathlib
 import sys
 
-from .. import command_line, figures, programs
-from ..errors import UserError
+from ..paper import figures
 from ..paper.plate import CATALOGUE
 from ..paper.workshop import Override, Workshop, measured
+from ..reading import programs
+from ..tools.errors import UserError
+from . import command_line
 
 
 def parse() -> argparse.Namespace:

@@ -7,8 +7,8 @@ The page is A3. Every number comes from clogfit; clogs and the way of a droplet 
 temporary folder. Of droplets in a channel or on a wall it shows the passage or the sag over what the sweep varies.
 """
 
-from ..sweep import Sweep
-from . import sweep_to_draw
+from ..results.sweep import Sweep
+from .command_line import sweep_to_draw
 
 
 def body() -> int:

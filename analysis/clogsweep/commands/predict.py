@@ -13,14 +13,15 @@ import math
 import pathlib
 import tempfile
 
-from .. import command_line, prediction, programs
-from ..errors import UserError
-from .collision import key_and_value
+from ..collisions import prediction
+from ..reading import programs
+from ..tools.errors import UserError
+from . import command_line
 
 
 def body() -> int:
     parser = command_line.Parser(__doc__)
-    parser.add_argument("keys", type=key_and_value, nargs="*", metavar="KEY=VALUE", help="of clogsweep, line-tension with a list if you like")
+    parser.add_argument("keys", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUE", help="of clogsweep, line-tension with a list if you like")
     programs.add_option(parser)
     arguments = parser.parse_args()
     keys = dict(arguments.keys)

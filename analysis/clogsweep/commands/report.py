@@ -8,7 +8,9 @@ droplets in a channel or on a wall it shows the passage or the sag over what the
 
 import pathlib
 
-from .. import command_line, programs, report
+from ..pages import report
+from ..reading import programs
+from . import command_line
 
 
 def body() -> int:

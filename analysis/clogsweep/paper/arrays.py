@@ -9,11 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from .. import rounded, stored, style, survival_curve, trajectory
-from ..errors import UserError
-from ..groups import said
-from ..hints import Column, Group
-from ..trajectory import Trajectory
+from .. import style
+from ..drawing import surroundings, survival_curve
+from ..drawing.lengths import draw_lengths, draw_speeds, length_note
+from ..labels import AXES, runs_a_point, said
+from ..reading import stored, trajectory
+from ..tools import rounded
+from ..tools.errors import UserError
+from ..tools.hints import Column, Group
 from .plate import Plate, figure, interface_of
 from .workshop import Workshop
 
@@ -35,7 +38,7 @@ def describe(columns: dict[str, Column], groups: Sequence[Group], without: Colle
             words.append(said(columns[name], first[name]))
     words.append("saturated arrays" if first["obstacle_filling"] == "saturated" else rf"$\rho_\mathrm{{ob}}\sigma^2 = {first['obstacle_density']:g}$")
     words += [f"$V_t = {first['terminal_speed']:g}$", f"$T = {first['max_time']:g}\\,t_0$", f"$L = {first['box']:g}\\sigma$"]
-    line = style.runs_a_point(groups)
+    line = runs_a_point(groups)
     if first["model"] == "dp":
         words.insert(0, f"$N_v = {first['vertices']}$")
         line += f"; interface: {interface_of(first['preset'])}"
@@ -64,8 +67,8 @@ def by(groups: Iterable[Group], name: str) -> list[tuple[Any, list[Group]]]:
 def drawing_of(quantity: str) -> Callable[[Axes, Sequence[float], Sequence[Group], int, str], None]:
     """@param quantity  "length" or "speed" """
     if quantity == "length":
-        return style.draw_lengths
-    return style.draw_speeds
+        return draw_lengths
+    return draw_speeds
 
 
 def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity: str) -> Plate:
@@ -84,11 +87,11 @@ def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity:
     style.logarithmic_abscissa(axes, places)
     if quantity == "length":
         style.logarithmic_ordinate(axes)
-    axes.set_xlabel(style.AXES[abscissa])
-    axes.set_ylabel(style.AXES[quantity])
+    axes.set_xlabel(AXES[abscissa])
+    axes.set_ylabel(AXES[quantity])
     style.grid(axes)
     style.legend(axes, groups if quantity == "length" else ())
-    note = style.length_note(groups, shop.confidence(config), [axes]) if quantity == "length" else "bars: standard error"
+    note = length_note(groups, shop.confidence(config), [axes]) if quantity == "length" else "bars: standard error"
     style.caption(axes, f"{describe(shop.columns(config), groups, [parameter])}\n{note}")
     return Plate(drawing, data)
 
@@ -166,13 +169,13 @@ def over_sag(shop: Workshop, curves: Sequence[Curve], gap: float, quantity: str)
     style.logarithmic_abscissa(axes)
     if quantity == "length":
         style.logarithmic_ordinate(axes)
-    axes.set_xlabel(style.AXES["sag"])
-    axes.set_ylabel(style.AXES[quantity])
+    axes.set_xlabel(AXES["sag"])
+    axes.set_ylabel(AXES[quantity])
     axes.axvline(0.25, color="0.75", linewidth=0.8, linestyle=":", zorder=0)
     axes.text(0.25, 0.02, r"$\delta_s = 0.25\sigma$ ", ha="right", color="0.4", fontsize=8, transform=axes.get_xaxis_transform())
     style.grid(axes)
     axes.legend(frameon=False)
-    note = style.length_note(drawn, shop.confidence(config), [axes]) if quantity == "length" else "bars: standard error"
+    note = length_note(drawn, shop.confidence(config), [axes]) if quantity == "length" else "bars: standard error"
     style.caption(axes, "\n".join(dict.fromkeys(captions)) + f"\n{note}")
     return Plate(drawing, data)
 
@@ -212,7 +215,7 @@ def sag_picture(shop: Workshop) -> Plate:
         axes.plot([-0.08, 0.08], [0.5 - sag, 0.5 - sag], color="black", linewidth=1)
         axes.annotate("", (0, 0.5 - sag), (0, 0.5), arrowprops={"arrowstyle": "-|>", "color": "black"})
         axes.text(0, 0.46 - sag, rf"$\delta_s = {sag:.3f}\sigma$", ha="center", va="top")
-        trajectory.frame_limits(axes, (-0.85, -0.25), (0.85, 1.1))
+        surroundings.frame_limits(axes, (-0.85, -0.25), (0.85, 1.1))
         axes.set_xlabel(r"along the wall $/\sigma$")
         style.caption(axes, title)
     panels[0].set_ylabel(r"height above the wall $/\sigma$")
@@ -226,7 +229,7 @@ def sag_picture(shop: Workshop) -> Plate:
 CLOGS = "clogging-friction"  # walls with friction hold droplets that wrap, whatever the mesh
 
 
-def example(shop: Workshop, mechanism: str) -> tuple[Trajectory, pandas.Series]:
+def example(shop: Workshop, mechanism: str) -> tuple[trajectory.Trajectory, pandas.Series]:
     """A clog of the sweep, run once more with its outline. By squeezing: the stiffest that went at least half a diameter, if any
     did. By wrapping: the one of median shape, of those that only hang over obstacles, if there are any."""
     shop.sweep(CLOGS)
@@ -249,12 +252,12 @@ def example(shop: Workshop, mechanism: str) -> tuple[Trajectory, pandas.Series]:
     return run, row
 
 
-def clog_title(run: Trajectory, row: pandas.Series) -> str:
+def clog_title(run: trajectory.Trajectory, row: pandas.Series) -> str:
     return (rf"{row.mechanism}: $\Gamma = {row.line_tension:g}$, $w_\mathrm{{ob}} = {row.obstacle_gap:g}\sigma$, seed {row.seed}, "
             rf"$r = {row.distance:.2f}\sigma$" f"\n{row.wrapped_support:.0%} of the support from wrapped obstacles, $N_v = {row.vertices}$\ninterface: {interface_of(row.preset)}")
 
 
-def clog_numbers(run: Trajectory, row: pandas.Series, frame: int) -> list[dict[str, Any]]:
+def clog_numbers(run: trajectory.Trajectory, row: pandas.Series, frame: int) -> list[dict[str, Any]]:
     return [{"mechanism": row.mechanism, "line_tension": row.line_tension, "obstacle_gap": row.obstacle_gap, "seed": row.seed,
              "distance": row.distance, "x": x, "y": y} for x, y in run.polygons[frame].T]
 
@@ -264,9 +267,9 @@ def snapshot(shop: Workshop, mechanism: str) -> Plate:
     drawing, axes = style.subplots(figsize=(5.6, 5.4))
     shape = run.polygons[-1]
     centre = shape.mean(axis=1)
-    trajectory.draw_droplet(axes, run, -1, centre)
+    surroundings.draw_droplet(axes, run, -1, centre)
     half = 0.6 + np.abs(shape - centre[:, None]).max()
-    trajectory.frame_limits(axes, (-half, -half), (half, half))
+    surroundings.frame_limits(axes, (-half, -half), (half, half))
     axes.annotate("flow", (0.22, 0.94), (0.04, 0.94), xycoords="axes fraction", va="center",
                   arrowprops={"arrowstyle": "-|>", "color": "black"}, bbox={"facecolor": "white", "edgecolor": "none", "pad": 1})
     axes.set_xlabel(r"$x/\sigma$")
@@ -299,9 +302,9 @@ def two_ways(shop: Workshop) -> Plate:
         shown = run.polygons[chosen]
         low, high = shown.min(axis=(0, 2)) - 0.3, shown.max(axis=(0, 2)) + 0.3
         for axes, frame in zip(line, chosen):
-            trajectory.draw_droplet(axes, run, frame)
+            surroundings.draw_droplet(axes, run, frame)
             half = max(high - low) / 2
-            trajectory.frame_limits(axes, (low + high) / 2 - half, (low + high) / 2 + half)
+            surroundings.frame_limits(axes, (low + high) / 2 - half, (low + high) / 2 + half)
             axes.set_xticks([]), axes.set_yticks([])
             axes.set_title(f"$t = {run.times[frame]:.0f}\\,t_0$", fontsize=9)
         for axes in line[len(chosen):]:

@@ -6,9 +6,11 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from .. import style, trajectory
-from ..errors import UserError
-from ..trajectory import Trajectory
+from .. import style
+from ..drawing import surroundings
+from ..labels import AXES
+from ..reading.trajectory import Trajectory
+from ..tools.errors import UserError
 from .plate import Plate, figure, interface_of
 from .workshop import Workshop, measured
 
@@ -57,8 +59,8 @@ def draw_measured(shop: Workshop, axes: Axes, column: str) -> None:
 
 def finish(axes: Axes, ordinate: str, reach: float = 1.6) -> None:
     axes.set_xlim(-reach, reach)
-    axes.set_xlabel(style.AXES["h"])
-    axes.set_ylabel(style.AXES[ordinate])
+    axes.set_xlabel(AXES["h"])
+    axes.set_ylabel(AXES[ordinate])
     axes.axvline(0, color="0.8", linewidth=0.8, zorder=0)
     if ordinate == "profile":
         axes.axhline(1, color="0.6", linewidth=0.8, linestyle=":", zorder=0)
@@ -91,21 +93,21 @@ def geometry(shop: Workshop) -> Plate:
     drawing, (left, right) = style.subplots(1, 2, figsize=(9.6, 4.4), width_ratios=[1, 1.5])
     middle = channel.middle
     frame = channel.frame_at("h", -0.75)
-    trajectory.draw_droplet(left, channel, frame, middle)
+    surroundings.draw_droplet(left, channel, frame, middle)
     left.annotate("", (0.0, 0.2), (0.0, -0.2), arrowprops={"arrowstyle": "<->"})
     left.text(0.06, 0, "$w$", va="center")
     left.annotate("", (1.2, 0), (0.75, 0), arrowprops={"arrowstyle": "-|>", "color": "black"})
     left.text(0.97, 0.06, "flow", ha="center")
-    trajectory.frame_limits(left, (-1.3, -1.3), (1.3, 1.3))
+    surroundings.frame_limits(left, (-1.3, -1.3), (1.3, 1.3))
     style.caption(left, f"(a) {parameters(channel, 0.4)}".replace(", $b_0", ",\n$b_0"))
     start = array.polygons[0].mean(axis=1)
     centres = array.polygons.mean(axis=2) - start
     right.plot(*centres.T, "o", color="black", markerfacecolor="none", markersize=3.5, markeredgewidth=0.6)
     shown = int(np.argmin(np.abs(centres[:, 0] - 0.5 * centres[-1, 0])))
-    trajectory.draw_droplet(right, array, shown, start)
+    surroundings.draw_droplet(right, array, shown, start)
     middle_y = (centres[:, 1].min() + centres[:, 1].max()) / 2
     half = max(2.4, (centres[:, 1].max() - centres[:, 1].min()) / 2 + 1.5)
-    trajectory.frame_limits(right, (-1, middle_y - half), (centres[-1, 0] + 1, middle_y + half))
+    surroundings.frame_limits(right, (-1, middle_y - half), (centres[-1, 0] + 1, middle_y + half))
     row = array.row
     style.caption(right, rf"(b) $w_\mathrm{{ob}} = {row['obstacle_gap']:g}\sigma$, $\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, "
                   rf"$\Gamma = {row['line_tension']:g}$" "\n" rf"circles: centre, every {np.diff(array.times[:2])[0]:.3g} $t_0$; seed {row['seed']}")
@@ -124,8 +126,8 @@ def squeezing(shop: Workshop) -> Plate:
     middle = run.middle
     for axes, h in zip(top.subplots(1, 6), [-1.0, -0.5, -0.25, 0.0, 0.25, 0.5]):
         frame = run.frame_at("h", h)
-        trajectory.draw_droplet(axes, run, frame, middle)
-        trajectory.frame_limits(axes, (-1.55, -0.85), (1.15, 0.85))
+        surroundings.draw_droplet(axes, run, frame, middle)
+        surroundings.frame_limits(axes, (-1.55, -0.85), (1.15, 0.85))
         axes.set_xticks([]), axes.set_yticks([])
         reached = np.interp(run.times[frame], run.table["time"], run.table["h"])
         axes.set_title(rf"$h = {reached + 0.0:.2f}\sigma$".replace("-0.00", "0.00"), fontsize=9)
@@ -169,8 +171,8 @@ def two_orifices(shop: Workshop) -> Plate:
         # The most deformed outline, where nothing else is drawn.
         inset = panels[line][0].inset_axes([0.68, 0.5, 0.3, 0.47])
         frame = run.frame_at("h", run.row["largest_shape_parameter_at"])
-        trajectory.draw_droplet(inset, run, frame, run.middle)
-        trajectory.frame_limits(inset, (-0.8, -0.8), (0.8, 0.8))
+        surroundings.draw_droplet(inset, run, frame, run.middle)
+        surroundings.frame_limits(inset, (-0.8, -0.8), (0.8, 0.8))
         inset.set_xticks([]), inset.set_yticks([])
         inset.set_xlabel(rf"$\mathcal{{A}}_\mathrm{{max}} = {run.row['largest_shape_parameter']:.3f}$", fontsize=8)
         data += [*profile_rows(run, f"w={orifice}"), extremes(run, f"w={orifice}")]

@@ -1,7 +1,5 @@
 """Which density the published arrays had: the article gives one clogging length as a number, and no density."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections.abc import Sequence
@@ -9,8 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from .. import rounded, style
-from ..hints import Group
+from .. import style
+from ..drawing.lengths import draw_lengths, length_note
+from ..labels import AXES, runs_a_point
+from ..tools import rounded
+from ..tools.hints import Group
 from .arrays import numbers
 from .plate import Plate, figure
 from .workshop import Workshop
@@ -73,7 +74,7 @@ def density_of_the_published_arrays(shop: Workshop) -> Plate:
         fit = fitted(groups)
         text = rounded.with_interval(fit.density, fit.lower, fit.upper)
         shift = style.side_by_side(index, len(families), places)
-        style.draw_lengths(axes, [group["obstacle_density"] * shift for group in groups], groups, index, f"{label}: {text}", linestyle="none")
+        draw_lengths(axes, [group["obstacle_density"] * shift for group in groups], groups, index, f"{label}: {text}", linestyle="none")
         line = np.geomspace(places[0], places[-1], 100)
         axes.plot(line, fit.length(line), color=style.COLOURS[index], linewidth=1)
         share = [number / saturated_density(groups[0]) for number in (fit.density, fit.lower, fit.upper)]
@@ -87,13 +88,13 @@ def density_of_the_published_arrays(shop: Workshop) -> Plate:
     style.logarithmic_abscissa(axes, places)
     style.grid(axes)
     axes.set_xlabel(r"obstacles per area $\rho_\mathrm{ob}\,\sigma^2$")
-    axes.set_ylabel(style.AXES["length"])
+    axes.set_ylabel(AXES["length"])
     style.legend(axes, everyone)
     first = everyone[0]
     style.caption(axes, rf"$\Gamma = {first['line_tension']:g}$, $w_\mathrm{{ob}} = {first['obstacle_gap']:g}\,\sigma$, "
-                        rf"$\sigma_\mathrm{{ob}} = {first['obstacle_diameter']:g}\,\sigma$, {style.runs_a_point(everyone)}" + "\n"
+                        rf"$\sigma_\mathrm{{ob}} = {first['obstacle_diameter']:g}\,\sigma$, {runs_a_point(everyone)}" + "\n"
                         "legend: density at which the fitted curve has the published length, with its 95 % interval; "
-                        + style.length_note(everyone, shop.confidence("density-robust"), [axes]))
+                        + length_note(everyone, shop.confidence("density-robust"), [axes]))
     return Plate(drawing, data)
 
 

@@ -1,7 +1,5 @@
 """Clogging lengths in dilute arrays, the published ones: what walls hold, both models over the sag, and the map."""
 
-from __future__ import annotations
-
 import dataclasses
 import math
 from collections.abc import Iterable, Sequence
@@ -16,8 +14,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from .. import style
-from ..groups import said
-from ..hints import Group
+from ..drawing.lengths import draw_lengths, length_note
+from ..labels import AXES, runs_a_point, said
+from ..tools.hints import Group
 from .arrays import HOLDS, by, numbers, of_each, over_sag
 from .plate import Plate, figure, interface_of
 from .workshop import Workshop
@@ -103,7 +102,7 @@ def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
                 index = gaps.index(gap)
                 shift = style.side_by_side(index, len(gaps), places)
                 label = "_finer" if mesh else said(columns["obstacle_gap"], gap)
-                style.draw_lengths(axes, [group["line_tension"] * shift for group in curve], curve, index, label, **mesh)
+                draw_lengths(axes, [group["line_tension"] * shift for group in curve], curve, index, label, **mesh)
                 data += numbers(curve, f"{family.config}, friction {family.friction:g}, gap {gap:g}, {curve[0]['vertices']} vertices",
                                 **of_each(curve, "friction", *HOLDS))
         draw_published(axes)
@@ -114,9 +113,9 @@ def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
     for axes in list(panels.flat)[len(kinds):]:
         axes.axis("off")
     for line in panels:
-        line[0].set_ylabel(style.AXES["length"])
+        line[0].set_ylabel(AXES["length"])
     for axes in panels[-1]:
-        axes.set_xlabel(style.AXES["line_tension"])
+        axes.set_xlabel(AXES["line_tension"])
     legend(below, max(panels.flat, key=lambda axes: len(axes.get_legend_handles_labels()[1])), every, any(fine for _, _, fine in kinds))
     title(drawing, panels.flat, shop, kinds[0][0].config, every)
     return Plate(drawing, data)
@@ -126,8 +125,8 @@ def title(drawing: Figure, panels: Iterable[Axes], shop: Workshop, config: str, 
     first = groups[0]
     meshes = sorted({group["vertices"] for group in groups})
     longest = max(group["max_time"] for group in groups)
-    drawing.suptitle(f"{style.runs_a_point(groups)}; {density_of(groups)}, obstacles of {first['obstacle_diameter']:g}$\\sigma$, $N_v = {', '.join(map(str, meshes))}$, "
-                     f"$T \\leq {longest:g}\\,t_0$\n{style.length_note(groups, shop.confidence(config), panels)}", fontsize=8, color="0.25")
+    drawing.suptitle(f"{runs_a_point(groups)}; {density_of(groups)}, obstacles of {first['obstacle_diameter']:g}$\\sigma$, $N_v = {', '.join(map(str, meshes))}$, "
+                     f"$T \\leq {longest:g}\\,t_0$\n{length_note(groups, shop.confidence(config), panels)}", fontsize=8, color="0.25")
 
 
 @figure("6c", "clogging length against line tension for four smallest gaps, dilute arrays: what walls hold, on two meshes",
@@ -213,13 +212,13 @@ def lengths_on_a_map(shop: Workshop) -> Plate:
         axes.set_xticks(range(len(tensions)), [f"{value:g}" for value in tensions])
         axes.set_yticks(range(len(lines)), ["saturated" if is_saturated else f"{value:g}" for is_saturated, value in lines])
     for axes in panels[-1]:
-        axes.set_xlabel(style.AXES["line_tension"])
+        axes.set_xlabel(AXES["line_tension"])
     numbered = [value for is_saturated, value in lines if not is_saturated]
     for axes in [axes for axes, gap in zip(panels.T, gaps) if math.isclose(gap, PUBLISHED["obstacle_gap"]) for axes in axes]:
         axes.plot(place_of(tensions, PUBLISHED["line_tension"]) + 0.33, place_of(numbered, PUBLISHED["obstacle_density"]) + 0.28, marker="*", color="black",
                   markerfacecolor="gold", markersize=11)
-    drawing.colorbar(ScalarMappable(norm, style.VIRIDIS), ax=panels, label=style.AXES["length"], shrink=0.8)
-    drawing.suptitle(f"{style.runs_a_point(every)}, obstacles of {every[0]['obstacle_diameter']:g}$\\sigma$, $T = {every[0]['max_time']:g}\\,t_0$; "
+    drawing.colorbar(ScalarMappable(norm, style.VIRIDIS), ax=panels, label=AXES["length"], shrink=0.8)
+    drawing.suptitle(f"{runs_a_point(every)}, obstacles of {every[0]['obstacle_diameter']:g}$\\sigma$, $T = {every[0]['max_time']:g}\\,t_0$; "
                      f"framed: $P(r)$ is exponential (Weibull's shape compatible with 1, {ENOUGH_CLOGS} clogs or more, $\\lambda$ longer than a spacing)"
                      "\nhatched, >: lower bound, no run clogged; star: published, $\\lambda = 24\\sigma$, which asks for about 0.35 obstacles per $\\sigma^2$",
                      fontsize=8, color="0.25")

@@ -6,8 +6,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import style
-from ..groups import said
-from ..hints import Group
+from ..drawing.lengths import draw_lengths, length_note
+from ..labels import AXES, runs_a_point, said
+from ..tools.hints import Group
 from .arrays import HOLDS, by, numbers, of_each
 from .plate import Plate, figure, interface_of
 from .workshop import Workshop
@@ -16,8 +17,8 @@ from .workshop import Workshop
 def title(drawing: Figure, shop: Workshop, config: str, groups: Sequence[Group]) -> None:
     """What all points have in common, and what the marks mean."""
     first = groups[0]
-    drawing.suptitle(f"{style.runs_a_point(groups)}; saturated arrays, obstacles of {first['obstacle_diameter']:g}$\\sigma$, "
-                     f"$T = {first['max_time']:g}\\,t_0$\n{style.length_note(groups, shop.confidence(config), drawing.axes)}", fontsize=8, color="0.25")
+    drawing.suptitle(f"{runs_a_point(groups)}; saturated arrays, obstacles of {first['obstacle_diameter']:g}$\\sigma$, "
+                     f"$T = {first['max_time']:g}\\,t_0$\n{length_note(groups, shop.confidence(config), drawing.axes)}", fontsize=8, color="0.25")
 
 
 def finish(axes: Axes, places: Sequence[float], groups: Sequence[Group], text: str) -> None:
@@ -43,13 +44,13 @@ def lengths_by_mesh(shop: Workshop) -> Plate:
             places = [group["line_tension"] for group in members]
             for index, (vertices, curve) in enumerate(families):
                 shift = style.side_by_side(index, len(families), places)
-                style.draw_lengths(axes, [group["line_tension"] * shift for group in curve], curve, index, f"$N_v = {vertices}$")
+                draw_lengths(axes, [group["line_tension"] * shift for group in curve], curve, index, f"$N_v = {vertices}$")
                 data += numbers(curve, f"{config}, gap {gap:g}", **of_each(curve, *HOLDS))
             finish(axes, places, [group for _, curve in families for group in curve],
                    f"{interface_of(members[0]['preset'])}\n{said(shop.columns(config)['obstacle_gap'], gap)}")
-        line[0].set_ylabel(style.AXES["length"])
+        line[0].set_ylabel(AXES["length"])
     for axes in panels[-1]:
-        axes.set_xlabel(style.AXES["line_tension"])
+        axes.set_xlabel(AXES["line_tension"])
     title(drawing, shop, configs[0], groups)
     return Plate(drawing, data)
 
@@ -72,11 +73,11 @@ def lengths_by_friction(shop: Workshop) -> Plate:
                 mesh = meshes.index(vertices)
                 shift = style.side_by_side(index * len(meshes) + mesh, len(families) * len(meshes), places)
                 line: str | tuple[int, tuple[int, ...]] = "-" if vertices == meshes[-1] else (0, (4, 1 + mesh))
-                style.draw_lengths(axes, [group["line_tension"] * shift for group in curve], curve, index,
+                draw_lengths(axes, [group["line_tension"] * shift for group in curve], curve, index,
                                    f"{said(columns['friction'], friction)}, $N_v = {vertices}$", line)
                 data += numbers(curve, f"friction {friction:g}, gap {gap:g}", **of_each(curve, "friction", *HOLDS))
         finish(axes, places, members, f"{interface_of(groups[0]['preset'])}\n{said(columns['obstacle_gap'], gap)}")
-        axes.set_xlabel(style.AXES["line_tension"])
-    panels[0][0].set_ylabel(style.AXES["length"])
+        axes.set_xlabel(AXES["line_tension"])
+    panels[0][0].set_ylabel(AXES["length"])
     title(drawing, shop, config, groups)
     return Plate(drawing, data)

@@ -13,16 +13,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .. import places, replays, stored
-from ..errors import NotThere, UserError
-from ..hints import Column, Group
-from ..programs import run_program
-from ..trajectory import Trajectory
+from ..reading import programs, replays, stored
+from ..reading.trajectory import Trajectory
+from ..tools.errors import NotThere, UserError
+from ..tools.hints import Column, Group
 
 if TYPE_CHECKING:
     import pandas
 
-CONFIGS = places.JOBS / "figures"
+CONFIGS = programs.JOBS / "figures"
 
 
 def config_keys(path: pathlib.Path) -> dict[str, str]:
@@ -107,7 +106,7 @@ class Workshop:
     # Programs
 
     def _call(self, program: str, *arguments: object, ranks: int = 1) -> str:
-        return run_program(self.programs / program, *arguments, ranks=ranks)
+        return programs.run_program(self.programs / program, *arguments, ranks=ranks)
 
     # Sweeps
 

@@ -4,8 +4,8 @@
 
 namespace clog::console {
 
-/// Numbers for people, with as many figures as their uncertainty allows: analysis/clogsweep/rounded.py has
-/// the same rule.
+/// Numbers for people, with as many figures as their uncertainty allows: analysis/clogsweep/tools/rounded.py
+/// has the same rule.
 
 inline constexpr int least_figures = 3;
 

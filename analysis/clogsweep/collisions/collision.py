@@ -1,0 +1,58 @@
+"""Which droplets break up on a single obstacle: up to which line tension, by how far off its centre they fall."""
+
+import math
+import pathlib
+from collections.abc import Sequence
+
+from ..reading import programs, stored
+
+DIAMETER = 0.3  # of the obstacle [sigma]
+FALL = 3  # from the release to the obstacle's centre [sigma]: far enough that the droplet starts where it is told to
+BOX = 20
+KEYS = {"vertices": "128", "terminal-speed": "0.03", "break-up-neck": "0.02"}
+TENSIONS = (0.01, 0.6)  # the softest droplets that are proved sound, and some that none breaks
+PRECISION = 0.02
+STEPS = 6  # of a sweep
+
+Threshold = tuple[float | None, float | None]  # the largest line tension of a droplet that breaks up, the next of one that does not
+
+
+def symmetry(offset: float) -> float:
+    """Of a collision with a droplet of radius 1/2."""
+    small = (math.acos(2 * offset) - 2 * offset * math.sqrt(1 - 4 * offset**2)) / math.pi
+    return small / (1 - small)
+
+
+def capillary_number(tension: float) -> float:
+    return math.pi / 4 / tension
+
+
+class Collisions:
+    """Droplets that fall onto the obstacle."""
+
+    def __init__(self, clogsweep: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]) -> None:
+        self.clogsweep, self.folder, self.keys = clogsweep, folder, KEYS | keys
+        # A droplet that hangs on until it has had the time to fall four times the way has not broken up.
+        self.keys.setdefault("max-time", f"{4 * FALL / float(self.keys['terminal-speed']):g}")
+
+    def break_up(self, offset: float, tensions: Sequence[float]) -> list[bool]:
+        """Which of the droplets do."""
+        circles, sweep = self.folder / "circle.csv", self.folder / "collisions.h5"
+        circles.write_text(f"x,y,diameter\n{BOX / 2 + FALL},{BOX / 2 + offset},{DIAMETER}\n")
+        programs.run_program(self.clogsweep, f"obstacles={circles}", f"box={BOX}", "seeds=1", *(f"{key}={value}" for key, value in self.keys.items()),
+                             "line-tension=" + ",".join(f"{tension:.6g}" for tension in tensions), "--output", sweep, "--quiet")
+        ends = [row["status"] for row in sorted(stored.read_rows(sweep), key=lambda row: row["line_tension"])]
+        sweep.unlink()
+        return [end == b"broken" for end in ends]
+
+    def threshold(self, offset: float) -> Threshold:
+        """@return the two that it lies between; None beyond TENSIONS"""
+        low, high = TENSIONS
+        while high / low > 1 + PRECISION:
+            tensions = [low * (high / low)**(step / STEPS) for step in range(STEPS + 1)]
+            broken = self.break_up(offset, tensions)
+            first_whole = broken.index(False) if False in broken else len(broken)
+            if first_whole in (0, len(broken)):
+                return (None, low) if first_whole == 0 else (high, None)
+            low, high = tensions[first_whole - 1], tensions[first_whole]
+        return low, high

@@ -1,0 +1,145 @@
+"""How every command here is called, and how it says what went wrong: one line, exit code 2, as the programs do."""
+
+import argparse
+import contextlib
+import logging
+import os
+import pathlib
+import sys
+import warnings
+from collections.abc import Callable, Iterator
+from typing import NoReturn
+
+from ..reading import programs
+from ..tools import outputs
+from ..tools.errors import ProgramFailed, UserError, lacking
+
+USER_FAULT = 2
+INTERRUPTED = 75
+
+
+_own_name = ""
+
+
+def speak_as(name: str) -> None:
+    """Of a command, how it calls itself; else it has the name of the script."""
+    global _own_name
+    _own_name = name
+
+
+def name() -> str:
+    """Of the command in its messages. Whoever calls it under another one, as clogfit report does, wants that."""
+    return os.environ.get("CLOG_CALLED_AS") or _own_name or pathlib.Path(sys.argv[0]).name
+
+
+class Parser(argparse.ArgumentParser):
+    """Options of a command. @param about  its docstring"""
+
+    def __init__(self, about: str | None) -> None:
+        super().__init__(prog=name(), description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
+
+    def error(self, message: str) -> NoReturn:
+        raise UserError(f"{message}; {name()} --help lists the options")
+
+
+def whole(least: int) -> Callable[[str], int]:
+    """Type of an option: a whole number that is not less."""
+    def number(word: str) -> int:
+        if not word.lstrip("+-").isdecimal() or int(word) < least:
+            raise argparse.ArgumentTypeError(f"invalid value: {word} (must be a whole number, {least} or more)")
+        return int(word)
+
+    return number
+
+
+def tasks(word: str) -> set[int]:
+    """Type of an option: numbers of tasks."""
+    if not all(part.isdecimal() for part in word.split(",")):
+        raise argparse.ArgumentTypeError(f"invalid value: {word} (must be whole numbers with commas between them) try 3,17,40")
+    return {int(part) for part in word.split(",")}
+
+
+def key_and_value(word: str) -> tuple[str, str]:
+    """Type of an option: KEY=VALUE."""
+    key, equals, value = word.partition("=")
+    if not (key and equals and value):
+        raise argparse.ArgumentTypeError(f"invalid key: {word} (must be KEY=VALUE) try vertices=256")
+    return key, value
+
+
+def add_output(parser: argparse.ArgumentParser, meaning: str, *endings: str, required: bool = False) -> None:
+    """--output of a command. @param endings  such as ".png", that it gives its files itself: a name may have them or not"""
+    def without_ending(word: str) -> pathlib.Path:
+        path = pathlib.Path(word)
+        return path.with_suffix("") if path.suffix in endings else path
+
+    parser.add_argument("-o", "--output", type=without_ending, required=required, help=meaning)
+
+
+def beside(source: pathlib.Path, ending: str) -> pathlib.Path:
+    """The name of what is made of a file where --output gives none, such as sweep-clogs of sweep.h5."""
+    if source.exists() and not source.is_file():
+        raise UserError(f"no name for what is made of {source}; give --output")
+    return source.with_name(f"{source.stem}-{ending}")
+
+
+def sweep_to_draw(about: str | None, ending: str, what: str = "file of clogsweep --output",
+                  more: Callable[[argparse.ArgumentParser], None] = lambda _: None) -> argparse.Namespace:
+    """Options of a command that makes one picture of a sweep: sweep, output, programs.
+
+    @param about  the command's docstring; @param ending  of the picture's name, which begins with that of the sweep
+    @param what  is given as the sweep; @param more  adds other options. @throws UserError  if the picture could not be written
+    """
+    parser = Parser(about)
+    parser.add_argument("sweep", type=pathlib.Path, help=what)
+    add_output(parser, f"name of the picture; .png and .pdf are made (SWEEP-{ending})", ".png", ".pdf")
+    programs.add_option(parser)
+    more(parser)
+    arguments = parser.parse_args()
+    arguments.output = arguments.output or beside(arguments.sweep, ending)
+    outputs.refuse_unwritable_picture(arguments.output, arguments.sweep)
+    return arguments
+
+
+def quieten_libraries() -> None:
+    """What matplotlib, pandas or PyTables warn their own users of is nothing that ours can mend; python -W shows it."""
+    if not sys.warnoptions:
+        warnings.simplefilter("ignore")
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
+
+
+@contextlib.contextmanager
+def needs_modules() -> Iterator[None]:
+    """For a block that loads modules which a machine may lack."""
+    quieten_libraries()
+    try:
+        yield
+    except ImportError as error:
+        sys.exit(_refuse(lacking(error)))
+
+
+def printable(text: str) -> str:
+    """Control characters escaped: names and values that are shown may hold what turns a terminal's colours."""
+    return "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in text)
+
+
+def _refuse(reason: object) -> int:
+    with contextlib.suppress(OSError):  # nobody may be there to read it
+        print(printable(f"{name()}: {' '.join(str(reason).split())}"), file=sys.stderr, flush=True)
+    return USER_FAULT
+
+
+def run(body: Callable[[], int]) -> int:
+    """@param body  what the command does, returns its exit code. @return the exit code"""
+    try:
+        return body()
+    except UserError as error:
+        return _refuse(error)
+    except OSError as error:
+        return _refuse(f"cannot use {error.filename or 'a file'} ({error.strerror or error}); look at its name and permissions")
+    except KeyboardInterrupt:
+        _refuse("interrupted; what was not complete has not been written")
+        return INTERRUPTED
+    except ProgramFailed as error:
+        _refuse(str(error).removeprefix(f"{name().split()[0]}: "))  # clogfit report: clogfit: ...
+        return error.exit_code if error.exit_code in (USER_FAULT, INTERRUPTED) else 1

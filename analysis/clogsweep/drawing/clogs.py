@@ -1,0 +1,200 @@
+"""Clogged droplets of a sweep, run once more until they rest, and what holds each of them."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import dataclasses
+import pathlib
+import tempfile
+from collections.abc import Collection, Iterator, Sequence
+from typing import overload
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+
+from .. import style
+from ..reading import replays, stored, trajectory
+from ..tools import rounded
+from ..tools.errors import ProgramFailed, UserError
+from ..tools.hints import Numbers, Records
+from . import surroundings
+
+MARGIN = 0.15  # above a sheet [inches]
+MECHANISMS = ("wrapped", "squeezed", "hybrid", "other")
+
+
+def of_polygons(rows: Records, path: object) -> list[np.void]:
+    """Rows of the polygons that have clogged. @param path  of their sweep. @throws UserError  if they were in a channel or on a wall"""
+    if len(rows) > 0 and rows["obstacle_filling"][0] in (b"channel", b"wall"):
+        raise UserError(f"cannot draw clogs of {path} (its droplets were in a channel or on a wall); clogfit report draws what came out of them")
+    return [row for row in rows if row["status"] == b"clogged" and row["model"] == b"dp"]
+
+
+def mechanism_of(row: np.void) -> str:
+    """As clogfit calls it: a clog whose mechanism is `none` of the three is another one."""
+    name = row["mechanism"].decode()
+    return "other" if name == "none" else name
+
+
+def chosen(rows: list[np.void], path: object, *, mechanism: str | None, tasks: Collection[int] | None, most: int) -> list[np.void]:
+    """@param rows  clogs of the sweep. @throws UserError  where there is none, or not all of the tasks"""
+    if not rows:
+        raise UserError(f"{path} holds no clogged polygon (soft disks are none); let it go on, or sweep with a longer max-time into another file")
+    if mechanism not in (None, *MECHANISMS):
+        raise UserError(f"no mechanism {mechanism}; they are {', '.join(MECHANISMS)}")
+    left = [row for row in rows if mechanism in (None, mechanism_of(row))]
+    missing = set(tasks or ()) - {row["task"] for row in left}
+    if missing or not left:
+        which = f"tasks {', '.join(map(str, sorted(missing)))}" if missing else f"mechanism {mechanism}"
+        raise UserError(f"{which}: {path} holds no such clogged polygon; clogfit counts them")
+    return [row for row in left if row["task"] in tasks] if tasks else left[:most]
+
+
+@dataclasses.dataclass(frozen=True)
+class Clog:
+    """A droplet at rest. Shows itself in a notebook."""
+
+    row: np.void  # of the sweep
+    polygon: Numbers  # 2 x N, the interface that walls meet [sigma]
+    obstacles: Numbers  # n x 3: x, y, diameter [sigma]
+    source: str = ""  # where the row comes from
+
+    @property
+    def task(self) -> int:
+        return int(self.row["task"])
+
+    @property
+    def mechanism(self) -> str:
+        """wrapped, squeezed, hybrid or other"""
+        return mechanism_of(self.row)
+
+    def picture(self) -> style.Picture:
+        figure, axes = style.subplots(figsize=(4.6, 4.6))
+        draw(axes, self)
+        axes.set_xlabel(r"$x/\sigma$ from the droplet's middle")
+        axes.set_ylabel(r"$y/\sigma$")
+        return style.Picture(figure, f"{self.source}\ntask {self.task}")
+
+    def _repr_png_(self) -> bytes:
+        return self.picture().png()
+
+
+class Clogs(Sequence[Clog]):
+    """Several of a sweep. Show themselves on one sheet."""
+
+    def __init__(self, clogs: list[Clog]) -> None:
+        self._clogs = clogs
+
+    def __len__(self) -> int:
+        return len(self._clogs)
+
+    @overload
+    def __getitem__(self, index: int) -> Clog: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> Clogs: ...
+
+    def __getitem__(self, index: int | slice) -> Clog | Clogs:
+        return Clogs(self._clogs[index]) if isinstance(index, slice) else self._clogs[index]
+
+    def __iter__(self) -> Iterator[Clog]:
+        return iter(self._clogs)
+
+    def __repr__(self) -> str:
+        return f"<{rounded.counted(len(self), 'clog')}: {', '.join(f'task {clog.task} {clog.mechanism}' for clog in self)}>"
+
+    def picture(self) -> style.Picture:
+        tasks = ", ".join(str(clog.task) for clog in self)
+        return style.Picture(sheet(self._clogs), f"{self._clogs[0].source}\ntasks {tasks}")
+
+    def _repr_png_(self) -> bytes:
+        return self.picture().png(80)
+
+
+def run_again(clogrun: pathlib.Path, sweep: pathlib.Path, source: str, row: np.void, folder: str) -> Clog:
+    """@throws ProgramFailed"""
+    output = pathlib.Path(folder) / f"{row['task']}.h5"
+    # A certified row describes an equilibrium that the run ends before.
+    replays.replay(clogrun, sweep, row["task"], output, "--to-rest", "--polygon-interval", "1e9", "--sample-interval", "1e9")
+    with stored.opened(output) as file:
+        return Clog(row, trajectory.refined(file["polygons"][-1], row), file["obstacles"][:], source)
+
+
+def run_all(clogrun: pathlib.Path, sweep: pathlib.Path, rows: Sequence[np.void], jobs: int) -> Clogs:
+    """@param jobs  at a time. @throws UserError  with clogrun's reason"""
+    with stored.opened(sweep, folder=clogrun.parent) as file:
+        source = stored.source(stored.attributes(file))
+    with tempfile.TemporaryDirectory(prefix="clogsweep-clogs-") as folder, concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        try:
+            return Clogs(list(pool.map(lambda row: run_again(clogrun, sweep, source, row, folder), rows)))
+        except (ProgramFailed, OSError) as error:
+            raise UserError(f"cannot run clogrun ({error})") from error
+
+
+def distances(polygon: Numbers, obstacle: Numbers) -> Numbers:
+    """From an obstacle's surface to every edge."""
+    begin, way = polygon, np.roll(polygon, -1, axis=1) - polygon
+    to_centre = obstacle[:2, None] - begin
+    along = np.clip((to_centre * way).sum(axis=0) / (way**2).sum(axis=0), 0, 1)
+    return np.hypot(*(to_centre - along * way)) - obstacle[2] / 2
+
+
+def overlaps(row: np.void, polygon: Numbers, obstacles: Numbers) -> Numbers:
+    """How deep every obstacle (rows) is in the contact of every edge (columns) [sigma]; above 0 they touch."""
+    return trajectory.contact_range(row) - np.array([distances(polygon, obstacle) for obstacle in obstacles])
+
+
+def hull(points: Numbers) -> Numbers:
+    """Corners of the convex hull, counter-clockwise (Andrew's monotone chain)."""
+    def chain(ordered: Numbers) -> list[Numbers]:
+        corners: list[Numbers] = []
+        for p in ordered:
+            while len(corners) > 1 and np.linalg.det([corners[-1] - corners[-2], p - corners[-2]]) <= 0:
+                corners.pop()
+            corners.append(p)
+        return corners[:-1]
+    ordered = points[np.lexsort(points.T[::-1])]
+    return np.array(chain(ordered) + chain(ordered[::-1]))
+
+
+def title(row: np.void) -> str:
+    """What clogged and how, in words."""
+    wrapped = f"{row['num_wrapped']} wrapped (bears {100 * row['wrapped_support']:.0f} %)" if row["num_wrapped"] > 0 else "none wrapped"
+    return (rf"task {row['task']}: {mechanism_of(row)} after $r = {rounded.plain(row['distance'])}\,\sigma$" "\n"
+            rf"$\Gamma = {row['line_tension']:.4g}$, smallest gap ${row['obstacle_gap']:.4g}\,\sigma$, seed {row['seed']}" "\n"
+            f"{wrapped}, {rounded.counted(row['num_gaps'], 'gap')}, {rounded.counted(row['num_arcs'], 'contact')}")
+
+
+def draw(axes: Axes, clog: Clog) -> None:
+    """In coordinates from the droplet's middle. Panels of one shape: titles over flat ones would leave the sheet."""
+    row, polygon, obstacles = clog.row, clog.polygon, clog.obstacles
+    low, high = polygon.min(axis=1), polygon.max(axis=1)
+    middle, half = (low + high) / 2, (high - low).max() / 2 + 0.3
+    interface = polygon - middle[:, None]
+    axes.fill(*interface, facecolor="#E69F00", edgecolor="black", linewidth=0.6, alpha=0.7)
+    axes.plot(*np.vstack([hull(interface.T), hull(interface.T)[:1]]).T, color="0.4", linewidth=0.6, linestyle="--")
+    for obstacle, depths in zip(obstacles, overlaps(row, polygon, obstacles)):
+        touches = np.flatnonzero(depths > 0)
+        axes.add_patch(Circle(obstacle[:2] - middle, obstacle[2] / 2, color="#0072B2" if len(touches) else "0.85"))
+        for edge in touches:
+            axes.plot(*interface[:, [edge, (edge + 1) % interface.shape[1]]], color="#D00000", linewidth=1.8)
+    surroundings.frame_limits(axes, (-half, -1.2 * half), (half, 1.2 * half))  # with room for the guides
+    axes.locator_params(nbins=5)
+    surroundings.draw_guides(axes)
+    axes.set_title(title(row), fontsize=8)
+
+
+def sheet(clogs: Sequence[Clog]) -> Figure:
+    across = min(6, len(clogs))
+    down = -(-len(clogs) // across)
+    height = 3.9 * down + MARGIN
+    figure, axes = style.subplots(down, across, figsize=(2.8 * across, height), squeeze=False)
+    # Or the titles of the first row leave the sheet.
+    figure.get_layout_engine().set(h_pad=0.1, rect=(0, 0, 1, 1 - MARGIN / height))
+    for place in axes.flat:
+        place.axis("off")
+    for place, clog in zip(axes.flat, clogs):
+        draw(place, clog)
+    return figure

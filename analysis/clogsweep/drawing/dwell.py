@@ -1,0 +1,49 @@
+"""The clogging length over the time after which a droplet that has not moved counts as clogged."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from .. import style
+from ..labels.groups import Groups
+from ..tools.errors import UserError
+from ..tools.hints import Group
+from .lengths import draw_lengths, finish_lengths
+
+NUM_TIMES = 12
+
+
+def times_of(groups: Groups) -> list[float]:
+    """Evenly spaced on a logarithmic scale, for all groups. @throws UserError  if there are none"""
+    known = [group["dwells_known_from"] for group in groups.members]
+    if None in known:
+        raise UserError("cannot draw dwells (the file holds rows of a version that did not look for them); compute the sweep anew, into another file")
+    first, last = max(known), max(groups.values("max_time"))
+    if not 0 < first < last:
+        raise UserError(f"cannot draw dwells (they are known from {first:.4g} t0 on, and no run is longer); make max-time longer")
+    # Ends as they are: a first time that is rounded down would be refused.
+    return [first, *np.geomspace(first, last, NUM_TIMES)[1:-1].tolist(), last]
+
+
+def label_of(groups: Groups, member: Group) -> str:
+    """What tells a group from the others."""
+    names = [name for name in [groups.abscissa, *groups.curve_parameters()] if groups.varies(name)]
+    return ", ".join(groups.said(name, member[name]) for name in names)
+
+
+def draw(times: Sequence[float], fits: Sequence[Groups]) -> Figure:
+    """@param fits  groups of the same sweep for each of these times"""
+    figure, axes = style.subplots(figsize=(6.4, 4.8))
+    curves = list(zip(*(groups.members for groups in fits)))
+    for index, members in enumerate(curves):
+        places = [time * style.side_by_side(index, len(curves), times) for time in times]
+        draw_lengths(axes, places, members, index, label_of(fits[-1], members[-1]))
+    style.logarithmic_abscissa(axes, times)
+    axes.xaxis.set_major_formatter("{x:g}")  # times may be long
+    lengths = fits[-1].values("dwell_length")
+    moved = f"{lengths.pop():g}" + r"\,\sigma" if len(lengths) == 1 else r"\delta_\mathrm{d}"
+    axes.set_xlabel(f"time without having moved by ${moved}$ that counts as clogged $/t_0$")
+    everyone = [group for groups in fits for group in groups.members]
+    finish_lengths(axes, fits[-1], everyone, "most went on later, or other clogs")
+    return figure

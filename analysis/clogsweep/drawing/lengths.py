@@ -1,0 +1,124 @@
+"""Clogging lengths and mean speeds over what a sweep varies, a curve for each obstacle array."""
+
+import math
+from collections.abc import Callable, Collection, Iterable, Sequence
+
+from matplotlib.axes import Axes
+
+from .. import style
+from ..labels import AXES
+from ..labels.groups import Groups
+from ..tools import rounded
+from ..tools.hints import Group
+
+# Doubts of clogfit in a length itself, and what to say of them under a picture.
+OPEN_MARKERS = {
+    "few_clogs": "fewer than 5 clogs: more seeds are needed",
+    "held_by_mesh": "the polygon's corners may hold droplets: more vertices are needed",
+    "array_repeats": "droplets went farther than the array is long, which repeats",
+    "below_spacing": "shorter than one obstacle spacing, the depth of the void of release",
+    "not_proved_sound": "outside of what was proved sound",
+}
+
+
+def reasons_for_open_marker(group: Group) -> list[str]:
+    """Of a group without clogs, whose marker is a triangle, it goes without saying that they are few."""
+    return [doubt for doubt in style.doubts(group) if doubt in OPEN_MARKERS and (doubt != "few_clogs" or group["clogs"] > 0)]
+
+
+THROUGH_BOUNDS = "_through bounds"  # label of a line, in no legend
+
+
+def length_note(groups: Collection[Group], confidence: float, panels: Iterable[Axes]) -> str:
+    """What bars, open markers, triangles and dotted lines of draw_lengths() mean, as far as they are there.
+    @param panels  that they were drawn on"""
+    notes = [f"bars: {100 * confidence:g} % confidence"] if any(group["clogs"] > 0 for group in groups) else []
+    for reason in dict.fromkeys(reason for group in groups for reason in reasons_for_open_marker(group)):
+        notes.append(f"open markers: {OPEN_MARKERS[reason]}")
+    if any(group["clogs"] == 0 for group in groups):
+        are_dotted = any(line.get_label() == THROUGH_BOUNDS for axes in panels for line in axes.lines)
+        notes.append("open triangles: lower bound, no run clogged" + (", dotted: through bounds" if are_dotted else ""))
+    if num_incomplete := sum("incomplete" in style.doubts(group) for group in groups):
+        notes.append(f"not complete: {num_incomplete} of {rounded.counted(len(groups), 'point')} with runs that are under way, interrupted or failed")
+    return "\n".join(notes)
+
+
+def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: str = "other clogs") -> None:
+    """The ordinate, legend and caption of a picture of clogging lengths. @param drawn  all that draw_lengths() was given"""
+    style.logarithmic_ordinate(axes)
+    axes.set_ylabel(AXES["length"])
+    style.grid(axes)
+    style.legend(axes, drawn, other)
+    style.caption(axes, f"{groups.caption()}\n{groups.note(length_note(drawn, groups.confidence, [axes]))}")
+
+
+def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, linestyle: str | tuple[int, tuple[int, ...]] | None = None,
+                 size: float = 5.5) -> None:
+    """Clogging lengths with clogfit's intervals, `linestyle` where it is not that of the index, markers of `size` points. The marker is that of what holds most of the clogs; an open one is a
+    length in doubt (OPEN_MARKERS), an open triangle a lower bound, where no run clogged."""
+    order = sorted(range(len(groups)), key=lambda i: places[i])
+    places, groups = [places[i] for i in order], [groups[i] for i in order]
+    # Not a number where no run clogged: the line is broken there, and goes on dotted.
+    lengths = [math.nan if group["clogs"] == 0 else group["clogging_length"] for group in groups]
+    bars = [[math.nan if group["clogs"] == 0 else abs(group["clogging_length"] - group[end]) for group in groups]
+            for end in ("clogging_length_lower", "clogging_length_upper")]
+    colour, line = (style.curve_style(index)[name] for name in ("color", "linestyle"))
+    axes.errorbar(places, lengths, yerr=bars, color=colour, linestyle=linestyle or line, linewidth=1, elinewidth=1, capsize=2.5, label=label,
+                  gid=style.mark("curve", groups))
+    for x, y, group in zip(places, lengths, groups):
+        face = "white" if reasons_for_open_marker(group) else colour
+        axes.plot(x, y, color=colour, marker=style.MECHANISM_MARKERS[style.main_mechanism(group)], markerfacecolor=face, markersize=size, zorder=3,
+                  gid=style.mark("point", [group]) if group["clogs"] > 0 else None)
+    if len(groups) > 1 and any(group["clogs"] == 0 for group in groups):
+        through = [group["clogging_length_lower"] if group["clogs"] == 0 else group["clogging_length"] for group in groups]
+        axes.plot(places, through, color=colour, linewidth=0.8, linestyle=":", zorder=1, label=THROUGH_BOUNDS)
+    bounds = [(x, group) for x, group in zip(places, groups) if group["clogs"] == 0]
+    axes.plot([x for x, _ in bounds], [group["clogging_length_lower"] for _, group in bounds], color=colour, marker="^", markerfacecolor="white",
+              markersize=size + 2.5, linestyle="none", gid=style.mark("point", [group for _, group in bounds]))
+
+
+def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str) -> None:
+    """Mean speeds over the terminal speed, with standard errors from the scatter between runs."""
+    points = sorted(((place, group) for place, group in zip(places, groups) if group["relative_speed"] is not None), key=lambda point: point[0])
+    known = [group for _, group in points]
+    drawn = axes.errorbar(
+        [x for x, _ in points], [group["relative_speed"] for group in known], yerr=[group["relative_speed_error"] or 0.0 for group in known],
+        **style.curve_style(index), markersize=5, linewidth=1, elinewidth=1, capsize=2.5, label=label, gid=style.mark("curve", known))
+    drawn.lines[0].set_gid(style.mark("point", known))
+
+
+def draw_curves(axes: Axes, groups: Groups, draw_curve: Callable[..., None]) -> None:
+    """@param draw_curve  draw_lengths or draw_speeds: axes, places, groups of the curve, its index, its label"""
+    curves = groups.curves()
+    for index, (label, members) in enumerate(curves):
+        draw_curve(axes, places(groups, members, index, len(curves)), members, index, label)
+    draw_abscissa(axes, groups)
+
+
+def places(groups: Groups, members: Sequence[Group], index: int, num_curves: int) -> list[float]:
+    """Where a curve's points are drawn: apart from those of the others, so that their bars can be told apart."""
+    values = groups.values(groups.abscissa)
+    if groups.is_logarithmic():
+        return [group[groups.abscissa] * style.side_by_side(index, num_curves, values) for group in members]
+    step = min(0.006, 0.06 / max(num_curves - 1, 1))
+    shift = step * (max(values) - min(values)) * (index - (num_curves - 1) / 2)
+    return [group[groups.abscissa] + shift for group in members]
+
+
+def draw_abscissa(axes: Axes, groups: Groups) -> None:
+    if groups.is_logarithmic():
+        style.logarithmic_abscissa(axes, [group[groups.abscissa] for group in groups.members])
+    axes.set_xlabel(groups.axis_label())
+
+
+def draw_on(axes: Axes, groups: Groups) -> None:
+    draw_curves(axes, groups, draw_lengths)
+    finish_lengths(axes, groups, groups.members)
+
+
+def draw_speeds_on(axes: Axes, groups: Groups) -> None:
+    draw_curves(axes, groups, draw_speeds)
+    axes.set_ylabel(AXES["speed"])
+    style.grid(axes)
+    style.legend(axes)
+    style.caption(axes, f"{groups.caption()}\n{groups.note('bars: standard error' if any(curve.lines[0].get_xdata().size for curve in axes.containers) else '')}")

@@ -1,0 +1,52 @@
+"""A droplet among obstacles and walls, and what guides the eye there."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PatchCollection
+from matplotlib.patches import Circle, Polygon
+from matplotlib.patheffects import withStroke
+from matplotlib.text import Text
+from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
+
+from .. import style
+from ..reading.trajectory import Trajectory, wedge_outline
+from ..tools.hints import Numbers, Point
+
+HALO = withStroke(linewidth=3, foreground="white")  # of what may lie over obstacles, and hides none of them
+
+
+def draw_surroundings(axes: Axes, trajectory: Trajectory, origin: Point = (0.0, 0.0)) -> None:
+    """Obstacles and walls, grey."""
+    shift = np.asarray(origin)
+    circles = [Circle((x - shift[0], y - shift[1]), diameter / 2) for x, y, diameter in trajectory.obstacles]
+    axes.add_collection(PatchCollection(circles, facecolor=style.OBSTACLE, edgecolor="none"))
+    draw_walls(axes, trajectory, shift)
+
+
+def draw_droplet(axes: Axes, trajectory: Trajectory, frame: int, origin: Point = (0.0, 0.0)) -> None:
+    """One outline among its surroundings."""
+    draw_surroundings(axes, trajectory, origin)
+    axes.fill(*(trajectory.polygons[frame] - np.asarray(origin)[:, None]), facecolor=style.DROPLET, alpha=0.75, edgecolor="black", linewidth=1)
+
+
+def draw_walls(axes: Axes, trajectory: Trajectory, shift: float | Numbers = 0.0) -> None:
+    for wedge in trajectory.wedges:
+        axes.add_patch(Polygon(wedge_outline(wedge) - shift, facecolor=style.OBSTACLE, edgecolor="none"))
+
+
+def draw_guides(axes: Axes) -> None:
+    """A bar as long as a droplet is wide, and the direction of the flow. Both stay in their corners when axes are moved."""
+    bar = AnchoredSizeBar(axes.transData, 1.0, r"$\sigma$", "lower left", pad=0.2, borderpad=0.3, sep=2, label_top=True, frameon=False)
+    bar.set_zorder(6)
+    axes.add_artist(bar)
+    arrow = axes.annotate("", (0.17, 0.95), (0.02, 0.95), xycoords="axes fraction", zorder=6,
+                          arrowprops={"arrowstyle": "-|>", "linewidth": 1.5, "color": "black"})
+    word = axes.text(0.03, 0.925, "flow", transform=axes.transAxes, va="top", fontsize=9, zorder=6)
+    for artist in (bar.size_bar.get_children()[0], *bar.findobj(Text), arrow.arrow_patch, word):
+        artist.set_path_effects([HALO])
+
+
+def frame_limits(axes: Axes, low: Point, high: Point) -> None:
+    axes.set_xlim(low[0], high[0])
+    axes.set_ylim(low[1], high[1])
+    axes.set_aspect("equal")

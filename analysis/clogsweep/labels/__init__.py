@@ -1,0 +1,63 @@
+"""What parameters and axes are called. Names, symbols, units and defaults of the parameters are clogsweep's own; clogfit hands
+them on (`columns` of its JSON)."""
+
+import math
+from collections.abc import Collection
+
+from ..tools import rounded
+from ..tools.hints import Column, Group
+
+AXES = {
+    "line_tension": r"line tension $\Gamma = \gamma/(g\rho\sigma^2)$",
+    "wall_stiffness": r"wall stiffness $E_w = \epsilon_w/(g\rho\sigma^3)$",
+    "capillary_number": r"capillary number $Ca = (v_g/v_t)\,\pi/(4\Gamma)$",
+    "sag": r"sag under its own weight $\delta_s/\sigma$",
+    "length": r"clogging length $\lambda/\sigma$",
+    "speed": r"mean speed $\langle v_g\rangle/v_t$",
+    "h": r"distance from the orifice $h/\sigma$",
+    "shape": r"shape parameter $\mathcal{A} = P^2/(4\pi a)$",
+    "profile": r"speed $v_g/v_t$",
+}
+
+
+def tex(unit: str) -> str:
+    """A unit as clogsweep writes it, e.g. g rho sigma^2, for matplotlib."""
+    for word in ("rho", "sigma"):
+        unit = unit.replace(word, rf"\{word}")
+    return unit.replace("sqrt(", r"\sqrt{").replace(")", "}").replace("t0", "t_0").replace("degrees", r"{}^\circ").replace(" ", r"\,")
+
+
+def number(value: float | None) -> str:
+    # The density of a saturated mixture is not known beforehand: clogfit has no number for it.
+    return r"\mathrm{saturated}" if value is None else f"{value:.4g}"
+
+
+def is_number(word: str) -> bool:
+    try:
+        return math.isfinite(float(word))
+    except ValueError:
+        return False
+
+
+def symbol(column: Column) -> str:
+    """Of a parameter as clogsweep describes it, with its unit, so that what follows is a pure number; for words the name itself.
+    One with an axis of its own is a pure number already, the axis says of what."""
+    if column["symbol"] and column["name"] in AXES:
+        return column["symbol"]
+    if not column["symbol"]:
+        return rf"\mathrm{{{column['name'].replace('_', ' ')}}}".replace(" ", r"\ ")
+    if column["unit"].startswith("1/"):
+        return rf"{column['symbol']}\,{tex(column['unit'][2:])}"
+    return column["symbol"] + (f"/({tex(column['unit'])})" if " " in column["unit"] else f"/{tex(column['unit'])}" if column["unit"] else "")
+
+
+def said(column: Column, value: float | str | None) -> str:
+    """A parameter and its value in words, e.g. $N_v = 128$."""
+    if isinstance(value, str):
+        return f"{column['name'].replace('_', ' ')} {value}"
+    return f"${symbol(column)} = {number(value)}$"
+
+
+def runs_a_point(groups: Collection[Group]) -> str:
+    counts = sorted({group["runs"] for group in groups})
+    return f"{rounded.counted(counts[0], 'run')} a point" if len(counts) == 1 else f"{counts[0]} to {counts[-1]} runs a point"

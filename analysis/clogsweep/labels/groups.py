@@ -1,0 +1,177 @@
+"""The groups of runs that clogfit tells of: what varies between them, what to draw them over, and how all this is called."""
+
+from __future__ import annotations
+
+import pathlib
+from collections.abc import Collection, Iterable
+from typing import Any
+
+from ..reading import stored
+from ..tools.errors import UserError
+from ..tools.hints import Column, Group
+from . import AXES, is_number, runs_a_point, said, symbol
+
+FINISHED = ("passed", "clogged", "broken", "flowing")
+
+
+class Groups:
+    """Groups of one sweep that hold runs, drawn over one of its parameters."""
+
+    def __init__(self, fit: dict[str, Any], circle_files: dict[str, str] | None = None) -> None:
+        """@param fit  the JSON of clogfit; @param circle_files  see stored.circle_files()"""
+        # In a channel and on a wall nothing is random: a group is one run, which has a status.
+        self.are_passages = any("status" in group for group in fit["groups"])
+        self.members: list[Group] = [group for group in fit["groups"] if (group["status"] in FINISHED if self.are_passages else group["runs"] > 0)]
+        self.confidence: float = fit["confidence"]
+        self.columns: dict[str, Column] = {column["name"]: column for column in fit["columns"]}
+        self.lists: Collection[str] = fit["lists"]
+        self.settings = stored.settings(fit.get("sweep", {}).get("config", ""))  # none of older programs
+        self._circle_files = circle_files or self._only_circle_file()
+        self.tells_what_all_share = True  # in caption() and note()
+        self.abscissa = self._choose_abscissa() if self.members else ""  # there is nothing to draw
+
+    def finished(self, source: object = "the sweep") -> Groups:
+        """@throws UserError  if no run of theirs has finished"""
+        if not self.members:
+            raise UserError(f"{source} holds no finished runs; let the sweep finish some first")
+        return self
+
+    def with_lengths(self, source: object = "the sweep") -> Groups:
+        """The same. @throws UserError  for a sweep of channels or walls, too, which has no clogging lengths"""
+        if self.are_passages:
+            raise UserError("cannot draw clogging lengths (these droplets were in a channel or on a wall); clogfit report draws what came out of them")
+        return self.finished(source)
+
+    @property
+    def are_polygons(self) -> bool:
+        return self.members[0]["model"] == "dp"
+
+    def values(self, name: str) -> set[Any]:
+        return {group[name] for group in self.members}
+
+    def varies(self, name: str) -> bool:
+        return len(self.values(name)) > 1
+
+    def follows(self, name: str, others: Iterable[str]) -> bool:
+        """Is this parameter's value known once the others' are?"""
+        known: dict[tuple[Any, ...], Any] = {}
+        return all(known.setdefault(tuple(group[o] for o in others), group[name]) == group[name] for group in self.members)
+
+    def _choose_abscissa(self) -> str:
+        """What most curves go over, or else the number that takes most values."""
+        usual = "line_tension" if self.are_polygons else "wall_stiffness"
+        if self.varies(usual) and not self._is_automatic(usual):
+            return usual
+        varied = [name for name in self.columns if self._is_number(name) and self.varies(name) and None not in self.values(name)]
+        return max(varied, key=lambda name: (not self._is_automatic(name), len(self.values(name))), default=usual)
+
+    def _is_number(self, name: str) -> bool:
+        return self.columns[name]["kind"] != "word"
+
+    def _is_automatic(self, name: str) -> bool:
+        """May its values follow from the others? What the sweep has a number or a list of is given."""
+        fillings = self.values("obstacle_filling")
+        if name in ("obstacle_gap", "obstacle_density") and fillings == {"file"} and self.varies("obstacles"):
+            return True  # of the circles of each file
+        if name in self.lists or self._is_given_number(name):
+            return False
+        of_filling = fillings <= {"saturated", "lattice"} or bool(self._share_of_saturated())
+        from_array = (name == "obstacle_density" and of_filling) or (name == "box" and fillings == {"lattice"})
+        return from_array or self.columns[name].get("automatic_in") in ("all", self.members[0]["model"])
+
+    def _share_of_saturated(self) -> str:
+        """How densely all random arrays are filled, such as `12%`; empty if that is not one share."""
+        share = self.settings.get("obstacle-density", "")
+        return share if share.endswith("%") and is_number(share[:-1]) and self.values("obstacle_filling") == {"density"} else ""
+
+    def _is_given_number(self, name: str) -> bool:
+        """Does the config have it as a number? A box is one for lattices, too, which have their own."""
+        return name != "box" and is_number(self.settings.get(name.replace("_", "-"), ""))
+
+    def curve_parameters(self) -> list[str]:
+        """Names of what tells the curves apart."""
+        told = [name for name in self.columns if self.varies(name) and name != self.abscissa and self._is_number(name)
+                and not self._is_automatic(name)]
+        # Words and automatic values that follow from what is told say nothing new. A preset says more than its parts.
+        rest = [name for name in self.columns if name not in told and name != self.abscissa]
+        for name in sorted(rest, key=lambda name: (name != "preset", self._is_number(name))):
+            if not self.follows(name, [self.abscissa, *told]):
+                told.append(name)
+        return told
+
+    def symbol(self, name: str) -> str:
+        return symbol(self.columns[name])
+
+    def said(self, name: str, value: float | str | None) -> str:
+        return said(self.columns[name], self.named(name, value))
+
+    def named(self, name: str, value: Any) -> Any:
+        """A parameter's value, and for the check sum of circles the name of their file, if it is known."""
+        return self._circle_files.get(value, value) if name == "obstacles" else value
+
+    def axis_label(self) -> str:
+        if self.abscissa in AXES:
+            return AXES[self.abscissa]
+        return f"{self.abscissa.replace('_', ' ')} ${self.symbol(self.abscissa)}$"
+
+    def curves(self) -> list[tuple[str, list[Group]]]:
+        """A label, and the groups that differ in the abscissa only, for every curve."""
+        names = self.curve_parameters()
+        keys = sorted({tuple(group[name] for name in names) for group in self.members},
+                      key=lambda key: [(value is None, isinstance(value, str), value) for value in key])
+        return [(", ".join(self.said(name, value) for name, value in zip(names, key)),
+                 [group for group in self.members if tuple(group[name] for name in names) == key]) for key in keys]
+
+    def is_logarithmic(self) -> bool:
+        values = self.values(self.abscissa)
+        return min(values) > 0 and (self.abscissa in AXES or max(values) > 5 * min(values))
+
+    def caption(self) -> str:
+        """What all curves have in common, and how many runs are behind them."""
+        if not self.tells_what_all_share:
+            return ""
+        first = self.members[0]
+        words = ["deformable polygon" if self.are_polygons else "soft disk"]
+        words += [self.said(name, first[name]) for name in self.columns if self._is_worth_a_word(name, first[name])]
+        if self.values("obstacle_filling") == {"saturated"}:
+            words.append("saturated arrays")
+        if share := self._share_of_saturated():
+            words.append(f"{share[:-1]} % of the saturated density")
+        if first["obstacle_filling"] == "lattice":
+            words.append("square lattice")
+        if first["obstacle_filling"] == "file":
+            words.append(f"circles of {self._circle_file()}")
+        if not self.are_passages:
+            words.append(runs_a_point(self.members))
+        return ", ".join(words)
+
+    def _only_circle_file(self) -> dict[str, str]:
+        """As the config names it, for a fit without its sweep; of several it does not say which is which."""
+        name = self.settings.get("obstacles", "none")
+        if name == "none" or "," in name:
+            return {}
+        return {check_sum: pathlib.Path(name).name for check_sum in self.values("obstacles")}
+
+    def _circle_file(self) -> str:
+        sums = self.values("obstacles")
+        return str(self.named("obstacles", *sums)) if len(sums) == 1 and sums <= self._circle_files.keys() else "a file" if len(sums) == 1 else "files"
+
+    def _is_worth_a_word(self, name: str, value: Any) -> bool:
+        """What shapes the array, and what is not as by default."""
+        column = self.columns[name]
+        if name == "obstacle_diameter" and self.values("obstacle_filling") == {"file"}:
+            return False  # of circles that have none of their own
+        if self.varies(name) or not self._is_number(name) or value is None or name == self.abscissa or self._is_automatic(name):
+            return False
+        if name == "obstacle_density":
+            return self.values("obstacle_filling") == {"density"}  # has no role: it is a result of the other arrays
+        is_array = column["shapes_array"] and column.get("parameter_role") == "physics" and value != 0
+        is_default = str(value) == column.get("default") or f"{value:g}" == column.get("default")
+        is_special = column.get("parameter_role") == "physics" and not is_default
+        return is_array or is_special or (name == "vertices" and self.are_polygons)
+
+    def note(self, about_bars: str) -> str:
+        """The interface, if it is one, and what bars and markers mean."""
+        presets = {group["preset"] for group in self.members if group["model"] == "dp" and self.tells_what_all_share}
+        interface = [f"interface: {presets.pop()}"] if len(presets) == 1 else []
+        return "; ".join(filter(None, [*interface, about_bars]))

@@ -1,0 +1,137 @@
+"""A poster of a sweep: one page with its curves, some of its droplets, and where the numbers came from."""
+
+from __future__ import annotations
+
+import pathlib
+import tempfile
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from .. import style
+from ..drawing import clogs, lengths, passages, way
+from ..labels.groups import Groups
+from ..reading import fits, replays, stored
+from ..reading.trajectory import Trajectory
+from ..tools import rounded
+from ..tools.hints import Group
+from . import report
+
+if TYPE_CHECKING:
+    import pandas
+
+PAGE = (11.69, 16.54)  # A3 [inches]; A2 has letters half as large again
+MARGIN = 0.5
+MOST_CURVES = 2  # P(r) and causes are drawn of the first and the last only
+WAY = 8.0  # [sigma]: what clogged about there shows how droplets move, and is still large
+FRAMES_OF_WAY = 300
+
+Draw = Callable[[Axes], None]
+Row = tuple[float, Sequence[Draw]]  # a share of the height, and what is side by side
+
+
+def page(title: str, about: str, rows: Sequence[Row], footer: str) -> Figure:
+    """@param about, footer  one line each, or several"""
+    figure = style.new_figure(figsize=PAGE, layout="constrained")
+    _, body, _ = figure.subfigures(1, 3, width_ratios=[MARGIN, PAGE[0] - 2 * MARGIN, MARGIN])
+    heights = [0.6, *(height for height, _ in rows), 0.25]
+    head, *parts, foot = body.subfigures(len(heights), 1, height_ratios=heights)
+    head.text(0.5, 0.72, title, ha="center", va="center", fontsize=26, weight="bold")
+    head.text(0.5, 0.42, about, ha="center", va="top", fontsize=11, color="0.25", linespacing=1.5)
+    for part, (_, drawings) in zip(parts, rows):
+        for axes, draw in zip(part.subplots(1, len(drawings), squeeze=False)[0], drawings):
+            draw(axes)
+    foot.text(0.5, 0.5, footer, ha="center", va="center", fontsize=7, color="0.35", linespacing=1.4)
+    return figure
+
+
+def cut(text: str) -> str:
+    """So that its lines are no wider than the page."""
+    return "\n".join(line if len(line) < 150 else f"{line[:147]}..." for line in text.splitlines())
+
+
+def counted(rows: pandas.DataFrame, words: dict[str, str]) -> str:
+    """@param rows  table of the sweep; @param words  for a status, where there is a better one"""
+    counts = ", ".join(f"{count} {words.get(status, status)}" for status, count in rows.status.value_counts().items())
+    return f"{rounded.counted(len(rows), 'run')}: {counts}"
+
+
+def shown_curves(groups: Groups) -> list[tuple[str, list[Group]]]:
+    curves = groups.curves()
+    return curves if len(curves) <= MOST_CURVES else [curves[0], curves[-1]]
+
+
+def run_way(row: np.void, sweep: pathlib.Path, clogrun: pathlib.Path) -> Trajectory:
+    with tempfile.TemporaryDirectory(prefix="clogsweep-poster-") as folder:
+        interval = max(row["time"] / FRAMES_OF_WAY, 1e-3)
+        run, = replays.follow_all(clogrun, sweep, [row], folder, 1, interval, interval)
+    return run
+
+
+def draw_way(axes: Axes, run: Trajectory) -> None:
+    """As wide as the page."""
+    way.draw_on(axes, run, 12)
+    axes.set_aspect("equal", adjustable="datalim")
+
+
+def of_lengths(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> list[Row]:
+    def clog_drawing(clog: clogs.Clog) -> Draw:
+        return lambda axes: clogs.draw(axes, clog)
+
+    def curve_drawing(draw: Callable[..., None], label: str, members: Sequence[Group]) -> Draw:
+        return lambda axes: draw(axes, groups, label, members)
+
+    first: list[Draw] = [lambda axes: lengths.draw_on(axes, groups)]
+    if any(group["relative_speed"] is not None for group in groups.members):
+        first.append(lambda axes: lengths.draw_speeds_on(axes, groups))
+    curves = shown_curves(groups)
+    survivals = [curve_drawing(report.draw_survival, label, members) for label, members in curves if any(group["survival"] for group in members)]
+    ends = [curve_drawing(report.draw_causes, label, members) for label, members in curves]
+    # Of one curve both are side by side.
+    below: list[Row] = [(1.35, survivals + ends)] if len(curves) == 1 else [(1.35, survivals), (1.0, ends)]
+    rows: list[Row] = [(1.6, first), *((height, drawings) for height, drawings in below if drawings)]
+    clogged = clogs.of_polygons(stored.read_rows(sweep, clogrun.parent), sweep)
+    if clogged:
+        again = clogs.run_all(clogrun, sweep, report.examples(clogged, 4), 2)
+        rows.append((1.25, [clog_drawing(clog) for clog in again]))
+        run = run_way(min(clogged, key=lambda row: abs(float(row["distance"]) - WAY)), sweep, clogrun)
+        rows.append((1.0, [lambda axes: draw_way(axes, run)]))
+    return rows
+
+
+def of_passages(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> list[Row]:
+    def outline_drawing(run: Trajectory) -> Draw:
+        def draw(axes: Axes) -> None:
+            passages.draw_outline(axes, groups, run)
+            axes.xaxis.label.set_size(8)  # three are side by side
+
+        return draw
+
+    def column_drawing(column: str) -> Draw:
+        return lambda axes: passages.draw_curves(axes, groups, column)
+
+    rows: list[Row] = [(1.2, [column_drawing(column)]) for column in passages.drawn_columns(groups)]
+    with tempfile.TemporaryDirectory(prefix="clogsweep-poster-") as folder:
+        runs = passages.followed(passages.examples(stored.read_rows(sweep, clogrun.parent), 3), clogrun, sweep, folder)
+    return [*rows, (1.2, [outline_drawing(run) for run in runs])] if runs else rows
+
+
+def draw(sweep: pathlib.Path, folder: pathlib.Path) -> Figure:
+    """@param folder  of the programs. @throws UserError, ProgramFailed"""
+    groups = Groups(*fits.fitted(folder / "clogfit", sweep)).finished(sweep)
+    with stored.opened(sweep, folder=folder) as file:
+        about = stored.attributes(file)
+    abscissa = groups.abscissa.replace("_", " ")
+    if groups.are_passages:
+        kind = passages.kind_of(groups)
+        title, words = f"{kind.heading} over {abscissa}", kind.outcomes
+        rows = of_passages(groups, sweep, folder / "clogrun")
+    else:
+        title, words = f"Clogging length over {abscissa}", {"flowing": "still going"}
+        rows = of_lengths(groups, sweep, folder / "clogrun")
+    head = f"{groups.caption()}\n{groups.note(counted(stored.read_table(sweep, folder), words))}"
+    groups.tells_what_all_share = False  # the head does, panels need not
+    return page(title, head, rows, cut(stored.source(about)))

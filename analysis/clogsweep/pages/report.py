@@ -1,0 +1,346 @@
+"""One page about a sweep: curves, table, example clogs or outlines, doubts, where the numbers came from."""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+import json
+import pathlib
+import string
+import tempfile
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from .. import style
+from ..drawing import clogs, lengths, passages, survival_curve
+from ..labels.groups import Groups
+from ..reading import fits, programs, stored
+from ..tools import outputs, rounded
+from ..tools.errors import UserError
+from ..tools.hints import Group
+from .chart import Charts
+
+if TYPE_CHECKING:
+    import pandas
+
+
+def framed(content: str, caption: str, kind: str = "") -> str:
+    return f'<figure{f" class={kind}" if kind else ""}>{content}<figcaption>{html.escape(caption)}</figcaption></figure>'
+
+
+def picture(figure: Figure, caption: str) -> str:
+    """Of a droplet: on white, in the dark, too."""
+    out = io.BytesIO()
+    figure.savefig(out, format="png", dpi=130)
+    data = base64.b64encode(out.getvalue()).decode()
+    return framed(f'<img alt="{html.escape(caption)}" src="data:image/png;base64,{data}">', caption)
+
+
+def draw_survival(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
+    """P(r) of one curve's members to their longest ways, each with the exponential of its length if it is known."""
+    begin = min(0.01 * (group["clogging_length"] or survival_curve.longest_way(group)) for group in members)
+    for group, colour in zip(members, style.VIRIDIS(np.linspace(0, 0.9, len(members)))):
+        if group["survival"]:
+            r = group["clogging_length"] * np.logspace(-2, 1, 100)
+            axes.plot(r, np.exp(-r / group["clogging_length"]), color=colour, linewidth=0.8, linestyle="--",
+                      gid=style.mark("curve", [group]))
+        survival_curve.draw(axes, group, colour, groups.said(groups.abscissa, group[groups.abscissa]), begin=begin)
+    axes.set_xscale("log")
+    axes.set_ylim(0, 1.02)
+    axes.set_xlabel(r"displacement along the flow $r/\sigma$")
+    axes.set_ylabel("probability $P(r)$ of not having clogged")
+    style.grid(axes)
+    mark_steps(axes)
+    style.caption(axes, f"{label or groups.caption()}\nsteps: clogs; ticks: runs last seen going; "
+                        "dashed: exponential of the same length")
+
+
+def mark_steps(axes: Axes) -> None:
+    """The legend of curves of one group each."""
+    handles, _ = axes.get_legend_handles_labels()
+    style.mark_legend(axes.legend(frameon=False, fontsize=8, ncols=1 + len(handles) // 8), handles)
+
+
+def occurring_causes(members: Sequence[Group]) -> list[str]:
+    """Words of clogfit for what ended runs of these groups, in the order of their colours."""
+    return [name for name in style.CAUSE_COLOURS if any(name in group["incidence"] for group in members)]
+
+
+def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
+    """How probable an end by each cause is on a way r, the others being at work (Aalen and Johansen's estimate), for one curve's members."""
+    names = occurring_causes(members)
+    figure, all_axes = style.subplots(1, len(names), figsize=(3.2 * len(names), 4.8), sharex=True, sharey=True, squeeze=False)
+    longest = max(survival_curve.longest_way(group) for group in members)
+    begin = 0.5 * min((step["distance"] for group in members for steps in group["incidence"].values() for step in steps if step["distance"] > 0), default=longest)
+    for axes, name in zip(all_axes[0], names):
+        for group, colour in zip(members, style.VIRIDIS(np.linspace(0, 0.9, len(members)))):
+            steps = group["incidence"].get(name, [])
+            way = [begin, *(step["distance"] for step in steps), survival_curve.longest_way(group)]
+            share = [0, *(step["probability"] for step in steps)]
+            axes.step(way, [*share, share[-1]], where="post", color=colour, linewidth=1.2, label=groups.said(groups.abscissa, group[groups.abscissa]),
+                      gid=style.mark("point", [group]))
+        axes.set_title(name, fontsize=10)
+        axes.set_xscale("log")
+        axes.set_xlim(begin, longest)
+        axes.set_ylim(0, 1.02)
+        axes.set_xlabel(r"$r/\sigma$")
+        style.grid(axes)
+    all_axes[0][0].set_ylabel("probability to have ended so within $r$")
+    mark_steps(all_axes[0][0])
+    figure.suptitle(label or groups.caption(), fontsize=8, wrap=True)
+    return figure
+
+
+def draw_causes(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
+    """What became of the runs of one curve, as shares."""
+    ranks, base = np.arange(len(members)), np.zeros(len(members))
+    shares = {name if name == "broken" else f"clogged, {name}": (colour, [(group[name] or 0) / group["runs"] for group in members])
+              for name, colour in style.CAUSE_COLOURS.items()}
+    shares["still going"] = ("0.88", [1 - (group["clogs"] + (group["broken"] or 0)) / group["runs"] for group in members])
+    for name, (colour, share) in shares.items():
+        if any(share):
+            for bar, group in zip(axes.bar(ranks, share, bottom=base, color=colour, width=0.8, label=name), members):
+                bar.set_gid(style.mark("point", [group]))
+        base += share
+    axes.set_xticks(ranks, [f"{group[groups.abscissa]:g}" for group in members], rotation=0 if len(members) <= 10 else 90)
+    axes.set_xlabel(groups.axis_label())
+    axes.set_ylabel("share of the runs")
+    axes.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=5, fontsize=8, title=label, title_fontsize=8)
+
+
+def length(group: Group) -> str:
+    """The clogging length with its interval, or its lower bound."""
+    ends = [group[f"clogging_length_{end}"] for end in ("lower", "upper")]
+    return rounded.with_interval(group["clogging_length"], *ends) if group["clogs"] > 0 else f"> {rounded.plain(ends[0])}"
+
+
+def speed(group: Group) -> str:
+    """The mean speed with its error, and of how many runs it is."""
+    if group["relative_speed"] is None:
+        return "-"
+    return f"{rounded.with_error(group['relative_speed'], group['relative_speed_error'])} ({rounded.counted(group['relative_speed_runs'], 'run')})"
+
+
+def value(cell: float | str | None, digits: int = 6) -> str:
+    """Of a parameter, as a table shows it."""
+    return "-" if cell is None else cell if isinstance(cell, str) else f"{cell:.{digits}g}"
+
+
+def cell(groups: Groups, group: Group, name: str) -> str:
+    """The same of a group, with a file's name for circles of one's own."""
+    return value(groups.named(name, group[name]))
+
+
+def parameters(groups: Groups) -> list[str]:
+    """Names of those that tell groups apart."""
+    return [*groups.curve_parameters(), groups.abscissa]
+
+
+def seeds_of(group: Group, names: Sequence[str], rows: pandas.DataFrame) -> str:
+    """@param names  of the parameters that tell groups apart; one that clogfit knows no value of, such as the density of a
+    saturated array, follows from the others"""
+    of_group = rows
+    for name in names:
+        if group[name] is not None:
+            of_group = of_group[of_group[name] == group[name]]
+    seeds = sorted(set(of_group.seed))
+    if len(seeds) < 3:
+        return ", ".join(map(str, seeds))
+    between = f"{seeds[0]} to {seeds[-1]}"
+    return between if seeds[-1] - seeds[0] + 1 == len(seeds) else f"{len(seeds)} of {between}"
+
+
+def doubts_of(group: Group, sentences: dict[str, str]) -> str:
+    """As words, each with its sentence."""
+    return ", ".join(f'<abbr title="{html.escape(sentences[name])}">{name.replace("_", " ")}</abbr>' for name in style.doubts(group))
+
+
+def table(titles: Sequence[str], lines: Sequence[Sequence[str]], doubts: Sequence[str]) -> str:
+    """Every number of the page; what points show of it, and how it is sorted, is in `page.js`.
+
+    @param titles  in HTML; @param lines  cells of each group; @param doubts  of each, in HTML
+    """
+    head = "".join(f'<th scope="col">{title}</th>' for title in [*titles, "doubts"])
+    body = "\n".join(f'<tr data-groups="{number}">' + "".join(f"<td>{html.escape(cell)}</td>" for cell in cells) + f'<td class="doubt">{doubt}</td></tr>'
+                     for number, (cells, doubt) in enumerate(zip(lines, doubts)))
+    return f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>\n{body}\n</tbody></table></div>'
+
+
+def table_of_lengths(groups: Groups, sentences: dict[str, str], rows: pandas.DataFrame) -> str:
+    names = parameters(groups)
+    titles = [*(name.replace("_", " ") for name in names), "runs", "clogs", *style.MECHANISM_COLOURS, f"&lambda;/&sigma; ({100 * groups.confidence:g} %)",
+              "&lang;v<sub>g</sub>&rang;/v<sub>t</sub>", "Ca", "seeds"]
+    lines = [[*(cell(groups, group, name) for name in names), str(group["runs"]), str(group["clogs"]),
+              *(str(group[name]) for name in style.MECHANISM_COLOURS), length(group),
+              speed(group), rounded.plain(group["capillary_number"]), seeds_of(group, names, rows)] for group in groups.members]
+    return table(titles, lines, [doubts_of(group, sentences) for group in groups.members])
+
+
+def table_of_passages(groups: Groups, sentences: dict[str, str]) -> str:
+    kind, names = passages.kind_of(groups), parameters(groups)
+    titles = [*(name.replace("_", " ") for name in names), "outcome", *kind.columns.values()]
+    lines = [[*(cell(groups, group, name) for name in names), kind.outcomes[group["status"]], *(value(group[name], 4) for name in kind.columns)]
+             for group in groups.members]
+    return table(titles, lines, [doubts_of(group, sentences) for group in groups.members])
+
+
+def doubts(groups: Sequence[Group], sentences: dict[str, str], rows: pandas.DataFrame) -> str:
+    """@param sentences  of clogfit, by the words that its groups hold"""
+    words = []
+    for name in dict.fromkeys(name for group in groups for name in style.doubts(group)):
+        count = sum(name in style.doubts(group) for group in groups)
+        words.append(f"<li class=doubt>{count} of {rounded.counted(len(groups), 'point')}: {html.escape(sentences[name])}</li>")
+    failed = rows[rows.status == "failed"]
+    for _, row in failed.head(5).iterrows():
+        words.append(f"<li class=doubt>task {row.task} (seed {row.seed}) failed: {html.escape(row.message)}</li>")
+    return "<ul>" + "\n".join(words) + "</ul>" if words else "<p>None.</p>"
+
+
+def examples(clogs_of_sweep: Sequence[np.void], count: int) -> list[np.void]:
+    """Clogs to be shown: the typical one of every mechanism, the others spread from the least to the most deformed.
+
+    Those that went a diameter come first: what clogs where it was released tells of its void, not of the array.
+
+    @param clogs_of_sweep  rows as clogs.of_polygons() gives them
+    """
+    farthest = sorted(clogs_of_sweep, key=lambda row: -row["distance"])
+    travelled = sum(row["distance"] >= 1 for row in farthest)
+    ordered = sorted(farthest[:max(travelled, count)], key=lambda row: (row["shape_parameter"], row["task"]))
+    if not ordered or count == 0:
+        return []
+    kinds: dict[bytes, list[np.void]] = {}
+    for row in ordered:
+        kinds.setdefault(row["mechanism"], []).append(row)
+    typical = [kind[len(kind) // 2] for kind in kinds.values()]
+    # The extremes themselves are often the least sound runs.
+    spread = [ordered[int(place)] for place in np.linspace(0.05, 0.95, count) * (len(ordered) - 1)]
+    return list({row["task"]: row for row in typical + spread + ordered}.values())[:count]
+
+
+def example_pictures(shown: Sequence[np.void], sweep: pathlib.Path, clogrun: pathlib.Path) -> str:
+    if not shown:
+        return "<p>No polygon has clogged.</p>"
+    return side_by_side(picture(clog.picture().figure, "touched obstacles blue, contact red, convex hull dashed")
+                        for clog in run_examples(shown, sweep, clogrun))
+
+
+def run_examples(shown: Sequence[np.void], sweep: pathlib.Path, clogrun: pathlib.Path) -> clogs.Clogs:
+    try:
+        return clogs.run_all(clogrun, sweep, shown, 2)
+    except UserError as error:
+        raise UserError(f"{error}; --examples 0 does without") from error
+
+
+def progress_of(status: dict[str, Any], rows: pandas.DataFrame) -> str:
+    """@param status  of clogsweep status; @param rows  the tasks that have begun"""
+    counts = ", ".join(f"{count} {name}" for name, count in rows.status.value_counts().items())
+    return f"{status['over']} of {rounded.counted(status['runs'], 'run')} finished ({counts})"
+
+
+LENGTHS = ("&lambda; is the way after which 1/e of the droplets have not clogged, in droplet diameters; v<sub>t</sub> is the speed of a free droplet. "
+           "Each point of a curve has a row of the table.")
+
+
+def label_of_length(groups: Groups, group: Group) -> str:
+    """What a point says where there is no script."""
+    known = "" if group["relative_speed"] is None else f", speed {speed(group)}"
+    return (f"{valued(groups, group)}: length {length(group)}{known}, {group['clogs']} of {rounded.counted(group['runs'], 'run')} clogged")
+
+
+def valued(groups: Groups, group: Group) -> str:
+    return ", ".join(f"{name.replace('_', ' ')} {cell(groups, group, name)}" for name in parameters(groups))
+
+
+def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
+    """What is told of droplets among obstacles. @param count  clogs to show. @return contents by title"""
+    def chart(figure: Figure, caption: str) -> str:
+        is_wide = figure.get_figwidth() > 1.5 * figure.get_figheight()
+        return framed(charts.draw(figure, caption), caption, "wide" if is_wide else "")
+
+    curves = [chart(style.figure_of(lengths.draw_on, groups), "clogging length")]
+    if any(group["relative_speed"] is not None for group in groups.members):
+        curves.append(chart(style.figure_of(lengths.draw_speeds_on, groups), "mean speed over terminal speed"))
+    survivals = [chart(style.figure_of(draw_survival, groups, label, members), "P(r), to the longest way") for label, members in groups.curves()
+                 if any(group["survival"] for group in members)]
+    survivals += [chart(incidence(groups, label, members), "ends by cause") for label, members in groups.curves()
+                  if len(occurring_causes(members)) > 1]
+    ends = [chart(style.figure_of(draw_causes, groups, label, members), "ends by cause, shares") for label, members in groups.curves()]
+    shown = examples(clogs.of_polygons(stored.read_rows(sweep, clogrun.parent), sweep), count)
+    return {"Curves": side_by_side(curves), "How far droplets get": side_by_side(survivals), "What becomes of them": side_by_side(ends),
+            "Example clogs": example_pictures(shown, sweep, clogrun)}
+
+
+def label_of_passage(groups: Groups, group: Group) -> str:
+    kind = passages.kind_of(groups)
+    return f"{valued(groups, group)}: {kind.outcomes[group['status']]}"
+
+
+def of_passages(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
+    """The same of droplets in a channel or on a wall. @param count  outlines to show"""
+    kind = passages.kind_of(groups)
+    curves = [framed(charts.draw(style.figure_of(passages.draw_curves, groups, column), name), name) for column, name in passages.drawn_columns(groups).items()]
+    with tempfile.TemporaryDirectory(prefix="clogsweep-report-") as folder:
+        drawn = passages.draw_outlines(groups, passages.examples(stored.read_rows(sweep, clogrun.parent), count), clogrun, sweep, folder)
+    outlines = side_by_side(picture(figure, f"outline {kind.outline}") for figure in drawn)
+    reached = "".join(f"<li>{html.escape(f'{curve}: {said}' if curve else said)}</li>" for curve, said in passages.shares(groups, value))
+    return {kind.heading: f"<ul>{reached}</ul>{side_by_side(curves)}", "Outlines": outlines or "<p>None.</p>"}
+
+
+def side_by_side(pictures: Iterable[str]) -> str:
+    shown = "".join(pictures)
+    return f'<div class="pictures">{shown}</div>' if shown else ""
+
+
+PROVENANCE = ("command_line", "version", "git_describe", "git_hash", "compiler", "mpi_version", "hdf5_version", "start_time", "num_ranks")
+RANDOM_ARRAYS = ("obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "obstacle-layout")
+
+
+def settings(config: str) -> str:
+    """Of a sweep, without those that say nothing of its array: that of a file has its own."""
+    own_circles = stored.settings(config).get("obstacles", "none") != "none"
+    return "\n".join(line for line in config.splitlines() if not (own_circles and line.partition(" = ")[0] in RANDOM_ARRAYS))
+
+
+def page(name: str, groups: Groups, sections: dict[str, str], progress: str, about: dict[str, str], charts: Charts, fitted_by: str) -> str:
+    """@param sections  contents by title; @param charts  that they hold; @param fitted_by  version of clogfit"""
+    def part(ending: str) -> str:
+        return pathlib.Path(__file__).with_name(f"page.{ending}").read_text()
+
+    light, dark = charts.colours()
+    return string.Template(part("html")).substitute(
+        name=html.escape(name), style=part("css"), light=light, dark=dark, script=part("js"),
+        progress=html.escape(f"{progress}, {rounded.counted(len(groups.members), 'point')}"),
+        meaning=passages.kind_of(groups).about if groups.are_passages else LENGTHS,
+        sections="\n".join(f"<h2>{title}</h2>{content}" for title, content in sections.items() if content),
+        provenance=html.escape("\n".join([*(f"{key}: {about[key]}" for key in PROVENANCE if key in about), f"fitted by clogfit {fitted_by}"])),
+        config=html.escape(settings(about.get("config", ""))))
+
+
+def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: pathlib.Path) -> pathlib.Path:
+    """@param examples  clogs or outlines to show; @param folder  of the programs. @return the output; an earlier page is replaced, nothing else.
+    @throws UserError, ProgramFailed"""
+    outputs.refuse_unwritable(output, "html", sweep)
+    told, circle_files = fits.fitted(folder / "clogfit", sweep)
+    status = json.loads(programs.run_program(folder / "clogsweep", "status", sweep, "--format", "json"))
+    groups = Groups(told, circle_files).finished(sweep)
+    for number, group in enumerate(groups.members):
+        group["number"] = number  # by which the page knows each (style.mark())
+    rows = stored.read_table(sweep, folder)
+    with stored.opened(sweep, folder=folder) as file:
+        about = stored.attributes(file)
+    sentences = told["doubts"]
+    label, tell = (label_of_passage, of_passages) if groups.are_passages else (label_of_length, of_lengths)
+    charts = Charts([label(groups, group) for group in groups.members])
+    sections = tell(groups, sweep, examples, folder / "clogrun", charts)
+    sections |= {"What may spoil these numbers": doubts(groups.members, sentences, rows),
+                 "Table": table_of_passages(groups, sentences) if groups.are_passages else table_of_lengths(groups, sentences, rows)}
+    try:
+        output.write_text(page(sweep.name, groups, sections, progress_of(status, rows), about, charts, stored.writer(told)))
+    except OSError as error:
+        raise UserError(f"cannot write {output} ({error.strerror}); give another --output") from error
+    return output

@@ -1,0 +1,52 @@
+"""Figures of the article from runs of our own: sweeps, clogfit, picture."""
+
+import csv
+import datetime
+import pathlib
+
+from .. import style
+from ..reading import programs
+from ..tools import outputs
+from . import arrays, channels, density, dilute, hanging  # noqa: F401, they fill the catalogue
+from .plate import CATALOGUE, Entry, Plate
+from .workshop import Workshop
+
+ORDER = [
+    "1", "2", "3", "4", "5", "6a", "6b", "6c", "6c-filling", "6c-saturated", "7a", "7a-saturated", "7b", "7c", "7c-saturated", "map", "density",
+    "8a", "8b", "8ca", "9a", "9b", "A1", "B1", "B2", "C1", "C2", "D", "E", "W1", "W2"]
+
+
+def print_list() -> None:
+    print(f"{'name':12} {'reduced size':24} {'sweep or settings':24} what")
+    for name in ORDER:
+        entry = CATALOGUE[name]
+        print(f"{name:12} {entry.cost:24} {', '.join(entry.configs) or '-':24} {entry.caption}")
+
+
+def output_of(name: str, shop: Workshop) -> pathlib.Path:
+    """Without ending."""
+    return shop.folder / f"figure-{name}"
+
+
+def refuse_unwritable(name: str, shop: Workshop) -> None:
+    """Before minutes of work, of the four files of write()."""
+    output = output_of(name, shop)
+    outputs.refuse_unwritable_picture(output, *shop.profiles)
+    for ending in ("csv", "txt"):
+        outputs.refuse_unwritable(pathlib.Path(f"{output}.{ending}"), "text", *shop.profiles)
+
+
+def write(plate: Plate, entry: Entry, shop: Workshop, command: str) -> None:
+    output = output_of(entry.name, shop)
+    sources = shop.take_sources()
+    version = programs.run_program(shop.programs / "clogsweep", "--version").splitlines()[0]
+    about = "\n".join([f"Figure {entry.name}, {shop.size} size: {entry.caption}", f"drawn by {command}",
+                       f"{version}, {datetime.datetime.now(datetime.timezone.utc):%Y-%m-%dT%H:%M:%SZ}", "from", *sources]) + "\n"
+    style.save(plate.figure, output, {"Title": f"Figure {entry.name}: {entry.caption}", "Description": about, "Software": "clogsweep"})
+    columns = list(dict.fromkeys(name for row in plate.data for name in row))
+    with open(f"{output}.csv", "w", newline="") as out:
+        table = csv.DictWriter(out, columns)
+        table.writeheader()
+        table.writerows(plate.data)
+    pathlib.Path(f"{output}.txt").write_text(about)
+    print(f"{output}.png (and .pdf, .csv, .txt)", flush=True)

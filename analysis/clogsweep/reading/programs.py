@@ -1,0 +1,78 @@
+"""Finds the built programs and what belongs to them, and runs them."""
+
+import argparse
+import os
+import pathlib
+import shlex
+import shutil
+import subprocess
+
+from ..tools.errors import ProgramFailed, UserError
+
+PACKAGE = pathlib.Path(__file__).resolve().parents[1]
+
+try:
+    from .._installed import JOBS_FOLDER, PROGRAMS_FOLDER  # relative to this package; cmake --install writes it
+except ImportError:  # the source tree
+    _SOURCE = PACKAGE.parents[1]
+    JOBS = _SOURCE / "jobs"
+    PROGRAMS = [_SOURCE / "build" / preset / "bin" for preset in ("release", "laptop")]
+else:
+    JOBS = (PACKAGE / JOBS_FOLDER).resolve()
+    PROGRAMS = [(PACKAGE / PROGRAMS_FOLDER).resolve()]
+
+
+def reason(text: str) -> str:
+    """The line in which a program of ours says why it stopped; mpirun talks around it."""
+    lines = [line for line in text.splitlines() if line.strip()]
+    ours = [line for line in lines if line.startswith(("clogsweep", "clogrun", "clogfit"))]
+    return (ours or lines[-1:] or ["no reason given"])[-1]
+
+
+def programs_in(folder: str | os.PathLike[str] | None = None) -> pathlib.Path:
+    """Folder of clogsweep, clogrun and clogfit: the user's own choice, or else those of CLOG_BIN, of the PATH, or beside this package.
+
+    @throws UserError  if they are not there
+    """
+    called = shutil.which("clogsweep")
+    chosen = os.environ.get("CLOG_BIN")
+    candidates = [pathlib.Path(folder)] if folder else [
+        *([pathlib.Path(chosen)] if chosen else []), *([pathlib.Path(called).resolve().parent] if called else []), *PROGRAMS]
+    for place in candidates:
+        if (place / "clogsweep").exists():
+            return place.resolve()
+    raise UserError(f"no clogsweep in {place}; build it (cmake --workflow --preset release), or give --programs FOLDER")
+
+
+def add_option(parser: argparse.ArgumentParser) -> None:
+    """--programs, for programs_in()."""
+    parser.add_argument("--programs", type=pathlib.Path,
+                        help="folder of clogsweep, clogrun and clogfit (CLOG_BIN, that of the PATH, or beside this package)")
+
+
+def run_program(program: str | os.PathLike[str], *arguments: object, ranks: int = 1) -> str:
+    """@return what it prints. @throws ProgramFailed  with its reason"""
+    return _outputs(program, *arguments, ranks=ranks)[0]
+
+
+def warnings_of(program: str | os.PathLike[str], *arguments: object) -> str:
+    """Runs it for what it says on its error stream. @throws ProgramFailed  with its reason"""
+    return _outputs(program, *arguments)[1]
+
+
+def _outputs(program: str | os.PathLike[str], *arguments: object, ranks: int = 1) -> tuple[str, str]:
+    command = [str(program), *map(str, arguments)]
+    if ranks > 1:
+        settings = shlex.quote(str(JOBS / "mpi-settings.sh"))
+        command = ["bash", "-c", f'. {settings} && exec mpirun -np {ranks} "$@"', "mpirun", *command]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        while True:
+            try:
+                out, error = process.communicate()
+                break
+            except KeyboardInterrupt:
+                # The terminal has told the programs, too: they end in good order and say where they are.
+                continue
+    if process.returncode != 0:
+        raise ProgramFailed(reason(error or out), process.returncode)
+    return out, error

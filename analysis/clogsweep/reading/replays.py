@@ -1,0 +1,57 @@
+"""Rows of a sweep run once more by clogrun, for what is not in them: h, v and A on the way, outlines."""
+
+import concurrent.futures
+import os
+import pathlib
+import shlex
+import tempfile
+from collections.abc import Iterable
+
+import numpy as np
+
+from ..tools.errors import NotThere
+from ..tools.hints import AnyPath
+from . import stored, trajectory
+from .programs import run_program
+from .trajectory import Trajectory
+
+# What may differ between a row and the same run once more.
+CIRCUMSTANCES = {"task", "wall_seconds", "rank", "host", "attempt"}
+
+
+def replay(clogrun: pathlib.Path, sweep: AnyPath, task: int, output: AnyPath, *options: str) -> None:
+    """Runs a row once more. @throws ProgramFailed  with the reason of clogrun"""
+    run_program(clogrun, "replay", sweep, task, *options, "--output", output)
+
+
+def is_of(known: Trajectory, row: np.void, options: list[str]) -> bool:
+    """Is this trajectory what the row's run gives with these options?"""
+    return shlex.split(known.attributes["command_line"])[4:-2] == options and known.row.dtype == row.dtype and all(
+        known.row[column].tobytes() == row[column].tobytes() for column in set(stored.columns_of(row)) - CIRCUMSTANCES)
+
+
+def follow(clogrun: pathlib.Path | None, sweep: pathlib.Path, row: np.void, folder: AnyPath, options: list[str]) -> Trajectory:
+    """The trajectory of a row, in a file of the folder, which is reused if it holds the same already.
+
+    @param clogrun  the program; None: nothing is to be run
+    """
+    file = pathlib.Path(folder) / f"{sweep.stem}-{row['task']}.h5"
+    known = trajectory.read(file, needs_frames=False) if file.exists() else None
+    if known is not None and is_of(known, row, options):
+        return known
+    if clogrun is None:
+        raise NotThere(f"{file} is {'not there' if known is None else 'another run'}; leave out --draw-only")
+    # clogrun never overwrites; the old one goes when the new one is whole. Another script may do the same run.
+    with tempfile.TemporaryDirectory(prefix=f"{file.stem}-", dir=folder) as place:
+        fresh = pathlib.Path(place) / file.name
+        replay(clogrun, sweep, row["task"], fresh, *options)
+        os.replace(fresh, file)
+    return trajectory.read(file, needs_frames=False)
+
+
+def follow_all(clogrun: pathlib.Path | None, sweep: pathlib.Path, rows: Iterable[np.void], folder: AnyPath, jobs: int, samples: float,
+               outlines: float | None = None) -> list[Trajectory]:
+    """The same of several rows, some at a time. @param samples, outlines  time between two of them [t0]"""
+    options = ["--sample-interval", f"{samples:.3g}", *(["--polygon-interval", f"{outlines:.3g}"] if outlines else [])]
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        return list(pool.map(lambda row: follow(clogrun, sweep, row, folder, options), rows))

@@ -1,0 +1,199 @@
+"""Files of clogsweep and clogrun, opened only if nothing in them is damaged (docs/explanation/survival.md says how that is known)."""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import zlib
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import h5py
+import numpy as np
+
+from ..tools.errors import Damaged, ProgramFailed, UserError
+from ..tools.hints import AnyPath, Records
+from . import programs
+from .rehearsal import is_ours, is_run
+
+if TYPE_CHECKING:
+    import pandas
+
+SEAL = re.compile(rb"\nclogsweep seal 1: crc32 ([0-9a-f]{8}) of ([0-9]{20}) bytes\n")
+SEAL_SIZE = 64
+OLD_VERSIONS = ("2", "3", "4")  # had no checksums
+SWEEP, RUN = "sweep", "run"
+WRITERS: dict[str | None, str] = {
+    SWEEP: "the output of clogsweep", RUN: "the output of clogrun with --polygon-interval", None: "a file of clogsweep or clogrun"}
+
+
+def is_sealed(path: AnyPath) -> bool:
+    """Is every bit of the file as it was written? Or does its end not say? @throws Damaged if it is not"""
+    with open(path, "rb") as file:
+        content = file.read()
+    seal = SEAL.fullmatch(content[-SEAL_SIZE:])
+    if not seal:
+        return False
+    if (int(seal[1], 16), int(seal[2])) != (zlib.crc32(content[:-SEAL_SIZE]), len(content) - SEAL_SIZE):
+        raise Damaged(f"cannot trust {path} (damaged: its checksum is not that of its bytes); see clogsweep verify")
+    return True
+
+
+def text(value: object) -> str:
+    return value.decode() if isinstance(value, bytes) else str(value)
+
+
+def unreadable(path: AnyPath, reason: object, kind: str | None = None) -> UserError:
+    """What is to be thrown where a file is not of the kind that is wanted."""
+    return UserError(f"cannot read {path} ({reason}); give {WRITERS[kind]}")
+
+
+def check_kind(path: AnyPath, file: h5py.File, kind: str | None) -> None:
+    """@throws UserError"""
+    if not is_ours(file):
+        raise unreadable(path, "an HDF5 file, but not one of clogsweep or clogrun", kind)
+    if kind == SWEEP and is_run(file):
+        raise unreadable(path, "holds one run of clogrun, not a sweep", kind)
+    if kind == RUN and not is_run(file):
+        raise unreadable(path, "holds a sweep, not one run of clogrun", kind)
+
+
+def kind_of(path: AnyPath, folder: AnyPath | None = None) -> str:
+    """SWEEP or RUN. @throws as opened()"""
+    with opened(path, folder=folder) as file:
+        return RUN if is_run(file) else SWEEP
+
+
+def look(path: AnyPath) -> dict[str, str | bool]:
+    """What kind of file it is, found by reading all of it in another process. @throws Damaged  if that dies of it"""
+    done = subprocess.run([sys.executable, pathlib.Path(__file__).with_name("rehearsal.py"), path], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise Damaged(f"cannot trust {path} (damaged: reading it fails); put a copy in its place")
+    return json.loads(done.stdout)
+
+
+def ask_clogsweep(path: AnyPath, folder: AnyPath | None) -> None:
+    """Has the program check rows, attributes and types of a sweep, and say what it has to say. @throws Damaged; UserError"""
+    try:
+        clogsweep = programs.programs_in(folder) / "clogsweep"
+    except UserError as error:
+        raise UserError(f"cannot check {path}, which has no seal: {error}") from error
+    try:
+        print(programs.warnings_of(clogsweep, "status", path, "--format", "json"), end="", file=sys.stderr)
+    except ProgramFailed as failure:
+        reason = str(failure).removeprefix("clogsweep status: ")
+        raise (Damaged if "(damaged: " in reason else UserError)(reason) from failure
+
+
+@functools.lru_cache
+def check_copy(path: str, folder: str | None, *_as_it_is: float) -> None:
+    """Of a file without a seal, which another program has copied or changed. Once for each, as it is then. @throws Damaged; UserError"""
+    found = look(path)
+    if not found["is_ours"]:
+        return  # for check_kind()
+    if not found["is_run"]:
+        ask_clogsweep(path, folder)
+    elif found["format_version"] in OLD_VERSIONS:
+        print(f"{path} is of an older format without checksums: damage to it may go unnoticed", file=sys.stderr)
+    else:
+        raise UserError(f"cannot trust {path} (another program copied or changed it, and outlines have no checksums of their own); "
+                        "give the file that clogrun wrote, or run the droplet once more")
+
+
+def why_not_open(path: AnyPath, error: OSError) -> str:
+    if error.errno:
+        return os.strerror(error.errno)
+    return str(error) if h5py.is_hdf5(path) else "not an HDF5 file"
+
+
+@contextlib.contextmanager
+def opened(path: AnyPath, kind: str | None = None, folder: AnyPath | None = None) -> Iterator[h5py.File]:
+    """The file for h5py, read only. @param kind  SWEEP or RUN, if only that will do; @param folder  of the programs.
+    @throws Damaged; UserError if it cannot be read"""
+    if os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path):
+        raise unreadable(path, "not a regular file: a pipe, device or socket", kind)  # which may never end
+    try:
+        is_whole = is_sealed(path)
+        if h5py.is_hdf5(path) and not is_whole:
+            now = os.stat(path)
+            check_copy(os.path.realpath(path), str(folder) if folder else None, now.st_dev, now.st_ino, now.st_size, now.st_ctime_ns)
+        opened_file = h5py.File(path, "r")
+    except FileNotFoundError as error:
+        raise UserError(f"cannot read {path} (no such file); check the name") from error
+    except OSError as error:
+        raise unreadable(path, why_not_open(path, error), kind) from error
+    with opened_file as file:
+        try:
+            check_kind(path, file, kind)
+            yield file
+        except (OSError, KeyError, ValueError) as error:
+            raise unreadable(path, error, kind) from error
+
+
+def attributes(file: h5py.File) -> dict[str, str]:
+    """Of an open file: where it comes from, as text."""
+    return {name: text(value) for name, value in file.attrs.items()}
+
+
+def writer(attributes: dict[str, str]) -> str:
+    """Version and commit of the program that wrote a file, in words. Older files have the commit's hash alone, or less."""
+    commit = attributes.get("git_describe") or attributes.get("git_hash") or "unknown"
+    return f"{attributes.get('version', 'of unknown version')}, git {commit}"
+
+
+def source(attributes: dict[str, str]) -> str:
+    """Where the rows of a file come from, for whoever finds a picture of them. @param attributes  of the file"""
+    began = f", begun {attributes['start_time']}" if "start_time" in attributes else ""
+    return f"clogsweep {writer(attributes)}{began}\n{attributes.get('command_line', '')}".strip()
+
+
+def settings(config: str) -> dict[str, str]:
+    """Keys and values of a config as it is stored: of all keys, `auto` and the like where nothing else was given."""
+    pairs = (line.partition(" = ") for line in config.splitlines())
+    return {key: value for key, equals, value in pairs if equals}
+
+
+def circle_files(file: h5py.File) -> dict[str, str]:
+    """Names of the files that circles of one's own come from, by the check sums that rows have of them."""
+    return {sum_: pathlib.Path(text(circles.attrs["file"])).name for sum_, circles in file.get("obstacles", {}).items() if "file" in circles.attrs}
+
+
+def columns_of(rows: Records | np.void) -> tuple[str, ...]:
+    """Names of the columns of a table or a row."""
+    return rows.dtype.names or ()
+
+
+def read_rows(path: AnyPath, folder: AnyPath | None = None) -> Records:
+    """The table of runs, one record per run. @throws as opened()"""
+    with opened(path, folder=folder) as file:
+        return file["runs"][:]
+
+
+def unit(meaning: str) -> str:
+    """What stands in brackets in the meaning of a column; empty for counts, ratios and words."""
+    found = re.search(r"\[(.*?)\]", meaning)
+    return found[1] if found else ""
+
+
+def read_table(path: AnyPath, folder: AnyPath | None = None) -> pandas.DataFrame:
+    """The same for pandas, with text as text. `attrs` of the table holds the columns' `units` and `meanings`, by name."""
+    with opened(path, folder=folder) as file:
+        return table_of(file)
+
+
+def table_of(file: h5py.File) -> pandas.DataFrame:
+    """The same of an open file."""
+    import pandas  # slow to load, and not needed by all
+
+    rows = file["runs"][:]
+    meanings = {name: text(file["runs"].attrs.get(name, "")) for name in rows.dtype.names}
+    table = pandas.DataFrame({name: [text(value) for value in rows[name]] if rows.dtype[name].kind == "S" else rows[name]
+                              for name in rows.dtype.names})
+    table.attrs = {"units": {name: unit(meaning) for name, meaning in meanings.items()}, "meanings": meanings}
+    return table

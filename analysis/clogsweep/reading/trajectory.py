@@ -1,0 +1,161 @@
+"""What clogrun writes of one droplet."""
+
+import dataclasses
+import math
+import pathlib
+
+import numpy as np
+import numpy.typing as npt
+
+from ..tools.hints import AnyPath, Numbers, Records
+from . import stored
+
+POINTS_OF_DISK = 128
+
+
+@dataclasses.dataclass
+class Trajectory:
+    """Shapes as in docs/reference/files.md; without --polygon-interval there are no frames, obstacles and wedges. The polygons
+    are those that walls meet, see outlines()."""
+
+    path: pathlib.Path
+    table: Records
+    row: np.void
+    attributes: dict[str, str]
+    polygons: Numbers
+    times: Numbers
+    obstacles: Numbers
+    wedges: Numbers
+
+    def word(self, column: str) -> str:
+        return self.row[column].decode()
+
+    def frame_at(self, column: str, value: float) -> int:
+        """Index of the frame at which a column of the trajectory first comes nearest to a value."""
+        at_frames = np.interp(self.times, self.table["time"], self.table[column])
+        return int(np.argmin(np.abs(at_frames - value)))
+
+    @property
+    def middle(self) -> Numbers:
+        """Where h = 0 and the axis of a channel are in the coordinates of the polygons; of a wall, a point on it."""
+        return self.wedges[:, :2].mean(axis=0)
+
+
+def refined(polygons: Numbers, row: np.void) -> Numbers:
+    """Polygons with the middles of their edges, by the four-point rule (docs/explanation/model.md): walls meet these. Those of
+    runs in which walls meet vertices alone, or the chords of older versions, stay as they are.
+
+    @param polygons  (..., 2, N_v) [sigma]
+    @return (..., 2, 2 N_v)
+    """
+    if row["wall_contact"] != b"edge" or row["model_version"] < 4 or polygons.size == 0:
+        return polygons
+    before, after = np.roll(polygons, 1, axis=-1), np.roll(polygons, -1, axis=-1)
+    middles = (9 * (polygons + after) - before - np.roll(polygons, -2, axis=-1)) / 16
+    return np.stack([polygons, middles], axis=-1).reshape(*polygons.shape[:-1], -1)
+
+
+def outlines(polygons: Numbers, row: np.void) -> Numbers:
+    """What meets walls: refined polygons, or the circle of a soft disk, of which only the centre is stored."""
+    if row["model"] != b"sp" or polygons.size == 0:
+        return refined(polygons, row)
+    angle = np.linspace(0, 2 * np.pi, POINTS_OF_DISK, endpoint=False)
+    return polygons + 0.5 * np.stack([np.cos(angle), np.sin(angle)])
+
+
+def contact_range(row: np.void) -> float:
+    """Distance from a wall at which contact begins [sigma]; half a vertex diameter before it was stored."""
+    if "contact_range" in stored.columns_of(row):
+        return row["contact_range"]
+    return np.sqrt(np.pi * np.tan(np.pi / row["vertices"]) / row["vertices"]) / 2
+
+
+def read(path: AnyPath, needs_frames: bool = True) -> Trajectory:
+    """@throws UserError if it is not a trajectory (with frames)"""
+    with stored.opened(path, stored.RUN) as file:
+        frames = [file[name][:] if name in file else np.empty(shape)
+                  for name, shape in [("polygons", (0, 2, 0)), ("polygon_times", (0,)),
+                                      ("obstacles", (0, 3)), ("wedges", (0, 6))]]
+        row = file["runs"][0]
+        frames[0] = outlines(frames[0], row)
+        trajectory = Trajectory(pathlib.Path(path), file["trajectory"][:], row, stored.attributes(file), *frames)
+    if needs_frames:
+        require_frames(trajectory)
+    return trajectory
+
+
+def require_frames(trajectory: Trajectory) -> None:
+    """@throws UserError if there are no outlines"""
+    if len(trajectory.times) == 0:
+        raise stored.unreadable(trajectory.path, "holds no polygons", stored.RUN)
+
+
+def wedge_outline(wedge: Numbers, reach: float = 50.0) -> Numbers:
+    """Points around a wedge with a rounded tip, cut off far away. @param wedge  a row of /wedges"""
+    x, y, axis_x, axis_y, half_angle, radius = wedge
+    centre = np.array([x, y]) + radius * np.array([axis_x, axis_y])
+    axis = math.atan2(axis_y, axis_x)
+
+    def direction(angle: float) -> Numbers:
+        return np.array([math.cos(angle), math.sin(angle)])
+
+    sides = [(direction(axis + sign * half_angle), direction(axis + sign * (half_angle + math.pi / 2))) for sign in (1, -1)]
+    (flank, normal), (other_flank, other_normal) = sides
+    start, end = axis + half_angle + math.pi / 2, axis - half_angle - math.pi / 2 + 2 * math.pi
+    arc = [centre + radius * direction(angle) for angle in np.linspace(start, end, 40)]
+    behind = reach * direction(axis)
+    return np.array([centre + reach * flank + behind, centre + reach * flank + radius * normal, *arc,
+                     centre + reach * other_flank + radius * other_normal, centre + reach * other_flank + behind])
+
+
+def described(trajectory: Trajectory) -> str:
+    """What was run, without what came out."""
+    row = trajectory.row
+    words = [rf"$\Gamma = {row['line_tension']:.4g}$" if trajectory.word("model") == "dp" else rf"$E_w = {row['wall_stiffness']:.4g}$"]
+    if np.isfinite(row["obstacle_gap"]):
+        words.append(rf"smallest gap ${row['obstacle_gap']:.4g}\,\sigma$")
+        words.append(f"seed {row['seed']}")
+    return ", ".join(words)
+
+
+def mechanism(trajectory: Trajectory) -> str:
+    """Empty if it is not known."""
+    return trajectory.word("mechanism") if "mechanism" in stored.columns_of(trajectory.row) else ""
+
+
+def end_of(trajectory: Trajectory) -> str:
+    """How the run ended, in words."""
+    ends = {"wrapped": "clogged by wrapping", "squeezed": "clogged by squeezing", "hybrid": "clogged by wrapping and squeezing"}
+    status = trajectory.word("status")
+    return ends.get(mechanism(trajectory), status) if status == "clogged" else {"flowing": "still flowing", "broken": "broken up"}.get(status, status)
+
+
+def verdict(trajectory: Trajectory) -> str:
+    """The same with how far it came, for a picture."""
+    return rf"{end_of(trajectory)} after $r = {trajectory.row['distance']:.2f}\,\sigma$"
+
+
+def centroids(polygons: Numbers) -> Numbers:
+    """Of the enclosed areas. @param polygons  frames x 2 x N. @return frames x 2"""
+    reference = polygons[:, :, :1]  # near to the polygon: no digits are lost far from the origin
+    x, y = np.moveaxis(polygons - reference, 1, 0)
+    next_x, next_y = np.roll(x, -1, axis=-1), np.roll(y, -1, axis=-1)
+    cross = x * next_y - next_x * y
+    moments = np.stack([((x + next_x) * cross).sum(axis=-1), ((y + next_y) * cross).sum(axis=-1)], axis=-1)
+    return reference[:, :, 0] + moments / (3 * cross.sum(axis=-1, keepdims=True))
+
+
+def along_the_way(polygons: Numbers, number: int) -> npt.NDArray[np.intp]:
+    """Frames evenly spaced along the way, not in time: a clogged droplet stands still for most of its run."""
+    centres = polygons.mean(axis=2)
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(centres, axis=0).T))])
+    chosen = np.searchsorted(way, np.linspace(0, way[-1], number)).clip(max=len(polygons) - 1)
+    return np.unique(np.append(chosen, len(polygons) - 1))
+
+
+def interface_speeds(trajectory: Trajectory) -> Numbers:
+    """Speed of every point of the interface in every frame, by differences between frames [sqrt(sigma g)]."""
+    if len(trajectory.times) < 2:
+        return np.zeros((len(trajectory.times), trajectory.polygons.shape[2]))
+    velocity = np.gradient(trajectory.polygons, trajectory.times, axis=0)
+    return np.hypot(velocity[:, 0], velocity[:, 1])

@@ -1,0 +1,103 @@
+"""The fit of a sweep: a table, curves of lengths and speeds."""
+
+from __future__ import annotations
+
+import json
+import pathlib
+from typing import TYPE_CHECKING, Any
+
+from ..labels.groups import Groups
+from ..reading import fits, programs, stored
+from ..tools import checked, rounded
+from ..tools.errors import UserError
+
+if TYPE_CHECKING:
+    import pandas
+
+    from ..style import Picture
+
+HDF5_BEGINNING = b"\x89HDF\r\n\x1a\n"
+
+
+class Fit:
+    """Clogging lengths and mean speeds, a group for each set of parameters. Nothing is fitted here.
+
+    `groups` is a table with a row for each group, and clogfit's columns: the clogging length and its interval in droplet
+    diameters, how many runs clogged and by what, doubts, all parameters. `units` names the unit of each. Fewer than three
+    runs have no mean speed.
+    """
+
+    def __init__(self, told: dict[str, Any], circle_files: dict[str, str] | None = None) -> None:
+        """@param told  the JSON of clogfit; @param circle_files  see stored.circle_files(). @throws KeyError, TypeError  if it is not"""
+        self.told = told
+        self.confidence: float = told["confidence"]
+        self.units: dict[str, str] = told["units"]
+        self.doubts: dict[str, str] = told["doubts"]
+        self.known = Groups(told, circle_files)
+
+    @property
+    def source(self) -> str:
+        """Where its rows come from, how many they are, and what fitted them. Older programs do not say the first."""
+        sweep = self.told.get("sweep", {})
+        lines = [stored.source(sweep) if sweep else "", sweep.get("config", "").strip(), f"{self._counted()}, fitted by clogfit {stored.writer(self.told)}"]
+        return "\n".join(filter(None, lines))
+
+    def _counted(self) -> str:
+        groups = self.told["groups"]
+        return f"{rounded.counted(sum(group.get('runs', 1) for group in groups), 'run')} in {rounded.counted(len(groups), 'group')}"
+
+    @property
+    def groups(self) -> pandas.DataFrame:
+        """What is known of each group as one number or word; P(r) and incidence are in survival() and `told`."""
+        import pandas
+
+        flat = [{name: value for name, value in group.items() if not isinstance(value, list | dict)} for group in self.told["groups"]]
+        return pandas.DataFrame(flat)
+
+    def survival(self, group: int) -> pandas.DataFrame:
+        """P(r) of a group, by its index in `groups`: the probability of not having clogged on a way r [sigma].
+        @throws UserError  if there is no such group"""
+        import pandas
+
+        checked.whole("group", group, 0)
+        if group >= len(self.told["groups"]):
+            raise UserError(f"no group {group}; there are {len(self.told['groups'])}, the first is 0")
+        return pandas.DataFrame(self.told["groups"][group]["survival"])
+
+    def curve(self) -> Picture:
+        """Clogging lengths over what the sweep varies. @throws UserError  if there are none"""
+        from .. import style  # slow to load, as all that draws
+        from ..drawing import lengths
+
+        return style.Picture(style.figure_of(lengths.draw_on, self.known.with_lengths()), self.source)
+
+    def speeds(self) -> Picture:
+        """Mean speeds over the speed of a free droplet, over what the sweep varies. @throws UserError  if there are none"""
+        from .. import style
+        from ..drawing import lengths
+
+        return style.Picture(style.figure_of(lengths.draw_speeds_on, self.known.with_lengths()), self.source)
+
+    def __repr__(self) -> str:
+        return f"<fit of {self._counted()}>"
+
+    def _repr_html_(self) -> str:
+        return self.groups._repr_html_()
+
+
+def read(path: pathlib.Path, folder: pathlib.Path | None) -> Fit:
+    """@param path  of a sweep, or of clogfit's JSON; @param folder  of the programs. @throws UserError, ProgramFailed"""
+    try:
+        content = path.read_bytes()
+    except FileNotFoundError as error:
+        raise UserError(f"cannot read {path} (no such file); check the name") from error
+    except OSError as error:
+        raise UserError(f"cannot read {path} ({error.strerror}); give a sweep, or the output of clogfit --format json") from error
+    if content.startswith(HDF5_BEGINNING):
+        return Fit(*fits.fitted(programs.programs_in(folder) / "clogfit", path))
+    try:
+        return Fit(json.loads(content))
+    except ValueError as error:
+        raise UserError(f"cannot read {path} (neither HDF5 nor JSON); give a sweep, or the output of clogfit --format json") from error
+    except (KeyError, TypeError) as error:
+        raise UserError(f"cannot read {path} (JSON, but not of clogfit); give a sweep, or the output of clogfit --format json") from error

@@ -1,0 +1,101 @@
+"""One run of clogrun, with the droplet's outlines."""
+
+from __future__ import annotations
+
+import base64
+import os
+import pathlib
+from typing import TYPE_CHECKING, NoReturn
+
+import pandas
+
+from ..reading import stored, trajectory
+from ..tools import checked
+from ..tools.errors import UserError
+
+if TYPE_CHECKING:
+    from ..style import Picture
+
+
+class Film:
+    """A film that is written; plays in a notebook. `path` is its file."""
+
+    def __init__(self, path: pathlib.Path) -> None:
+        self.path = path
+
+    def __repr__(self) -> str:
+        return f"<film {self.path}>"
+
+    def _repr_html_(self) -> str:
+        data = base64.b64encode(self.path.read_bytes()).decode()
+        if self.path.suffix == ".gif":
+            return f'<img src="data:image/gif;base64,{data}">'
+        return f'<video controls loop style="max-width: 100%" src="data:video/mp4;base64,{data}"></video>'
+
+
+class Run:
+    """What ``clogrun --output`` wrote, with ``--polygon-interval``: how a droplet moved and what it looked like.
+
+    - `samples`: table of the way; time [t0], distance [sigma], speed [sqrt(sigma g)], energies, shape parameter
+    - `polygons`: outlines, frames x 2 x points [sigma], at the `times` (frames) [t0]; those that walls meet
+    - `obstacles`: circles x 3 (x, y, diameter) [sigma]; `wedges` likewise, docs/reference/files.md
+    - `row`: parameters and outcome, by the names of the columns of a sweep; `attributes`: where the file comes from
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        """@throws UserError  if the file is no run or is damaged"""
+        self.path = pathlib.Path(path)
+        self.trajectory = trajectory.read(self.path, needs_frames=False)
+        self.samples = pandas.DataFrame(self.trajectory.table)
+        self.polygons = self.trajectory.polygons
+        self.times = self.trajectory.times
+        self.obstacles = self.trajectory.obstacles
+        self.wedges = self.trajectory.wedges
+        self.row = stored.read_table(self.path).iloc[0]
+        self.attributes: dict[str, str] = self.trajectory.attributes
+
+    def picture(self, outlines: int = 12) -> Picture:
+        """So many moments of the run in one picture. @throws UserError  if there are no outlines"""
+        from ..drawing import way  # slow to load, as all that draws
+        from ..style import Picture
+
+        checked.whole("outlines", outlines, 1)
+        trajectory.require_frames(self.trajectory)
+        return Picture(way.draw(self.trajectory, outlines), stored.source(self.attributes))
+
+    def film(self, output: str | os.PathLike[str], *, colour: str = "speed", rate: int = 20, most_frames: int = 600, size: str | None = None) -> Film:
+        """Writes a film; one that is there is never replaced.
+
+        @param output  its file: .mp4 (needs ffmpeg), .gif, or without an ending either of them
+        @param colour  "speed" of the interface, or "mechanism": the last frame shows how the droplet clogged
+        @param rate  frames a second; @param most_frames  a longer run is thinned
+        @param size  "540p", "1080p" or "2160p", of the frames; 1080p if it is not given, 540p of a .gif
+        @throws UserError  if it cannot be made
+        """
+        from ..drawing import film
+
+        checked.one_of("colour", colour, film.COLOURS)
+        checked.one_of("size", size, (*film.SIZES, None))
+        checked.whole("rate", rate, 1)
+        checked.whole("most_frames", most_frames, 1)
+        trajectory.require_frames(self.trajectory)
+        path = film.path_of(pathlib.Path(output))
+        moving = film.Film(self.trajectory, film.chosen_frames(self.trajectory, most_frames), colour, rate, size or film.size_for(path))
+        return Film(film.write_film(moving, path, rate))
+
+    def export_vtk(self, output: str | os.PathLike[str]) -> pathlib.Path:
+        """Writes files for ParaView. @return the one to be opened, OUTPUT.pvd. @throws UserError"""
+        from ..drawing import vtk
+
+        trajectory.require_frames(self.trajectory)
+        return vtk.export(self.trajectory, pathlib.Path(output))
+
+    def _repr_png_(self) -> bytes | None:
+        return self.picture().png() if len(self.times) > 0 else None
+
+    def fit(self) -> NoReturn:
+        """There is none. @throws UserError"""
+        raise UserError("a run has no fit; give a sweep")
+
+    def __repr__(self) -> str:
+        return f"<run {self.path.name}: {trajectory.end_of(self.trajectory)}>"

@@ -1,0 +1,108 @@
+"""A sweep: its table of runs, its fits, its clogs."""
+
+from __future__ import annotations
+
+import html
+import json
+import os
+import pathlib
+import tempfile
+from collections.abc import Collection
+from typing import TYPE_CHECKING, Any
+
+from ..reading import fits, programs, replays, stored
+from ..tools import checked
+from ..tools.errors import UserError
+from .fit import Fit
+from .run import Run
+
+if TYPE_CHECKING:
+    from ..drawing.clogs import Clogs
+    from ..style import Picture
+
+
+class Sweep:
+    """What ``clogsweep --output`` wrote, finished or still under way.
+
+    - `rows`: table with a row for each run, as it was when the file was opened; `rows.attrs` holds `units` and
+      `meanings` of the columns
+    - `attributes`: version, commit, config, command line
+
+    Everything else asks the programs, of the file as it is then.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], programs: str | os.PathLike[str] | None = None) -> None:
+        """@param programs  folder of clogsweep, clogrun and clogfit, if they are not in the PATH or beside this module.
+        @throws UserError  if the file is no sweep or is damaged"""
+        self.path = pathlib.Path(path)
+        self._programs = programs
+        with stored.opened(self.path, stored.SWEEP, programs) as file:
+            self._records = file["runs"][:]
+            self.rows = stored.table_of(file)
+            self.attributes: dict[str, str] = stored.attributes(file)
+
+    def _program(self, name: str) -> pathlib.Path:
+        return programs.programs_in(self._programs) / name
+
+    def fit(self, *, dwell: float | None = None, from_distance: float | None = None, confidence: float | None = None) -> Fit:
+        """Clogging lengths and mean speeds, from clogfit.
+
+        @param dwell  a droplet that has not moved for so long counts as clogged [t0]
+        @param from_distance  ways are counted from here on [sigma]
+        @param confidence  of the intervals, between 0 and 1
+        @throws ProgramFailed  with the reason of clogfit
+        """
+        given = {"--dwell": dwell, "--from-distance": from_distance, "--confidence": confidence}
+        options = [word for name, value in given.items() if value is not None for word in (name, repr(float(value)))]
+        return Fit(*fits.fitted(self._program("clogfit"), self.path, *options))
+
+    def status(self) -> dict[str, Any]:
+        """How far the sweep is, as clogsweep status says."""
+        return json.loads(programs.run_program(self._program("clogsweep"), "status", self.path, "--format", "json"))
+
+    def clogs(self, *, mechanism: str | None = None, tasks: Collection[int] | None = None, most: int = 6, jobs: int = 2) -> Clogs:
+        """Clogged polygons, run once more until they rest.
+
+        @param mechanism  only "wrapped", "squeezed", "hybrid" or "other"; @param tasks  only these
+        @param most  so many at most, the first; @param jobs  runs at a time
+        @throws UserError  if there are none
+        """
+        from ..drawing import clogs  # slow to load, as all that draws
+
+        checked.whole("most", most, 1)
+        checked.whole("jobs", jobs, 1)
+        rows = clogs.chosen(clogs.of_polygons(self._records, self.path), self.path, mechanism=mechanism, tasks=tasks, most=most)
+        return clogs.run_all(self._program("clogrun"), self.path, rows, jobs)
+
+    def replay(self, task: int, output: str | os.PathLike[str] | None = None, *, interval: float = 1.0) -> Run:
+        """A run once more, with outlines. @param output  file to keep it in; @param interval  between outlines [t0]. @throws UserError"""
+        if task not in self._records["task"]:
+            raise UserError(f"{self.path} holds no task {task}; it has {len(self._records)} rows")
+        options = ["--sample-interval", repr(float(interval)), "--polygon-interval", repr(float(interval))]
+        if output is not None:
+            replays.replay(self._program("clogrun"), self.path, task, output, *options)
+            return Run(output)
+        with tempfile.TemporaryDirectory(prefix="clogsweep-replay-") as folder:
+            return self.replay(task, pathlib.Path(folder) / f"{self.path.stem}-{task}.h5", interval=interval)
+
+    def report(self, output: str | os.PathLike[str], examples: int = 4) -> pathlib.Path:
+        """Writes a page of HTML about the sweep; an earlier one is replaced, nothing else. @param examples  clogs to be shown. @return its file.
+        @throws UserError"""
+        from ..pages import report
+
+        checked.whole("examples", examples, 0)
+        return report.write(self.path, pathlib.Path(output), examples, programs.programs_in(self._programs))
+
+    def poster(self) -> Picture:
+        """One page of the sweep to be printed, A3: its curves and some of its droplets. @throws UserError"""
+        from ..pages import poster
+        from ..style import Picture
+
+        return Picture(poster.draw(self.path, programs.programs_in(self._programs)), stored.source(self.attributes))
+
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{number} {status}" for status, number in self.rows.status.value_counts().items())
+        return f"<sweep {self.path}: {len(self.rows)} runs ({counts})>"
+
+    def _repr_html_(self) -> str:
+        return f"<p>{html.escape(repr(self)[1:-1])}; the first rows:</p>{self.rows.head()._repr_html_()}"

@@ -1,0 +1,225 @@
+"""How all figures look: colours, axes, markers, what is written beside a picture; and how one is shown and saved."""
+
+from __future__ import annotations
+
+import io
+import math
+import os
+import pathlib
+from collections.abc import Callable, Collection, Sequence
+from typing import Any
+
+import matplotlib
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.legend import Legend
+from matplotlib.lines import Line2D
+
+from ..tools import outputs, rounded
+from ..tools.hints import AnyPath, Group
+
+# Okabe and Ito's palette, safe for colour-blind readers; a marker of its own for every curve besides.
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
+MARKERS = ["o", "s", "D", "v", "P", "X", "*"]
+MECHANISM_COLOURS = {"wrapped": COLOURS[0], "squeezed": COLOURS[1], "hybrid": COLOURS[2], "other": COLOURS[3]}
+CAUSE_COLOURS = {**MECHANISM_COLOURS, "broken": COLOURS[4]}
+MECHANISM_MARKERS = {"wrapped": "o", "squeezed": "s", "hybrid": "D", "other": "X"}
+VIRIDIS = matplotlib.colormaps["viridis"]
+OBSTACLE = "0.72"
+DROPLET = "#D55E00"
+
+
+def new_figure(**options: Any) -> Figure:
+    """Not one of `pyplot`'s, which stay in memory and belong to a backend: whoever draws in a notebook has chosen one."""
+    made = Figure(**options)
+    FigureCanvasAgg(made)
+    return made
+
+
+def subplots(rows: int = 1, columns: int = 1, *, figsize: tuple[float, float], **options: Any) -> tuple[Figure, Any]:
+    """A figure laid out by itself, and its axes, as `pyplot`'s."""
+    made = new_figure(figsize=figsize, layout="constrained")
+    return made, made.subplots(rows, columns, **options)
+
+
+def figure_of(draw: Callable[..., None], *what: Any) -> Figure:
+    """A figure with one drawing. @param draw  called with the axes and what follows here"""
+    figure, axes = subplots(figsize=(6.4, 4.8))
+    draw(axes, *what)
+    return figure
+
+
+def curve_style(index: int) -> dict[str, Any]:
+    """Of no two curves the same: once colours and markers are used up, lines are broken, by more dots each time."""
+    round_, which = divmod(index, len(COLOURS))
+    line = (0, (6, 2) + (1, 2) * (round_ - 1)) if round_ > 0 else "-"
+    return {"color": COLOURS[which], "marker": MARKERS[which], "linestyle": line}
+
+
+def mark(kind: str, groups: Collection[Group]) -> str | None:
+    """The name (`gid`) of what stands for groups of a report (report.write()); elsewhere they have no numbers.
+    @param kind  point, curve or legend"""
+    numbers = [str(group["number"]) for group in groups if "number" in group]
+    return f"{kind}-{','.join(numbers)}" if numbers else None
+
+
+def mark_legend(legend: Legend, handles: Sequence[Any]) -> None:
+    """Entries of what has a name of mark() stand for the same."""
+    for handle, text in zip(handles, legend.get_texts()):
+        name = (handle.lines[0] if hasattr(handle, "lines") else handle).get_gid()
+        if name:
+            text.set_gid(f"legend-{name.partition('-')[2]}")
+
+
+def doubts(group: Group) -> list[str]:
+    return (group["doubts"] or "").split()
+
+
+def main_mechanism(group: Group) -> str:
+    """What holds most of the clogs of a group."""
+    return max(MECHANISM_MARKERS, key=lambda name: group[name])
+
+
+def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs") -> None:
+    """Of the curves if they have names, and of the markers that draw_lengths() gave these groups. That of many is
+    beside the axes, in a figure that is as much wider. @param other  what clogs are called that are of no mechanism"""
+    curves = [(handle, label) for handle, label in zip(*axes.get_legend_handles_labels()) if label]
+    names = {main_mechanism(group) for group in groups if group["clogs"] > 0}
+    markers = [(Line2D([], [], color="0.4", marker=marker, linestyle="none"), f"most clogs {name}" if name != "other" else other)
+               for name, marker in MECHANISM_MARKERS.items() if name in names]
+    entries = [*curves, *markers]
+    if len(entries) > len(COLOURS):
+        made = axes.legend(*zip(*entries), frameon=False, fontsize=7, handlelength=4, ncols=math.ceil(len(entries) / 28),
+                           loc="upper left", bbox_to_anchor=(1, 1))
+        figure = axes.figure
+        if isinstance(figure, Figure):  # not a part of one, whose width is given
+            figure.set_figwidth(figure.get_figwidth() + made.get_window_extent(figure.canvas.get_renderer()).width / figure.dpi)
+    elif entries:
+        made = axes.legend(*zip(*entries), frameon=False)
+    if curves:
+        mark_legend(made, [handle for handle, _ in curves])
+
+
+def logarithmic_margin(values: Collection[float]) -> float:
+    """Factor by which a logarithmic axis goes on beyond these values."""
+    return (max(values) / min(values)) ** 0.05 if max(values) > min(values) else 1.3
+
+
+def side_by_side(index: int, num_curves: int, values: Collection[float]) -> float:
+    """Factor on logarithmic abscissae that curves share: moved apart by a percent, or less so that all of them stay off
+    the frame, their bars can be told apart."""
+    outermost = max(num_curves - 1, 1) / 2
+    return min(1.012, logarithmic_margin(values) ** (0.7 / outermost)) ** (index - (num_curves - 1) / 2)
+
+
+def far_apart(values: Collection[float]) -> list[float]:
+    """Of values on a logarithmic axis those whose labels have room side by side."""
+    ordered = sorted(set(values))
+    room = 0.08 * math.log(ordered[-1] / ordered[0])
+    kept = ordered[:1]
+    for value in ordered[1:]:
+        if math.log(value / kept[-1]) >= room:
+            kept.append(value)
+    return kept
+
+
+def logarithmic_abscissa(axes: Axes, values: Collection[float] = ()) -> None:
+    """Plain numbers, at the values themselves where they are few or within a decade."""
+    axes.set_xscale("log")
+    axis = axes.xaxis
+    axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:.3g}"))
+    if values and (len(set(values)) <= 10 or max(values) < 10 * min(values)):
+        axis.set_ticks(far_apart(values), minor=False)
+        axis.set_ticks(values, minor=True)
+        axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
+    if values:
+        # Ticks widen an axis without a margin: what is drawn at the last one would lie on the frame.
+        margin = logarithmic_margin(values)
+        axes.set_xlim(min(values) / margin, max(values) * margin)
+
+
+def logarithmic_ordinate(axes: Axes) -> None:
+    """Plain numbers where it has fewer than two decades, at 1, 2 and 5, or at every mark of less than half a decade: powers
+    of ten would be too few."""
+    axes.set_yscale("log")
+    axis = axes.yaxis
+    usual = axis.get_major_formatter()
+
+    def label(value: float, digits: tuple[int, ...], otherwise: str) -> str:
+        low, high = axes.get_ylim()
+        if high >= 100 * low:
+            return otherwise
+        first = value / 10.0 ** rounded.exponent(value)
+        return f"{value:.4g}" if high < 5 * low or any(math.isclose(first, digit) for digit in digits) else ""
+
+    axis.set_minor_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: label(value, (2, 5), "")))
+    axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, position: label(value, (1, 10), usual(value, position))))
+
+
+def grid(axes: Axes) -> None:
+    axes.grid(True, which="major", color="0.9", linewidth=0.6)
+    axes.set_axisbelow(True)
+
+
+def caption(axes: Axes, text: str) -> None:
+    """Above the axes; lines that are wider than these go on below."""
+    title = axes.set_title(text, fontsize=8, color="0.25")
+    renderer = axes.figure.canvas.get_renderer()
+    widest = 1.1 * axes.get_window_extent(renderer).width  # the layout makes axes wider than they are now
+
+    def fits(line: str) -> bool:
+        title.set_text(line)
+        return title.get_window_extent(renderer).width <= widest
+
+    lines = []
+    for line in text.strip().split("\n"):
+        first, *others = line.split(", ")
+        lines.append(first)
+        for phrase in others:
+            if fits(f"{lines[-1]}, {phrase}"):
+                lines[-1] += f", {phrase}"
+            else:
+                lines[-1] += ","
+                lines.append(phrase)
+    title.set_text("\n".join(lines))
+
+
+def save(figure: Figure, output: AnyPath, metadata: dict[str, str] | None = None) -> None:
+    """Writes OUTPUT.png and OUTPUT.pdf. @param output  path without ending"""
+    # Not with_suffix(): a name may hold a dot.
+    metadata = metadata or {}
+    figure.savefig(f"{output}.png", dpi=160, metadata=metadata)
+    # Laid out once.
+    figure.set_layout_engine("none")
+    subject = {"Title": metadata.get("Title"), "Subject": metadata.get("Description")}
+    figure.savefig(f"{output}.pdf", metadata={key: value for key, value in subject.items() if value})
+
+
+class Picture:
+    """Shows itself in a notebook; `figure` is matplotlib's, to be changed at will. `source` says where its numbers come
+    from, and is kept in what is saved: as Description of the .png, as Subject of the .pdf."""
+
+    def __init__(self, figure: Figure, source: str = "") -> None:
+        self.figure = figure
+        self.source = source
+
+    def png(self, dpi: float = 110) -> bytes:
+        out = io.BytesIO()
+        self.figure.savefig(out, format="png", dpi=dpi)
+        return out.getvalue()
+
+    def save(self, output: str | os.PathLike[str]) -> pathlib.Path:
+        """Writes OUTPUT.png and OUTPUT.pdf. @return the first. @throws UserError  if something else is there"""
+        path = pathlib.Path(output)
+        if path.suffix in (".png", ".pdf"):
+            path = path.with_suffix("")
+        outputs.refuse_unwritable_picture(path)
+        save(self.figure, path, {"Description": self.source, "Software": "clogsweep"} if self.source else None)
+        return pathlib.Path(f"{path}.png")
+
+    def __repr__(self) -> str:
+        return f"<picture of {' x '.join(f'{side:g}' for side in self.figure.get_size_inches())} inches>"
+
+    def _repr_png_(self) -> bytes:
+        return self.png()

@@ -1,0 +1,53 @@
+"""Files that are made: where one may be written, and what it may replace."""
+
+import os
+import pathlib
+
+from .errors import UserError
+
+# How the files begin that commands here make.
+BEGINNINGS = {"html": b"<!DOCTYPE html>", "png": b"\x89PNG\r\n", "pdf": b"%PDF-", "vtk": b"<?xml", "text": b""}
+
+
+def refuse_unwritable(path: pathlib.Path, kind: str, *inputs: pathlib.Path) -> None:
+    """To be asked before minutes of work, of a file to be made. An earlier one of its kind is replaced, nothing else.
+
+    @param kind  of BEGINNINGS; @param inputs  files that the command reads
+    """
+    if not path.parent.is_dir():
+        raise UserError(f"cannot write {path} (no folder {path.parent}); make it first")
+    if path.is_dir():
+        raise UserError(f"cannot write {path} (it is a folder); give the name of a file")
+    if path.exists() and not path.is_file():
+        raise UserError(f"cannot write {path} (not a regular file: a pipe, device or socket); give another name, or move it away")
+    if not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise UserError(f"cannot write {path} (permission denied); give another --output")
+    if any(path.exists() and source.exists() and path.samefile(source) for source in inputs):
+        raise UserError(f"will not overwrite {path} (it is what is to be read); give another --output")
+    if path.is_file() and not is_of_kind(path, kind):
+        raise UserError(f"will not overwrite {path} (it is no {kind.upper()} file); give another --output, or remove it first")
+
+
+def is_of_kind(path: pathlib.Path, kind: str) -> bool:
+    """Does it begin like files of this kind, or hold nothing yet?"""
+    with open(path, "rb") as file:
+        beginning = file.read(len(BEGINNINGS[kind]))
+    return not beginning or beginning == BEGINNINGS[kind]
+
+
+# Endings of pictures and films. Others may be a part of the name, as in gap-0.3.
+ENDINGS = (".png", ".pdf", ".mp4", ".gif", ".jpg", ".jpeg", ".svg", ".eps", ".ps", ".tif", ".tiff", ".bmp", ".webp",
+           ".avi", ".mov", ".mkv", ".webm", ".mpg", ".mpeg", ".apng")
+
+
+def refuse_ending(output: pathlib.Path, *made: str) -> None:
+    """@param made  the endings that there are. @throws UserError  if the name asks for another one"""
+    if output.suffix.lower() in ENDINGS and output.suffix not in made:
+        raise UserError(f"cannot write {output} (it can only be {' or '.join(made)}); give another ending, or none")
+
+
+def refuse_unwritable_picture(output: str | os.PathLike[str], *inputs: pathlib.Path) -> None:
+    """Of the two files of style.save(). @param output  path without ending"""
+    refuse_ending(pathlib.Path(output), ".png", ".pdf")
+    for kind in ("png", "pdf"):
+        refuse_unwritable(pathlib.Path(f"{output}.{kind}"), kind, *inputs)

@@ -1,0 +1,50 @@
+"""Numbers as they are printed: counts with their noun, others with as many figures as their uncertainty allows, three
+at least."""
+
+import math
+from typing import TypeGuard
+
+LEAST_FIGURES = 3
+MOST_FIGURES = 8
+
+
+def is_number(value: float | None) -> TypeGuard[float]:
+    return value is not None and math.isfinite(value)
+
+
+def exponent(value: float) -> int:
+    """Of ten, of the first figure."""
+    return math.floor(math.log10(abs(value))) if value else 0
+
+
+def plain(value: float | None, figures: int = LEAST_FIGURES) -> str:
+    """@param value  a dash stands for None and for what is not finite"""
+    if not is_number(value):
+        return "-"
+    rounded = float(f"{value:.{figures - 1}e}")
+    if rounded and not -5 < exponent(rounded) < 6:
+        return f"{value:.{figures - 1}e}"
+    return f"{rounded:.{max(0, figures - 1 - exponent(rounded))}f}"
+
+
+def counted(number: int, noun: str) -> str:
+    """Such as 1 run, 2 runs."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
+def with_interval(value: float, lower: float, upper: float) -> str:
+    """Such as 223 (102 to 585): two figures of the narrower side of the interval, but three of each number at least."""
+    side = min(value - lower, upper - value)
+    figures = exponent(value) - exponent(side) + 2 if side > 0 else LEAST_FIGURES
+    figures = min(max(figures, LEAST_FIGURES), MOST_FIGURES)
+    return f"{plain(value, figures)} ({plain(lower, figures)} to {plain(upper, figures)})"
+
+
+def with_error(value: float | None, error: float | None) -> str:
+    """Such as 0.379 ± 0.012: two figures of the error, eight of the value at most."""
+    if not is_number(value) or not is_number(error) or error <= 0:
+        return plain(value)
+    decimals = max(0, 1 - exponent(float(f"{error:.1e}")))
+    if decimals > MOST_FIGURES - 1 - exponent(value):
+        return f"{plain(value, MOST_FIGURES)} ± {plain(error, 2)}"
+    return f"{value:.{decimals}f} ± {error:.{decimals}f}"
