@@ -225,7 +225,13 @@ sweep::Start Ledger::start(std::int64_t task, int rank) {
 }
 
 void Ledger::report(const sweep::Report& report) {
-  Entry& entry = runs_[report.row.task];
+  const auto run = runs_.find(report.row.task);
+  if (run == runs_.end() || sweep::identity(report.row) != sweep::identity(run->second.row))
+    throw Error(
+        fmt::format("cannot go on with {} (rank {} has computed another run than task {}: its parameters are "
+                    "not those of the task); what was done before is in the file, please report it",
+                    path_, report.row.rank, report.row.task));
+  Entry& entry = run->second;
   entry = {report.row, report.snapshot};
   if (const auto past = past_.find(report.row.task); past != past_.end()) {
     entry.row.wall_seconds += past->second.seconds;

@@ -144,6 +144,27 @@ TEST_F(LedgerTest, ComputesARunAgainWhoseRowHoldsWhatCannotBe) {
   EXPECT_EQ(store::read_sweep(path()).rows.size(), 1u);
 }
 
+TEST_F(LedgerTest, RefusesARowOfAnotherRunThanTheTasks) {
+  {
+    Ledger ledger = open();
+    ledger.start(0, 0);
+    ledger.start(1, 0);
+    sweep::Report other = report(ledger, 0, RunStatus::clogged, 2);
+    other.row.parameters.dp.line_tension *= 2;
+    EXPECT_THROW(ledger.report(other), Error);
+    sweep::Report exchanged = report(ledger, 0, RunStatus::clogged, 2);
+    exchanged.row.task = 1;
+    EXPECT_THROW(ledger.report(exchanged), Error);
+    exchanged.row.task = 2;
+    EXPECT_THROW(ledger.report(exchanged), Error) << "has not begun";
+    ledger.report(report(ledger, 0, RunStatus::clogged, 3));
+    ledger.finish();
+  }
+  Ledger ledger = open();
+  EXPECT_EQ(ledger.row(0).distance, 3);
+  EXPECT_EQ(ledger.tasks_left(), std::vector<std::int64_t>{1});
+}
+
 TEST_F(LedgerTest, NamesTheFileWhoseConfigItCannotRead) {
   open().finish();
   store::publish_sweep(path(), {}, {{"config", "line-tension = many\n"}});
