@@ -3,7 +3,7 @@
 import os
 import unittest
 
-from support import SweepTest, table
+from support import LONGEST, QUICK, SLOW, SMALL, SweepTest, table
 
 OWN = ["obstacle-layout=file", "box=10", "vertices=64", "max-time=30"]
 
@@ -39,6 +39,59 @@ class Names(SweepTest):
                 self.check_equal("s.h5", "t.h5")
                 for output in ("s.h5", "t.h5"):
                     (self.folder / output).unlink()
+
+
+FINISHED = [*QUICK, "line-tension=0.5", "obstacle-gap=0.4", "seeds=100..103"]
+# Many short runs.
+MANY = [*SMALL, "max-time=600", "line-tension=0.05,0.5", "obstacle-gap=0.4", "seeds=1..400", "--report-seconds=0.1"]
+
+
+class Places(SweepTest):
+    """A place is resolved once; what others do to it meanwhile costs neither their files nor a row."""
+
+    def begin(self, output, command=SLOW[:-2]):
+        """A sweep that has published a table."""
+        process = self.start(*command, "--output", output, ranks=1)
+        self.wait_for(lambda: (self.folder / output).exists() or process.poll() is not None)
+        return process
+
+    def end(self, process):
+        return process.communicate(timeout=LONGEST)[1]
+
+    def num_over(self, name):
+        return (~table(self.folder / name).status.isin(["running", "interrupted"])).sum()
+
+    def test_a_link_that_moves_takes_no_table_along(self):
+        self.succeed("clogsweep", *FINISHED, "--output", "run-1.h5")
+        before = (self.folder / "run-1.h5").read_bytes()
+        (self.folder / "latest.h5").symlink_to("run-2.h5")
+        process = self.begin("latest.h5")
+        (self.folder / "latest.h5").unlink()
+        (self.folder / "latest.h5").symlink_to("run-1.h5")
+        self.end(process)
+        self.assertEqual((self.folder / "run-1.h5").read_bytes(), before)
+        self.assertEqual(self.num_over("run-2.h5"), 2)
+        self.assertFalse((self.folder / "run-2.h5.journal").exists())
+
+    def test_a_folder_that_moves_keeps_its_sweep(self):
+        (self.folder / "one").mkdir()
+        process = self.begin("one/s.h5")
+        (self.folder / "one").rename(self.folder / "other")
+        (self.folder / "one").mkdir()
+        self.end(process)
+        self.assertEqual(list((self.folder / "one").iterdir()), [])
+        self.assertEqual(self.num_over("other/s.h5"), 2)
+
+    def test_a_table_that_somebody_moves_there_is_not_overwritten(self):
+        self.succeed("clogsweep", *FINISHED, "--output", "run-1.h5")
+        before = (self.folder / "run-1.h5").read_bytes()
+        process = self.begin("s.h5")
+        (self.folder / "run-1.h5").rename(self.folder / "s.h5")
+        self.assertIn("somebody has replaced it", self.end(process))
+        self.assertEqual((self.folder / "s.h5").read_bytes(), before)
+        (self.folder / "s.h5.rescued1").rename(self.folder / "s.h5")
+        self.succeed("clogsweep", *SLOW)
+        self.assertEqual(self.num_over("s.h5"), 2)
 
 
 if __name__ == "__main__":

@@ -29,8 +29,8 @@ struct Key {
 };
 
 /// A value in a line of a config, from which unescaped() makes the same text, whatever bytes it has: what
-/// would end or cut the line (control characters, #, a backslash, blanks at the ends) becomes \x and two
-/// digits.
+/// would end or cut the line (control characters, #, a backslash, blanks at the ends) becomes a backslash, x
+/// and two digits.
 std::string escaped(const std::string& text);
 /// The way back. A backslash without x and two hexadecimal digits is one.
 std::string unescaped(const std::string& text);
