@@ -306,7 +306,7 @@ void Ledger::publish() {
   if (!there.empty() && there != stamp_) rescue(rows);
   const bool has_journal = journal_.is_there();
   if (!has_journal) {
-    journal_.make_anew(place_);
+    if (!journal_.make_anew(place_)) rescue(rows);
     rewrite_journal(true);
   }
   journal_.flush();
@@ -326,10 +326,11 @@ void Ledger::rescue(const std::vector<sweep::RunRow>& rows) {
   const auto rescued = [&] { return place_.beside(fmt::format(".rescued{}", number)); };
   while (rescued().exists()) ++number;
   store::publish_sweep(rescued(), rows, provenance_, circles_);
-  throw Error(fmt::format(
-      "cannot go on with {} (somebody has replaced it while the sweep was running); all runs are in {}: move "
-      "it to where it belongs, and the same command goes on",
-      path_, rescued().path()));
+  throw Error(
+      fmt::format("cannot go on with {} (somebody has replaced it or its journal while the sweep was "
+                  "running); all runs are in {}: move "
+                  "it to where it belongs, and the same command goes on",
+                  path_, rescued().path()));
 }
 
 /// To the snapshots that are still needed, if what is over is in the table; otherwise with all.

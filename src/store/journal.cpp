@@ -220,17 +220,21 @@ void Journal::check_place() const {
               "when no other sweep is writing to it, the same command goes on");
 }
 
-void Journal::make_anew(const Place& table) {
-  if (place_.exists()) check_place();
+bool Journal::make_anew(const Place& table) {
   close(std::exchange(descriptor_, -1));
-  open_and_lock(&table);
-  struct stat status {};
-  check(fstat(descriptor_, &status) == 0, "read", place_.path());
-  if (status.st_size > 0)  // another's, who has ended since
-    throw Error("cannot go on with " + place_.path() +
-                " (another sweep has begun there); the same command goes on");
+  descriptor_ = place_.open(O_RDWR | O_CREAT | O_EXCL, table.exists() ? 0600 : 0666);
+  if (descriptor_ < 0 && errno == EEXIST) return false;
+  check(descriptor_ >= 0, "write", place_.path());
+  table.lend_access_to(descriptor_);
+  const bool is_locked = flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
+  check(is_locked || errno == EWOULDBLOCK, "lock", place_.path());
+  if (!is_locked || !is_there()) {
+    close(std::exchange(descriptor_, -1));
+    return false;
+  }
   contents_.num_bytes = num_rewritten_bytes_ = 0;
   has_begun_ = false;
+  return true;
 }
 
 void Journal::add(const sweep::RunRow& row, std::span<const std::byte> snapshot) {

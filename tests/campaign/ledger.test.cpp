@@ -211,6 +211,18 @@ TEST_F(LedgerTest, OverwritesNoTableThatSomebodyElseHasPutThere) {
   }
 }
 
+TEST_F(LedgerTest, LeavesTheJournalOfAnotherSweepAndKeepsItsOwnRows) {
+  Ledger ledger = open();
+  ledger.start(0, 0);
+  ledger.report(report(ledger, 0, RunStatus::clogged, 2));
+  std::filesystem::remove(store::journal_path(path()));
+  const store::Journal other{store::Place(store::journal_path(path()))};
+  const std::string said = refusal([&] { ledger.finish(); });
+  EXPECT_NE(said.find("or its journal"), std::string::npos) << said;
+  EXPECT_TRUE(other.is_there());
+  EXPECT_EQ(store::read_sweep(path() + ".rescued1").rows[0].distance, 2);
+}
+
 TEST_F(LedgerTest, LeavesTheJournalAsItIsWhenItRefuses) {
   const std::string journal = store::journal_path(path());
   {

@@ -121,7 +121,7 @@ class Resumed(SweepTest):
                 os.kill(rank, signal.SIGCONT)
             _, error = first.communicate(timeout=LONGEST)
             self.assertEqual(first.returncode, 2, error)
-            self.assertIn("s.h5 (somebody has replaced it while the sweep was running); all runs are in s.h5.rescued1", error)
+            self.assertIn("s.h5 (somebody has replaced it or its journal while the sweep was running); all runs are in s.h5.rescued1", error)
             self.check_equal("s.h5", "whole.h5")
             self.assertFalse((self.folder / "s.h5.journal").exists())
             for name in ("s.h5", "s.h5.rescued1"):

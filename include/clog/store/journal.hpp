@@ -48,8 +48,9 @@ class Journal {
   const std::string& path() const { return place_.path(); }
   /// Is the open file still the one at its place?
   bool is_there() const { return place_.holds(descriptor_); }
-  /// Makes and locks an empty one in the place of one that was removed. @throws Error if another is there
-  void make_anew(const Place& table);
+  /// Makes and locks an empty one in the place of one that was removed. Returns whether that could be done:
+  /// another sweep may have begun there. @throws Error if it cannot be written
+  bool make_anew(const Place& table);
 
   /// What the file held when it was opened, oldest first.
   std::vector<Entry> take_entries() { return std::move(contents_.entries); }
