@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <unordered_set>
 #include <utility>
@@ -69,11 +68,12 @@ std::string differing_keys(const sweep::Settings& there, const sweep::Settings& 
 
 Ledger::Ledger(std::string path, const sweep::Plan& plan, const sweep::Settings& settings,
                store::Provenance provenance, std::int64_t num_wanted, std::int64_t attempts)
-    : path_(store::require_regular(std::move(path))),
+    : place_(store::require_regular(std::move(path))),
+      path_(place_.path()),
       plan_(plan),
       provenance_(std::move(provenance)),
       attempts_(attempts),
-      journal_(store::journal_path(path_)),
+      journal_(store::journal_place(place_), &place_),
       num_wanted_(num_wanted) {
   for (const auto& [name, circles] : plan.circle_files()) circles_.push_back({name, circles});
   std::string session;
@@ -83,8 +83,9 @@ Ledger::Ledger(std::string path, const sweep::Plan& plan, const sweep::Settings&
 
   std::unordered_map<std::string, Entry> known;
   std::unordered_set<std::string> with_results;
-  if (std::filesystem::exists(path_)) {
-    const store::SweepFile file = store::read_sweep(path_);
+  const bool has_table = place_.exists();
+  if (has_table) {
+    const store::SweepFile file = read_table();
     caution_ = store::caution(path_, file);
     take_over(file, settings);
     keep_circles(file);
@@ -93,12 +94,12 @@ Ledger::Ledger(std::string path, const sweep::Plan& plan, const sweep::Settings&
       if (sweep::is_result(row.status)) with_results.insert(sweep::identity(row));
     }
   }
-  const bool has_table = !known.empty() || std::filesystem::exists(path_);
   std::vector<Entry> entries = journal_.take_entries();
   if (!has_table && !entries.empty())
-    throw Error("cannot begin " + path_ + " (its table is gone, but " + store::journal_path(path_) +
-                " holds " + sweep::counted(static_cast<std::int64_t>(entries.size()), "report") +
-                " of an earlier sweep); put the table back, or remove the journal to begin anew");
+    throw Error(
+        "cannot begin " + path_ + " (its table is gone, but " + store::journal_path(path_) + " holds " +
+        sweep::counted(static_cast<std::int64_t>(entries.size()), "report") +
+        " of an earlier sweep, maybe of finished runs); put the table back, or give another --output");
   for (Entry& entry : entries) {
     std::string run = sweep::identity(entry.row);
     // A run that has its result in the table is not over in the journal if its last record there was lost.
@@ -111,6 +112,16 @@ Ledger::Ledger(std::string path, const sweep::Plan& plan, const sweep::Settings&
   find_tasks(std::move(known));
   publish();
   last_publication_ = Clock::now();
+}
+
+/// The place holds the file by its folder, readers find it by its path: is that still the same?
+store::SweepFile Ledger::read_table() {
+  stamp_ = place_.stamp();
+  store::SweepFile file = store::read_sweep(path_);
+  if (place_.stamp() != stamp_ || store::Place(path_).stamp() != stamp_)
+    throw Error("cannot continue with " + path_ +
+                " (it was replaced or moved while it was read); try again when nobody else does that");
+  return file;
 }
 
 /// A file that is there: do its runs belong to this sweep? Then what it says of its origin stays.
@@ -225,7 +236,13 @@ sweep::Start Ledger::start(std::int64_t task, int rank) {
 }
 
 void Ledger::report(const sweep::Report& report) {
-  Entry& entry = runs_[report.row.task];
+  const auto run = runs_.find(report.row.task);
+  if (run == runs_.end() || sweep::identity(report.row) != sweep::identity(run->second.row))
+    throw Error(
+        fmt::format("cannot go on with {} (rank {} has computed another run than task {}: its parameters are "
+                    "not those of the task); what was done before is in the file, please report it",
+                    path_, report.row.rank, report.row.task));
+  Entry& entry = run->second;
   entry = {report.row, report.snapshot};
   if (const auto past = past_.find(report.row.task); past != past_.end()) {
     entry.row.wall_seconds += past->second.seconds;
@@ -234,7 +251,7 @@ void Ledger::report(const sweep::Report& report) {
       entry.row.instruction_set = sweep::mixed_instruction_sets;
   }
   if (entry.row.status == RunStatus::failed) past_[entry.row.task].seconds = entry.row.wall_seconds;
-  journal_.add(entry.row, entry.snapshot);
+  write_down(entry);
   is_published_ = false;
 }
 
@@ -244,10 +261,15 @@ const sweep::RunRow* Ledger::first_if_all_failed() const {
   return &runs_.begin()->second.row;
 }
 
+void Ledger::write_down(const Entry& entry) {
+  if (!journal_.is_there()) publish();
+  journal_.add(entry.row, entry.snapshot);
+}
+
 void Ledger::withdraw_failure(std::int64_t task) {
   Entry& entry = runs_.at(task);
   begin_anew(entry.row);  // what a bad rank made of it is no distance so far
-  journal_.add(entry.row, entry.snapshot);
+  write_down(entry);
   is_published_ = false;
 }
 
@@ -258,7 +280,7 @@ void Ledger::tick() {
   const Clock::duration pause = std::max<Clock::duration>(std::chrono::seconds(1), 50 * publication_time_);
   if (is_published_ || begin - last_publication_ < pause) return;
   publish();
-  if (journal_.is_to_be_rewritten()) shorten_journal();
+  if (journal_.is_to_be_rewritten()) rewrite_journal(false);
   last_publication_ = Clock::now();
   publication_time_ = last_publication_ - begin;
 }
@@ -273,23 +295,51 @@ sweep::RunRow Ledger::published(const sweep::RunRow& row) const {
   return next;
 }
 
+/// If the journal was removed meanwhile, or the table replaced, all that is known goes to the disk once more,
+/// and the sweep ends. A table that was removed comes back.
 void Ledger::publish() {
   std::vector<sweep::RunRow> rows;
   rows.reserve(runs_.size() + other_runs_.size());
   for (const auto& [task, entry] : runs_) rows.push_back(published(entry.row));
   for (const Entry& entry : other_runs_) rows.push_back(published(entry.row));
+  const std::string there = place_.stamp();
+  if (!there.empty() && there != stamp_) rescue(rows);
+  const bool has_journal = journal_.is_there();
+  if (!has_journal) {
+    if (!journal_.make_anew(place_)) rescue(rows);
+    rewrite_journal(true);
+  }
   journal_.flush();
-  store::publish_sweep(path_, rows, provenance_, circles_);
+  store::publish_sweep(place_, rows, provenance_, circles_);
+  stamp_ = place_.stamp();
   is_published_ = true;
+  if (!has_journal)
+    throw Error(
+        "cannot go on with " + journal_.path() +
+        " (it was removed while the sweep was running); nothing is lost, and the same command goes on");
 }
 
-/// To the snapshots that are still needed; what is over is in the table.
-void Ledger::shorten_journal() {
+/// What somebody else has put in the table's place is not overwritten: the table gets another name.
+void Ledger::rescue(const std::vector<sweep::RunRow>& rows) {
+  if (journal_.is_there()) rewrite_journal(true);
+  int number = 1;
+  const auto rescued = [&] { return place_.beside(fmt::format(".rescued{}", number)); };
+  while (rescued().exists()) ++number;
+  store::publish_sweep(rescued(), rows, provenance_, circles_);
+  throw Error(
+      fmt::format("cannot go on with {} (somebody has replaced it or its journal while the sweep was "
+                  "running); all runs are in {}: move "
+                  "it to where it belongs, and the same command goes on",
+                  path_, rescued().path()));
+}
+
+/// To the snapshots that are still needed, if what is over is in the table; otherwise with all.
+void Ledger::rewrite_journal(bool with_all) {
   std::vector<const Entry*> needed;
   for (const auto& [task, entry] : runs_)
-    if (!is_over(entry.row)) needed.push_back(&entry);
+    if (with_all || !is_over(entry.row)) needed.push_back(&entry);
   for (const Entry& entry : other_runs_)
-    if (!is_over(entry.row)) needed.push_back(&entry);
+    if (with_all || !is_over(entry.row)) needed.push_back(&entry);
   journal_.rewrite(needed);
 }
 
@@ -303,7 +353,7 @@ void Ledger::finish() {
   if (is_complete)
     journal_.remove();
   else
-    shorten_journal();
+    rewrite_journal(false);
 }
 
 }  // namespace clog::campaign

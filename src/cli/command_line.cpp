@@ -167,7 +167,7 @@ void CommandLine::read_config(const std::string& path) {
         throw Error("the key " + option.string_key + " stands there twice");
       if (option.value.empty() || option.value.front().empty())
         throw Error("invalid " + option.string_key + "= (has no value)");
-      settings_.set(option.string_key, option.value.front());
+      settings_.set(option.string_key, sweep::unescaped(option.value.front()));
     }
   } catch (const po::error& error) {
     throw Error(path + ": " + error.what() + "; lines are `key = value`, comments start with #");

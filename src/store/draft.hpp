@@ -3,17 +3,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string>
 #include <string_view>
+
+#include "clog/store/place.hpp"
 
 /// Files that come to be as a whole: made under a name of their own, brought to the disk, then renamed.
 namespace clog::store {
 
-/// Removes the drafts of this path that killed processes left behind.
+/// Removes the drafts of this place that killed processes left behind.
 /// @param mark  with which the content of every draft of this kind begins
-void remove_stale_drafts(const std::string& path, std::string_view mark);
+void remove_stale_drafts(const Place& place, std::string_view mark);
 
-/// A file that is not yet complete, beside the path that it is for (links followed), under a name that nobody
+/// A file that is not yet complete, beside the place that it is for, under a name that nobody
 /// has. It is locked as long as it is open, or until unlock(); one that is not, and begins as ours do, was
 /// left behind by a process that was killed, and is removed by the next that makes one. Other files of such a
 /// name stay.
@@ -21,12 +22,11 @@ class Draft {
  public:
   /// @param mark  see remove_stale_drafts(); to be written first
   /// @throws Error if no file can be made there
-  Draft(const std::string& path, std::string_view mark);
+  Draft(Place place, std::string_view mark);
   Draft(Draft&&) = delete;
   /// Removes it, unless it has been published.
   ~Draft();
 
-  const std::string& name() const { return name_; }
   int descriptor() const { return descriptor_; }
 
   /// Appends to what it holds. @throws Error
@@ -35,7 +35,8 @@ class Draft {
   /// To be called before it is published, if others are to read it from then on: HDF5 locks the files that it
   /// reads, and fails where somebody else has.
   void unlock();
-  /// Gives it the path's name, and the disk both; a file that is there is replaced. @throws Error
+  /// Gives it the place's name, and the disk both; a file that is there is replaced, and hands on its mode,
+  /// owner, group and access list. @throws Error
   void publish();
   /// The same, but never onto a file that somebody else has made. @throws Error
   void publish_new();
@@ -43,8 +44,9 @@ class Draft {
   int release();
 
  private:
-  std::string path_;
-  std::string name_;  ///< empty once it is published
+  Place place_;
+  Place draft_;
+  bool is_published_ = false;
   int descriptor_ = -1;
   std::uint64_t size_ = 0;
 };

@@ -34,32 +34,10 @@ void check(bool succeeded, const std::string& what, const std::string& path) {
   throw Error("cannot " + what + " " + path + reason + "; check the disk and the permissions");
 }
 
-std::string follow_links(const std::string& path) {
-  constexpr int longest_chain = 40;  // as in the kernel
-  fs::path target = path;
-  std::error_code none;
-  for (int links = 0; fs::is_symlink(target, none); ++links) {
-    errno = ELOOP;
-    check(links < longest_chain, "follow the link", path);
-    target = target.parent_path() / fs::read_symlink(target, none);
-  }
-  return target.string();
-}
-
-bool is_at(int descriptor, const std::string& path) {
-  struct stat ours {
-  }, there{};
-  return fstat(descriptor, &ours) == 0 && stat(path.c_str(), &there) == 0 && ours.st_ino == there.st_ino &&
-         ours.st_dev == there.st_dev;
-}
-
-bool sync_folder_of(const std::string& path) {
-  const fs::path folder = fs::path(path).parent_path();
-  const int descriptor = open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return errno == EACCES;                     // one that may be written to but not read
-  const bool synced = fsync(descriptor) == 0 || errno == EINVAL;  // some file systems cannot
-  close(descriptor);
-  return synced;
+bool sync(int descriptor) {
+  while (fsync(descriptor) != 0)
+    if (errno != EINTR) return false;  // a signal is no fault of the disk
+  return true;
 }
 
 void read_at(int descriptor, std::span<std::byte> bytes, std::uint64_t place, const std::string& path) {

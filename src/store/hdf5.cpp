@@ -101,9 +101,9 @@ void create_whole(const std::string& path, const std::function<void(hid_t file)>
   draft.publish_new();
 }
 
-void replace_whole(const std::string& path, const std::function<void(hid_t file)>& fill) {
-  Draft draft(path, hdf5_mark);
-  write_draft(draft, path, fill);
+void replace_whole(const Place& place, const std::function<void(hid_t file)>& fill) {
+  Draft draft(place, hdf5_mark);
+  write_draft(draft, place.path(), fill);
   draft.publish();
 }
 

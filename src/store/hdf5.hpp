@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "clog/store/place.hpp"
+
 /// Thin ownership of HDF5 identifiers; only src/store includes this.
 namespace clog::store {
 
@@ -55,7 +57,7 @@ void require_memory_of_file(const std::string& purpose, std::size_t size, int co
 /// publishes it: the path never holds half a file. @throws Error if the path exists or cannot be written
 void create_whole(const std::string& path, const std::function<void(hid_t file)>& fill);
 /// The same, replacing a file that is there. One process at a time.
-void replace_whole(const std::string& path, const std::function<void(hid_t file)>& fill);
+void replace_whole(const Place& place, const std::function<void(hid_t file)>& fill);
 
 /// All that a regular file holds. @throws Error that says what is wrong with the path
 std::vector<std::byte> read_file(const std::string& path);

@@ -87,7 +87,7 @@ bool has_header(std::span<const std::byte> bytes, const std::string& path) {
   if (!std::ranges::equal(bytes.first(size), bytes_of(header).first(size)))
     throw Error("cannot read " + path +
                 " (not a journal of this version of clogsweep); give another --output, finish with the "
-                "version that began, or remove it and lose the runs under way");
+                "version that began, or move it away, with the finished runs that it may hold");
   return size == sizeof header;
 }
 
@@ -127,7 +127,12 @@ Journal::Contents parse(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-std::string journal_path(const std::string& table) { return follow_links(table) + ".journal"; }
+std::string journal_path(const std::string& table) { return journal_place(table).path(); }
+
+Place journal_place(const Place& table) {
+  Place journal = table.beside(".journal");
+  return journal.is_link() ? Place(journal.path()) : journal;
+}
 
 std::optional<Journal::Contents> Journal::look(const std::string& path) {
   const int descriptor = open(require_regular(path).c_str(), O_RDONLY | O_CLOEXEC);
@@ -145,20 +150,14 @@ std::optional<Journal::Contents> Journal::look(const std::string& path) {
   return parse(bytes);
 }
 
-Journal::Journal(const std::string& path) : path_(require_regular(follow_links(path))) {
+Journal::Journal(Place place, const Place* table) : place_(std::move(place)) {
+  require_regular(place_.path());
   try {
-    open_and_lock();
-    remove_stale_drafts(path_, journal_mark);
-    const std::vector<std::byte> bytes = read_all(descriptor_, path_);
-    if (has_header(bytes, path_)) {
-      contents_ = parse(bytes);
-    } else {
-      write_header(descriptor_, path_);
-      contents_.num_bytes = sizeof(FileHeader);
-      check(fsync(descriptor_) == 0 && sync_folder_of(path_), "write", path_);
-    }
-    if (contents_.has_torn_end)
-      check(ftruncate(descriptor_, static_cast<off_t>(contents_.num_bytes)) == 0, "write", path_);
+    open_and_lock(table);
+    remove_stale_drafts(place_, journal_mark);
+    const std::vector<std::byte> bytes = read_all(descriptor_, place_.path());
+    if (has_header(bytes, place_.path())) contents_ = parse(bytes);
+    if (bytes.empty()) begin();  // a disk that is full is noticed before hours of work
   } catch (...) {
     close_file();
     throw;
@@ -167,10 +166,16 @@ Journal::Journal(const std::string& path) : path_(require_regular(follow_links(p
 
 Journal::~Journal() { close_file(); }
 
-void Journal::open_and_lock() {
+void Journal::open_and_lock(const Place* table) {
   while (true) {
-    descriptor_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    check(descriptor_ >= 0, "write", path_);
+    // Whoever may not read the table may not read its journal either.
+    descriptor_ = place_.open(O_RDWR | O_CREAT | O_EXCL, table && table->exists() ? 0600 : 0666);
+    if (descriptor_ >= 0 && table) table->lend_access_to(descriptor_);
+    if (descriptor_ < 0 && errno == EEXIST) {
+      descriptor_ = place_.open(O_RDWR);
+      if (descriptor_ < 0 && errno == ENOENT) continue;  // removed in between
+    }
+    check(descriptor_ >= 0, "write", place_.path());
     // Who asks whether it is open holds it for a moment.
     int locked = -1;
     for (int attempt = 0; attempt < 10; ++attempt) {
@@ -178,13 +183,26 @@ void Journal::open_and_lock() {
       if (locked == 0 || errno != EWOULDBLOCK) break;
       usleep(20'000);
     }
-    if (locked == 0 && is_at(descriptor_, path_)) return;
-    check(locked == 0 || errno == EWOULDBLOCK, "lock", path_);
+    if (locked == 0 && place_.holds(descriptor_)) return;
+    check(locked == 0 || errno == EWOULDBLOCK, "lock", place_.path());
     close(std::exchange(descriptor_, -1));
     if (locked != 0)
-      throw Error("cannot continue with " + path_ +
+      throw Error("cannot continue with " + place_.path() +
                   " (another sweep is writing to it); wait for it to end, or give another --output");
   }
+}
+
+/// A torn end, and the header of a new one, are dealt with when something is written for the first time: who
+/// looks at the records and refuses them leaves the file as it is.
+void Journal::begin() {
+  if (has_begun_) return;
+  if (contents_.num_bytes < sizeof(FileHeader)) {
+    write_header(descriptor_, place_.path());
+    contents_.num_bytes = sizeof(FileHeader);
+    check(sync(descriptor_) && place_.sync_folder(), "write", place_.path());
+  }
+  check(ftruncate(descriptor_, static_cast<off_t>(contents_.num_bytes)) == 0, "write", place_.path());
+  has_begun_ = true;
 }
 
 bool Journal::is_open(const std::string& path) {
@@ -196,21 +214,39 @@ bool Journal::is_open(const std::string& path) {
 }
 
 void Journal::check_place() const {
-  if (is_at(descriptor_, path_)) return;
-  throw Error("cannot go on with " + path_ +
+  if (is_there()) return;
+  throw Error("cannot go on with " + place_.path() +
               " (it was removed or replaced while the sweep was running, and another may have begun there); "
-              "when no other "
-              "sweep is writing to it, the same command goes on");
+              "when no other sweep is writing to it, the same command goes on");
+}
+
+bool Journal::make_anew(const Place& table) {
+  close(std::exchange(descriptor_, -1));
+  descriptor_ = place_.open(O_RDWR | O_CREAT | O_EXCL, table.exists() ? 0600 : 0666);
+  if (descriptor_ < 0 && errno == EEXIST) return false;
+  check(descriptor_ >= 0, "write", place_.path());
+  table.lend_access_to(descriptor_);
+  const bool is_locked = flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
+  check(is_locked || errno == EWOULDBLOCK, "lock", place_.path());
+  if (!is_locked || !is_there()) {
+    close(std::exchange(descriptor_, -1));
+    return false;
+  }
+  contents_.num_bytes = num_rewritten_bytes_ = 0;
+  has_begun_ = false;
+  return true;
 }
 
 void Journal::add(const sweep::RunRow& row, std::span<const std::byte> snapshot) {
   check_place();
-  contents_.num_bytes = write_record(descriptor_, row, snapshot, contents_.num_bytes, path_);
+  begin();
+  contents_.num_bytes = write_record(descriptor_, row, snapshot, contents_.num_bytes, place_.path());
 }
 
 void Journal::flush() {
   check_place();
-  check(fdatasync(descriptor_) == 0, "write", path_);
+  begin();
+  check(sync(descriptor_), "write", place_.path());
 }
 
 bool Journal::is_to_be_rewritten() const {
@@ -220,21 +256,22 @@ bool Journal::is_to_be_rewritten() const {
 
 void Journal::rewrite(std::span<const Entry* const> entries) {
   check_place();
-  Draft draft(path_, journal_mark);
+  Draft draft(place_, journal_mark);
   // A draft is locked where that is possible; here it must be, before it has its name.
-  check(flock(draft.descriptor(), LOCK_EX | LOCK_NB) == 0, "lock", path_);
-  write_header(draft.descriptor(), path_);
+  check(flock(draft.descriptor(), LOCK_EX | LOCK_NB) == 0, "lock", place_.path());
+  write_header(draft.descriptor(), place_.path());
   std::uint64_t size = sizeof(FileHeader);
   for (const Entry* entry : entries)
-    size = write_record(draft.descriptor(), entry->row, entry->snapshot, size, path_);
+    size = write_record(draft.descriptor(), entry->row, entry->snapshot, size, place_.path());
   draft.publish();
   close(std::exchange(descriptor_, draft.release()));
   contents_.num_bytes = num_rewritten_bytes_ = size;
+  has_begun_ = true;
 }
 
 void Journal::remove() {
-  if (is_at(descriptor_, path_)) unlink(path_.c_str());
-  sync_folder_of(path_);  // one that came back after a power cut would say nothing that is not in the table
+  if (is_there()) place_.remove();
+  place_.sync_folder();  // one that came back after a power cut would say nothing that is not in the table
   close(std::exchange(descriptor_, -1));
 }
 

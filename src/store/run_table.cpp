@@ -131,10 +131,11 @@ std::string library_version() {
   return fmt::format("{}.{}.{}", major, minor, release);
 }
 
-void publish_sweep(const std::string& path, std::span<const RunRow> rows, const Provenance& provenance,
+void publish_sweep(const Place& place, std::span<const RunRow> rows, const Provenance& provenance,
                    std::span<const CircleFile> circles) {
+  const std::string& path = place.path();
   require_memory_of_file("write " + path, rows.size() * RowLayout::present().size());
-  replace_whole(path, [&](hid_t file) {
+  replace_whole(place, [&](hid_t file) {
     write_runs(file, file_kind, rows, provenance, path);
     write_circles(file, circles, path);
   });

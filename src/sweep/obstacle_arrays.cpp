@@ -23,6 +23,7 @@ namespace {
 /// Smaller ones are built in less time than it takes to see whether another process has them.
 constexpr double fewest_shared = 1e5;
 constexpr std::chrono::milliseconds pause{5};
+constexpr std::chrono::milliseconds pause_between_looks{500};
 
 /// At least as many obstacles as there will be, up to the part of the area that discs leave empty.
 double num_places(const ObstacleParameters& parameters) {
@@ -94,6 +95,7 @@ ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
   if (!name || !is_sampled || num_places(run.obstacles) < fewest_shared) return build(run);
   const auto begin = std::chrono::steady_clock::now();
   const auto end = begin + longest_wait(run.obstacles);
+  auto next_look = begin;
   bool has_waited = false;
   do {
     const NameLock lock(*name);
@@ -111,6 +113,10 @@ ObstacleArray ObstacleArrays::find_or_build(const RunParameters& run) {
       return memory ? array_over(std::move(memory)) : array;
     }
     if (!is_waiting_worthwhile_) return build(run);
+    if (const auto now = std::chrono::steady_clock::now(); now >= next_look) {
+      if (lock.is_taken_by_another_user()) return build(run);
+      next_look = now + pause_between_looks;
+    }
     std::this_thread::sleep_for(pause);
     has_waited = true;
   } while (std::chrono::steady_clock::now() < end);

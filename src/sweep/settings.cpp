@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <charconv>
 #include <sstream>
 #include <utility>
 
@@ -214,6 +215,36 @@ Settings::Settings() {
   for (const Key& key : keys()) assign(key.name, key.default_text);
 }
 
+std::string escaped(const std::string& text) {
+  constexpr unsigned char last_control = 0x1f, delete_character = 0x7f;
+  std::string all;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    const auto byte = static_cast<unsigned char>(c);
+    const bool is_at_end = i == 0 || i + 1 == text.size();
+    const bool is_plain =
+        byte > last_control && byte != delete_character && c != '\\' && c != '#' && !(c == ' ' && is_at_end);
+    all += is_plain ? std::string(1, c) : fmt::format("\\x{:02x}", byte);
+  }
+  return all;
+}
+
+std::string unescaped(const std::string& text) {
+  constexpr std::size_t length = 4;  // of \x0a
+  std::string all;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned char byte = 0;
+    bool is_escape = text.compare(i, 2, "\\x") == 0 && text.size() - i >= length;
+    if (is_escape) {
+      const char* const end = text.data() + i + length;
+      is_escape = std::from_chars(end - 2, end, byte, 16).ptr == end;
+    }
+    all += is_escape ? static_cast<char>(byte) : text[i];
+    if (is_escape) i += length - 1;
+  }
+  return all;
+}
+
 Settings Settings::from_config(const std::string& text) {
   Settings settings;
   std::istringstream in(text);
@@ -221,7 +252,7 @@ Settings Settings::from_config(const std::string& text) {
     if (line.empty() || line[0] == '#') continue;
     const auto equals = line.find(" = ");
     if (equals == std::string::npos) throw Error("'" + line.substr(0, 60) + "' is not key = value");
-    settings.set(line.substr(0, equals), line.substr(equals + 3));
+    settings.set(line.substr(0, equals), unescaped(line.substr(equals + 3)));
   }
   return settings;
 }
@@ -269,7 +300,7 @@ constexpr const char* file_mark = "#circles ";
 std::string Settings::packed() const {
   std::string text = to_config(false);
   for (const auto& [file, circles] : circle_files_) {
-    text += file_mark + file + '\n';
+    text += file_mark + escaped(file) + '\n';
     for (const Obstacle& circle : circles.circles())
       text += fmt::format("#{} {} {}\n", shortest(circle.x), shortest(circle.y), shortest(circle.radius));
   }
@@ -287,7 +318,7 @@ Settings Settings::from_packed(const std::string& text) {
   for (std::string line; std::getline(in, line);) {
     if (line.starts_with(file_mark)) {
       finish();
-      file = line.substr(std::string_view(file_mark).size());
+      file = unescaped(line.substr(std::string_view(file_mark).size()));
     } else if (line.starts_with('#') && !file.empty()) {
       std::istringstream numbers(line.substr(1));
       std::string x, y, radius;
@@ -326,7 +357,7 @@ std::string Settings::to_config(bool with_comments) const {
   std::string config;
   for (const Key& key : keys()) {
     if (with_comments) config += fmt::format("# {}\n", key.help);
-    config += fmt::format("{} = {}\n", key.name, text(key.name));
+    config += fmt::format("{} = {}\n", key.name, escaped(text(key.name)));
   }
   return config;
 }

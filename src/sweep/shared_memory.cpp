@@ -13,7 +13,9 @@
 #include <cstddef>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <sstream>
 #include <system_error>
 
 namespace clog::sweep {
@@ -41,6 +43,37 @@ bool write_all(int descriptor, std::span<const std::byte> bytes) {
   return true;
 }
 
+/// Visits files that processes of this user have open, as /proc names them, until told that it is enough.
+/// @param link  where the entry of such a file leads
+void visit_open_files(const fs::path& link, const std::function<bool(const fs::path&)>& visit) {
+  // What cannot be read is another user's, or has just ended.
+  std::error_code error;
+  for (fs::directory_iterator process("/proc", error); process != fs::directory_iterator();
+       process.increment(error)) {
+    struct stat status;
+    if (!std::isdigit(static_cast<unsigned char>(process->path().filename().native()[0]))) continue;
+    if (stat(process->path().c_str(), &status) != 0 || status.st_uid != geteuid()) continue;
+    std::error_code no_access;
+    for (fs::directory_iterator file(process->path() / "fd", no_access); file != fs::directory_iterator();
+         file.increment(no_access)) {
+      std::error_code gone;
+      if (fs::read_symlink(file->path(), gone) == link && visit(file->path())) return;
+    }
+  }
+}
+
+/// Of the socket that is bound to an abstract address; empty if there is none, or it cannot be known.
+std::string inode_of(const std::string& address) {
+  std::ifstream sockets("/proc/net/unix");
+  for (std::string line; std::getline(sockets, line);) {
+    std::istringstream words(line);
+    std::string word, inode, path;
+    for (int i = 0; i < 6; ++i) words >> word;
+    if (words >> inode >> path && path == '@' + address) return inode;
+  }
+  return "";
+}
+
 }  // namespace
 
 SharedMemory::~SharedMemory() {
@@ -60,24 +93,17 @@ std::shared_ptr<const SharedMemory> SharedMemory::map(int descriptor) {
 }
 
 std::shared_ptr<const SharedMemory> SharedMemory::find(const std::string& name) {
-  // What cannot be read is another user's, or has just ended.
-  const fs::path wanted = "/memfd:" + name + " (deleted)";
-  std::error_code error;
-  for (fs::directory_iterator process("/proc", error); process != fs::directory_iterator();
-       process.increment(error)) {
-    if (!std::isdigit(static_cast<unsigned char>(process->path().filename().native()[0]))) continue;
-    std::error_code no_access;
-    for (fs::directory_iterator file(process->path() / "fd", no_access); file != fs::directory_iterator();
-         file.increment(no_access)) {
-      std::error_code gone;
-      if (fs::read_symlink(file->path(), gone) != wanted) continue;
-      const int descriptor = open(file->path().c_str(), O_RDONLY | O_CLOEXEC);
-      if (descriptor < 0) continue;
-      if (is_complete_and_own(descriptor)) return map(descriptor);
+  std::shared_ptr<const SharedMemory> memory;
+  visit_open_files("/memfd:" + name + " (deleted)", [&](const fs::path& file) {
+    const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) return false;
+    if (is_complete_and_own(descriptor))
+      memory = map(descriptor);
+    else
       close(descriptor);
-    }
-  }
-  return nullptr;
+    return memory != nullptr;
+  });
+  return memory;
 }
 
 std::shared_ptr<const SharedMemory> SharedMemory::publish(
@@ -91,18 +117,27 @@ std::shared_ptr<const SharedMemory> SharedMemory::publish(
   return nullptr;
 }
 
-NameLock::NameLock(const std::string& name) : socket_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+NameLock::NameLock(const std::string& name)
+    : address_(fmt::format("clogsweep-{}-{}", geteuid(), std::hash<std::string>{}(name))),
+      socket_(socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   if (socket_ < 0) return;
   // An abstract address, known to this machine only as long as the socket exists. No one ever connects to it.
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
-  const std::string text = fmt::format("clogsweep-{}-{}", geteuid(), std::hash<std::string>{}(name));
-  std::memcpy(address.sun_path + 1, text.data(), text.size());
-  const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + text.size());
+  std::memcpy(address.sun_path + 1, address_.data(), address_.size());
+  const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + address_.size());
   if (bind(socket_, reinterpret_cast<const sockaddr*>(&address), length) == 0)
     state_ = State::held;
   else if (errno == EADDRINUSE)
     state_ = State::held_by_another;
+}
+
+bool NameLock::is_taken_by_another_user() const {
+  const std::string inode = inode_of(address_);
+  if (inode.empty()) return false;
+  bool is_own = false;
+  visit_open_files("socket:[" + inode + "]", [&](const fs::path&) { return is_own = true; });
+  return !is_own && inode_of(address_) == inode;  // otherwise its holder has just ended
 }
 
 NameLock::~NameLock() {

@@ -47,8 +47,12 @@ class NameLock {
   ~NameLock();
 
   State state() const { return state_; }
+  /// Anybody can take an address, so that others wait for nothing. Takes some time: all processes of this
+  /// user are looked at.
+  bool is_taken_by_another_user() const;
 
  private:
+  std::string address_;
   int socket_;
   State state_ = State::impossible;
 };

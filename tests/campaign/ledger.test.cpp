@@ -144,6 +144,104 @@ TEST_F(LedgerTest, ComputesARunAgainWhoseRowHoldsWhatCannotBe) {
   EXPECT_EQ(store::read_sweep(path()).rows.size(), 1u);
 }
 
+TEST_F(LedgerTest, RefusesARowOfAnotherRunThanTheTasks) {
+  {
+    Ledger ledger = open();
+    ledger.start(0, 0);
+    ledger.start(1, 0);
+    sweep::Report other = report(ledger, 0, RunStatus::clogged, 2);
+    other.row.parameters.dp.line_tension *= 2;
+    EXPECT_THROW(ledger.report(other), Error);
+    sweep::Report exchanged = report(ledger, 0, RunStatus::clogged, 2);
+    exchanged.row.task = 1;
+    EXPECT_THROW(ledger.report(exchanged), Error);
+    exchanged.row.task = 2;
+    EXPECT_THROW(ledger.report(exchanged), Error) << "has not begun";
+    ledger.report(report(ledger, 0, RunStatus::clogged, 3));
+    ledger.finish();
+  }
+  Ledger ledger = open();
+  EXPECT_EQ(ledger.row(0).distance, 3);
+  EXPECT_EQ(ledger.tasks_left(), std::vector<std::int64_t>{1});
+}
+
+/// What is thrown, in words.
+template <class Action>
+std::string refusal(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(LedgerTest, PublishesAllThatItKnowsWhenItsJournalIsRemoved) {
+  {
+    Ledger ledger = open();
+    for (const std::int64_t task : {0, 1}) ledger.start(task, 0);
+    ledger.report(report(ledger, 0, RunStatus::clogged, 2));
+    ledger.report(report(ledger, 1, RunStatus::running, 1, snapshot_));
+    std::filesystem::remove(store::journal_path(path()));
+    const std::string said =
+        refusal([&] { ledger.report(report(ledger, 1, RunStatus::running, 2, snapshot_)); });
+    EXPECT_NE(said.find("nothing is lost"), std::string::npos) << said;
+    EXPECT_EQ(store::read_sweep(path()).rows[0].distance, 2);
+  }
+  Ledger ledger = open();
+  EXPECT_EQ(ledger.row(0).distance, 2);
+  EXPECT_EQ(ledger.num_resumed(), 1) << "the snapshot, too";
+}
+
+TEST_F(LedgerTest, OverwritesNoTableThatSomebodyElseHasPutThere) {
+  const std::string other = (folder_ / "other.h5").string();
+  store::publish_sweep(other, {}, {{"config", "a = 1\n"}});
+  for (const bool has_journal : {true, false}) {
+    Ledger ledger = open();
+    if (has_journal) ledger.start(0, 0);
+    if (has_journal) ledger.report(report(ledger, 0, RunStatus::clogged, 2));
+    std::filesystem::rename(other, path());
+    if (!has_journal) std::filesystem::remove(store::journal_path(path()));
+    const std::string said = refusal([&] { ledger.finish(); });
+    EXPECT_NE(said.find("somebody has replaced it"), std::string::npos) << said;
+    EXPECT_EQ(store::read_sweep(path()).rows.size(), 0u);
+    EXPECT_EQ(store::read_sweep(path() + ".rescued1").rows[0].distance, 2);
+    std::filesystem::rename(path(), other);
+    std::filesystem::rename(path() + ".rescued1", path());
+  }
+}
+
+TEST_F(LedgerTest, LeavesTheJournalOfAnotherSweepAndKeepsItsOwnRows) {
+  Ledger ledger = open();
+  ledger.start(0, 0);
+  ledger.report(report(ledger, 0, RunStatus::clogged, 2));
+  std::filesystem::remove(store::journal_path(path()));
+  const store::Journal other{store::Place(store::journal_path(path()))};
+  const std::string said = refusal([&] { ledger.finish(); });
+  EXPECT_NE(said.find("or its journal"), std::string::npos) << said;
+  EXPECT_TRUE(other.is_there());
+  EXPECT_EQ(store::read_sweep(path() + ".rescued1").rows[0].distance, 2);
+}
+
+TEST_F(LedgerTest, LeavesTheJournalAsItIsWhenItRefuses) {
+  const std::string journal = store::journal_path(path());
+  {
+    Ledger ledger = open();
+    ledger.start(0, 0);
+    ledger.report(report(ledger, 0, RunStatus::running, 2, snapshot_));
+    ledger.finish();
+  }
+  const auto size = std::filesystem::file_size(journal) - 1;
+  std::filesystem::resize_file(journal, size);  // a torn record
+  settings_.set("max-time", "17");
+  EXPECT_NE(refusal([&] { open(); }).find("other settings"), std::string::npos);
+  EXPECT_EQ(std::filesystem::file_size(journal), size);
+  std::filesystem::remove(path());
+  store::publish_sweep(path(), {}, {{"config", "line-tension = many\n"}});
+  EXPECT_NE(refusal([&] { open(); }), "");
+  EXPECT_EQ(std::filesystem::file_size(journal), size);
+}
+
 TEST_F(LedgerTest, NamesTheFileWhoseConfigItCannotRead) {
   open().finish();
   store::publish_sweep(path(), {}, {{"config", "line-tension = many\n"}});

@@ -24,6 +24,8 @@ KINDS = {
     "disk": "a full disk, or too little memory",
     "streams": "standard streams that are closed, full, or not read",
     "kills": "signals to a sweep's processes",
+    "places": "links, folders, tables and journals that are moved under a sweep",
+    "names": "files of circles with names of any bytes",
     "calls": "command lines and files with mistakes",
 }
 

@@ -193,6 +193,26 @@ TEST_F(JournalTest, LiesBesideTheFileThatALinkLeadsTo) {
   EXPECT_EQ(journal_path(path("sweep.h5")), path());
 }
 
+TEST_F(JournalTest, IsReadByThoseWhoMayReadItsTable) {
+  const std::string table = path("sweep.h5");
+  write_text("sweep.h5", "a table");
+  for (const fs::perms mode : {fs::perms{0600}, fs::perms{0640}, fs::perms{0666}}) {
+    fs::permissions(table, mode);
+    const Place place(table);
+    Journal journal(journal_place(place), &place);
+    EXPECT_EQ(fs::status(path()).permissions(), mode);
+    add_entries(journal, 0, 2);
+    const Journal::Entry entry{some_row(0), {}};
+    const std::vector<const Journal::Entry*> one{&entry};
+    journal.rewrite(one);
+    EXPECT_EQ(fs::status(path()).permissions(), mode) << "rewritten";
+    fs::remove(path());
+    EXPECT_TRUE(journal.make_anew(place));
+    EXPECT_EQ(fs::status(path()).permissions(), mode) << "made anew";
+    journal.remove();
+  }
+}
+
 TEST_F(JournalTest, IsOpenOnlyOnceAndItsLockDiesWithItsProcess) {
   int ready[2];
   ASSERT_EQ(pipe(ready), 0);

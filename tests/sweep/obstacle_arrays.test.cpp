@@ -304,6 +304,30 @@ TEST(NameLock, IsHeldByOneAtATime) {
   EXPECT_EQ(NameLock(name).state(), NameLock::State::held);
 }
 
+TEST(NameLock, TellsWhetherAnotherUserHasTakenItsAddress) {
+  const std::string name = "test of users " + std::to_string(own_seed());
+  const auto take = [&](bool as_another) {
+    return std::make_unique<OtherProcess>([&name, as_another] {
+      static const NameLock lock(name);
+      // Another user's process is one that /proc shows as not one's own; who is not root cannot become one,
+      // but can be shown as one.
+      const bool is_root = geteuid() == 0;
+      constexpr uid_t nobody = 65534;
+      if (as_another && is_root && setuid(nobody) != 0) return std::string("cannot become another");
+      if (as_another) prctl(PR_SET_DUMPABLE, is_root ? 1 : 0);
+      return std::string(lock.state() == NameLock::State::held ? "held" : "not held");
+    });
+  };
+  for (const bool as_another : {false, true}) {
+    const auto other = take(as_another);
+    ASSERT_EQ(other->told(), "held");
+    const NameLock lock(name);
+    EXPECT_EQ(lock.state(), NameLock::State::held_by_another);
+    EXPECT_EQ(lock.is_taken_by_another_user(), as_another);
+  }
+  EXPECT_FALSE(NameLock(name).is_taken_by_another_user()) << "nobody has it but this process";
+}
+
 TEST(RunJob, GivesTheSameRowInASharedArray) {
   // A run that goes far, around obstacles, and does not depend on the last bits.
   Settings settings;

@@ -97,5 +97,35 @@ TEST(Settings, RefuseAConfigWithALineThatIsNone) {
   EXPECT_EQ(Settings::from_config("\n# a comment\nline-tension = 3\n").text("line-tension"), "3");
 }
 
+TEST(Settings, ReadBackNamesOfFilesWithAnyByte) {
+  constexpr int num_bytes = 256;
+  for (int byte = 0; byte < num_bytes; ++byte) {
+    const std::string one(1, static_cast<char>(byte));
+    for (const std::string& text : {one, one + "p.csv", "p" + one + ".csv", "p.csv" + one, "\\x" + one + "0a",
+                                    "p.csv" + one + "line-tension = 0.1", one + one + "#circles " + one}) {
+      EXPECT_EQ(unescaped(escaped(text)), text) << byte;
+      EXPECT_EQ(escaped(text).find_first_of(std::string_view("\n\r\0#", 4)), std::string::npos) << byte;
+      Settings settings;
+      if (one == "," || text.find_first_not_of(" \t") == std::string::npos) continue;  // no list of files
+      settings.set("obstacles", text);
+      const std::string file = settings.values("obstacles").front();
+      settings.attach(file, OwnCircles({{5, 5, 0.3}}));
+      for (const bool with_comments : {false, true})
+        EXPECT_EQ(Settings::from_config(settings.to_config(with_comments)).text("obstacles"), text) << byte;
+      const Settings again = Settings::from_packed(settings.packed());
+      EXPECT_EQ(again.text("obstacles"), text) << byte;
+      EXPECT_EQ(again.text("line-tension"), settings.text("line-tension")) << byte;
+      EXPECT_TRUE(again.missing_files().empty()) << byte;
+      EXPECT_TRUE(again.circle_files().contains(file)) << byte;
+    }
+  }
+}
+
+TEST(Settings, LeaveABackslashThatEscapesNothing) {
+  for (const char* text : {"\\", "a\\b.csv", "\\x", "\\x1", "\\xg0", "\\x-1", "\\x 1"})
+    EXPECT_EQ(unescaped(text), text);
+  EXPECT_EQ(unescaped("a\\x5cx41"), "a\\x41");
+}
+
 }  // namespace
 }  // namespace clog::sweep

@@ -303,7 +303,7 @@ RANDOM_ARRAYS = ("obstacle-gap", "obstacle-density", "obstacle-diameter-spread",
 def settings(config: str) -> str:
     """Of a sweep, without those that say nothing of its array: that of a file has its own."""
     own_circles = stored.settings(config).get("obstacles", "none") != "none"
-    return "\n".join(line for line in config.splitlines() if not (own_circles and line.partition(" = ")[0] in RANDOM_ARRAYS))
+    return "\n".join(line for line in config.split("\n") if not (own_circles and line.partition(" = ")[0] in RANDOM_ARRAYS))
 
 
 def page(name: str, groups: Groups, sections: dict[str, str], progress: str, about: dict[str, str], charts: Charts, fitted_by: str) -> str:

@@ -46,7 +46,7 @@ def is_sealed(path: AnyPath) -> bool:
 
 
 def text(value: object) -> str:
-    return value.decode() if isinstance(value, bytes) else str(value)
+    return value.decode(errors="backslashreplace") if isinstance(value, bytes) else str(value)
 
 
 def unreadable(path: AnyPath, reason: object, kind: str | None = None) -> UserError:
@@ -155,8 +155,13 @@ def source(attributes: dict[str, str]) -> str:
 
 def settings(config: str) -> dict[str, str]:
     """Keys and values of a config as it is stored: of all keys, `auto` and the like where nothing else was given."""
-    pairs = (line.partition(" = ") for line in config.splitlines())
-    return {key: value for key, equals, value in pairs if equals}
+    pairs = (line.partition(" = ") for line in config.split("\n"))
+    return {key: unescaped(value) for key, equals, value in pairs if equals}
+
+
+def unescaped(value: str) -> str:
+    r"""A value of a config as it was given: \x and two hexadecimal digits stand for a control character, #, or a backslash."""
+    return re.sub(r"\\x([0-9a-fA-F]{2})", lambda found: chr(int(found[1], 16)), value)
 
 
 def circle_files(file: h5py.File) -> dict[str, str]:

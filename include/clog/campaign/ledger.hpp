@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "clog/store/journal.hpp"
+#include "clog/store/place.hpp"
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/messages.hpp"
 #include "clog/sweep/plan.hpp"
@@ -65,7 +66,9 @@ class Ledger {
   using Clock = std::chrono::steady_clock;
   using Entry = store::Journal::Entry;
 
-  std::string path_;
+  store::Place place_;
+  std::string path_;   // for messages and readers: links followed
+  std::string stamp_;  // of the table as it was read or published last; empty if there was none
   const sweep::Plan& plan_;
   store::Provenance provenance_;
   std::int64_t attempts_;
@@ -90,11 +93,14 @@ class Ledger {
   bool is_over(const sweep::RunRow& row) const;
   sweep::RunRow new_row(std::int64_t task) const;
   void keep_circles(const store::SweepFile& file);
+  store::SweepFile read_table();
   void take_over(const store::SweepFile& file, const sweep::Settings& settings);
   void find_tasks(std::unordered_map<std::string, Entry> known);
   sweep::RunRow published(const sweep::RunRow& row) const;
+  void write_down(const Entry& entry);
   void publish();
-  void shorten_journal();
+  [[noreturn]] void rescue(const std::vector<sweep::RunRow>& rows);
+  void rewrite_journal(bool with_all);
 };
 
 }  // namespace clog::campaign

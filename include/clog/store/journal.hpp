@@ -8,12 +8,14 @@
 #include <utility>
 #include <vector>
 
+#include "clog/store/place.hpp"
 #include "clog/sweep/messages.hpp"
 
 namespace clog::store {
 
 /// The journal of the table at this path lies beside it (if the path is a link, beside what it leads to).
 std::string journal_path(const std::string& table);
+Place journal_place(const Place& table);
 
 /// What must not be lost between two publications of a sweep's table: rows, and snapshots of runs that go on,
 /// one after the other in a file beside the table. What add() returned from survives the death of the
@@ -33,8 +35,8 @@ class Journal {
   };
 
   /// Opens or makes the file. @throws Error if it is open elsewhere, of another version, something else, or
-  /// cannot be written
-  explicit Journal(const std::string& path);
+  /// cannot be written. @param table  whose mode, owner, group and access list a new one gets
+  explicit Journal(Place place, const Place* table = nullptr);
   Journal(Journal&&) = delete;
   ~Journal();
 
@@ -42,6 +44,13 @@ class Journal {
   static bool is_open(const std::string& path);
   /// What is in the file, which stays as it is; nothing if there is none. @throws Error if it cannot be read
   static std::optional<Contents> look(const std::string& path);
+
+  const std::string& path() const { return place_.path(); }
+  /// Is the open file still the one at its place?
+  bool is_there() const { return place_.holds(descriptor_); }
+  /// Makes and locks an empty one in the place of one that was removed. Returns whether that could be done:
+  /// another sweep may have begun there. @throws Error if it cannot be written
+  bool make_anew(const Place& table);
 
   /// What the file held when it was opened, oldest first.
   std::vector<Entry> take_entries() { return std::move(contents_.entries); }
@@ -59,12 +68,14 @@ class Journal {
   void remove();
 
  private:
-  std::string path_;
+  Place place_;
   int descriptor_ = -1;
   Contents contents_;  ///< when it was opened, but its size is that of now
   std::uint64_t num_rewritten_bytes_ = 0;
+  bool has_begun_ = false;
 
-  void open_and_lock();
+  void open_and_lock(const Place* table);
+  void begin();
   void check_place() const;
   void close_file();
 };

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "clog/store/place.hpp"
 #include "clog/sweep/run_row.hpp"
 
 namespace clog::store {
@@ -36,7 +37,7 @@ struct CircleFile {
 /// Makes the sweep's file, or replaces it: the path leads to a whole table at every moment, the old or the
 /// new, so readers may come when they like. It is on the disk when this returns. @throws Error, and the old
 /// file stays
-void publish_sweep(const std::string& path, std::span<const sweep::RunRow> rows, const Provenance& provenance,
+void publish_sweep(const Place& place, std::span<const sweep::RunRow> rows, const Provenance& provenance,
                    std::span<const CircleFile> circles = {});
 
 /// What of a file has been compared with a checksum.

@@ -28,6 +28,13 @@ struct Key {
   void apply(RunParameters& run, const std::string& value) const;
 };
 
+/// A value in a line of a config, from which unescaped() makes the same text, whatever bytes it has: what
+/// would end or cut the line (control characters, #, a backslash, blanks at the ends) becomes a backslash, x
+/// and two digits.
+std::string escaped(const std::string& text);
+/// The way back. A backslash without x and two hexadecimal digits is one.
+std::string unescaped(const std::string& text);
+
 /// Circles by the name of their file, as a value of the key obstacles has it.
 using CircleFiles = std::map<std::string, OwnCircles>;
 inline constexpr const char* circles_key = "obstacles";

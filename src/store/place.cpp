@@ -1,0 +1,172 @@
+#include "clog/store/place.hpp"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/stat.h>
+#include <sys/xattr.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <vector>
+
+#include "clog/core/tools/error.hpp"
+#include "file_io.hpp"
+
+namespace clog::store {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string folder_of(const fs::path& path) {
+  const fs::path folder = path.parent_path();
+  return folder.empty() ? "." : folder.string();
+}
+
+/// As the kernel's fs.protected_symlinks: where everybody may make links, only those of one's own, or of the
+/// folder's owner, are followed.
+void refuse_link_of_others(const fs::path& link) {
+  struct stat folder {
+  }, there{};
+  constexpr mode_t open_to_all = S_ISVTX | S_IWOTH;
+  if (stat(folder_of(link).c_str(), &folder) != 0 || lstat(link.c_str(), &there) != 0) return;
+  if ((folder.st_mode & open_to_all) != open_to_all) return;
+  if (there.st_uid != geteuid() && there.st_uid != folder.st_uid)
+    throw Error("cannot follow the link " + link.string() +
+                " (somebody else made it, in a folder in which everybody may); give another name");
+}
+
+constexpr const char* access_list = "system.posix_acl_access";
+
+/// Empty if it has none. Closes the file.
+std::vector<char> access_list_of(int descriptor) {
+  if (descriptor < 0) return {};
+  std::vector<char> list(65536);  // the kernel has none that is longer
+  const ssize_t size = fgetxattr(descriptor, access_list, list.data(), list.size());
+  close(descriptor);
+  list.resize(static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+  return list;
+}
+
+std::string follow_links(const std::string& path) {
+  constexpr int longest_chain = 40;  // as in the kernel
+  fs::path target = path;
+  std::error_code none;
+  for (int links = 0; fs::is_symlink(target, none); ++links) {
+    errno = ELOOP;
+    check(links < longest_chain, "follow the link", path);
+    refuse_link_of_others(target);
+    target = target.parent_path() / fs::read_symlink(target, none);
+  }
+  return target.string();
+}
+
+}  // namespace
+
+class Place::Folder {
+ public:
+  explicit Folder(int descriptor) : descriptor_(descriptor) {}
+  Folder(Folder&&) = delete;
+  ~Folder() { close(descriptor_); }
+  int descriptor() const { return descriptor_; }
+
+ private:
+  int descriptor_;
+};
+
+Place::Place(const std::string& path) : path_(follow_links(path)) {
+  name_ = fs::path(path_).filename().string();
+  if (name_.empty() || name_ == "." || name_ == "..")
+    throw Error("cannot use '" + path + "' (it names no file); give a name such as sweep.h5");
+  const int descriptor = ::open(folder_of(path_).c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+  check(descriptor >= 0, "create", path_);
+  folder_ = std::make_shared<const Folder>(descriptor);
+}
+
+Place Place::beside(const std::string& ending) const {
+  Place other = *this;
+  other.name_ += ending;
+  other.path_ += ending;
+  return other;
+}
+
+int Place::open(int flags, mode_t mode) const {
+  return openat(folder_->descriptor(), name_.c_str(), flags | O_NOFOLLOW | O_CLOEXEC, mode);
+}
+
+bool Place::is_link() const {
+  struct stat there {};
+  return fstatat(folder_->descriptor(), name_.c_str(), &there, AT_SYMLINK_NOFOLLOW) == 0 &&
+         S_ISLNK(there.st_mode);
+}
+
+bool Place::exists() const {
+  struct stat there {};
+  return fstatat(folder_->descriptor(), name_.c_str(), &there, AT_SYMLINK_NOFOLLOW) == 0;
+}
+
+bool Place::holds(int descriptor) const {
+  struct stat ours {
+  }, there{};
+  return fstat(descriptor, &ours) == 0 &&
+         fstatat(folder_->descriptor(), name_.c_str(), &there, AT_SYMLINK_NOFOLLOW) == 0 &&
+         ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
+}
+
+void Place::remove() const { unlinkat(folder_->descriptor(), name_.c_str(), 0); }
+
+bool Place::take_from(const Place& other) const {
+  return renameat(other.folder_->descriptor(), other.name_.c_str(), folder_->descriptor(), name_.c_str()) ==
+         0;
+}
+
+bool Place::take_as_new_from(const Place& other) const {
+  const int folder = folder_->descriptor();
+  if (renameat2(other.folder_->descriptor(), other.name_.c_str(), folder, name_.c_str(), RENAME_NOREPLACE) ==
+      0)
+    return true;
+  if (errno != EINVAL && errno != ENOSYS) return false;  // a file system that cannot promise it
+  if (exists()) {
+    errno = EEXIST;
+    return false;
+  }
+  return take_from(other);
+}
+
+bool Place::sync_folder() const {
+  const int descriptor = openat(folder_->descriptor(), ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return errno == EACCES;                  // one that may be written to but not read
+  const bool is_synced = sync(descriptor) || errno == EINVAL;  // some file systems cannot
+  close(descriptor);
+  return is_synced;
+}
+
+bool Place::lend_access_to(int descriptor) const {
+  struct stat status {};
+  if (fstatat(folder_->descriptor(), name_.c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0 ||
+      !S_ISREG(status.st_mode))
+    return false;
+  constexpr uid_t nobody = static_cast<uid_t>(-1);
+  // Who may not give the file away keeps it, but the group may still be one of his.
+  const bool has_group =
+      fchown(descriptor, status.st_uid, status.st_gid) == 0 || fchown(descriptor, nobody, status.st_gid) == 0;
+  const std::vector<char> list = access_list_of(open(O_RDONLY | O_NONBLOCK));
+  constexpr mode_t permissions = 0777;
+  mode_t mode = status.st_mode & permissions;
+  if (!has_group) mode &= ~static_cast<mode_t>(S_IRWXG) | ((mode & S_IRWXO) << 3);  // another group is others
+  fremovexattr(descriptor, access_list);  // the folder may have given it one
+  fchmod(descriptor, mode);
+  if (has_group && !list.empty()) fsetxattr(descriptor, access_list, list.data(), list.size(), 0);
+  return true;
+}
+
+std::string Place::stamp() const {
+  struct stat there {};
+  if (fstatat(folder_->descriptor(), name_.c_str(), &there, AT_SYMLINK_NOFOLLOW) != 0) return "";
+  return fmt::format("{} {} {}", there.st_dev, there.st_ino, there.st_size);
+}
+
+}  // namespace clog::store

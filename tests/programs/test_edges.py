@@ -1,0 +1,182 @@
+"""What is around a sweep: names with any byte, links that move, modes and journals of others. No row is lost there."""
+
+import errno
+import os
+import stat
+import struct
+import unittest
+
+from support import LONGEST, QUICK, SLOW, SweepTest, table
+
+OWN = ["obstacle-layout=file", "box=10", "vertices=64", "max-time=30"]
+
+
+class Names(SweepTest):
+    """A file of circles may be called anything that a file system takes."""
+
+    def sweep_among(self, name):
+        with open(os.fsencode(self.folder) + b"/" + name, "w") as file:
+            file.write("x,y,diameter\n2,3,0.6\n7,8,1\n")
+        return self.run_program("clogsweep", "obstacles=" + os.fsdecode(name), *OWN, "line-tension=1", "--output", "s.h5")
+
+    def test_no_byte_of_a_name_sets_a_key_or_ends_the_sweep(self):
+        for name in (b"p.csv\nline-tension = 0.1", b"\nfake: line.csv", b"p.csv\n#circles q.csv", b"a#b.csv", b"a\\x0a.csv", b"a\r.csv", b"\xff\xfe.csv",
+                     "\u0085\u2028.csv".encode(), b"a = b.csv", b"\x01\x1b\x7f.csv"):
+            with self.subTest(name=name):
+                done = self.sweep_among(name)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertEqual(set(table(self.folder / "s.h5").line_tension), {1})
+                for command in ("verify", "status"):
+                    self.succeed("clogsweep", command, "s.h5")
+                self.succeed("clogfit", "s.h5")
+                self.assertEqual(self.sweep_among(name).returncode, 0, "the same command goes on")
+                (self.folder / "s.h5").unlink()
+
+    def test_a_config_that_was_printed_names_the_same_file(self):
+        for name in ("p.csv\nline-tension = 0.1", " a#b\\x41.csv"):
+            with self.subTest(name=name):
+                self.assertEqual(self.sweep_among(name.strip(" ").encode()).returncode, 0)
+                printed = self.succeed("clogsweep", "obstacles=" + name, *OWN, "line-tension=1", "--print-config").stdout
+                self.write("again.cfg", printed.split("\n# Values behind")[0])
+                self.succeed("clogsweep", "--config", "again.cfg", "--output", "t.h5")
+                self.check_equal("s.h5", "t.h5")
+                for output in ("s.h5", "t.h5"):
+                    (self.folder / output).unlink()
+
+
+FINISHED = [*QUICK, "line-tension=0.5", "obstacle-gap=0.4", "seeds=100..103"]
+
+
+class Places(SweepTest):
+    """A place is resolved once; what others do to it meanwhile costs neither their files nor a row."""
+
+    def begin(self, output):
+        """A sweep that has published a table."""
+        process = self.start(*SLOW[:-2], "--output", output, ranks=1)
+        self.wait_for(lambda: (self.folder / output).exists() or process.poll() is not None)
+        return process
+
+    def end(self, process):
+        return process.communicate(timeout=LONGEST)[1]
+
+    def num_over(self, name):
+        return (~table(self.folder / name).status.isin(["running", "interrupted"])).sum()
+
+    def test_a_link_that_moves_takes_no_table_along(self):
+        self.succeed("clogsweep", *FINISHED, "--output", "run-1.h5")
+        before = (self.folder / "run-1.h5").read_bytes()
+        (self.folder / "latest.h5").symlink_to("run-2.h5")
+        process = self.begin("latest.h5")
+        (self.folder / "latest.h5").unlink()
+        (self.folder / "latest.h5").symlink_to("run-1.h5")
+        self.end(process)
+        self.assertEqual((self.folder / "run-1.h5").read_bytes(), before)
+        self.assertEqual(self.num_over("run-2.h5"), 2)
+        self.assertFalse((self.folder / "run-2.h5.journal").exists())
+
+    def test_a_folder_that_moves_keeps_its_sweep(self):
+        (self.folder / "one").mkdir()
+        process = self.begin("one/s.h5")
+        (self.folder / "one").rename(self.folder / "other")
+        (self.folder / "one").mkdir()
+        self.end(process)
+        self.assertEqual(list((self.folder / "one").iterdir()), [])
+        self.assertEqual(self.num_over("other/s.h5"), 2)
+
+    def test_a_table_that_somebody_moves_there_is_not_overwritten(self):
+        self.succeed("clogsweep", *FINISHED, "--output", "run-1.h5")
+        before = (self.folder / "run-1.h5").read_bytes()
+        process = self.begin("s.h5")
+        (self.folder / "run-1.h5").rename(self.folder / "s.h5")
+        self.assertIn("somebody has replaced it or its journal", self.end(process))
+        self.assertEqual((self.folder / "s.h5").read_bytes(), before)
+        (self.folder / "s.h5.rescued1").rename(self.folder / "s.h5")
+        self.succeed("clogsweep", *SLOW)
+        self.assertEqual(self.num_over("s.h5"), 2)
+
+
+ACCESS_LIST = "system.posix_acl_access"
+
+
+def access_list(reader):
+    """One by which this user may read what its owner alone may write."""
+    nobody = 2**32 - 1
+    entries = [(0x01, 6, nobody), (0x02, 4, reader), (0x04, 0, nobody), (0x10, 4, nobody), (0x20, 0, nobody)]  # owner, a user, group, mask, others
+    return struct.pack("<I", 2) + b"".join(struct.pack("<HHI", *entry) for entry in entries)
+
+
+class Access(SweepTest):
+    """Who may read a file is for its owner to say, before and after it is written again."""
+
+    GROWN = [*FINISHED[:-1], "seeds=100..104"]
+
+    def begin_file(self):
+        self.succeed("clogsweep", *FINISHED, "--output", "s.h5")
+        return self.folder / "s.h5"
+
+    def grow(self):
+        self.succeed("clogsweep", *self.GROWN, "--output", "s.h5")
+        self.assertEqual(len(table(self.folder / "s.h5")), 5)
+
+    def test_new_files_follow_the_umask(self):
+        before = os.umask(0)
+        self.addCleanup(os.umask, before)
+        for mask in (0o022, 0o077, 0o002):
+            os.umask(mask)
+            self.assertEqual(stat.S_IMODE(self.begin_file().stat().st_mode), 0o666 & ~mask)
+            (self.folder / "s.h5").unlink()
+
+    def test_a_table_keeps_its_mode_owner_and_group(self):
+        file = self.begin_file()
+        for mode in (0o600, 0o640, 0o664):
+            file.chmod(mode)
+            if os.geteuid() == 0:
+                os.chown(file, 12, 34)
+            else:
+                os.chown(file, -1, os.getgroups()[-1])
+            owners = file.stat().st_uid, file.stat().st_gid
+            self.grow()
+            self.assertEqual(stat.S_IMODE(file.stat().st_mode), mode)
+            self.assertEqual((file.stat().st_uid, file.stat().st_gid), owners)
+
+    def test_a_table_keeps_its_access_list(self):
+        file = self.begin_file()
+        try:
+            os.setxattr(file, ACCESS_LIST, access_list(12))
+        except OSError as error:
+            self.assertEqual(error.errno, errno.ENOTSUP)  # then no file there has one
+            return
+        self.grow()
+        self.assertEqual(os.getxattr(file, ACCESS_LIST), access_list(12))
+
+
+class LinksOfOthers(SweepTest):
+    """As the kernel does with fs.protected_symlinks: where everybody may make links, only one's own lead on."""
+
+    def open_folder(self):
+        folder = self.folder / "open"
+        folder.mkdir()
+        folder.chmod(0o1777)
+        return folder
+
+    def test_links_of_ones_own_are_followed(self):
+        folder = self.open_folder()
+        for name in ("s.h5", "s.h5.journal"):
+            (folder / name).symlink_to(self.folder / name)
+        self.run_program("clogsweep", *FINISHED, "--output", "open/s.h5")
+        self.assertEqual(len(table(self.folder / "s.h5")), 4)
+
+    def test_links_of_others_are_refused(self):
+        if os.geteuid() != 0:
+            return  # who is not root makes no links of somebody else
+        folder = self.open_folder()
+        for name in ("s.h5", "t.h5.journal"):
+            (folder / name).symlink_to(self.folder / "elsewhere")
+            os.lchown(folder / name, 12, 34)
+        for output in ("open/s.h5", "open/t.h5"):
+            self.refuse("clogsweep", *FINISHED, "--output", output, words=["cannot follow the link", "somebody else made it"])
+        self.assertFalse((self.folder / "elsewhere").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
