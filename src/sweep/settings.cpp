@@ -251,7 +251,7 @@ Settings Settings::from_config(const std::string& text) {
   for (std::string line; std::getline(in, line);) {
     if (line.empty() || line[0] == '#') continue;
     const auto equals = line.find(" = ");
-    if (equals == std::string::npos) throw Error("'" + line.substr(0, 60) + "' is not key = value");
+    if (equals == std::string::npos) throw Error(fmt::format("'{}' is not key = value", line.substr(0, 60)));
     settings.set(line.substr(0, equals), unescaped(line.substr(equals + 3)));
   }
   return settings;
