@@ -351,30 +351,31 @@ class Pictures(Analysis):
         older = {"version": "0.1.0", "git_hash": "0123456789ab"}
         self.assertEqual(stored.writer(older), "0.1.0, git 0123456789ab")
 
-    def test_a_doubtful_length_has_an_open_marker_and_the_reason_beside_it(self):
+    def test_a_doubtful_length_has_a_hollow_marker_and_the_reason_below_it(self):
         self.succeed("clogsweep", *QUICK, "line-tension=2,30", "seeds=1..5", "--output", "s.h5")
         groups = Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
         for group, doubts in zip(groups.members, (["below_spacing"], ["below_spacing", "not_proved_sound"])):
-            self.assertEqual(lengths.reasons_for_open_marker(group), doubts)
+            self.assertEqual(lengths.reasons_for_hollow_marker(group), doubts)
 
-        def open_places():
-            """With the caption."""
+        def hollow_places():
+            """With the notes."""
             axes = style.figure_of(lengths.draw_on, groups).axes[0]
-            return [line.get_xdata()[0] for line in axes.lines if line.get_markerfacecolor() == "white" and line.get_marker() != "^"], axes.get_title()
+            notes, = [text.get_text() for text in axes.texts if text.get_gid() == style.NOTES]
+            return [line.get_xdata()[0] for line in axes.lines if line.get_markerfacecolor() == "white" and line.get_marker() != "^"], notes
 
         groups.members[0]["doubts"] = "censored_by_time"
-        places, title = open_places()
+        places, notes = hollow_places()
         self.assertEqual(places, [30])
-        for reason in ("outside of what was proved sound", "shorter than one obstacle spacing"):
-            self.assertIn(f"open markers: {reason}", title)
-        self.assertNotIn("not complete", title)
+        for reason in ("outside the range that was tested for soundness", "shorter than one obstacle spacing"):
+            self.assertIn(f"hollow: {reason}", notes)
+        self.assertNotIn("incomplete", notes)
         groups.members[0]["doubts"] = "few_clogs incomplete"
-        places, title = open_places()
+        places, notes = hollow_places()
         self.assertEqual(places, [2, 30])
-        self.assertIn("open markers: fewer than 5 clogs: more seeds are needed", title)
-        self.assertIn("not complete: 1 of 2 points with runs that are under way, interrupted or failed", title)
+        self.assertIn("hollow: fewer than 5 clogs (run more seeds)", notes)
+        self.assertIn("incomplete: runs of 1 of 2 points are unfinished or failed", notes)
         groups.members[0]["clogs"] = 0  # a triangle, which says it
-        self.assertNotIn("fewer than 5 clogs", open_places()[1])
+        self.assertNotIn("fewer than 5 clogs", hollow_places()[1])
 
     def test_clogs_are_drawn_from_a_sweep(self):
         self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1..2", "--output", "s.h5")

@@ -102,6 +102,11 @@ class Looks(Analysis):
         for axes in drawing.axes:
             title = axes.title.get_window_extent()
             self.assertTrue(page.x0 < title.x0 and title.x1 < page.x1 and title.y1 < page.y1, axes.get_title())
+            for text in axes.texts:
+                if text.get_gid() == style.NOTES:
+                    notes = text.get_window_extent()
+                    self.assertTrue(page.x0 < notes.x0 and notes.x1 < page.x1 and page.y0 < notes.y0, text.get_text())
+                    self.assertLess(notes.y1, axes.xaxis.label.get_window_extent().y0)
 
     def test_one_curve_has_its_whole_title_the_interface_and_room_at_the_frame(self):
         groups = self.fit(*ONE_CURVE)
@@ -113,7 +118,7 @@ class Looks(Analysis):
             group.update(relative_speed=speed, relative_speed_error=0.1)
         drawing = style.figure_of(lengths.draw_speeds_on, groups)
         axes = drawing.axes[0]
-        self.assertIn("interface: robust", axes.get_title())
+        self.assertIn("interface robust", axes.get_title())
         low, high = axes.get_xlim()
         self.assertTrue(low < 0.5 and high > 3, (low, high))
 
@@ -129,7 +134,7 @@ class Looks(Analysis):
         self.assertIn("moved by $0.05", axes.get_xlabel())
         self.assertEqual([curve.get_label() for curve in axes.containers], [r"$\Gamma = 0.05$", r"$\Gamma = 0.3$"])
         soft, stiff = axes.containers
-        # No soft droplet stands: bounds, as open triangles.
+        # No soft droplet stands: bounds, as triangles.
         self.assertTrue(np.isnan(soft.lines[0].get_xydata()[:, 1]).all())
         bounds, = [line for line in axes.lines if line.get_marker() == "^" and len(line.get_xdata()) > 0]
         places, lengths = stiff.lines[0].get_xydata().T
@@ -229,13 +234,13 @@ class Looks(Analysis):
         bar, = axes.child_axes
         self.assertAlmostEqual(bar.get_window_extent().height, axes.get_window_extent().height)
 
-    def test_a_caption_explains_only_what_is_drawn(self):
+    def test_notes_explain_only_what_is_drawn(self):
         groups = self.fit(*SMALL, "max-time=20", "line-tension=0.05,0.1", "seeds=1..2")
-        bars, dotted, triangles = "bars: ", "dotted: ", "open triangles: "
+        bars, dotted, triangles = "bars: ", "dotted lines: ", "triangles: "
 
         def explained(drawing):
-            title = drawing.axes[0].get_title()
-            return [words for words in (bars, dotted, triangles) if words in title]
+            notes = "".join(text.get_text() for text in drawing.axes[0].texts if text.get_gid() == style.NOTES)
+            return [words for words in (bars, dotted, triangles) if words in notes]
 
         self.assertEqual(explained(style.figure_of(lengths.draw_on, groups)), [dotted, triangles])
         self.assertEqual(explained(style.figure_of(lengths.draw_speeds_on, groups)), [])
@@ -362,9 +367,9 @@ class Looks(Analysis):
                 self.assert_picture(f"{name}-poster")
         drawing = poster.draw(self.folder / "arrays.h5", BIN)
         texts = " ".join(text.get_text() for text in drawing.findobj(Text))
-        for once in ("deformable polygon", "2 runs a point", "interface: "):
+        for once in ("deformable polygon", "2 runs a point", "interface robust"):
             self.assertEqual(texts.count(once), 1, once)
-        for words in ("Clogging length over line tension", "12 runs:", "begun 20", "\nclogsweep vertices=64", "share of the runs"):
+        for words in ("Clogging length vs line tension", "12 runs:", "begun 20", "\nclogsweep vertices=64", "share of the runs"):
             self.assertIn(words, texts)
 
     def test_many_curves_leave_room_for_themselves_on_a_poster(self):

@@ -4,7 +4,7 @@
     clogfit sweep.h5 --format json | python3 -m clogsweep clogging-length /dev/stdin --output clogging-length     # the same
 
 Every number comes from clogfit, which is asked for a sweep's; nothing is fitted here. Bars are its confidence
-intervals; markers show by what most droplets clogged; an open marker is a length that clogfit doubts, the picture says
+intervals; markers show by what most droplets clogged; a hollow marker is a length that clogfit doubts, the picture says
 why; a triangle pointing up is a lower bound where no run clogged.
 """
 

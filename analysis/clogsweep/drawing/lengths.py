@@ -1,4 +1,4 @@
-"""Clogging lengths and mean speeds over what a sweep varies, a curve for each obstacle array."""
+"""Clogging lengths and mean speeds against the parameter that a sweep varies, a curve for each obstacle array."""
 
 import math
 from collections.abc import Callable, Collection, Iterable, Sequence
@@ -11,36 +11,39 @@ from ..labels.groups import Groups
 from ..tools import rounded
 from ..tools.hints import Group
 
-# Doubts of clogfit in a length itself, and what to say of them under a picture.
-OPEN_MARKERS = {
-    "few_clogs": "fewer than 5 clogs: more seeds are needed",
-    "held_by_mesh": "the polygon's corners may hold droplets: more vertices are needed",
-    "array_repeats": "droplets went farther than the array is long, which repeats",
-    "below_spacing": "shorter than one obstacle spacing, the depth of the void of release",
-    "not_proved_sound": "outside of what was proved sound",
+# Doubts of clogfit in a length itself, and how a note explains them.
+HOLLOW_MARKERS = {
+    "few_clogs": "fewer than 5 clogs (run more seeds)",
+    "held_by_mesh": "the polygon's corners may hold droplets (use more vertices)",
+    "array_repeats": "droplets went farther than the period of the array",
+    "below_spacing": "shorter than one obstacle spacing (reflects the release site, not clogging)",
+    "not_proved_sound": "outside the range that was tested for soundness",
 }
 
 
-def reasons_for_open_marker(group: Group) -> list[str]:
-    """Of a group without clogs, whose marker is a triangle, it goes without saying that they are few."""
-    return [doubt for doubt in style.doubts(group) if doubt in OPEN_MARKERS and (doubt != "few_clogs" or group["clogs"] > 0)]
+def reasons_for_hollow_marker(group: Group) -> list[str]:
+    """The triangle of a group without clogs already says that they are few."""
+    return [doubt for doubt in style.doubts(group) if doubt in HOLLOW_MARKERS and (doubt != "few_clogs" or group["clogs"] > 0)]
 
 
+SPEED_NOTES = ["bars: standard errors"]
 THROUGH_BOUNDS = "_through bounds"  # label of a line, in no legend
 
 
-def length_note(groups: Collection[Group], confidence: float, panels: Iterable[Axes]) -> str:
-    """What bars, open markers, triangles and dotted lines of draw_lengths() mean, as far as they are there.
-    @param panels  that they were drawn on"""
-    notes = [f"bars: {100 * confidence:g} % confidence"] if any(group["clogs"] > 0 for group in groups) else []
-    for reason in dict.fromkeys(reason for group in groups for reason in reasons_for_open_marker(group)):
-        notes.append(f"open markers: {OPEN_MARKERS[reason]}")
+def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[Axes]) -> list[str]:
+    """Explains the bars, hollow markers, triangles and dotted lines of draw_lengths() that occur.
+    @param panels  the axes with the curves
+    @return  lines of text"""
+    marks = [f"bars: {100 * confidence:g} % confidence intervals"] if any(group["clogs"] > 0 for group in groups) else []
     if any(group["clogs"] == 0 for group in groups):
         are_dotted = any(line.get_label() == THROUGH_BOUNDS for axes in panels for line in axes.lines)
-        notes.append("open triangles: lower bound, no run clogged" + (", dotted: through bounds" if are_dotted else ""))
+        marks.append("triangles: lower bounds (no run clogged)")
+        marks += ["dotted lines: through bounds"] if are_dotted else []
+    lines = ["; ".join(marks)] if marks else []
+    lines += [f"hollow: {HOLLOW_MARKERS[reason]}" for reason in dict.fromkeys(reason for group in groups for reason in reasons_for_hollow_marker(group))]
     if num_incomplete := sum("incomplete" in style.doubts(group) for group in groups):
-        notes.append(f"not complete: {num_incomplete} of {rounded.counted(len(groups), 'point')} with runs that are under way, interrupted or failed")
-    return "\n".join(notes)
+        lines.append(f"incomplete: runs of {num_incomplete} of {rounded.counted(len(groups), 'point')} are unfinished or failed")
+    return lines
 
 
 def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: str = "other clogs") -> None:
@@ -49,13 +52,14 @@ def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: 
     axes.set_ylabel(AXES["length"])
     style.grid(axes)
     style.legend(axes, drawn, other)
-    style.caption(axes, f"{groups.caption()}\n{groups.note(length_note(drawn, groups.confidence, [axes]))}")
+    style.caption(axes, groups.caption())
+    style.notes(axes, length_notes(drawn, groups.confidence, [axes]))
 
 
 def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, linestyle: str | tuple[int, tuple[int, ...]] | None = None,
                  size: float = 5.5) -> None:
-    """Clogging lengths with clogfit's intervals, `linestyle` where it is not that of the index, markers of `size` points. The marker is that of what holds most of the clogs; an open one is a
-    length in doubt (OPEN_MARKERS), an open triangle a lower bound, where no run clogged."""
+    """Clogging lengths with clogfit's intervals, `linestyle` where it is not that of the index, markers of `size` points. The marker is that of what holds most of the clogs; a hollow one is a
+    length in doubt (HOLLOW_MARKERS), a triangle a lower bound, where no run clogged."""
     order = sorted(range(len(groups)), key=lambda i: places[i])
     places, groups = [places[i] for i in order], [groups[i] for i in order]
     # Not a number where no run clogged: the line is broken there, and goes on dotted.
@@ -66,7 +70,7 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
     axes.errorbar(places, lengths, yerr=bars, color=colour, linestyle=linestyle or line, linewidth=1, elinewidth=1, capsize=2.5, label=label,
                   gid=style.mark("curve", groups))
     for x, y, group in zip(places, lengths, groups):
-        face = "white" if reasons_for_open_marker(group) else colour
+        face = "white" if reasons_for_hollow_marker(group) else colour
         axes.plot(x, y, color=colour, marker=style.MECHANISM_MARKERS[style.main_mechanism(group)], markerfacecolor=face, markersize=size, zorder=3,
                   gid=style.mark("point", [group]) if group["clogs"] > 0 else None)
     if len(groups) > 1 and any(group["clogs"] == 0 for group in groups):
@@ -78,7 +82,7 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
 
 
 def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str) -> None:
-    """Mean speeds over the terminal speed, with standard errors from the scatter between runs."""
+    """Mean speeds relative to the terminal speed, with standard errors from the scatter between runs."""
     points = sorted(((place, group) for place, group in zip(places, groups) if group["relative_speed"] is not None), key=lambda point: point[0])
     known = [group for _, group in points]
     drawn = axes.errorbar(
@@ -121,4 +125,6 @@ def draw_speeds_on(axes: Axes, groups: Groups) -> None:
     axes.set_ylabel(AXES["speed"])
     style.grid(axes)
     style.legend(axes)
-    style.caption(axes, f"{groups.caption()}\n{groups.note('bars: standard error' if any(curve.lines[0].get_xdata().size for curve in axes.containers) else '')}")
+    style.caption(axes, groups.caption())
+    if any(curve.lines[0].get_xdata().size for curve in axes.containers):
+        style.notes(axes, SPEED_NOTES)

@@ -81,9 +81,10 @@ def draw_curves(axes: Axes, groups: Groups, column: str) -> None:
     style.grid(axes)
     style.legend(axes)
     ends = {group["status"] for group in groups.members}
-    style.caption(axes, "\n".join([groups.caption(), groups.note("; ".join(
-        f"{sign}: {kind.outcomes[status]}" for sign, status in (("dots", kind.goal), ("crosses", "clogged"), ("triangles", "broken"), ("open", "flowing"))
-        if status in ends and (sign == "dots" or status != kind.goal)))]))
+    style.caption(axes, groups.caption())
+    style.notes(axes, ["; ".join(
+        f"{sign}: {kind.outcomes[status]}" for sign, status in (("dots", kind.goal), ("crosses", "clogged"), ("triangles", "broken"), ("hollow", "flowing"))
+        if status in ends and (sign == "dots" or status != kind.goal))])
 
 
 def shares(groups: Groups, value: Callable[[Any], str]) -> list[tuple[str, str]]:

@@ -1,4 +1,4 @@
-"""The groups of runs that clogfit tells of: what varies between them, what to draw them over, and how all this is called."""
+"""The groups of runs that clogfit tells of: what varies between them, what to draw them against, and how all this is called."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FINISHED = ("passed", "clogged", "broken", "flowing")
 
 
 class Groups:
-    """Groups of one sweep that hold runs, drawn over one of its parameters."""
+    """Groups of one sweep that hold runs, drawn against one of its parameters."""
 
     def __init__(self, fit: dict[str, Any], circle_files: dict[str, str] | None = None) -> None:
         """@param fit  the JSON of clogfit; @param circle_files  see stored.circle_files()"""
@@ -27,7 +27,7 @@ class Groups:
         self.lists: Collection[str] = fit["lists"]
         self.settings = stored.settings(fit.get("sweep", {}).get("config", ""))  # none of older programs
         self._circle_files = circle_files or self._only_circle_file()
-        self.tells_what_all_share = True  # in caption() and note()
+        self.tells_what_all_share = True  # in caption()
         self.abscissa = self._choose_abscissa() if self.members else ""  # there is nothing to draw
 
     def finished(self, source: object = "the sweep") -> Groups:
@@ -143,6 +143,8 @@ class Groups:
             words.append(f"circles of {self._circle_file()}")
         if not self.are_passages:
             words.append(runs_a_point(self.members))
+        if self.are_polygons and not self.varies("preset"):
+            words.append(f"interface {first['preset']}")
         return ", ".join(words)
 
     def _only_circle_file(self) -> dict[str, str]:
@@ -169,9 +171,3 @@ class Groups:
         is_default = str(value) == column.get("default") or f"{value:g}" == column.get("default")
         is_special = column.get("parameter_role") == "physics" and not is_default
         return is_array or is_special or (name == "vertices" and self.are_polygons)
-
-    def note(self, about_bars: str) -> str:
-        """The interface, if it is one, and what bars and markers mean."""
-        presets = {group["preset"] for group in self.members if group["model"] == "dp" and self.tells_what_all_share}
-        interface = [f"interface: {presets.pop()}"] if len(presets) == 1 else []
-        return "; ".join(filter(None, [*interface, about_bars]))

@@ -127,11 +127,11 @@ def draw(sweep: pathlib.Path, folder: pathlib.Path) -> Figure:
     abscissa = groups.abscissa.replace("_", " ")
     if groups.are_passages:
         kind = passages.kind_of(groups)
-        title, words = f"{kind.heading} over {abscissa}", kind.outcomes
+        title, words = f"{kind.heading} vs {abscissa}", kind.outcomes
         rows = of_passages(groups, sweep, folder / "clogrun")
     else:
-        title, words = f"Clogging length over {abscissa}", {"flowing": "still going"}
+        title, words = f"Clogging length vs {abscissa}", {"flowing": "still going"}
         rows = of_lengths(groups, sweep, folder / "clogrun")
-    head = f"{groups.caption()}\n{groups.note(counted(stored.read_table(sweep, folder), words))}"
+    head = f"{groups.caption()}\n{counted(stored.read_table(sweep, folder), words)}"
     groups.tells_what_all_share = False  # the head does, panels need not
     return page(title, head, rows, cut(stored.source(about)))

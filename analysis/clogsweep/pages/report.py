@@ -56,8 +56,8 @@ def draw_survival(axes: Axes, groups: Groups, label: str, members: Sequence[Grou
     axes.set_ylabel("probability $P(r)$ of not having clogged")
     style.grid(axes)
     mark_steps(axes)
-    style.caption(axes, f"{label or groups.caption()}\nsteps: clogs; ticks: runs last seen going; "
-                        "dashed: exponential of the same length")
+    style.caption(axes, label or groups.caption())
+    style.notes(axes, ["steps: clogs; ticks: censored runs; dashed: exponential of the same length"])
 
 
 def mark_steps(axes: Axes) -> None:

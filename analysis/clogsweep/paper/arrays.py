@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,12 +11,13 @@ from matplotlib.axes import Axes
 
 from .. import style
 from ..drawing import surroundings, survival_curve
-from ..drawing.lengths import draw_lengths, draw_speeds, length_note
-from ..labels import AXES, runs_a_point, said
+from ..drawing.lengths import SPEED_NOTES, draw_lengths, draw_speeds, length_notes
+from ..labels import AXES, said
 from ..reading import stored, trajectory
 from ..tools import rounded
 from ..tools.errors import UserError
 from ..tools.hints import Column, Group
+from .captions import describe
 from .plate import Plate, figure, interface_of
 from .workshop import Workshop
 
@@ -25,26 +26,6 @@ if TYPE_CHECKING:
 
 # By what droplets are held, as clogfit counts them, and the mesh.
 HOLDS = ("vertices", "on_mesh", "wrapped", "squeezed", "hybrid")
-# Of what all points have in common, a caption names these.
-NAMED = ("obstacle_gap", "obstacle_diameter", "near_wall_drag")
-
-
-def describe(columns: dict[str, Column], groups: Sequence[Group], without: Collection[str] = ()) -> str:
-    """What all points have in common. @param columns  see Workshop.columns()"""
-    first = groups[0]
-    words = []
-    for name in NAMED:
-        if name not in without and len({group[name] for group in groups}) == 1:
-            words.append(said(columns[name], first[name]))
-    words.append("saturated arrays" if first["obstacle_filling"] == "saturated" else rf"$\rho_\mathrm{{ob}}\sigma^2 = {first['obstacle_density']:g}$")
-    words += [f"$V_t = {first['terminal_speed']:g}$", f"$T = {first['max_time']:g}\\,t_0$", f"$L = {first['box']:g}\\sigma$"]
-    line = runs_a_point(groups)
-    if first["model"] == "dp":
-        words.insert(0, f"$N_v = {first['vertices']}$")
-        line += f"; interface: {interface_of(first['preset'])}"
-    else:
-        words.insert(0, "soft disk")
-    return ", ".join(words) + "\n" + line
 
 
 def numbers(groups: Sequence[Group], label: str, **more: Sequence[Any]) -> list[dict[str, Any]]:
@@ -91,8 +72,8 @@ def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity:
     axes.set_ylabel(AXES[quantity])
     style.grid(axes)
     style.legend(axes, groups if quantity == "length" else ())
-    note = length_note(groups, shop.confidence(config), [axes]) if quantity == "length" else "bars: standard error"
-    style.caption(axes, f"{describe(shop.columns(config), groups, [parameter])}\n{note}")
+    style.caption(axes, describe(shop.columns(config), groups, [parameter, abscissa]))
+    style.notes(axes, length_notes(groups, shop.confidence(config), [axes]) if quantity == "length" else SPEED_NOTES)
     return Plate(drawing, data)
 
 
@@ -156,7 +137,7 @@ Curve = tuple[str, str, Callable[[Sequence[Group]], list[Group]]]
 
 def over_sag(shop: Workshop, curves: Sequence[Curve], gap: float, quantity: str) -> Plate:
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
-    data, captions, drawn = [], [], []
+    data, drawn = [], []
     for index, (config, label, chosen) in enumerate(curves):
         groups = [group for group in chosen(shop.sweep(config)) if math.isclose(group["obstacle_gap"], gap)]
         if not groups:
@@ -164,7 +145,6 @@ def over_sag(shop: Workshop, curves: Sequence[Curve], gap: float, quantity: str)
         places = sags(shop, config, groups)
         drawing_of(quantity)(axes, places, groups, index, label)
         data += numbers(groups, label, sag=places)
-        captions.append(describe(shop.columns(config), groups))
         drawn += groups
     style.logarithmic_abscissa(axes)
     if quantity == "length":
@@ -175,8 +155,8 @@ def over_sag(shop: Workshop, curves: Sequence[Curve], gap: float, quantity: str)
     axes.text(0.25, 0.02, r"$\delta_s = 0.25\sigma$ ", ha="right", color="0.4", fontsize=8, transform=axes.get_xaxis_transform())
     style.grid(axes)
     axes.legend(frameon=False)
-    note = length_note(drawn, shop.confidence(config), [axes]) if quantity == "length" else "bars: standard error"
-    style.caption(axes, "\n".join(dict.fromkeys(captions)) + f"\n{note}")
+    style.caption(axes, describe(shop.columns(curves[0][0]), drawn, ["line_tension"]))
+    style.notes(axes, length_notes(drawn, shop.confidence(curves[0][0]), [axes]) if quantity == "length" else SPEED_NOTES)
     return Plate(drawing, data)
 
 
@@ -254,7 +234,7 @@ def example(shop: Workshop, mechanism: str) -> tuple[trajectory.Trajectory, pand
 
 def clog_title(run: trajectory.Trajectory, row: pandas.Series) -> str:
     return (rf"{row.mechanism}: $\Gamma = {row.line_tension:g}$, $w_\mathrm{{ob}} = {row.obstacle_gap:g}\sigma$, seed {row.seed}, "
-            rf"$r = {row.distance:.2f}\sigma$" f"\n{row.wrapped_support:.0%} of the support from wrapped obstacles, $N_v = {row.vertices}$\ninterface: {interface_of(row.preset)}")
+            rf"$r = {row.distance:.2f}\sigma$" f"\n{row.wrapped_support:.0%} of the support from wrapped obstacles, $N_v = {row.vertices}$\ninterface {interface_of(row.preset)}")
 
 
 def clog_numbers(run: trajectory.Trajectory, row: pandas.Series, frame: int) -> list[dict[str, Any]]:
@@ -311,7 +291,7 @@ def two_ways(shop: Workshop) -> Plate:
             axes.axis("off")
         line[0].set_ylabel(f"{row.mechanism}\n$\\Gamma = {row.line_tension:g}$, $w_\\mathrm{{ob}} = {row.obstacle_gap:g}\\sigma$, seed {row.seed}", fontsize=9)
         data += clog_numbers(run, row, -1)
-    drawing.suptitle(f"flow to the right; $N_v = {row.vertices}$; interface: {interface_of(row.preset)}", fontsize=9, color="0.25")
+    drawing.suptitle(f"flow to the right; $N_v = {row.vertices}$; interface {interface_of(row.preset)}", fontsize=9, color="0.25")
     return Plate(drawing, data)
 
 
@@ -338,7 +318,7 @@ def kinetic_energy(shop: Workshop) -> Plate:
     axes.legend(frameon=False)
     row = run.row
     style.caption(axes, rf"$\Gamma = 0.5$, $\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, saturated arrays, $V_t = {row['terminal_speed']:g}$, "
-                  rf"$N_v = {row['vertices']}$, seed {row['seed']}" f"\ninterface: {interface_of(run.word('preset'))}")
+                  rf"$N_v = {row['vertices']}$, seed {row['seed']}" f"\ninterface {interface_of(run.word('preset'))}")
     return Plate(drawing, data)
 
 
@@ -380,7 +360,7 @@ def survival(shop: Workshop) -> Plate:
     axes.set_ylabel(r"probability of not having clogged $P(r)$")
     style.grid(axes)
     axes.legend(frameon=False)
-    style.caption(axes, rf"$\Gamma = {group['line_tension']:g}$, {describe(shop.columns('survival'), [group])}" f"\nexponential? Weibull shape {group['weibull_shape']:.2f}, p = {group['weibull_p_value']:.2f}")
+    style.caption(axes, f"{describe(shop.columns('survival'), [group])}\nexponential? Weibull shape {group['weibull_shape']:.2f}, p = {group['weibull_p_value']:.2f}")
     names = ["distance", "probability", "standard_error", "lower", "upper"]
     return Plate(drawing, [{"distance": 0.0, "probability": 1.0}] + [{name: step[name] for name in names} for step in group["survival"]]
                  + [{"censored_distance": distance} for distance in group["censored_distances"]]
@@ -410,5 +390,5 @@ def displacement(shop: Workshop) -> Plate:
     style.grid(axes)
     axes.legend(frameon=False)
     style.caption(axes, rf"$w_\mathrm{{ob}} = {row['obstacle_gap']:g}\sigma$, $\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, saturated array, "
-                  rf"$V_t = {row['terminal_speed']:g}$, $N_v = {row['vertices']}$, seed {row['seed']}" f"\ninterface: {interface_of(run.word('preset'))}")
+                  rf"$V_t = {row['terminal_speed']:g}$, $N_v = {row['vertices']}$, seed {row['seed']}" f"\ninterface {interface_of(run.word('preset'))}")
     return Plate(drawing, data)

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 
 from .. import style
-from ..drawing.lengths import draw_lengths, length_note
-from ..labels import AXES, runs_a_point
+from ..drawing.lengths import draw_lengths, length_notes
+from ..labels import AXES
 from ..tools import rounded
 from ..tools.hints import Group
 from .arrays import numbers
+from .captions import describe
 from .plate import Plate, figure
 from .workshop import Workshop
 
@@ -63,7 +64,7 @@ def fitted(groups: Sequence[Group]) -> DensityFit:
     return fit_density(*([group[name] for group in closed] for name in ("obstacle_density", "clogging_length", "clogs")))
 
 
-@figure("density", "clogging length of stiff droplets over the density of obstacles, and the density of the published arrays", CONFIGS, "6 min")
+@figure("density", "clogging length of stiff droplets against the density of obstacles, and the density of the published arrays", CONFIGS, "6 min")
 def density_of_the_published_arrays(shop: Workshop) -> Plate:
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     families = {label: shop.sweep(config) for config, label in CONFIGS.items()}
@@ -90,11 +91,9 @@ def density_of_the_published_arrays(shop: Workshop) -> Plate:
     axes.set_xlabel(r"obstacles per area $\rho_\mathrm{ob}\,\sigma^2$")
     axes.set_ylabel(AXES["length"])
     style.legend(axes, everyone)
-    first = everyone[0]
-    style.caption(axes, rf"$\Gamma = {first['line_tension']:g}$, $w_\mathrm{{ob}} = {first['obstacle_gap']:g}\,\sigma$, "
-                        rf"$\sigma_\mathrm{{ob}} = {first['obstacle_diameter']:g}\,\sigma$, {runs_a_point(everyone)}" + "\n"
-                        "legend: density at which the fitted curve has the published length, with its 95 % interval; "
-                        + length_note(everyone, shop.confidence("density-robust"), [axes]))
+    style.caption(axes, describe(shop.columns("density-robust"), everyone, ["obstacle_density"]))
+    style.notes(axes, ["legend: density at which the fitted curve has the published length, with its 95 % interval",
+                       *length_notes(everyone, shop.confidence("density-robust"), [axes])])
     return Plate(drawing, data)
 
 

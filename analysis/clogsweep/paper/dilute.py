@@ -2,22 +2,23 @@
 
 import dataclasses
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
-from matplotlib.figure import Figure, SubFigure
+from matplotlib.figure import SubFigure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from .. import style
-from ..drawing.lengths import draw_lengths, length_note
-from ..labels import AXES, runs_a_point, said
+from ..drawing.lengths import draw_lengths, length_notes
+from ..labels import AXES, said
 from ..tools.hints import Group
 from .arrays import HOLDS, by, numbers, of_each, over_sag
+from .captions import describe
 from .plate import Plate, figure, interface_of
 from .workshop import Workshop
 
@@ -73,15 +74,6 @@ def legend(below: SubFigure, axes: Axes, groups: Sequence[Group], has_finer: boo
     below.legend(*zip(*curves, *marks), loc="center", ncols=4, frameon=False, fontsize=8)
 
 
-def density_of(groups: Sequence[Group]) -> str:
-    densities = sorted({group["obstacle_density"] for group in groups})
-    if {group["obstacle_filling"] for group in groups} == {"saturated"}:
-        return "saturated arrays"
-    if len(densities) == 1:
-        return rf"$\rho_\mathrm{{ob}}\sigma^2 = {densities[0]:g}$"
-    return rf"$\rho_\mathrm{{ob}}\sigma^2 = {densities[0]:.3g}$ to ${densities[-1]:.3g}$"
-
-
 def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
     """A panel for each family, a curve for each gap. @param finer  draw the second mesh, too, that of CONFIG-mesh"""
     kinds = [(family, family.of(shop.sweep(family.config)), family.of(shop.sweep(f"{family.config}-mesh")) if finer else []) for family in chosen]
@@ -117,16 +109,10 @@ def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
     for axes in panels[-1]:
         axes.set_xlabel(AXES["line_tension"])
     legend(below, max(panels.flat, key=lambda axes: len(axes.get_legend_handles_labels()[1])), every, any(fine for _, _, fine in kinds))
-    title(drawing, panels.flat, shop, kinds[0][0].config, every)
+    config = kinds[0][0].config
+    drawing.suptitle(describe(shop.columns(config), every, ["preset"]), fontsize=8, color="0.25")
+    style.notes_of_panels(drawing, length_notes(every, shop.confidence(config), panels.flat))
     return Plate(drawing, data)
-
-
-def title(drawing: Figure, panels: Iterable[Axes], shop: Workshop, config: str, groups: Sequence[Group]) -> None:
-    first = groups[0]
-    meshes = sorted({group["vertices"] for group in groups})
-    longest = max(group["max_time"] for group in groups)
-    drawing.suptitle(f"{runs_a_point(groups)}; {density_of(groups)}, obstacles of {first['obstacle_diameter']:g}$\\sigma$, $N_v = {', '.join(map(str, meshes))}$, "
-                     f"$T \\leq {longest:g}\\,t_0$\n{length_note(groups, shop.confidence(config), panels)}", fontsize=8, color="0.25")
 
 
 @figure("6c", "clogging length against line tension for four smallest gaps, dilute arrays: what walls hold, on two meshes",
@@ -189,7 +175,7 @@ def draw_cell(axes: Axes, x: int, y: int, group: Group, norm: LogNorm) -> None:
     axes.text(x, y, ("> " if group["clogs"] == 0 else "") + text, ha="center", va="center", fontsize=7.5, color=ink)
 
 
-@figure("map", "clogging length over line tension, obstacle density and gap, walls without and with friction", ["map-robust", "map-friction"], "35 min")
+@figure("map", "clogging length against line tension, obstacle density and gap, walls without and with friction", ["map-robust", "map-friction"], "35 min")
 def lengths_on_a_map(shop: Workshop) -> Plate:
     kinds = [(family, shop.sweep(family.config)) for family in MAPS]
     every = [group for _, groups in kinds for group in groups]
@@ -218,8 +204,8 @@ def lengths_on_a_map(shop: Workshop) -> Plate:
         axes.plot(place_of(tensions, PUBLISHED["line_tension"]) + 0.33, place_of(numbered, PUBLISHED["obstacle_density"]) + 0.28, marker="*", color="black",
                   markerfacecolor="gold", markersize=11)
     drawing.colorbar(ScalarMappable(norm, style.VIRIDIS), ax=panels, label=AXES["length"], shrink=0.8)
-    drawing.suptitle(f"{runs_a_point(every)}, obstacles of {every[0]['obstacle_diameter']:g}$\\sigma$, $T = {every[0]['max_time']:g}\\,t_0$; "
-                     f"framed: $P(r)$ is exponential (Weibull's shape compatible with 1, {ENOUGH_CLOGS} clogs or more, $\\lambda$ longer than a spacing)"
-                     "\nhatched, >: lower bound, no run clogged; star: published, $\\lambda = 24\\sigma$, which asks for about 0.35 obstacles per $\\sigma^2$",
-                     fontsize=8, color="0.25")
+    drawing.suptitle(describe(shop.columns(MAPS[0].config), every, ["obstacle_density", "preset"]), fontsize=8, color="0.25")
+    style.notes_of_panels(drawing, [
+        f"framed: $P(r)$ is exponential (Weibull's shape compatible with 1, at least {ENOUGH_CLOGS} clogs, $\\lambda$ longer than a spacing)",
+        "hatched, >: lower bound (no run clogged); star: the published $\\lambda = 24\\sigma$, at the density that gives this length here"])
     return Plate(drawing, data)

@@ -6,19 +6,19 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import style
-from ..drawing.lengths import draw_lengths, length_note
-from ..labels import AXES, runs_a_point, said
+from ..drawing.lengths import draw_lengths, length_notes
+from ..labels import AXES, said
 from ..tools.hints import Group
 from .arrays import HOLDS, by, numbers, of_each
+from .captions import describe
 from .plate import Plate, figure, interface_of
 from .workshop import Workshop
 
 
-def title(drawing: Figure, shop: Workshop, config: str, groups: Sequence[Group]) -> None:
-    """What all points have in common, and what the marks mean."""
-    first = groups[0]
-    drawing.suptitle(f"{runs_a_point(groups)}; saturated arrays, obstacles of {first['obstacle_diameter']:g}$\\sigma$, "
-                     f"$T = {first['max_time']:g}\\,t_0$\n{length_note(groups, shop.confidence(config), drawing.axes)}", fontsize=8, color="0.25")
+def explain(drawing: Figure, shop: Workshop, config: str, groups: Sequence[Group]) -> None:
+    """Above the panels what all points have in common, below them what the marks mean."""
+    drawing.suptitle(describe(shop.columns(config), groups, ["vertices", "preset"]), fontsize=8, color="0.25")
+    style.notes_of_panels(drawing, length_notes(groups, shop.confidence(config), drawing.axes))
 
 
 def finish(axes: Axes, places: Sequence[float], groups: Sequence[Group], text: str) -> None:
@@ -29,7 +29,7 @@ def finish(axes: Axes, places: Sequence[float], groups: Sequence[Group], text: s
     style.legend(axes, groups)
 
 
-@figure("W1", "what of the clogging length is the mesh's: line tension, numbers of vertices, interfaces", ["hanging-robust", "hanging-elastic"], "32 min")
+@figure("W1", "how the clogging length depends on the mesh: line tension, numbers of vertices, interfaces", ["hanging-robust", "hanging-elastic"], "32 min")
 def lengths_by_mesh(shop: Workshop) -> Plate:
     configs = ["hanging-robust", "hanging-elastic"]
     presets = [(config, shop.sweep(config)) for config in configs]
@@ -51,7 +51,7 @@ def lengths_by_mesh(shop: Workshop) -> Plate:
         line[0].set_ylabel(AXES["length"])
     for axes in panels[-1]:
         axes.set_xlabel(AXES["line_tension"])
-    title(drawing, shop, configs[0], groups)
+    explain(drawing, shop, configs[0], groups)
     return Plate(drawing, data)
 
 
@@ -79,5 +79,5 @@ def lengths_by_friction(shop: Workshop) -> Plate:
         finish(axes, places, members, f"{interface_of(groups[0]['preset'])}\n{said(columns['obstacle_gap'], gap)}")
         axes.set_xlabel(AXES["line_tension"])
     panels[0][0].set_ylabel(AXES["length"])
-    title(drawing, shop, config, groups)
+    explain(drawing, shop, config, groups)
     return Plate(drawing, data)

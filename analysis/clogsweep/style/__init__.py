@@ -27,6 +27,8 @@ CAUSE_COLOURS = {**MECHANISM_COLOURS, "broken": COLOURS[4]}
 MECHANISM_MARKERS = {"wrapped": "o", "squeezed": "s", "hybrid": "D", "other": "X"}
 VIRIDIS = matplotlib.colormaps["viridis"]
 OBSTACLE = "0.72"
+NOTE_SIZE = 8
+NOTES = "notes"  # the name (`gid`) of what explains marks
 DROPLET = "#D55E00"
 
 
@@ -183,6 +185,17 @@ def caption(axes: Axes, text: str) -> None:
                 lines[-1] += ","
                 lines.append(phrase)
     title.set_text("\n".join(lines))
+
+
+def notes(axes: Axes, lines: Sequence[str]) -> None:
+    """What marks mean, below the axes and their label."""
+    axes.annotate("\n".join(lines), (0.5, 0), xycoords=axes.xaxis.label, xytext=(0, -4), textcoords="offset points", ha="center", va="top",
+                  fontsize=NOTE_SIZE, color="0.25", gid=NOTES)
+
+
+def notes_of_panels(figure: Figure, lines: Sequence[str]) -> None:
+    """What marks mean, once below all panels."""
+    figure.supxlabel("\n".join(lines), fontsize=NOTE_SIZE, color="0.25", gid=NOTES)
 
 
 def save(figure: Figure, output: AnyPath, metadata: dict[str, str] | None = None) -> None:

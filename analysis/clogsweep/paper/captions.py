@@ -1,0 +1,46 @@
+"""What the points of a figure have in common, for the line above it."""
+
+from collections.abc import Collection, Sequence
+
+from ..labels import runs_a_point, said
+from ..tools.hints import Column, Group
+
+# Parameters that a caption names when all points share one value other than 0.
+NAMED = ("line_tension", "obstacle_gap", "obstacle_diameter", "near_wall_drag")
+
+
+def arrays_of(groups: Sequence[Group]) -> str:
+    """How densely the arrays are filled."""
+    if {group["obstacle_filling"] for group in groups} == {"saturated"}:
+        return "saturated arrays"
+    densities = sorted({group["obstacle_density"] for group in groups})
+    if len(densities) == 1:
+        return rf"$\rho_\mathrm{{ob}}\sigma^2 = {densities[0]:g}$"
+    return rf"$\rho_\mathrm{{ob}}\sigma^2 = {densities[0]:.3g}$ to ${densities[-1]:.3g}$"
+
+
+def describe(columns: dict[str, Column], groups: Sequence[Group], without: Collection[str] = ()) -> str:
+    """Phrases with commas between them. What only polygons have is said of the polygons.
+    @param columns  see Workshop.columns(); @param without  parameters that the figure names elsewhere"""
+    polygons = [group for group in groups if group["model"] == "dp"]
+
+    def common(name: str, members: Sequence[Group] = groups) -> bool:
+        return name not in without and len({group[name] for group in members}) == 1
+
+    words = [] if polygons else ["soft disk"]
+    if polygons and "vertices" not in without:
+        meshes = sorted({group["vertices"] for group in polygons})
+        words.append(rf"$N_v = {', '.join(map(str, meshes))}$")
+    words += [said(columns[name], groups[0][name]) for name in NAMED if common(name) and groups[0][name]]
+    if "obstacle_density" not in without:
+        words.append(arrays_of(groups))
+    if common("terminal_speed"):
+        words.append(f"$V_t = {groups[0]['terminal_speed']:g}$")
+    times = {group["max_time"] for group in groups}
+    words.append(rf"$T = {max(times):g}\,t_0$" if len(times) == 1 else rf"$T \leq {max(times):g}\,t_0$")
+    if common("box"):
+        words.append(rf"$L = {groups[0]['box']:g}\sigma$")
+    words.append(runs_a_point(groups))
+    if polygons and common("preset", polygons):
+        words.append(f"interface {polygons[0]['preset']}")
+    return ", ".join(words)
