@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 #include <unordered_set>
 #include <utility>
 
@@ -54,6 +55,47 @@ void begin_anew(sweep::RunRow& row) {
   sweep::record(nothing, row);
 }
 
+bool is_automatic(const sweep::Key& key, const sweep::Settings& settings) {
+  return key.kind != ValueKind::word &&
+         std::ranges::any_of(settings.values(key.name), [&](const std::string& value) {
+           return std::ranges::find(key.words, value) != key.words.end();
+         });
+}
+
+/// What the tasks of a plan have for the keys along which a sweep may not grow. Automatic values are left
+/// out: they may follow from line tensions and gaps that only an earlier plan of the sweep had.
+class FixedValues {
+ public:
+  FixedValues(const sweep::Plan& plan, const sweep::Settings& settings) : settings_(settings) {
+    for (const sweep::Key& key : sweep::keys())
+      if (key.parameter && !may_grow_along(key) && !is_automatic(key, settings)) keys_.push_back({&key, {}});
+    for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
+      const RunParameters run = plan.task(group);
+      for (auto& [key, values] : keys_) values.insert(key->parameter->get(run));
+    }
+  }
+
+  /// Names the keys for which no task has the row's value.
+  std::string differing_keys(const sweep::RunRow& row) const {
+    std::string all;
+    for (const auto& [key, values] : keys_) {
+      const ParameterValue value = key->parameter->get(row.parameters);
+      if (key->parameter->applies_to(row.parameters) && !values.contains(value))
+        all += fmt::format("{}{}={} (there {})", all.empty() ? "" : ", ", key->name,
+                           settings_.text(key->name), sweep::written(value, *key->parameter));
+    }
+    return all;
+  }
+
+ private:
+  struct Fixed {
+    const sweep::Key* key;
+    std::set<ParameterValue> values;
+  };
+  const sweep::Settings& settings_;
+  std::vector<Fixed> keys_;
+};
+
 std::string differing_keys(const sweep::Settings& there, const sweep::Settings& here) {
   std::string all;
   for (const sweep::Key& key : sweep::keys())
@@ -100,6 +142,7 @@ Ledger::Ledger(std::string path, const sweep::Plan& plan, const sweep::Settings&
         "cannot begin " + path_ + " (its table is gone, but " + store::journal_path(path_) + " holds " +
         sweep::counted(static_cast<std::int64_t>(entries.size()), "report") +
         " of an earlier sweep, maybe of finished runs); put the table back, or give another --output");
+  if (!entries.empty()) refuse_foreign(entries, known, settings);
   for (Entry& entry : entries) {
     std::string run = sweep::identity(entry.row);
     // A run that has its result in the table is not over in the journal if its last record there was lost.
@@ -143,6 +186,25 @@ void Ledger::take_over(const store::SweepFile& file, const sweep::Settings& sett
     if (const std::string text = attribute(provenance_, name); !text.empty()) all.emplace_back(name, text);
   }
   provenance_ = std::move(all);
+}
+
+/// Another sweep may have left its journal here.
+void Ledger::refuse_foreign(const std::vector<Entry>& entries,
+                            const std::unordered_map<std::string, Entry>& known,
+                            const sweep::Settings& settings) const {
+  const FixedValues fixed(plan_, settings);
+  for (const auto& [row, snapshot] : entries) {
+    std::string differing;
+    if (row.model_version != model_version)
+      differing = fmt::format("model version {} (there {})", model_version, row.model_version);
+    else if (!known.contains(sweep::identity(row)))
+      differing = fixed.differing_keys(row);
+    if (!differing.empty())
+      throw Error(
+          fmt::format("cannot continue with {} (its journal {} is of another sweep: {}); move the journal to "
+                      "the table that it belongs to, or give another --output",
+                      path_, journal_.path(), differing));
+  }
 }
 
 /// Runs that are not of this plan may be among other circles.

@@ -69,14 +69,6 @@ const std::vector<Preset>& presets() {
   return all;
 }
 
-/// What stands for a key's value in a config file.
-std::string written(const ParameterValue& value, const Parameter& parameter) {
-  if (const auto* number = std::get_if<double>(&value)) return shortest(*number);
-  if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);
-  if (const auto* word = std::get_if<std::string>(&value)) return *word;
-  return parameter.words.front();  // automatic
-}
-
 [[noreturn]] void refuse_value(const std::string& name, const std::string& text, const std::string& why) {
   constexpr std::size_t longest_shown = 60;
   const std::string shown = text.size() > longest_shown ? text.substr(0, longest_shown) + "..." : text;
@@ -146,6 +138,13 @@ std::string key_of_symbol(std::string_view symbol) {
 }
 
 }  // namespace
+
+std::string written(const ParameterValue& value, const Parameter& parameter) {
+  if (const auto* number = std::get_if<double>(&value)) return shortest(*number);
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);
+  if (const auto* word = std::get_if<std::string>(&value)) return *word;
+  return parameter.words.front();  // automatic
+}
 
 const std::vector<Key>& keys() {
   static const std::vector<Key> all = make_keys();

@@ -242,6 +242,33 @@ TEST_F(LedgerTest, LeavesTheJournalAsItIsWhenItRefuses) {
   EXPECT_EQ(std::filesystem::file_size(journal), size);
 }
 
+TEST_F(LedgerTest, RefusesAJournalOfRunsWithOtherSettings) {
+  const std::string journal = store::journal_path(path());
+  open().finish();
+  const auto left_by = [&](const sweep::Settings& settings, std::int64_t version) {
+    store::Journal other{store::Place(journal)};
+    sweep::RunRow row = sweep::describe(sweep::Plan(settings).task(0));
+    row.task = 0;
+    row.model_version = version;
+    row.clogged_by = sweep::FoundBy::nothing;
+    row.mechanism = ClogMechanism::none;
+    other.add(row, {});
+    return std::filesystem::file_size(journal);
+  };
+  sweep::Settings settings = settings_;
+  settings.set("line-tension", "0.7");
+  left_by(settings, model_version);  // of a larger plan of this sweep
+  EXPECT_EQ(open().num_beyond(), 1);
+  std::filesystem::remove(journal);
+  settings.set("max-time", "17");
+  const auto size = left_by(settings, model_version);
+  EXPECT_NE(refusal([&] { open(); }).find("is of another sweep: max-time="), std::string::npos);
+  EXPECT_EQ(std::filesystem::file_size(journal), size);
+  std::filesystem::remove(journal);
+  left_by(settings_, model_version - 1);
+  EXPECT_NE(refusal([&] { open(); }).find("is of another sweep: model version"), std::string::npos);
+}
+
 TEST_F(LedgerTest, NamesTheFileWhoseConfigItCannotRead) {
   open().finish();
   store::publish_sweep(path(), {}, {{"config", "line-tension = many\n"}});

@@ -5,13 +5,14 @@ import io
 import unittest
 
 import h5py
+import numpy as np
 
 import stored_rows
 from drawing import Analysis
 from support import BIN
 
 from clogsweep import agreement
-from clogsweep.agreement import evidence, lengths, statements
+from clogsweep.agreement import evidence, lengths, passages, statements
 from clogsweep.agreement.statements import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, NOT_RUN
 from clogsweep.tools.errors import UserError
 
@@ -78,6 +79,10 @@ class Lengths(unittest.TestCase):
 
 
 class Evidence(unittest.TestCase):
+    def test_the_start_from_rest_is_no_minimum_before_the_orifice(self):
+        way = np.array([(-2.0, 0.0), (-1.5, 0.9), (-0.8, 0.8), (-0.3, 0.1), (-0.1, 0.4), (0.4, 0.05)], [("h", float), ("speed_ratio", float)])
+        self.assertEqual(passages.slowest_before(way), -0.3)
+
     def test_fishers_exact_test(self):
         # The lady tasting tea: R. A. Fisher, The Design of Experiments (1935), chapter II.
         self.assertAlmostEqual(evidence.fisher_p_value(4, 4, 0, 4), 1 / 70)

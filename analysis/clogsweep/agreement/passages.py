@@ -45,10 +45,14 @@ def largest_shape(shop: Workshop) -> Finding:
 
 @statement("4.1, figure 3d", "w = 0.7: the first minimum of the speed is near h = -0.25", "3")
 def first_minimum(shop: Workshop) -> Finding:
-    way = channels.passage(shop, 0.7).table
-    before = way[way["h"] < 0]
-    h = float(before["h"][np.argmin(before["speed_ratio"])])
+    h = slowest_before(channels.passage(shop, 0.7).table)
     return Finding(by_tolerance(h, -0.25, 0.1), f"{h:.2f}")
+
+
+def slowest_before(way: np.ndarray) -> float:
+    """Where a droplet is slowest on the last diameter before the orifice; farther away it starts, from rest."""
+    before = way[(way["h"] > -1) & (way["h"] < 0)]
+    return float(before["h"][np.argmin(before["speed_ratio"])])
 
 
 @statement("4.1, figure 3d", "w = 0.7: the speed overshoots v_t near h = 0.3", "3",

@@ -234,7 +234,7 @@ def example(shop: Workshop, mechanism: str) -> tuple[trajectory.Trajectory, pand
 
 def clog_title(run: trajectory.Trajectory, row: pandas.Series) -> str:
     return (rf"{row.mechanism}: $\Gamma = {row.line_tension:g}$, $w_\mathrm{{ob}} = {row.obstacle_gap:g}\sigma$, seed {row.seed}, "
-            rf"$r = {row.distance:.2f}\sigma$" f"\n{row.wrapped_support:.0%} of the support from wrapped obstacles, $N_v = {row.vertices}$\ninterface {interface_of(row.preset)}")
+            rf"$r = {row.distance:.2f}\sigma$" f"\n{row.wrapped_support:.0%} of the support from wrapped obstacles, $N_v = {row.vertices}$, interface {row.preset}")
 
 
 def clog_numbers(run: trajectory.Trajectory, row: pandas.Series, frame: int) -> list[dict[str, Any]]:
@@ -291,7 +291,7 @@ def two_ways(shop: Workshop) -> Plate:
             axes.axis("off")
         line[0].set_ylabel(f"{row.mechanism}\n$\\Gamma = {row.line_tension:g}$, $w_\\mathrm{{ob}} = {row.obstacle_gap:g}\\sigma$, seed {row.seed}", fontsize=9)
         data += clog_numbers(run, row, -1)
-    drawing.suptitle(f"flow to the right; $N_v = {row.vertices}$; interface {interface_of(row.preset)}", fontsize=9, color="0.25")
+    drawing.suptitle(f"flow to the right; $N_v = {row.vertices}$; interface {row.preset}", fontsize=9, color="0.25")
     return Plate(drawing, data)
 
 
@@ -318,7 +318,7 @@ def kinetic_energy(shop: Workshop) -> Plate:
     axes.legend(frameon=False)
     row = run.row
     style.caption(axes, rf"$\Gamma = 0.5$, $\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, saturated arrays, $V_t = {row['terminal_speed']:g}$, "
-                  rf"$N_v = {row['vertices']}$, seed {row['seed']}" f"\ninterface {interface_of(run.word('preset'))}")
+                  rf"$N_v = {row['vertices']}$, seed {row['seed']}" f"\ninterface {run.word('preset')}")
     return Plate(drawing, data)
 
 
@@ -390,5 +390,5 @@ def displacement(shop: Workshop) -> Plate:
     style.grid(axes)
     axes.legend(frameon=False)
     style.caption(axes, rf"$w_\mathrm{{ob}} = {row['obstacle_gap']:g}\sigma$, $\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, saturated array, "
-                  rf"$V_t = {row['terminal_speed']:g}$, $N_v = {row['vertices']}$, seed {row['seed']}" f"\ninterface {interface_of(run.word('preset'))}")
+                  rf"$V_t = {row['terminal_speed']:g}$, $N_v = {row['vertices']}$, seed {row['seed']}" f"\ninterface {run.word('preset')}")
     return Plate(drawing, data)

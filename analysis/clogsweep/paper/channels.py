@@ -140,7 +140,7 @@ def squeezing(shop: Workshop) -> Plate:
         if shop.profiles:
             axes.legend(frameon=False)
     ripples = "" if run.row["vertices"] >= SMOOTH else f"; ripples of the speed: one for each vertex that passes the tips, none with {SMOOTH}"
-    drawing.suptitle(f"{parameters(run, 0.4)}; interface {interface_of(run.word('preset'))}\nflow to the right, walls grey{ripples}", fontsize=9, color="0.25")
+    drawing.suptitle(f"{parameters(run, 0.4)}; interface {run.word('preset')}\nflow to the right, walls grey{ripples}", fontsize=9, color="0.25")
     return Plate(drawing, profile_rows(run, "w=0.4"))
 
 
@@ -167,7 +167,7 @@ def two_orifices(shop: Workshop) -> Plate:
             if run.word("status") != "passed":
                 axes.legend(frameon=False)
         style.caption(panels[line][0], parameters(run, orifice))
-        style.caption(panels[line][1], f"interface {interface_of(run.word('preset'))}")
+        style.caption(panels[line][1], f"interface {run.word('preset')}")
         # The most deformed outline, where nothing else is drawn.
         inset = panels[line][0].inset_axes([0.68, 0.5, 0.3, 0.47])
         frame = run.frame_at("h", run.row["largest_shape_parameter_at"])
@@ -204,7 +204,7 @@ def overshoot(shop: Workshop) -> Plate:
             data += profile_rows(run, f"w={orifice} b_0={drag:g} Gamma={line_tension:g}")
         finish(axes, "profile")
         style.caption(axes, rf"$w = {orifice}\sigma$, $b_0/b_\infty = {drag:g}$, $V_t = 0.032$, $N_v = {run.row['vertices']}$"
-                      f"\ninterface {interface_of(run.word('preset'))}")
+                      f"\ninterface {run.word('preset')}")
     draw_measured(shop, panels[0], "v")
     for axes in panels:
         axes.legend(frameon=False, fontsize=8, loc="lower right")
@@ -271,7 +271,7 @@ def vertices(shop: Workshop) -> Plate:
     inset.set_ylim(0, 0.5)
     inset.tick_params(labelsize=7)
     axes.legend(frameon=False, fontsize=8, loc="lower left")
-    style.caption(axes, rf"$w = 0.7\sigma$, $\Gamma = {run.row['line_tension']:g}$, $b_0/b_\infty = 0.07$, $V_t = 0.032$; interface {interface_of(run.word('preset'))}"
+    style.caption(axes, rf"$w = 0.7\sigma$, $\Gamma = {run.row['line_tension']:g}$, $b_0/b_\infty = 0.07$, $V_t = 0.032$; interface {run.word('preset')}"
                   "\ninset: near the first minimum; a cross ends the curve of a droplet that stops")
     return Plate(drawing, data)
 

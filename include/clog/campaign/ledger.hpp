@@ -95,6 +95,8 @@ class Ledger {
   void keep_circles(const store::SweepFile& file);
   store::SweepFile read_table();
   void take_over(const store::SweepFile& file, const sweep::Settings& settings);
+  void refuse_foreign(const std::vector<Entry>& entries, const std::unordered_map<std::string, Entry>& known,
+                      const sweep::Settings& settings) const;
   void find_tasks(std::unordered_map<std::string, Entry> known);
   sweep::RunRow published(const sweep::RunRow& row) const;
   void write_down(const Entry& entry);

@@ -47,6 +47,8 @@ std::vector<std::string> meant_names(std::string_view word, const std::vector<st
 /// @throws Error that names the nearest key
 const Key& find_key(std::string_view name);
 
+/// A parameter's value as a config file has it.
+std::string written(const ParameterValue& value, const Parameter& parameter);
 /// Do two texts of a list mean the same value, as 1e-3 and 0.001 do?
 bool is_same_value(const std::string& a, const std::string& b);
 
