@@ -13,8 +13,8 @@ mkdir -p "$results"
 bin=build/laptop/bin
 sweep=(mpirun -np 2 "$bin/clogsweep" --config jobs/laptop.cfg --output "$results/sweep.h5")
 "${sweep[@]}"
-# Stiffer droplets among walls that do not hold them; softer ones would not clog in this time.
-"${sweep[@]}" friction=0 line-tension=0.3,0.5,1
+# Stiff droplets among walls without friction; softer ones would not clog in this time.
+"${sweep[@]}" friction=0 line-tension=0.35,0.4,0.6
 "$bin/clogfit" "$results/sweep.h5" --format json >"$results/fit.json"
 # Debian's own Python has the packages; another one may come first in the path.
 PYTHONPATH=analysis /usr/bin/python3 -m clogsweep clogging-length "$results/fit.json" --output "$results/clogging-length"

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <set>
 #include <unordered_set>
 #include <utility>
 
+#include "clog/campaign/growth.hpp"
 #include "clog/campaign/stored_sweep.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/store/regular_file.hpp"
@@ -18,12 +18,6 @@
 
 namespace clog::campaign {
 namespace {
-
-/// A sweep may grow along numbers of the physics, and in seeds. In all others a file and a sweep that goes on
-/// with it have values in common.
-bool may_grow_along(const sweep::Key& key) {
-  return key.parameter && key.kind != ValueKind::word && key.parameter->role != ParameterRole::numerics;
-}
 
 void set_attribute(store::Provenance& provenance, const std::string& name, const std::string& text) {
   std::erase_if(provenance, [&](const auto& attribute) { return attribute.first == name; });
@@ -40,70 +34,11 @@ std::string latest_lines(std::string text) {
   return text;
 }
 
-/// Is any value of the one list in the other? Numbers may be written differently.
-bool have_common_value(const std::vector<std::string>& some, const std::vector<std::string>& others) {
-  return std::any_of(some.begin(), some.end(), [&](const std::string& value) {
-    return std::any_of(others.begin(), others.end(),
-                       [&](const std::string& other) { return sweep::is_same_value(value, other); });
-  });
-}
-
 /// A run of which nothing is left but what it is and what it has cost so far.
 void begin_anew(sweep::RunRow& row) {
   RunResult nothing;
   nothing.status = RunStatus::interrupted;
   sweep::record(nothing, row);
-}
-
-bool is_automatic(const sweep::Key& key, const sweep::Settings& settings) {
-  return key.kind != ValueKind::word &&
-         std::ranges::any_of(settings.values(key.name), [&](const std::string& value) {
-           return std::ranges::find(key.words, value) != key.words.end();
-         });
-}
-
-/// What the tasks of a plan have for the keys along which a sweep may not grow. Automatic values are left
-/// out: they may follow from line tensions and gaps that only an earlier plan of the sweep had.
-class FixedValues {
- public:
-  FixedValues(const sweep::Plan& plan, const sweep::Settings& settings) : settings_(settings) {
-    for (const sweep::Key& key : sweep::keys())
-      if (key.parameter && !may_grow_along(key) && !is_automatic(key, settings)) keys_.push_back({&key, {}});
-    for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
-      const RunParameters run = plan.task(group);
-      for (auto& [key, values] : keys_) values.insert(key->parameter->get(run));
-    }
-  }
-
-  /// Names the keys for which no task has the row's value.
-  std::string differing_keys(const sweep::RunRow& row) const {
-    std::string all;
-    for (const auto& [key, values] : keys_) {
-      const ParameterValue value = key->parameter->get(row.parameters);
-      if (key->parameter->applies_to(row.parameters) && !values.contains(value))
-        all += fmt::format("{}{}={} (there {})", all.empty() ? "" : ", ", key->name,
-                           settings_.text(key->name), sweep::written(value, *key->parameter));
-    }
-    return all;
-  }
-
- private:
-  struct Fixed {
-    const sweep::Key* key;
-    std::set<ParameterValue> values;
-  };
-  const sweep::Settings& settings_;
-  std::vector<Fixed> keys_;
-};
-
-std::string differing_keys(const sweep::Settings& there, const sweep::Settings& here) {
-  std::string all;
-  for (const sweep::Key& key : sweep::keys())
-    if (!may_grow_along(key) && key.name != "preset" &&
-        !have_common_value(there.values(key.name), here.values(key.name)))
-      all += (all.empty() ? "" : ", ") + key.name + '=' + here.text(key.name) + " (there " +
-             there.text(key.name) + ')';
-  return all;
 }
 
 }  // namespace
@@ -167,6 +102,17 @@ store::SweepFile Ledger::read_table() {
   return file;
 }
 
+/// A salvaged file may have lost its config: then its rows tell.
+std::string Ledger::settings_that_differ(const store::SweepFile& file,
+                                         const sweep::Settings& settings) const {
+  if (!attribute(file.provenance, "config").empty())
+    return differing_keys(stored_settings(path_, file.provenance), settings);
+  const FixedValues fixed(plan_, settings);
+  for (const sweep::RunRow& row : file.rows)
+    if (std::string differing = fixed.differing_keys(row); !differing.empty()) return differing;
+  return "";
+}
+
 /// A file that is there: do its runs belong to this sweep? Then what it says of its origin stays.
 void Ledger::take_over(const store::SweepFile& file, const sweep::Settings& settings) {
   const std::string remedy = "; give another --output";
@@ -176,7 +122,7 @@ void Ledger::take_over(const store::SweepFile& file, const sweep::Settings& sett
           fmt::format("cannot continue with {} (its runs are of model version {}, this program's is {}: the "
                       "same parameters would give other results){}",
                       path_, row.model_version, model_version, remedy));
-  const std::string differing = differing_keys(stored_settings(path_, file.provenance), settings);
+  const std::string differing = settings_that_differ(file, settings);
   if (!differing.empty())
     throw Error(fmt::format("cannot continue with {} (it holds runs with other settings: {}){}", path_,
                             differing, remedy));
@@ -194,11 +140,8 @@ void Ledger::refuse_foreign(const std::vector<Entry>& entries,
                             const sweep::Settings& settings) const {
   const FixedValues fixed(plan_, settings);
   for (const auto& [row, snapshot] : entries) {
-    std::string differing;
-    if (row.model_version != model_version)
-      differing = fmt::format("model version {} (there {})", model_version, row.model_version);
-    else if (!known.contains(sweep::identity(row)))
-      differing = fixed.differing_keys(row);
+    if (row.model_version == model_version && known.contains(sweep::identity(row))) continue;
+    const std::string differing = fixed.differing_keys(row);
     if (!differing.empty())
       throw Error(
           fmt::format("cannot continue with {} (its journal {} is of another sweep: {}); move the journal to "

@@ -27,7 +27,7 @@ auto read_attribute(const std::string& path, const store::Provenance& provenance
 }
 
 sweep::Settings settings_from(const std::string& config) {
-  if (config.empty()) throw Error("it is missing, or empty");
+  if (config.empty()) throw Error("it is missing; the sweep's own command restores it");
   return sweep::Settings::from_config(config);
 }
 

@@ -43,17 +43,24 @@ std::vector<std::string> faults_of(const std::vector<sweep::RunRow>& rows) {
 Verification verify(const std::string& path) {
   const store::Examination found = store::examine_sweep(path);
   const store::SweepFile& file = found.whole;
+  const bool has_config = !attribute(file.provenance, "config").empty();
   RunCount runs;  // not asked for where the file is damaged
-  if (found.damage.empty()) runs = stored_num_runs(path, file, stored_plan(path, file));
+  if (found.damage.empty() && has_config) runs = stored_num_runs(path, file, stored_plan(path, file));
   Verification result{.findings = found.damage};
   for (std::string& fault : faults_of(file.rows)) result.findings.push_back(std::move(fault));
   result.num_faults = static_cast<std::int64_t>(result.findings.size());
   const auto num_rows = static_cast<std::int64_t>(file.rows.size());
-  result.findings.push_back(
-      result.num_faults == 0 ? fmt::format("{}: {} of {}{}, all whole", path, sweep::counted(num_rows, "row"),
-                                           sweep::counted(runs.num_runs, "run"), runs.text_of_beyond())
-                             : fmt::format("{}: {}, {}", path, sweep::counted(num_rows, "whole row"),
-                                           sweep::counted(result.num_faults, "fault")));
+  if (result.num_faults > 0)
+    result.findings.push_back(fmt::format("{}: {}, {}", path, sweep::counted(num_rows, "whole row"),
+                                          sweep::counted(result.num_faults, "fault")));
+  else if (has_config)
+    result.findings.push_back(fmt::format("{}: {} of {}{}, all whole", path, sweep::counted(num_rows, "row"),
+                                          sweep::counted(runs.num_runs, "run"), runs.text_of_beyond()));
+  else
+    result.findings.push_back(
+        fmt::format("{}: {}, all whole; its config is missing, the sweep's own command "
+                    "restores it",
+                    path, sweep::counted(num_rows, "row")));
   if (std::string words = store::caution(path, file); !words.empty())
     result.findings.push_back(std::move(words));
   const std::string journal = store::journal_path(path);

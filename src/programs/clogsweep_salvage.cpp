@@ -1,6 +1,7 @@
 #include <iostream>
 #include <string>
 
+#include "clog/campaign/salvage.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/console/exit_codes.hpp"
@@ -17,8 +18,9 @@ constexpr const char* usage = R"(clogsweep salvage keeps what is whole of a dama
 
   clogsweep salvage sweep.h5 --output whole.h5
 
-Rows and attributes that are not as they were written are left out and named. The sweep's own command, with --output
-whole.h5, then computes the missing runs again.
+Rows and attributes that are not as they were written are excluded and named. Results and snapshots that only the
+journal beside the file has are kept, too. The sweep's own command, with --output whole.h5, then computes the missing
+runs again and restores missing attributes.
 )";
 
 }  // namespace
@@ -34,11 +36,16 @@ int clogsweep_salvage(int argc, const char* const* argv) {
   if (!line.has("file")) throw Error("missing sweep file; try clogsweep salvage sweep.h5 --output whole.h5");
   const std::string output = line.require("output");
   store::refuse_existing(output);
-  const store::Examination found = store::examine_sweep(line.get("file"));
+  const campaign::Salvage found = campaign::salvage(line.get("file"));
   for (const std::string& damage : found.damage) std::cout << console::printable(damage) << '\n';
-  store::publish_sweep(output, found.whole.rows, found.whole.provenance, found.whole.circles);
-  const auto num_rows = static_cast<std::int64_t>(found.whole.rows.size());
-  std::cout << console::printable(output) << ": " << sweep::counted(num_rows, "whole row") << '\n';
+  campaign::write(found, output);
+  const auto num_rows = static_cast<std::int64_t>(found.table.rows.size());
+  std::cout << console::printable(output) << ": " << sweep::counted(num_rows, "whole row");
+  if (found.num_from_journal > 0)
+    std::cout << ", results of " << found.num_from_journal << " from the journal";
+  if (!found.snapshots.empty())
+    std::cout << ", " << sweep::counted(static_cast<std::int64_t>(found.snapshots.size()), "snapshot");
+  std::cout << '\n';
   return console::exit_success;
 }
 

@@ -153,13 +153,37 @@ bool has_check_sums(std::string_view version) {
   return std::ranges::find(without, version) == without.end();
 }
 
+/// A line of the attribute with checksums; nothing if it does not look like one.
+std::optional<std::pair<std::string, std::uint32_t>> check_sum_line(const std::string& line) {
+  constexpr std::size_t num_digits = 8;
+  if (line.size() <= num_digits + 1) return std::nullopt;
+  std::uint32_t sum = 0;
+  const char* end = line.data() + num_digits;
+  if (std::from_chars(line.data(), end, sum, 16).ptr != end) return std::nullopt;
+  return std::pair(line.substr(num_digits + 1), sum);
+}
+
+/// An attribute's text: of these the one that was written, as its checksum says, if it is damaged now.
+template <class Texts>
+std::string text_as_written(hid_t file, const std::string& name, const Texts& candidates) {
+  std::string text = read_attribute(file, name);
+  if (std::ranges::find(candidates, text) != candidates.end()) return text;
+  std::istringstream lines(read_attribute(file, list_name));
+  for (std::string line; std::getline(lines, line);)
+    if (const auto listed = check_sum_line(line); listed && listed->first == name)
+      for (const std::string_view candidate : candidates)
+        if (check_sum(candidate) == listed->second) return std::string(candidate);
+  return text;
+}
+
 /// Of an open file that is one of our sweeps. @throws Error if it is not
 std::string version_of(hid_t file, const std::string& path) {
-  if (read_attribute(file, "kind") != file_kind || H5Lexists(file, table_name, H5P_DEFAULT) <= 0)
+  const std::array<std::string_view, 1> kinds = {file_kind};
+  if (text_as_written(file, "kind", kinds) != file_kind || H5Lexists(file, table_name, H5P_DEFAULT) <= 0)
     throw Error("cannot read " + path +
                 " (an HDF5 file, but not one of clogsweep's tables of runs); give a file written "
                 "by clogsweep --output");
-  std::string version = read_attribute(file, "format_version");
+  std::string version = text_as_written(file, "format_version", readable_versions);
   if (std::ranges::find(readable_versions, version) == readable_versions.end())
     throw Error(fmt::format(
         "cannot read {} (format version {}, this program reads {} to {}); use the program that wrote it",
@@ -202,16 +226,6 @@ std::vector<std::byte> packed_rows(hid_t table, const RowLayout& layout, std::si
       refuse_table(path, fmt::format("rows from {} on cannot be read", first));
   });
   return packed;
-}
-
-/// A line of the attribute with checksums; nothing if it does not look like one.
-std::optional<std::pair<std::string, std::uint32_t>> check_sum_line(const std::string& line) {
-  constexpr std::size_t num_digits = 8;
-  if (line.size() <= num_digits + 1) return std::nullopt;
-  std::uint32_t sum = 0;
-  const char* end = line.data() + num_digits;
-  if (std::from_chars(line.data(), end, sum, 16).ptr != end) return std::nullopt;
-  return std::pair(line.substr(num_digits + 1), sum);
 }
 
 CheckSums read_check_sums(hid_t file, std::size_t num_rows, const std::string& path) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "clog/campaign/salvage.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/store/journal.hpp"
 #include "clog/store/run_table.hpp"
@@ -267,6 +268,45 @@ TEST_F(LedgerTest, RefusesAJournalOfRunsWithOtherSettings) {
   std::filesystem::remove(journal);
   left_by(settings_, model_version - 1);
   EXPECT_NE(refusal([&] { open(); }).find("is of another sweep: model version"), std::string::npos);
+}
+
+TEST_F(LedgerTest, SalvagesResultsAndSnapshotsThatOnlyItsJournalHas) {
+  {
+    Ledger ledger = open();
+    ledger.start(0, 0);
+    ledger.report(report(ledger, 0, RunStatus::running, 1, snapshot_));
+    ledger.report(report(ledger, 0, RunStatus::clogged, 2));
+    ledger.start(1, 0);
+    ledger.report(report(ledger, 1, RunStatus::running, 3, snapshot_));
+  }
+  EXPECT_TRUE(store::read_sweep(path()).rows.empty()) << "it was killed before it published";
+  const Salvage found = salvage(path());
+  EXPECT_EQ(found.num_from_journal, 1);
+  EXPECT_TRUE(found.damage.empty());
+  const std::string copy = (folder_ / "copy.h5").string();
+  write(found, copy);
+  const store::SweepFile file = store::read_sweep(copy);
+  ASSERT_EQ(file.rows.size(), 2u);
+  EXPECT_EQ(file.rows[0].distance, 2);
+  EXPECT_EQ(file.rows[1].status, RunStatus::interrupted);
+  Ledger resumed(copy, plan_, settings_, {{"config", settings_.to_config(false)}}, 2, 1);
+  EXPECT_EQ(resumed.tasks_left(), std::vector<std::int64_t>{1});
+  EXPECT_EQ(resumed.start(1, 0).snapshot, snapshot_);
+}
+
+TEST_F(LedgerTest, SalvagesNoRecordOfAnotherSweep) {
+  open().finish();
+  sweep::Settings settings = settings_;
+  settings.set("max-time", "17");
+  store::Journal other{store::Place(store::journal_path(path()))};
+  sweep::RunRow row = sweep::describe(sweep::Plan(settings).task(0));
+  row.task = 0;
+  row.clogged_by = sweep::FoundBy::nothing;
+  row.mechanism = ClogMechanism::none;
+  other.add(row, {});
+  const Salvage found = salvage(path());
+  EXPECT_TRUE(found.table.rows.empty());
+  EXPECT_EQ(found.damage, std::vector<std::string>{"of its journal, 1 record of another sweep"});
 }
 
 TEST_F(LedgerTest, NamesTheFileWhoseConfigItCannotRead) {

@@ -80,6 +80,35 @@ class Damage(ProgramTest):
                          for name in ("whole.h5", "undamaged.h5"))
         pandas.testing.assert_frame_equal(again, before, check_exact=True)
 
+    def test_a_sweep_resumes_whichever_attribute_was_damaged(self):
+        undamaged = self.file.read_bytes()
+        with h5py.File(self.file) as file:
+            texts = {name: file.attrs[name] for name in file.attrs}
+        self.assertLessEqual({"kind", "format_version", "config", "checksums"}, set(texts))
+        for name, text in texts.items():
+            encoded = text if isinstance(text, bytes) else text.encode()
+            if not encoded:
+                continue
+            with self.subTest(attribute=name), h5py.File(self.file, "r+") as file:
+                flipped = bytearray(encoded)
+                flipped[len(encoded) // 2] ^= 1
+                file.attrs.modify(name, bytes(flipped))
+            with self.subTest(attribute=name):
+                self.assertIn("is not as it was written", self.succeed("clogsweep", "salvage", "s.h5", "--output", "whole.h5").stdout)
+                self.assertEqual(len(table(self.folder / "whole.h5")), 6)
+                self.succeed("clogsweep", "verify", "whole.h5")
+                self.succeed("clogsweep", *SETTINGS[:-1], "whole.h5")
+                self.assertIn("6 rows of 6 runs, all whole", self.succeed("clogsweep", "verify", "whole.h5").stdout)
+                pandas.testing.assert_frame_equal(table(self.folder / "whole.h5"), self.rows)
+            (self.folder / "whole.h5").unlink(missing_ok=True)
+            self.file.write_bytes(undamaged)
+
+    def test_a_salvaged_file_without_config_is_not_taken_over_by_another_sweep(self):
+        with h5py.File(self.file, "r+") as file:
+            file.attrs.modify("config", "line-tension = 3\n")
+        self.succeed("clogsweep", "salvage", "s.h5", "--output", "whole.h5")
+        self.refuse("clogsweep", *[word.replace("=60", "=70") for word in SETTINGS[:-1]], "whole.h5", words=["other settings: max-time=70 (there 60)"])
+
     def test_copies_of_other_programs_are_read_with_a_word(self):
         with h5py.File(self.file) as file, h5py.File(self.folder / "copy.h5", "w") as copy:
             file.copy("runs", copy)

@@ -9,6 +9,7 @@ import random
 import re
 import shutil
 import signal
+import struct
 import subprocess
 import time
 import unittest
@@ -174,6 +175,19 @@ class Resumed(SweepTest):
         self.assertTrue((self.folder / "s.h5.journal").exists(), "a snapshot is still needed")
         done = self.succeed("clogsweep", *SWEEP, ranks=2)
         self.assertIn("1 goes on where it was", done.stderr)
+
+    def test_salvage_keeps_what_only_the_journal_of_a_killed_sweep_has(self):
+        self.succeed("clogsweep", *SWEEP[:-1], "whole.h5", ranks=2)
+        self.stop_under_way(SWEEP)
+        interrupted = table(self.folder / "s.h5")
+        distance = interrupted.distance.max()
+        content = (self.folder / "s.h5").read_bytes()
+        (self.folder / "s.h5").write_bytes(content.replace(struct.pack("<d", distance), struct.pack("<d", 16 * distance)))
+        done = self.succeed("clogsweep", "salvage", "s.h5", "--output", "salvaged.h5")
+        self.assertRegex(done.stdout, r"salvaged.h5: \d+ whole rows?, 1 snapshot\n")
+        done = self.succeed("clogsweep", *SWEEP[:-1], "salvaged.h5", ranks=2)
+        self.assertIn("1 goes on where it was", done.stderr)
+        self.check_equal("salvaged.h5", "whole.h5")
 
     def test_a_journal_without_its_table_is_refused(self):
         self.stop_under_way(SWEEP)

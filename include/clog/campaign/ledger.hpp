@@ -95,6 +95,7 @@ class Ledger {
   void keep_circles(const store::SweepFile& file);
   store::SweepFile read_table();
   void take_over(const store::SweepFile& file, const sweep::Settings& settings);
+  std::string settings_that_differ(const store::SweepFile& file, const sweep::Settings& settings) const;
   void refuse_foreign(const std::vector<Entry>& entries, const std::unordered_map<std::string, Entry>& known,
                       const sweep::Settings& settings) const;
   void find_tasks(std::unordered_map<std::string, Entry> known);

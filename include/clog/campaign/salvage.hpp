@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "clog/store/journal.hpp"
+#include "clog/store/run_table.hpp"
+
+namespace clog::campaign {
+
+/// What is whole of a damaged sweep file and of the journal beside it.
+struct Salvage {
+  store::SweepFile table;                        ///< with the results that only the journal had
+  std::vector<store::Journal::Entry> snapshots;  ///< of unfinished runs
+  std::int64_t num_from_journal = 0;             ///< rows of the table
+  std::vector<std::string> damage;               ///< a sentence each
+};
+
+/// Reads, and changes nothing. @throws Error if the table is missing, not ours, or nothing of it can be read
+Salvage salvage(const std::string& path);
+/// Makes the table, and a journal beside it if there are snapshots. @throws Error if the table exists
+void write(const Salvage& salvage, const std::string& path);
+
+}  // namespace clog::campaign

@@ -1,0 +1,95 @@
+#include "clog/campaign/salvage.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+
+#include "clog/campaign/growth.hpp"
+#include "clog/campaign/stored_sweep.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/sweep/row_check.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::campaign {
+namespace {
+
+/// What tells whether a record is of this sweep; nothing if its config is lost.
+std::optional<FixedValues> fixed_values(const std::string& path, const store::SweepFile& table) try {
+  return FixedValues(stored_plan(path, table), stored_settings(path, table.provenance));
+} catch (const Error&) {
+  return std::nullopt;
+}
+
+/// Records that are whole and of this sweep, oldest first.
+std::vector<store::Journal::Entry> records_of(const std::string& path, Salvage& found) {
+  const std::string journal = store::journal_path(path);
+  std::vector<store::Journal::Entry> records;
+  try {
+    const auto contents = store::Journal::look(journal);
+    if (!contents) return {};
+    records = contents->entries;
+    if (contents->num_unreadable > 0)
+      found.damage.push_back(
+          fmt::format("of its journal, {} damaged", sweep::counted(contents->num_unreadable, "record")));
+  } catch (const Error& error) {
+    found.damage.push_back(fmt::format("its journal is of no use: {}", error.what()));
+    return {};
+  }
+  const std::optional<FixedValues> fixed = fixed_values(path, found.table);
+  const std::size_t num_foreign = std::erase_if(records, [&](const store::Journal::Entry& record) {
+    return !sweep::fault_of(record.row).empty() || (fixed && !fixed->differing_keys(record.row).empty());
+  });
+  if (num_foreign > 0)
+    found.damage.push_back(fmt::format("of its journal, {} of another sweep",
+                                       sweep::counted(static_cast<std::int64_t>(num_foreign), "record")));
+  return records;
+}
+
+}  // namespace
+
+Salvage salvage(const std::string& path) {
+  store::Examination examined = store::examine_sweep(path);
+  Salvage found;
+  found.table = std::move(examined.whole);
+  found.damage = std::move(examined.damage);
+  std::vector<sweep::RunRow>& rows = found.table.rows;
+  std::unordered_map<std::string, std::size_t> places;
+  for (std::size_t i = 0; i < rows.size(); ++i) places.emplace(sweep::identity(rows[i]), i);
+  std::unordered_map<std::string, store::Journal::Entry> unfinished;
+  for (store::Journal::Entry& record : records_of(path, found)) {
+    const std::string run = sweep::identity(record.row);
+    const auto [place, is_new] = places.try_emplace(run, rows.size());
+    if (is_new)
+      rows.push_back(record.row);
+    else if (sweep::is_result(rows[place->second].status))
+      continue;  // the journal lacks the last record
+    else
+      rows[place->second] = record.row;
+    const bool is_unfinished = sweep::is_unfinished(record.row.status);
+    if (!is_unfinished) ++found.num_from_journal;
+    if (is_unfinished && !record.snapshot.empty())
+      unfinished.insert_or_assign(run, std::move(record));
+    else
+      unfinished.erase(run);
+  }
+  for (sweep::RunRow& row : rows)
+    if (row.status == RunStatus::running) row.status = RunStatus::interrupted;
+  std::ranges::stable_sort(rows, {}, &sweep::RunRow::task);
+  for (auto& [run, record] : unfinished) found.snapshots.push_back(std::move(record));
+  return found;
+}
+
+void write(const Salvage& salvage, const std::string& path) {
+  store::refuse_existing(path);
+  const store::Place place(path);
+  store::publish_sweep(place, salvage.table.rows, salvage.table.provenance, salvage.table.circles);
+  if (salvage.snapshots.empty()) return;
+  store::Journal journal(store::journal_place(place), &place);
+  for (const auto& [row, snapshot] : salvage.snapshots) journal.add(row, snapshot);
+  journal.flush();
+}
+
+}  // namespace clog::campaign
