@@ -49,7 +49,7 @@ def first_minimum(shop: Workshop) -> Finding:
     return Finding(by_tolerance(h, -0.25, 0.1), f"{h:.2f}")
 
 
-def slowest_before(way: np.ndarray) -> float:
+def slowest_before(way: Any) -> float:
     """Where a droplet is slowest on the last diameter before the orifice; farther away it starts, from rest."""
     before = way[(way["h"] > -1) & (way["h"] < 0)]
     return float(before["h"][np.argmin(before["speed_ratio"])])

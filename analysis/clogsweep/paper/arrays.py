@@ -16,9 +16,9 @@ from ..labels import AXES, said
 from ..reading import stored, trajectory
 from ..tools import rounded
 from ..tools.errors import UserError
-from ..tools.hints import Column, Group
+from ..tools.hints import Group
 from .captions import describe
-from .plate import Plate, figure, interface_of
+from .plate import Plate, figure
 from .workshop import Workshop
 
 if TYPE_CHECKING:

@@ -74,7 +74,7 @@ def lengths_by_friction(shop: Workshop) -> Plate:
                 shift = style.side_by_side(index * len(meshes) + mesh, len(families) * len(meshes), places)
                 line: str | tuple[int, tuple[int, ...]] = "-" if vertices == meshes[-1] else (0, (4, 1 + mesh))
                 draw_lengths(axes, [group["line_tension"] * shift for group in curve], curve, index,
-                                   f"{said(columns['friction'], friction)}, $N_v = {vertices}$", line)
+                             f"{said(columns['friction'], friction)}, $N_v = {vertices}$", line)
                 data += numbers(curve, f"friction {friction:g}, gap {gap:g}", **of_each(curve, "friction", *HOLDS))
         finish(axes, places, members, f"{interface_of(groups[0]['preset'])}\n{said(columns['obstacle_gap'], gap)}")
         axes.set_xlabel(AXES["line_tension"])
