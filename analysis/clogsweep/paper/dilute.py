@@ -116,7 +116,7 @@ def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
 
 
 @figure("6c", "clogging length against line tension for four smallest gaps, dilute arrays: what walls hold, on two meshes",
-        ["clogging-robust", "clogging-robust-mesh", "clogging-friction", "clogging-friction-mesh", "clogging-elastic", "clogging-elastic-mesh"], "35 min")
+        ["clogging-robust", "clogging-robust-mesh", "clogging-friction", "clogging-friction-mesh", "clogging-elastic", "clogging-elastic-mesh"], "90 min")
 def lengths_of_polygons(shop: Workshop) -> Plate:
     return families(shop, FAMILIES, True)
 
@@ -125,7 +125,7 @@ FILLINGS = [Family("clogging-elastic", "the same density in every array"), Famil
 
 
 @figure("6c-filling", "6c without friction at the same density for every gap, and at the same share of the saturated density",
-        ["clogging-elastic", "clogging-filling"], "15 min")
+        ["clogging-elastic", "clogging-filling"], "40 min, shared with 6c")
 def lengths_at_one_filling(shop: Workshop) -> Plate:
     return families(shop, FILLINGS, False)
 
