@@ -48,6 +48,10 @@ Verification verify(const std::string& path) {
   if (found.damage.empty() && has_config) runs = stored_num_runs(path, file, stored_plan(path, file));
   Verification result{.findings = found.damage};
   for (std::string& fault : faults_of(file.rows)) result.findings.push_back(std::move(fault));
+  if (found.is_refused_by_others && found.damage.empty())
+    result.findings.emplace_back(
+        "a checksum of HDF5's own is damaged: h5py, pandas and other readers refuse the file; `clogsweep "
+        "salvage` makes one that they read");
   result.num_faults = static_cast<std::int64_t>(result.findings.size());
   const auto num_rows = static_cast<std::int64_t>(file.rows.size());
   if (result.num_faults > 0)

@@ -1,11 +1,16 @@
 #include "clog/host/limits.hpp"
 
+#include <fmt/core.h>
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <fstream>
 #include <limits>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "clog/core/tools/error.hpp"
 
 namespace clog::host {
 namespace {
@@ -69,6 +74,18 @@ double available_memory(const fs::path& root) {
     available = std::min(available, std::max(0.0, *limit - *used + given_up));
   }
   return available;
+}
+
+void require_open_files() {
+  constexpr rlim_t least = 32, wanted = 1024;
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= wanted) return;
+  limit.rlim_cur = std::min(limit.rlim_max, wanted);
+  setrlimit(RLIMIT_NOFILE, &limit);
+  if (getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < least)
+    throw Error(fmt::format(
+        "cannot start MPI (this shell allows {} open files, {} are needed); raise the limit: ulimit -n {}",
+        limit.rlim_cur, least, wanted));
 }
 
 }  // namespace clog::host

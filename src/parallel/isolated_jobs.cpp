@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -12,11 +13,11 @@
 #include <fstream>
 #include <optional>
 #include <span>
-#include <system_error>
 #include <tuple>
 #include <utility>
 
 #include "bytes.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/sweep/messages.hpp"
 #include "socket.hpp"
 
@@ -263,7 +264,7 @@ class IsolatedJobs::IsolatedJob final : public Job {
     last_.snapshot.clear();
     last_.row.status = RunStatus::failed;
     last_.row.message = reason;
-    last_.row.wall_seconds = std::chrono::duration<double>(Clock::now() - begin_).count();
+    last_.row.wall_seconds = std::max(0.0, std::chrono::duration<double>(Clock::now() - begin_).count());
   }
 };
 
@@ -271,7 +272,9 @@ IsolatedJobs::IsolatedJobs(const Describe& describe) : describe_(describe) {
   auto [mine, theirs] = Socket::pair();
   const pid_t self = getpid();
   helper_ = fork();
-  if (helper_ < 0) throw std::system_error(errno, std::generic_category(), "cannot start a process");
+  if (helper_ < 0)
+    throw Error(std::string("cannot start a process (") + std::strerror(errno) +
+                "); end other programs, or raise the limit on processes (ulimit -u)");
   if (helper_ == 0) {
     depend_on_parent(self);
     mine.close();

@@ -22,6 +22,7 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/memory.hpp"
 #include "clog/host/examination.hpp"
+#include "clog/host/limits.hpp"
 #include "clog/parallel/communicator.hpp"
 #include "clog/parallel/isolated_jobs.hpp"
 #include "clog/store/run_table.hpp"
@@ -149,6 +150,7 @@ int main(int argc, char** argv) {
   std::optional<parallel::IsolatedJobs> isolated;
   const int exit_code = cli::run_program(program, [&] {
     require_memory("start MPI", memory_of_mpi);
+    host::require_open_files();
     isolated.emplace(conduct::assigned_jobs);  // before MPI begins
     return console::exit_success;
   });

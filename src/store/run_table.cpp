@@ -263,6 +263,17 @@ PackedTable read_table(hid_t file, RowLayout::Columns expected, const std::strin
   return {std::move(*layout), std::move(bytes), num_rows};
 }
 
+/// Does the library refuse a dataset when it compares its own checksums, too?
+bool is_refused(hid_t file, const char* name) {
+  if (H5Lexists(file, name, H5P_DEFAULT) <= 0) return false;  // of an older format
+  const Dataset dataset(H5Dopen2(file, name, H5P_DEFAULT));
+  const Type type(H5Dget_type(dataset));
+  std::vector<std::byte> bytes(
+      static_cast<std::size_t>(H5Sget_simple_extent_npoints(Space(H5Dget_space(dataset)))) *
+      H5Tget_size(type));
+  return !bytes.empty() && H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) < 0;
+}
+
 /// Rows that are as they were written go to the whole, the others to the damage.
 void compare_rows(const PackedTable& table, const CheckSums& sums, Examination& found) {
   for (std::size_t i = 0; i < table.num_rows; ++i) {
@@ -318,6 +329,8 @@ Examination examine(std::vector<std::byte>& image, Seal seal, const std::string&
       found.whole.rows.push_back(table.layout.unpack(table.row(i).data()));
     found.whole.provenance = read_attributes(file, path);
   }
+  if (seal != Seal::whole)
+    found.is_refused_by_others = is_refused(file, table_name) || is_refused(file, sums_name);
   for (const char* ours : {"kind", "format_version"})
     std::erase_if(found.whole.provenance, [&](const auto& attribute) { return attribute.first == ours; });
   if (seal == Seal::broken && found.damage.empty())

@@ -153,16 +153,14 @@ const std::vector<Key>& keys() {
 
 void Key::apply(RunParameters& run, const std::string& value) const {
   if (!parameter || kind == ValueKind::file) return;  // Settings::set has set the keys behind a preset
-  if (kind == ValueKind::word)
-    parameter->set(run, value);
-  else if (std::find(words.begin(), words.end(), value) != words.end())
-    parameter->set(run, {});
-  else if (kind == ValueKind::integer)
-    parameter->set(run, std::int64_t{to_integer(value)});
-  else if (value.ends_with('%'))
-    parameter->set(run, value);
-  else
-    parameter->set(run, to_number(value));
+  const auto parsed = [&]() -> ParameterValue {
+    if (kind == ValueKind::word) return value;
+    if (std::find(words.begin(), words.end(), value) != words.end()) return {};
+    if (kind == ValueKind::integer) return std::int64_t{to_integer(value)};
+    if (value.ends_with('%')) return value;
+    return to_number(value);
+  };
+  parameter->set(run, parsed());
 }
 
 std::vector<std::string> meant_names(std::string_view word, const std::vector<std::string>& names) {

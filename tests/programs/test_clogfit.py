@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import unittest
+import zlib
 
 import h5py
 import numpy as np
@@ -512,6 +513,7 @@ class Fit(ProgramTest):
             file.copy("runs", copy)
             copy.attrs.update(file.attrs)
             copy.attrs["format_version"] = np.bytes_("99")
+            copy.attrs["checksums"] = np.bytes_(f"{zlib.crc32(b'99'):08x} format_version\n")
         whole = (self.folder / "sweep.h5").read_bytes()
         (self.folder / "torn.h5").write_bytes(whole[: len(whole) // 2])
         for arguments, words in [

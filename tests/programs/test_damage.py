@@ -139,6 +139,29 @@ class Damage(ProgramTest):
         copy.write_bytes(content[:content.rindex(b"\nclogsweep seal")])
         return copy
 
+    def test_verify_tells_when_only_other_readers_refuse_a_copy(self):
+        """HDF5's checksum of a chunk is of its padding, too; ours are of rows and attributes."""
+        copy = self.copied()
+        whole = copy.read_bytes()
+        with h5py.File(copy) as file:
+            chunks = {name: file[name].id.get_chunk_info(0) for name in ("runs", "row_checksums")}
+            num_rows, row_size = len(file["runs"]), file["runs"].dtype.itemsize
+        self.assertIn("all whole", self.succeed("clogsweep", "verify", "copy.h5").stdout)
+        last = {name: chunk.byte_offset + chunk.size - 1 for name, chunk in chunks.items()}  # of the checksum
+        for place in (*last.values(), chunks["runs"].byte_offset + num_rows * row_size):
+            content = bytearray(whole)
+            content[place] ^= 1
+            copy.write_bytes(content)
+            with self.subTest(place=place):
+                with h5py.File(copy) as file, self.assertRaises(OSError):
+                    [file[name][:] for name in chunks]
+                verified = self.run_program("clogsweep", "verify", "copy.h5")
+                self.assertEqual(verified.returncode, 1)
+                self.assertIn("h5py, pandas and other readers refuse the file; `clogsweep salvage` makes one", verified.stdout)
+                self.succeed("clogsweep", "salvage", "copy.h5", "--output", "whole.h5")
+                pandas.testing.assert_frame_equal(table(self.folder / "whole.h5"), self.rows)
+                (self.folder / "whole.h5").unlink()
+
     def test_python_does_not_read_a_copy_whose_description_is_damaged(self):
         """Checksums are of bytes: other names, types or places would make other numbers of them."""
         copy = self.copied()

@@ -2,13 +2,49 @@
 
 import errno
 import os
+import resource
+import shutil
 import stat
 import struct
+import subprocess
 import unittest
 
-from support import LONGEST, QUICK, SLOW, SweepTest, table
+from support import BIN, LONGEST, QUICK, SLOW, SweepTest, table
 
 OWN = ["obstacle-layout=file", "box=10", "vertices=64", "max-time=30"]
+
+
+class Limits(SweepTest):
+    """Limits of a shell or batch system: one line that names them."""
+
+    def test_too_few_open_files(self):
+        for most in (8, 10, 12, 18):
+            with self.subTest(most=most):
+                done = self.under(resource.RLIMIT_NOFILE, (most, most))
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertEqual(done.stderr, f"clogsweep: cannot start MPI (this shell allows {most} open files, 32 are needed); raise the limit: ulimit -n 1024\n")
+        done = self.under(resource.RLIMIT_NOFILE, (10, 4096))
+        self.assertEqual(done.returncode, 0, done.stderr)  # it raises the limit itself
+
+    def test_too_few_processes(self):
+        done = self.under(resource.RLIMIT_NPROC, (1, 1))
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("clogsweep: cannot start a process (Resource temporarily unavailable); end other programs, or raise the limit", done.stderr)
+        self.assertEqual(done.stderr.count("\n"), 1)
+
+    def under(self, what, limits):
+        """Root has no limit on processes: then it is somebody else who runs a copy of the program."""
+        program = shutil.copy(BIN / "clogsweep", self.folder)
+        os.chmod(self.folder, 0o777)
+
+        def restrict():
+            if os.geteuid() == 0:
+                os.setgroups([])
+                os.setgid(65534)
+                os.setuid(65534)
+            resource.setrlimit(what, limits)
+
+        return subprocess.run([program, *QUICK, "line-tension=1", "seeds=1", "--output", "s.h5"], cwd=self.folder, capture_output=True, text=True, preexec_fn=restrict)
 
 
 class Names(SweepTest):

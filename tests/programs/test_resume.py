@@ -318,12 +318,21 @@ class Resumed(SweepTest):
     def test_a_config_that_cannot_be_read_is_said_to_be_the_file_s(self):
         keys = [*QUICK, "seeds=1", "--output", "s.h5"]
         self.succeed("clogsweep", *keys)
-        for text in ("line-tension = many", "line-tensinn = 1", "line-tension - 1", ""):
+        for text in ("line-tension = many", "line-tensinn = 1", "line-tension - 1"):
             stored_rows.change_attribute(self.folder / "s.h5", "config", text)
             for command in [["status", "s.h5"], ["verify", "s.h5"], keys]:
                 with self.subTest(text=text, command=command[0]):
                     self.refuse("clogsweep", *command, words=["cannot read s.h5 (its attribute config: "])
             self.assertIn("the same bits", self.succeed("clogsweep", "replay", "s.h5", 0).stdout, "the row says all of its run")
+
+    def test_a_config_that_is_missing_is_restored_by_the_sweeps_own_command(self):
+        keys = [*QUICK, "seeds=1", "--output", "s.h5"]
+        self.succeed("clogsweep", *keys)
+        stored_rows.change_attribute(self.folder / "s.h5", "config", "")
+        self.refuse("clogsweep", "status", "s.h5", words=["its attribute config: it is missing; the sweep's own command restores it"])
+        self.assertIn("its config is missing, the sweep's own command restores it", self.succeed("clogsweep", "verify", "s.h5").stdout)
+        self.succeed("clogsweep", *keys)
+        self.assertIn("1 of 1 run", self.succeed("clogsweep", "status", "s.h5").stdout)
 
     def test_other_physics_is_refused_by_name(self):
         self.succeed("clogsweep", "vertices=64", "box=20", "max-time=20", "seeds=1", "--output", "s.h5")

@@ -17,4 +17,9 @@ double granted_cores(const std::filesystem::path& root = "/");
 /// @param root  holds proc and sys
 double available_memory(const std::filesystem::path& root = "/");
 
+/// Raises the limit on open files if it is low, as far as that is allowed. MPI needs about twenty, and dies
+/// of fewer with a crash or messages of its own.
+/// @throws Error if it stays too low
+void require_open_files();
+
 }  // namespace clog::host

@@ -63,6 +63,9 @@ std::string caution(const std::string& path, const SweepFile& file);
 struct Examination {
   SweepFile whole;
   std::vector<std::string> damage;  ///< a sentence each
+  /// HDF5 has checksums of its own: is there one that does not agree, so that h5py and others refuse the
+  /// file?
+  bool is_refused_by_others = false;
 };
 /// @throws Error if the file is missing, not ours, or so damaged that nothing can be read
 Examination examine_sweep(const std::string& path);
