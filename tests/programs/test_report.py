@@ -82,7 +82,7 @@ class Browser(Analysis):
 
 
 class Lengths(Browser):
-    KEYS = [*SMALL, "max-time=200", "line-tension=0.1,0.5,3", "obstacle-gap=0.3,0.4", "seeds=1..4"]
+    KEYS = [*SMALL, "max-time=200", "line-tension=0.1,0.7,3", "obstacle-gap=0.3,0.4", "seeds=1..4"]
 
     def setUp(self):
         super().setUp()
