@@ -15,7 +15,7 @@ COMMANDS = {
     "agreement": "the statements of the article against what comes out here",
     "report": "one page of HTML about a sweep, as clogfit report",
     "poster": "one page of a sweep to be printed",
-    "clogging-length": "the clogging length over what a sweep varies",
+    "clogging-length": "the clogging length against what a sweep varies",
     "dwell": "the same over the time after which a droplet that stands counts as clogged",
     "clogs": "the clogs of a sweep on one sheet",
     "predict": "the clogging length of stiff droplets in an array in which none has run",

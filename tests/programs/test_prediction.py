@@ -1,4 +1,4 @@
-"""Clogging lengths that are foretold from droplets on two obstacles, where the answer is known on paper."""
+"""Clogging lengths that are predicted from droplets on two obstacles, where the answer is known on paper."""
 
 import math
 import pathlib

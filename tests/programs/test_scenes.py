@@ -56,9 +56,9 @@ class BreakUp(Analysis):
         self.succeed("clogsweep", *self.KEYS, "line-tension=0.066,0.07,0.08,0.1", "--output", "s.h5")
         wider = 0.1
         self.succeed("clogsweep", *self.KEYS[:-1], "line-tension=0.066,0.07,0.08,0.1", f"break-up-neck={wider}", "--output", "t.h5")
-        foretold = [row.thinnest_neck < wider for row in read_rows(self.folder / "s.h5")]
-        self.assertEqual([row.status == "broken" for row in read_rows(self.folder / "t.h5")], foretold)
-        self.assertEqual(set(foretold), {True, False})
+        predicted = [row.thinnest_neck < wider for row in read_rows(self.folder / "s.h5")]
+        self.assertEqual([row.status == "broken" for row in read_rows(self.folder / "t.h5")], predicted)
+        self.assertEqual(set(predicted), {True, False})
 
     def test_the_picture_of_collisions_closes_in_on_the_threshold(self):
         done = self.draw("collision", "--output", "c", "--programs", BIN, "--offsets", "0.1,0.4", "vertices=64")

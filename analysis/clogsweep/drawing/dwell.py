@@ -1,4 +1,4 @@
-"""The clogging length over the time after which a droplet that has not moved counts as clogged."""
+"""The clogging length against the time after which a droplet that has not moved counts as clogged."""
 
 from collections.abc import Sequence
 

@@ -65,7 +65,7 @@ def drawn_columns(groups: Groups) -> dict[str, str]:
 
 
 def draw_curves(axes: Axes, groups: Groups, column: str) -> None:
-    """One point for each droplet; a cross is one that clogged in a channel, an open marker one that was under way at the end."""
+    """One point for each droplet; a cross is one that clogged in a channel, a hollow marker one that was in progress at the end."""
     kind = kind_of(groups)
     markers = {kind.goal: {"marker": "o"}, "flowing": {"marker": "o", "markerfacecolor": "white"}, "broken": {"marker": "^"}}
     for index, (label, members) in enumerate(groups.curves()):

@@ -296,7 +296,7 @@ def perimeter_springs(shop: Workshop) -> Plate:
         data += [{"preset": preset, "stiffness_ratio": x, "delta_v": y} for x, y in zip(places, found)]
     style.logarithmic_abscissa(axes)
     axes.set_ylim(bottom=0)
-    axes.set_xlabel(r"stiffness of the perimeter over line tension $K_l/\Gamma$")
+    axes.set_xlabel(r"perimeter stiffness divided by line tension $K_l/\Gamma$")
     axes.set_ylabel(r"$\Delta_v$ from the measured profile" if shop.profiles else r"$\Delta_v$ from the profile at $K_l/\Gamma = 10^{-4}$")
     style.grid(axes)
     axes.legend(frameon=False)
