@@ -72,6 +72,7 @@ std::vector<std::byte> read_all(int descriptor, const std::string& path) {
   std::size_t done = 0;
   while (done < bytes.size()) {
     const ssize_t got = pread(descriptor, bytes.data() + done, bytes.size() - done, static_cast<off_t>(done));
+    if (got < 0 && errno == EINTR) continue;
     check(got >= 0, "read", path);
     if (got == 0) break;  // somebody has shortened it meanwhile
     done += static_cast<std::size_t>(got);

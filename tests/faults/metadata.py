@@ -1,8 +1,10 @@
 """What describes the rows of a sweep's file is damaged, or the journal of one that was stopped."""
 
 import itertools
+import pathlib
 import shutil
 import subprocess
+import tempfile
 
 from damage import harm
 from launch import command, run
@@ -20,20 +22,21 @@ HOURS = [1e-4 * 1.5**n for n in range(16)]
 class Stopped:
     """A sweep that was stopped while one of its runs had a snapshot, and the table that it comes to."""
 
-    def __init__(self, folder):
-        self.folder = folder / "stopped"
+    def __init__(self, folder, settings=STOPPED):
+        self.folder = pathlib.Path(tempfile.mkdtemp(dir=folder))
+        self.settings = settings
         for hours in itertools.cycle(HOURS):
-            self.folder.mkdir()
             self.sweep(f"--max-hours={hours}")
             if self.has_snapshot():
                 break
             shutil.rmtree(self.folder)
+            self.folder.mkdir()
         self.files = {name: (self.folder / name).read_bytes() for name in (FILE, JOURNAL)}
         self.sweep()
         self.rows = stored_rows(self.folder / FILE)
 
     def sweep(self, *more):
-        subprocess.run(command("clogsweep", *STOPPED, *more), cwd=self.folder, stderr=subprocess.DEVNULL)
+        subprocess.run(command("clogsweep", *self.settings, *more), cwd=self.folder, stderr=subprocess.DEVNULL)
 
     def has_snapshot(self):
         journal = self.folder / JOURNAL
