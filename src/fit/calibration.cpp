@@ -12,9 +12,11 @@
 #include <nlopt.hpp>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <tuple>
 #include <type_traits>
+#include <vector>
 
 namespace clog::fit {
 namespace {
@@ -61,6 +63,26 @@ SpeedResiduals speed_residuals(const Profile& measured, const Profile& simulated
 
 double root_mean_square(const Eigen::VectorXd& residuals) {
   return residuals.norm() / std::sqrt(static_cast<double>(residuals.size()));
+}
+
+/// A_measured/A_simulated - 1 of every frame that has a shape.
+std::vector<double> shape_residuals(const Profile& measured, const Profile& simulated) {
+  std::vector<double> residuals;
+  for (const Frame& frame : measured) {
+    const std::optional<Frame> simulation = frame_at(simulated, frame.h);
+    if (std::isnan(frame.shape) || (simulation && std::isnan(simulation->shape))) continue;
+    residuals.push_back(simulation ? frame.shape / simulation->shape - 1 : never_reached);
+  }
+  return residuals;
+}
+
+/// Of successive values about zero.
+double serial_correlation(std::span<const double> values) {
+  constexpr std::size_t fewest = 8;
+  if (values.size() < fewest) return undefined;
+  const double squares = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+  const double products = std::inner_product(values.begin() + 1, values.end(), values.begin(), 0.0);
+  return squares > 0 ? products / squares : undefined;
 }
 
 /// The search's coordinates.
@@ -369,18 +391,18 @@ std::optional<Frame> frame_at(const Profile& profile, double h) {
 
 Deviation deviation(const Profile& measured, const Profile& simulated) {
   if (measured.empty()) throw std::invalid_argument("a profile needs frames");
-  double squares = 0;
-  int num_shapes = 0;
-  for (const Frame& frame : measured) {
-    const std::optional<Frame> simulation = frame_at(simulated, frame.h);
-    if (std::isnan(frame.shape) || (simulation && std::isnan(simulation->shape))) continue;
-    const double relative =
-        simulation ? (frame.shape - simulation->shape) / simulation->shape : never_reached;
-    squares += relative * relative;
-    ++num_shapes;
-  }
+  const std::vector<double> shapes = shape_residuals(measured, simulated);
+  const double squares = std::inner_product(shapes.begin(), shapes.end(), shapes.begin(), 0.0);
   return {root_mean_square(speed_residuals(measured, simulated).values),
-          num_shapes > 0 ? std::sqrt(squares / num_shapes) : undefined};
+          shapes.empty() ? undefined : std::sqrt(squares / static_cast<double>(shapes.size()))};
+}
+
+Deviation residual_correlation(const Profile& measured, const Profile& simulated) {
+  Profile frames = measured;
+  std::ranges::stable_sort(frames, {}, &Frame::h);
+  const Eigen::VectorXd speeds = speed_residuals(frames, simulated).values;
+  return {serial_correlation({speeds.data(), static_cast<std::size_t>(speeds.size())}),
+          serial_correlation(shape_residuals(frames, simulated))};
 }
 
 Calibration calibrate(const Profile& measured, const Simulation& simulate, const CalibrationRange& range,
@@ -391,11 +413,14 @@ Calibration calibrate(const Profile& measured, const Simulation& simulate, const
   const Place& place = found.minimum.best.place;
   const Place error = linearise(trier, place).errors;
   const double tension = std::exp(place.log_tension);
+  const Profile best = trier.profile(place);
   return {.line_tension = tension,
           .near_wall_drag = place.drag,
           .line_tension_error = tension * error.log_tension,
           .near_wall_drag_error = error.drag,
-          .deviation = deviation(measured, trier.profile(place)),
+          .deviation = deviation(measured, best),
+          .correlation = residual_correlation(measured, best),
+          .num_frames = static_cast<int>(measured.size()),
           .num_simulations = trier.num_simulations() + 1,
           .is_converged = found.minimum.is_converged,
           .is_at_bound = is_at_bound(place, range),

@@ -102,7 +102,7 @@ std::vector<Trial> read_trials(const std::vector<std::string>& files, const Prof
   for (const std::string& file : files) {
     MeasuredProfile measured = read_measured_profile(file, scales);
     if (!measured.origin.empty()) refuse_other_channel(file, measured.origin, simulated);
-    trials.push_back({file, std::move(measured.frames)});
+    trials.push_back({file, std::move(measured.frames), measured.origin.empty()});
   }
   return trials;
 }
@@ -136,6 +136,32 @@ std::vector<fit::Calibration> calibrate(const std::vector<Trial>& trials, const 
   return found;
 }
 
+namespace {
+
+/// Independent noise exceeds it once in seven hundred trials.
+double largest_correlation_of_noise(const fit::Calibration& found) { return 3 / std::sqrt(found.num_frames); }
+
+/// The best run's residuals are no noise: something else than Gamma and b_0 differs.
+void append_shape_of_residuals(const fit::Calibration& found, std::vector<std::string>& all) {
+  constexpr double mesh = 0.01;  // runs without noise differ by less, smoothly, in speed and in shape
+  const double largest = largest_correlation_of_noise(found);
+  const auto is_systematic = [&](double correlation, double deviation) {
+    return correlation > largest && deviation > mesh;
+  };
+  const bool is_speed = is_systematic(found.correlation.speed, found.deviation.speed);
+  const bool is_shape = is_systematic(found.correlation.shape, found.deviation.shape);
+  if (!is_speed && !is_shape) return;
+  all.push_back(fmt::format(
+      "the {} of successive frames differ alike from the best run (correlation {:.2f}; noise of {} frames "
+      "stays "
+      "below {:.2f}): no Gamma and b_0 explain this profile, and errors are too small; look at V_t "
+      "(terminal-speed, or --speed and --angle) first, then at orifice, wedge-angle and units",
+      is_speed ? "speeds" : "shapes", is_speed ? found.correlation.speed : found.correlation.shape,
+      found.num_frames, largest));
+}
+
+}  // namespace
+
 std::vector<std::string> warnings(const fit::Calibration& found) {
   std::vector<std::string> all;
   if (!found.is_converged)
@@ -153,6 +179,7 @@ std::vector<std::string> warnings(const fit::Calibration& found) {
   if (found.deviation.speed > good)
     all.emplace_back(
         "Delta_v is large: no simulated droplet moves like this one; look at --orifice, units, vertices");
+  append_shape_of_residuals(found, all);
   constexpr double near = 1.1;
   if (found.clogging_tension < near * found.line_tension)
     all.push_back(fmt::format("close to a clog: simulated droplets of Gamma = {:.4g} and more do not pass",

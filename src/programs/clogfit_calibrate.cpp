@@ -2,6 +2,7 @@
 
 #include <fmt/ostream.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <limits>
@@ -112,9 +113,23 @@ Experiment other_experiment(const cli::CommandLine& line, Experiment lab) {
   return lab;
 }
 
+std::string channel_text(const RunParameters& run) {
+  const ChannelParameters& channel = run.channel;
+  return fmt::format("orifice={} wedge-angle={} tip-radius={}", sweep::shortest(channel.orifice),
+                     sweep::shortest(channel.wedge_angle), sweep::shortest(channel.tip_radius));
+}
+
+/// Gamma hangs on the orifice; a file of clogrun says which it was.
+void require_channel(const std::vector<Trial>& trials, const sweep::Settings& settings) {
+  const bool is_stored = std::ranges::none_of(trials, &Trial::is_of_laboratory);
+  if (is_stored || settings.is_given("orifice")) return;
+  throw Error(
+      "missing orifice (the line tension that is found depends on the channel) give its width in droplet "
+      "diameters, e.g. orifice=0.8, and wedge-angle, tip-radius unless they are those of --help");
+}
+
 void print_text(const std::vector<Text>& files, const std::vector<fit::Calibration>& found,
-                const fit::Trials& all, const Experiment& lab, double terminal_speed,
-                const std::optional<Experiment>& other) {
+                const fit::Trials& all, const Experiment& lab, const std::optional<Experiment>& other) {
   std::size_t width = 7;
   for (const Text& file : files) width = std::max(width, file.size());
   fmt::print(std::cout, "{:{}}    Gamma*        +-  b_0/b_inf        +-   Delta_v   Delta_A\n", "profile",
@@ -134,7 +149,6 @@ void print_text(const std::vector<Text>& files, const std::vector<fit::Calibrati
                all.near_wall_drag_deviation);
   else
     std::cout << "\none trial: errors are from the scatter of its frames\n";
-  fmt::print(std::cout, "b_inf: V_t = {:.4g}\n", terminal_speed);
   if (lab.tilt > 0) fmt::print(std::cout, "g_exp = {:.3g} m/s^2\n", lab.gravity());
   if (!std::isnan(lab.interfacial_tension))
     fmt::print(std::cout, "Gamma_exp = {:.3g}, Gamma*/Gamma_exp = {:.3g}\n", lab.line_tension(),
@@ -150,7 +164,7 @@ nlohmann::ordered_json number(double value) {
 }
 
 void print_json(const std::vector<Text>& files, const std::vector<fit::Calibration>& found,
-                const fit::Trials& all, const Experiment& lab, double terminal_speed,
+                const fit::Trials& all, const Experiment& lab, const RunParameters& run,
                 const std::optional<Experiment>& other) {
   nlohmann::ordered_json trials = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < files.size(); ++i)
@@ -161,6 +175,8 @@ void print_json(const std::vector<Text>& files, const std::vector<fit::Calibrati
                       {"near_wall_drag_error", number(found[i].near_wall_drag_error)},
                       {"delta_v", found[i].deviation.speed},
                       {"delta_a", number(found[i].deviation.shape)},
+                      {"speed_correlation", number(found[i].correlation.speed)},
+                      {"shape_correlation", number(found[i].correlation.shape)},
                       {"converged", found[i].is_converged},
                       {"clogging_tension", number(found[i].clogging_tension)},
                       {"simulations", found[i].num_simulations},
@@ -173,7 +189,10 @@ void print_json(const std::vector<Text>& files, const std::vector<fit::Calibrati
                                      {"line_tension_deviation", number(all.line_tension_deviation)},
                                      {"near_wall_drag", all.near_wall_drag},
                                      {"near_wall_drag_deviation", number(all.near_wall_drag_deviation)},
-                                     {"terminal_speed", terminal_speed}};
+                                     {"orifice", run.channel.orifice},
+                                     {"wedge_angle", run.channel.wedge_angle},
+                                     {"tip_radius", run.channel.tip_radius},
+                                     {"terminal_speed", run.drag.terminal_speed}};
   if (lab.tilt > 0) document["gravity"] = lab.gravity();
   if (!std::isnan(lab.interfacial_tension)) document["line_tension_experiment"] = lab.line_tension();
   if (other) document["line_tension_scaled"] = laboratory::scaled_line_tension(all.line_tension, lab, *other);
@@ -201,10 +220,17 @@ int clogfit_calibrate(int argc, const char* const* argv) {
   const RunParameters usual = sweep::single_run(line.settings());
   const double terminal_speed = usual.drag.terminal_speed;
   const std::vector<Trial> trials = laboratory::read_trials(files, {lab.diameter, lab.terminal_speed}, usual);
+  require_channel(trials, line.settings());
+  if (format == "text")
+    fmt::print(std::cout, "channel: {}, V_t = {:.4g}\n\n", channel_text(usual), terminal_speed);
 
   console::catch_stop_signals();
   const std::vector<fit::Calibration> found = laboratory::calibrate(trials, line.settings());
-  (format == "json" ? print_json : print_text)(files, found, fit::combine(found), lab, terminal_speed, other);
+  const fit::Trials all = fit::combine(found);
+  if (format == "json")
+    print_json(files, found, all, lab, usual, other);
+  else
+    print_text(files, found, all, lab, other);
   return console::exit_success;
 }
 

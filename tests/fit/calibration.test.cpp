@@ -192,6 +192,20 @@ TEST(Calibrate, CountsTheFramesThatNoSimulationReaches) {
   EXPECT_GT(found.deviation.speed, 5);
 }
 
+TEST(ResidualCorrelation, IsThatOfNoiseOrOfAnotherShape) {
+  const Profile simulated = model(1, 0.1);
+  const Profile noisy = measured(1, 0.1, 0.02, 1);
+  const double most = 3 / std::sqrt(static_cast<double>(noisy.size()));
+  EXPECT_LT(std::abs(residual_correlation(noisy, simulated).speed), most);
+  Profile faster = noisy;  // its terminal speed is not what it was divided by
+  for (Frame& frame : faster) frame.speed *= 1.2;
+  EXPECT_GT(residual_correlation(faster, simulated).speed, 0.9);
+  std::ranges::reverse(faster);
+  EXPECT_GT(residual_correlation(faster, simulated).speed, 0.9) << "whatever the order of the frames";
+  faster.resize(7);
+  EXPECT_TRUE(std::isnan(residual_correlation(faster, simulated).speed));
+}
+
 TEST(Calibrate, RefusesTooFewFrames) {
   EXPECT_THROW(calibrate({{0, 1, 1}, {1, 1, 1}}, model), std::invalid_argument);
 }

@@ -58,6 +58,16 @@ class Calibrate(ProgramTest):
         self.assertGreater(trial["delta_v"], 0.2)
         self.assertTrue(any("Delta_v is large" in warning for warning in trial["warnings"]), trial["warnings"])
 
+    def test_a_wrong_terminal_speed_shows_in_the_shape_of_the_residuals(self):
+        h, v, shape = self.measure()
+        noisy = v * (1 + 0.02 * np.random.default_rng(5).standard_normal(len(v)))
+        self.write("right.csv", "\n".join(["h [sigma], v [v_t], A", *(f"{a:.5g},{b:.5g},{c:.5g}" for a, b, c in zip(h, noisy, shape))]))
+        self.write("wrong.csv", "\n".join(["h [sigma], v [v_t]", *(f"{a:.5g},{1.25 * b:.5g}" for a, b in zip(h, noisy))]))
+        told = self.succeed("clogfit", "calibrate", "right.csv", "wrong.csv", *CHANNEL, "terminal-speed=0.05").stdout
+        self.assertTrue(told.startswith("channel: orifice=0.9 wedge-angle=45 "), told)
+        self.assertRegex(told, r"note: wrong.csv: the speeds of successive frames differ alike .*look at V_t")
+        self.assertNotIn("note: right.csv", told)
+
     def test_it_finds_what_made_a_passage_close_to_a_clog(self):
         # Stiffer by 2 %, this droplet clogs; there Delta_v has narrow minima.
         line_tension, near_wall_drag = 1.0, 0.07
@@ -169,6 +179,7 @@ class Calibrate(ProgramTest):
             (["p.csv"], ["p.csv line 1", "--diameter"]),
             (["p.csv", "--diameter=2", "--speed=3mm/s"], ["--diameter=2", "has no unit"]),
             (["p.csv", "--diameter=-2mm", "--speed=3mm/s"], ["--diameter=-2mm", "positive"]),
+            (["p.csv", "--diameter=2mm", "--speed=3mm/s"], ["missing orifice", "orifice=0.8"]),
             (["p.csv", "--angle=8deg"], ["--angle needs --diameter"]),
             (["p.csv", "--tension=10mN/m"], ["--tension needs"]),
             (["p.csv", "--density=1g/ml", "--outer-density=1g/ml"], ["--density and --outer-density are equal"]),

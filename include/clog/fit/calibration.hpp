@@ -31,6 +31,11 @@ struct Deviation {
 /// @throws std::invalid_argument if there is no measured frame
 Deviation deviation(const Profile& measured, const Profile& simulated);
 
+/// Correlation of the residuals of successive frames, in the order of h: near zero, within 1/sqrt(frames),
+/// for independent noise; near one where the simulated profile has another shape. NaN for fewer than eight
+/// frames, and without shapes.
+Deviation residual_correlation(const Profile& measured, const Profile& simulated);
+
 /// The line tension and the near-wall drag that a profile speaks for.
 struct Calibration {
   double line_tension = 0;          ///< Gamma* [g rho sigma^2]
@@ -38,6 +43,8 @@ struct Calibration {
   double line_tension_error = 0;    ///< from the scatter of this profile's frames about the best run
   double near_wall_drag_error = 0;  ///< likewise; both NaN if the profile does not determine both
   Deviation deviation{};            ///< of the best run
+  Deviation correlation{};          ///< of its residuals, see residual_correlation()
+  int num_frames = 0;
   int num_simulations = 0;
   bool is_converged = false;  ///< a new search from the best found nothing better
   bool is_at_bound = false;   ///< of the range: the best may lie beyond

@@ -15,6 +15,7 @@ namespace clog::laboratory {
 struct Trial {
   std::string file;
   fit::Profile frames;
+  bool is_of_laboratory = true;  ///< a CSV file, which does not say through which channel it was
 };
 /// @param scales  of files in laboratory units
 /// @throws Error naming file and line, or if a simulated passage was through another channel, or at another
