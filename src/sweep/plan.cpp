@@ -8,9 +8,11 @@
 #include <unordered_map>
 #include <utility>
 
+#include "clog/core/parameters/schema.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/world/lattice.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/value_list.hpp"
 
@@ -96,6 +98,14 @@ RunParameters checked_task(const Plan& plan, std::int64_t index, const Settings&
   throw;
 }
 
+/// Of each parameter alone; resolve() says what is wrong.
+bool is_each_possible(const RunParameters& run) try {
+  check_each(run);
+  return true;
+} catch (const Error&) {
+  return false;
+}
+
 }  // namespace
 
 Plan::Plan(const Settings& settings) : circle_files_(settings.circle_files()) {
@@ -113,6 +123,7 @@ Plan::Plan(const Settings& settings) : circle_files_(settings.circle_files()) {
   const auto seeds =
       std::find_if(axes_.begin(), axes_.end(), [](const Axis& axis) { return axis.key->name == "seeds"; });
   std::rotate(axes_.begin(), seeds, seeds + 1);
+  refuse_misfitting_angles();
   // Different texts may mean the same run: tilts that lead to the same lattice, `auto` and the value behind
   // it.
   std::unordered_map<std::string, std::int64_t> seen;
@@ -127,11 +138,34 @@ Plan::Plan(const Settings& settings) : circle_files_(settings.circle_files()) {
   }
 }
 
+/// All at once; a single one resolve() refuses.
+void Plan::refuse_misfitting_angles() const {
+  std::vector<std::string> angles;
+  double box = 0;
+  for (std::int64_t index = 0; index < num_groups(); ++index) {
+    const RunParameters run = unresolved(index);
+    const ObstacleParameters& obstacles = run.obstacles;
+    if (!is_each_possible(run) || obstacles.layout != ObstacleLayout::lattice || fitting_lattice(obstacles))
+      continue;
+    const std::string angle = shortest(obstacles.lattice_angle);
+    if (std::ranges::find(angles, angle) != angles.end()) continue;
+    angles.push_back(angle);
+    box = std::max(box, box_that_fits(obstacles));
+  }
+  if (angles.size() > 1)
+    throw Error(
+        fmt::format("invalid lattice-angle={} (no lattice within {:.3g} degrees of any of these has so "
+                    "short a period) use box={} or more, or leave them out",
+                    joined(angles, ","), largest_angle_error, box));
+}
+
 std::int64_t Plan::num_groups() const {
   return size_ / static_cast<std::int64_t>(axes_.front().values.size());
 }
 
-RunParameters Plan::task(std::int64_t index) const {
+RunParameters Plan::task(std::int64_t index) const { return resolve(unresolved(index)); }
+
+RunParameters Plan::unresolved(std::int64_t index) const {
   assert(index >= 0 && index < size_);
   RunParameters run;
   for (auto axis = axes_.rbegin(); axis != axes_.rend(); ++axis) {
@@ -143,7 +177,7 @@ RunParameters Plan::task(std::int64_t index) const {
       axis->key->apply(run, value);
     index /= count;
   }
-  return resolve(run);
+  return run;
 }
 
 }  // namespace clog::sweep

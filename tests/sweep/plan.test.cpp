@@ -40,6 +40,27 @@ TEST(Plan, RefusesListsThatLeadToTheSameRunTwice) {
   EXPECT_NO_THROW(Plan(settings_of({{"perimeter-stiffness", "auto,0.2"}})));
 }
 
+TEST(Plan, NamesAllAnglesThatFitNoBoxAtOnce) {
+  const auto fault = [](const char* angles) -> std::string {
+    try {
+      const Plan plan(
+          settings_of({{"obstacle-layout", "lattice"}, {"lattice-angle", angles}, {"box", "10"}}));
+      return "";
+    } catch (const Error& error) {
+      return error.what();
+    }
+  };
+  const std::string all = fault("0,2,7,11.3");
+  EXPECT_NE(all.find("invalid lattice-angle=2,7 (no lattice"), std::string::npos) << all;
+  const std::string remedy = all.substr(all.find("use box=") + 8);
+  const Settings wide = settings_of({{"obstacle-layout", "lattice"},
+                                     {"lattice-angle", "0,2,7,11.3"},
+                                     {"box", remedy.substr(0, remedy.find(' ')).c_str()}});
+  EXPECT_NO_THROW(Plan{wide}) << "as the message says";
+  EXPECT_NE(fault("0,7").find("invalid lattice-angle=7 (no lattice of spacing"), std::string::npos);
+  EXPECT_NE(fault("80,81").find("45"), std::string::npos) << "is not looked for";
+}
+
 TEST(Plan, ChecksEverySetBeforeAnythingRuns) {
   EXPECT_THROW(Plan(settings_of({{"obstacle-gap", "0.2,0.001"}})), Error);
   EXPECT_THROW(Plan(settings_of({{"time-step", "1e-3,0.02"}})), Error);

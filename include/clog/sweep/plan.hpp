@@ -36,6 +36,10 @@ class Plan {
   CircleFiles circle_files_;
   std::vector<std::string> possible_decimals_;
   std::int64_t size_ = 1;
+
+  /// Before automatic values are known.
+  RunParameters unresolved(std::int64_t index) const;
+  void refuse_misfitting_angles() const;
 };
 
 }  // namespace clog::sweep

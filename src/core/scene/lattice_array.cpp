@@ -1,12 +1,7 @@
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <cmath>
-#include <optional>
-
 #include "clog/core/droplet/release.hpp"
 #include "clog/core/model/model.hpp"
-#include "clog/core/parameters/schema.hpp"
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/units.hpp"
 #include "clog/core/world/lattice.hpp"
@@ -28,21 +23,14 @@ void find_period(RunParameters& run) {
           "a lattice repeats in each of them) leave it out, or use obstacle-layout=random");
   require(obstacles.diameter_spread == 0, "obstacle-diameter-spread", obstacles.diameter_spread,
           "the obstacles of a lattice are alike) leave it out, or use obstacle-layout=random");
-  const double spacing = obstacles.diameter + obstacles.gap;
-  const double narrowest = std::max(parameter("box").range.lower->value, 2 * spacing);
-  const auto is_near = [=](const std::optional<CommensurateLattice>& lattice) {
-    return lattice && std::abs(lattice->angle - angle) <= largest_angle_error;
-  };
-  auto lattice = nearest_lattice(spacing, angle, narrowest, obstacles.box);
-  if (!is_near(lattice)) {
-    double box = obstacles.box;
-    while (!is_near(lattice)) lattice = nearest_lattice(spacing, angle, narrowest, box += spacing);
+  const auto lattice = fitting_lattice(obstacles);
+  if (!lattice)
     refuse("lattice-angle", angle,
            fmt::format(
                "no lattice of spacing {:.3g} within {:.3g} degrees of it has a period of box={:.3g} or less) "
                "use box={} or more",
-               spacing, largest_angle_error, obstacles.box, std::lround(std::ceil(lattice->box))));
-  }
+               obstacles.diameter + obstacles.gap, largest_angle_error, obstacles.box,
+               box_that_fits(obstacles)));
   obstacles.box = lattice->box;
   obstacles.lattice_angle = lattice->angle;
 }

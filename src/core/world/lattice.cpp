@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "clog/core/parameters/schema.hpp"
 #include "clog/core/tools/portable_math.hpp"
 #include "clog/core/tools/units.hpp"
 
@@ -76,6 +77,21 @@ std::optional<CommensurateLattice> nearest_lattice(double spacing, double angle,
     }
   }
   return nearest;
+}
+
+std::optional<CommensurateLattice> fitting_lattice(const ObstacleParameters& obstacles) {
+  const double spacing = obstacles.diameter + obstacles.gap;
+  const double narrowest = std::max(parameter("box").range.lower->value, 2 * spacing);
+  const auto nearest = nearest_lattice(spacing, obstacles.lattice_angle, narrowest, obstacles.box);
+  const bool is_near = nearest && std::abs(nearest->angle - obstacles.lattice_angle) <= largest_angle_error;
+  return is_near ? nearest : std::nullopt;
+}
+
+double box_that_fits(const ObstacleParameters& obstacles) {
+  ObstacleParameters larger = obstacles;
+  std::optional<CommensurateLattice> lattice;
+  while (!(lattice = fitting_lattice(larger))) larger.box += obstacles.diameter + obstacles.gap;
+  return std::ceil(lattice->box);
 }
 
 ObstacleArray lattice_obstacles(const ObstacleParameters& parameters, std::uint32_t seed) {

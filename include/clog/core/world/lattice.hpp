@@ -28,6 +28,12 @@ inline constexpr double largest_angle_error = 0.1;
 std::optional<CommensurateLattice> nearest_lattice(double spacing, double angle, double smallest_box,
                                                    double largest_box);
 
+/// The nearest one of spacing diameter + gap whose box is no larger than `box`; empty if its tilt is too far
+/// from lattice_angle.
+std::optional<CommensurateLattice> fitting_lattice(const ObstacleParameters& obstacles);
+/// The smallest whole-numbered box for which there is one [sigma].
+double box_that_fits(const ObstacleParameters& obstacles);
+
 /// Square lattice of spacing diameter + gap, tilted by lattice_angle. The seed shifts it: the box's centre,
 /// where droplets are released, is uniform in a unit cell among the places where a droplet touches no
 /// obstacle; among all places if there is none.
