@@ -8,7 +8,10 @@ namespace {
 TEST(Duration, IsInTheUnitThatSuitsIt) {
   EXPECT_EQ(readable_duration(0), "0 s");
   EXPECT_EQ(readable_duration(89.4), "89 s");
-  EXPECT_EQ(readable_duration(90), "2 min");
+  EXPECT_EQ(readable_duration(119.4), "119 s");
+  EXPECT_EQ(readable_duration(119.6), "2 min 00 s");
+  EXPECT_EQ(readable_duration(185), "3 min 05 s");
+  EXPECT_EQ(readable_duration(600), "10 min");
   EXPECT_EQ(readable_duration(5399), "90 min");
   EXPECT_EQ(readable_duration(5400), "1.5 h");
   EXPECT_EQ(readable_duration(172'799), "48.0 h");
