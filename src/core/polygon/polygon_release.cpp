@@ -15,6 +15,9 @@ namespace clog {
 namespace {
 
 constexpr double radius = units::droplet_diameter / 2;
+/// Gamma from which on a droplet sags by less than a hundredth of its diameter under its own weight, and a
+/// larger one changes nothing but the cost.
+constexpr double nearly_rigid = 30;
 
 /// A polygon smaller than the droplet has a smaller perimeter: a stiffer tension mode, a softer area mode.
 FireOptions fire_options(const RunParameters& run, double perimeter) {
@@ -129,7 +132,13 @@ DropletState release_polygon(const RunParameters& run, const ObstacleArray& obst
   if (rests)
     rests = settle(own_forces, state, longer, damping_rate).largest_force <=
             release_sliding_tolerance * vertex_weight(run);
-  if (!rests) refuse_release("the grown droplet does not come to rest", "a larger line-tension");
+  if (!rests)
+    refuse_release(
+        "the grown droplet does not come to rest",
+        run.dp.line_tension > nearly_rigid
+            ? "line-tension=30, since stiffer droplets are nearly rigid, fewer obstacles, the soft disk "
+              "(model=sp)"
+            : "a larger line-tension");
   if (num_enclosed(state, obstacles) > 0)
     refuse_release("the grown droplet encloses an obstacle", "more vertices");
   return state;
