@@ -31,6 +31,12 @@ bool is_key(const std::string& name) {
 /// Takes the words for which there is no other place; no name that can be typed as an option.
 constexpr const char* surplus_words = "surplus words";
 
+/// In the order in which a newcomer thinks of them.
+constexpr std::string_view usual_keys[] = {
+    "line-tension", "obstacle-gap",  "obstacle-density", "obstacle-diameter", "seeds",          "max-time",
+    "box",          "boxes",         "obstacles",        "release",           "terminal-speed", "vertices",
+    "model",        "wall-stiffness"};
+
 /// Is this a word like `key=value`?
 bool is_assignment(const std::string& word) {
   const auto equals = word.find('=');
@@ -54,9 +60,13 @@ CommandLine::CommandLine(std::string program, std::string usage, SweepKeys sweep
       "instruction-set", po::value<std::string>(),
       "of the processor, for the polygon: avx512, avx2, baseline (the widest there is). Results differ by "
       "round-off");
-  for (const sweep::Key& key : sweep::keys())
-    keys_.add_options()(key.name.c_str(), po::value<std::string>(),
+  const auto add = [](po::options_description& group, const sweep::Key& key) {
+    group.add_options()(key.name.c_str(), po::value<std::string>(),
                         (key.help + " (" + key.default_text + ")").c_str());
+  };
+  for (const std::string_view name : usual_keys) add(usual_keys_, sweep::find_key(name));
+  for (const sweep::Key& key : sweep::keys())
+    if (std::ranges::find(usual_keys, key.name) == std::end(usual_keys)) add(keys_, key);
 }
 
 void CommandLine::parse(int argc, const char* const* argv) {
@@ -71,7 +81,10 @@ void CommandLine::parse(int argc, const char* const* argv) {
   }
   if (!words.empty()) refuse_misspelt_command(words.front());
   po::options_description all;
-  all.add(own_).add(keys_).add_options()(surplus_words, po::value<std::vector<std::string>>());
+  all.add(own_)
+      .add(usual_keys_)
+      .add(keys_)
+      .add_options()(surplus_words, po::value<std::vector<std::string>>());
   po::positional_options_description places = positional_;
   if (places.max_total_count() < std::numeric_limits<unsigned>::max()) places.add(surplus_words, -1);
   try {
@@ -93,7 +106,7 @@ void CommandLine::parse(int argc, const char* const* argv) {
 
 bool CommandLine::awaits_value(const std::string& word) const {
   if (!word.starts_with("--") || word.find('=') != std::string::npos) return false;
-  for (const auto* group : {&own_, &keys_}) {
+  for (const auto* group : {&own_, &usual_keys_, &keys_}) {
     const auto* option = group->find_nothrow(word.substr(2), false);
     if (option) return option->semantic()->min_tokens() > 0;
   }
@@ -118,6 +131,8 @@ void CommandLine::refuse_surplus_words() const {
       throw Error(fmt::format("no place for '{}'; did you mean {}{}?", word, key,
                               equals < word.size() ? word.substr(equals) : "=VALUE"));
     if (sweep_keys_ == SweepKeys::accepted && begins_like_key(word)) refuse_unknown(word, {});
+    if (sweep_keys_ == SweepKeys::accepted && word.ends_with(".cfg") && !has("config"))
+      throw Error(fmt::format("no place for '{0}'; a config needs its option, --config {0}", word));
     all += (all.empty() ? "'" : ", '") + word + "'";
   }
   throw Error(fmt::format("no place for {} ({}); see {} --help", all, surplus_remedy_, program_));
@@ -125,7 +140,7 @@ void CommandLine::refuse_surplus_words() const {
 
 void CommandLine::refuse_unknown(const std::string& word, std::span<const char* const> typed) const {
   std::vector<std::string> names;
-  for (const auto* group : {&own_, &keys_})
+  for (const auto* group : {&own_, &usual_keys_, &keys_})
     for (const auto& known : group->options()) names.push_back(known->long_name());
   const std::string option = word.substr(0, word.find('='));
   const std::string bare = option.substr(std::min(option.find_first_not_of('-'), option.size()));
@@ -160,7 +175,9 @@ void CommandLine::read_config(const std::string& path) {
   refuse_lines_without_value(path, text);
   std::istringstream file(text);
   try {
-    const po::parsed_options parsed = po::parse_config_file(file, keys_, true);
+    po::options_description all;
+    all.add(usual_keys_).add(keys_);
+    const po::parsed_options parsed = po::parse_config_file(file, all, true);
     std::set<std::string> seen;
     for (const po::option& option : parsed.options) {
       if (!seen.insert(option.string_key).second)
@@ -205,7 +222,7 @@ double CommandLine::number(const std::string& option) const {
 std::string CommandLine::help() const {
   std::ostringstream out;
   out << usage_ << "\n" << own_;
-  if (sweep_keys_ == SweepKeys::accepted) out << '\n' << keys_;
+  if (sweep_keys_ == SweepKeys::accepted) out << '\n' << usual_keys_ << '\n' << keys_;
   return out.str();
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <sstream>
 #include <utility>
@@ -132,8 +133,15 @@ std::string plain_symbol(std::string text) {
 /// Empty if no key has this symbol.
 std::string key_of_symbol(std::string_view symbol) {
   const std::string plain = plain_symbol(std::string(symbol));
+  const auto lower = [](std::string text) {
+    for (char& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    return text;
+  };
   for (const Parameter& parameter : parameter_schema())
     if (!plain.empty() && plain_symbol(parameter.symbol) == plain) return parameter.key;
+  // One letter is too little to guess by.
+  for (const Parameter& parameter : parameter_schema())
+    if (plain.size() > 1 && lower(plain_symbol(parameter.symbol)) == lower(plain)) return parameter.key;
   return "";
 }
 

@@ -106,6 +106,11 @@ std::vector<std::string> expand_item(std::string_view item, ValueKind kind,
                      "is a range of integers, but the key takes any number; give how many, e.g. lin({},{},5)",
                      item.substr(0, dots), item.substr(dots + 2)));
   }
+  if (const auto dash = item.find('-', 1); dash != std::string_view::npos && kind == ValueKind::integer)
+    if (const std::string range =
+            fmt::format("{}..{}", trimmed(item.substr(0, dash)), trimmed(item.substr(dash + 1)));
+        range.find_first_not_of("0123456789.") == std::string::npos)
+      refuse(item, fmt::format("is not an integer; a range has two points, {}", range));
   if (kind == ValueKind::integer) return {std::to_string(to_integer(item))};
   if (kind == ValueKind::number_or_share && item.ends_with('%'))
     return {shortest(to_number(item.substr(0, item.size() - 1))) + '%'};

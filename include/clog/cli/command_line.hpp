@@ -53,9 +53,11 @@ class CommandLine {
   std::string usage_;
   SweepKeys sweep_keys_;
   boost::program_options::options_description own_{"Options"};
-  boost::program_options::options_description keys_{
-      "Keys of the config file, also as options. Numbers take a list: 0.2,0.3  lin(a,b,n)  log(a,b,n)  "
-      "1..50"};
+  boost::program_options::options_description usual_keys_{
+      "Keys that most sweeps set, in the config file, as key=value or as options. Numbers take a list: "
+      "0.2,0.3  "
+      "lin(a,b,n)  log(a,b,n)  1..50"};
+  boost::program_options::options_description keys_{"Keys of all else"};
   boost::program_options::positional_options_description positional_;
   std::vector<std::string> commands_;
   std::string surplus_remedy_ = "options start with --, settings are key=value";
