@@ -5,9 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "clog/campaign/groups.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/joined.hpp"
 #include "clog/fit/clogging_length.hpp"
+#include "clog/sweep/columns.hpp"
 #include "clog/sweep/plan.hpp"
+#include "clog/sweep/run_row.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::campaign {
@@ -26,6 +30,22 @@ std::int64_t clogs_for(double precision) {
   return enough;
 }
 
+/// Of one parameter set, what tells it from the others.
+std::string name_of(std::int64_t group, const sweep::Plan& plan) {
+  const sweep::RunRow row = sweep::describe(plan.task(group));
+  std::vector<std::string> words;
+  for (const sweep::Column* column : group_columns()) {
+    const auto differs = [&](std::int64_t other) {
+      return column->get(sweep::describe(plan.task(other))) != column->get(row);
+    };
+    bool varies = false;
+    for (std::int64_t other = 0; other < plan.num_groups() && !varies; ++other) varies = differs(other);
+    if (varies && !column->may_be_automatic(row.parameters))
+      words.push_back(column->name + '=' + sweep::text_of(column->get(row)));
+  }
+  return words.empty() ? "the only one" : joined(words, " ");
+}
+
 }  // namespace
 
 SeedRule::SeedRule(double precision, std::int64_t num_groups, std::int64_t first_seeds,
@@ -40,12 +60,14 @@ std::vector<std::int64_t> SeedRule::next_round(const std::function<bool(std::int
   const std::int64_t needed = clogs_needed();
   std::vector<std::int64_t> tasks;
   num_reached_ = 0;
+  unreached_.clear();
   for (std::int64_t group = 0; group < num_groups(); ++group) {
     std::int64_t& num_seeds = num_seeds_[static_cast<std::size_t>(group)];
     std::int64_t clogs = 0;
     for (std::int64_t seed = 0; seed < num_seeds; ++seed) clogs += has_clogged(seed * num_groups() + group);
     num_reached_ += clogs >= needed;
     if (clogs >= needed) continue;
+    unreached_.push_back({group, clogs, num_seeds});
     const auto estimate =
         static_cast<std::int64_t>(std::ceil(static_cast<double>(num_seeds) * static_cast<double>(needed) /
                                             static_cast<double>(std::max<std::int64_t>(clogs, 1))));
@@ -62,6 +84,23 @@ std::string SeedRule::text() const {
       "seeds are added, in rounds, to every parameter set with fewer than {} clogs (a 95 % interval of "
       "lambda within +-{} %), up to {}",
       clogs_needed(), sweep::shortest(100 * precision_), sweep::counted(most_seeds_, "seed"));
+}
+
+std::string outcome(const SeedRule& rule, const sweep::Plan& plan) {
+  const std::string sets = sweep::counted(rule.num_groups(), "parameter set");
+  const std::string reached = fmt::format("{} of {} reached --until-precision", rule.num_reached(), sets);
+  if (rule.unreached().empty()) return reached;
+  constexpr std::size_t most_named = 4;
+  std::vector<std::string> named;
+  for (const SeedRule::Unreached& one : rule.unreached()) {
+    if (named.size() == most_named) break;
+    named.push_back(fmt::format("{} with {} of {} seeds", name_of(one.group, plan),
+                                sweep::counted(one.num_clogs, "clog"), one.num_seeds));
+  }
+  if (rule.unreached().size() > most_named)
+    named.push_back(fmt::format("{} more", rule.unreached().size() - most_named));
+  return fmt::format("{}={} %; not: {} (it takes {} clogs); give more --most-seeds, or a longer max-time",
+                     reached, sweep::shortest(100 * rule.precision()), joined(named), rule.clogs_needed());
 }
 
 GrowingSweep growing_sweep(const sweep::Settings& settings, double precision, std::int64_t most_seeds) {

@@ -178,9 +178,7 @@ int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, 
     ledger.want(next);
   }
   lead.finish();
-  if (is_complete && rule && options.log != Log::Level::quiet)
-    console::say(fmt::format("{} of {} reached --until-precision", rule->num_reached(),
-                             sweep::counted(rule->num_groups(), "parameter set")));
+  if (is_complete && rule && options.log != Log::Level::quiet) console::say(campaign::outcome(*rule, plan));
   if (const sweep::RunRow* first = is_complete ? ledger.first_if_all_failed() : nullptr) {
     console::say("clogsweep: every run has failed, the first one: " + first->message);
     return console::exit_internal_fault;

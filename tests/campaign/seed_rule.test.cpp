@@ -26,6 +26,24 @@ TEST(SeedRule, AsksForMoreOnlyWhereTheIntervalIsWide) {
   EXPECT_EQ(rule.num_reached(), 2);
 }
 
+TEST(SeedRule, NamesWhatItDidNotReach) {
+  sweep::Settings settings;
+  settings.set("line-tension", "0.2,1");
+  settings.set("seeds", "1..16");
+  GrowingSweep sweep = growing_sweep(settings, 0.6, 20);
+  const sweep::Plan plan(sweep.settings);
+  const auto has_clogged = [](std::int64_t task) { return task % 2 == 1 || task == 0; };
+  while (!sweep.rule.next_round(has_clogged).empty()) {
+  }
+  EXPECT_EQ(
+      outcome(sweep.rule, plan),
+      "1 of 2 parameter sets reached --until-precision=60 %; not: line_tension=0.2 with 1 clog of 20 seeds "
+      "(it takes 14 clogs); give more --most-seeds, or a longer max-time");
+  const auto always = [](std::int64_t) { return true; };
+  EXPECT_TRUE(sweep.rule.next_round(always).empty());
+  EXPECT_EQ(outcome(sweep.rule, plan), "2 of 2 parameter sets reached --until-precision");
+}
+
 TEST(SeedRule, SaysHowManyClogsAPrecisionTakes) {
   EXPECT_EQ(SeedRule(0.6, 2, 16, 100).clogs_needed(), 14);
   EXPECT_EQ(SeedRule(0.2, 1, 10, 50).clogs_needed(), 100) << "the budget does not matter";

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "clog/sweep/plan.hpp"
 #include "clog/sweep/settings.hpp"
 
 namespace clog::campaign {
@@ -32,6 +33,11 @@ class SeedRule {
   std::int64_t most_seeds() const { return most_seeds_; }
   /// Parameter sets that were precise enough when next_round() looked last.
   std::int64_t num_reached() const { return num_reached_; }
+  /// Those that were not: their clogs of so many seeds.
+  struct Unreached {
+    std::int64_t group, num_clogs, num_seeds;
+  };
+  const std::vector<Unreached>& unreached() const { return unreached_; }
   /// The rule in words, as it is stored with the result.
   std::string text() const;
 
@@ -40,7 +46,12 @@ class SeedRule {
   std::int64_t most_seeds_;
   std::vector<std::int64_t> num_seeds_;  // by parameter set, of all rounds so far
   std::int64_t num_reached_ = 0;
+  std::vector<Unreached> unreached_;
 };
+
+/// In one line, which parameter sets have not reached the rule's precision when their seeds were over, and
+/// what to do; how many have if all did.
+std::string outcome(const SeedRule& rule, const sweep::Plan& plan);
 
 /// A sweep that a rule may enlarge: its settings have all seeds that it may come to, those given first.
 struct GrowingSweep {
