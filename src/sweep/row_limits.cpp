@@ -141,6 +141,35 @@ std::string possible_repetition(const Plan& plan) {
                  : fmt::format("boxes={:.4g} is long enough", std::ceil(most_boxes)));
 }
 
+std::string text_of(const Stretch& stretch) {
+  return fmt::format("{:.4g} to {:.4g}", stretch.begin, stretch.end);
+}
+
+std::string bare_band(std::span<const Obstacle> circles, const ObstacleParameters& obstacles) {
+  const double period = obstacles.period().along();
+  const auto bare = conspicuous_bare_stretch(circles, &Obstacle::x, period);
+  if (!bare) return "";
+  return fmt::format(
+      "obstacles={} leaves x={} bare, before the array repeats at boxes*box={}: droplets sink freely there; "
+      "if that is not meant, give fewer boxes or a smaller box",
+      obstacles.own->source(), text_of(*bare), shortest(period));
+}
+
+std::string bare_lanes(std::span<const Obstacle> circles, const ObstacleParameters& obstacles) {
+  constexpr std::size_t most_named = 4;
+  const double period = obstacles.period().across();
+  const std::vector<Stretch> lanes = clog::bare_lanes(circles, period);
+  if (lanes.empty()) return "";
+  std::vector<std::string> named;
+  for (const Stretch& lane : lanes)
+    if (named.size() < most_named) named.push_back(text_of(lane));
+  if (lanes.size() > most_named) named.push_back(fmt::format("and {} more", lanes.size() - most_named));
+  return fmt::format(
+      "obstacles={} leaves y={} bare, wider than a droplet; the array repeats at box={}: droplets sink there "
+      "and touch nothing (n); if that is not meant, give a smaller box",
+      obstacles.own->source(), joined(named), shortest(period));
+}
+
 std::vector<std::string> bare_arrays(const Plan& plan) {
   std::vector<std::string> all;
   std::set<std::tuple<std::string, double, int>> seen;
@@ -150,17 +179,10 @@ std::vector<std::string> bare_arrays(const Plan& plan) {
     if (scene_of(run).walls_from != WallsFrom::circles) continue;
     if (!seen.emplace(obstacles.own->check_sum(), obstacles.box, obstacles.boxes).second) continue;
     const std::vector<Obstacle> circles = obstacles.own->with_radii(obstacles.diameter / 2);
-    const auto look = [&](char axis, double Obstacle::*centre, double period, const char* keys,
-                          const char* remedy) {
-      if (const auto bare = conspicuous_bare_stretch(circles, centre, period))
-        all.push_back(fmt::format(
-            "obstacles={} leaves {}={:.4g} to {:.4g} bare, before the array repeats at {}={}: "
-            "droplets sink freely there; if that is not meant, {}",
-            obstacles.own->source(), axis, bare->begin, bare->end, keys, shortest(period), remedy));
-    };
-    look('x', &Obstacle::x, obstacles.period().along(), "boxes*box", "give fewer boxes or a smaller box");
-    look('y', &Obstacle::y, obstacles.period().across(), "box", "give a smaller box");
+    all.push_back(bare_band(circles, obstacles));
+    all.push_back(bare_lanes(circles, obstacles));
   }
+  std::erase(all, "");
   return all;
 }
 

@@ -8,7 +8,10 @@ namespace {
 
 double width(const Stretch& stretch) { return stretch.end - stretch.begin; }
 
-/// Between circles whose shadows on the axis do not touch, over the border of the period, too.
+constexpr double droplet = 1;  // diameter [sigma]
+
+/// Between circles whose shadows on the axis do not touch, over the border of the period, too; the widest
+/// first.
 std::vector<Stretch> bare_stretches(std::span<const Obstacle> circles, double Obstacle::*centre,
                                     double period) {
   std::vector<Stretch> shadows;
@@ -25,6 +28,7 @@ std::vector<Stretch> bare_stretches(std::span<const Obstacle> circles, double Ob
     covered = std::max(covered, shadow.end);
   }
   if (const double again = shadows.front().begin + period; again > covered) bare.push_back({covered, again});
+  std::sort(bare.begin(), bare.end(), [](const Stretch& a, const Stretch& b) { return width(a) > width(b); });
   return bare;
 }
 
@@ -33,14 +37,18 @@ std::vector<Stretch> bare_stretches(std::span<const Obstacle> circles, double Ob
 std::optional<Stretch> conspicuous_bare_stretch(std::span<const Obstacle> circles, double Obstacle::*centre,
                                                 double period) {
   if (circles.size() < 2) return {};
-  constexpr double droplet = 1;  // diameter [sigma]
-  std::vector<Stretch> stretches = bare_stretches(circles, centre, period);
+  const std::vector<Stretch> stretches = bare_stretches(circles, centre, period);
   if (stretches.empty()) return {};
-  std::sort(stretches.begin(), stretches.end(),
-            [](const Stretch& a, const Stretch& b) { return width(a) > width(b); });
   const double next = stretches.size() > 1 ? width(stretches[1]) : 0;
   if (width(stretches.front()) <= 2 * next + droplet) return {};
   return stretches.front();
+}
+
+std::vector<Stretch> bare_lanes(std::span<const Obstacle> circles, double period) {
+  if (circles.empty()) return {};
+  std::vector<Stretch> lanes = bare_stretches(circles, &Obstacle::y, period);
+  std::erase_if(lanes, [](const Stretch& lane) { return width(lane) <= droplet; });
+  return lanes;
 }
 
 }  // namespace clog

@@ -50,6 +50,21 @@ TEST(BareStretch, IsSeenAcrossAsWell) {
   EXPECT_DOUBLE_EQ(bare->end, 22.5);
 }
 
+TEST(BareLanes, AreAllThatADropletFallsThrough) {
+  // Two walls at y = 1 and 7 of 8: a wide lane between them, and one between their backs.
+  std::vector<Obstacle> walls;
+  for (int i = 0; i < 30; ++i)
+    for (const double y : {1.0, 7.0}) walls.push_back({0.5 * i, y, 0.15});
+  const std::vector<Stretch> lanes = bare_lanes(walls, 8);
+  ASSERT_EQ(lanes.size(), 2u);
+  EXPECT_NEAR(lanes[0].begin, 1.15, 1e-12);
+  EXPECT_NEAR(lanes[0].end, 6.85, 1e-12);
+  EXPECT_NEAR(lanes[1].begin, 7.15, 1e-12);
+  EXPECT_NEAR(lanes[1].end, 8.85, 1e-12);
+  EXPECT_EQ(bare_lanes(walls, 8.0 - 0.75).size(), 1u) << "the backs leave 0.95 now";
+  EXPECT_TRUE(bare_lanes({}, 8).empty());
+}
+
 TEST(BareStretch, OfASingleCircleIsItsArray) { EXPECT_FALSE(along({5})); }
 
 TEST(BareStretch, IsNoneWhereAllIsCovered) { EXPECT_FALSE(along({2, 7, 12, 17}, 2.6)); }

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "clog/core/parameters/circles.hpp"
 
@@ -20,5 +21,10 @@ struct Stretch {
 /// @param period  of the array along it [sigma]; no circle is wider
 std::optional<Stretch> conspicuous_bare_stretch(std::span<const Obstacle> circles, double Obstacle::*centre,
                                                 double period);
+
+/// Bare stretches across the flow that are wider than a droplet, the widest first: droplets sink through them
+/// and touch nothing. A period without circles has none.
+/// @param period  of the array across the flow [sigma]
+std::vector<Stretch> bare_lanes(std::span<const Obstacle> circles, double period);
 
 }  // namespace clog
