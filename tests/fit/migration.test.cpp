@@ -46,6 +46,14 @@ TEST(Migration, IsUndefinedWithoutDistance) {
   EXPECT_TRUE(std::isnan(one.standard_error));
 }
 
+TEST(Migration, LeavesOutRunsThatWentTooShortAWay) {
+  // Droplets that sagged in their void of release by 0.04, with a lateral displacement that is the void's.
+  EXPECT_TRUE(std::isnan(fit_migration(std::vector<Displacement>{{0.04, -0.007}, {0.04, -0.007}}).slope));
+  const Migration fit = fit_migration(std::vector<Displacement>{{4, 1}, {0.04, -0.4}, {8, 5}, {-0.1, 0.3}});
+  EXPECT_DOUBLE_EQ(fit.slope, 0.5);
+  EXPECT_DOUBLE_EQ(fit.standard_error, 2.0 / 12);
+}
+
 TEST(Migration, OfASumThatIsNotFiniteIsNotKnown) {
   const std::vector<Displacement> runs{{1e308, 1}, {1e308, 1}};
   EXPECT_TRUE(std::isnan(fit_migration(runs).slope));

@@ -12,13 +12,16 @@ struct Displacement {
 
 /// Lateral displacement per distance travelled, the tangent of the migration angle.
 struct Migration {
-  double slope = 0;           ///< NaN for no distance, and for one that is not finite
+  double slope = 0;           ///< NaN if no run went far enough, and for distances that are not finite
   double standard_error = 0;  ///< from the scatter between runs; NaN for fewer than two
 };
 
-/// Ratio of the sums over runs, (sum of across)/(sum of along): long runs weigh more, and short ones, whose
-/// own ratios scatter wildly, do no harm. Its error is the linearised one of a ratio estimate (Cochran,
-/// Sampling Techniques, ch. 6).
+/// A run that went less far says nothing of where droplets migrate, as it has no speed [sigma].
+inline constexpr double shortest_migration = 0.5;
+
+/// Ratio of the sums over runs that went at least shortest_migration, (sum of across)/(sum of along): long
+/// runs weigh more, and short ones, whose own ratios scatter wildly, do no harm. Its error is the linearised
+/// one of a ratio estimate (Cochran, Sampling Techniques, ch. 6).
 Migration fit_migration(std::span<const Displacement> runs);
 
 }  // namespace clog::fit
