@@ -23,6 +23,8 @@
 #include "clog/sweep/schema_json.hpp"
 #include "clog/sweep/settings.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "laboratory_columns.hpp"
+#include "result_columns.hpp"
 
 namespace clog::campaign {
 namespace {
@@ -40,6 +42,8 @@ nlohmann::ordered_json json_of(const Value& value) {
   return nullptr;
 }
 
+nlohmann::ordered_json number_or_null(double number) { return json_of(Value(number)); }
+
 /// Columns aligned to the right.
 std::string aligned(const std::vector<std::vector<std::string>>& lines) {
   std::vector<std::size_t> widths(lines.front().size(), 0);
@@ -52,10 +56,6 @@ std::string aligned(const std::vector<std::vector<std::string>>& lines) {
     text += '\n';
   }
   return text;
-}
-
-bool is_lattice(const Group& group) {
-  return group.first_row.parameters.obstacles.layout == ObstacleLayout::lattice;
 }
 
 std::string letters(const std::vector<Doubt>& doubts) {
@@ -75,139 +75,11 @@ std::string legend(const std::vector<Group>& groups) {
   return text;
 }
 
-/// A column of results in the table for people.
-struct ResultColumn {
-  std::string name;
-  std::function<std::string(const Group&)> cell;
-};
-
-/// Clogs by mechanism, as 3/5/2/0.
-std::string mechanism_counts(const Group& group) {
-  std::vector<std::string> counts;
-  for (const Group::EndsBy& cause : group.causes)
-    if (cause.text->is_clog) counts.push_back(std::to_string(cause.ends.num_clogs));
-  return counts.empty() ? "-" : joined(counts, "/");
-}
-
-/// Where clogs are not all of one kind, or some are left out, it is said of which kind they are.
-bool are_mechanisms_shown(const std::vector<Group>& groups) {
-  std::set<Cause> seen;
-  for (const Group& group : groups)
-    for (const Group::EndsBy& cause : group.causes)
-      if (cause.text->is_clog && cause.ends.num_clogs > 0) seen.insert(cause.text->cause);
-  return seen.size() > 1 ||
-         std::any_of(groups.begin(), groups.end(), [](const Group& group) { return group.num_left_out > 0; });
-}
-
-/// Of a group whose clogs are of known mechanisms; so are those of all that know of break-up.
-const fit::CloggingLength* break_ups(const Group& group) {
-  for (const Group::EndsBy& cause : group.causes)
-    if (cause.text->cause == Cause::broken) return &cause.ends;
-  return nullptr;
-}
-bool have_some_broken(const std::vector<Group>& groups) {
-  return std::ranges::any_of(groups, [](const Group& group) {
-    const fit::CloggingLength* broken = break_ups(group);
-    return broken && broken->num_clogs > 0;
-  });
-}
-std::string break_up_length(const Group& group) {
-  const fit::CloggingLength* broken = break_ups(group);
-  if (!broken || broken->num_runs == 0) return "-";
-  if (broken->num_clogs == 0) return "> " + console::plain(broken->interval.lower);
-  return console::with_interval(broken->length, broken->interval.lower, broken->interval.upper).value;
-}
-
-console::RoundedInterval length_of(const Group& group) {
-  const fit::CloggingLength& clogging = group.clogging;
-  return console::with_interval(clogging.length, clogging.interval.lower, clogging.interval.upper);
-}
-bool has_length(const Group& group) { return group.clogging.num_clogs > 0; }
-
-std::string length_text(const Group& group) {
-  if (has_length(group)) return length_of(group).value;
-  return group.clogging.num_runs == 0 ? "-" : "> " + console::plain(group.clogging.interval.lower);
-}
-std::string interval_text(const Group& group) {
-  const console::RoundedInterval length = length_of(group);
-  return has_length(group) ? length.lower + " .. " + length.upper : "-";
-}
-
-console::RoundedError speed_of(const Group& group) {
-  return console::with_error(group.relative_speed.mean, group.relative_speed.standard_error);
-}
-console::RoundedError slope_of(const Group& group) {
-  return console::with_error(group.migration.slope, group.migration.standard_error);
-}
-
-std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, double confidence) {
-  std::vector<ResultColumn> columns = {
-      {"runs", [](const Group& group) { return std::to_string(group.clogging.num_runs); }},
-      {"clogs", [](const Group& group) { return std::to_string(group.clogging.num_clogs); }}};
-  if (are_mechanisms_shown(groups)) columns.push_back({"w/s/h/o", mechanism_counts});
-  columns.insert(columns.end(),
-                 {{"lambda/sigma", length_text}, {fmt::format("{:g} %", 100 * confidence), interval_text}});
-  if (have_some_broken(groups))
-    columns.insert(columns.end(), {{"broken",
-                                    [](const Group& group) {
-                                      const fit::CloggingLength* broken = break_ups(group);
-                                      return broken ? std::to_string(broken->num_clogs) : "-";
-                                    }},
-                                   {"lambda_b/sigma", break_up_length}});
-  columns.insert(columns.end(), {{"<v_g>/v_t", [](const Group& group) { return speed_of(group).value; }},
-                                 {"+-", [](const Group& group) { return speed_of(group).error; }}});
-  // In random arrays a droplet goes straight on the average.
-  if (std::any_of(groups.begin(), groups.end(), is_lattice))
-    columns.insert(columns.end(), {{"lateral/r", [](const Group& group) { return slope_of(group).value; }},
-                                   {"+-", [](const Group& group) { return slope_of(group).error; }}});
-  return columns;
-}
-
-/// A number of the one run that a group has where nothing is random.
-ResultColumn column_of_run(const char* name, double sweep::RunRow::*value) {
-  return {name, [=](const Group& group) { return console::plain(group.first_row.*value, 4); }};
-}
-ResultColumn outcome_column() {
-  return {"outcome", [](const Group& group) { return std::string(name(group.first_row.status)); }};
-}
-
-std::vector<ResultColumn> columns_of_channels() {
-  using sweep::RunRow;
-  return {outcome_column(),
-          column_of_run("largest A", &RunRow::largest_shape_parameter),
-          column_of_run("at h", &RunRow::largest_shape_parameter_at),
-          column_of_run("least v/v_t", &RunRow::smallest_relative_speed),
-          column_of_run("at h", &RunRow::smallest_relative_speed_at),
-          column_of_run("most v/v_t", &RunRow::largest_relative_speed),
-          column_of_run("at h", &RunRow::largest_relative_speed_at)};
-}
-
-std::vector<ResultColumn> columns_of_walls() {
-  using sweep::RunRow;
-  return {{"outcome",
-           [](const Group& group) {
-             const RunStatus status = group.first_row.status;
-             return std::string(status == RunStatus::clogged ? "at rest" : name(status));
-           }},
-          column_of_run("sag", &RunRow::sag),
-          column_of_run("top sag", &RunRow::top_sag),
-          column_of_run("A", &RunRow::shape_parameter)};
-}
-
-std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, double confidence) {
-  switch (scene_of(groups.front().first_row.parameters).finding) {
-    case Finding::clogging_length:
-      return columns_of_arrays(groups, confidence);
-    case Finding::passage:
-      return columns_of_channels();
-    case Finding::sag:
-      return columns_of_walls();
-  }
-  throw std::logic_error("a finding without columns");
-}
-
-std::vector<ResultColumn> result_columns(const std::vector<Group>& groups, double confidence) {
+std::vector<ResultColumn> result_columns(const std::vector<Group>& groups, double confidence,
+                                         const std::optional<LaboratoryScale>& lab) {
   std::vector<ResultColumn> columns = columns_of_findings(groups, confidence);
+  if (lab && has_clogging_length(groups.front().first_row))
+    for (ResultColumn& column : laboratory_columns(*lab)) columns.push_back(std::move(column));
   if (std::any_of(groups.begin(), groups.end(), [](const Group& group) { return !group.doubts.empty(); }))
     columns.push_back({"note", [](const Group& group) { return letters(group.doubts); }});
   return columns;
@@ -245,9 +117,11 @@ std::string left_out(const std::vector<Group>& groups) {
   return text;
 }
 
-std::vector<Field> all_fields(const Group& group) {
+std::vector<Field> all_fields(const Group& group, const std::optional<LaboratoryScale>& lab) {
   std::vector<Field> fields = parameter_fields(group.first_row);
   for (Field& field : result_fields(group)) fields.push_back(std::move(field));
+  if (lab && has_clogging_length(group.first_row))
+    for (Field& field : laboratory_fields(group, *lab)) fields.push_back(std::move(field));
   return fields;
 }
 
@@ -299,9 +173,9 @@ std::vector<bool> shown_fields(const std::vector<Group>& groups, const std::vect
 }
 
 /// Of the fields of a group that have one, and of what is in its lists.
-nlohmann::ordered_json field_units(const Group& group) {
+nlohmann::ordered_json field_units(const Group& group, const std::optional<LaboratoryScale>& lab) {
   nlohmann::ordered_json all;
-  for (const auto& [name, value] : all_fields(group))
+  for (const auto& [name, value] : all_fields(group, lab))
     if (const std::string_view unit = unit_of(name); !unit.empty()) all[name] = unit;
   all["survival"] = all["incidence"] = {{"distance", "sigma"}};
   all["censored_distances"] = "sigma";
@@ -384,13 +258,14 @@ std::string definition_of_clogs(const std::vector<Group>& groups) {
 
 }  // namespace
 
-std::string to_text(const std::vector<Group>& groups, double confidence, SharedParameters shared) {
+std::string to_text(const std::vector<Group>& groups, double confidence, SharedParameters shared,
+                    const std::optional<LaboratoryScale>& lab) {
   const std::vector<bool> varies = varying_fields(groups);
   const std::vector<bool> shown = shown_fields(groups, varies);
   std::string text = "all runs:" + wrapped(shared_words(groups.front().first_row, varies, shown, shared));
   if (shared == SharedParameters::unusual) text += "\n(the rest as by default; --all-parameters names it)";
   text += definition_of_clogs(groups);
-  const std::vector<ResultColumn> columns = result_columns(groups, confidence);
+  const std::vector<ResultColumn> columns = result_columns(groups, confidence, lab);
   std::vector<std::vector<std::string>> lines(1);
   append_shown(parameter_names(groups.front()), shown, lines[0]);
   for (const ResultColumn& column : columns) lines[0].push_back(column.name);
@@ -402,11 +277,11 @@ std::string to_text(const std::vector<Group>& groups, double confidence, SharedP
   return text + "\n\n" + aligned(lines) + legend(groups) + left_out(groups);
 }
 
-std::string to_csv(const std::vector<Group>& groups) {
+std::string to_csv(const std::vector<Group>& groups, const std::optional<LaboratoryScale>& lab) {
   std::string table;
   for (const Group& group : groups) {
     std::vector<std::string> names, cells;
-    for (const auto& [name, value] : all_fields(group)) {
+    for (const auto& [name, value] : all_fields(group, lab)) {
       names.emplace_back(name);
       cells.push_back(sweep::text_of(value));
     }
@@ -416,12 +291,12 @@ std::string to_csv(const std::vector<Group>& groups) {
   return table;
 }
 
-std::string to_json(const std::vector<Group>& groups, double confidence,
-                    const store::Provenance& provenance) {
+std::string to_json(const std::vector<Group>& groups, double confidence, const store::Provenance& provenance,
+                    const std::optional<LaboratoryScale>& lab) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Group& group : groups) {
     nlohmann::ordered_json entry;
-    const std::vector<Field> fields = all_fields(group);
+    const std::vector<Field> fields = all_fields(group, lab);
     for (const auto& [name, value] : fields) entry[name] = json_of(value);
     entry["survival"] = nlohmann::ordered_json::array();
     for (const fit::SurvivalStep& step : group.survival)
@@ -453,15 +328,20 @@ std::string to_json(const std::vector<Group>& groups, double confidence,
   for (const char* name : {"version", "git_describe", "git_hash", "start_time", "command_line", "config"})
     if (std::string text = attribute(provenance, name); !text.empty()) origin[name] = std::move(text);
   const console::BuildInfo build = console::build_info();
-  const nlohmann::ordered_json document = {{"version", build.version},
-                                           {"git_describe", build.git_describe},
-                                           {"confidence", confidence},
-                                           {"doubts", sentences},
-                                           {"units", field_units(groups.front())},
-                                           {"columns", columns},
-                                           {"lists", listed_columns(provenance)},
-                                           {"sweep", origin},
-                                           {"groups", list}};
+  nlohmann::ordered_json document = {{"version", build.version},
+                                     {"git_describe", build.git_describe},
+                                     {"confidence", confidence},
+                                     {"doubts", sentences},
+                                     {"units", field_units(groups.front(), lab)},
+                                     {"columns", columns},
+                                     {"lists", listed_columns(provenance)},
+                                     {"sweep", origin},
+                                     {"groups", list}};
+  if (lab)
+    document["laboratory"] = {{"length_mm", lab->length},
+                              {"time_s", lab->time},
+                              {"speed_mm_per_s", number_or_null(lab->speed)},
+                              {"tension_mN_per_m", lab->tension}};
   return document.dump(2) + "\n";
 }
 

@@ -54,6 +54,7 @@ std::vector<Doubt> doubts_about(const Group& group) {
   if (group.num_damaged > 0) doubts.push_back(Doubt::damaged);
   if (hangs_on_mesh(group)) doubts.push_back(Doubt::held_by_mesh);
   if (group.num_repeating > 0) doubts.push_back(Doubt::array_repeats);
+  if (group.num_free > 0) doubts.push_back(Doubt::met_none);
   if (group.clogging.length < sweep::obstacle_spacing(group.first_row))
     doubts.push_back(Doubt::below_spacing);
   if (!sweep::unproven_parameters(group.first_row).empty()) doubts.push_back(Doubt::not_proved_sound);
@@ -197,6 +198,29 @@ void fit_clogging(Group& group, std::span<const Ending> runs, double confidence,
   }
 }
 
+/// What the runs say about obstacles that they met. @param runs  sound, and counted
+struct Meetings {
+  std::vector<fit::Observation> from_first;  ///< of the runs that met one
+  std::int64_t num_contacts = 0;
+  double way = 0;  ///< of all runs that tell [sigma]
+  int num_free = 0;
+
+  void count(const sweep::RunRow& run, const Ending& ending, double from_distance) {
+    if (run.contacts < 0) return;
+    num_contacts += run.contacts;
+    way += std::max(0.0, run.distance);
+    num_free += run.contacts == 0;
+    const double begin = std::max(from_distance, run.first_contact_at);
+    if (run.contacts > 0) from_first.push_back({std::max(0.0, ending.distance - begin), ending.is_clog});
+  }
+};
+
+void fit_meetings(Group& group, const Meetings& meetings, double confidence) {
+  group.clogging_met = fit::fit_clogging_length(meetings.from_first, confidence);
+  group.num_free = meetings.num_free;
+  if (meetings.way > 0) group.contacts_per_length = static_cast<double>(meetings.num_contacts) / meetings.way;
+}
+
 /// Counts by cause and their lengths; without values where they are not known.
 void append_causes(const Group& group, std::vector<Field>& fields) {
   const Value unknown;
@@ -220,17 +244,39 @@ fit::MeanSpeed of_enough_runs(fit::MeanSpeed speed) {
   return speed;
 }
 
+/// Until the run ended, or the droplet came to its arrest; not known of files without dwells.
+fit::Travel travel_until_arrest(const sweep::RunRow& run) {
+  const bool is_clogged = run.status == RunStatus::clogged;
+  const double way = is_clogged ? run.dwells.last_distance : run.distance;
+  return {way / run.parameters.drag.terminal_speed, is_clogged ? run.dwells.last_begin : run.time};
+}
+
+/// Droplets that sank by less than half a diameter on the average have no speed, as single ones.
+fit::MeanSpeed speed_of_all(std::span<const fit::Travel> travels, double terminal_speed) {
+  constexpr double shortest_way = 0.5;  // [sigma]
+  double way = 0;
+  for (const fit::Travel& travel : travels) way += travel.distance * terminal_speed;
+  const bool is_far = way >= shortest_way * static_cast<double>(travels.size());
+  return of_enough_runs(is_far ? fit::fit_pooled_speed(travels) : fit::fit_pooled_speed({}));
+}
+
 constexpr std::pair<std::string_view, std::string_view> units_of_results[] = {
     {"dwell", "t0"},
     {"total_distance", "sigma"},
+    {"contacts_per_length", "1/sigma"},
     {"relative_speed", "v_t"},
     {"relative_speed_error", "v_t"},
+    {"relative_speed_all", "v_t"},
+    {"relative_speed_all_error", "v_t"},
     {"relative_speed_pooled", "v_t"},
     {"relative_speed_pooled_error", "v_t"}};
 
 }  // namespace
 
 std::string_view unit_of(std::string_view field) {
+  if (field.ends_with("_mm")) return "mm";
+  if (field.ends_with("_mm_per_s")) return "mm/s";
+  if (field == "time_to_clog_s") return "s";
   if (field.starts_with("clogging_length") || field.starts_with("break_up_length")) return "sigma";
   for (const auto& [name, unit] : units_of_results)
     if (name == field) return unit;
@@ -260,8 +306,9 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
     group.first_row = *runs.front();
     group.dwell = dwell;
     std::vector<Ending> counted;
+    Meetings meetings;
     std::vector<double> speeds;
-    std::vector<fit::Travel> travels;
+    std::vector<fit::Travel> travels, all_travels;
     std::vector<fit::Displacement> displacements;
     for (const sweep::RunRow* run : runs) {
       const bool is_damaged = !sweep::fault_of(*run).empty();
@@ -276,16 +323,20 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
       const bool is_left_out = std::max(ending.distance, 0.0) < from_distance;
       group.num_left_out += is_left_out;
       if (!is_left_out) counted.push_back(ending);
+      if (!is_left_out) meetings.count(*run, ending, from_distance);
       group.num_on_mesh += !is_left_out && sweep::may_hang_on_mesh(*run);
       group.num_flowing += !is_left_out && !ending.is_clog && run->status == RunStatus::flowing;
       const double relative_speed = run->mean_speed / run->parameters.drag.terminal_speed;
       speeds.push_back(relative_speed);
       travels.push_back({relative_speed * run->travel_time, run->travel_time});
+      if (run->steps > 0) all_travels.push_back(travel_until_arrest(*run));
       displacements.push_back({run->distance, run->lateral_displacement});
     }
     fit_clogging(group, counted, confidence, from_distance);
+    fit_meetings(group, meetings, confidence);
     group.relative_speed = of_enough_runs(fit::fit_mean_speed(speeds));
     group.relative_speed_pooled = of_enough_runs(fit::fit_pooled_speed(travels));
+    group.relative_speed_all = speed_of_all(all_travels, group.first_row.parameters.drag.terminal_speed);
     group.migration = fit::fit_migration(displacements);
     group.doubts = doubts_about(group);
     groups.push_back(std::move(group));
@@ -343,6 +394,11 @@ std::vector<Field> result_fields(const Group& group) {
       {"clogging_length_profile_lower", value_of(group.clogging.profile.lower)},
       {"clogging_length_profile_upper", value_of(group.clogging.profile.upper)},
       {"clogging_length_least_squares", value_of(group.least_squares_length)},
+      {"met_none", value_of(group.num_free)},
+      {"contacts_per_length", value_of(group.contacts_per_length)},
+      {"clogging_length_met", value_of(group.clogging_met.length)},
+      {"clogging_length_met_lower", value_of(group.clogging_met.interval.lower)},
+      {"clogging_length_met_upper", value_of(group.clogging_met.interval.upper)},
       {"weibull_shape", value_of(group.weibull.shape)},
       {"weibull_p_value", value_of(group.weibull.p_value)},
       {"relative_speed", value_of(group.relative_speed.mean)},
@@ -350,6 +406,8 @@ std::vector<Field> result_fields(const Group& group) {
       {"relative_speed_runs", value_of(group.relative_speed.num_runs)},
       {"relative_speed_pooled", value_of(group.relative_speed_pooled.mean)},
       {"relative_speed_pooled_error", value_of(group.relative_speed_pooled.standard_error)},
+      {"relative_speed_all", value_of(group.relative_speed_all.mean)},
+      {"relative_speed_all_error", value_of(group.relative_speed_all.standard_error)},
       {"capillary_number", value_of(group.relative_speed.mean * units::droplet_mass / line_tension)},
       {"lateral_slope", value_of(group.migration.slope)},
       {"lateral_slope_error", value_of(group.migration.standard_error)},

@@ -131,6 +131,8 @@ void Ledger::take_over(const store::SweepFile& file, const sweep::Settings& sett
     std::erase_if(all, [&](const auto& attribute) { return attribute.first == name; });
     if (const std::string text = attribute(provenance_, name); !text.empty()) all.emplace_back(name, text);
   }
+  if (const std::string lab = attribute(provenance_, "laboratory"); !lab.empty())
+    set_attribute(all, "laboratory", lab);
   provenance_ = std::move(all);
 }
 

@@ -2,6 +2,7 @@
 
 #include <iostream>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,10 +15,12 @@
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/laboratory/scales.hpp"
 #include "clog/store/run_table.hpp"
 #include "clogfit_calibrate.hpp"
 #include "clogfit_deviation.hpp"
 #include "clogfit_drag.hpp"
+#include "clogfit_units.hpp"
 
 namespace {
 
@@ -35,6 +38,7 @@ confidence interval and the mean speed with its standard error.
   clogfit calibrate trial.csv --orifice 0.7    line tension and near-wall drag from measured speeds
   clogfit deviation a.csv b.csv                Delta_v and Delta_A of one profile from others
   clogfit drag speeds.csv                      exponent of the near-wall drag from speeds along a wall
+  clogfit units lab.cfg                        between a laboratory's quantities and the model's numbers
   clogfit report sweep.h5 --output page.html   curves, doubts, example clogs, table, provenance on one page
 
 Runs that did not clog count as censored at the distance they reached. Where no run clogged, lambda is a lower
@@ -48,6 +52,22 @@ longer, which is to say that it came no farther than dwell-length (0.05 sigma by
 did so first, even if it went on.
 )";
 
+/// Of --lab, or else of the sweep's own.
+std::optional<campaign::LaboratoryScale> laboratory_of(const cli::CommandLine& line,
+                                                       const store::SweepFile& sweep) {
+  const std::string stored = campaign::attribute(sweep.provenance, "laboratory");
+  if (!line.has("lab") && stored.empty()) return std::nullopt;
+  const laboratory::Laboratory lab =
+      line.has("lab") ? laboratory::read_laboratory(line.get("lab"))
+                      : laboratory::parse_laboratory(stored, line.get("file") + ", attribute laboratory,");
+  constexpr double milli = 1e-3;
+  const laboratory::Scales scales = laboratory::scales_of(lab);
+  return campaign::LaboratoryScale{.length = scales.length / milli,
+                                   .time = scales.time,
+                                   .speed = scales.speed / milli,
+                                   .tension = scales.tension / milli};
+}
+
 int body(int argc, char** argv) {
   namespace po = boost::program_options;
   cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::none);
@@ -57,9 +77,11 @@ int body(int argc, char** argv) {
       "all-parameters", "name in the text also what all runs have as by default")(
       "from-distance", po::value<std::string>(),
       "count lambda from this distance on; runs that ended before are left out [sigma]")(
+      "lab", po::value<std::string>(),
+      "file that describes the laboratory, see clogfit units: lengths, speeds and times in its units, too")(
       "dwell", po::value<std::string>(), "droplets that have not moved for so long count as clogged [t0]");
   line.add_positional("file", 1);
-  line.add_commands({"calibrate", "deviation", "drag", "report"});
+  line.add_commands({"calibrate", "deviation", "drag", "report", "units"});
   line.explain_surplus_words("one sweep file is read at a time; call clogfit for each");
   line.parse(argc, argv);
   if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return console::exit_success;
@@ -83,12 +105,12 @@ int body(int argc, char** argv) {
         "no place for --dwell (droplets in a channel or on a wall have no clogging length) leave it out");
   const std::vector<campaign::Group> groups =
       campaign::group_runs(sweep.rows, confidence, from_distance, dwell);
-  std::cout << (format == "csv" ? campaign::to_csv(groups)
-                : format == "json"
-                    ? campaign::to_json(groups, confidence, sweep.provenance)
-                    : campaign::to_text(
-                          groups, confidence,
-                          line.has("all-parameters") ? SharedParameters::all : SharedParameters::unusual));
+  const std::optional<campaign::LaboratoryScale> lab = laboratory_of(line, sweep);
+  const SharedParameters shared =
+      line.has("all-parameters") ? SharedParameters::all : SharedParameters::unusual;
+  std::cout << (format == "csv"    ? campaign::to_csv(groups, lab)
+                : format == "json" ? campaign::to_json(groups, confidence, sweep.provenance, lab)
+                                   : campaign::to_text(groups, confidence, shared, lab));
   return console::exit_success;
 }
 
@@ -110,6 +132,8 @@ int main(int argc, char** argv) {
     return cli::run_program("clogfit deviation", [&] { return clogfit_deviation(argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "drag")
     return cli::run_program("clogfit drag", [&] { return clogfit_drag(argc, argv); });
+  if (argc > 1 && std::string_view(argv[1]) == "units")
+    return cli::run_program("clogfit units", [&] { return clogfit_units(argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "report")
     return cli::run_program("clogfit report", [&] { return report(argc, argv); });
   return cli::run_program(program, [&] { return body(argc, argv); });

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "clog/core/tools/error.hpp"
+#include "clog/laboratory/scales.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "clogsweep_commands.hpp"
 
@@ -72,11 +73,38 @@ std::int64_t most_seeds(const cli::CommandLine& line, std::int64_t first_seeds) 
   return static_cast<std::int64_t>(number);
 }
 
+/// What the laboratory knows of its droplet, unless the user has said it himself.
+void set_by(const laboratory::Laboratory& lab, sweep::Settings& settings) {
+  const laboratory::Scales scales = laboratory::scales_of(lab);
+  const auto set = [&](const char* key, double value) {
+    if (std::isfinite(value) && !settings.is_given(key)) settings.set(key, fmt::format("{:.4g}", value));
+  };
+  set("terminal-speed", scales.terminal_speed);
+  const std::vector<std::string>& models = settings.values("model");
+  if (models == std::vector<std::string>{"dp"}) set("line-tension", scales.line_tension);
+  if (models == std::vector<std::string>{"sp"}) set("wall-stiffness", scales.wall_stiffness);
+}
+
+/// A table is HDF5, whatever its name; a name that says something else is a mistake.
+void refuse_other_format(const cli::CommandLine& line) {
+  if (!line.has("output")) return;
+  const std::string name = line.get("output");
+  for (const char* ending : {".csv", ".txt", ".json", ".xlsx", ".cfg"})
+    if (name.ends_with(ending))
+      throw Error(
+          fmt::format("invalid --output={} (a sweep is stored as HDF5) give --output {}.h5; clogfit --format "
+                      "csv makes a table of its results",
+                      name, name.substr(0, name.size() - std::string(ending).size())));
+}
+
 }  // namespace
 
 void parse_sweep_options(cli::CommandLine& line, int argc, const char* const* argv) {
   namespace po = boost::program_options;
   line.add_options()("output", po::value<std::string>(), "HDF5 file to make")(
+      "lab", po::value<std::string>(),
+      "file that describes the laboratory, see clogfit units: gives terminal-speed and line-tension or\n"
+      "wall-stiffness unless they are set, and clogfit its units")(
       "dry-run", "print the tasks, their number and cost, run nothing")("print-config",
                                                                         "print the settings, run nothing")(
       "schema", "print all keys and columns as JSON: meaning, unit, range, default; run nothing")(
@@ -99,6 +127,8 @@ void parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
   line.explain_surplus_words(
       "--output names the file of a sweep, and clogsweep status FILE tells how far it is");
   line.parse(argc, argv);
+  refuse_other_format(line);
+  if (line.has("lab")) set_by(laboratory::read_laboratory(line.get("lab")), line.settings());
 }
 
 conduct::LeadOptions lead_options(const cli::CommandLine& line) {

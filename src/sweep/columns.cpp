@@ -282,6 +282,12 @@ std::vector<Column> make_columns() {
       member("transient", &RunRow::transient, result, "t0", "time at which the transient ends"),
       member("travel_time", &RunRow::travel_time, result, "t0",
              "time that mean_speed is taken over: from the end of the transient to the arrest"),
+      member(
+          "contacts", &RunRow::contacts, result, "",
+          "how often the droplet came to touch an obstacle, as seen at the checks, 64 steps apart; one that "
+          "it has left by 0.1 sigma counts again; -1: not known"),
+      member("first_contact_at", &RunRow::first_contact_at, result, "sigma",
+             "distance at which it touched the first one; NaN: none"),
       member("kinetic_energy_ratio", &RunRow::kinetic_energy_ratio, result, "",
              "E_k/E_t at the end; E_t: kinetic energy at terminal speed"),
       member("shape_parameter", &RunRow::shape_parameter, result, "",
@@ -341,7 +347,7 @@ std::vector<Column> make_columns() {
   };
   all.insert(all.end(), others.begin(), others.end());
   const std::vector<Column> dwells = columns_of_dwells();
-  const auto speed_ends = std::ranges::find(all, "kinetic_energy_ratio", &Column::name);
+  const auto speed_ends = std::ranges::find(all, "contacts", &Column::name);
   all.insert(speed_ends, dwells.begin(), dwells.end());
   return all;
 }

@@ -180,6 +180,16 @@ std::string shape_fault(const RunRow& row) {
   return "";
 }
 
+std::string contacts_fault(const RunRow& row) {
+  if (row.contacts < -1) return "a negative number of contacts";
+  if (std::isnan(row.first_contact_at) == (row.contacts > 0))
+    return named("first_contact_at", row.first_contact_at) + ", but " +
+           fmt::format("contacts={}", row.contacts);
+  if (!std::isnan(row.first_contact_at) && !is_number_below(row.first_contact_at, farthest_way(row)))
+    return named("first_contact_at", row.first_contact_at) + " is not on the droplet's way";
+  return "";
+}
+
 std::string clog_fault(const RunRow& row) {
   const bool is_clogged = row.status == RunStatus::clogged;
   if (row.clogged_by) {
@@ -258,8 +268,8 @@ std::string neck_fault(const RunRow& row) {
 
 std::string result_fault(const RunRow& row) {
   if (row.status == RunStatus::failed) return row.message.empty() ? "failed without a reason" : "";
-  for (const auto check :
-       {time_fault, motion_fault, dwells_fault, shape_fault, clog_fault, passage_fault, neck_fault})
+  for (const auto check : {time_fault, motion_fault, dwells_fault, contacts_fault, shape_fault, clog_fault,
+                           passage_fault, neck_fault})
     if (std::string fault = check(row); !fault.empty()) return fault;
   return "";
 }

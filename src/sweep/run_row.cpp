@@ -48,6 +48,8 @@ void record(const RunResult& result, RunRow& row) {
   row.transient = result.speed.transient;
   row.travel_time = result.speed.time;
   row.dwells = result.dwells;
+  row.contacts = result.contacts.number;
+  row.first_contact_at = result.contacts.first_distance;
   row.kinetic_energy_ratio = result.kinetic_energy_ratio;
   row.shape_parameter = result.shape_parameter;
   row.mechanism = result.hold.mechanism;

@@ -242,7 +242,7 @@ class Fit(ProgramTest):
 
     def test_lattices_repeat_without_a_doubt(self):
         self.sweep("seeds=1..6", *FAR, "obstacle-layout=lattice", "obstacle-gap=1.2")
-        self.change(distance=[10, 50, 20, 30, 40, 60], status=[b"clogged"] * 6)
+        self.change(distance=[10, 50, 20, 30, 40, 60], status=[b"clogged"] * 6, contacts=1, first_contact_at=0.1)
         group, = self.fit()["groups"]
         self.assertEqual((group["repeating"], group["doubts"]), (0, None))
 
@@ -257,7 +257,7 @@ class Fit(ProgramTest):
 
     def test_what_was_not_proved_sound_is_doubted(self):
         self.sweep("seeds=1..5", *FAR, "line-tension=1,30")
-        self.change(distance=[1, 2, 3, 4, 5] * 2, status=[b"clogged"] * 10)
+        self.change(distance=[1, 2, 3, 4, 5] * 2, status=[b"clogged"] * 10, contacts=1, first_contact_at=0.1)
         fit = self.fit()
         self.assertEqual([group["doubts"] for group in fit["groups"]], [None, "not_proved_sound"])
         self.assertIn("u: " + fit["doubts"]["not_proved_sound"], self.succeed("clogfit", "sweep.h5").stdout)
@@ -356,10 +356,21 @@ class Fit(ProgramTest):
         self.assertEqual((group["broken"], group["break_up_length"], group["incidence"]), (0, None, {}))
         self.assertNotIn("broken", self.succeed("clogfit", "sweep.h5").stdout)
 
+    def test_files_of_format_version_8_do_not_tell_of_contacts(self):
+        self.sweep("max-time=60", "line-tension=2", "seeds=1..3")
+        before, = self.fit()["groups"]
+        self.assertGreater(before["contacts_per_length"], 0)
+        stored_rows.make_older(self.folder / "sweep.h5", "8", ["contacts", "first_contact_at"])
+        group, = self.fit()["groups"]
+        self.assertEqual((group["contacts_per_length"], group["clogging_length_met"], group["met_none"]), (None, None, 0))
+        self.assertEqual((group["clogging_length"], group["doubts"]), (before["clogging_length"], before["doubts"]))
+        self.succeed("clogsweep", "verify", "sweep.h5")
+
     def test_files_of_format_version_7_can_be_read(self):
         self.sweep("max-time=60", "line-tension=2", "seeds=1..3")
         before, = self.fit()["groups"]
-        new = ["mesh_hold", "break_up_neck", "thinnest_neck", "thinnest_neck_at", "receding_angle", "advancing_angle", "friction", "yield_traction"]
+        new = ["mesh_hold", "break_up_neck", "thinnest_neck", "thinnest_neck_at", "receding_angle", "advancing_angle", "friction", "yield_traction",
+               "contacts", "first_contact_at"]
         stored_rows.make_older(self.folder / "sweep.h5", "7", new)
         group, = self.fit()["groups"]
         self.assertEqual((group["break_up_neck"], group["clogging_length"], group["receding_angle"]), (0, before["clogging_length"], 180))

@@ -1,6 +1,7 @@
 """Sweeps of channels, flat walls and circles of one's own: the same keys as for one run, one row for each."""
 
 import json
+import math
 import unittest
 
 import h5py
@@ -139,7 +140,7 @@ class Channels(Analysis):
             self.assertTrue(0 < passed < 3)
             self.assertIn(f"<li>orifice {orifice}: {passed} of 3 passed</li>", page)
         self.assertNotIn("lambda", page)
-        self.assertEqual((page.count("<svg"), page.count("<img")), (3, 2))
+        self.assertEqual((page.count("<svg"), page.count("<img")), (5, 0))
         self.succeed("clogfit", "report", "s.h5", "--output", "r.html", "--examples", 0)
         page = (self.folder / "r.html").read_text()
         self.assertEqual((page.count("<svg"), page.count("<img")), (3, 0))
@@ -225,7 +226,7 @@ class Walls(Analysis):
             cells = [f"{row.line_tension:g}", "at rest", *(f"{value:.4g}" for value in (row.sag, row.top_sag, row.shape_parameter))]
             self.assertIn("".join(f"<td>{cell}</td>" for cell in cells), page)
         self.assertIn("<li>2 of 2 at rest</li>", page)
-        self.assertEqual((page.count("<svg"), page.count("<img")), (2, 2))
+        self.assertEqual((page.count("<svg"), page.count("<img")), (4, 0))
         self.refuse_analysis("clogging-length", "s.h5", "--programs", BIN, words=["on a wall", "clogfit report"])
 
     def test_a_soft_disk_sags_as_its_spring_says(self):
@@ -307,10 +308,36 @@ class OwnCircles(ProgramTest):
         self.refuse("clogsweep", "obstacles=posts.csv", "--output", "s.h5", words=["obstacles=posts.csv", "give box"])
         self.refuse("clogrun", "array", "obstacles=posts.csv", "--output", "r.h5", words=["obstacles=posts.csv", "give box"])
         (self.folder / "posts.csv").write_text("x,y\n" + "".join(f"{i % 5 * 2},{i // 5 * 2}\n" for i in range(25)))
-        self.assertNotIn("bare", self.succeed("clogsweep", *OWN, "--dry-run").stdout)
-        told = self.succeed("clogsweep", *OWN, "boxes=4", "--dry-run").stdout
+        wide = [*OWN, "obstacle-diameter=1.1"]
+        self.assertNotIn("bare", self.succeed("clogsweep", *wide, "--dry-run").stdout)
+        told = self.succeed("clogsweep", *wide, "boxes=4", "--dry-run").stdout
         self.assertIn("obstacles=posts.csv leaves x=", told)
         self.assertNotIn("leaves y=", told)
+
+    def test_droplets_that_fall_through_a_lane_met_nothing(self):
+        # Posts between two walls at y = 1 and 7 of a device that is 8 wide: the walls' backs leave a lane of 1.7, in which a droplet touches nothing.
+        walls = [(0.53 * i % 16, y) for i in range(30) for y in (1, 7)] + [(1.0 + 2 * i, 0.5 * (i % 2) + y) for i in range(8) for y in (2, 3.1, 4.2, 5.3)]
+        keys = ["box=8", "boxes=2", "release=anywhere", "vertices=64", "line-tension=4", "terminal-speed=0.1", "max-time=100", "seeds=1..12"]
+        (self.folder / "walls.csv").write_text("x,y,diameter\n" + "".join(f"{x:.4f},{y},0.3\n" for x, y in walls))
+        told = self.succeed("clogsweep", "obstacles=walls.csv", *keys, "--dry-run").stdout
+        self.assertRegex(told, r"obstacles=walls.csv leaves y=7.15 to 8.85 bare, wider than a droplet")
+        self.succeed("clogsweep", "obstacles=walls.csv", *keys, "--output", "s.h5")
+        rows = read_rows(self.folder / "s.h5")
+        for row in rows:
+            fell = row.status == "flowing" and abs(row.distance - 10) < 0.1 and abs(row.lateral_displacement) < 1e-9
+            self.assertEqual(row.contacts == 0, fell, row)
+            self.assertEqual(math.isnan(row.first_contact_at), row.contacts == 0)
+        free = sum(row.contacts == 0 for row in rows)
+        self.assertTrue(0 < free < len(rows), free)
+        group, = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
+        met = [row for row in rows if row.contacts > 0]
+        clogs = sum(row.status == "clogged" for row in met)
+        self.assertEqual((group["met_none"], "met_none" in group["doubts"].split()), (free, True))
+        if clogs:
+            self.assertAlmostEqual(group["clogging_length_met"], sum(row.distance - row.first_contact_at for row in met) / clogs, places=9)
+        self.assertAlmostEqual(group["contacts_per_length"], sum(row.contacts for row in met) / sum(row.distance for row in rows), places=9)
+        self.assertRegex(self.succeed("clogfit", "s.h5").stdout, r"met none +lambda_met")
+        self.succeed("clogsweep", "verify", "s.h5")
 
     def test_two_arrays_are_one_sweep(self):
         (self.folder / "few.csv").write_text("x,y,diameter\n5,7,1\n")

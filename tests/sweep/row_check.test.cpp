@@ -192,7 +192,8 @@ TEST(FaultOf, NamesEveryNumberThatIsNone) {
                                           "sag",
                                           "top_sag",
                                           "thinnest_neck",
-                                          "thinnest_neck_at"};
+                                          "thinnest_neck_at",
+                                          "first_contact_at"};
   for (std::size_t i = 0; i < Dwells::most; ++i)
     for (const char* part : {"", "_at", "_from"}) may_be_unknown.insert(dwell_column(i) + part);
   for (const Column& column : columns()) {
@@ -316,6 +317,22 @@ TEST(FaultOf, NamesNecksThatCannotBe) {
   }
   necked.status = RunStatus::broken, necked.neck.width = 0.04;
   EXPECT_EQ(fault_of(necked), "");
+}
+
+TEST(FaultOf, NamesContactsThatCannotBe) {
+  RunRow met = row_of({{"max-time", "5"}});
+  met.contacts = 2, met.first_contact_at = met.distance / 2;
+  ASSERT_EQ(fault_of(met), "");
+  const std::vector<std::pair<const char*, std::function<void(RunRow&)>>> damages = {
+      {"a negative number", [](RunRow& row) { row.contacts = -2; }},
+      {", but contacts=0", [](RunRow& row) { row.contacts = 0; }},
+      {"first_contact_at=nan, but contacts=2", [](RunRow& row) { row.first_contact_at = std::nan(""); }},
+      {"first_contact_at=1000 is not on", [](RunRow& row) { row.first_contact_at = 1e3; }}};
+  for (const auto& [words, damage] : damages) {
+    RunRow row = met;
+    damage(row);
+    EXPECT_NE(fault_of(row).find(words), std::string::npos) << words << ": " << fault_of(row);
+  }
 }
 
 TEST(FarthestWay, IsHardlyMoreThanAFreeSoftDiskFalls) {

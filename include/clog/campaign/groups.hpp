@@ -27,6 +27,7 @@ enum class Doubt {
   damaged,           ///< rows hold what cannot be (sweep::fault_of)
   held_by_mesh,      ///< the polygon's corners may hold a tenth of the clogs or more
   array_repeats,     ///< runs went farther than the period of their array (sweep::has_met_repetition)
+  met_none,          ///< droplets touched no obstacle on their way
   below_spacing,     ///< lambda is shorter than one obstacle spacing (sweep::obstacle_spacing)
   not_proved_sound,  ///< sweep::unproven_parameters
 };
@@ -54,6 +55,9 @@ inline constexpr DoubtText doubt_texts[] = {
     {Doubt::array_repeats, 'r', "array_repeats",
      "runs went farther than boxes times box, where obstacles repeat: what lets a droplet pass once does so "
      "again"},
+    {Doubt::met_none, 'n', "met_none",
+     "droplets met no obstacle: what they sank freely is in lambda; lambda_met is that of the others, from "
+     "the first obstacle on"},
     {Doubt::below_spacing, 'v', "below_spacing",
      "lambda is below one obstacle spacing (diameter + gap): it says how deep the void of release is, "
      "not how often gaps clog droplets (of circles of your own the spacing is 1/sqrt(circles per area))"},
@@ -90,6 +94,9 @@ struct Group {
   fit::CloggingLength clogging;
   double least_squares_length = 0;  ///< the published way, biased; NaN for fewer than two clogs
   fit::WeibullTest weibull;
+  /// Of the runs that met an obstacle, from the first one on. Runs of files that do not tell are left out.
+  fit::CloggingLength clogging_met;
+  double contacts_per_length = std::numeric_limits<double>::quiet_NaN();  ///< of all that tell [1/sigma]
   std::vector<fit::SurvivalStep> survival;
   std::vector<double> censored_distances;  ///< of the runs that did not clog, increasing [sigma]
   /// One of each Cause, in their order: the runs that it ended, all others censored. Empty if the mechanism
@@ -102,6 +109,9 @@ struct Group {
   std::vector<EndsBy> causes;
   fit::MeanSpeed relative_speed;         ///< v_g/v_t, mean of the runs
   fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, way over time of all runs together
+  /// v_g/v_t, way over time of all runs until they ended or came to their arrest, however short their way
+  /// was. Runs that went far enough to have a speed of their own are the faster ones where droplets clog.
+  fit::MeanSpeed relative_speed_all;
   fit::Migration migration;
   int num_flowing = 0;  ///< ended by max-time
   int num_interrupted = 0;
@@ -109,6 +119,7 @@ struct Group {
   int num_damaged = 0;    ///< likewise
   int num_left_out = 0;   ///< ended before distances are counted, see group_runs(); likewise
   int num_on_mesh = 0;    ///< clogs that the corners of the polygon may hold (sweep::may_hang_on_mesh)
+  int num_free = 0;       ///< met no obstacle
   int num_repeating = 0;  ///< went farther than their array's period
   std::vector<Doubt> doubts;
 };

@@ -54,6 +54,8 @@ struct RunRow {
   double transient = not_known;
   double travel_time = not_known;
   Dwells dwells;
+  std::int64_t contacts = -1;  ///< -1: not known
+  double first_contact_at = not_known;
   double kinetic_energy_ratio = 0;
   double shape_parameter = 0;
   std::optional<ClogMechanism> mechanism;

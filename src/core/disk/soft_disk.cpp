@@ -53,6 +53,10 @@ void resolve_disk(RunParameters& run, double) {
 Eigen::ArrayXd centre_alone(const RunParameters&) { return Eigen::ArrayXd::Zero(2); }
 double radius(const RunParameters&) { return units::droplet_diameter / 2; }
 
+ContactReach contact_reach_of_disk(const RunParameters& run) {
+  return {.range = radius(run), .by_edges = false};
+}
+
 /// Relaxes from the void nearest to the centre.
 DropletState release_disk(const RunParameters& run, const ObstacleArray& obstacles) {
   const Period& period = obstacles.period();
@@ -112,6 +116,7 @@ const DropletModel soft_disk = {.stiffness_key = "wall-stiffness",
                                 .num_points = one_point,
                                 .free_shape = centre_alone,
                                 .reach = radius,
+                                .contact_reach = contact_reach_of_disk,
                                 .release = release_disk,
                                 .most_energy_at_release = energy_of_overlaps,
                                 .make = make_disk,

@@ -49,6 +49,10 @@ double reach_of_polygon(const RunParameters& run) {
   return free_polygon(run).head(*run.dp.vertices).maxCoeff() + run.dp.contact_range.value();
 }
 
+ContactReach contact_reach_of_polygon(const RunParameters& run) {
+  return {.range = run.dp.contact_range.value(), .by_edges = run.dp.wall_contact == WallContact::edge};
+}
+
 /// The interface of a droplet released among obstacles is longer than a circle; it gets hardly twice as long.
 double energy_of_interface(const RunParameters& run) {
   constexpr double excess_perimeter = 20;  // [sigma]
@@ -133,6 +137,7 @@ const DropletModel deformable_polygon = {.stiffness_key = "line-tension",
                                          .num_points = num_vertices,
                                          .free_shape = free_polygon,
                                          .reach = reach_of_polygon,
+                                         .contact_reach = contact_reach_of_polygon,
                                          .release = release_polygon,
                                          .most_energy_at_release = energy_of_interface,
                                          .make = make_polygon,

@@ -32,7 +32,7 @@ constexpr double fall_between_searches = 0.1;
 constexpr double rise_of_a_moving_droplet = 10;
 
 /// Changes with what a snapshot holds.
-constexpr std::uint64_t snapshot_kind = 0x636c6f6773000003;
+constexpr std::uint64_t snapshot_kind = 0x636c6f6773000004;
 
 /// Of a frame that a snapshot holds. @param way  no droplet of the run gets farther [sigma]
 bool is_in_range(const LocalFrame& frame, const Period& period, double way) {
@@ -83,7 +83,8 @@ DropletRun::DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> o
       max_steps_(std::max<std::int64_t>(1, std::llround(run_.max_time / run_.time_step.value()))),
       first_quiet_time_(relaxation_times_before_a_clog * run_.drag.terminal_speed / units::gravity),
       next_search_(first_search(run_.drag.terminal_speed)),
-      dwells_(run_.dwell_length, run_.drag.terminal_speed) {}
+      dwells_(run_.dwell_length, run_.drag.terminal_speed),
+      contacts_(model_of(run_).contact_reach(run_)) {}
 
 PotentialEnergy DropletRun::potential_energy() const {
   PotentialEnergy energy = droplet_->potential_energy();
@@ -120,6 +121,7 @@ void DropletRun::take_snapshot() {
   bytes.put(next_search_);
   record_.save(bytes);
   dwells_.save(bytes);
+  contacts_.save(bytes);
   if (is_passage()) passage_.save(bytes);
   bytes.put(neck_);
   snapshot_ = bytes.take();
@@ -146,6 +148,7 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
     if (!resumed.is_in_range()) throw Error("its progress is out of range");
     resumed.record_.restore(rest, resumed.time());
     resumed.dwells_.restore(rest);
+    resumed.contacts_.restore(rest);
     if (resumed.is_passage()) resumed.passage_.restore(rest);
     rest.get(resumed.neck_);
     if (!rest.at_end()) throw Error("the snapshot is of another run");
@@ -182,6 +185,7 @@ void DropletRun::check() {
   }
   record_.add(time(), displacement()[0]);
   dwells_.add(time(), displacement()[0]);
+  contacts_.add(droplet_->state(), *obstacles_, displacement_of({0, 0}), displacement()[0]);
   if (is_passage())
     passage_.add(run_.channel.start + displacement()[0], shape.shape_parameter(),
                  droplet_->centre_velocity()[0] / run_.drag.terminal_speed, has_fallen());
@@ -250,6 +254,7 @@ RunResult DropletRun::result() const {
           .time = time(),
           .speed = record_.travel_speed(),
           .dwells = dwells_.found(time(), status_ == RunStatus::clogged),
+          .contacts = contacts_.found(),
           .kinetic_energy_ratio = kinetic_energy_ratio(),
           .shape_parameter = last.shape().shape_parameter(),
           .hold = hold,

@@ -52,6 +52,8 @@ void expect_identical(const RunResult& a, const RunResult& b) {
   EXPECT_EQ(a.hold.mechanism, b.hold.mechanism);
   EXPECT_TRUE(a.neck.width == b.neck.width || (std::isnan(a.neck.width) && std::isnan(b.neck.width)));
   EXPECT_EQ(bytes_of(a.dwells), bytes_of(b.dwells));
+  EXPECT_EQ(a.contacts.number, b.contacts.number);
+  EXPECT_TRUE(a.contacts.first_distance == b.contacts.first_distance || a.contacts.number == 0);
 }
 
 void expect_diverged(const RunResult& result) {

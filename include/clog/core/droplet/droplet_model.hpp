@@ -14,6 +14,12 @@ namespace clog {
 
 inline constexpr double no_neck = std::numeric_limits<double>::infinity();
 
+/// What of a droplet walls push.
+struct ContactReach {
+  double range;   ///< distance from a wall's surface at which it begins [sigma]
+  bool by_edges;  ///< edges as well as the points that move?
+};
+
 /// What a droplet is. There is one for each Model: a new one is a word of that, a folder beside `polygon` and
 /// `disk` with an object of its own, a line in model.cpp, and what docs/how-to/add-a-model.md says besides.
 struct DropletModel {
@@ -37,6 +43,7 @@ struct DropletModel {
   Eigen::ArrayXd (*free_shape)(const RunParameters& run);
   /// Distance from a free droplet's centre at which a wall begins to push it [sigma].
   double (*reach)(const RunParameters& run);
+  ContactReach (*contact_reach)(const RunParameters& run);
   /// A droplet at rest, without weight, near the centre of the box.
   /// @throws Error if there is no room for it, or it does not relax
   DropletState (*release)(const RunParameters& run, const ObstacleArray& obstacles);

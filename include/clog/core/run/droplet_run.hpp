@@ -11,6 +11,7 @@
 #include "clog/core/droplet/droplet.hpp"
 #include "clog/core/droplet/hold.hpp"
 #include "clog/core/parameters/parameters.hpp"
+#include "clog/core/run/contact_record.hpp"
 #include "clog/core/run/displacement_record.hpp"
 #include "clog/core/run/dwell_record.hpp"
 #include "clog/core/run/passage.hpp"
@@ -57,6 +58,7 @@ struct RunResult {
   double time = 0;      ///< [t0]
   TravelSpeed speed;    ///< of the way so far
   Dwells dwells;
+  Contacts contacts;
   double kinetic_energy_ratio = 0;  ///< E_k/E_t at the end
   double shape_parameter = 0;       ///< A at the end, certified: at rest
   Hold hold;                        ///< of a clogged droplet, certified: at rest
@@ -140,6 +142,7 @@ class DropletRun {
   std::string message_;
   DisplacementRecord record_;
   DwellRecord dwells_;
+  ContactRecord contacts_;
   Passage passage_;  // through a channel
   ThinnestNeck neck_;
   std::vector<std::byte> snapshot_;

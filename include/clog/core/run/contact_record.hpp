@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "clog/core/droplet/droplet_model.hpp"
+#include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/tools/byte_archive.hpp"
+#include "clog/core/world/obstacle_array.hpp"
+
+namespace clog {
+
+/// Obstacles that a droplet has met on its way.
+struct Contacts {
+  /// How often it came to touch one. An obstacle counts again once the droplet has been farther than
+  /// ContactRecord::parting from it; each period of an array has obstacles of its own.
+  std::int64_t number = 0;
+  double first_distance = std::numeric_limits<double>::quiet_NaN();  ///< at the first; NaN: none [sigma]
+};
+
+/// Finds out at the checks of a run which obstacles push its droplet. A touch that begins and ends between
+/// two checks is not seen: the droplet moves by some thousandths of its diameter in that time.
+class ContactRecord {
+ public:
+  /// An obstacle that is farther away has been left [sigma].
+  static constexpr double parting = 0.1;
+
+  /// @param reach  of what moves, see DropletModel
+  explicit ContactRecord(const ContactReach& reach) : reach_(reach) {}
+
+  /// To be called once per check of a run.
+  /// @param release  displacement from the place of release of the origin of the droplet's frame [sigma]
+  /// @param distance  displacement of the droplet along the flow since release [sigma]
+  void add(const DropletState& state, const ObstacleArray& obstacles, const Eigen::Array2d& release,
+           double distance);
+  const Contacts& found() const { return contacts_; }
+
+  void save(ByteWriter& bytes) const;
+  /// @throws Error if it cannot be what save() wrote
+  void restore(ByteReader& bytes);
+
+ private:
+  /// Where an obstacle's centre is, from the droplet's place of release [sigma].
+  struct Place {
+    double x, y;
+  };
+  ContactReach reach_;
+  Contacts contacts_;
+  std::vector<Place> met_;  // and not left since
+  // Circles near the droplet, in its frame, as long as it stays within the window.
+  std::vector<Obstacle> near_;
+  Eigen::Array2d origin_{0, 0};
+  Eigen::Array2d lower_{1, 1}, upper_{0, 0};
+
+  void look_around(const DropletState& state, const ObstacleArray& obstacles, const Eigen::Array2d& lower,
+                   const Eigen::Array2d& upper);
+  void see(const Place& place, double gap, double distance);
+};
+
+}  // namespace clog

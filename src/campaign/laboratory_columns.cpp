@@ -1,0 +1,53 @@
+#include "laboratory_columns.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "clog/console/rounded.hpp"
+
+namespace clog::campaign {
+namespace {
+
+/// Mean time until a clog: lambda over the speed of all runs, which the laboratory's terminal speed scales
+/// [s].
+double time_to_clog(const Group& group, const LaboratoryScale& scale) {
+  if (group.clogging.num_clogs == 0) return std::numeric_limits<double>::quiet_NaN();
+  return group.clogging.length * scale.length / (group.relative_speed_all.mean * scale.speed);
+}
+
+Value value_of(double number) { return std::isfinite(number) ? Value(number) : Value(); }
+
+}  // namespace
+
+std::vector<Field> laboratory_fields(const Group& group, const LaboratoryScale& scale) {
+  const fit::CloggingLength& clogging = group.clogging;
+  return {{"clogging_length_mm", value_of(clogging.length * scale.length)},
+          {"clogging_length_lower_mm", value_of(clogging.interval.lower * scale.length)},
+          {"clogging_length_upper_mm", value_of(clogging.interval.upper * scale.length)},
+          {"speed_mm_per_s", value_of(group.relative_speed_all.mean * scale.speed)},
+          {"speed_error_mm_per_s", value_of(group.relative_speed_all.standard_error * scale.speed)},
+          {"time_to_clog_s", value_of(time_to_clog(group, scale))}};
+}
+
+std::vector<ResultColumn> laboratory_columns(const LaboratoryScale& scale) {
+  return {{"lambda/mm",
+           [=](const Group& group) {
+             const fit::CloggingLength& clogging = group.clogging;
+             if (clogging.num_runs == 0) return std::string("-");
+             if (clogging.num_clogs == 0)
+               return "> " + console::plain(clogging.interval.lower * scale.length);
+             return console::with_interval(clogging.length * scale.length,
+                                           clogging.interval.lower * scale.length,
+                                           clogging.interval.upper * scale.length)
+                 .value;
+           }},
+          {"v_g in mm/s",
+           [=](const Group& group) {
+             return console::with_error(group.relative_speed_all.mean * scale.speed,
+                                        group.relative_speed_all.standard_error * scale.speed)
+                 .value;
+           }},
+          {"time to clog/s", [=](const Group& group) { return console::plain(time_to_clog(group, scale)); }}};
+}
+
+}  // namespace clog::campaign

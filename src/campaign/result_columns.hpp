@@ -1,0 +1,24 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "clog/campaign/groups.hpp"
+
+namespace clog::campaign {
+
+/// A column of results in the table for people.
+struct ResultColumn {
+  std::string name;
+  std::function<std::string(const Group&)> cell;
+};
+
+/// What the runs of the scene have found. @param groups  not empty
+std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, double confidence);
+
+/// Where clogs are not all of one kind, or some are left out, it is said of which kind they are.
+bool are_mechanisms_shown(const std::vector<Group>& groups);
+bool have_some_broken(const std::vector<Group>& groups);
+
+}  // namespace clog::campaign

@@ -1,0 +1,105 @@
+#include "clog/laboratory/lab_file.hpp"
+
+#include <fmt/core.h>
+
+#include <map>
+#include <numbers>
+#include <sstream>
+#include <vector>
+
+#include "clog/console/csv.hpp"
+#include "clog/console/text_file.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/joined.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::laboratory {
+namespace {
+
+using Entries = std::map<std::string, std::string>;
+
+/// Of each key what it measures; the ratio is a number.
+const std::map<std::string, std::string> known_keys = {
+    {"diameter", "length"}, {"thickness", "length"}, {"density", "density"}, {"outer-density", "density"},
+    {"tension", "tension"}, {"angle", "angle"},      {"speed", "speed"},     {"tension-ratio", ""}};
+
+std::string names_of_keys() {
+  std::vector<std::string> names;
+  for (const auto& [name, units] : known_keys) names.push_back(name);
+  return joined(names);
+}
+
+Entries entries_of(const std::string& text) {
+  Entries entries;
+  std::istringstream lines(text);
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    const std::string words = console::trimmed(line.substr(0, line.find('#')));
+    if (words.empty()) continue;
+    const auto equals = words.find('=');
+    if (equals == std::string::npos)
+      throw Error(fmt::format("line {}: '{}' is not key = value", number, words.substr(0, 60)));
+    const std::string key = console::trimmed(words.substr(0, equals));
+    if (!known_keys.contains(key))
+      throw Error(
+          fmt::format("line {}: unknown key '{}' (known: {})", number, key.substr(0, 60), names_of_keys()));
+    if (!entries.emplace(key, console::trimmed(words.substr(equals + 1))).second)
+      throw Error(fmt::format("line {}: {} stands there twice", number, key));
+  }
+  return entries;
+}
+
+/// In SI units; the default where the key is not there.
+double value_of(const Entries& entries, const std::string& key, double otherwise) {
+  const auto found = entries.find(key);
+  if (found == entries.end()) return otherwise;
+  try {
+    const std::string& units = known_keys.at(key);
+    const double value = units.empty() ? sweep::to_number(found->second) : to_si(found->second, units);
+    if (value > 0) return value;
+    throw Error("must be positive");
+  } catch (const Error& error) {
+    throw Error(fmt::format("invalid {}={} ({})", key, found->second, error.what()));
+  }
+}
+
+Laboratory laboratory_of(const Entries& entries) {
+  for (const auto& [key, example] : {std::pair{"diameter", "3.5 mm"}, {"angle", "28 deg"}})
+    if (!entries.contains(key))
+      throw Error(fmt::format("has no {0}; write for example {0} = {1}", key, example));
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  constexpr double octane = 703, water = 997;  // of the article [kg/m^3]
+  Laboratory lab;
+  lab.experiment = {.diameter = value_of(entries, "diameter", 0),
+                    .terminal_speed = value_of(entries, "speed", 0),
+                    .tilt = value_of(entries, "angle", 0),
+                    .droplet_density = value_of(entries, "density", octane),
+                    .outer_density = value_of(entries, "outer-density", water),
+                    .interfacial_tension = value_of(entries, "tension", unknown)};
+  lab.thickness = value_of(entries, "thickness", unknown);
+  lab.tension_ratio = value_of(entries, "tension-ratio", lab.tension_ratio);
+  constexpr double right_angle = std::numbers::pi / 2 * (1 + 1e-12);
+  if (lab.experiment.tilt > right_angle)
+    throw Error(fmt::format("invalid angle={} (beyond 90 degrees)", entries.at("angle")));
+  if (lab.experiment.droplet_density == lab.experiment.outer_density)
+    throw Error("density and outer-density are equal: nothing drives the droplet");
+  for (const auto& [key, value] : entries) lab.text += fmt::format("{} = {}\n", key, value);
+  return lab;
+}
+
+}  // namespace
+
+Laboratory parse_laboratory(const std::string& text, const std::string& source) {
+  try {
+    return laboratory_of(entries_of(text));
+  } catch (const Error& error) {
+    throw Error(source + " " + error.what());
+  }
+}
+
+Laboratory read_laboratory(const std::string& path) {
+  return parse_laboratory(console::read_text(path), path);
+}
+
+}  // namespace clog::laboratory

@@ -1,0 +1,106 @@
+#include "clog/laboratory/scales.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <boost/math/tools/roots.hpp>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+
+#include "clog/core/tools/units.hpp"
+
+namespace clog::laboratory {
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// A drop on a wall that it does not wet.
+struct Puddle {
+  double height = 0, area = 0, moment = 0;  ///< moment: of depth below the apex
+};
+
+/// Young and Laplace: phi' = kappa_0 + z/Gamma, x' = cos(phi), z' = sin(phi) along the interface, with z the
+/// depth below the apex and phi the slope's angle, from 0 at the apex to pi at the wall; area' = 2 x z'. By
+/// Runge and Kutta's fourth-order rule.
+Puddle puddle(double line_tension, double apex_curvature) {
+  using State = Eigen::Array<double, 5, 1>;  // phi, x, z, area, moment
+  const double step = 1e-3 * std::min(1.0, std::sqrt(line_tension));
+  const auto slope = [&](const State& y) {
+    const double deepening = std::sin(y[0]);
+    return State(apex_curvature + y[2] / line_tension, std::cos(y[0]), deepening, 2 * y[1] * deepening,
+                 2 * y[1] * y[2] * deepening);
+  };
+  State y = State::Zero();
+  for (bool is_at_wall = false; !is_at_wall;) {
+    const State k1 = slope(y);
+    const double rest = (std::numbers::pi - y[0]) / k1[0];
+    is_at_wall = rest <= step;
+    const double h = is_at_wall ? rest : step;
+    const State k2 = slope(y + h / 2 * k1), k3 = slope(y + h / 2 * k2), k4 = slope(y + h * k3);
+    y += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+  }
+  return {.height = y[2], .area = y[3], .moment = y[4]};
+}
+
+/// Root of an increasing or decreasing function of a logarithm.
+template <class Function>
+double root(Function function, double low, double high) {
+  std::uintmax_t most_steps = 200;
+  constexpr int bits = 40;
+  const auto [below, above] = boost::math::tools::toms748_solve(
+      [&](double logarithm) { return function(std::exp(logarithm)); }, std::log(low), std::log(high),
+      boost::math::tools::eps_tolerance<double>(bits), most_steps);
+  return std::exp((below + above) / 2);
+}
+
+constexpr double softest = 1e-3, stiffest = 1e4;  // Gamma
+
+double sag_of(double line_tension) {
+  constexpr double flattest = 1e-120, roundest = 2;  // curvature of the apex; that of a circle is 2
+  const auto excess = [&](double curvature) {
+    return puddle(line_tension, curvature).area - units::rest_area;
+  };
+  const Puddle drop = puddle(line_tension, root(excess, flattest, roundest));
+  return units::droplet_diameter / 2 - (drop.height - drop.moment / drop.area);
+}
+
+}  // namespace
+
+double sag_on_wall(double line_tension) {
+  return line_tension >= softest && line_tension <= stiffest ? sag_of(line_tension) : unknown;
+}
+
+double line_tension_of_sag(double sag) {
+  if (!(sag < sag_of(softest) && sag > sag_of(stiffest))) return unknown;
+  return root([&](double line_tension) { return sag_of(line_tension) - sag; }, softest, stiffest);
+}
+
+double wall_stiffness_of_sag(double sag) { return std::numbers::pi / (16 * sag); }
+
+Scales scales_of(const Laboratory& lab) {
+  const Experiment& at = lab.experiment;
+  const double per_line_tension = at.gravity() * at.droplet_density * at.diameter * at.diameter;
+  const bool is_speed_known = at.terminal_speed > 0;
+  Scales scales{.length = at.diameter,
+                .gravity = at.gravity(),
+                .time = std::sqrt(at.diameter / at.gravity()),
+                .speed = is_speed_known ? at.terminal_speed : unknown,
+                .tension = per_line_tension / lab.tension_ratio,
+                .line_tension_experiment = at.line_tension(),
+                .line_tension = lab.tension_ratio * at.line_tension(),
+                .terminal_speed = is_speed_known ? at.reduced_terminal_speed() : unknown,
+                .line_tension_of_cell = at.interfacial_tension * lab.thickness};
+  scales.capillary_number = units::droplet_mass * units::gravity / scales.line_tension;
+  scales.sag = std::isnan(scales.line_tension) ? unknown : sag_on_wall(scales.line_tension);
+  scales.wall_stiffness = wall_stiffness_of_sag(scales.sag);
+  return scales;
+}
+
+double tilt_of(double line_tension, const Laboratory& lab) {
+  Experiment upright = lab.experiment;
+  upright.tilt = std::numbers::pi / 2;
+  return std::asin(lab.tension_ratio * upright.line_tension() / line_tension);
+}
+
+}  // namespace clog::laboratory

@@ -1,0 +1,196 @@
+#include "clogfit_units.hpp"
+
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "clog/cli/command_line.hpp"
+#include "clog/cli/program.hpp"
+#include "clog/console/build_info.hpp"
+#include "clog/console/exit_codes.hpp"
+#include "clog/console/rounded.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/laboratory/scales.hpp"
+
+namespace clog::programs {
+namespace {
+
+using laboratory::Laboratory;
+using laboratory::Scales;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* usage =
+    R"(clogfit units converts between a laboratory's quantities and the model's numbers, in which the droplet's diameter
+sigma, the gravity g along the plates and the droplet's density rho are 1.
+
+  clogfit units lab.cfg
+  clogfit units lab.cfg --length 24 --time 2000          of the model, in mm and s
+  clogfit units lab.cfg --line-tension 0.16              which interfacial tension, or which tilt, that is
+  clogsweep --lab lab.cfg ... ; clogfit sweep.h5         sweeps and fits in both
+
+lab.cfg has lines key = value:
+
+  diameter = 3.5 mm           of the undeformed droplet, seen from above
+  angle = 28 deg              of the plates against the horizontal; 90 deg: upright
+  speed = 7 mm/s              terminal, far from walls
+  tension = 9.6 mN/m          interfacial
+  density = 0.703 g/ml        of the droplet (this is the default)
+  outer-density = 0.997 g/ml  of the liquid around it (likewise)
+  thickness = 0.4 mm          of the cell
+  tension-ratio = 0.3         Gamma of the model over Gamma_exp (likewise)
+
+diameter and angle are needed. Gamma_exp = gamma/(g_exp rho sigma^2) is of an interface in three dimensions; the model has
+two, in which the droplets of the article move like the measured ones with 0.3 of it. Calibrate your own droplet, clogfit
+calibrate, for a ratio of its own.
+)";
+
+constexpr double milli = 1e-3;
+constexpr double degree = std::numbers::pi / 180;
+
+/// A line of the answer: what, in the laboratory, in the model.
+using Line = std::vector<std::string>;
+
+std::string with_unit(double value, const char* unit) {
+  if (!std::isfinite(value)) return "-";
+  return console::plain(value) + (*unit ? " " : "") + unit;
+}
+
+std::string lines_text(const std::vector<Line>& lines) {
+  std::vector<std::size_t> widths(lines.front().size(), 0);
+  for (const Line& line : lines)
+    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
+  std::string text;
+  for (const Line& line : lines) {
+    for (std::size_t i = 0; i < line.size(); ++i)
+      text += i + 1 < line.size() ? fmt::format("{:{}}  ", line[i], widths[i]) : line[i];
+    text += '\n';
+  }
+  return text;
+}
+
+std::vector<Line> lines_of(const Laboratory& lab, const Scales& scales) {
+  const auto equals = [](const char* symbol, double value) {
+    return std::isfinite(value) ? fmt::format("{} = {}", symbol, console::plain(value)) : std::string("-");
+  };
+  std::vector<Line> lines = {
+      {"", "laboratory", "model"},
+      {"droplet's diameter", with_unit(scales.length / milli, "mm"), "sigma = 1"},
+      {"gravity along the plates, less buoyancy", with_unit(scales.gravity, "m/s^2"), "g = 1"},
+      {"unit of time, sqrt(sigma/g)", with_unit(scales.time, "s"), "t0 = 1"},
+      {"terminal speed", with_unit(scales.speed / milli, "mm/s"), equals("V_t", scales.terminal_speed)},
+      {"interfacial tension", with_unit(lab.experiment.interfacial_tension / milli, "mN/m"),
+       equals("Gamma_exp", scales.line_tension_experiment)},
+      {fmt::format("line tension of the model, {} Gamma_exp", console::plain(lab.tension_ratio)), "",
+       equals("Gamma", scales.line_tension)},
+      {"soft disk that sags as far on a flat wall", with_unit(scales.sag * scales.length / milli, "mm"),
+       equals("E_w", scales.wall_stiffness)},
+      {"capillary number at the terminal speed", "", equals("Ca", scales.capillary_number)}};
+  if (!std::isnan(lab.thickness))
+    lines.push_back({"line tension of the cell, tension times thickness",
+                     with_unit(scales.line_tension_of_cell / (milli * milli), "uN"), ""});
+  return lines;
+}
+
+/// Of the options that give numbers of the model.
+struct Given {
+  double length, time, line_tension, terminal_speed, wall_stiffness;  ///< NaN if it was not given
+};
+Given given(const cli::CommandLine& line) {
+  const auto number = [&](const char* option) {
+    return line.has(option) ? line.get_positive(option) : std::numeric_limits<double>::quiet_NaN();
+  };
+  return {number("length"), number("time"), number("line-tension"), number("terminal-speed"),
+          number("wall-stiffness")};
+}
+
+/// A number of the model, and what it is in the laboratory.
+struct Conversion {
+  const char *name, *what, *unit;
+  double value;
+  const char* symbol;
+  double model;
+};
+std::vector<Conversion> converted(const Given& model, const Laboratory& lab, const Scales& scales) {
+  const double sag = std::numbers::pi / (16 * model.wall_stiffness);
+  std::vector<Conversion> all = {
+      {"length_mm", "length", "mm", model.length * scales.length / milli, "r/sigma", model.length},
+      {"time_s", "time", "s", model.time * scales.time, "t/t0", model.time},
+      {"tension_mN_per_m", "interfacial tension at this tilt", "mN/m",
+       model.line_tension * scales.tension / milli, "Gamma", model.line_tension},
+      {"angle_degrees", "or tilt with this tension", "deg",
+       laboratory::tilt_of(model.line_tension, lab) / degree, "Gamma", model.line_tension},
+      {"speed_mm_per_s", "terminal speed", "mm/s", model.terminal_speed * scales.length / scales.time / milli,
+       "V_t", model.terminal_speed},
+      {"line_tension_of_equal_sag", "Gamma of the droplet that sags as far", "",
+       laboratory::line_tension_of_sag(sag), "E_w", model.wall_stiffness}};
+  std::erase_if(all, [](const Conversion& one) { return std::isnan(one.model); });
+  return all;
+}
+
+Line line_of(const Conversion& one) {
+  return {one.what, with_unit(one.value, one.unit),
+          fmt::format("{} = {}", one.symbol, console::plain(one.model))};
+}
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json json_of(const Laboratory& lab, const Scales& scales) {
+  const console::BuildInfo build = console::build_info();
+  return {{"version", build.version},
+          {"git_describe", build.git_describe},
+          {"diameter_mm", scales.length / milli},
+          {"gravity_m_per_s2", scales.gravity},
+          {"time_s", scales.time},
+          {"speed_mm_per_s", number(scales.speed / milli)},
+          {"tension_mN_per_m", number(lab.experiment.interfacial_tension / milli)},
+          {"tension_ratio", lab.tension_ratio},
+          {"tension_mN_per_m_of_gamma_1", scales.tension / milli},
+          {"line_tension_experiment", number(scales.line_tension_experiment)},
+          {"line_tension", number(scales.line_tension)},
+          {"sag", number(scales.sag)},
+          {"wall_stiffness", number(scales.wall_stiffness)},
+          {"terminal_speed", number(scales.terminal_speed)},
+          {"capillary_number", number(scales.capillary_number)},
+          {"line_tension_of_cell_uN", number(scales.line_tension_of_cell / (milli * milli))}};
+}
+
+}  // namespace
+
+int clogfit_units(int argc, const char* const* argv) {
+  namespace po = boost::program_options;
+  cli::CommandLine line("clogfit units", usage, cli::CommandLine::SweepKeys::none);
+  const auto text = [] { return po::value<std::string>(); };
+  line.add_options()("file", text(), "lab.cfg")("length", text(), "of the model, such as lambda [sigma]")(
+      "time", text(), "of the model [t0]")("line-tension", text(), "Gamma of the model")(
+      "terminal-speed", text(), "V_t of the model")("wall-stiffness", text(), "E_w of a soft disk")(
+      "format", text()->default_value("text"), "text or json");
+  line.add_positional("file", 1);
+  line.parse(argc - 1, argv + 1);
+  if (cli::answer_help_or_version(line, {})) return console::exit_success;
+  if (!line.has("file")) throw Error("missing lab.cfg; clogfit units --help shows what it holds");
+  const std::string format = line.get("format");
+  if (format != "text" && format != "json")
+    throw Error("invalid --format=" + format + " (is not one of text, json)");
+  const Laboratory lab = laboratory::read_laboratory(line.get("file"));
+  const Scales scales = laboratory::scales_of(lab);
+  const std::vector<Conversion> asked = converted(given(line), lab, scales);
+  if (format == "json") {
+    Json document = json_of(lab, scales);
+    for (const Conversion& one : asked) document["given"][one.name] = number(one.value);
+    std::cout << document.dump(2) << '\n';
+    return console::exit_success;
+  }
+  std::vector<Line> lines = lines_of(lab, scales);
+  if (!asked.empty()) lines.push_back({"", "", ""});
+  for (const Conversion& one : asked) lines.push_back(line_of(one));
+  std::cout << lines_text(lines);
+  return console::exit_success;
+}
+
+}  // namespace clog::programs

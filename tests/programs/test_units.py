@@ -1,0 +1,106 @@
+"""clogfit units, and sweeps, fits and figures that know their laboratory."""
+
+import json
+import subprocess
+import sys
+import unittest
+
+import h5py
+from support import BIN, QUICK, ROOT, ProgramTest
+
+# The droplets of Cheng et al.: diameter, tilt, terminal speed; V_t and Gamma_exp as printed there, with half of their last digit, or of that of
+# what they follow from ("sigma = 3.5 mm, v_t = 7 mm/s" may be off by one part in fourteen).
+ARTICLE = [("3.5 mm", "28 deg", "7 mm/s", (0.08, 0.006), (0.57, 0.01)),
+           ("1.98 mm", "8.5 deg", "0.97 mm/s", (0.028, 5e-4), (5.80, 0.07)),
+           ("3.30 mm", "5.0 deg", "1.1 mm/s", (0.032, 5e-4), (3.47, 0.05))]
+FITTED = [0.16, 1.7, 1.08]  # Gamma* of the article, of these three
+TENSION = "9.6 mN/m"  # "about 10 mJ/m^2"; that of the printed Gamma_exp
+
+
+class Units(ProgramTest):
+    def lab(self, diameter="3.5 mm", angle="28 deg", speed="7 mm/s", tension=TENSION, name="lab.cfg", **more):
+        lines = {"diameter": diameter, "angle": angle, "speed": speed, "tension": tension, **more}
+        return self.write(name, "# a droplet\n" + "".join(f"{key.replace('_', '-')} = {value}  # as measured\n" for key, value in lines.items()))
+
+    def units(self, *arguments):
+        return json.loads(self.succeed("clogfit", "units", *arguments, "--format", "json").stdout)
+
+    def test_the_droplets_of_the_article_have_their_printed_numbers(self):
+        for (diameter, angle, speed, terminal_speed, experiment), fitted in zip(ARTICLE, FITTED):
+            found = self.units(self.lab(diameter, angle, speed))
+            self.assertAlmostEqual(found["terminal_speed"], terminal_speed[0], delta=terminal_speed[1])
+            self.assertAlmostEqual(found["line_tension_experiment"], experiment[0], delta=experiment[1])
+            # "Gamma**/Gamma_exp of about 0.3"
+            self.assertAlmostEqual(found["line_tension"], fitted, delta=0.1 * fitted)
+            self.assertAlmostEqual(found["capillary_number"], 3.14159265 / 4 / found["line_tension"], delta=1e-6)
+
+    def test_what_is_converted_comes_back(self):
+        lab = self.lab(thickness="0.4 mm")
+        there = self.units(lab)
+        self.assertAlmostEqual(there["line_tension_of_cell_uN"], 9.6 * 0.4, places=9)
+        back = self.units(lab, "--line-tension", there["line_tension"], "--terminal-speed", there["terminal_speed"], "--wall-stiffness",
+                          there["wall_stiffness"], "--length", 24, "--time", 1000)["given"]
+        for name, value in (("tension_mN_per_m", 9.6), ("angle_degrees", 28), ("speed_mm_per_s", 7), ("length_mm", 84),
+                            ("line_tension_of_equal_sag", there["line_tension"]), ("time_s", 1000 * there["time_s"])):
+            self.assertAlmostEqual(back[name] / value, 1, places=6, msg=name)
+        told = self.succeed("clogfit", "units", lab, "--length", 24).stdout
+        self.assertRegex(told, r"(?m)^length +84\.0 mm +r/sigma = 24\.0$")
+        self.assertRegex(told, r"(?m)^interfacial tension +9\.60 mN/m +Gamma_exp = 0\.5\d+$")
+
+    def test_the_sag_is_that_of_a_droplet_on_a_wall(self):
+        found = self.units(self.lab(tension="4 mN/m"))
+        run = self.succeed("clogrun", "sag", f"line-tension={found['line_tension']}", "--output", "sag.h5")
+        self.assertIsNotNone(run)
+        with h5py.File(self.folder / "sag.h5") as file:
+            self.assertAlmostEqual(file["runs"]["sag"][0], found["sag"], delta=0.003)
+
+    def test_python_gives_the_same(self):
+        lab = self.lab()
+        program = f"import clogsweep, json; print(json.dumps([clogsweep.units('lab.cfg', length=2, folder='{BIN}'), " \
+                  f"clogsweep.units({{'diameter': '3.5 mm', 'angle': '28 deg', 'speed': '7 mm/s', 'tension': '{TENSION}'}}, length=2, folder='{BIN}')]))"
+        done = subprocess.run([sys.executable, "-c", program], cwd=self.folder, capture_output=True, text=True, env={"PYTHONPATH": str(ROOT / "analysis"), "PATH": ""})
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(done.stdout), 2 * [self.units(lab, "--length", 2)])
+
+    def test_a_sweep_of_a_laboratory_is_told_in_its_units(self):
+        lab = self.lab()
+        known = self.units(lab)
+        self.succeed("clogsweep", "--lab", lab, *QUICK, "seeds=1..4", "--output", "s.h5")
+        with h5py.File(self.folder / "s.h5") as file:
+            self.assertIn("tension = 9.6 mN/m\n", file.attrs["laboratory"].decode())
+            self.assertAlmostEqual(file["runs"]["line_tension"][0] / known["line_tension"], 1, places=3)
+            self.assertAlmostEqual(file["runs"]["terminal_speed"][0] / known["terminal_speed"], 1, places=3)
+        self.succeed("clogsweep", "--lab", lab, *QUICK, "seeds=1..5", "--output", "s.h5")  # grows
+        self.succeed("clogsweep", "verify", "s.h5")
+        fit = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)
+        group, = fit["groups"]
+        self.assertAlmostEqual(fit["laboratory"]["length_mm"], 3.5)
+        self.assertAlmostEqual(group["clogging_length_lower_mm"], 3.5 * group["clogging_length_lower"])
+        if group["relative_speed_all"] is not None:
+            self.assertAlmostEqual(group["speed_mm_per_s"], 7 * group["relative_speed_all"])
+        self.assertEqual(fit["units"]["clogging_length_mm"], "mm")
+        self.assertIn("lambda/mm", self.succeed("clogfit", "s.h5").stdout)
+        self.succeed("clogsweep", *QUICK, "line-tension=1", "seeds=1..4", "--output", "plain.h5")
+        self.assertNotIn("lambda/mm", self.succeed("clogfit", "plain.h5").stdout)
+        self.assertIn("lambda/mm", self.succeed("clogfit", "plain.h5", "--lab", lab).stdout)
+
+    def test_mistakes_in_a_lab_file_get_one_line(self):
+        for text, words in [
+            ("diameter = 3.5 mm\n", ["lab.cfg has no angle", "angle = 28 deg"]),
+            ("diameter = 3.5\nangle = 28 deg\n", ["lab.cfg", "diameter=3.5", "has no unit"]),
+            ("diameter = 3.5 mm\nangle = 128 deg\n", ["beyond 90 degrees"]),
+            ("diameter = 3.5 mm\nangle = -1 deg\n", ["must be positive"]),
+            ("diameter = 3.5 mm\nangle = 28 deg\ncolour = red\n", ["line 3", "unknown key 'colour'"]),
+            ("diameter = 3.5 mm\ndiameter = 3.6 mm\n", ["line 2", "twice"]),
+            ("diameter\n", ["line 1", "not key = value"]),
+            ("diameter = 3.5 mm\nangle = 28 deg\ndensity = 1 g/ml\nouter-density = 1 g/ml\n", ["nothing drives"])]:
+            self.write("lab.cfg", text)
+            with self.subTest(text=text):
+                self.refuse("clogfit", "units", "lab.cfg", words=words)
+                self.refuse("clogsweep", "--lab", "lab.cfg", *QUICK, "--output", "s.h5", words=words)
+        self.refuse("clogfit", "units", words=["missing lab.cfg"])
+        self.refuse("clogfit", "units", "nowhere.cfg", words=["nowhere.cfg"])
+
+
+if __name__ == "__main__":
+    unittest.main()
