@@ -46,8 +46,8 @@ add_custom_command(OUTPUT "${completion}/clogsweep" "${completion}/_clogsweep"
     "${PROJECT_SOURCE_DIR}/analysis/clogsweep/commands/report.py"
   VERBATIM)
 add_custom_target(completion ALL DEPENDS "${completion}/clogsweep" "${completion}/_clogsweep")
-# bash loads the file that is called as the command is.
-foreach(program clogsweep clogrun clogfit)
+# bash loads the file that is called as the command is; mpirun's own is none.
+foreach(program clogsweep clogrun clogfit mpirun mpiexec)
   install(FILES "${completion}/clogsweep" RENAME ${program}
     DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT programs)
 endforeach()
@@ -65,7 +65,7 @@ if(CLOG_SPHINX)
 endif()
 if(NOT lacks_extensions)
   set(manual "${PROJECT_BINARY_DIR}/man")
-  set(pages clogsweep.1 clogrun.1 clogfit.1 clogsweep-keys.5 clogsweep-columns.5 clogsweep-files.5 clogsweep-exit-codes.7)
+  set(pages clogsweep.1 clogrun.1 clogfit.1 clogsweep-keys.5 clogsweep-columns.5 clogsweep-files.5 clogsweep-exit-codes.7 clogsweep-python.7)
   list(TRANSFORM pages PREPEND "${manual}/")
   file(GLOB_RECURSE handbook CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/docs/reference/*.md")
   add_custom_command(OUTPUT ${pages}

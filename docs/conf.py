@@ -51,7 +51,8 @@ man_pages = [(f"reference/{page}", name, what, "the clogsweep authors", section)
     ("keys", "clogsweep-keys", "parameters of a run, on the command line and in config files", 5),
     ("columns", "clogsweep-columns", "columns of the table of runs", 5),
     ("files", "clogsweep-files", "what clogsweep, clogrun and clogfit write and read", 5),
-    ("exit-codes", "clogsweep-exit-codes", "how clogsweep, clogrun and clogfit end", 7)]]
+    ("exit-codes", "clogsweep-exit-codes", "how clogsweep, clogrun and clogfit end", 7),
+    ("analysis", "clogsweep-python", "figures, films and reports, python3 -m clogsweep", 7)]]
 
 
 class ForTerminals(SphinxPostTransform):

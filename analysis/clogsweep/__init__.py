@@ -5,6 +5,7 @@
     sweep.rows                # pandas: a row for each run
     sweep.fit().groups        # clogging lengths, from clogfit
     sweep.fit().curve()       # draws itself in a notebook
+    clogsweep.units("lab.cfg")  # what the model's units are in a laboratory
 
 Nothing is fitted or simulated here: the programs are asked.
 """
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
     from .drawing.clogs import Clog, Clogs
     from .results.fit import Fit
+    from .results.laboratory import units
     from .results.run import Film, Run
     from .results.sweep import Sweep
     from .style import Picture
@@ -27,10 +29,11 @@ if TYPE_CHECKING:
 
 __version__ = "0.2.0"
 
-__all__ = ["Clog", "Clogs", "Damaged", "Film", "Fit", "Picture", "ProgramFailed", "Run", "Sweep", "UserError", "open"]
+__all__ = ["Clog", "Clogs", "Damaged", "Film", "Fit", "Picture", "ProgramFailed", "Run", "Sweep", "UserError", "open", "units"]
 
 _MODULES = {"Clog": "drawing.clogs", "Clogs": "drawing.clogs", "Damaged": "tools.errors", "Film": "results.run", "Fit": "results.fit",
-            "Picture": "style", "ProgramFailed": "tools.errors", "Run": "results.run", "Sweep": "results.sweep", "UserError": "tools.errors"}
+            "Picture": "style", "ProgramFailed": "tools.errors", "Run": "results.run", "Sweep": "results.sweep", "UserError": "tools.errors",
+            "units": "results.laboratory"}
 
 
 def __getattr__(name: str) -> Any:

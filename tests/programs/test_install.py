@@ -18,7 +18,7 @@ from support import BIN, LONGEST, ROOT
 KEYS = ["line-tension=0.5", "obstacle-density=saturated", "obstacle-gap=0.3", "vertices=64", "box=20", "max-time=200", "seeds=1..4"]
 
 COMMANDS = {"clogsweep": ["status", "verify", "salvage", "replay", "doctor"], "clogrun": [],
-            "clogfit": ["calibrate", "deviation", "drag", "report"]}
+            "clogfit": ["calibrate", "deviation", "drag", "report", "units"]}
 
 # What words without dashes stand for.
 POSITIONAL = {"--file", "--system", "--task"}
@@ -86,7 +86,7 @@ class Installed(unittest.TestCase):
 
     def test_man_pages_have_what_belongs_to_one_and_lead_to_others_that_are_there(self):
         pages = {(path.stem, path.suffix[1:]) for path in self.prefix.glob("share/man/man*/*")}
-        self.assertEqual(len(pages), 7)
+        self.assertEqual(len(pages), 8)
         for name, section in pages:
             page = self.man_page(name, section)
             of_a_program = ["SYNOPSIS", "EXAMPLES", "OPTIONS", "EXIT STATUS", "SEE ALSO"] if section == "1" else []
@@ -133,12 +133,12 @@ class Installed(unittest.TestCase):
             self.assertEqual(line, f"seed {row.seed}: {row.status} after {row.distance:.17g} sigma")
         self.assertRegex(said[-1], r"^lambda = \S+ sigma \(95 %: ")
 
-    def completed(self, *words):
+    def completed(self, *words, function="_clogsweep"):
         """What bash offers for the last word."""
         script = f"""
             compopt() {{ :; }}
             . {self.prefix}/share/bash-completion/completions/{words[0]}
-            COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _clogsweep; printf '%s\\n' "${{COMPREPLY[@]}}"
+            COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); {function}; printf '%s\\n' "${{COMPREPLY[@]}}"
         """
         return self.called("bash", "-c", script, "bash", *words).split()
 
@@ -150,6 +150,12 @@ class Installed(unittest.TestCase):
         self.assertEqual(self.completed("clogfit", "sweep.h5", "--dw"), ["--dwell"])
         self.assertEqual(self.completed("clogfit", "report", "--out"), ["--output"])
         self.assertEqual(self.completed("clogsweep", "status", "see"), [])
+        self.assertEqual(self.completed("clogfit", "uni"), ["units"])
+
+    def test_bash_completes_after_mpirun(self):
+        self.assertEqual(self.completed("mpirun", "-np", "2", "clogsweep", "line-t", function="_clogsweep_mpirun"), ["line-tension="])
+        self.assertEqual(self.completed("mpirun", "-np", "2", "/usr/bin/clogsweep", "--ou", function="_clogsweep_mpirun"), ["--output"])
+        self.assertEqual(self.completed("mpirun", "-n", function="_clogsweep_mpirun"), [])
 
     def test_bash_completes_what_an_option_takes(self):
         (self.folder / "inputs").mkdir(exist_ok=True)

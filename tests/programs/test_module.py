@@ -56,18 +56,18 @@ class Module(Analysis):
         fit = self.sweep("line-tension=0.1,0.7,1", "obstacle-gap=0.4", "seeds=1..4").fit()
         self.assertEqual(fit.groups.relative_speed_runs.tolist(), [3, 2, 1])
         lines = [line.split() for line in self.succeed("clogfit", "s.h5").stdout.splitlines()]
-        heading, = [line for line in lines if line[-3:] == ["<v_g>/v_t", "+-", "note"]]
+        heading, = [line for line in lines if line[-7:] == ["<v_g>/v_t", "+-", "of", "all", "runs", "+-", "note"]]
         rows = lines[lines.index(heading) + 1:][:3]
-        self.assertEqual([row[-3] == "-" for row in rows], fit.groups.relative_speed.isna().tolist())
+        self.assertEqual([row[-6] == "-" for row in rows], fit.groups.relative_speed.isna().tolist())
         for name in ("relative_speed_error", "capillary_number"):
             self.assertEqual(fit.groups[name].isna().tolist(), [False, True, True], name)
         self.assertEqual([group["relative_speed"] is None for group in fit.told["groups"]], [False, True, True])
         axes, = fit.speeds().figure.axes
-        self.assertEqual([bars.lines[0].get_xdata().tolist() for bars in axes.containers], [[0.1]])
+        self.assertEqual([bars.lines[0].get_xdata().tolist() for bars in axes.containers], [[0.1, 0.7]])  # of all runs
         self.draw("report", "s.h5", "-o", "r.html", "--examples", 0, "--programs", BIN)
-        cells = re.findall(r"<td>(.* \(\d runs?\))</td>", (self.folder / "r.html").read_text())
-        self.assertEqual(len(cells), 1)
-        self.assertTrue(cells[0].endswith("(3 runs)"))
+        cells = re.findall(r"<td>([^<]* \(mean of \d of \d runs: [^<]*\))</td>", (self.folder / "r.html").read_text())
+        self.assertEqual([re.search(r"\(.* runs", cell)[0] for cell in cells], ["(mean of 3 of 4 runs", "(mean of 2 of 4 runs"])
+        self.assertTrue(cells[1].endswith(": -)"))
 
     def test_options_of_a_fit_reach_clogfit(self):
         options = {"dwell": 20.0, "from_distance": 0.5, "confidence": 0.5}

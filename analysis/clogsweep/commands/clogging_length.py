@@ -1,4 +1,5 @@
-"""Draws the clogging length against line tension (DP) or wall stiffness (SP), one curve per obstacle array.
+"""Draws the clogging length against line tension (DP) or wall stiffness (SP), one curve per obstacle array; of lattices the
+lateral displacement per distance against the angle of their rows.
 
     python3 -m clogsweep clogging-length sweep.h5        # sweep-clogging-length.png, sweep-clogging-length.pdf
     clogfit sweep.h5 --format json | python3 -m clogsweep clogging-length /dev/stdin --output clogging-length     # the same
@@ -9,14 +10,14 @@ why; a triangle pointing up is a lower bound where no run clogged.
 """
 
 from .. import style
-from ..drawing import lengths
+from ..drawing import curve
 from ..results import fit
-from .command_line import sweep_to_draw
+from . import command_line
 
 
 def body() -> int:
-    arguments = sweep_to_draw(__doc__, "clogging-length", "file of clogsweep --output, or output of clogfit --format json")
-    fitted = fit.read(arguments.sweep, arguments.programs)
-    picture = style.Picture(style.figure_of(lengths.draw_on, fitted.known.with_lengths(arguments.sweep)), fitted.source)
+    arguments = command_line.sweep_to_draw(__doc__, "clogging-length", "file of clogsweep --output, or output of clogfit --format json", command_line.add_lab)
+    fitted = fit.read(arguments.sweep, arguments.programs, *command_line.lab_options(arguments))
+    picture = style.Picture(style.figure_of(curve.draw_on, fitted.known.with_lengths(arguments.sweep)), fitted.source)
     print(f"{picture.save(arguments.output)} (and .pdf)")
     return 0

@@ -101,6 +101,15 @@ def sweep_to_draw(about: str | None, ending: str, what: str = "file of clogsweep
     return arguments
 
 
+def add_lab(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--lab", type=pathlib.Path, help="file that describes the laboratory, see clogfit units: scales in its units, too")
+
+
+def lab_options(arguments: argparse.Namespace) -> list[object]:
+    """--lab for clogfit, if it was given."""
+    return ["--lab", arguments.lab] if arguments.lab else []
+
+
 def quieten_libraries() -> None:
     """What matplotlib, pandas or PyTables warn their own users of is nothing that ours can mend; python -W shows it."""
     if not sys.warnoptions:

@@ -18,8 +18,9 @@ def body() -> int:
     parser.add_argument("sweep", type=pathlib.Path, help="output of clogsweep")
     command_line.add_output(parser, "HTML file to write (SWEEP-report.html)")
     parser.add_argument("--examples", type=command_line.whole(0), default=4, help="clogs or outlines to show (4); 0 runs nothing")
+    command_line.add_lab(parser)
     programs.add_option(parser)
     arguments = parser.parse_args()
     output = arguments.output or command_line.beside(arguments.sweep, "report.html")
-    print(report.write(arguments.sweep, output, arguments.examples, programs.programs_in(arguments.programs)))
+    print(report.write(arguments.sweep, output, arguments.examples, programs.programs_in(arguments.programs), *command_line.lab_options(arguments)))
     return 0

@@ -1,12 +1,13 @@
 """Clogging lengths and mean speeds against the parameter that a sweep varies, a curve for each obstacle array."""
 
+import functools
 import math
 from collections.abc import Callable, Collection, Iterable, Sequence
 
 from matplotlib.axes import Axes
 
 from .. import style
-from ..labels import AXES
+from ..labels import AXES, LABORATORY
 from ..labels.groups import Groups
 from ..tools import rounded
 from ..tools.hints import Group
@@ -27,6 +28,7 @@ def reasons_for_hollow_marker(group: Group) -> list[str]:
 
 
 SPEED_NOTES = ["bars: standard errors"]
+OF_ALL_RUNS = "relative_speed_all"  # of clogfit: way over time, whatever way a run came
 THROUGH_BOUNDS = "_through bounds"  # label of a line, in no legend
 
 
@@ -81,14 +83,52 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
               markersize=size + 2.5, linestyle="none", gid=style.mark("point", [group for _, group in bounds]))
 
 
-def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str) -> None:
-    """Mean speeds relative to the terminal speed, with standard errors from the scatter between runs."""
-    points = sorted(((place, group) for place, group in zip(places, groups) if group["relative_speed"] is not None), key=lambda point: point[0])
+def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, column: str = "relative_speed") -> None:
+    """Mean speeds relative to the terminal speed, with standard errors from the scatter between runs.
+    @param column  "relative_speed", the mean of runs that went far enough to have a speed, as published; or OF_ALL_RUNS"""
+    points = sorted(((place, group) for place, group in zip(places, groups) if group[column] is not None), key=lambda point: point[0])
     known = [group for _, group in points]
     drawn = axes.errorbar(
-        [x for x, _ in points], [group["relative_speed"] for group in known], yerr=[group["relative_speed_error"] or 0.0 for group in known],
+        [x for x, _ in points], [group[column] for group in known], yerr=[group[f"{column}_error"] or 0.0 for group in known],
         **style.curve_style(index), markersize=5, linewidth=1, elinewidth=1, capsize=2.5, label=label, gid=style.mark("curve", known))
     drawn.lines[0].set_gid(style.mark("point", known))
+
+
+def speed_column(groups: Iterable[Group]) -> str:
+    """Where droplets clog, the mean of single runs is that of the fast ones, which came far enough. Older programs tell no other, nor do files without dwells."""
+    return OF_ALL_RUNS if any(group.get(OF_ALL_RUNS) is not None for group in groups) else "relative_speed"
+
+
+def have_speeds(groups: Collection[Group]) -> bool:
+    return any(group[speed_column(groups)] is not None for group in groups)
+
+
+def speed_notes(groups: Collection[Group]) -> list[str]:
+    """What the points of draw_speeds_on() are."""
+    if speed_column(groups) == OF_ALL_RUNS:
+        return ["way over time of all runs; bars: standard errors"]
+    fewer = any(group["relative_speed_runs"] < group["runs"] for group in groups)
+    return ["mean of the runs that went far enough, the fast ones where droplets clog; bars: standard errors"] if fewer else SPEED_NOTES
+
+
+def add_laboratory(axes: Axes, groups: Groups, ordinate: str) -> None:
+    """A second scale in the units of the laboratory, where the sweep or clogfit was given one. @param ordinate  "length" or "speed" """
+    def scaled(factor: float) -> tuple[Callable[[float], float], Callable[[float], float]]:
+        return lambda value: value * factor, lambda value: value / factor
+
+    # Their parents have their scales by now: a change would undo what ticks are like.
+    upright = groups.laboratory.get({"length": "length_mm", "speed": "speed_mm_per_s"}[ordinate])
+    if upright:
+        right = axes.secondary_yaxis("right", functions=scaled(upright))
+        right.set_ylabel(LABORATORY[ordinate])
+        if axes.get_yscale() == "log":
+            style.plain_logarithmic(right.yaxis)
+    tension = groups.laboratory.get("tension_mN_per_m")
+    if tension and groups.abscissa == "line_tension":
+        top = axes.secondary_xaxis("top", functions=scaled(tension))
+        top.set_xlabel(LABORATORY["line_tension"])
+        if axes.get_xscale() == "log":
+            style.plain_logarithmic(top.xaxis)
 
 
 def draw_curves(axes: Axes, groups: Groups, draw_curve: Callable[..., None]) -> None:
@@ -118,13 +158,15 @@ def draw_abscissa(axes: Axes, groups: Groups) -> None:
 def draw_on(axes: Axes, groups: Groups) -> None:
     draw_curves(axes, groups, draw_lengths)
     finish_lengths(axes, groups, groups.members)
+    add_laboratory(axes, groups, "length")
 
 
 def draw_speeds_on(axes: Axes, groups: Groups) -> None:
-    draw_curves(axes, groups, draw_speeds)
+    draw_curves(axes, groups, functools.partial(draw_speeds, column=speed_column(groups.members)))
+    add_laboratory(axes, groups, "speed")
     axes.set_ylabel(AXES["speed"])
     style.grid(axes)
     style.legend(axes)
     style.caption(axes, groups.caption())
     if any(curve.lines[0].get_xdata().size for curve in axes.containers):
-        style.notes(axes, SPEED_NOTES)
+        style.notes(axes, speed_notes(groups.members))

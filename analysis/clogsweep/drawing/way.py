@@ -1,5 +1,8 @@
 """The way of one droplet among obstacles: several moments of a run in one picture."""
 
+import math
+from collections.abc import Iterable
+
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
@@ -8,7 +11,7 @@ from matplotlib.figure import Figure
 from .. import style
 from ..labels import AXES
 from ..reading import trajectory
-from ..tools.hints import Numbers
+from ..tools.hints import Numbers, Point
 from . import surroundings
 
 
@@ -17,13 +20,46 @@ def view(run: trajectory.Trajectory) -> tuple[Numbers, Numbers]:
     return run.polygons.min(axis=(0, 2)) - 0.5, run.polygons.max(axis=(0, 2)) + 0.5
 
 
+LONGEST_STRIP = 30.0  # of a way; a longer one is drawn in several, below each other [sigma]
+
+
 def draw(run: trajectory.Trajectory, num_outlines: int) -> Figure:
-    """@param run  with outlines"""
+    """@param run  with outlines; @param num_outlines  of each strip"""
     low, high = view(run)
     width, height = high - low
+    if width > LONGEST_STRIP and len(run.wedges) != 2:
+        return draw_strips(run, num_outlines)
     figure_width = min(12.0, max(5.0, 2.2 * width))
     figure, axes = style.subplots(figsize=(figure_width, max(3.0, figure_width * height / width + 1.2)))
     draw_on(axes, run, num_outlines)
+    return figure
+
+
+def draw_strips(run: trajectory.Trajectory, num_outlines: int) -> Figure:
+    """A long way from the top to the bottom, from the left to the right."""
+    low, high = view(run)
+    count = math.ceil((high[0] - low[0]) / LONGEST_STRIP)
+    ends = np.linspace(low[0], high[0], count + 1)
+    middles = run.polygons[:, 0].mean(axis=1)
+    strips = []
+    for begin, end in zip(ends, ends[1:]):
+        inside = np.flatnonzero((middles >= begin - 0.5) & (middles <= end + 0.5))
+        if inside.size:
+            across = run.polygons[inside, 1]
+            strips.append((begin, end, across.min() - 0.5, across.max() + 0.5, inside))
+    width = 12.0
+    heights = [(top - bottom) * width / (end - begin) for begin, end, bottom, top, _ in strips]
+    figure, all_axes = style.subplots(len(strips), 1, figsize=(width, sum(heights) + 0.45 * len(strips) + 0.9), squeeze=False,
+                                      gridspec_kw={"height_ratios": heights})
+    for axes, (begin, end, bottom, top, inside) in zip(all_axes[:, 0], strips):
+        surroundings.draw_surroundings(axes, run)
+        surroundings.frame_limits(axes, (begin, bottom), (end, top))
+        axes.set_ylabel(r"$y/\sigma$")
+        draw_outlines(axes, run, [inside[place] for place in trajectory.along_the_way(run.polygons[inside], num_outlines)])
+    surroundings.draw_guides(all_axes[0, 0])
+    all_axes[0, 0].set_title(f"{trajectory.described(run)}: {trajectory.verdict(run)}", fontsize=9)
+    all_axes[-1, 0].set_xlabel(r"$x/\sigma$, along the flow; the way goes on from strip to strip")
+    figure.colorbar(time_scale(run), ax=list(all_axes[:, 0]), label=r"$t/t_0$", fraction=0.02, pad=0.01)
     return figure
 
 
@@ -37,14 +73,21 @@ def draw_on(axes: Axes, run: trajectory.Trajectory, num_outlines: int) -> None:
     axes.set_ylabel(r"$y/\sigma$")
     surroundings.draw_guides(axes)
     axes.set_title(f"{trajectory.described(run)}: {trajectory.verdict(run)}", fontsize=9)
-    chosen = trajectory.along_the_way(run.polygons, num_outlines)
-    for frame in chosen:
-        x, y = run.polygons[frame] - origin[:, None]
+    draw_outlines(axes, run, trajectory.along_the_way(run.polygons, num_outlines), origin)
+    # As high as the axes, whose shape is given: a colour bar of its own would be as high as the figure.
+    axes.figure.colorbar(time_scale(run), cax=axes.inset_axes((1.01, 0, 0.02, 1)), label=r"$t/t_0$")
+
+
+def time_scale(run: trajectory.Trajectory) -> matplotlib.cm.ScalarMappable:
+    return matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, run.times[-1]), cmap=style.VIRIDIS)
+
+
+def draw_outlines(axes: Axes, run: trajectory.Trajectory, frames: Iterable[int], origin: Point = (0.0, 0.0)) -> None:
+    """The run's last one is filled."""
+    for frame in frames:
+        x, y = run.polygons[frame] - np.asarray(origin)[:, None]
         share = run.times[frame] / run.times[-1] if run.times[-1] > 0 else 1.0
-        is_last = frame == chosen[-1]
+        is_last = frame == len(run.polygons) - 1
         axes.fill(
             x, y, facecolor=style.DROPLET if is_last else "none", alpha=0.75 if is_last else 1.0,
             edgecolor="black" if is_last else style.VIRIDIS(share), linewidth=1.0, zorder=3 if is_last else 2)
-    scale = matplotlib.cm.ScalarMappable(matplotlib.colors.Normalize(0, run.times[-1]), cmap=style.VIRIDIS)
-    # As high as the axes, whose shape is given: a colour bar of its own would be as high as the figure.
-    axes.figure.colorbar(scale, cax=axes.inset_axes((1.01, 0, 0.02, 1)), label=r"$t/t_0$")

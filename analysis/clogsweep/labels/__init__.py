@@ -14,9 +14,17 @@ AXES = {
     "sag": r"sag under its own weight $\delta_s/\sigma$",
     "length": r"clogging length $\lambda/\sigma$",
     "speed": r"mean speed $\langle v_g\rangle/v_t$",
+    "slope": r"lateral displacement per distance",
     "h": r"distance from the orifice $h/\sigma$",
     "shape": r"shape parameter $\mathcal{A} = P^2/(4\pi a)$",
     "profile": r"speed $v_g/v_t$",
+}
+
+
+LABORATORY = {
+    "line_tension": "interfacial tension [mN/m]",
+    "length": r"$\lambda$ [mm]",
+    "speed": r"$v_g$ [mm/s]",
 }
 
 

@@ -23,6 +23,7 @@ class Groups:
         self.are_passages = any("status" in group for group in fit["groups"])
         self.members: list[Group] = [group for group in fit["groups"] if (group["status"] in FINISHED if self.are_passages else group["runs"] > 0)]
         self.confidence: float = fit["confidence"]
+        self.laboratory: dict[str, float | None] = fit.get("laboratory", {})  # what the model's units are there
         self.columns: dict[str, Column] = {column["name"]: column for column in fit["columns"]}
         self.lists: Collection[str] = fit["lists"]
         self.settings = stored.settings(fit.get("sweep", {}).get("config", ""))  # none of older programs
@@ -46,6 +47,10 @@ class Groups:
     def are_polygons(self) -> bool:
         return self.members[0]["model"] == "dp"
 
+    @property
+    def are_lattices(self) -> bool:
+        return {group["obstacle_filling"] for group in self.members} == {"lattice"}
+
     def values(self, name: str) -> set[Any]:
         return {group[name] for group in self.members}
 
@@ -60,6 +65,8 @@ class Groups:
     def _choose_abscissa(self) -> str:
         """What most curves go over, or else the number that takes most values."""
         usual = "line_tension" if self.are_polygons else "wall_stiffness"
+        if self.are_lattices and self.varies("lattice_angle"):
+            return "lattice_angle"
         if self.varies(usual) and not self._is_automatic(usual):
             return usual
         varied = [name for name in self.columns if self._is_number(name) and self.varies(name) and None not in self.values(name)]

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import style
-from ..drawing import clogs, lengths, passages, way
+from ..drawing import clogs, curve, lengths, passages, way
 from ..labels.groups import Groups
 from ..reading import fits, replays, stored
 from ..reading.trajectory import Trajectory
@@ -84,8 +84,8 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> li
     def curve_drawing(draw: Callable[..., None], label: str, members: Sequence[Group]) -> Draw:
         return lambda axes: draw(axes, groups, label, members)
 
-    first: list[Draw] = [lambda axes: lengths.draw_on(axes, groups)]
-    if any(group["relative_speed"] is not None for group in groups.members):
+    first: list[Draw] = [lambda axes: curve.draw_on(axes, groups)]
+    if lengths.have_speeds(groups.members):
         first.append(lambda axes: lengths.draw_speeds_on(axes, groups))
     curves = shown_curves(groups)
     survivals = [curve_drawing(report.draw_survival, label, members) for label, members in curves if any(group["survival"] for group in members)]

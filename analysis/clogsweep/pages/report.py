@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import base64
 import html
-import io
 import json
 import pathlib
 import string
@@ -17,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import style
-from ..drawing import clogs, lengths, passages, survival_curve
+from ..drawing import clogs, curve, lengths, passages, survival_curve
 from ..labels.groups import Groups
 from ..reading import fits, programs, stored
 from ..tools import outputs, rounded
@@ -31,14 +29,6 @@ if TYPE_CHECKING:
 
 def framed(content: str, caption: str, kind: str = "") -> str:
     return f'<figure{f" class={kind}" if kind else ""}>{content}<figcaption>{html.escape(caption)}</figcaption></figure>'
-
-
-def picture(figure: Figure, caption: str) -> str:
-    """Of a droplet: on white, in the dark, too."""
-    out = io.BytesIO()
-    figure.savefig(out, format="png", dpi=130)
-    data = base64.b64encode(out.getvalue()).decode()
-    return framed(f'<img alt="{html.escape(caption)}" src="data:image/png;base64,{data}">', caption)
 
 
 def draw_survival(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
@@ -120,10 +110,25 @@ def length(group: Group) -> str:
 
 
 def speed(group: Group) -> str:
-    """The mean speed with its error, and of how many runs it is."""
-    if group["relative_speed"] is None:
-        return "-"
-    return f"{rounded.with_error(group['relative_speed'], group['relative_speed_error'])} ({rounded.counted(group['relative_speed_runs'], 'run')})"
+    """That of all runs, way over time; besides, where only some came far enough to have one, the mean of these."""
+    runs = rounded.counted(group["relative_speed_runs"], "run")
+    mean = None if group["relative_speed"] is None else rounded.with_error(group["relative_speed"], group["relative_speed_error"])
+    if group.get(lengths.OF_ALL_RUNS) is None:
+        return f"{mean} ({runs})" if mean else "-"
+    of_all = rounded.with_error(group[lengths.OF_ALL_RUNS], group[f"{lengths.OF_ALL_RUNS}_error"])
+    return f"{of_all} (mean of {group['relative_speed_runs']} of {rounded.counted(group['runs'], 'run')}: {mean or '-'})" \
+        if group["relative_speed_runs"] < group["runs"] else f"{of_all} ({runs})"
+
+
+def laboratory_columns(groups: Groups) -> dict[str, str]:
+    """Headings of what a table has in laboratory units, by column."""
+    named = {"clogging_length_mm": "&lambda; [mm]", "speed_mm_per_s": "v<sub>g</sub> [mm/s]", "time_to_clog_s": "time to clog [s]"}
+    return named if groups.laboratory else {}
+
+
+def slope(group: Group) -> str:
+    """Lateral displacement per distance."""
+    return "-" if group["lateral_slope"] is None else rounded.with_error(group["lateral_slope"], group["lateral_slope_error"])
 
 
 def value(cell: float | str | None, digits: int = 6) -> str:
@@ -174,10 +179,10 @@ def table(titles: Sequence[str], lines: Sequence[Sequence[str]], doubts: Sequenc
 def table_of_lengths(groups: Groups, sentences: dict[str, str], rows: pandas.DataFrame) -> str:
     names = parameters(groups)
     titles = [*(name.replace("_", " ") for name in names), "runs", "clogs", *style.MECHANISM_COLOURS, f"&lambda;/&sigma; ({100 * groups.confidence:g} %)",
-              "&lang;v<sub>g</sub>&rang;/v<sub>t</sub>", "Ca", "seeds"]
+              *(["lateral/r"] if groups.are_lattices else []), "&lang;v<sub>g</sub>&rang;/v<sub>t</sub>", *laboratory_columns(groups).values(), "Ca", "seeds"]
     lines = [[*(cell(groups, group, name) for name in names), str(group["runs"]), str(group["clogs"]),
               *(str(group[name]) for name in style.MECHANISM_COLOURS), length(group),
-              speed(group), rounded.plain(group["capillary_number"]), seeds_of(group, names, rows)] for group in groups.members]
+              *([slope(group)] if groups.are_lattices else []), speed(group), *(rounded.plain(group[name]) for name in laboratory_columns(groups)), rounded.plain(group["capillary_number"]), seeds_of(group, names, rows)] for group in groups.members]
     return table(titles, lines, [doubts_of(group, sentences) for group in groups.members])
 
 
@@ -222,11 +227,11 @@ def examples(clogs_of_sweep: Sequence[np.void], count: int) -> list[np.void]:
     return list({row["task"]: row for row in typical + spread + ordered}.values())[:count]
 
 
-def example_pictures(shown: Sequence[np.void], sweep: pathlib.Path, clogrun: pathlib.Path) -> str:
+def example_pictures(shown: Sequence[np.void], sweep: pathlib.Path, clogrun: pathlib.Path, charts: Charts) -> str:
     if not shown:
         return "<p>No polygon has clogged.</p>"
-    return side_by_side(picture(clog.picture().figure, "touched obstacles blue, contact red, convex hull dashed")
-                        for clog in run_examples(shown, sweep, clogrun))
+    caption = "touched obstacles blue, contact red, convex hull dashed"
+    return side_by_side(framed(charts.draw(clog.picture().figure, caption), caption) for clog in run_examples(shown, sweep, clogrun))
 
 
 def run_examples(shown: Sequence[np.void], sweep: pathlib.Path, clogrun: pathlib.Path) -> clogs.Clogs:
@@ -248,7 +253,7 @@ LENGTHS = ("&lambda; is the way after which 1/e of the droplets have not clogged
 
 def label_of_length(groups: Groups, group: Group) -> str:
     """What a point says where there is no script."""
-    known = "" if group["relative_speed"] is None else f", speed {speed(group)}"
+    known = "" if speed(group) == "-" else f", speed {speed(group)}"
     return (f"{valued(groups, group)}: length {length(group)}{known}, {group['clogs']} of {rounded.counted(group['runs'], 'run')} clogged")
 
 
@@ -262,8 +267,8 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib
         is_wide = figure.get_figwidth() > 1.5 * figure.get_figheight()
         return framed(charts.draw(figure, caption), caption, "wide" if is_wide else "")
 
-    curves = [chart(style.figure_of(lengths.draw_on, groups), "clogging length")]
-    if any(group["relative_speed"] is not None for group in groups.members):
+    curves = [chart(style.figure_of(curve.draw_on, groups), curve.heading(groups))]
+    if lengths.have_speeds(groups.members):
         curves.append(chart(style.figure_of(lengths.draw_speeds_on, groups), "mean speed over terminal speed"))
     survivals = [chart(style.figure_of(draw_survival, groups, label, members), "P(r), to the longest way") for label, members in groups.curves()
                  if any(group["survival"] for group in members)]
@@ -272,7 +277,7 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib
     ends = [chart(style.figure_of(draw_causes, groups, label, members), "ends by cause, shares") for label, members in groups.curves()]
     shown = examples(clogs.of_polygons(stored.read_rows(sweep, clogrun.parent), sweep), count)
     return {"Curves": side_by_side(curves), "How far droplets get": side_by_side(survivals), "What becomes of them": side_by_side(ends),
-            "Example clogs": example_pictures(shown, sweep, clogrun)}
+            "Example clogs": example_pictures(shown, sweep, clogrun, charts)}
 
 
 def label_of_passage(groups: Groups, group: Group) -> str:
@@ -286,7 +291,7 @@ def of_passages(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathli
     curves = [framed(charts.draw(style.figure_of(passages.draw_curves, groups, column), name), name) for column, name in passages.drawn_columns(groups).items()]
     with tempfile.TemporaryDirectory(prefix="clogsweep-report-") as folder:
         drawn = passages.draw_outlines(groups, passages.examples(stored.read_rows(sweep, clogrun.parent), count), clogrun, sweep, folder)
-    outlines = side_by_side(picture(figure, f"outline {kind.outline}") for figure in drawn)
+    outlines = side_by_side(framed(charts.draw(figure, f"outline {kind.outline}"), f"outline {kind.outline}") for figure in drawn)
     reached = "".join(f"<li>{html.escape(f'{curve}: {said}' if curve else said)}</li>" for curve, said in passages.shares(groups, value))
     return {kind.heading: f"<ul>{reached}</ul>{side_by_side(curves)}", "Outlines": outlines or "<p>None.</p>"}
 
@@ -321,11 +326,11 @@ def page(name: str, groups: Groups, sections: dict[str, str], progress: str, abo
         config=html.escape(settings(about.get("config", ""))))
 
 
-def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: pathlib.Path) -> pathlib.Path:
-    """@param examples  clogs or outlines to show; @param folder  of the programs. @return the output; an earlier page is replaced, nothing else.
+def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: pathlib.Path, *options: object) -> pathlib.Path:
+    """@param examples  clogs or outlines to show; @param folder  of the programs; @param options  of clogfit. @return the output; an earlier page is replaced, nothing else.
     @throws UserError, ProgramFailed"""
     outputs.refuse_unwritable(output, "html", sweep)
-    told, circle_files = fits.fitted(folder / "clogfit", sweep)
+    told, circle_files = fits.fitted(folder / "clogfit", sweep, *options)
     status = json.loads(programs.run_program(folder / "clogsweep", "status", sweep, "--format", "json"))
     groups = Groups(told, circle_files).finished(sweep)
     for number, group in enumerate(groups.members):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 import pathlib
 from typing import TYPE_CHECKING, Any
@@ -16,6 +17,9 @@ if TYPE_CHECKING:
 
     from ..style import Picture
 
+LENGTHS = ("runs", "clogs", "clogging_length", "clogging_length_lower", "clogging_length_upper", "clogging_length_met", "relative_speed_all",
+           "relative_speed_all_error", "lateral_slope", "clogging_length_mm", "speed_mm_per_s", "time_to_clog_s", "doubts")
+PASSAGE = ("status", "largest_shape_parameter", "smallest_relative_speed", "largest_relative_speed", "sag", "top_sag", "doubts")
 HDF5_BEGINNING = b"\x89HDF\r\n\x1a\n"
 
 
@@ -65,11 +69,11 @@ class Fit:
         return pandas.DataFrame(self.told["groups"][group]["survival"])
 
     def curve(self) -> Picture:
-        """Clogging lengths over what the sweep varies. @throws UserError  if there are none"""
+        """Clogging lengths over what the sweep varies; of lattices, how far droplets migrate sideways. @throws UserError  if there are none"""
         from .. import style  # slow to load, as all that draws
-        from ..drawing import lengths
+        from ..drawing import curve
 
-        return style.Picture(style.figure_of(lengths.draw_on, self.known.with_lengths()), self.source)
+        return style.Picture(style.figure_of(curve.draw_on, self.known.with_lengths()), self.source)
 
     def speeds(self) -> Picture:
         """Mean speeds over the speed of a free droplet, over what the sweep varies. @throws UserError  if there are none"""
@@ -78,15 +82,23 @@ class Fit:
 
         return style.Picture(style.figure_of(lengths.draw_speeds_on, self.known.with_lengths()), self.source)
 
+    @property
+    def summary(self) -> pandas.DataFrame:
+        """Of `groups` what varies, lengths and speeds, or what came of a channel or a wall, and doubts."""
+        known, columns = self.groups, [column["name"] for column in self.told["columns"]]
+        varies = [name for name in columns if name in known and known[name].nunique(dropna=False) > 1]
+        told = [name for name in (PASSAGE if self.known.are_passages else LENGTHS) if name in known and not known[name].isna().all()]
+        return known[[*varies, *(name for name in told if name not in varies)]]
+
     def __repr__(self) -> str:
         return f"<fit of {self._counted()}>"
 
     def _repr_html_(self) -> str:
-        return self.groups._repr_html_()
+        return f"<p>{html.escape(repr(self)[1:-1])}; all {len(self.groups.columns)} columns are in <code>groups</code></p>{self.summary._repr_html_()}"
 
 
-def read(path: pathlib.Path, folder: pathlib.Path | None) -> Fit:
-    """@param path  of a sweep, or of clogfit's JSON; @param folder  of the programs. @throws UserError, ProgramFailed"""
+def read(path: pathlib.Path, folder: pathlib.Path | None, *options: object) -> Fit:
+    """@param path  of a sweep, or of clogfit's JSON; @param folder  of the programs; @param options  of clogfit, for a sweep. @throws UserError, ProgramFailed"""
     try:
         content = path.read_bytes()
     except FileNotFoundError as error:
@@ -94,7 +106,7 @@ def read(path: pathlib.Path, folder: pathlib.Path | None) -> Fit:
     except OSError as error:
         raise UserError(f"cannot read {path} ({error.strerror}); give a sweep, or the output of clogfit --format json") from error
     if content.startswith(HDF5_BEGINNING):
-        return Fit(*fits.fitted(programs.programs_in(folder) / "clogfit", path))
+        return Fit(*fits.fitted(programs.programs_in(folder) / "clogfit", path, *options))
     try:
         return Fit(json.loads(content))
     except ValueError as error:

@@ -21,6 +21,16 @@ if TYPE_CHECKING:
     from ..style import Picture
 
 
+class Status(dict[str, Any]):
+    """How far a sweep is. Shows itself as a table in a notebook."""
+
+    def _repr_html_(self) -> str:
+        import pandas
+
+        told = {name: value for name, value in self.items() if not isinstance(value, list | dict)}
+        return pandas.DataFrame({"": told}).to_html(header=False)
+
+
 class Sweep:
     """What ``clogsweep --output`` wrote, finished or still under way.
 
@@ -44,21 +54,24 @@ class Sweep:
     def _program(self, name: str) -> pathlib.Path:
         return programs.programs_in(self._programs) / name
 
-    def fit(self, *, dwell: float | None = None, from_distance: float | None = None, confidence: float | None = None) -> Fit:
+    def fit(self, *, dwell: float | None = None, from_distance: float | None = None, confidence: float | None = None,
+            lab: str | os.PathLike[str] | None = None) -> Fit:
         """Clogging lengths and mean speeds, from clogfit.
 
         @param dwell  a droplet that has not moved for so long counts as clogged [t0]
         @param from_distance  ways are counted from here on [sigma]
         @param confidence  of the intervals, between 0 and 1
+        @param lab  file that describes the laboratory, for its units, too
         @throws ProgramFailed  with the reason of clogfit
         """
         given = {"--dwell": dwell, "--from-distance": from_distance, "--confidence": confidence}
         options = [word for name, value in given.items() if value is not None for word in (name, repr(float(value)))]
+        options += ["--lab", os.fspath(lab)] if lab is not None else []
         return Fit(*fits.fitted(self._program("clogfit"), self.path, *options))
 
-    def status(self) -> dict[str, Any]:
+    def status(self) -> Status:
         """How far the sweep is, as clogsweep status says."""
-        return json.loads(programs.run_program(self._program("clogsweep"), "status", self.path, "--format", "json"))
+        return Status(json.loads(programs.run_program(self._program("clogsweep"), "status", self.path, "--format", "json")))
 
     def clogs(self, *, mechanism: str | None = None, tasks: Collection[int] | None = None, most: int = 6, jobs: int = 2) -> Clogs:
         """Clogged polygons, run once more until they rest.
@@ -85,13 +98,15 @@ class Sweep:
         with tempfile.TemporaryDirectory(prefix="clogsweep-replay-") as folder:
             return self.replay(task, pathlib.Path(folder) / f"{self.path.stem}-{task}.h5", interval=interval)
 
-    def report(self, output: str | os.PathLike[str], examples: int = 4) -> pathlib.Path:
-        """Writes a page of HTML about the sweep; an earlier one is replaced, nothing else. @param examples  clogs to be shown. @return its file.
+    def report(self, output: str | os.PathLike[str], examples: int = 4, *, lab: str | os.PathLike[str] | None = None) -> pathlib.Path:
+        """Writes a page of HTML about the sweep; an earlier one is replaced, nothing else. @param examples  clogs to be shown
+        @param lab  file that describes the laboratory, for its units, too. @return its file.
         @throws UserError"""
         from ..pages import report
 
         checked.whole("examples", examples, 0)
-        return report.write(self.path, pathlib.Path(output), examples, programs.programs_in(self._programs))
+        return report.write(self.path, pathlib.Path(output), examples, programs.programs_in(self._programs),
+                            *(["--lab", lab] if lab is not None else []))
 
     def poster(self) -> Picture:
         """One page of the sweep to be printed, A3: its curves and some of its droplets. @throws UserError"""

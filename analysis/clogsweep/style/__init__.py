@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
+import logging
 import math
 import os
 import pathlib
-from collections.abc import Callable, Collection, Sequence
+import warnings
+from collections.abc import Callable, Collection, Iterator, Sequence
 from typing import Any
 
 import matplotlib
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.legend import Legend
@@ -48,7 +52,8 @@ def subplots(rows: int = 1, columns: int = 1, *, figsize: tuple[float, float], *
 def figure_of(draw: Callable[..., None], *what: Any) -> Figure:
     """A figure with one drawing. @param draw  called with the axes and what follows here"""
     figure, axes = subplots(figsize=(6.4, 4.8))
-    draw(axes, *what)
+    with without_warnings():
+        draw(axes, *what)
     return figure
 
 
@@ -159,6 +164,13 @@ def logarithmic_ordinate(axes: Axes) -> None:
     axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, position: label(value, (1, 10), usual(value, position))))
 
 
+def plain_logarithmic(axis: Axis) -> None:
+    """Numbers at 1, 2 and 5 of each decade."""
+    axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:.3g}"))
+    axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
+
+
 def grid(axes: Axes) -> None:
     axes.grid(True, which="major", color="0.9", linewidth=0.6)
     axes.set_axisbelow(True)
@@ -209,6 +221,20 @@ def save(figure: Figure, output: AnyPath, metadata: dict[str, str] | None = None
     figure.savefig(f"{output}.pdf", metadata={key: value for key, value in subject.items() if value})
 
 
+@contextlib.contextmanager
+def without_warnings() -> Iterator[None]:
+    """What matplotlib warns of while it lays out a figure of ours is nothing that a reader can mend."""
+    logger = logging.getLogger("matplotlib")
+    level = logger.level
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        logger.setLevel(logging.ERROR)
+        try:
+            yield
+        finally:
+            logger.setLevel(level)
+
+
 class Picture:
     """Shows itself in a notebook; `figure` is matplotlib's, to be changed at will. `source` says where its numbers come
     from, and is kept in what is saved: as Description of the .png, as Subject of the .pdf."""
@@ -219,7 +245,8 @@ class Picture:
 
     def png(self, dpi: float = 110) -> bytes:
         out = io.BytesIO()
-        self.figure.savefig(out, format="png", dpi=dpi)
+        with without_warnings():
+            self.figure.savefig(out, format="png", dpi=dpi)
         return out.getvalue()
 
     def save(self, output: str | os.PathLike[str]) -> pathlib.Path:
@@ -228,7 +255,8 @@ class Picture:
         if path.suffix in (".png", ".pdf"):
             path = path.with_suffix("")
         outputs.refuse_unwritable_picture(path)
-        save(self.figure, path, {"Description": self.source, "Software": "clogsweep"} if self.source else None)
+        with without_warnings():
+            save(self.figure, path, {"Description": self.source, "Software": "clogsweep"} if self.source else None)
         return pathlib.Path(f"{path}.png")
 
     def __repr__(self) -> str:

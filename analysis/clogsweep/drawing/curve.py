@@ -1,0 +1,15 @@
+"""The figure of a sweep of droplets among obstacles."""
+
+from matplotlib.axes import Axes
+
+from ..labels.groups import Groups
+from . import lengths, migration
+
+
+def draw_on(axes: Axes, groups: Groups) -> None:
+    """In lattices how far droplets migrate sideways, elsewhere their clogging lengths."""
+    (migration if groups.are_lattices else lengths).draw_on(axes, groups)
+
+
+def heading(groups: Groups) -> str:
+    return "lateral displacement per distance" if groups.are_lattices else "clogging length"

@@ -1,0 +1,35 @@
+"""Between a laboratory's quantities and the model's numbers."""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import tempfile
+from collections.abc import Mapping
+from typing import Any
+
+from ..reading import programs
+from ..tools.errors import UserError
+
+
+def units(lab: str | os.PathLike[str] | Mapping[str, str], *, length: float | None = None, time: float | None = None, line_tension: float | None = None,
+          terminal_speed: float | None = None, wall_stiffness: float | None = None, folder: str | os.PathLike[str] | None = None) -> dict[str, Any]:
+    """What `clogfit units` says, as numbers.
+
+    @param lab  a file, or its lines, such as {"diameter": "3.5 mm", "angle": "28 deg", "tension": "9.6 mN/m", "speed": "7 mm/s"}
+    @param length, time, line_tension, terminal_speed, wall_stiffness  of the model, to be converted: under "given"
+    @param folder  of the programs
+    @throws UserError  for what `lab` may not hold; ProgramFailed
+    """
+    numbers = {"--length": length, "--time": time, "--line-tension": line_tension, "--terminal-speed": terminal_speed, "--wall-stiffness": wall_stiffness}
+    options = [word for name, value in numbers.items() if value is not None for word in (name, repr(float(value)))]
+    clogfit = programs.programs_in(folder) / "clogfit"
+    if not isinstance(lab, Mapping):
+        return json.loads(programs.run_program(clogfit, "units", os.fspath(lab), *options, "--format", "json"))
+    if any("\n" in f"{key}{value}" for key, value in lab.items()):
+        raise UserError("invalid laboratory (a line break in a key or a value); give one quantity for each key")
+    with tempfile.TemporaryDirectory(prefix="clogsweep-units-") as place:
+        file = pathlib.Path(place) / "lab.cfg"
+        file.write_text("".join(f"{key} = {value}\n" for key, value in lab.items()))
+        return units(file, length=length, time=time, line_tension=line_tension, terminal_speed=terminal_speed, wall_stiffness=wall_stiffness, folder=folder)
