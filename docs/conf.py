@@ -20,8 +20,10 @@ source_suffix = {".md": "markdown"}
 exclude_patterns = ["_static", "README.md", "paper"]
 if tags.has("site"):  # noqa: F821, Sphinx's
     # What man pages need not.
-    extensions += ["nbsphinx", "sphinx.ext.autodoc"]
+    sys.path.insert(0, str(ROOT / "docs"))
+    extensions += ["nbsphinx", "sphinx.ext.autodoc", "mended_theme"]
     nbsphinx_execute = "never"
+    nbsphinx_requirejs_path = ""  # widgets need it, which the notebook has not; it would come from another host
     autodoc_typehints = "description"
     autodoc_member_order = "bysource"
     sys.path.insert(0, str(ROOT / "analysis"))
@@ -36,6 +38,9 @@ nitpick_ignore_regex = [("py:class", r"(os|pathlib|collections|numpy|pandas)\..*
 html_theme = "furo"
 html_title = f"clogsweep {release}"
 html_static_path = ["_static"]
+html_favicon = "_static/icon.svg"
+html_css_files = ["site.css"]
+html_js_files = ["tables.js"]
 html_show_copyright = False
 # The site opens offline: build.sh puts Debian's MathJax, which is of version 2, beside its pages.
 mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_CHTML"
@@ -110,7 +115,14 @@ def in_fields(app, what, name, thing, options, lines):
     lines[:] = text.split("\n")
 
 
+def with_plain_search(app, page, template, context, doctree):
+    """The page of search results gets a script of its own, behind Sphinx's."""
+    if page == "search":
+        app.add_js_file("search.js", priority=900)
+
+
 def setup(app):
     app.add_post_transform(ForTerminals)
     if "sphinx.ext.autodoc" in extensions:
         app.connect("autodoc-process-docstring", in_fields)
+        app.connect("html-page-context", with_plain_search)
