@@ -82,6 +82,32 @@ else()
   message(STATUS "no man pages will be installed, for there is no Sphinx (./jobs/install-dependencies.sh)")
 endif()
 
+# The same pages as a site, in builds that are for users
+
+set(lacks_extensions TRUE)
+find_program(CLOG_PANDOC pandoc DOC "for the notebook of the site")
+if(CLOG_SPHINX AND CLOG_PANDOC)
+  execute_process(COMMAND "${CLOG_PYTHON}" -c "import myst_parser, sphinx_copybutton, nbsphinx, furo" RESULT_VARIABLE lacks_extensions ERROR_QUIET)
+endif()
+set(CLOG_HANDBOOK_DEFAULT OFF)
+if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT lacks_extensions)
+  set(CLOG_HANDBOOK_DEFAULT ON)
+endif()
+option(CLOG_HANDBOOK "Build the handbook as a site, and install it" ${CLOG_HANDBOOK_DEFAULT})
+if(CLOG_HANDBOOK)
+  set(site "${PROJECT_BINARY_DIR}/html")
+  file(GLOB_RECURSE handbook CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/docs/*.md" "${PROJECT_SOURCE_DIR}/docs/*.png"
+    "${PROJECT_SOURCE_DIR}/docs/*.ipynb" "${PROJECT_SOURCE_DIR}/docs/_static/*")
+  add_custom_command(OUTPUT "${site}/index.html"
+    COMMAND "${CLOG_SPHINX}" -Q -t site -b html -d "${PROJECT_BINARY_DIR}/html-doctrees" "${PROJECT_SOURCE_DIR}/docs" "${site}"
+    DEPENDS ${handbook} "${PROJECT_SOURCE_DIR}/docs/conf.py" "${PROJECT_SOURCE_DIR}/docs/mended_theme.py"
+    VERBATIM)
+  add_custom_target(handbook ALL DEPENDS "${site}/index.html")
+  install(DIRECTORY "${site}" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs PATTERN ".buildinfo" EXCLUDE PATTERN "_sources" EXCLUDE)
+else()
+  message(STATUS "the handbook will not be installed as a site: that is for releases, with Sphinx and its extensions (./jobs/install-dependencies.sh)")
+endif()
+
 # Libraries: what a program needs that runs droplets, plans sweeps, reads their files, fits them
 
 set(libraries core sweep fit store)

@@ -6,13 +6,7 @@ cd "$(dirname "$0")/.."
 site=${1:-build/docs}
 ./jobs/install-dependencies.sh docs
 
-mathjax=/usr/share/javascript/mathjax
 mkdir -p "$site"
 sphinx-build -W --keep-going -q -t site -b html -d "$site/.doctrees" docs "$site/html"
-mkdir -p "$site/html/_static/mathjax"
-for part in MathJax.js config extensions jax fonts/HTML-CSS/TeX/woff; do
-  mkdir -p "$site/html/_static/mathjax/$(dirname "$part")"
-  cp -rLu "$mathjax/$part" "$site/html/_static/mathjax/$(dirname "$part")"
-done
 (cat docs/Doxyfile; echo "OUTPUT_DIRECTORY = $site"; echo "HTML_OUTPUT = html/api") | doxygen -
 echo "$site/html/index.html"

@@ -42,7 +42,7 @@ html_favicon = "_static/icon.svg"
 html_css_files = ["site.css"]
 html_js_files = ["tables.js"]
 html_show_copyright = False
-# The site opens offline: build.sh puts Debian's MathJax, which is of version 2, beside its pages.
+# The site opens offline: mended_theme puts Debian's MathJax, which is of version 2, beside its pages.
 mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_CHTML"
 # MyST would tell only MathJax 3 that it may look into what has the class math, and version 2 would show the source.
 myst_update_mathjax = False

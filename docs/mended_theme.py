@@ -2,13 +2,17 @@
 
 Its script imports a second one, which browsers refuse in a page; its style sheet asks the server for another of
 Debian's, and lacks the dark colours of browsers that prefer them. All of it is put into the site's own files, which
-work when they are opened from a disk, too.
+work when they are opened from a disk, too. So are those parts of Debian's MathJax that the pages use.
 """
 
 import pathlib
 import re
+import shutil
 
 NORMALIZE = pathlib.Path("/usr/share/javascript/normalize.css/normalize.css")
+MATHJAX = pathlib.Path("/usr/share/javascript/mathjax")
+PARTS = ("MathJax.js", "config/TeX-AMS_CHTML.js", "extensions", "jax/element", "jax/input/TeX", "jax/output/CommonHTML",
+         "jax/output/PreviewHTML", "fonts/HTML-CSS/TeX/woff")
 OF_DARK_PAGES = re.compile(r'@media not print \{\s*body\[data-theme="dark"\] \{.*?\}\s*\n.*?\}\s*\}', re.S)
 
 
@@ -32,6 +36,17 @@ def bundled_style(style: str, of_code: str) -> str:
     return style
 
 
+def copy_mathjax(target: pathlib.Path) -> None:
+    """Files, not links: the site may be moved to another machine."""
+    for part in PARTS:
+        source, copy = MATHJAX / part, target / part
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        if source.is_dir():
+            shutil.copytree(source, copy, dirs_exist_ok=True)
+        elif source.exists():
+            shutil.copyfile(source, copy)
+
+
 def mend(app, exception):
     """Runs when the site has been built."""
     if exception or app.builder.format != "html":
@@ -43,6 +58,7 @@ def mend(app, exception):
         (scripts / "gumshoe-patched.js").unlink()
     sheet = static / "styles/furo.css"
     sheet.write_text(bundled_style(sheet.read_text(), (static / "pygments.css").read_text()))
+    copy_mathjax(static / "mathjax")
 
 
 def setup(app):

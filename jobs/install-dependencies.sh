@@ -16,6 +16,8 @@ packages=(
   libgtest-dev libbenchmark-dev                      # tests and benchmarks
   procps iproute2                                    # tests that kill ranks, and join two hosts
   python3-sphinx python3-myst-parser python3-sphinx-copybutton furo      # man pages, from the handbook
+  python3-ezdxf python3-gdspy python3-svgelements python3-skimage        # drawings and pictures of devices
+  python3-nbsphinx pandoc libjs-mathjax              # the handbook as a site, which the Debian package holds
   python3 python3-h5py python3-pandas python3-tables python3-matplotlib  # the Python module, and readers for the tests
   python3-nbclient python3-ipykernel                 # a test that runs the notebook of the gallery
 )
@@ -24,7 +26,7 @@ case ${1:-} in
   "") ;;
   tests) packages+=("${of_tests[@]}") ;;
   gates) packages+=("${of_tests[@]}" clang clang-format clang-tidy aspell aspell-en shellcheck flake8 mypy) ;;
-  docs) packages+=(libjs-mathjax doxygen python3-nbsphinx pandoc) ;;
+  docs) packages+=(doxygen) ;;
   paper) packages+=(pandoc) ;;
   mpich) packages+=(mpich libmpich-dev) ;;
   *) echo "usage: install-dependencies.sh [tests|gates|docs|paper|mpich]" >&2; exit 2 ;;

@@ -21,6 +21,8 @@ COMMANDS = {
     "predict": "the clogging length of stiff droplets in an array in which none has run",
     "collision": "which droplets break up on a single obstacle",
     "droplet": "one run as a picture or a film",
+    "circles": "a drawing of a device, or a picture of one, as a file of circles",
+    "device": "the circles of a sweep, with releases, clogs and some ways",
     "export-vtk": "one run for ParaView",
 }
 

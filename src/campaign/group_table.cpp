@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <variant>
 
@@ -33,6 +35,14 @@ std::string rounded(const Value& value) {
   if (const auto* number = std::get_if<double>(&value)) return fmt::format("{:.4g}", *number);
   const std::string text = sweep::text_of(value);
   return text.empty() ? "-" : text;
+}
+
+/// The same of a parameter; circles of a user's own are called by their file, if it is known.
+std::string rounded(const sweep::RunRow& row, const Field& field) {
+  const std::optional<OwnCircles>& own = row.parameters.obstacles.own;
+  if (field.first == std::string_view("obstacles") && own && !own->source().empty())
+    return std::filesystem::path(own->source()).filename().string();
+  return rounded(field.second);
 }
 
 nlohmann::ordered_json json_of(const Value& value) {
@@ -206,7 +216,7 @@ std::vector<std::string> shared_words(const sweep::RunRow& row, const std::vecto
   std::vector<std::string> words;
   for (std::size_t i = 0; i < fields.size(); ++i)
     if (!shown[i] && !varies[i] && is_named[i])
-      words.push_back(fmt::format("{}={}", fields[i].first, rounded(fields[i].second)));
+      words.push_back(fmt::format("{}={}", fields[i].first, rounded(row, fields[i])));
   return words;
 }
 
@@ -217,7 +227,8 @@ std::vector<std::string> parameter_names(const Group& group) {
 }
 std::vector<std::string> parameter_texts(const Group& group) {
   std::vector<std::string> texts;
-  for (const Field& field : parameter_fields(group.first_row)) texts.push_back(rounded(field.second));
+  for (const Field& field : parameter_fields(group.first_row))
+    texts.push_back(rounded(group.first_row, field));
   return texts;
 }
 void append_shown(const std::vector<std::string>& texts, const std::vector<bool>& shown,

@@ -63,6 +63,11 @@ sweep::RunRow replayable_row(const store::SweepFile& file, const std::string& ta
 store::SweepFile read_with_caution(const std::string& path) {
   store::SweepFile file = store::read_sweep(path);
   if (const std::string words = store::caution(path, file); !words.empty()) console::say(words);
+  for (const store::CircleFile& one : file.circles) {
+    const OwnCircles named(one.circles.circles(), one.name);
+    for (sweep::RunRow& row : file.rows)
+      if (row.parameters.obstacles.own == named) row.parameters.obstacles.own = named;
+  }
   return file;
 }
 

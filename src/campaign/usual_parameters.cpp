@@ -37,10 +37,8 @@ RunParameters with_usual_values(const sweep::RunRow& row) {
 RunParameters resolved_in_any_layout(RunParameters run) {
   if (scene_of(run).walls_from != WallsFrom::circles) return resolve(run);
   const ObstacleParameters own = run.obstacles;
-  run.obstacles.layout = ObstacleLayout::random;
-  run.obstacles.own.reset();
-  run.obstacles.release = Release::centre;
-  run.obstacles.density = ObstacleParameters().density;
+  // Of an array that is not of a user's own.
+  run.obstacles = {.gap = own.gap, .diameter = own.diameter, .box = own.box, .boxes = own.boxes};
   run = resolve(run);
   run.obstacles = own;
   return run;

@@ -332,6 +332,10 @@ std::vector<Column> make_columns() {
       number_in(
           "thinnest_neck_at", [](auto& row) -> auto& { return row.neck.distance; }, "sigma",
           "distance at which it was found"),
+      member("release_x", &RunRow::release_x, result, "sigma",
+             "where the centre of mass was released among user-supplied circles, in their coordinates; NaN "
+             "elsewhere; a little outside the array if the nearest void is there"),
+      member("release_y", &RunRow::release_y, result, "sigma", "the same across the flow"),
       member("steps", &RunRow::steps, result, "", "integrated steps, sub-steps counted singly"),
       member("wall_seconds", &RunRow::wall_seconds, circumstance, "s",
              "computing time, all sessions together"),

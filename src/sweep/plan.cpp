@@ -70,7 +70,7 @@ void refuse_useless_keys(const Settings& settings) {
   if (settings.values("seeds").size() > 1 && settings.text("release") == "centre")
     throw Error(
         fmt::format("invalid seeds={} (the droplet starts at the centre of your circles, whatever the seed) "
-                    "add release=anywhere, or give one seed",
+                    "add release=anywhere or release=entrance, or give one seed",
                     settings.text("seeds")));
 }
 

@@ -266,10 +266,23 @@ std::string neck_fault(const RunRow& row) {
   return "";
 }
 
+/// Only among user-supplied circles a place of release is known, within the array or in a void across its
+/// border.
+std::string release_fault(const RunRow& row) {
+  if (std::isnan(row.release_x) && std::isnan(row.release_y)) return "";
+  const ObstacleParameters& obstacles = row.parameters.obstacles;
+  const std::string place = named("release_x", row.release_x) + ", " + named("release_y", row.release_y);
+  if (obstacles.layout != ObstacleLayout::file) return place + ", but there are no user-supplied circles";
+  const Period period = obstacles.period();
+  const bool is_inside = is_number_below(row.release_x, 2 * period.along()) &&
+                         is_number_below(row.release_y, 2 * period.across());
+  return is_inside ? "" : place + " is not in the array";
+}
+
 std::string result_fault(const RunRow& row) {
   if (row.status == RunStatus::failed) return row.message.empty() ? "failed without a reason" : "";
   for (const auto check : {time_fault, motion_fault, dwells_fault, contacts_fault, shape_fault, clog_fault,
-                           passage_fault, neck_fault})
+                           passage_fault, neck_fault, release_fault})
     if (std::string fault = check(row); !fault.empty()) return fault;
   return "";
 }

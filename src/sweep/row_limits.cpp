@@ -110,8 +110,8 @@ std::string unproven_parameters(const Plan& plan) {
 
 double repetition_length(const RunRow& row) {
   const ObstacleParameters& obstacles = row.parameters.obstacles;
-  return scene_of(row.parameters).is_random ? obstacles.period().along()
-                                            : std::numeric_limits<double>::infinity();
+  const bool has_end = !scene_of(row.parameters).is_random || obstacles.exit > 0;
+  return has_end ? std::numeric_limits<double>::infinity() : obstacles.period().along();
 }
 
 bool has_met_repetition(const RunRow& row) { return row.distance > repetition_length(row); }
@@ -150,9 +150,10 @@ std::string bare_band(std::span<const Obstacle> circles, const ObstacleParameter
   const auto bare = conspicuous_bare_stretch(circles, &Obstacle::x, period);
   if (!bare) return "";
   return fmt::format(
-      "obstacles={} leaves x={} bare, before the array repeats at boxes*box={}: droplets sink freely there; "
-      "if that is not meant, give fewer boxes or a smaller box",
-      obstacles.own->source(), text_of(*bare), shortest(period));
+      "obstacles={} leaves x={} bare, before the array repeats at {}={}: droplets sink freely there; if that "
+      "is not meant, give {}",
+      obstacles.own->source(), text_of(*bare), obstacles.length > 0 ? "length" : "boxes*box",
+      shortest(period), obstacles.length > 0 ? "a smaller length" : "fewer boxes or a smaller box");
 }
 
 std::string bare_lanes(std::span<const Obstacle> circles, const ObstacleParameters& obstacles) {
@@ -172,15 +173,16 @@ std::string bare_lanes(std::span<const Obstacle> circles, const ObstacleParamete
 
 std::vector<std::string> bare_arrays(const Plan& plan) {
   std::vector<std::string> all;
-  std::set<std::tuple<std::string, double, int>> seen;
+  std::set<std::tuple<std::string, double, double>> seen;
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
     const RunParameters run = plan.task(group);
     const ObstacleParameters& obstacles = run.obstacles;
     if (scene_of(run).walls_from != WallsFrom::circles) continue;
-    if (!seen.emplace(obstacles.own->check_sum(), obstacles.box, obstacles.boxes).second) continue;
+    if (!seen.emplace(obstacles.own->check_sum(), obstacles.box, obstacles.period().along()).second) continue;
     const std::vector<Obstacle> circles = obstacles.own->with_radii(obstacles.diameter / 2);
-    all.push_back(bare_band(circles, obstacles));
-    all.push_back(bare_lanes(circles, obstacles));
+    // What is bare before an exit, or between walls, is meant.
+    if (obstacles.exit == 0) all.push_back(bare_band(circles, obstacles));
+    if (obstacles.side_walls == SideWalls::off) all.push_back(bare_lanes(circles, obstacles));
   }
   std::erase(all, "");
   return all;

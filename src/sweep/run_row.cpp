@@ -67,6 +67,8 @@ void record(const RunResult& result, RunRow& row) {
   row.sag = result.sag.centre;
   row.top_sag = result.sag.top;
   row.neck = result.neck;
+  row.release_x = result.release[0];
+  row.release_y = result.release[1];
   row.steps = result.steps;
   row.message = result.message;
 }

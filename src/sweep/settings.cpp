@@ -272,7 +272,8 @@ void Settings::set(const std::string& name, const std::string& text) {
     follow("obstacle-layout", "file");
     if (this->text("release") == "centre") follow("seeds", "1");
   }
-  if (name == "release" && text == "anywhere") follow("seeds", find_key("seeds").default_text.c_str());
+  if (name == "release" && (text == "anywhere" || text == "entrance"))
+    follow("seeds", find_key("seeds").default_text.c_str());
   const Parameter* parameter = find_key(name).parameter;
   const bool is_of_channel = parameter && parameter->scope->word == std::string_view("channel");
   if (is_of_channel) follow("obstacle-layout", "channel");

@@ -109,6 +109,16 @@ class Installed(unittest.TestCase):
         page, = re.findall(r"not proved sound \((docs/\S+\.md)\)", said)
         self.assertTrue((self.prefix / "share/doc/clogsweep" / page).exists())
 
+    def test_the_handbook_opens_without_a_network(self):
+        site = self.prefix / "share/doc/clogsweep/html"
+        is_for_users = "CLOG_HANDBOOK:BOOL=ON" in (BIN.parent / "CMakeCache.txt").read_text()
+        self.assertEqual((site / "index.html").exists(), is_for_users)
+        if not is_for_users:
+            return
+        for part in ("index.html", "reference/keys.html", "tutorial/own-device.html", "_static/mathjax/MathJax.js"):
+            self.assertTrue((site / part).exists(), part)
+        self.assertNotIn("import Gumshoe", (site / "_static/scripts/furo.js").read_text())
+
     def test_a_config_that_comes_with_it(self):
         said = self.called("clogsweep", "--config", self.prefix / "share/clogsweep/jobs/laptop.cfg", "--print-config")
         self.assertIn("line-tension = 0.05,0.2,0.25,0.3,0.4,0.6", said)

@@ -64,7 +64,7 @@ def draw_strips(run: trajectory.Trajectory, num_outlines: int) -> Figure:
 
 
 def draw_on(axes: Axes, run: trajectory.Trajectory, num_outlines: int) -> None:
-    is_passage = len(run.wedges) == 2
+    is_passage = run.word("obstacle_filling") == "channel"
     origin = run.middle if is_passage else np.zeros(2)
     surroundings.draw_surroundings(axes, run, origin)
     low, high = view(run)

@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import style
-from ..drawing import clogs, curve, lengths, passages, survival_curve
+from ..drawing import clogs, curve, device, lengths, passages, survival_curve
 from ..labels.groups import Groups
 from ..reading import fits, programs, stored
 from ..tools import outputs, rounded
@@ -261,6 +261,15 @@ def valued(groups: Groups, group: Group) -> str:
     return ", ".join(f"{name.replace('_', ' ')} {cell(groups, group, name)}" for name in parameters(groups))
 
 
+def devices(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
+    """Circles of one's own, each with its releases and clogs. Older files do not say where droplets were released."""
+    if groups.values("obstacle_filling") != {"file"} or "release_x" not in stored.columns_of(stored.read_rows(sweep, clogrun.parent)):
+        return {}
+    caption = "releases, clogs, and how many droplets came past each place"
+    return {"Devices": "".join(framed(charts.draw(device.draw(place), caption), f"{place.name}: {caption}", "wide")
+                               for place in device.places(sweep, clogrun.parent))}
+
+
 def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
     """What is told of droplets among obstacles. @param count  clogs to show. @return contents by title"""
     def chart(figure: Figure, caption: str) -> str:
@@ -277,7 +286,7 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib
     ends = [chart(style.figure_of(draw_causes, groups, label, members), "ends by cause, shares") for label, members in groups.curves()]
     shown = examples(clogs.of_polygons(stored.read_rows(sweep, clogrun.parent), sweep), count)
     return {"Curves": side_by_side(curves), "How far droplets get": side_by_side(survivals), "What becomes of them": side_by_side(ends),
-            "Example clogs": example_pictures(shown, sweep, clogrun, charts)}
+            **devices(groups, sweep, clogrun, charts), "Example clogs": example_pictures(shown, sweep, clogrun, charts)}
 
 
 def label_of_passage(groups: Groups, group: Group) -> str:

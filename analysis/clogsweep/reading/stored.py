@@ -18,7 +18,7 @@ import h5py
 import numpy as np
 
 from ..tools.errors import Damaged, ProgramFailed, UserError
-from ..tools.hints import AnyPath, Records
+from ..tools.hints import AnyPath, Numbers, Records
 from . import programs
 from .rehearsal import is_ours, is_run
 
@@ -167,6 +167,11 @@ def unescaped(value: str) -> str:
 def circle_files(file: h5py.File) -> dict[str, str]:
     """Names of the files that circles of one's own come from, by the check sums that rows have of them."""
     return {sum_: pathlib.Path(text(circles.attrs["file"])).name for sum_, circles in file.get("obstacles", {}).items() if "file" in circles.attrs}
+
+
+def circles(file: h5py.File) -> dict[str, Numbers]:
+    """Circles of one's own by their check sums: x, y, radius; radius 0 stands for half of the row's obstacle_diameter [sigma]."""
+    return {sum_: np.column_stack([circles[name] for name in ("x", "y", "radius")]) for sum_, circles in file.get("obstacles", {}).items()}
 
 
 def columns_of(rows: Records | np.void) -> tuple[str, ...]:

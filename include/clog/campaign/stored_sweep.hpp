@@ -12,7 +12,7 @@ namespace clog::campaign {
 /// What a sweep's file says of its sweep, apart from the rows.
 
 /// A sweep's file for whoever prints something of it: what could not be checked is said on the standard
-/// error.
+/// error, and rows know their circles, with the name of the file that these are from.
 /// @throws Error as store::read_sweep()
 store::SweepFile read_with_caution(const std::string& path);
 

@@ -8,8 +8,10 @@
 
 namespace clog::cli {
 
-/// Reads circles from a CSV file: x,y[,diameter] per line [sigma]; a first line x,y,... and lines starting
-/// with # are skipped. A line without a diameter means obstacle-diameter.
+/// Reads circles from a text file, one a line: x, y and the diameter [sigma], or as the names in the first
+/// line say; cells are separated by commas, semicolons, tabs or blanks. A line without a diameter means
+/// obstacle-diameter. Lines starting with # are skipped, but for `# units=um droplet=200um`, which says in
+/// which units the following lengths are.
 /// @throws Error naming the line
 OwnCircles read_circles(const std::string& path);
 

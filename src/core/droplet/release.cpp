@@ -41,6 +41,8 @@ double clearance(const ObstacleArray& obstacles, double x, double y, double limi
   double nearest = limit;
   for (const Obstacle& obstacle : near)
     nearest = std::min(nearest, std::hypot(obstacle.x, obstacle.y) - obstacle.radius);
+  for (const Wedge& wedge : obstacles.wedges())
+    nearest = std::min(nearest, distance_to(wedge, Eigen::Array2d(x, y) - wedge.centre()).distance);
   return nearest;
 }
 

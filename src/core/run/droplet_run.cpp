@@ -70,7 +70,9 @@ DropletRun::DropletRun(const RunParameters& run)
     : DropletRun(run, std::make_shared<ObstacleArray>(scene_of(run).walls(run))) {}
 
 DropletRun::DropletRun(const RunParameters& run, const std::shared_ptr<const ObstacleArray>& obstacles)
-    : DropletRun(run, obstacles, scene_of(run).release(run, *obstacles), scene_of(run).way(run)) {}
+    : DropletRun(run, obstacles, scene_of(run).release(run, *obstacles)) {
+  end_ = scene_of(run).way(run, start_frame_.global(start_));
+}
 
 DropletRun::DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> obstacles,
                        DropletState initial, double way)
@@ -138,10 +140,11 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
     DropletState state;
     state.restore(bytes);
     check_state(state, run, *obstacles);
-    DropletRun resumed(run, std::move(obstacles), std::move(state), scene_of(run).way(run));
+    DropletRun resumed(run, std::move(obstacles), std::move(state));
     resumed.droplet_->restore(rest);
     resumed.start_frame_.restore(rest);
     rest.get(resumed.start_);
+    resumed.end_ = scene_of(run).way(run, resumed.start_frame_.global(resumed.start_));
     rest.get(resumed.steps_done_);
     rest.get(resumed.quiet_checks_);
     rest.get(resumed.next_search_);
@@ -245,6 +248,7 @@ Sag DropletRun::sag(const Droplet& droplet) const {
 RunResult DropletRun::result() const {
   const Droplet& last = at_rest_ ? *at_rest_ : *droplet_;
   const Eigen::Array2d displaced = displacement_of(last.centre());
+  const Scene& scene = scene_of(run_);
   Hold hold;
   if (status_ == RunStatus::clogged) hold = model_of(run_).hold(run_, *obstacles_, last.state());
   return {.status = status_,
@@ -259,8 +263,10 @@ RunResult DropletRun::result() const {
           .shape_parameter = last.shape().shape_parameter(),
           .hold = hold,
           .passage = passage_,
-          .sag = scene_of(run_).finding == Finding::sag ? sag(last) : Sag(),
+          .sag = scene.finding == Finding::sag ? sag(last) : Sag(),
           .neck = neck_,
+          .release = scene.place_in_file ? scene.place_in_file(run_, start_frame_.global(start_))
+                                         : RunResult().release,
           .steps = droplet_->num_integrated_steps(),
           .message = message_};
 }

@@ -52,6 +52,8 @@ DropletState release_in_void(const RunParameters& run, const ObstacleArray& obst
   return model_of(run).release(run, obstacles);
 }
 
-double endless_way(const RunParameters&) { return std::numeric_limits<double>::infinity(); }
+double endless_way(const RunParameters&, const Eigen::Array2d&) {
+  return std::numeric_limits<double>::infinity();
+}
 
 }  // namespace clog

@@ -21,6 +21,6 @@ double smallest_diameter(const RunParameters& run);
 DropletState release_in_void(const RunParameters& run, const ObstacleArray& obstacles);
 
 /// A droplet never comes to the end of a periodic array, nor through a wall.
-double endless_way(const RunParameters& run);
+double endless_way(const RunParameters& run, const Eigen::Array2d& start);
 
 }  // namespace clog

@@ -86,7 +86,9 @@ DropletState release_upstream(const RunParameters& run, const ObstacleArray&) {
                        middle_of_open_box() + Eigen::Array2d(run.channel.start, 0), period_of_open_box());
 }
 
-double way_to_end(const RunParameters& run) { return run.channel.end - run.channel.start; }
+double way_to_end(const RunParameters& run, const Eigen::Array2d&) {
+  return run.channel.end - run.channel.start;
+}
 
 }  // namespace
 

@@ -6,10 +6,13 @@
 #include <limits>
 #include <mutex>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
+#include "clog/core/droplet/release.hpp"
 #include "clog/core/model/model.hpp"
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/units.hpp"
@@ -39,28 +42,38 @@ double smallest_circle(const RunParameters& run) {
   return 2 * smallest->radius;
 }
 
+/// With walls, images of the circles beyond them must be out of reach.
+Period period_of(const ObstacleParameters& obstacles) {
+  Period period = obstacles.period();
+  if (obstacles.side_walls == SideWalls::off) return period;
+  double widest = 0;
+  for (const Obstacle& circle : circles_of(obstacles)) widest = std::max(widest, 2 * circle.radius);
+  period.beside = widest + 2 * units::droplet_diameter;
+  return period;
+}
+
 void check_place(const Obstacle& circle, const ObstacleParameters& obstacles) {
-  const Period period = obstacles.period();
-  if (2 * circle.radius >= period.box)
+  const Period period = period_of(obstacles);
+  if (2 * circle.radius >= std::min(period.along(), period.across()))
     refuse_circles(*obstacles.own, fmt::format("the one at {} meets its own periodic image) use a box larger "
                                                "than its diameter",
                                                place_of(circle)));
-  if (!(circle.x >= 0 && circle.x < period.along() && circle.y >= 0 && circle.y < period.across()))
+  if (!(circle.x >= 0 && circle.x < period.along() && circle.y >= 0 && circle.y < period.box))
     refuse_circles(
         *obstacles.own,
-        fmt::format("the one at {} lies outside the array) x runs from 0 to boxes*box={}, y from 0 to "
-                    "box={}",
-                    place_of(circle), shortest(period.along()), shortest(period.across())));
+        fmt::format("the one at {} lies outside the array) x runs from 0 to {}={}, y from 0 to box={}",
+                    place_of(circle), obstacles.length > 0 ? "length" : "boxes*box", shortest(period.along()),
+                    shortest(period.box)));
 }
 
 /// Of all circles in their period. Every task of a plan asks for it, mostly of the same circles.
 ObstacleArray::Pair closest_pair(const ObstacleParameters& obstacles) {
-  using Key = std::tuple<std::string, double, int, double>;
+  using Key = std::tuple<std::string, double, double, double, double>;
   static std::mutex mutex;
   static Key last;
   static ObstacleArray::Pair found;
-  const Period period = obstacles.period();
-  const Key key{obstacles.own->check_sum(), period.box, period.boxes, obstacles.diameter};
+  const Period period = period_of(obstacles);
+  const Key key{obstacles.own->check_sum(), period.box, period.along(), period.beside, obstacles.diameter};
   const std::scoped_lock lock(mutex);
   if (key != last) {
     const std::vector<Obstacle> circles = circles_of(obstacles);
@@ -71,6 +84,50 @@ ObstacleArray::Pair closest_pair(const ObstacleParameters& obstacles) {
   return found;
 }
 
+/// A circle may grow out of a wall. Where it does not, the gap between both must be resolved.
+void check_gaps_at_walls(const RunParameters& run) {
+  const ObstacleParameters& obstacles = run.obstacles;
+  if (obstacles.side_walls == SideWalls::off) return;
+  const double edge = model_of(run).narrowest(run);
+  for (const Obstacle& circle : circles_of(obstacles)) {
+    const double gap = std::min(circle.y, obstacles.box - circle.y) - circle.radius;
+    if (gap > 0 && gap <= edge)
+      refuse_circles(*obstacles.own,
+                     fmt::format("the one at {} leaves a gap of {:.3g} sigma at the wall, not wider than an "
+                                 "edge, {:.3g} sigma) let it touch the wall, or move it away",
+                                 place_of(circle), gap, edge));
+  }
+}
+
+void check_ways(const ObstacleParameters& obstacles) {
+  const double length = obstacles.period().along(), box = obstacles.box;
+  require(obstacles.length == 0 || obstacles.boxes == 1, "boxes", obstacles.boxes,
+          "length says how long the device is) leave one of them out");
+  if (obstacles.release != Release::entrance)
+    for (const auto& [key, value] :
+         {std::pair("entrance", obstacles.entrance), std::pair("entrance-from", obstacles.entrance_from),
+          std::pair("entrance-to", obstacles.entrance_to)})
+      require(value == 0, key, value,
+              "the droplet is not released on a line) add release=entrance, or leave it out");
+  require(obstacles.entrance < length, "entrance", obstacles.entrance,
+          [&] { return fmt::format("lies outside the device) use 0 to less than {:.6g}", length); });
+  const double to = obstacles.entrance_to > 0 ? obstacles.entrance_to : box;
+  require(to <= box, "entrance-to", to,
+          [&] { return fmt::format("is beyond the box) use at most {:.6g}", box); });
+  require(obstacles.entrance_from <= to, "entrance-from", obstacles.entrance_from,
+          [&] { return fmt::format("is beyond the end of the line) use at most {:.6g}", to); });
+  if (obstacles.exit == 0) return;
+  require(obstacles.release != Release::anywhere, "exit", obstacles.exit,
+          "droplets that are released anywhere may start behind it) add release=entrance");
+  const double start = obstacles.release == Release::entrance ? obstacles.entrance : length / 2;
+  require(obstacles.exit > start, "exit", obstacles.exit,
+          [&] { return fmt::format("must lie downstream of the release) use more than {:.6g}", start); });
+  require(obstacles.exit <= length, "exit", obstacles.exit, [&] {
+    return fmt::format("the device repeats behind its length, {:.6g}) use at most that, or a larger length",
+                       length);
+  });
+}
+
 void check_circles(const RunParameters& run) {
   const ObstacleParameters& obstacles = run.obstacles;
   if (!obstacles.own)
@@ -79,6 +136,7 @@ void check_circles(const RunParameters& run) {
     refuse_circles(*obstacles.own, "there are none) lines are x,y[,diameter]");
   require(obstacles.diameter_spread == 0, "obstacle-diameter-spread", obstacles.diameter_spread,
           "circles of your own have diameters of their own) leave it out");
+  check_ways(obstacles);
   const ObstacleArray::Pair pair = closest_pair(obstacles);
   const std::string both = fmt::format("those at {} and {}", place_of(pair.first), place_of(pair.second));
   if (pair.gap <= 0)
@@ -93,6 +151,7 @@ void check_circles(const RunParameters& run) {
         fmt::format("{} leave a gap of {:.3g} sigma, not wider than an edge, {:.3g} sigma) widen the "
                     "gap or use more vertices",
                     both, pair.gap, edge));
+  check_gaps_at_walls(run);
 }
 
 void find_gap_and_density(RunParameters& run) {
@@ -103,23 +162,76 @@ void find_gap_and_density(RunParameters& run) {
   obstacles.density = static_cast<double>(obstacles.own->circles().size()) / obstacles.period().area();
 }
 
-/// So that the place at which the droplet is to start comes to lie in the centre.
-ObstacleArray shifted_circles(const RunParameters& run) {
-  const Period period = run.obstacles.period();
-  std::vector<Obstacle> circles = circles_of(run.obstacles);
-  if (run.obstacles.release == Release::anywhere) {
-    // The constant keeps this stream apart from others.
-    std::seed_seq sequence{run.seed, std::uint32_t{0x0bc1c1e5}};
-    std::mt19937_64 engine(sequence);
-    boost::random::uniform_01<double> uniform;
-    const double x = (0.5 - uniform(engine)) * period.along();
-    const double y = (0.5 - uniform(engine)) * period.across();
-    for (Obstacle& circle : circles) {
-      circle.x += x;
-      circle.y += y;
-    }
+/// In [0, 1); the constant keeps this stream apart from others.
+Eigen::Array2d drawn_from(std::uint32_t seed) {
+  std::seed_seq sequence{seed, std::uint32_t{0x0bc1c1e5}};
+  std::mt19937_64 engine(sequence);
+  boost::random::uniform_01<double> uniform;
+  const double first = uniform(engine);
+  return {first, uniform(engine)};
+}
+
+/// Where on the line of the entrance a droplet starts, in the coordinates of the file.
+Eigen::Array2d place_on_entrance(const RunParameters& run) {
+  const ObstacleParameters& obstacles = run.obstacles;
+  double from = obstacles.entrance_from;
+  double to = obstacles.entrance_to > 0 ? obstacles.entrance_to : obstacles.box;
+  if (obstacles.side_walls == SideWalls::on) {
+    constexpr double film = 0.01;  // so that the droplet does not touch a wall
+    const double nearest = std::min(model_of(run).reach(run) + film, obstacles.box / 2);
+    from = std::clamp(from, nearest, obstacles.box - nearest);
+    to = std::clamp(to, nearest, obstacles.box - nearest);
   }
-  return {period, std::move(circles)};
+  return {obstacles.entrance, from + drawn_from(run.seed)[0] * (to - from)};
+}
+
+/// From the coordinates of the file to those of the array, in whose centre a droplet is to start.
+Eigen::Array2d shift_of(const RunParameters& run) {
+  const Period period = period_of(run.obstacles);
+  switch (run.obstacles.release) {
+    case Release::centre:
+      return {0, period.beside / 2};
+    case Release::anywhere: {
+      const Eigen::Array2d drawn = drawn_from(run.seed);
+      return {(0.5 - drawn[0]) * period.along(), (0.5 - drawn[1]) * period.box + period.beside / 2};
+    }
+    case Release::entrance:
+      return Eigen::Array2d(period.along() / 2, period.across() / 2) - place_on_entrance(run);
+  }
+  throw std::logic_error("a release without a place");
+}
+
+ObstacleArray shifted_device(const RunParameters& run) {
+  const ObstacleParameters& obstacles = run.obstacles;
+  const Eigen::Array2d shift = shift_of(run);
+  std::vector<Obstacle> circles = circles_of(obstacles);
+  for (Obstacle& circle : circles) {
+    circle.x += shift[0];
+    circle.y += shift[1];
+  }
+  std::vector<Wedge> walls;
+  if (obstacles.side_walls == SideWalls::on)
+    walls = {{.tip = shift, .axis = {0, -1}},
+             {.tip = shift + Eigen::Array2d(0, obstacles.box), .axis = {0, 1}}};
+  return {period_of(obstacles), std::move(circles), std::move(walls)};
+}
+
+/// On the line of an entrance where it is free, as if there were no obstacles; otherwise in the nearest void.
+DropletState release_in_device(const RunParameters& run, const ObstacleArray& device) {
+  const Period& period = device.period();
+  const bool starts_free = run.obstacles.release == Release::entrance &&
+                           clearance(device, period.along() / 2, period.across() / 2,
+                                     2 * units::droplet_diameter) > model_of(run).reach(run);
+  return release_in_void(run, starts_free ? ObstacleArray(period, {}) : device);
+}
+
+Eigen::Array2d place_in_file(const RunParameters& run, const Eigen::Array2d& place) {
+  return place - shift_of(run);
+}
+
+double way_to_exit(const RunParameters& run, const Eigen::Array2d& start) {
+  if (run.obstacles.exit == 0) return std::numeric_limits<double>::infinity();
+  return run.obstacles.exit - place_in_file(run, start)[0];
 }
 
 double density(const ObstacleParameters& obstacles) {
@@ -136,8 +248,9 @@ const Scene own_circles_scene = {.finding = Finding::clogging_length,
                                  .resolve = find_gap_and_density,
                                  .sharpest_bend = smallest_circle,
                                  .density = density,
-                                 .walls = shifted_circles,
-                                 .release = release_in_void,
-                                 .way = endless_way};
+                                 .walls = shifted_device,
+                                 .release = release_in_device,
+                                 .way = way_to_exit,
+                                 .place_in_file = place_in_file};
 
 }  // namespace clog

@@ -20,12 +20,34 @@ double wrapped(double value, double period) {
   return inside < period ? inside : 0.0;  // a tiny negative value rounds up to the period itself
 }
 
-int cells_per_box(double box) { return std::max(1, static_cast<int>(box / units::droplet_diameter)); }
+int num_cells_in(double edge) { return std::max(1, static_cast<int>(edge / units::droplet_diameter)); }
+
+/// Cells along one edge of a period.
+struct CellAxis {
+  double edge;       ///< of one box, or of the whole period [sigma]
+  int num_per_edge;  ///< cells
+  int number;        ///< cells in the period
+
+  /// As floor() leaves it; may be outside the period.
+  int index(double place) const { return static_cast<int>(std::floor(place * (num_per_edge / edge))); }
+  int index_within(double place) const {
+    return std::min(static_cast<int>(place / edge * num_per_edge), number - 1);
+  }
+};
+
+CellAxis columns_of(const Period& period) {
+  if (period.length > 0) return {period.length, num_cells_in(period.length), num_cells_in(period.length)};
+  return {period.box, num_cells_in(period.box), period.boxes * num_cells_in(period.box)};
+}
+
+CellAxis rows_of(const Period& period) {
+  return {period.across(), num_cells_in(period.across()), num_cells_in(period.across())};
+}
 
 }  // namespace
 
 ObstacleArray::ObstacleArray(const Period& period, std::vector<Obstacle> obstacles, std::vector<Wedge> wedges)
-    : cells_per_box_(cells_per_box(period.box)), wedges_(std::move(wedges)) {
+    : wedges_(std::move(wedges)) {
   binned_.period = period;
   for (Obstacle& obstacle : obstacles) {
     if (!(obstacle.radius > 0) || !std::isfinite(obstacle.radius) || !std::isfinite(obstacle.x) ||
@@ -51,18 +73,16 @@ ObstacleArray::ObstacleArray(const Period& period, std::vector<Obstacle> obstacl
 }
 
 ObstacleArray::ObstacleArray(const BinnedObstacles& binned, std::shared_ptr<const void> memory)
-    : binned_(binned), memory_(std::move(memory)), cells_per_box_(cells_per_box(binned.period.box)) {}
+    : binned_(binned), memory_(std::move(memory)) {}
 
 std::size_t ObstacleArray::num_cells(const Period& period) {
-  const std::size_t per_side = cells_per_box(period.box);
-  return period.boxes * per_side * per_side;
+  return static_cast<std::size_t>(columns_of(period).number) * rows_of(period).number;
 }
 
 std::uint32_t ObstacleArray::cell_of(double x, double y) const {
-  const auto index = [this](double value, int num_cells) {
-    return std::min(static_cast<int>(value / period().box * cells_per_box_), num_cells - 1);
-  };
-  return static_cast<std::uint32_t>(index(y, cells_per_box_)) * num_columns() + index(x, num_columns());
+  const CellAxis columns = columns_of(period());
+  return static_cast<std::uint32_t>(rows_of(period()).index_within(y)) * columns.number +
+         columns.index_within(x);
 }
 
 std::vector<std::uint32_t> ObstacleArray::bin(std::vector<Obstacle>& obstacles) const {
@@ -88,24 +108,21 @@ std::vector<std::uint32_t> ObstacleArray::bin(std::vector<Obstacle>& obstacles) 
 template <class Visit>
 void ObstacleArray::visit_window(const Window& window, Visit visit) const {
   const double reach = window.margin + binned_.largest_radius;
-  const double cells_per_length = cells_per_box_ / period().box;
-  const auto cell_index = [=](double position) {
-    return static_cast<int>(std::floor(position * cells_per_length));
-  };
-  const int column_first = cell_index(window.origin_x + window.x_min - reach);
-  const int column_last = cell_index(window.origin_x + window.x_max + reach);
-  const int row_first = cell_index(window.origin_y + window.y_min - reach);
-  const int row_last = cell_index(window.origin_y + window.y_max + reach);
+  const CellAxis columns = columns_of(period()), rows = rows_of(period());
+  const int column_first = columns.index(window.origin_x + window.x_min - reach);
+  const int column_last = columns.index(window.origin_x + window.x_max + reach);
+  const int row_first = rows.index(window.origin_y + window.y_min - reach);
+  const int row_last = rows.index(window.origin_y + window.y_max + reach);
   const auto image_of = [](int cell, int num_cells) {
     return static_cast<int>(std::floor(static_cast<double>(cell) / num_cells));
   };
 
   for (int row = row_first; row <= row_last; ++row) {
-    const int image_y = image_of(row, cells_per_box_);
+    const int image_y = image_of(row, rows.number);
     for (int column = column_first; column <= column_last; ++column) {
-      const int image_x = image_of(column, num_columns());
-      const std::size_t cell = static_cast<std::size_t>(row - image_y * cells_per_box_) * num_columns() +
-                               (column - image_x * num_columns());
+      const int image_x = image_of(column, columns.number);
+      const std::size_t cell = static_cast<std::size_t>(row - image_y * rows.number) * columns.number +
+                               (column - image_x * columns.number);
       for (std::uint32_t k = binned_.cell_start[cell]; k < binned_.cell_start[cell + 1]; ++k) {
         // Subtract the origin first: within the period this is exact, so forces do not depend on where the
         // droplet is.
@@ -128,6 +145,7 @@ void ObstacleArray::gather(const Window& window, std::vector<Obstacle>& out) con
 
 ObstacleArray::Pair ObstacleArray::closest_pair() const {
   Pair closest{{}, {}, std::numeric_limits<double>::infinity()};
+  const double nearest_image = std::min(period().along(), period().across());
   // Pairs nearer than the margin are all seen; widen it until the smallest one found is certain.
   double margin = 0.125 * units::droplet_diameter;
   do {
@@ -137,12 +155,12 @@ ObstacleArray::Pair ObstacleArray::closest_pair() const {
       visit_window({origin_x, origin_y, -radius, radius, -radius, radius, margin},
                    [&, r = radius](std::uint32_t second, double x, double y) {
                      const double gap = std::hypot(x, y) - r - binned_.obstacles[second].radius;
-                     const bool is_itself = second == first && std::hypot(x, y) < period().box / 2;
+                     const bool is_itself = second == first && std::hypot(x, y) < nearest_image / 2;
                      if (!is_itself && gap < closest.gap)
                        closest = {binned_.obstacles[first], binned_.obstacles[second], gap};
                    });
     }
-  } while (closest.gap > margin && margin < period().box);
+  } while (closest.gap > margin && margin < nearest_image);
   return closest;
 }
 

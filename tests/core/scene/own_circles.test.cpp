@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "clog/core/droplet/droplet_state.hpp"
 #include "clog/core/parameters/circles.hpp"
 #include "clog/core/run/droplet_run.hpp"
 #include "clog/core/run/resolve.hpp"
@@ -90,6 +91,88 @@ TEST(OwnCircles, AreShiftedSoThatTheDropletStartsAnywhere) {
   const double error = 1 / std::sqrt(2.0 * number);
   EXPECT_LT(std::abs(sum_x / number), 4 * error);
   EXPECT_LT(std::abs(sum_y / number), 4 * error);
+}
+
+RunParameters between_walls(std::vector<Obstacle> circles) {
+  RunParameters run = among(std::move(circles));
+  run.obstacles.length = 23.5;
+  run.obstacles.side_walls = SideWalls::on;
+  run.obstacles.release = Release::entrance;
+  run.obstacles.entrance = 2;
+  run.obstacles.exit = 20;
+  return run;
+}
+
+TEST(OwnCircles, MayBeAnyLengthAndFindEachOtherOverItsBorder) {
+  RunParameters run = among({{0.2, 5, 0.25}, {23.2, 5, 0.25}});
+  run.obstacles.length = 23.5;
+  EXPECT_NE(refusal(run).find("touch or overlap"), std::string::npos);
+  run.obstacles.own = OwnCircles({{0.2, 5, 0.25}, {22.9, 5, 0.25}});
+  EXPECT_NEAR(resolve(run).obstacles.gap, 0.8 - 0.5, 1e-12);
+  EXPECT_DOUBLE_EQ(resolve(run).obstacles.density.per_area.value(), 2 / 235.0);
+  run.obstacles.boxes = 2;
+  EXPECT_NE(refusal(run).find("boxes=2"), std::string::npos);
+}
+
+TEST(OwnCircles, StandBetweenWallsWithoutImagesAcross) {
+  // Over the border of a periodic array these would overlap.
+  const RunParameters run = resolve(between_walls({{12, 0.1, 0.3}, {12, 9.9, 0.3}}));
+  const ObstacleArray device = scene_of(run).walls(run);
+  ASSERT_EQ(device.wedges().size(), 2u);
+  EXPECT_DOUBLE_EQ(device.wedges()[1].tip[1] - device.wedges()[0].tip[1], 10);
+  EXPECT_GT(device.smallest_gap(), 1) << "images are beyond the walls, out of reach";
+}
+
+TEST(OwnCircles, AreEnteredOnALineAndLeftAtTheExit) {
+  RunParameters run = between_walls({{12, 5, 0.3}});
+  run.obstacles.entrance_from = 3;
+  run.obstacles.entrance_to = 4;
+  run = resolve(run);
+  const Scene& scene = scene_of(run);
+  for (run.seed = 1; run.seed <= 20; ++run.seed) {
+    const ObstacleArray device = scene.walls(run);
+    const DropletState start = scene.release(run, device);
+    const Eigen::Array2d place = start.frame.global(start.centre());
+    const Eigen::Array2d in_file = scene.place_in_file(run, place);
+    EXPECT_NEAR(in_file[0], 2, 1e-9) << "free, so just there";
+    EXPECT_GE(in_file[1], 3 - 1e-9);
+    EXPECT_LE(in_file[1], 4 + 1e-9);
+    EXPECT_NEAR(scene.way(run, place), 18, 1e-9);
+  }
+}
+
+TEST(OwnCircles, RefuseWaysThatCannotBe) {
+  RunParameters run = between_walls({{12, 5, 0.3}});
+  run.obstacles.exit = 2;
+  EXPECT_NE(refusal(run).find("exit=2 (must lie downstream"), std::string::npos);
+  run.obstacles.exit = 24;
+  EXPECT_NE(refusal(run).find("exit=24"), std::string::npos);
+  run.obstacles.exit = 20;
+  run.obstacles.release = Release::anywhere;
+  EXPECT_NE(refusal(run).find("entrance=2 (the droplet is not released on a line)"), std::string::npos);
+  run.obstacles.entrance = 0;
+  EXPECT_NE(refusal(run).find("exit=20"), std::string::npos);
+  run = between_walls({{12, 0.34, 0.3}});
+  EXPECT_NE(refusal(run).find("at the wall"), std::string::npos);
+}
+
+TEST(OwnCircles, LetADropletPassBetweenWallsWhichHoldIt) {
+  // The gap between circle and wall is narrower than the droplet.
+  RunParameters run = between_walls({{8, 1.75, 0.8}});
+  run.dp.line_tension = 0.3;
+  run.obstacles.box = 5;
+  run.obstacles.entrance_from = run.obstacles.entrance_to = 0.9;
+  run.obstacles.exit = 12;
+  run.max_time = 2000;
+  run = resolve(run);
+  DropletRun droplet(run);
+  while (!droplet.advance(1000)) {
+  }
+  const RunResult result = droplet.result();
+  EXPECT_EQ(result.status, RunStatus::passed);
+  EXPECT_NEAR(result.release[0], 2, 1e-9);
+  EXPECT_NEAR(result.release[0] + result.distance, 12, 0.2);
+  EXPECT_GT(result.release[1] + result.lateral, 0.4) << "not through the wall";
 }
 
 }  // namespace

@@ -11,7 +11,8 @@ namespace clog {
 /// surroundings [sigma].
 Eigen::Array2d nearest_void(const ObstacleArray& obstacles);
 
-/// Distance from a point of the box to the nearest obstacle surface, at most `limit` [sigma].
+/// Distance from a point of the first period to the nearest surface of an obstacle or a wedge, at most
+/// `limit` [sigma].
 double clearance(const ObstacleArray& obstacles, double x, double y, double limit);
 
 /// A droplet at rest.

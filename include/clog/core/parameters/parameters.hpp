@@ -56,11 +56,18 @@ struct Words<ObstacleLayout> {
                                                    {ObstacleLayout::wall, "wall"}};
 };
 /// Where among a user's own circles a droplet starts: in the void nearest to the centre of the array, or to a
-/// place that is drawn from the seed.
-enum class Release { centre, anywhere };
+/// place that is drawn from the seed, of the whole array or of a line across the flow.
+enum class Release { centre, anywhere, entrance };
 template <>
 struct Words<Release> {
-  static constexpr Worded<Release> all[] = {{Release::centre, "centre"}, {Release::anywhere, "anywhere"}};
+  static constexpr Worded<Release> all[] = {
+      {Release::centre, "centre"}, {Release::anywhere, "anywhere"}, {Release::entrance, "entrance"}};
+};
+/// Straight walls along the flow at both sides of a user's own circles.
+enum class SideWalls { off, on };
+template <>
+struct Words<SideWalls> {
+  static constexpr Worded<SideWalls> all[] = {{SideWalls::off, "off"}, {SideWalls::on, "on"}};
 };
 /// What it takes for a droplet to count as clogged: kinetic energy below a threshold, or else, long before
 /// that, proof that a stable equilibrium is at hand (equilibrium.hpp).
@@ -110,18 +117,20 @@ struct DpParameters {
   double break_up_neck = 0;
 };
 
-/// The rectangle after which an array repeats: square boxes in a row along the flow.
+/// The rectangle after which an array repeats: square boxes in a row along the flow, or a length of its own.
 struct Period {
   double box = 0;  ///< [sigma]
   int boxes = 1;
+  double length = 0;  ///< along the flow if it is no multiple of the box, otherwise 0 [sigma]
+  double beside = 0;  ///< empty space beside the box, so that nothing meets images of the other side [sigma]
 
   Period() = default;
   // A single box is a period; nothing is lost in the conversion.
   Period(double edge, int number = 1) : box(edge), boxes(number) {}
 
-  double along() const { return boxes * box; }
-  double across() const { return box; }
-  double area() const { return along() * across(); }
+  double along() const { return length > 0 ? length : boxes * box; }
+  double across() const { return box + beside; }
+  double area() const { return along() * box; }
   bool operator==(const Period&) const = default;
 };
 
@@ -160,10 +169,21 @@ struct ObstacleParameters {
   double lattice_angle = 0;            ///< of the lattice's rows from +x to +y [degrees]
   std::optional<OwnCircles> own = {};  ///< of layout file; gap and density are then theirs
   Release release = Release::centre;
+  // Of a user's own circles, in their coordinates.
+  double length = 0;                      ///< period along the flow; 0: boxes times box [sigma]
+  SideWalls side_walls = SideWalls::off;  ///< at y = 0 and y = box
+  double entrance = 0;                    ///< x of the line on which droplets are released [sigma]
+  double entrance_from = 0;               ///< y at which the line begins [sigma]
+  double entrance_to = 0;                 ///< y at which it ends; 0: at the box [sigma]
+  double exit = 0;                        ///< x at which a droplet has passed; 0: nowhere [sigma]
 
   double smallest_diameter() const { return diameter * (1 - diameter_spread); }
   double largest_diameter() const { return diameter * (1 + diameter_spread); }
-  Period period() const { return {box, boxes}; }
+  Period period() const {
+    Period period(box, boxes);
+    if (length != period.along()) period.length = length;
+    return period;
+  }
   bool operator==(const ObstacleParameters&) const = default;
 };
 

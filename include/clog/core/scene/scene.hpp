@@ -42,7 +42,10 @@ struct Scene {
   /// A droplet at rest. @throws Error if there is no room for it
   DropletState (*release)(const RunParameters& run, const ObstacleArray& walls);
   /// Displacement along the flow after which the droplet has passed [sigma]; infinite where it never has.
-  double (*way)(const RunParameters& run);
+  /// @param start  where the centre of mass is released, in the coordinates of the walls [sigma]
+  double (*way)(const RunParameters& run, const Eigen::Array2d& start);
+  /// A place of the walls in the coordinates of the file that these are from; nullptr without a file [sigma].
+  Eigen::Array2d (*place_in_file)(const RunParameters& run, const Eigen::Array2d& place) = nullptr;
 };
 
 const Scene& scene_of(ObstacleLayout layout);

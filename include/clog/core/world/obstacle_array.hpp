@@ -62,10 +62,8 @@ class ObstacleArray {
  private:
   BinnedObstacles binned_;
   std::shared_ptr<const void> memory_;  // of the obstacles
-  int cells_per_box_;                   // along one side
   std::vector<Wedge> wedges_;
 
-  int num_columns() const { return period().boxes * cells_per_box_; }
   std::uint32_t cell_of(double x, double y) const;
   /// Sorts the obstacles by cell, and returns where each cell starts.
   std::vector<std::uint32_t> bin(std::vector<Obstacle>& obstacles) const;

@@ -1,0 +1,110 @@
+"""Makes a file of circles of a drawing of a device: DXF, GDSII, SVG, or a picture in black and white (a mask, a micrograph).
+
+    python3 -m clogsweep circles mask.gds --droplet 200um --output posts
+    python3 -m clogsweep circles scan.png --pixel 2.5um --droplet 200um --output posts
+    clogsweep obstacles=posts.csv box=... length=...      # as the command prints it
+
+posts.csv has the posts in micrometres, and the droplet's diameter. posts.png shows what was understood: look at it before
+you run anything. An outline that holds everything else is the edge of the device; of a picture it is its own edge. Posts
+have to be round. Others, such as triangles, are red in the picture, and nothing is written unless --as-circles replaces
+them by circles of the same area.
+"""
+
+import argparse
+import pathlib
+
+import numpy as np
+
+from ..device import readers, shapes
+from ..drawing import device as drawn
+from ..style import Picture
+from ..tools import outputs, rounded
+from ..tools.errors import UserError
+from . import command_line
+
+TURNS = {"right": 0, "down": 1, "left": 2, "up": 3}
+
+
+def tolerance(word: str) -> float:
+    """Type of an option: a part of the radius."""
+    try:
+        value = float(word)
+    except ValueError:
+        value = -1.0
+    if not 0 < value < 0.5:
+        raise argparse.ArgumentTypeError(f"invalid value: {word} (must be a part of the radius, above 0 and below 0.5)")
+    return value
+
+
+def options() -> argparse.Namespace:
+    parser = command_line.Parser(__doc__)
+    parser.add_argument("drawing", type=pathlib.Path, help=".dxf, .gds, .svg, .png, .tif, .bmp or .jpg")
+    command_line.add_output(parser, "name of the files: .csv, .png and .pdf are made", ".csv", ".png", ".pdf", required=True)
+    parser.add_argument("--droplet", required=True, help="diameter of the droplet with its unit, such as 200um")
+    scale = parser.add_mutually_exclusive_group()
+    scale.add_argument("--unit", choices=shapes.METRES, help="of a drawing that does not say it")
+    scale.add_argument("--pixel", help="size of a pixel of a picture with its unit, such as 2.5um")
+    parser.add_argument("--layer", help="of a DXF or GDSII file; without it all count")
+    parser.add_argument("--posts", choices=("dark", "bright"), default="dark", help="of a picture (dark)")
+    parser.add_argument("--flow", choices=TURNS, default="right", help="where it goes in the drawing (right)")
+    parser.add_argument("--tolerance", type=tolerance, default=0.04, help="so much of its radius may a post be off a circle (0.04)")
+    parser.add_argument("--as-circles", action="store_true", help="replace other posts by circles of the same area")
+    return parser.parse_args()
+
+
+def metres_of(arguments: argparse.Namespace, drawing: shapes.Drawing) -> float:
+    """In a unit of the drawing. @throws UserError"""
+    if arguments.pixel:
+        return shapes.length_in_metres(arguments.pixel, "--pixel")
+    if arguments.unit:
+        return shapes.METRES[arguments.unit]
+    if drawing.metres is None:
+        what = "--pixel, such as --pixel 2.5um" if drawing.frame else "--unit, such as --unit um"
+        raise UserError(f"{arguments.drawing} does not say how long its unit is; give {what}")
+    return drawing.metres
+
+
+def call_of(device: shapes.Device, output: pathlib.Path) -> str:
+    """How a sweep of it begins."""
+    return (f"clogsweep obstacles={output}.csv box={device.width:.6g} length={device.length:.6g} side-walls=on "
+            f"release=entrance exit={device.length:.6g} ...")
+
+
+def told(device: shapes.Device, drawing: shapes.Drawing) -> list[str]:
+    """What was understood, in words."""
+    edge = "its own edge" if device.has_frame else "no edge is drawn: that of what surrounds the posts"
+    lines = [f"{rounded.counted(len(device.circles), 'post')}, device {device.length:.4g} x {device.width:.4g} droplet diameters ({edge})"]
+    if len(device.circles):
+        diameters = device.circles[:, 2]
+        lines.append(f"diameters {diameters.min():.4g} to {diameters.max():.4g}, smallest gap {device.smallest_gap():.4g}, in droplet diameters")
+    if drawing.skipped:
+        lines.append("skipped: " + ", ".join(f"{count} {kind}" for kind, count in sorted(drawing.skipped.items())))
+    return lines
+
+
+def body() -> int:
+    arguments = options()
+    droplet = shapes.length_in_metres(arguments.droplet, "--droplet")
+    table = pathlib.Path(f"{arguments.output}.csv")
+    outputs.refuse_unwritable_picture(arguments.output, arguments.drawing)
+    outputs.refuse_unwritable(table, "csv", arguments.drawing)
+    drawing = readers.read(arguments.drawing, arguments.layer, arguments.posts)
+    device = shapes.understood(drawing, metres_of(arguments, drawing), droplet, arguments.tolerance, TURNS[arguments.flow])
+    if arguments.as_circles:
+        device = shapes.as_circles(device)
+    picture = Picture(drawn.understood(device, arguments.drawing.name), f"python3 -m clogsweep circles {arguments.drawing}")
+    print(f"{picture.save(arguments.output)} (and .pdf)")
+    print("\n".join(told(device, drawing)))
+    if device.others:
+        raise UserError(f"{rounded.counted(len(device.others), 'post')} of {len(device.others) + len(device.circles)} not round, red in the picture; no {table} "
+                        "was written. Use --as-circles for circles of the same area, or a larger --tolerance")
+    if touching := device.overlaps():
+        x, y, _ = device.circles[touching[0][0]]
+        raise UserError(f"{rounded.counted(len(touching), 'pair')} of posts touch, the first at x={x:.4g}, y={y:.4g} in droplet diameters; no {table} was written. "
+                        "Separate them in the drawing")
+    outside = device.circles[np.any((device.circles[:, :2] < 0) | (device.circles[:, :2] >= (device.length, device.width)), axis=1)]
+    if len(outside):
+        raise UserError(f"{rounded.counted(len(outside), 'post')} with the centre outside the edge of the device; no {table} was written. Draw a wider edge, or cut these posts away")
+    table.write_text(shapes.csv_of(device, f"{arguments.drawing.name}, by clogsweep"))
+    print(f"{table}\n{call_of(device, arguments.output)}")
+    return 0

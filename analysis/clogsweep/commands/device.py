@@ -1,0 +1,25 @@
+"""Draws the circles of a sweep as one device: where droplets were released, where they clogged and by what, ways of some.
+
+    clogsweep obstacles=posts.csv box=8 length=20 side-walls=on release=entrance exit=20 seeds=1..20 --output sweep.h5
+    python3 -m clogsweep device sweep.h5                 # sweep-device.png, sweep-device.pdf
+
+The ways are those of runs from the shortest way to the longest, which are run once more (clogrun). The strip below counts
+the droplets that came past each place along the flow. All lengths are in droplet diameters, places are those of the file.
+"""
+
+import argparse
+
+from ..results.sweep import Sweep
+from .command_line import sweep_to_draw, whole
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--ways", type=whole(0), default=6, help="of so many runs (%(default)s)")
+    parser.add_argument("--jobs", type=whole(1), default=2, help="runs at a time (%(default)s)")
+
+
+def body() -> int:
+    arguments = sweep_to_draw(__doc__, "device", more=add_options)
+    found = Sweep(arguments.sweep, arguments.programs).device(ways=arguments.ways, jobs=arguments.jobs)
+    print(f"{found.save(arguments.output)} (and .pdf)")
+    return 0

@@ -1,0 +1,139 @@
+"""Readers of drawings: DXF, GDSII, SVG, and pictures in black and white. Each loads its library when it is needed."""
+
+from __future__ import annotations
+
+import collections
+import importlib
+import pathlib
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from ..tools.errors import UserError
+from .shapes import Drawing, area
+
+PICTURES = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg")
+UNITS_OF_DXF = {1: 25.4e-3, 4: 1e-3, 5: 1e-2, 6: 1.0, 12: 1e-9, 13: 1e-6}  # $INSUNITS
+METRES_IN_PIXEL_OF_SVG = 25.4e-3 / 96
+FLATNESS = 1e-3  # of a curve's size, that straight pieces may be off
+
+
+def library(name: str, package: str) -> Any:
+    """@throws UserError  that names the package of Debian"""
+    try:
+        return importlib.import_module(name)
+    except ImportError as error:
+        raise UserError(f"cannot read such a drawing ({error}); apt install {package}, and start /usr/bin/python3") from error
+
+
+def read(path: pathlib.Path, layer: str | None = None, posts: str = "dark") -> Drawing:
+    """@param layer  of a DXF or GDSII file, if only that one counts; @param posts  of a picture: dark or bright. @throws UserError"""
+    readers: dict[str, Callable[[], Drawing]] = {".dxf": lambda: read_dxf(path, layer), ".gds": lambda: read_gds(path, layer), ".gdsii": lambda: read_gds(path, layer),
+                                                 ".svg": lambda: read_svg(path), **{ending: lambda: read_picture(path, posts) for ending in PICTURES}}
+    reader = readers.get(path.suffix.lower())
+    if reader is None:
+        raise UserError(f"cannot read {path} (its ending is none of {', '.join(readers)}); save the drawing as one of these")
+    if not path.is_file():
+        raise UserError(f"cannot read {path} (no such file); check the name")
+    try:
+        return reader()
+    except UserError:
+        raise
+    except Exception as error:  # of many libraries
+        raise UserError(f"cannot read {path} ({type(error).__name__}: {error}); is it really of this kind?") from error
+
+
+def read_dxf(path: pathlib.Path, layer: str | None) -> Drawing:
+    """Circles and closed outlines of the model space, those in blocks, too."""
+    ezdxf = library("ezdxf", "python3-ezdxf")
+    paths = library("ezdxf.path", "python3-ezdxf")
+    document = ezdxf.readfile(path)
+    found = Drawing([], [], UNITS_OF_DXF.get(document.header.get("$INSUNITS", 0)), skipped=collections.Counter())
+
+    def simple(entities: Any) -> Iterator[Any]:
+        for entity in entities:
+            if entity.dxftype() == "INSERT":
+                yield from simple(entity.virtual_entities())
+            else:
+                yield entity
+
+    for entity in simple(document.modelspace()):
+        kind = entity.dxftype()
+        if layer is not None and entity.dxf.layer != layer:
+            found.skipped[f"{kind} on layer {entity.dxf.layer}"] += 1
+        elif kind == "CIRCLE":
+            found.circles.append((entity.dxf.center.x, entity.dxf.center.y, 2 * entity.dxf.radius))
+        elif kind in ("LWPOLYLINE", "POLYLINE", "ELLIPSE", "SPLINE"):
+            curve = paths.make_path(entity)
+            corners = np.array([(point.x, point.y) for point in curve.flattening(FLATNESS * size_of(curve))])
+            if curve.is_closed or getattr(entity, "is_closed", False):
+                found.outlines.append(corners)
+            else:
+                found.skipped[f"open {kind}"] += 1
+        else:
+            found.skipped[kind] += 1
+    return found
+
+
+def size_of(curve: Any) -> float:
+    """Of what surrounds the points that define it."""
+    points = np.array([(point.x, point.y) for point in curve.control_vertices()])
+    return float(np.ptp(points, axis=0).max()) or 1.0
+
+
+def read_gds(path: pathlib.Path, layer: str | None) -> Drawing:
+    """Polygons of the top cells, with all that they refer to."""
+    gdspy = library("gdspy", "python3-gdspy")
+    content = gdspy.GdsLibrary(infile=str(path))
+    found = Drawing([], [], content.unit, skipped=collections.Counter())
+    for cell in content.top_level():
+        for (of_layer, _), polygons in cell.get_polygons(by_spec=True).items():
+            if layer is not None and str(of_layer) != layer:
+                found.skipped[f"polygons on layer {of_layer}"] += len(polygons)
+            else:
+                found.outlines += [np.asarray(polygon, dtype=float) for polygon in polygons]
+    return found
+
+
+def read_svg(path: pathlib.Path) -> Drawing:
+    """Circles, and closed outlines with their curves."""
+    svgelements = library("svgelements", "python3-svgelements")
+    found = Drawing([], [], METRES_IN_PIXEL_OF_SVG, skipped=collections.Counter())
+    for element in svgelements.SVG.parse(str(path), reify=True).elements():
+        if not isinstance(element, svgelements.Shape) or element.values.get("visibility") == "hidden":
+            continue
+        for part in svgelements.Path(element).as_subpaths():
+            outline = svgelements.Path(part)
+            number = max(64, 16 * len(outline))
+            corners = np.array([(float(point.x), -float(point.y)) for point in (outline.point(at) for at in np.linspace(0, 1, number))])
+            if len(corners) < 3 or not np.allclose(corners[0], corners[-1], atol=1e-3 * float(np.ptp(corners, axis=0).max())):
+                found.skipped["open outline"] += 1
+            else:
+                found.outlines.append(corners[:-1])
+    return found
+
+
+def read_picture(path: pathlib.Path, posts: str) -> Drawing:
+    """Outlines of the dark or bright parts, between pixels; the unit is a pixel. Specks of a few pixels do not count."""
+    io, measure, filters, colour = (library(f"skimage.{name}", "python3-skimage") for name in ("io", "measure", "filters", "color"))
+    image = np.asarray(io.imread(path), dtype=float)
+    if image.ndim == 3:
+        image = colour.rgb2gray(image[..., :3] / max(image[..., :3].max(), 1)) if image.shape[2] >= 3 else image[..., 0]
+    if image.ndim != 2 or np.ptp(image) == 0:
+        raise UserError(f"cannot read {path} (a picture of one colour, or of several slices); give a mask in black and white")
+    threshold = filters.threshold_otsu(image)
+    level = (image[image <= threshold].mean() + image[image > threshold].mean()) / 2  # half-way, so that edges lie between pixels
+    sign = 1 if posts == "bright" else -1
+    high = image.shape[0]
+    found = Drawing([], [], None, frame=(0.0, 0.0, float(image.shape[1]), float(high)), skipped=collections.Counter())
+    fewest = 12  # corners of an outline: a speck of three pixels has so many
+    for contour in measure.find_contours(sign * image, sign * level, positive_orientation="high"):
+        outline = np.column_stack([contour[:, 1] + 0.5, high - contour[:, 0] - 0.5])
+        if len(outline) < fewest:
+            found.skipped["speck"] += 1
+        elif np.allclose(outline[0], outline[-1]) and area(outline) < 0:
+            found.skipped["hole"] += 1
+        else:
+            found.outlines.append(outline)
+    return found

@@ -1,0 +1,161 @@
+"""What a drawing of a device holds: round posts, other outlines, its frame, and the unit of its lengths."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+
+import numpy as np
+
+from ..tools.errors import UserError
+from ..tools.hints import Numbers
+
+METRES = {"nm": 1e-9, "um": 1e-6, "µm": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 25.4e-3}
+
+
+@dataclasses.dataclass
+class Drawing:
+    """As a reader finds it. Lengths are in its own unit; y points upwards."""
+
+    circles: list[tuple[float, float, float]]  # x, y, diameter
+    outlines: list[Numbers]  # corners (n, 2); the last one is joined to the first unless the border of a picture cuts it
+    metres: float | None  # in one unit; None if the drawing does not say
+    frame: tuple[float, float, float, float] | None = None  # left, bottom, right, top, if the drawing has edges of its own
+    skipped: dict[str, int] = dataclasses.field(default_factory=dict)  # kinds of objects that are no posts, with their numbers
+
+
+@dataclasses.dataclass
+class Device:
+    """Posts in droplet diameters; the flow goes along +x, and the frame begins at (0, 0)."""
+
+    circles: Numbers  # (n, 3): x, y, diameter
+    others: list[Numbers]  # outlines that are not round
+    length: float
+    width: float
+    has_frame: bool
+    droplet_metres: float
+
+    def overlaps(self) -> list[tuple[int, int]]:
+        """Pairs of posts that touch, which clogsweep refuses."""
+        return [(i, j) for i, j, gap in self._gaps() if gap <= 0]
+
+    def smallest_gap(self) -> float:
+        """Between two posts; infinite if there is one at most."""
+        return min((gap for _, _, gap in self._gaps()), default=np.inf)
+
+    def _gaps(self) -> list[tuple[int, int, float]]:
+        """Of each post, the nearest among those after it."""
+        found = []
+        for i, (x, y, diameter) in enumerate(self.circles[:-1]):
+            others = self.circles[i + 1:]
+            gaps = np.hypot(others[:, 0] - x, others[:, 1] - y) - (others[:, 2] + diameter) / 2
+            nearest = int(np.argmin(gaps))
+            found.append((i, i + 1 + nearest, float(gaps[nearest])))
+        return found
+
+
+def length_in_metres(text: str, option: str) -> float:
+    """Of words such as 200um. @throws UserError"""
+    found = re.fullmatch(r"([0-9.]+(?:e[+-]?[0-9]+)?)(nm|um|µm|mm|cm|m|in)", text)
+    try:
+        value = float(found[1]) * METRES[found[2]] if found else 0.0
+    except ValueError:
+        value = 0.0
+    if value <= 0:
+        raise UserError(f"invalid {option}: {text} (must be a length with its unit, nm, um, mm, cm, m or in) try 200um")
+    return value
+
+
+def area(outline: Numbers) -> float:
+    """Within a closed outline, positive if it is counter-clockwise."""
+    x, y = outline.T
+    return float(0.5 * (x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
+
+
+def along_edges(outline: Numbers, is_closed: bool) -> Numbers:
+    """Points along the edges, evenly: a square's corners alone lie on a circle."""
+    ends = np.vstack([outline, outline[:1]]) if is_closed else outline
+    ways = np.hypot(*np.diff(ends, axis=0).T)
+    places = np.concatenate([[0], np.cumsum(ways)])
+    wanted = np.linspace(0, places[-1], 200, endpoint=False)
+    return np.column_stack([np.interp(wanted, places, ends[:, axis]) for axis in (0, 1)])
+
+
+def fitted_circle(outline: Numbers, is_closed: bool, tolerance: float) -> tuple[float, float, float] | None:
+    """The circle nearest to an outline by least squares (Kasa's method): x, y, diameter. None if a point is farther from
+    it than this part of the radius."""
+    points = along_edges(outline, is_closed)
+    middle = points.mean(axis=0)
+    near = points - middle
+    size = np.abs(near).max()
+    if not size > 0:
+        return None
+    solution, *_ = np.linalg.lstsq(np.column_stack([near, np.full(len(near), size)]), (near**2).sum(axis=1), rcond=None)
+    centre = solution[:2] / 2
+    radius = float(np.sqrt(max(solution[2] * size + centre @ centre, 0)))
+    deviation = np.abs(np.hypot(*(near - centre).T) - radius).max()
+    if not radius > 0 or deviation > tolerance * radius:
+        return None
+    return float(middle[0] + centre[0]), float(middle[1] + centre[1]), 2 * radius
+
+
+def frame_among(outlines: list[Numbers], circles: list[tuple[float, float, float]]) -> int | None:
+    """Index of the outline that holds everything else: the edge of the device."""
+    if len(outlines) + len(circles) < 2:
+        return None
+    lows = np.array([outline.min(axis=0) for outline in outlines] or np.empty((0, 2)))
+    highs = np.array([outline.max(axis=0) for outline in outlines] or np.empty((0, 2)))
+    for index in range(len(outlines)):
+        holds_outlines = (lows[index] <= lows).all() and (highs[index] >= highs).all()
+        centres = np.array([circle[:2] for circle in circles] or np.empty((0, 2)))
+        if holds_outlines and (lows[index] <= centres).all() and (centres <= highs[index]).all():
+            return index
+    return None
+
+
+def understood(drawing: Drawing, metres: float, droplet: float, tolerance: float, turns: int) -> Device:
+    """@param metres  in a unit of the drawing; @param droplet  its diameter [m]; @param turns  by 90 degrees counter-clockwise,
+    until the flow goes along +x. @throws UserError  if nothing is there"""
+    outlines = list(drawing.outlines)
+    frame: tuple[float, ...] | None = drawing.frame
+    if frame is None and (index := frame_among(outlines, drawing.circles)) is not None:
+        edge = outlines.pop(index)
+        frame = (*edge.min(axis=0), *edge.max(axis=0))
+    circles, others = list(drawing.circles), []
+    for outline in outlines:
+        is_closed = drawing.frame is None or bool(np.allclose(outline[0], outline[-1]))
+        circle = fitted_circle(outline, is_closed, tolerance)
+        circles.append(circle) if circle else others.append(outline)
+    if not circles and not others:
+        raise UserError("the drawing holds no posts; choose another --layer, or close the outlines")
+    return placed(np.array(circles or np.empty((0, 3))), others, frame, metres / droplet, droplet, turns)
+
+
+def placed(circles: Numbers, others: list[Numbers], frame: tuple[float, ...] | None, scale: float, droplet: float, turns: int) -> Device:
+    """Turned, moved to (0, 0), and in droplet diameters."""
+    turn = np.linalg.matrix_power(np.array([[0, -1], [1, 0]]), turns % 4)
+    centres = circles[:, :2] @ turn.T
+    others = [outline @ turn.T for outline in others]
+    if frame is not None:
+        edges = np.array(frame).reshape(2, 2) @ turn.T
+    else:
+        radii = circles[:, 2:] / 2
+        edges = np.vstack([centres - radii, centres + radii, *others])
+    low, high = edges.min(axis=0), edges.max(axis=0)
+    length, width = (high - low) * scale
+    return Device(circles=np.column_stack([(centres - low) * scale, circles[:, 2] * scale]), others=[(outline - low) * scale for outline in others],
+                  length=float(length), width=float(width), has_frame=frame is not None, droplet_metres=droplet)
+
+
+def as_circles(device: Device) -> Device:
+    """With a circle of the same area in place of each outline that is not round."""
+    made = [(*outline.mean(axis=0), 2 * np.sqrt(abs(area(outline)) / np.pi)) for outline in device.others]
+    return dataclasses.replace(device, circles=np.vstack([device.circles, np.array(made or np.empty((0, 3)))]), others=[])
+
+
+def csv_of(device: Device, source: str) -> str:
+    """A file of circles for clogsweep, in micrometres. Rounded to a nanometre."""
+    unit = device.droplet_metres / METRES["um"]
+    lines = [f"# circles of {source}", f"# units=um droplet={unit:.10g}um", f"# the device is {device.length * unit:.10g} long and {device.width * unit:.10g} wide", "x,y,diameter"]
+    lines += [",".join(f"{round(value * unit, 3):.12g}" for value in circle) for circle in device.circles]
+    return "\n".join(lines) + "\n"

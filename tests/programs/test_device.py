@@ -1,0 +1,186 @@
+"""Devices of a user's own: files of circles in any form, walls, entrance, exit; drawings of them, and pictures."""
+
+import json
+import unittest
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+import stored_rows
+from drawing import Analysis
+from support import BIN, table
+
+from clogsweep.drawing import device as drawn
+
+ROW = [(4 + 3 * i, 0.9 + 1.7 * j + 0.6 * (i % 2)) for i in range(4) for j in range(3)]  # posts, in droplet diameters
+KEYS = ["box=6", "length=18", "side-walls=on", "release=entrance", "entrance=1", "exit=16", "vertices=64", "line-tension=0.05",
+        "max-time=2000", "seeds=1..3"]
+SVG = """<svg xmlns="http://www.w3.org/2000/svg" width="3.6mm" height="1.2mm" viewBox="0 0 3600 1200">
+<rect x="0" y="0" width="3600" height="1200" fill="none" stroke="black"/>{}</svg>"""
+
+
+def csv(scale=1.0):
+    return "".join(f"{scale * x:.10g},{scale * y:.10g},{scale * 0.5:.10g}\n" for x, y in ROW)
+
+
+class Devices(Analysis):
+    def rows_of(self, text, name="posts.csv"):
+        self.write(name, text)
+        self.succeed("clogsweep", f"obstacles={name}", *KEYS[:-3], "line-tension=1", "max-time=20", "seeds=1..2", "--output", f"{name}.h5")
+        return table(self.folder / f"{name}.h5")
+
+    def test_columns_in_any_order_separator_and_unit_are_the_same_device(self):
+        expected = self.rows_of("x,y,diameter\n" + csv())
+        others = {
+            "blanks.txt": "y  r  x\n" + "".join(f"{y:.10g}\t  0.25  {x:.10g}\n".replace("\t", " ") for x, y in ROW),
+            "excel.csv": "\ufeffid;X;Y;Diameter\n" + "".join(f"{i};{x:.10g};{y:.10g};0,5\n".replace(".", ",") for i, (x, y) in enumerate(ROW)),
+            "um.csv": "# units=um droplet=0.2mm\nx,y,diameter\n" + csv(200),
+            "odd.csv": "# units=um droplet=187um\n" + csv(187),
+        }
+        for name, text in others.items():
+            with self.subTest(name):
+                rows = self.rows_of(text, name)
+                for column in ("obstacles", "distance", "lateral_displacement", "release_x", "release_y", "steps"):
+                    self.assertEqual(rows[column].tolist(), expected[column].tolist(), column)
+
+    def test_files_that_say_too_little_are_refused(self):
+        for text, words in [("a,b\n1,2\n", ["columns have to be x, y"]), ("x,y,width\n1,2,3\n", ["columns have to be", "width"]),
+                            ("x,y,d,r\n1,2,1,1\n", ["columns have to be"]), ("x,x,y\n1,2,1\n", ["two columns 'x'"]),
+                            ("# units=um\nx,y\n1,2\n", ["line 1", "droplet=200um"]), ("# units=foot droplet=2foot\n1,2\n", ["'foot' is no unit"]),
+                            ("# units=um droplet=-2um\n1,2\n", ["droplet must be"]), ("x,y,diameter\n1\n", ["line 2"])]:
+            with self.subTest(text):
+                self.write("bad.csv", text)
+                self.refuse("clogsweep", "obstacles=bad.csv", "box=6", "--output", "x.h5", words=["bad.csv", *words])
+
+    def test_droplets_enter_pass_and_leave_between_walls(self):
+        self.write("posts.csv", "x,y,diameter\n" + csv())
+        self.succeed("clogsweep", "obstacles=posts.csv", *KEYS, "--output", "s.h5")
+        rows = table(self.folder / "s.h5")
+        self.assertEqual(set(rows["status"]), {"passed"})
+        np.testing.assert_allclose(rows["release_x"], 1, atol=0.01)
+        ends = rows["release_x"] + rows["distance"]
+        self.assertTrue(((ends >= 16) & (ends < 16.2)).all(), ends)
+        across = np.concatenate([rows["release_y"], rows["release_y"] + rows["lateral_displacement"]])
+        self.assertTrue(((across > 0.3) & (across < 5.7)).all(), across)
+        group, = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
+        self.assertEqual((group["runs"], group["clogs"]), (3, 0))
+        self.succeed("clogsweep", "verify", "s.h5")
+        self.succeed("clogsweep", "replay", "s.h5", 1)
+
+        self.draw("device", "s.h5", "--ways", 1, "--programs", BIN)
+        self.assert_picture("s-device")
+        place = drawn.the_place(self.folder / "s.h5")
+        self.assertEqual((place.name, place.length, place.width, place.has_walls, len(place.circles)), ("posts.csv", 18, 6, True, 12))
+        self.draw("report", "s.h5", "--examples", 0, "--programs", BIN)
+        self.assertIn("posts.csv", (self.folder / "s-report.html").read_text())
+
+    def test_what_is_no_device_is_refused(self):
+        self.refuse("clogsweep", "length=20", "--output", "x.h5", words=["length=20", "obstacles=FILE.csv"])
+        self.write("posts.csv", csv())
+        for keys, words in [(["length=18", "boxes=2"], ["boxes=2", "length"]), (["length=18", "exit=20", "release=entrance"], ["exit=20"]),
+                            (["length=18", "entrance=3"], ["entrance=3", "release=entrance"]), (["length=9"], ["outside the array", "length=9"])]:
+            self.refuse("clogsweep", "obstacles=posts.csv", "box=6", *keys, "--output", "x.h5", words=words)
+
+
+class Drawings(Analysis):
+    def circles(self, drawing, *options):
+        done = self.draw("circles", drawing, "--droplet", "200um", "--output", "posts", *options)
+        self.assert_picture("posts")
+        rows = np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4) / 200
+        self.assertIn("box=6 length=18", done.stdout)
+        return rows[np.lexsort((rows[:, 1], rows[:, 0]))]
+
+    def assert_posts(self, rows, tolerance):
+        expected = np.array(sorted((x, y, 0.5) for x, y in ROW))
+        np.testing.assert_allclose(rows, expected, atol=tolerance)
+
+    def test_dxf(self):
+        import ezdxf
+
+        drawing = ezdxf.new("R2010")
+        drawing.header["$INSUNITS"] = 13
+        space = drawing.modelspace()
+        space.add_lwpolyline([(100, 0), (3700, 0), (3700, 1200), (100, 1200)], close=True)
+        block = drawing.blocks.new("POST")
+        block.add_circle((0, 0), 50)
+        for x, y in ROW:
+            space.add_blockref("POST", (100 + 200 * x, 200 * y))
+        space.add_text("not a post")
+        drawing.saveas(self.folder / "device.dxf")
+        self.assert_posts(self.circles("device.dxf"), 1e-6)
+        # What clogsweep makes of it is what the command says.
+        self.succeed("clogsweep", "obstacles=posts.csv", *KEYS[:-2], "max-time=5", "seeds=1", "--output", "s.h5")
+        self.assertEqual(len(table(self.folder / "s.h5")), 1)
+
+    def test_gdsii(self):
+        import gdspy
+
+        cell, post = gdspy.Cell("DEVICE", exclude_from_current=True), gdspy.Cell("POST", exclude_from_current=True)
+        post.add(gdspy.Round((0, 0), 50, number_of_points=64))
+        for x, y in ROW:
+            cell.add(gdspy.CellReference(post, (200 * x, 200 * y)))
+        cell.add(gdspy.Rectangle((0, 0), (3600, 1200), layer=5))
+        library = gdspy.GdsLibrary()
+        library.add([cell, post])
+        library.write_gds(str(self.folder / "device.gds"))
+        self.assert_posts(self.circles("device.gds"), 2e-3)
+
+    def test_svg(self):
+        self.write("device.svg", SVG.format("".join(f'<circle cx="{200 * x}" cy="{1200 - 200 * y}" r="50"/>' for x, y in ROW)))
+        self.assert_posts(self.circles("device.svg"), 2e-3)
+
+    def test_a_picture(self):
+        image = Image.new("L", (1800, 600), 230)
+        pen = ImageDraw.Draw(image)
+        for x, y in ROW:
+            pen.ellipse([100 * (x - 0.25), 600 - 100 * (y + 0.25), 100 * (x + 0.25), 600 - 100 * (y - 0.25)], fill=40)
+        image.save(self.folder / "mask.png")
+        self.refuse_analysis("circles", "mask.png", "--droplet", "200um", "--output", "posts", words=["--pixel"])
+        self.assert_posts(self.circles("mask.png", "--pixel", "2um"), 0.02)
+
+    def test_posts_that_are_not_round_are_shown_and_refused(self):
+        triangle = '<path d="M2000 500 L2100 500 L2050 600 Z"/>'
+        self.write("device.svg", SVG.format(triangle + '<circle cx="800" cy="300" r="50"/>'))
+        self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts", words=["1 post of 2 not round", "--as-circles"])
+        self.assertFalse((self.folder / "posts.csv").exists())
+        self.assert_picture("posts")
+        rows = self.circles("device.svg", "--as-circles")
+        np.testing.assert_allclose(rows[:, 2].min(), 2 * np.sqrt(5000 / np.pi) / 200, rtol=0.02)
+
+    def test_what_is_no_drawing_is_refused(self):
+        self.write("device.txt", "nothing")
+        self.write("broken.gds", "nothing")
+        self.refuse_analysis("circles", "device.txt", "--droplet", "200um", "--output", "posts", words=["device.txt", ".dxf"])
+        self.refuse_analysis("circles", "broken.gds", "--droplet", "200um", "--output", "posts", words=["cannot read broken.gds"])
+        self.refuse_analysis("circles", "none.gds", "--droplet", "200um", "--output", "posts", words=["no such file"])
+        self.refuse_analysis("circles", "none.gds", "--droplet", "200", "--output", "posts", words=["--droplet", "200um"])
+        self.write("posts.csv", "my own")
+        self.write("device.svg", SVG.format('<circle cx="800" cy="300" r="50"/>'))
+        self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts", words=["will not overwrite"])
+
+
+NEW = ["length", "side_walls", "entrance", "entrance_from", "entrance_to", "exit", "release_x", "release_y"]
+
+
+class Stored(Analysis):
+    def test_files_of_format_version_8_can_be_read_but_do_not_say_where_droplets_were_released(self):
+        keys = ["obstacles=posts.csv", "box=6", "boxes=3", "release=anywhere", "seeds=1..2", "max-time=5", "vertices=64"]
+        self.write("posts.csv", csv())
+        self.succeed("clogsweep", *keys, "--output", "s.h5")
+        before = table(self.folder / "s.h5")
+        stored_rows.make_older(self.folder / "s.h5", "8", NEW)
+        self.refuse_analysis("device", "s.h5", "--programs", BIN, words=["s.h5 does not say where", "older version"])
+        self.succeed("clogsweep", "verify", "s.h5")
+        self.assertIn("posts.csv", self.succeed("clogfit", "s.h5").stdout)
+        self.succeed("clogsweep", *keys[:-3], "seeds=1..3", *keys[-2:], "--output", "s.h5")
+        rows = table(self.folder / "s.h5")
+        self.assertEqual(rows["distance"].tolist()[:2], before["distance"].tolist(), "known rows are kept")
+        self.assertEqual(np.isfinite(rows["release_x"]).tolist(), [False, False, True])
+
+    def test_other_arrays_are_no_device(self):
+        self.succeed("clogsweep", "obstacle-gap=0.5", "box=20", "max-time=1", "vertices=64", "seeds=1", "--output", "random.h5")
+        self.refuse_analysis("device", "random.h5", "--programs", BIN, words=["no circles of your own"])
+
+
+if __name__ == "__main__":
+    unittest.main()
