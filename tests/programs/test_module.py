@@ -69,6 +69,27 @@ class Module(Analysis):
         self.assertEqual([re.search(r"\(.* runs", cell)[0] for cell in cells], ["(mean of 3 of 4 runs", "(mean of 2 of 4 runs"])
         self.assertTrue(cells[1].endswith(": -)"))
 
+    def test_a_notebook_shows_what_varies_and_how_far_a_sweep_is(self):
+        sweep = self.sweep()
+        fit = sweep.fit()
+        self.assertEqual(fit.summary.columns.tolist()[:3], ["line_tension", "runs", "clogs"])
+        self.assertLess(len(fit.summary.columns), 20)
+        shown = fit._repr_html_()
+        for words in ("<th>clogging_length</th>", f"all {len(fit.groups.columns)} columns are in"):
+            self.assertIn(words, shown)
+        self.assertNotIn("contact_range", shown)
+        self.assertIn("<td>8</td>", sweep.status()._repr_html_())
+
+    def test_lattices_are_drawn_by_how_far_droplets_migrate(self):
+        angles = ["obstacle-layout=lattice", "obstacle-gap=0.9", "lattice-angle=0,14", "line-tension=5", "terminal-speed=0.1"]
+        self.succeed("clogsweep", "vertices=64", "box=20", "max-time=60", *angles, "seeds=1", "--output", "s.h5")
+        fit = clogsweep.open(self.folder / "s.h5", BIN).fit()
+        axes, = fit.curve().figure.axes
+        self.assertEqual(axes.get_ylabel(), "lateral displacement per distance")
+        bars, = axes.containers
+        self.assertEqual(bars.lines[0].get_ydata().tolist(), fit.groups.lateral_slope.tolist())
+        self.assertEqual(bars.lines[0].get_xdata().tolist(), fit.groups.lattice_angle.tolist())
+
     def test_options_of_a_fit_reach_clogfit(self):
         options = {"dwell": 20.0, "from_distance": 0.5, "confidence": 0.5}
         words = [word for name, value in options.items() for word in (f"--{name.replace('_', '-')}", value)]
