@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -25,6 +26,7 @@
 #include "clog/sweep/run_job.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "trial_process.hpp"
 
 namespace clog::campaign {
 namespace {
@@ -155,32 +157,51 @@ std::vector<std::int64_t> tasks_to_try(const sweep::Plan& plan) {
   return tasks;
 }
 
-/// Short pieces of real runs, ten seconds in all.
-Sample tried_sample(const sweep::Plan& plan) {
-  constexpr double all_seconds = 10;
+constexpr double seconds_to_try = 10;
+
+/// Short pieces of real runs, told as they end: of each the row when it had just begun, and the last.
+void try_tasks(const sweep::Plan& plan, const std::vector<std::int64_t>& tasks, const Tell& tell) {
   constexpr double fewest_seconds = 0.1;  // for a run whose array took all of its share
   const Clock::time_point begin = Clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
   const auto arrays = std::make_shared<sweep::ObstacleArrays>();
-  Sample sample;
-  const std::vector<std::int64_t> tasks = tasks_to_try(plan);
-  for (std::size_t i = 0; i < tasks.size() && elapsed() < all_seconds && !console::stop_signalled(); ++i) {
-    const double share = (all_seconds - elapsed()) / static_cast<double>(tasks.size() - i);
+  std::vector<std::byte> record(2 * sweep::packed_size());
+  for (std::size_t i = 0; i < tasks.size() && elapsed() < seconds_to_try && !console::stop_signalled(); ++i) {
+    const double share = (seconds_to_try - elapsed()) / static_cast<double>(tasks.size() - i);
     const double end = elapsed() + share;
     sweep::RunJob job(plan.task(tasks[i]), tasks[i], {}, arrays);
     bool is_over = job.advance();
-    const sweep::RunRow first = is_over ? sweep::RunRow() : job.row();
+    const std::span<std::byte> whole = record;
+    sweep::pack(is_over ? sweep::RunRow() : job.row(), whole.first(sweep::packed_size()));
     const double least_end = elapsed() + fewest_seconds;
     while (!is_over && elapsed() < std::max(end, least_end) && !console::stop_signalled())
       is_over = job.advance();
-    const sweep::RunRow row = job.row();
+    sweep::pack(job.row(), whole.last(sweep::packed_size()));
+    tell(record);
+  }
+}
+
+Sample tried_sample(const sweep::Plan& plan) {
+  constexpr double grace = 0.5;  // for the last run to tell
+  const Clock::time_point begin = Clock::now();
+  const std::vector<std::int64_t> tasks = tasks_to_try(plan);
+  const std::vector<Record> told = told_within(seconds_to_try + grace, 2 * sweep::packed_size(),
+                                               [&](const Tell& tell) { try_tasks(plan, tasks, tell); });
+  Sample sample;
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    const std::span<const std::byte> whole = told[i];
+    const sweep::RunRow first = sweep::unpack(whole.first(sweep::packed_size()));
+    const sweep::RunRow row = sweep::unpack(whole.last(sweep::packed_size()));
     sample.count(row);
     if (row.steps > 0)
       sample.costs.push_back(cost_of(row, first, plan.task(tasks[i]), tasks[i] % plan.num_groups()));
     else if (sample.failure.empty())
       sample.failure = row.message;
   }
-  sample.source = fmt::format("tried for {:.2g} s in all", elapsed());
+  if (sample.failure.empty())
+    sample.failure = fmt::format("its release takes longer than {:.2g} s", seconds_to_try);
+  sample.source =
+      fmt::format("tried for {:.2g} s in all", std::chrono::duration<double>(Clock::now() - begin).count());
   return sample;
 }
 
