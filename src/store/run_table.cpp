@@ -144,8 +144,8 @@ void publish_sweep(const Place& place, std::span<const RunRow> rows, const Prove
 namespace {
 
 /// Columns were added in 3, those of the clog's mechanism and of the speed's error, and in 4, the ranges of
-/// contact and the near-wall drag's cutoff; checksums in 5; in 6 those of channels, walls and circles of
-/// one's own.
+/// contact and the near-wall drag's cutoff; checksums in 5; in 6 those of channels, walls and
+/// user-supplied circles.
 constexpr std::array<std::string_view, 7> readable_versions = {"2", "3", "4", "5", "6", "7", format_version};
 
 bool has_check_sums(std::string_view version) {
@@ -193,7 +193,7 @@ std::string version_of(hid_t file, const std::string& path) {
 
 [[noreturn]] void refuse_table(const std::string& path, const std::string& what) {
   throw Error(
-      fmt::format("cannot read {} (damaged: {}); put a copy in its place, or begin anew", path, what));
+      fmt::format("cannot read {} (damaged: {}); restore it from a copy, or start a new file", path, what));
 }
 
 /// How long a dataset is; a size that cannot be is not believed.
@@ -353,8 +353,8 @@ SweepFile read_sweep(const std::string& path) {
   if (found.damage.empty()) return std::move(found.whole);
   const std::size_t num_others = found.damage.size() - 1;
   throw Error(fmt::format(
-      "cannot trust {} (damaged: {}{}); `clogsweep verify` names all, `clogsweep salvage` keeps what is "
-      "whole",
+      "cannot trust {} (damaged: {}{}); `clogsweep verify` names all, `clogsweep salvage` copies "
+      "undamaged rows",
       path, found.damage.front(), num_others > 0 ? fmt::format(", and {} more", num_others) : ""));
 }
 

@@ -110,7 +110,7 @@ class Failing(ProgramTest):
             done = self.run_program("clogsweep", *BLOCKED, "seeds=64", "--output", "f.h5")
             self.assertEqual(done.returncode, 1, done.stderr)
             self.assertIn(told, done.stderr)
-            self.assertIn("clogsweep: every run has failed, the first one: cannot release the droplet", done.stderr.splitlines()[-1])
+            self.assertIn("clogsweep: every run has failed; the first one: cannot release the droplet", done.stderr.splitlines()[-1])
         self.succeed("clogsweep", *BLOCKED, "seeds=51,64", "--output", "f.h5")
 
     def test_quiet_tells_it_too(self):

@@ -65,7 +65,7 @@ class Names(SweepTest):
                 for command in ("verify", "status"):
                     self.succeed("clogsweep", command, "s.h5")
                 self.succeed("clogfit", "s.h5")
-                self.assertEqual(self.sweep_among(name).returncode, 0, "the same command goes on")
+                self.assertEqual(self.sweep_among(name).returncode, 0, "the same command resumes the sweep")
                 (self.folder / "s.h5").unlink()
 
     def test_a_config_that_was_printed_names_the_same_file(self):
@@ -210,7 +210,7 @@ class LinksOfOthers(SweepTest):
             (folder / name).symlink_to(self.folder / "elsewhere")
             os.lchown(folder / name, 12, 34)
         for output in ("open/s.h5", "open/t.h5"):
-            self.refuse("clogsweep", *FINISHED, "--output", output, words=["cannot follow the link", "somebody else made it"])
+            self.refuse("clogsweep", *FINISHED, "--output", output, words=["cannot follow the link", "it belongs to another user"])
         self.assertFalse((self.folder / "elsewhere").exists())
 
 

@@ -1,4 +1,4 @@
-"""Sweeps of channels, flat walls and circles of one's own: the same keys as for one run, one row for each."""
+"""Sweeps of channels, flat walls and user-supplied circles: the same keys as for one run, one row for each."""
 
 import json
 import unittest

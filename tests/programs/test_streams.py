@@ -35,7 +35,7 @@ class Streams(SweepTest):
         self.write("speeds.csv", SPEEDS)
 
     def check_complete(self):
-        self.assertIn("3 rows of 3 runs, all whole", self.succeed("clogsweep", "verify", "s.h5").stdout)
+        self.assertIn("3 rows of 3 runs, all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
         self.assertFalse((self.folder / "s.h5.journal").exists())
         (self.folder / "s.h5").unlink()
 
