@@ -1,4 +1,4 @@
-"""The notebook of the gallery, run once more: its cells end well and say what stands in it.
+"""The notebook of the gallery, run again: its cells succeed and print the stored outputs.
 
 Numbers may differ as they do between compilers: docs/notes/2026-11-23-compilers.md.
 """

@@ -55,7 +55,7 @@ class Fit:
         return pandas.DataFrame(flat)
 
     def survival(self, group: int) -> pandas.DataFrame:
-        """P(r) of a group, by its index in `groups`: the probability of not having clogged on a way r [sigma].
+        """P(r) of a group, by its index in `groups`: the probability of travelling farther than r without a clog [sigma].
         @throws UserError  if there is no such group"""
         import pandas
 
@@ -65,14 +65,14 @@ class Fit:
         return pandas.DataFrame(self.told["groups"][group]["survival"])
 
     def curve(self) -> Picture:
-        """Clogging lengths over what the sweep varies. @throws UserError  if there are none"""
+        """Clogging lengths against the parameter that the sweep varies. @throws UserError  if there are none"""
         from .. import style  # slow to load, as all that draws
         from ..drawing import lengths
 
         return style.Picture(style.figure_of(lengths.draw_on, self.known.with_lengths()), self.source)
 
     def speeds(self) -> Picture:
-        """Mean speeds over the speed of a free droplet, over what the sweep varies. @throws UserError  if there are none"""
+        """Mean speeds divided by the terminal speed, against the parameter that the sweep varies. @throws UserError  if there are none"""
         from .. import style
         from ..drawing import lengths
 
