@@ -117,7 +117,7 @@ class Sweep(ProgramTest):
         self.assertLess(float(re.search("tried for ([^ ]+) s", lines[-1])[1]), 1.05 * elapsed)  # of two figures
         self.assertEqual(self.snapshot(), {})
 
-    def test_a_dry_run_expects_what_the_file_s_runs_took(self):
+    def test_a_dry_run_estimates_from_stored_runs(self):
         sweep = [*QUICK, "line-tension=0.5,1", "--output", "s.h5"]
         self.succeed("clogsweep", *sweep, "seeds=1..3")
         before = self.snapshot()
@@ -132,7 +132,7 @@ class Sweep(ProgramTest):
         told = self.succeed("clogsweep", *sweep, "seeds=1..3", "--dry-run").stdout.splitlines()[-1]
         self.assertEqual(told, f"# s.h5 has all 6 tasks, which took {hours:.2g} core-hours; nothing is left to do")
 
-    def test_a_dry_run_expects_of_what_is_left_what_its_own_parameter_set_takes(self):
+    def test_a_dry_run_estimates_remaining_runs_from_their_own_parameter_set(self):
         sweep = [*QUICK, "--output", "s.h5"]
         self.succeed("clogsweep", *sweep, "line-tension=0.5", "seeds=1..6")
         self.succeed("clogsweep", *sweep, "line-tension=1", "seeds=1..3")
@@ -303,7 +303,7 @@ class Isolated(ProgramTest):
     def wait_for_end_of(self, processes):
         self.wait_for(lambda: not any(pathlib.Path(f"/proc/{pid}").exists() for pid in processes))
 
-    def test_rows_are_the_same_without(self):
+    def test_rows_are_the_same_without_isolation(self):
         sweep = [*QUICK, "line-tension=0.3,2", "obstacle-gap=0.2,0.6", "seeds=1..4", "--output"]
         self.succeed("clogsweep", *sweep, "yes.h5", "--isolate=yes", ranks=2)
         self.succeed("clogsweep", *sweep, "no.h5", "--isolate=no", ranks=2)

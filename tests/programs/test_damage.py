@@ -109,7 +109,7 @@ class Damage(ProgramTest):
         self.succeed("clogsweep", "salvage", "s.h5", "--output", "whole.h5")
         self.refuse("clogsweep", *[word.replace("=60", "=70") for word in SETTINGS[:-1]], "whole.h5", words=["other settings: max-time=70 (file: 60)"])
 
-    def test_copies_of_other_programs_are_read_with_a_word(self):
+    def test_copies_by_other_programs_are_read_with_a_warning(self):
         with h5py.File(self.file) as file, h5py.File(self.folder / "copy.h5", "w") as copy:
             file.copy("runs", copy)
             file.copy("row_checksums", copy)
@@ -182,7 +182,7 @@ class Damage(ProgramTest):
                         clogsweep.open(copy)
         self.assertGreater(refused, 15)
 
-    def test_what_is_known_of_a_copy_is_of_that_copy(self):
+    def test_the_check_of_a_copy_is_not_reused_for_a_changed_copy(self):
         """The check was once remembered by name and time, so a changed copy with the same time passed as undamaged."""
         copy = self.copied()
         clogsweep.open(copy)
@@ -193,7 +193,7 @@ class Damage(ProgramTest):
         with self.assertRaises(clogsweep.Damaged):
             clogsweep.open(copy)
 
-    def test_python_reads_the_copy_of_a_run_only_if_nobody_can_tell_more(self):
+    def test_python_reads_unsealed_runs_only_of_formats_without_checksums(self):
         self.succeed("clogrun", "array", *QUICK, "seeds=1", "--output", "r.h5", "--polygon-interval", 5)
         run = self.folder / "r.h5"
         content = run.read_bytes()
@@ -262,7 +262,7 @@ class Damage(ProgramTest):
             self.assertIn("older format without checksums", self.succeed(name, *arguments).stderr)
         self.assertEqual(stored.is_sealed(self.file), True, "the sweep has written it anew")
 
-    def test_a_row_that_reaches_beyond_itself_is_not_read(self):
+    def test_a_column_offset_beyond_the_row_is_refused(self):
         """Foreign memory was shown as a value: the offset of a member in the table's description."""
         stored_rows.make_older(self.file, "4")
         content = bytearray(self.file.read_bytes())

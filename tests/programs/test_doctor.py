@@ -46,7 +46,7 @@ class Doctor(ProgramTest):
         other = {"Open MPI": "PMI_SIZE", "MPICH": "OMPI_COMM_WORLD_SIZE"}[MPI]
         self.assertIn(f"this mpirun belongs to another MPI: use that of {MPI}", self.fault(self.examine(**{other: "2"}), "mpirun has started 2"))
 
-    def test_a_rank_that_mpirun_has_started_alone_is_meant_so(self):
+    def test_a_single_rank_of_mpirun_in_a_larger_allocation_is_accepted(self):
         self.assertEqual(self.faults(self.examine(ranks=1, SLURM_NTASKS="8")), {})
 
     def test_root_in_a_container_is_told(self):

@@ -98,7 +98,7 @@ class Places(SweepTest):
     def num_over(self, name):
         return (~table(self.folder / name).status.isin(["running", "interrupted"])).sum()
 
-    def test_a_link_that_moves_takes_no_table_along(self):
+    def test_changing_a_link_does_not_redirect_the_table(self):
         self.succeed("clogsweep", *FINISHED, "--output", "run-1.h5")
         before = (self.folder / "run-1.h5").read_bytes()
         (self.folder / "latest.h5").symlink_to("run-2.h5")

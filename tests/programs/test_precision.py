@@ -64,7 +64,7 @@ class Precision(ProgramTest):
         self.succeed("clogsweep", *SWEEP, "--output", "whole.h5")
         self.check_equal("s.h5", "whole.h5")
 
-    def test_less_precision_finishes_what_more_had_begun(self):
+    def test_a_lower_precision_finishes_runs_of_a_higher_one(self):
         more = [*SWEEP[:-2], "--until-precision=30%", "--most-seeds=60"]
         hours = 0.00004
         while True:  # stopped when a later round has begun

@@ -75,7 +75,7 @@ class Resumed(SweepTest):
         self.check_equal("s.h5", "whole.h5")
         self.assertEqual({path.name for path in self.folder.iterdir()}, {"s.h5", "whole.h5"})
 
-    def test_a_signal_stops_and_the_same_command_goes_on(self):
+    def test_a_signal_stops_and_the_same_command_resumes(self):
         sweep = [word.replace("max-time=2e4", "max-time=6e4") for word in SLOW]  # three sessions of a second and more
         self.succeed("clogsweep", *sweep[:-1], "whole.h5", ranks=2)
         for signal_number in (signal.SIGUSR1, signal.SIGINT, signal.SIGTERM):
@@ -300,7 +300,7 @@ class Resumed(SweepTest):
         kept = before.merge(rows, on=["line_tension", "seed", "distance", "wall_seconds"])
         self.assertEqual(len(kept), 4)
 
-    def test_a_row_that_holds_what_cannot_be_is_named_and_computed_again(self):
+    def test_a_physically_impossible_row_is_named_and_recomputed(self):
         keys = [*QUICK, "line-tension=2", "seeds=1..4", "--output", "s.h5"]
         self.succeed("clogsweep", *keys)
         shutil.copy(self.folder / "s.h5", self.folder / "whole.h5")
