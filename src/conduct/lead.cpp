@@ -37,9 +37,9 @@ void announce(const std::string& output, const sweep::Plan& plan, const campaign
     console::say(fmt::format("{} has {} of {}{}", output, num_runs - num_left,
                              sweep::counted(num_runs, "run"),
                              num_left == 0 && !may_grow ? "; there is nothing left to do" : ""));
-  if (ledger.num_beyond() > 0)
-    console::say(fmt::format("{} also has {} outside this command's lists; they are kept", output,
-                             sweep::counted(ledger.num_beyond(), "run")));
+  if (const std::int64_t number = ledger.num_beyond(); number > 0)
+    console::say(fmt::format("{} also has {} outside this command's lists; {} kept", output,
+                             sweep::counted(number, "run"), number == 1 ? "it is" : "they are"));
   if (const std::int64_t number = ledger.num_faulty(); number > 0)
     console::say(fmt::format("{}: {} physically impossible; the sweep recomputes those in its lists", output,
                              number == 1 ? "1 row is" : fmt::format("{} rows are", number)));
