@@ -6,7 +6,7 @@ target_compile_features(clog_flags INTERFACE cxx_std_20)
 target_include_directories(clog_flags INTERFACE
   "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>" "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
 # Eigen would add up products of matrices in an order that fits the processor's caches. And it would align arrays by the
-# instructions that a file is compiled for, of which a program of one's own may have others than these libraries.
+# instructions that a file is compiled for, of which your own program may have others than these libraries.
 target_compile_definitions(clog_flags INTERFACE EIGEN_NO_CPUID EIGEN_MAX_ALIGN_BYTES=16)
 # The namespace has the name of a C library function (complex logarithm) that g++ treats as built in.
 target_compile_options(clog_flags INTERFACE -fno-builtin-clog)

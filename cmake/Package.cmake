@@ -24,5 +24,5 @@ set(CPACK_DEBIAN_LIBRARIES_PACKAGE_NAME libclogsweep-dev)
 set(CPACK_DEBIAN_LIBRARIES_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_LIBRARIES_PACKAGE_DEPENDS
   "libeigen3-dev, libboost-dev, nlohmann-json3-dev, libhwy-dev, libfmt-dev, libnlopt-cxx-dev, libhdf5-dev, zlib1g-dev")
-set(CPACK_COMPONENT_LIBRARIES_DESCRIPTION "Static libraries and headers for programs of one's own: find_package(clogsweep).")
+set(CPACK_COMPONENT_LIBRARIES_DESCRIPTION "Static libraries and headers for your own programs: find_package(clogsweep).")
 include(CPack)

@@ -5,7 +5,7 @@
 
 # run_sweep PROGRAM ARGS...: runs it by mpirun. A warning of the batch system (SIGUSR1, or SIGTERM) goes on to the ranks as SIGUSR1:
 # mpirun forwards that one and leaves them the time to write what they have. Returns the sweep's exit code, 75 when it
-# may not be complete and the same command goes on; was_cancelled is 1 if SIGTERM came, which is no warning but the end.
+# may not be complete and the same command resumes it; was_cancelled is 1 if SIGTERM came, which is no warning but the end.
 run_sweep() {
   local code was_warned=0 interrupted=0 sweep
   # shellcheck disable=SC2034  # the scripts that source this one read it

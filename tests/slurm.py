@@ -84,7 +84,7 @@ class Slurm(SweepTest):
         self.check_equal("s.h5", self.whole)
 
     def check_went_on(self):
-        """The last session did not begin anew."""
+        """The last session resumed, and did not restart."""
         self.assertRegex(self.log(), r"s\.h5 has [1-9]\d* of 24 runs\n")
 
     def resume(self, node):
@@ -103,7 +103,7 @@ class Slurm(SweepTest):
         slurm("scontrol", "update", f"jobid={job}", "timelimit=60")
         self.wait_for_state(job, "COMPLETED")
         restarts = int(described("job", job)["Restarts"])
-        self.assertEqual(self.log().count("stops, by a signal"), restarts, self.log())
+        self.assertEqual(self.log().count("stopping because of a signal"), restarts, self.log())
         self.assertEqual(self.log().count(f"not complete; job {job} queues again"), restarts, self.log())
         self.check_equal("s.h5", self.sweep_without_slurm(LONG, self.folder / "whole.h5"))
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # docs/paper/figures.sh [NAME...]: makes the paper's figures anew, in results/paper: clogging-length clogs mesh (all).
-# CLOG_BIN is the folder of the programs (build/laptop/bin). What was stopped goes on with the same command.
+# CLOG_BIN is the folder of the programs (build/laptop/bin). The same command resumes a stopped sweep.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 bin=${CLOG_BIN:-build/laptop/bin}

@@ -15,7 +15,7 @@ namespace {
 constexpr double confidence = 0.95;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// How unfinished runs may go on, by how the sample fared lately.
+/// Remaining time of unfinished runs, estimated from late ends of the sample.
 class Outlook {
  public:
   enum class Case { lowest, middle, highest };
@@ -49,7 +49,7 @@ class Outlook {
       case Case::middle:
         break;
     }
-    // Not known at all: every order of magnitude of what is left is as likely as any other.
+    // Not known at all: every order of magnitude of the remaining time is equally likely.
     if (may_never_end) return most / std::log(longest / run.seconds);
     return std::sqrt(if_even(mean(even_), most) * if_slowing(mean(slowing_), run.seconds, longest));
   }
@@ -74,7 +74,7 @@ class Outlook {
   }
 };
 
-/// Of what a sample costs over what it costs at most.
+/// Estimated cost of a sample divided by its upper bound.
 class Share {
  public:
   Share(std::span<const RunCost> sample, double seconds_per_work, const Outlook& outlook,
@@ -91,7 +91,7 @@ class Share {
     }
   }
   double value() const { return expected_sum_ / longest_sum_; }
-  /// What the sample's own runs still take.
+  /// Remaining time of the sample's own runs.
   double seconds_left() const { return left_; }
 
   /// Standard error over the value, as of a ratio of sums over a sample without replacement.
@@ -162,18 +162,18 @@ class Shares {
         highest_(runs, pace.seconds_per_work, outlook, Outlook::Case::highest),
         num_runs_(static_cast<std::int64_t>(runs.size())) {}
 
-  /// What the sample's own runs still take.
+  /// Remaining time of the sample's own runs.
   Expectation left() const {
     return {lowest_.seconds_left(), middle_.seconds_left(), highest_.seconds_left()};
   }
-  /// Of runs that take so long at most.
+  /// Estimate for runs that take `longest` at most.
   Expectation of(double longest, double relative_error) const {
     const double middle = longest * middle_.value();
     return {longest * lowest_.value(), middle, longest * highest_.value(),
             std::pow(middle * relative_error, 2)};
   }
   double error_of_all(std::int64_t population) const { return middle_.relative_error(population); }
-  /// The error of all is theirs, since those in the sample are known.
+  /// All of the error belongs to the runs outside the sample, since those in it are known.
   double error_of_others(std::int64_t number) const {
     const std::int64_t all = num_runs_ + number;
     return middle_.relative_error(all) * static_cast<double>(all) / static_cast<double>(number);

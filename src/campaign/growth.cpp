@@ -28,7 +28,7 @@ bool have_common_value(const std::vector<std::string>& some, const std::vector<s
 }
 
 void append(std::string& all, const std::string& key, const std::string& here, const std::string& there) {
-  all += fmt::format("{}{}={} (there {})", all.empty() ? "" : ", ", key, here, there);
+  all += fmt::format("{}{}={} (file: {})", all.empty() ? "" : ", ", key, here, there);
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ FixedValues::FixedValues(const sweep::Plan& plan, sweep::Settings settings) : se
 
 std::string FixedValues::differing_keys(const sweep::RunRow& row) const {
   if (row.model_version != model_version)
-    return fmt::format("model version {} (there {})", model_version, row.model_version);
+    return fmt::format("model version {} (file: {})", model_version, row.model_version);
   std::string all;
   for (const auto& [key, values] : keys_) {
     const ParameterValue value = key->parameter->get(row.parameters);

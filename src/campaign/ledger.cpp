@@ -34,8 +34,8 @@ std::string latest_lines(std::string text) {
   return text;
 }
 
-/// A run of which nothing is left but what it is and what it has cost so far.
-void begin_anew(sweep::RunRow& row) {
+/// Resets a run to its release: only its parameters and its cost so far stay.
+void restart(sweep::RunRow& row) {
   RunResult nothing;
   nothing.status = RunStatus::interrupted;
   sweep::record(nothing, row);
@@ -64,7 +64,7 @@ Ledger::Ledger(std::string path, const sweep::Plan& plan, const sweep::Settings&
   if (has_table) {
     const store::SweepFile file = read_table();
     caution_ = store::caution(path_, file);
-    take_over(file, settings);
+    adopt(file, settings);
     keep_circles(file);
     for (const sweep::RunRow& row : file.rows) {
       known[sweep::identity(row)] = {row, {}};
@@ -74,13 +74,14 @@ Ledger::Ledger(std::string path, const sweep::Plan& plan, const sweep::Settings&
   std::vector<Entry> entries = journal_.take_entries();
   if (!has_table && !entries.empty())
     throw Error(
-        "cannot begin " + path_ + " (its table is gone, but " + store::journal_path(path_) + " holds " +
-        sweep::counted(static_cast<std::int64_t>(entries.size()), "report") +
+        "cannot resume " + path_ + " (its table is gone, but " + store::journal_path(path_) + " holds " +
+        sweep::counted(static_cast<std::int64_t>(entries.size()), "record") +
         " of an earlier sweep, maybe of finished runs); put the table back, or give another --output");
   if (!entries.empty()) refuse_foreign(entries, known, settings);
   for (Entry& entry : entries) {
     std::string run = sweep::identity(entry.row);
-    // A run that has its result in the table is not over in the journal if its last record there was lost.
+    // If a run's last record was lost from the journal, the table has its result and the journal only an
+    // earlier state: keep the table's row.
     if (sweep::is_result(entry.row.status) || !with_results.contains(run))
       known[std::move(run)] = std::move(entry);
   }
@@ -92,17 +93,18 @@ Ledger::Ledger(std::string path, const sweep::Plan& plan, const sweep::Settings&
   last_publication_ = Clock::now();
 }
 
-/// The place holds the file by its folder, readers find it by its path: is that still the same?
+/// Reads the table, and checks that its path, which readers use, leads to the same file as the open folder,
+/// which the sweep uses.
 store::SweepFile Ledger::read_table() {
   stamp_ = place_.stamp();
   store::SweepFile file = store::read_sweep(path_);
   if (place_.stamp() != stamp_ || store::Place(path_).stamp() != stamp_)
-    throw Error("cannot continue with " + path_ +
-                " (it was replaced or moved while it was read); try again when nobody else does that");
+    throw Error("cannot resume " + path_ +
+                " (it was replaced or moved while it was read); try again when it stays in place");
   return file;
 }
 
-/// A salvaged file may have lost its config: then its rows tell.
+/// A salvaged file may lack its config: then compare its rows.
 std::string Ledger::settings_that_differ(const store::SweepFile& file,
                                          const sweep::Settings& settings) const {
   if (!attribute(file.provenance, "config").empty())
@@ -113,19 +115,19 @@ std::string Ledger::settings_that_differ(const store::SweepFile& file,
   return "";
 }
 
-/// A file that is there: do its runs belong to this sweep? Then what it says of its origin stays.
-void Ledger::take_over(const store::SweepFile& file, const sweep::Settings& settings) {
+/// Adopts an existing file if its runs belong to this sweep, and keeps the file's provenance.
+void Ledger::adopt(const store::SweepFile& file, const sweep::Settings& settings) {
   const std::string remedy = "; give another --output";
   for (const sweep::RunRow& row : file.rows)
     if (row.model_version != model_version)
       throw Error(
-          fmt::format("cannot continue with {} (its runs are of model version {}, this program's is {}: the "
+          fmt::format("cannot resume {} (its runs are of model version {}, this program's is {}: the "
                       "same parameters would give other results){}",
                       path_, row.model_version, model_version, remedy));
   const std::string differing = settings_that_differ(file, settings);
   if (!differing.empty())
-    throw Error(fmt::format("cannot continue with {} (it holds runs with other settings: {}){}", path_,
-                            differing, remedy));
+    throw Error(
+        fmt::format("cannot resume {} (it holds runs with other settings: {}){}", path_, differing, remedy));
   store::Provenance all = file.provenance;
   for (const char* name : {"config", "stopping_rule", "num_wanted"}) {
     std::erase_if(all, [&](const auto& attribute) { return attribute.first == name; });
@@ -146,7 +148,7 @@ void Ledger::refuse_foreign(const std::vector<Entry>& entries,
     const std::string differing = fixed.differing_keys(row);
     if (!differing.empty())
       throw Error(
-          fmt::format("cannot continue with {} (its journal {} is of another sweep: {}); move the journal to "
+          fmt::format("cannot resume {} (its journal {} is of another sweep: {}); move the journal to "
                       "the table that it belongs to, or give another --output",
                       path_, journal_.path(), differing));
   }
@@ -245,10 +247,10 @@ sweep::Start Ledger::start(std::int64_t task, int rank) {
 void Ledger::report(const sweep::Report& report) {
   const auto run = runs_.find(report.row.task);
   if (run == runs_.end() || sweep::identity(report.row) != sweep::identity(run->second.row))
-    throw Error(
-        fmt::format("cannot go on with {} (rank {} has computed another run than task {}: its parameters are "
-                    "not those of the task); what was done before is in the file, please report it",
-                    path_, report.row.rank, report.row.task));
+    throw Error(fmt::format(
+        "cannot continue with {} (rank {} returned a run with other parameters than those of task {}); "
+        "earlier results are in the file; please report this",
+        path_, report.row.rank, report.row.task));
   Entry& entry = run->second;
   entry = {report.row, report.snapshot};
   if (const auto past = past_.find(report.row.task); past != past_.end()) {
@@ -275,7 +277,7 @@ void Ledger::write_down(const Entry& entry) {
 
 void Ledger::withdraw_failure(std::int64_t task) {
   Entry& entry = runs_.at(task);
-  begin_anew(entry.row);  // what a bad rank made of it is no distance so far
+  restart(entry.row);  // a broken rank's result does not count as progress
   write_down(entry);
   is_published_ = false;
 }
@@ -292,18 +294,18 @@ void Ledger::tick() {
   publication_time_ = last_publication_ - begin;
 }
 
-/// As readers see it: a run that will be tried again has not failed yet, and where it failed is no distance
-/// so far.
+/// The row that readers see: a run that will be tried again is not failed yet, and its failed attempt has no
+/// distance.
 sweep::RunRow Ledger::published(const sweep::RunRow& row) const {
   if (row.status != RunStatus::failed || is_over(row)) return row;
   sweep::RunRow next = row;
-  begin_anew(next);
+  restart(next);
   ++next.attempt;
   return next;
 }
 
-/// If the journal was removed meanwhile, or the table replaced, all that is known goes to the disk once more,
-/// and the sweep ends. A table that was removed comes back.
+/// If the journal was removed or the table replaced, writes everything once more and ends the sweep. A
+/// removed table is written again.
 void Ledger::publish() {
   std::vector<sweep::RunRow> rows;
   rows.reserve(runs_.size() + other_runs_.size());
@@ -322,8 +324,8 @@ void Ledger::publish() {
   is_published_ = true;
   if (!has_journal)
     throw Error(
-        "cannot go on with " + journal_.path() +
-        " (it was removed while the sweep was running); nothing is lost, and the same command goes on");
+        "cannot continue with " + journal_.path() +
+        " (it was removed while the sweep was running); nothing is lost; the same command resumes the sweep");
 }
 
 /// What somebody else has put in the table's place is not overwritten: the table gets another name.
@@ -333,14 +335,14 @@ void Ledger::rescue(const std::vector<sweep::RunRow>& rows) {
   const auto rescued = [&] { return place_.beside(fmt::format(".rescued{}", number)); };
   while (rescued().exists()) ++number;
   store::publish_sweep(rescued(), rows, provenance_, circles_);
-  throw Error(
-      fmt::format("cannot go on with {} (somebody has replaced it or its journal while the sweep was "
-                  "running); all runs are in {}: move "
-                  "it to where it belongs, and the same command goes on",
-                  path_, rescued().path()));
+  throw Error(fmt::format(
+      "cannot continue with {} (somebody has replaced it or its journal while the sweep was "
+      "running); all runs are in {}: move it to where it belongs, then the same command resumes the sweep",
+      path_, rescued().path()));
 }
 
-/// To the snapshots that are still needed, if what is over is in the table; otherwise with all.
+/// Rewrites the journal with the records of unfinished runs only; with_all: with all records, if finished
+/// runs are not in the table yet.
 void Ledger::rewrite_journal(bool with_all) {
   std::vector<const Entry*> needed;
   for (const auto& [task, entry] : runs_)

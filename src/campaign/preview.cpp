@@ -69,13 +69,13 @@ void print_task(const sweep::Plan& plan, std::int64_t task,
 double work_per_step(const RunParameters& run) { return model_of(run).num_points(run); }
 double longest_work(const RunParameters& run) { return run.max_time / *run.time_step * work_per_step(run); }
 
-/// Runs of a sweep that say what it costs.
+/// Sample of a sweep's runs from which its cost is estimated.
 struct Sample {
   std::vector<RunCost> costs;
   std::string source;
   std::string failure;  ///< of the first that could not begin; these are not among the costs
   std::int64_t num_clogged = 0;
-  std::int64_t num_short = 0;  ///< of those, within one obstacle spacing of their release
+  std::int64_t num_short = 0;  ///< clogged runs that ended within one obstacle spacing of their release
   double spacing = 0;          ///< of the obstacles of such a run [sigma]
 
   void count(const sweep::RunRow& row) {
@@ -87,7 +87,7 @@ struct Sample {
   }
 };
 
-/// Of the last row of a run. @param first  of the same run, when it had just begun
+/// Cost of a run up to `row`. @param first  row of the same run when it had just started
 RunCost cost_of(const sweep::RunRow& row, const sweep::RunRow& first, const RunParameters& run,
                 std::int64_t parameter_set) {
   return {.parameter_set = parameter_set,
@@ -100,18 +100,18 @@ RunCost cost_of(const sweep::RunRow& row, const sweep::RunRow& first, const RunP
 
 constexpr std::size_t fewest_stored_runs = 5;
 
-/// What the sweep's own file has of its runs; nothing if there is none.
+/// The runs in the sweep's own file; empty if there is no file.
 struct Stored {
   Sample sample;
-  std::vector<WaitingRuns> waiting;  ///< of each parameter set what is not in the sample
-  std::int64_t num_done = 0;         ///< tasks that are not to be done again
+  std::vector<WaitingRuns> waiting;  ///< runs of each parameter set that are not in the sample
+  std::int64_t num_done = 0;         ///< tasks that need not run again
   double seconds = 0;                ///< that its tasks have taken so far
 
   bool knows_enough() const { return sample.costs.size() >= fewest_stored_runs; }
 };
 Stored stored_runs(const sweep::Plan& plan, const std::string& path) {
   Stored stored;
-  stored.sample.source = "that " + path + " holds";
+  stored.sample.source = "in " + path;
   if (path.empty() || !std::filesystem::exists(path)) return stored;
   std::unordered_map<std::string, sweep::RunRow> rows;
   for (const sweep::RunRow& row : read_with_caution(path).rows)
@@ -213,7 +213,7 @@ SweepCost tried_cost(const sweep::Plan& plan, const Sample& sample) {
   return sweep_cost(sample.costs, all_work, plan.size());
 }
 
-/// With what has been spent before, or without it.
+/// Adds time that was spent before, or subtracts it.
 SweepCost plus(SweepCost cost, double seconds) {
   for (double* part : {&cost.bound, &cost.expected, &cost.lower, &cost.upper})
     *part = std::max(0.0, *part + seconds);
@@ -230,7 +230,7 @@ void print_expected(const sweep::Plan& plan, const Sample& sample, const SweepCo
       std::count_if(sample.costs.begin(), sample.costs.end(), [](const RunCost& run) { return run.is_over; });
   const auto num_runs = static_cast<std::int64_t>(sample.costs.size());
   fmt::print(std::cout,
-             "# expected {:.2g} core-hours (95 %: {:.2g} to {:.2g}), from {} {}, {} of them over\n",
+             "# expected {:.2g} core-hours (95 %: {:.2g} to {:.2g}), from {} {}, {} of them ended\n",
              cost.expected / hour, cost.lower / hour, cost.upper / hour, sweep::counted(num_runs, "run"),
              sample.source, num_over);
 }
@@ -245,7 +245,7 @@ void print_left(const sweep::Plan& plan, const std::string& output, const Stored
              plan.size() - stored.num_done, left.expected / hour, left.lower / hour, left.upper / hour);
 }
 
-/// Clogging lengths below an obstacle spacing would be doubted (`v`): said before the runs, not after.
+/// Clogging lengths below an obstacle spacing would be doubted (`v`): warns before the runs, not after.
 void print_short_lengths(const Sample& sample) {
   constexpr std::int64_t fewest = 3;
   constexpr std::int64_t one_in = 4;  // of lengths of five spacings one clog in six is that short
@@ -257,11 +257,11 @@ void print_short_lengths(const Sample& sample) {
              sample.num_short, sweep::counted(sample.num_clogged, "run"), sample.spacing);
 }
 
-/// What a sweep that adds seeds may come to.
+/// Limits of the cost of a sweep that adds seeds.
 /// @param expected, bound  of its first round [s]
 void print_rounds(const SeedRule& rule, std::int64_t first_seeds, double expected, double bound) {
   const std::int64_t needed = rule.clogs_needed();
-  fmt::print(std::cout, "# this is the first round: +-{} % takes {} a parameter set\n",
+  fmt::print(std::cout, "# this is the first round: +-{} % needs {} per parameter set\n",
              sweep::shortest(100 * rule.precision()), sweep::counted(needed, "clog"));
   if (rule.most_seeds() < needed)
     fmt::print(std::cout, "# --most-seeds={} ends it before that; give {} or more\n", rule.most_seeds(),
@@ -316,7 +316,7 @@ int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRul
   const Sample sample = stored.knows_enough() ? stored.sample : tried_sample(plan);
   if (console::stop_signalled()) return console::exit_incomplete;
   if (sample.costs.empty()) {
-    console::say("clogsweep: none of the runs that were tried can begin, the first one: " + sample.failure);
+    console::say("clogsweep: no trial run can start; the first one: " + sample.failure);
     return console::exit_internal_fault;
   }
   const SweepCost alike = tried_cost(plan, sample);

@@ -16,14 +16,14 @@
 namespace clog::campaign {
 namespace {
 
-/// What tells whether a record is of this sweep; nothing if its config is lost.
+/// Fixed values by which records of this sweep are recognised; nothing if its config is lost.
 std::optional<FixedValues> fixed_values(const std::string& path, const store::SweepFile& table) try {
   return FixedValues(stored_plan(path, table), stored_settings(path, table.provenance));
 } catch (const Error&) {
   return std::nullopt;
 }
 
-/// Records that are whole and of this sweep, oldest first.
+/// Undamaged records of this sweep, oldest first.
 std::vector<store::Journal::Entry> records_of(const std::string& path, Salvage& found) {
   const std::string journal = store::journal_path(path);
   std::vector<store::Journal::Entry> records;
@@ -33,9 +33,9 @@ std::vector<store::Journal::Entry> records_of(const std::string& path, Salvage& 
     records = contents->entries;
     if (contents->num_unreadable > 0)
       found.damage.push_back(
-          fmt::format("of its journal, {} damaged", sweep::counted(contents->num_unreadable, "record")));
+          fmt::format("damaged in its journal: {}", sweep::counted(contents->num_unreadable, "record")));
   } catch (const Error& error) {
-    found.damage.push_back(fmt::format("its journal is of no use: {}", error.what()));
+    found.damage.push_back(fmt::format("its journal was not used: {}", error.what()));
     return {};
   }
   const std::optional<FixedValues> fixed = fixed_values(path, found.table);
@@ -43,7 +43,7 @@ std::vector<store::Journal::Entry> records_of(const std::string& path, Salvage& 
     return !sweep::fault_of(record.row).empty() || (fixed && !fixed->differing_keys(record.row).empty());
   });
   if (num_foreign > 0)
-    found.damage.push_back(fmt::format("of its journal, {} of another sweep",
+    found.damage.push_back(fmt::format("of another sweep in its journal: {}",
                                        sweep::counted(static_cast<std::int64_t>(num_foreign), "record")));
   return records;
 }

@@ -15,8 +15,8 @@ namespace {
 
 using sweep::RunRow;
 
-/// Of the parameter sets of the last config. With --until-precision a set may want more seeds than others,
-/// which is not known here: each is taken to want the mean of all.
+/// Times of the parameter sets of the last config. With --until-precision a set may want more seeds than
+/// others, which is not known here: each is taken to want the mean of all.
 std::vector<SetTimes> times_of_sets(const std::vector<RunRow>& rows, const sweep::Plan& plan,
                                     std::int64_t num_wanted) {
   const std::int64_t num_sets = plan.num_groups();
@@ -65,7 +65,7 @@ std::string to_text(const std::string& path, const Status& status, double confid
   if (status.num_over() == status.runs.num_runs)
     text += "; complete";
   else if (!status.is_alive)
-    text += "; no sweep is writing to it: the command that began it goes on";
+    text += "; no sweep is writing to it: the command that started it resumes it";
   else
     text += ", " + status.left.text();
   text += '\n';

@@ -13,7 +13,7 @@
 namespace clog::campaign {
 namespace {
 
-/// What `read` makes of an attribute's text; says where the text is from if it cannot be read.
+/// Applies `read` to an attribute's text; an error names the file and the attribute.
 template <class Read>
 auto read_attribute(const std::string& path, const store::Provenance& provenance, const std::string& name,
                     const Read& read) {
@@ -45,10 +45,9 @@ sweep::RunRow replayable_row(const store::SweepFile& file, const std::string& ta
   const auto refuse = [&](const std::string& why, const std::string& remedy) {
     throw Error(fmt::format("cannot replay task {} ({}); {}", task, why, remedy));
   };
-  if (sweep::is_unfinished(row.status))
-    throw Error("task " + task + " is not over; let the sweep go on first");
+  if (sweep::is_unfinished(row.status)) refuse("it has not ended", "resume the sweep first");
   if (row.instruction_set == sweep::mixed_instruction_sets)
-    refuse("it was interrupted and went on under another instruction set, it is not known at which step",
+    refuse("it was interrupted and resumed with another instruction set, at an unknown step",
            "--instruction-set pins one for all sessions of a sweep");
   if (row.model_version != model_version)
     refuse(fmt::format("it is of model version {}, this program's is {}", row.model_version, model_version),
@@ -118,7 +117,7 @@ RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, 
 }
 
 std::string RunCount::text_of_beyond() const {
-  return num_beyond == 0 ? "" : fmt::format(" ({} beyond the lists of its last command)", num_beyond);
+  return num_beyond == 0 ? "" : fmt::format(" ({} outside the lists of its last command)", num_beyond);
 }
 
 }  // namespace clog::campaign

@@ -33,7 +33,7 @@ RunParameters with_usual_values(const sweep::RunRow& row) {
   return run;
 }
 
-/// Of a user's own circles a row has the check sum only; automatic values hardly depend on them.
+/// Of user-supplied circles a row has only the checksum; automatic values hardly depend on them.
 RunParameters resolved_in_any_layout(RunParameters run) {
   if (scene_of(run).walls_from != WallsFrom::circles) return resolve(run);
   const ObstacleParameters own = run.obstacles;

@@ -20,12 +20,12 @@ std::string to_text(const store::Journal::Contents& journal, bool is_alive) {
   const std::string text = fmt::format(
       "{}, {} of them with snapshots, {}",
       sweep::counted(static_cast<std::int64_t>(journal.entries.size()), "record"), num_snapshots,
-      journal.num_unreadable == 0 ? "all whole" : fmt::format("{} more damaged", journal.num_unreadable));
+      journal.num_unreadable == 0 ? "all undamaged" : fmt::format("{} more damaged", journal.num_unreadable));
   if (is_alive) return text + "; a sweep is writing to it";
   return text + (journal.has_torn_end ? "; the last one is torn, as after a kill, and will be dropped" : "");
 }
 
-/// What is wrong with the rows themselves, a line for each.
+/// Faults of the rows themselves, a line for each.
 std::vector<std::string> faults_of(const std::vector<sweep::RunRow>& rows) {
   std::vector<std::string> faults;
   std::unordered_map<std::string, std::int64_t> seen;
@@ -50,19 +50,20 @@ Verification verify(const std::string& path) {
   for (std::string& fault : faults_of(file.rows)) result.findings.push_back(std::move(fault));
   if (found.is_refused_by_others && found.damage.empty())
     result.findings.emplace_back(
-        "a checksum of HDF5's own is damaged: h5py, pandas and other readers refuse the file; `clogsweep "
-        "salvage` makes one that they read");
+        "a checksum of HDF5 is damaged: h5py, pandas and other readers refuse the file; `clogsweep salvage` "
+        "writes a file that they accept");
   result.num_faults = static_cast<std::int64_t>(result.findings.size());
   const auto num_rows = static_cast<std::int64_t>(file.rows.size());
   if (result.num_faults > 0)
-    result.findings.push_back(fmt::format("{}: {}, {}", path, sweep::counted(num_rows, "whole row"),
+    result.findings.push_back(fmt::format("{}: {}, {}", path, sweep::counted(num_rows, "undamaged row"),
                                           sweep::counted(result.num_faults, "fault")));
   else if (has_config)
-    result.findings.push_back(fmt::format("{}: {} of {}{}, all whole", path, sweep::counted(num_rows, "row"),
+    result.findings.push_back(fmt::format("{}: {} of {}{}, all undamaged", path,
+                                          sweep::counted(num_rows, "row"),
                                           sweep::counted(runs.num_runs, "run"), runs.text_of_beyond()));
   else
     result.findings.push_back(
-        fmt::format("{}: {}, all whole; its config is missing, the sweep's own command "
+        fmt::format("{}: {}, all undamaged; its config is missing: the sweep's own command "
                     "restores it",
                     path, sweep::counted(num_rows, "row")));
   if (std::string words = store::caution(path, file); !words.empty())

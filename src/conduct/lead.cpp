@@ -23,7 +23,7 @@ namespace clog::conduct {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-// What the ranks are told after a round.
+// Messages to the other ranks after a round.
 const std::string another_round = "another round";
 const std::string over = "over";
 
@@ -37,19 +37,21 @@ void announce(const std::string& output, const sweep::Plan& plan, const campaign
     console::say(fmt::format("{} has {} of {}{}", output, num_runs - num_left,
                              sweep::counted(num_runs, "run"),
                              num_left == 0 && !may_grow ? "; there is nothing left to do" : ""));
-  if (ledger.num_beyond() > 0)
-    console::say(fmt::format("{} holds {} beyond the lists of this command; what it has of them stays",
-                             output, sweep::counted(ledger.num_beyond(), "run")));
+  if (const std::int64_t number = ledger.num_beyond(); number > 0)
+    console::say(fmt::format("{} also has {} outside this command's lists; {} kept", output,
+                             sweep::counted(number, "run"), number == 1 ? "it is" : "they are"));
   if (const std::int64_t number = ledger.num_faulty(); number > 0)
-    console::say(fmt::format("{}: {} what cannot be; what the sweep has of these runs is computed again",
-                             output, number == 1 ? "1 row holds" : fmt::format("{} rows hold", number)));
+    console::say(fmt::format("{}: {} physically impossible; the sweep recomputes those in its lists", output,
+                             number == 1 ? "1 row is" : fmt::format("{} rows are", number)));
   if (const std::int64_t number = ledger.num_unreadable(); number > 0)
-    console::say(fmt::format("{}: {} damaged; what was in there is computed again",
-                             store::journal_path(output),
-                             number == 1 ? "1 record is" : fmt::format("{} records are", number)));
+    console::say(fmt::format(
+        "{}: {}", store::journal_path(output),
+        number == 1 ? "1 record is damaged; its run resumes from an earlier record or restarts"
+                    : fmt::format("{} records are damaged; their runs resume from earlier records or restart",
+                                  number)));
   if (const std::int64_t number = ledger.num_resumed(); number > 0)
-    console::say(
-        fmt::format("{} {}", number, number == 1 ? "goes on where it was" : "go on where they were"));
+    console::say(fmt::format("{} {} from the last checkpoint", sweep::counted(number, "run"),
+                             number == 1 ? "resumes" : "resume"));
   if (num_left == 0) return;
   for (const std::string& words : sweep::limits_of_results(plan)) console::say(words);
   console::say(fmt::format("{} on {}, results go to {}", sweep::counted(num_left, "run"),
@@ -61,7 +63,7 @@ campaign::Progress::Screen screen(Log::Level level) {
   return console::StatusLine::standard_error();
 }
 
-/// Joins what the scheduler tells and asks with what is kept and what is told to the user.
+/// Connects the scheduler's callbacks with the ledger, the log and the progress line.
 class Lead {
  public:
   Lead(const LeadOptions& options, const sweep::Plan& plan, campaign::Ledger& ledger, int num_ranks)
@@ -70,7 +72,7 @@ class Lead {
         log_(progress_, options.log),
         max_hours_(options.max_hours) {}
 
-  /// More tasks.
+  /// Adds tasks to the total against which progress is measured.
   void expect(const std::vector<std::int64_t>& tasks) {
     is_expecting_ = is_expecting_ || !tasks.empty();
     progress_.expect(tasks, ledger_.num_wanted());
@@ -125,7 +127,7 @@ class Lead {
   }
 
   void end(sweep::Report report) {
-    // Stopped before it was heard of since it went on: it is where its snapshot and its row here are.
+    // Stopped before its first report after a resume: its state is that of the stored snapshot and row.
     if (report.row.status == RunStatus::interrupted && report.row.steps == 0 && !report.snapshot.empty()) {
       report.row = ledger_.row(report.row.task);
       report.row.status = RunStatus::interrupted;
@@ -171,7 +173,8 @@ int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, 
     if (rule && is_complete)
       next =
           rule->next_round([&](std::int64_t task) { return ledger.row(task).status == RunStatus::clogged; });
-    // Of an earlier call with a higher precision: finished, though not asked for any more.
+    // Tasks that an earlier call with a higher precision started: finish them although this call does not
+    // need them.
     if (rule && is_complete && next.empty()) next = ledger.tasks_begun();
     ranks.broadcast(next.empty() ? over : another_round);
     if (next.empty()) break;
@@ -180,16 +183,15 @@ int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, 
   lead.finish();
   if (is_complete && rule && options.log != Log::Level::quiet) console::say(campaign::outcome(*rule, plan));
   if (const sweep::RunRow* first = is_complete ? ledger.first_if_all_failed() : nullptr) {
-    console::say("clogsweep: every run has failed, the first one: " + first->message);
+    console::say("clogsweep: every run has failed; the first one: " + first->message);
     return console::exit_internal_fault;
   }
   if (is_complete) return console::exit_success;
   const bool no_rank_left = end == parallel::SweepEnd::no_rank_left;
-  console::say(
-      fmt::format("clogsweep: {}; the same command goes on. Finished rows and the distances so far are in {}",
-                  no_rank_left ? "every rank was set aside, see above; look after these machines"
-                               : fmt::format("stopped by {}", lead.reason_to_stop()),
-                  options.output));
+  console::say(fmt::format("clogsweep: {}; the same command resumes the sweep. Results so far are in {}",
+                           no_rank_left ? "every rank was set aside, see above: check these machines"
+                                        : fmt::format("stopped by {}", lead.reason_to_stop()),
+                           options.output));
   return no_rank_left ? console::exit_internal_fault : console::exit_incomplete;
 }
 

@@ -19,7 +19,7 @@ std::string time_of_day() {
 
 std::string who(const sweep::RunRow& row) { return fmt::format("task {} rank {}: ", row.task, row.rank); }
 
-/// The parameters that most sweeps go along.
+/// The parameters that most sweeps vary.
 std::string what(const sweep::RunRow& row) {
   const RunParameters& run = row.parameters;
   const bool is_polygon = run.model == Model::dp;
@@ -38,7 +38,7 @@ void Log::say(const std::string& text) { progress_.say(time_of_day() + ' ' + con
 
 void Log::started(const sweep::RunRow& row, From from) {
   if (level_ < Level::verbose) return;
-  say(who(row) + (from == From::release ? "starts" : "goes on" + where(row)) +
+  say(who(row) + (from == From::release ? "starts" : "resumes" + where(row)) +
       (row.attempt > 1 ? fmt::format(", attempt {}", row.attempt) : "") + what(row));
 }
 
@@ -64,13 +64,12 @@ void Log::failure_withdrawn(const sweep::RunRow& row) {
 }
 
 void Log::set_aside(const sweep::RunRow& failed) {
-  say(fmt::format(
-      "rank {} on {} is set aside: task after task fails there, and not elsewhere; the last one said: {}",
-      failed.rank, failed.host, failed.message));
+  say(fmt::format("rank {} on {} is set aside: tasks fail there that succeed elsewhere; last message: {}",
+                  failed.rank, failed.host, failed.message));
 }
 
 void Log::stopping(const std::string& reason) {
-  if (level_ >= Level::normal) say("stops, by " + reason);
+  if (level_ >= Level::normal) say("stopping because of " + reason);
 }
 
 }  // namespace clog::conduct

@@ -31,7 +31,7 @@ bool is_set(const char* name) { return std::getenv(name) != nullptr; }
 
 bool is_open_mpi() { return parallel::Communicator::library_version().starts_with("Open MPI"); }
 
-/// How ranks are let off the cores that mpirun has tied them to.
+/// How to unbind ranks from cores.
 std::string unbind() {
   return is_open_mpi() ? "set OMPI_MCA_hwloc_base_binding_policy=none" : "mpirun -bind-to none";
 }
@@ -42,30 +42,31 @@ int number_in(const char* name) {
   return text ? std::atoi(text) : 0;
 }
 
-/// Of a rank that finds itself alone: why it should not be. A rank that is meant to be alone has none.
-std::optional<Finding> loneliness(int num_ranks) {
+/// Why a rank that is alone should not be; nothing if a single rank is intended.
+std::optional<Finding> why_not_alone(int num_ranks) {
   if (num_ranks > 1) return {};
   constexpr const char* of_open_mpi = "OMPI_COMM_WORLD_SIZE";
   const bool by_mpirun = is_set(of_open_mpi) || is_set("MPI_LOCALNRANKS");  // the latter of MPICH
   if (const int tasks = number_in("SLURM_NTASKS"); tasks > 1 && !by_mpirun)
     return Finding{fmt::format("one rank in a Slurm allocation of {} tasks", tasks),
-                   "srun cannot start this MPI's ranks together: use mpirun as jobs/slurm.sh does, or mpirun "
-                   "-np 1 if one is meant"};
+                   "srun cannot start this MPI's ranks together: use mpirun, as jobs/slurm.sh does, or "
+                   "mpirun -np 1 for a single rank"};
   if (const int started = std::max(number_in(of_open_mpi), number_in("PMI_SIZE")); started > 1)
-    return Finding{fmt::format("one rank, where mpirun has started {}", started),
-                   fmt::format("it is another MPI's: use the mpirun of {}, with which this program was built",
-                               parallel::Communicator::library_version())};
+    return Finding{
+        fmt::format("one rank, where mpirun has started {}", started),
+        fmt::format("this mpirun belongs to another MPI: use that of {}, with which this program was built",
+                    parallel::Communicator::library_version())};
   return {};
 }
 
 Finding launcher(int num_ranks) {
-  if (const auto finding = loneliness(num_ranks)) return *finding;
+  if (const auto finding = why_not_alone(num_ranks)) return *finding;
   if (num_ranks > 1) return {fmt::format("{} ranks, started together", num_ranks)};
   if (is_open_mpi() && geteuid() == 0 &&
       !(is_set("OMPI_ALLOW_RUN_AS_ROOT") && is_set("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM")))
-    return {"one rank; mpirun will refuse to start more for root",
+    return {"one rank; mpirun refuses to start more as root",
             "in a container: source jobs/mpi-settings.sh first; elsewhere use an account of your own"};
-  return {"one rank; under mpirun the doctor sees more"};
+  return {"one rank; run doctor under mpirun for more checks"};
 }
 
 Finding versions(const std::vector<RankFacts>& ranks) {
@@ -82,7 +83,8 @@ Finding instruction_sets_of(const std::vector<RankFacts>& ranks) {
   for (const RankFacts& rank : ranks) all.insert(rank.instruction_set);
   if (all.size() == 1) return {"instruction set " + *all.begin()};
   return {"instruction sets differ: " + joined(all),
-          "harmless but for the last bits; for the same on all: --instruction-set " + *all.rbegin()};
+          "results differ in their last bits only; for the same bits on all hosts: --instruction-set " +
+              *all.rbegin()};
 }
 
 /// Ranks of one host that may only run on cores too few for all of them.
@@ -108,7 +110,7 @@ Finding cores(const std::string& host, const std::vector<const RankFacts*>& rank
       return {fmt::format("{}, but {} ranks are bound to {}", where, number,
                           set.size() == 1 ? fmt::format("one core ({})", set.front())
                                           : fmt::format("{} of them", set.size())),
-              unbind() + ", or core where the host is yours alone"};
+              unbind() + "; core instead of none if the host is yours alone"};
   return {where};
 }
 
@@ -116,7 +118,7 @@ Finding memory(const std::string& host, const std::vector<const RankFacts*>& ran
   constexpr double needed = 100e6;  // of a rank with an array of 500 sigma, generously
   const double available = ranks.front()->memory / static_cast<double>(ranks.size());
   const std::string what = fmt::format("{}: {:.3g} GB of memory per rank", host, available / 1e9);
-  if (available < needed) return {what, "start fewer ranks per host, or take a smaller box"};
+  if (available < needed) return {what, "start fewer ranks per host, or use a smaller box"};
   return {what};
 }
 
@@ -188,7 +190,7 @@ std::vector<Finding> examine(const std::vector<RankFacts>& ranks, const std::str
 }
 
 void refuse_to_be_alone(int num_ranks) {
-  if (const auto finding = loneliness(num_ranks)) throw Error(finding->what + "; " + finding->remedy);
+  if (const auto finding = why_not_alone(num_ranks)) throw Error(finding->what + "; " + finding->remedy);
 }
 
 }  // namespace clog::host

@@ -41,7 +41,7 @@ enum Kind : std::int64_t {
 
 /// How long a rank waits for a process that should answer at once: a stopped one never does.
 constexpr std::chrono::milliseconds patience{2000};
-/// The same for the start of a process, which takes long where memory is scarce.
+/// Patience for the start of a process, which takes long when memory is scarce.
 constexpr std::chrono::milliseconds patience_for_start{20'000};
 
 /// How a process came to its end.
@@ -54,7 +54,7 @@ struct Ending {
 std::string describe(const Ending& ending) {
   if (ending.fork_error != 0)
     return fmt::format("no process could be started for it: {}", std::strerror(ending.fork_error));
-  if (ending.code == CLD_EXITED) return fmt::format("its process left with exit code {}", ending.status);
+  if (ending.code == CLD_EXITED) return fmt::format("its process exited with code {}", ending.status);
   const int signal = ending.status;
   const char* name = sigabbrev_np(signal);
   const char* meaning = sigdescr_np(signal);
@@ -124,7 +124,8 @@ void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj")
     socket.close();
     rank.send(process_began, 0, to_bytes(process, {}));
     if (process > 0) {
-      // It stays a zombie until the rank wants the next: the rank may kill it, and no other of its number.
+      // It stays a zombie until the rank asks for the next process, so its pid is not reused and the rank's
+      // kill cannot hit another process.
       siginfo_t end{};
       while (waitid(P_PID, process, &end, WEXITED | WNOWAIT) < 0 && errno == EINTR) continue;
       ending.code = end.si_code;
@@ -151,9 +152,9 @@ class IsolatedJobs::Processes {
   /// Is there a helper still? Without one no job can begin.
   bool have_helper() const { return helper_.is_open(); }
 
-  /// Begins a job in a process that lives, or finds out that the helper does not. Returns its number.
+  /// Starts a job in a live process, or detects that the helper is dead. Returns the job's number.
   std::int64_t begin_job(std::int64_t task, std::span<const std::byte> snapshot) {
-    // What an earlier job left, or that the process has died since.
+    // Drain messages of an earlier job, and notice a process that has died since.
     while (process_.is_open() && process_.wait(std::chrono::milliseconds(0)))
       if (!process_.receive()) bury();
     ++last_job_;
@@ -165,8 +166,8 @@ class IsolatedJobs::Processes {
 
   const Socket& process() const { return process_; }
 
-  /// Ends the process, if it has not died by itself. Returns how it came to its end; none: the helper, who
-  /// should know, has died or is stopped, and is given up.
+  /// Kills the process unless it is dead already. Returns how it ended; nothing if the helper, which reports
+  /// that, has died or is stopped: the rank then gives the helper up.
   std::optional<Ending> bury() {
     process_.close();
     if (process_id_ > 0)
@@ -184,8 +185,8 @@ class IsolatedJobs::Processes {
   pid_t process_id_ = -1;
   std::int64_t last_job_ = 0;
 
-  /// From the helper's word on the process alone has the other end of its socket, so that its death is
-  /// noticed.
+  /// After the helper's reply only the process holds the other end of its socket, so the rank notices its
+  /// death.
   void start_process() {
     auto [mine, theirs] = Socket::pair();
     mine.limit_halts(patience);
@@ -233,9 +234,8 @@ class IsolatedJobs::IsolatedJob final : public Job {
 
  private:
   static constexpr const char* without_helper =
-      "the helper that starts its rank's processes was killed or stopped; the rank goes on without, and now "
-      "a "
-      "crash there ends the sweep";
+      "the helper process of its rank was killed or stopped; the rank continues without one, and now a crash "
+      "of a task ends the sweep";
 
   Processes& processes_;
   std::int64_t number_;

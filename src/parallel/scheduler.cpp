@@ -52,7 +52,7 @@ class Work {
       : job_(std::move(job)), rank_(rank), interval_(report_interval) {}
 
   bool advance() { return job_->advance(); }
-  /// That of a task that is over, or is stopped now.
+  /// The final report of a task that has ended or is being stopped.
   Report last_report() {
     constexpr std::chrono::seconds patience{2};
     const Clock::time_point deadline = Clock::now() + patience;
@@ -139,13 +139,13 @@ class Master {
     return running_.empty() && (stopping_ || !has_tasks() || schedule_.trust.num_in_service() == 0);
   }
 
-  /// Are there tasks, but all ranks on hold or waiting for one that is?
+  /// Are tasks left while every rank is on hold, or waits for a rank that is?
   bool nobody_can_work() const {
     const bool all_wait = static_cast<int>(waiting_.size()) + num_dismissed_ == ranks_.size() - 1;
     return running_.empty() && all_wait && !is_over();
   }
 
-  /// The same clock in all rounds.
+  /// Time on one clock for all rounds.
   static double seconds() { return std::chrono::duration<double>(Clock::now().time_since_epoch()).count(); }
 
   struct Beginning {
@@ -157,7 +157,7 @@ class Master {
     if (stopping_ || !schedule_.trust.may_work(rank)) return std::nullopt;
     auto failed = std::find_if(failed_tasks_.begin(), failed_tasks_.end(),
                                [&](std::int64_t task) { return schedule_.trust.is_next_for(task, rank); });
-    // Rather here again than no work at all, if this rank is beyond doubt.
+    // If no other task is left, a trusted rank retries a failed task rather than idle.
     if (failed == failed_tasks_.end() && schedule_.tasks.empty() && schedule_.trust.is_trusted(rank))
       failed = failed_tasks_.begin();
     std::int64_t next = no_more_tasks;
@@ -176,7 +176,7 @@ class Master {
     return Beginning{next, std::move(start.snapshot)};
   }
 
-  /// What there is to do at once when a task has ended. A failure is told of here, before the task is taken
+  /// Updates the schedule when a task ends. Reports a failure immediately, before the task can be handed out
   /// again.
   void take_back(Report& report) {
     const std::int64_t ended = report.row.task;
@@ -228,7 +228,7 @@ class Master {
         continue;
       }
       take_back(report);
-      // First the task, then the file: workers do not wait for the disk.
+      // Answer the worker before writing the row: workers do not wait for the disk.
       answer(worker);
       if (report.row.status != RunStatus::failed) events_.ended(report);
     }
@@ -299,7 +299,7 @@ class Worker {
       }
       send(ended, work.last_report());
     }
-    take_stop();  // one that crossed our last report
+    take_stop();  // drain a stop that crossed our last report
   }
 
  private:
@@ -351,8 +351,8 @@ SweepEnd run_tasks(const Communicator& ranks, Schedule& schedule, const JobFacto
     end = Master(ranks, schedule, make_job, events, report_interval).run();
   else
     Worker(ranks, make_job, report_interval).run();
-  // Workers done early wait here: a message to the next sweep must not reach the master of this one, and
-  // MPI_Finalize would keep their cores busy.
+  // Workers that finish early wait here: a message of the next round must not reach this round's master, and
+  // waiting in MPI_Finalize would spin.
   ranks.wait_for_all();
   return end;
 }

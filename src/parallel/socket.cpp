@@ -87,11 +87,11 @@ bool Socket::read_all(void* bytes, std::size_t num_bytes) const {
 
 void Socket::send(std::int64_t kind, std::int64_t job, std::span<const std::byte> bytes) const {
   const Header header{kind, job, bytes.size()};
-  // In one piece: between two the sender might be stopped, and what it has told would count for nothing.
+  // Send in one piece: a sender stopped between two pieces would leave half a message.
   std::vector<std::byte> message(sizeof header + bytes.size());
   std::memcpy(message.data(), &header, sizeof header);
   std::ranges::copy(bytes, message.begin() + sizeof header);
-  // After half a message no other would be understood.
+  // After half a message the receiver could not parse the next one.
   if (!write_all(message.data(), message.size())) ::shutdown(descriptor_, SHUT_RDWR);
 }
 

@@ -30,7 +30,7 @@ constexpr const char* usage = R"(clogrun follows one droplet and writes what hap
   clogrun array --output run.h5 obstacles=mine.csv box=60 --polygon-interval 1
   clogrun channel --output run.h5 orifice=0.7 line-tension=1.08 near-wall-drag=0.07 terminal-speed=0.032
   clogrun array --output run.h5 line-tension=0.3 max-time=3000 --polygon-interval 5 --frames film
-  clogrun replay sweep.h5 12 --output run.h5 --polygon-interval 1     a run of a sweep once more
+  clogrun replay sweep.h5 12 --output run.h5 --polygon-interval 1     replays a run of a sweep
   clogrun sag line-tension=0.1,0.3,1          prints how far the droplet sinks onto a flat wall
 
 In an array, the same keys and seed as a row of a sweep give that row's run, bit for bit.
@@ -47,7 +47,7 @@ cli::CommandLine parse(int argc, char** argv) {
   line.add_options()("system", text(), "array, channel (two wedges), sag (flat wall) or replay")(
       "file", text(), "replay: file of clogsweep")("task", text(), "replay: the row's number, column `task`")(
       "to-rest", "replay: until the droplet rests, not only until it is proved that it will")(
-      "output", text(), "HDF5 file to make")("seed", text(), "short for seeds=N")(
+      "output", text(), "HDF5 file to create")("seed", text(), "short for seeds=N")(
       "sample-interval", text()->default_value("1"), "time between samples [t0]")(
       "polygon-interval", text(), "also write the polygon this often [t0]")(
       "frames", text(), "also make a film of the polygons with this name, which may end in .mp4 or .gif")(

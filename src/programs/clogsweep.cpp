@@ -45,12 +45,12 @@ given values, on all MPI ranks, and gathers the results in one HDF5 table.
   mpirun -np 4 clogsweep --config sweep.cfg --output sweep.h5 line-tension=0.2,1,5
   clogsweep --config sweep.cfg --dry-run
   clogsweep status sweep.h5         how far it is: lambda, <v_g>, time left; also while it runs
-  clogsweep verify sweep.h5         is the file whole?
-  clogsweep salvage sweep.h5 --output whole.h5     what is whole of a damaged one
-  clogsweep replay sweep.h5 TASK    one run once more: the same bits?
+  clogsweep verify sweep.h5         is the file undamaged?
+  clogsweep salvage sweep.h5 --output whole.h5     copies the undamaged rows of a damaged file
+  clogsweep replay sweep.h5 TASK    runs a task again: the same bits?
   mpirun -np 4 clogsweep doctor     will a sweep started like this go well here?
 
-A sweep that was stopped or killed goes on with the same command.
+The same command resumes a stopped or killed sweep.
 )";
 
 store::Provenance provenance(const cli::CommandLine& line,

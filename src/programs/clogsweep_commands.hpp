@@ -21,7 +21,7 @@ inline constexpr FileCommand file_commands[] = {{"status", clogsweep_status},
                                                 {"replay", clogsweep_replay}};
 
 /// `clogsweep doctor`, on one rank or under mpirun. Collective. Returns the exit code on rank 0, 1 if there
-/// is something to mend. @throws Error
+/// is something to fix. @throws Error
 int clogsweep_doctor(const parallel::Communicator& ranks, int argc, const char* const* argv);
 
 }  // namespace clog::programs

@@ -57,7 +57,7 @@ double precision(const cli::CommandLine& line) {
   try {
     number = sweep::to_number(text) / (is_percent ? 100 : 1);
   } catch (const Error&) {
-    // said below, with the option's name
+    // reported below, with the option's name
   }
   if (number >= 0.001 && number < 1) return number;
   throw Error("invalid --until-precision=" + line.get("until-precision") +
@@ -109,17 +109,18 @@ void parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
                                                                         "print the settings, run nothing")(
       "schema", "print all keys and columns as JSON: meaning, unit, range, default; run nothing")(
       "master-computes", po::value<std::string>()->default_value("auto"),
-      "does rank 0 run tasks too: auto (with up to 16 ranks), yes, no")(
+      "whether rank 0 also runs tasks: auto (with up to 16 ranks), yes, no")(
       "max-hours", po::value<std::string>(),
-      "stop after so many hours, as after a signal; the same command goes on")(
+      "stop after so many hours, as after a signal; the same command resumes the sweep")(
       "until-precision", po::value<std::string>(),
-      "add seeds until lambda is known so well, e.g. 10%: half its 95 % interval over lambda")(
-      "most-seeds", po::value<std::string>(), "with --until-precision: per parameter set (20 times `seeds`)")(
-      "attempts", po::value<std::string>()->default_value("2"), "how often a run that fails is tried")(
+      "add seeds until half of lambda's 95 % interval is within this fraction of lambda, e.g. 10%")(
+      "most-seeds", po::value<std::string>(),
+      "largest number of seeds of a parameter set with --until-precision (20 times `seeds`)")(
+      "attempts", po::value<std::string>()->default_value("2"), "number of attempts for a run that fails")(
       "report-seconds", po::value<std::string>()->default_value("10"),
-      "how often a running task reports how far it has come; a kill loses no more than that")(
+      "interval at which a running task reports its progress; a kill loses at most this time")(
       "isolate", po::value<std::string>()->default_value("yes"),
-      "tasks run in processes of their own, so that a crash costs one task and not the sweep: yes, no")(
+      "run each task in a separate process, so that a crash costs one task and not the sweep: yes, no")(
       "verbose", "a line for every task that starts or ends")("quiet", "errors only");
   std::vector<std::string> commands = {"doctor"};
   for (const FileCommand& command : file_commands) commands.emplace_back(command.name);

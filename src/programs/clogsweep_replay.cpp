@@ -17,11 +17,11 @@ namespace po = boost::program_options;
 
 int clogsweep_replay(int argc, const char* const* argv) {
   cli::CommandLine line = file_command(
-      "replay", R"(clogsweep replay does one run of a sweep once more and compares the results bit for bit.
+      "replay", R"(clogsweep replay runs one task of a sweep again and compares the results bit for bit.
 
   clogsweep replay sweep.h5 12
 
-Exit code 0: the same bits. 1: other results. 2: it cannot be done again. The run uses the row's instruction set; one
+Exit code 0: the same bits. 1: other results. 2: the run cannot be replayed. The run uses the row's instruction set; one
 that went on under another set than it began with cannot be repeated.
 )");
   line.add_options()("task", po::value<std::string>(), "the row's number, column `task`");

@@ -14,13 +14,14 @@
 namespace clog::programs {
 namespace {
 
-constexpr const char* usage = R"(clogsweep salvage keeps what is whole of a damaged sweep file, in a new one.
+constexpr const char* usage =
+    R"(clogsweep salvage copies the undamaged rows of a damaged sweep file to a new one.
 
   clogsweep salvage sweep.h5 --output whole.h5
 
 Rows and attributes that are not as they were written are excluded and named. Results and snapshots that only the
-journal beside the file has are kept, too. The sweep's own command, with --output whole.h5, then computes the missing
-runs again and restores missing attributes.
+journal beside the file has are copied, too. The sweep's own command, with --output whole.h5, then recomputes the
+missing runs and restores missing attributes.
 )";
 
 }  // namespace
@@ -29,7 +30,7 @@ int clogsweep_salvage(int argc, const char* const* argv) {
   namespace po = boost::program_options;
   cli::CommandLine line("clogsweep salvage", usage, cli::CommandLine::SweepKeys::none);
   line.add_options()("file", po::value<std::string>(), "sweep file")("output", po::value<std::string>(),
-                                                                     "HDF5 file to make");
+                                                                     "HDF5 file to create");
   line.add_positional("file", 1);
   line.parse(argc - 1, argv + 1);
   if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return console::exit_success;
@@ -40,7 +41,7 @@ int clogsweep_salvage(int argc, const char* const* argv) {
   for (const std::string& damage : found.damage) std::cout << console::printable(damage) << '\n';
   campaign::write(found, output);
   const auto num_rows = static_cast<std::int64_t>(found.table.rows.size());
-  std::cout << console::printable(output) << ": " << sweep::counted(num_rows, "whole row");
+  std::cout << console::printable(output) << ": " << sweep::counted(num_rows, "undamaged row");
   if (found.num_from_journal > 0)
     std::cout << ", results of " << found.num_from_journal << " from the journal";
   if (!found.snapshots.empty())

@@ -32,7 +32,7 @@ int clogsweep_status(int argc, const char* const* argv) {
   clogsweep status sweep.h5
   clogsweep status sweep.h5 --watch
 
-Clogging lengths count runs under way as not clogged so far, at the distance they have reached: finished runs alone
+Clogging lengths count runs in progress as not clogged so far, at the distance they have reached: finished runs alone
 would give too short ones, since runs that clog early finish first.
 )");
   line.add_options()("watch", "again every two seconds, until the sweep ends")(

@@ -10,15 +10,16 @@
 namespace clog::programs {
 
 int clogsweep_verify(int argc, const char* const* argv) {
-  cli::CommandLine line = file_command(
-      "verify", R"(clogsweep verify reads every row of a sweep's file and says whether it is whole.
+  cli::CommandLine line =
+      file_command("verify", R"(clogsweep verify reads every row of a sweep's file and reports any damage.
 
   clogsweep verify sweep.h5
 
-The same for the journal beside it, which is there while the sweep is not complete.
+It also checks the journal beside the file, which exists until the sweep is complete.
 
-Exit code 0: every bit is as it was written, every row makes sense, none is there twice, no record of the journal is
-damaged. 1: this is not so; `clogsweep salvage` keeps what is whole. 2: the file or its journal cannot be read.
+Exit code 0: every bit is as it was written, every row is physically possible, no run has two rows, and no record of the
+journal is damaged. 1: there is damage; `clogsweep salvage` copies the undamaged rows. 2: the file or its journal cannot
+be read.
 )");
   if (!parse_file_command(line, argc, argv)) return console::exit_success;
   const campaign::Verification found = campaign::verify(line.get("file"));

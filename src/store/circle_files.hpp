@@ -7,8 +7,8 @@
 #include "clog/store/run_table.hpp"
 #include "hdf5.hpp"
 
-/// Circles of a user's own in the file of a sweep: the group /obstacles has a table x, y, radius for each, by
-/// the name of their check sum.
+/// User-supplied circles in the file of a sweep: the group /obstacles has a table x, y, radius for each file,
+/// named by their checksum.
 namespace clog::store {
 
 /// @throws Error naming the path

@@ -139,10 +139,10 @@ File open_image(std::vector<std::byte>& image, const std::string& path) {
   constexpr const char* no_file = "/dev/null/image";  // the library wants a name that nothing has
   File file(H5Fopen(no_file, H5F_ACC_RDONLY, access));
   if (!file.valid())
-    throw Error(
-        "cannot read " + path +
-        " (damaged: it is cut off, or its beginning is not as it was written); put a copy in its place, or "
-        "begin anew");
+    throw Error("cannot read " + path +
+                " (damaged: it is cut off, or its beginning is not as it was written); restore it from a "
+                "copy, or start "
+                "a new file");
   return file;
 }
 

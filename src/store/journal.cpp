@@ -21,7 +21,7 @@
 namespace clog::store {
 namespace {
 
-/// Of the names and sizes of all columns, in their order.
+/// Checksum of the names and sizes of all columns, in their order.
 std::uint32_t check_sum_of_columns() {
   std::string list;
   for (const sweep::Column& column : sweep::columns())
@@ -81,18 +81,18 @@ std::vector<std::byte> read_all(int descriptor, const std::string& path) {
   return bytes;
 }
 
-/// The header is there; if its maker died at once it is not, or only its beginning.
+/// Is the header complete? If its writer died at once, it is missing or incomplete.
 bool has_header(std::span<const std::byte> bytes, const std::string& path) {
   const FileHeader header;
   const std::size_t size = std::min(bytes.size(), sizeof header);
   if (!std::ranges::equal(bytes.first(size), bytes_of(header).first(size)))
     throw Error("cannot read " + path +
                 " (not a journal of this version of clogsweep); give another --output, finish with the "
-                "version that began, or move it away, with the finished runs that it may hold");
+                "version that started the sweep, or move it away together with any finished runs in it");
   return size == sizeof header;
 }
 
-/// Of the record that begins at a place; nothing if what stands there is no header of one.
+/// Header of the record at this place; nothing if there is no valid header.
 std::optional<RecordHeader> header_at(std::span<const std::byte> bytes, std::size_t place) {
   RecordHeader header;
   if (bytes.size() - place < sizeof header) return std::nullopt;
@@ -103,8 +103,8 @@ std::optional<RecordHeader> header_at(std::span<const std::byte> bytes, std::siz
 
 Journal::Contents parse(std::span<const std::byte> bytes) {
   Journal::Contents contents;
-  std::size_t end = std::min(sizeof(FileHeader), bytes.size());  // of what could be read
-  std::int64_t num_passed = 0;                                   // headers since then
+  std::size_t end = std::min(sizeof(FileHeader), bytes.size());  // end of the last readable record
+  std::int64_t num_passed = 0;                                   // headers of damaged records since then
   for (std::size_t place = end; place < bytes.size();) {
     const std::optional<RecordHeader> header = header_at(bytes, place);
     const std::size_t begin = place + sizeof(RecordHeader);
@@ -112,7 +112,7 @@ Journal::Contents parse(std::span<const std::byte> bytes) {
                           check_sum(bytes.subspan(begin, header->size)) == header->check;
     if (!is_whole) {
       if (header) ++num_passed;
-      ++place;  // a size that cannot be trusted does not lead to the next one
+      ++place;  // do not skip by a size that may be damaged: search byte by byte
       continue;
     }
     if (place > end) contents.num_unreadable += std::max<std::int64_t>(1, num_passed);
@@ -169,7 +169,7 @@ Journal::~Journal() { close_file(); }
 
 void Journal::open_and_lock(const Place* table) {
   while (true) {
-    // Whoever may not read the table may not read its journal either.
+    // A user who may not read the table may not read its journal either.
     descriptor_ = place_.open(O_RDWR | O_CREAT | O_EXCL, table && table->exists() ? 0600 : 0666);
     if (descriptor_ >= 0 && table) table->lend_access_to(descriptor_);
     if (descriptor_ < 0 && errno == EEXIST) {
@@ -177,7 +177,7 @@ void Journal::open_and_lock(const Place* table) {
       if (descriptor_ < 0 && errno == ENOENT) continue;  // removed in between
     }
     check(descriptor_ >= 0, "write", place_.path());
-    // Who asks whether it is open holds it for a moment.
+    // is_open() of another process holds the lock for a moment: retry.
     int locked = -1;
     for (int attempt = 0; attempt < 10; ++attempt) {
       locked = flock(descriptor_, LOCK_EX | LOCK_NB);
@@ -188,13 +188,13 @@ void Journal::open_and_lock(const Place* table) {
     check(locked == 0 || errno == EWOULDBLOCK, "lock", place_.path());
     close(std::exchange(descriptor_, -1));
     if (locked != 0)
-      throw Error("cannot continue with " + place_.path() +
+      throw Error("cannot use " + place_.path() +
                   " (another sweep is writing to it); wait for it to end, or give another --output");
   }
 }
 
-/// A torn end, and the header of a new one, are dealt with when something is written for the first time: who
-/// looks at the records and refuses them leaves the file as it is.
+/// The first write removes an incomplete end and writes the header of a new file, so a sweep that reads the
+/// records and refuses them leaves the file unchanged.
 void Journal::begin() {
   if (has_begun_) return;
   if (contents_.num_bytes < sizeof(FileHeader)) {
@@ -216,9 +216,9 @@ bool Journal::is_open(const std::string& path) {
 
 void Journal::check_place() const {
   if (is_there()) return;
-  throw Error("cannot go on with " + place_.path() +
+  throw Error("cannot continue with " + place_.path() +
               " (it was removed or replaced while the sweep was running, and another may have begun there); "
-              "when no other sweep is writing to it, the same command goes on");
+              "when no other sweep is writing to it, the same command resumes the sweep");
 }
 
 bool Journal::make_anew(const Place& table) {
@@ -258,7 +258,7 @@ bool Journal::is_to_be_rewritten() const {
 void Journal::rewrite(std::span<const Entry* const> entries) {
   check_place();
   Draft draft(place_, journal_mark);
-  // A draft is locked where that is possible; here it must be, before it has its name.
+  // Locking a draft is optional; here it must succeed before the rename.
   check(flock(draft.descriptor(), LOCK_EX | LOCK_NB) == 0, "lock", place_.path());
   write_header(draft.descriptor(), place_.path());
   std::uint64_t size = sizeof(FileHeader);
@@ -272,11 +272,11 @@ void Journal::rewrite(std::span<const Entry* const> entries) {
 
 void Journal::remove() {
   if (is_there()) place_.remove();
-  place_.sync_folder();  // one that came back after a power cut would say nothing that is not in the table
+  place_.sync_folder();  // if a power cut restores the file, it holds nothing that is not in the table
   close(std::exchange(descriptor_, -1));
 }
 
-/// One that holds nothing is removed.
+/// Removes an empty file.
 void Journal::close_file() {
   if (descriptor_ < 0) return;
   struct stat status {};

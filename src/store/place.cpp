@@ -26,8 +26,8 @@ std::string folder_of(const fs::path& path) {
   return folder.empty() ? "." : folder.string();
 }
 
-/// As the kernel's fs.protected_symlinks: where everybody may make links, only those of one's own, or of the
-/// folder's owner, are followed.
+/// As the kernel's fs.protected_symlinks: in a world-writable sticky folder only links of this user, or of
+/// the folder's owner, are followed.
 void refuse_link_of_others(const fs::path& link) {
   struct stat folder {
   }, there{};
@@ -35,8 +35,9 @@ void refuse_link_of_others(const fs::path& link) {
   if (stat(folder_of(link).c_str(), &folder) != 0 || lstat(link.c_str(), &there) != 0) return;
   if ((folder.st_mode & open_to_all) != open_to_all) return;
   if (there.st_uid != geteuid() && there.st_uid != folder.st_uid)
-    throw Error("cannot follow the link " + link.string() +
-                " (somebody else made it, in a folder in which everybody may); give another name");
+    throw Error(
+        "cannot follow the link " + link.string() +
+        " (it belongs to another user, in a folder that everybody can write to); give the path itself");
 }
 
 constexpr const char* access_list = "system.posix_acl_access";
@@ -138,7 +139,7 @@ bool Place::take_as_new_from(const Place& other) const {
 
 bool Place::sync_folder() const {
   const int descriptor = openat(folder_->descriptor(), ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return errno == EACCES;                  // one that may be written to but not read
+  if (descriptor < 0) return errno == EACCES;                  // a folder that is writable but not readable
   const bool is_synced = sync(descriptor) || errno == EINVAL;  // some file systems cannot
   close(descriptor);
   return is_synced;
@@ -150,13 +151,14 @@ bool Place::lend_access_to(int descriptor) const {
       !S_ISREG(status.st_mode))
     return false;
   constexpr uid_t nobody = static_cast<uid_t>(-1);
-  // Who may not give the file away keeps it, but the group may still be one of his.
+  // A process that may not change the owner may still change the group to one of its own.
   const bool has_group =
       fchown(descriptor, status.st_uid, status.st_gid) == 0 || fchown(descriptor, nobody, status.st_gid) == 0;
   const std::vector<char> list = access_list_of(open(O_RDONLY | O_NONBLOCK));
   constexpr mode_t permissions = 0777;
   mode_t mode = status.st_mode & permissions;
-  if (!has_group) mode &= ~static_cast<mode_t>(S_IRWXG) | ((mode & S_IRWXO) << 3);  // another group is others
+  // A new group gets only the rights of others.
+  if (!has_group) mode &= ~static_cast<mode_t>(S_IRWXG) | ((mode & S_IRWXO) << 3);
   fremovexattr(descriptor, access_list);  // the folder may have given it one
   fchmod(descriptor, mode);
   if (has_group && !list.empty()) fsetxattr(descriptor, access_list, list.data(), list.size(), 0);

@@ -54,7 +54,7 @@ void rehearse(const std::string& path, const std::function<void()>& read) {
   const std::string reason =
       WIFSIGNALED(status) ? std::string("ends with ") + strsignal(WTERMSIG(status)) : "fails";
   throw Error("cannot read " + path + " (damaged: reading it " + reason +
-              "); put a copy in its place, or begin anew");
+              "); restore it from a copy, or start a new file");
 }
 
 }  // namespace clog::store

@@ -194,7 +194,7 @@ std::string version_of(hid_t file, const std::string& path) {
 
 [[noreturn]] void refuse_table(const std::string& path, const std::string& what) {
   throw Error(
-      fmt::format("cannot read {} (damaged: {}); put a copy in its place, or begin anew", path, what));
+      fmt::format("cannot read {} (damaged: {}); restore it from a copy, or start a new file", path, what));
 }
 
 /// How long a dataset is; a size that cannot be is not believed.
@@ -354,8 +354,8 @@ SweepFile read_sweep(const std::string& path) {
   if (found.damage.empty()) return std::move(found.whole);
   const std::size_t num_others = found.damage.size() - 1;
   throw Error(fmt::format(
-      "cannot trust {} (damaged: {}{}); `clogsweep verify` names all, `clogsweep salvage` keeps what is "
-      "whole",
+      "cannot trust {} (damaged: {}{}); `clogsweep verify` names all, `clogsweep salvage` copies "
+      "undamaged rows",
       path, found.damage.front(), num_others > 0 ? fmt::format(", and {} more", num_others) : ""));
 }
 

@@ -17,7 +17,7 @@ enum class Seal {
 /// Other programs pass over it; those that write to the file cut it off.
 std::string seal_of(std::span<const std::byte> content);
 
-/// Of all that a file holds.
+/// Seal of a file's whole content.
 Seal look_at_seal(std::span<const std::byte> file);
 
 }  // namespace clog::store

@@ -306,7 +306,7 @@ TEST_F(LedgerTest, SalvagesNoRecordOfAnotherSweep) {
   other.add(row, {});
   const Salvage found = salvage(path());
   EXPECT_TRUE(found.table.rows.empty());
-  EXPECT_EQ(found.damage, std::vector<std::string>{"of its journal, 1 record of another sweep"});
+  EXPECT_EQ(found.damage, std::vector<std::string>{"of another sweep in its journal: 1 record"});
 }
 
 TEST_F(LedgerTest, NamesTheFileWhoseConfigItCannotRead) {

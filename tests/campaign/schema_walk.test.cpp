@@ -18,7 +18,7 @@
 
 namespace clog::campaign {
 
-/// For whoever reads of a test that fails.
+/// For the reader of a failed test.
 void PrintTo(const Parameter& parameter, std::ostream* out) { *out << parameter.key; }
 
 namespace {

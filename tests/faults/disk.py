@@ -90,7 +90,7 @@ class Faults:
         finished = finished_rows(case)
         make_room()
         outcome = run(case, "clogsweep", *self.sample.sweep)
-        case.expect(outcome.code == 0, "clogsweep: does not go on when there is room")
+        case.expect(outcome.code == 0, "clogsweep: does not resume when there is room")
         check_complete(case, case.folder / FILE, self.sample.rows)
         later = finished_rows(case)
         case.expect(all(later.get(task) == row for task, row in finished.items()), "a finished row was lost")

@@ -124,7 +124,7 @@ class Faults:
             return False
         case.expect({path.name: path.read_bytes() for path in case.folder.iterdir()} == before, "clogsweep: refuses a journal, but changes a file")
         (case.folder / JOURNAL).unlink()
-        case.expect(run(case, "clogsweep", *STOPPED).code == 0, "clogsweep: does not go on without the journal")
+        case.expect(run(case, "clogsweep", *STOPPED).code == 0, "clogsweep: does not resume without the journal")
         return True
 
     def edited(self, row, name, value):

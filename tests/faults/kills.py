@@ -35,11 +35,11 @@ class Faults:
             case.expect(all(later.get(task) == row for task, row in finished.items()), "a finished row was lost")
             finished = later
         outcome = run(case, "clogsweep", *SWEEP, ranks=RANKS)
-        case.expect(outcome.code == 0, f"clogsweep: does not go on, exit code {outcome.code}")
+        case.expect(outcome.code == 0, f"clogsweep: does not resume, exit code {outcome.code}")
         check_complete(case, case.folder / FILE, self.rows, ignored=[*TIMING, "attempt"])
 
     def disturb(self, case):
-        """Starts the sweep, or goes on with it, and sends signals to one or two of its processes."""
+        """Starts the sweep, or resumes it, and sends signals to one or two of its processes."""
         process = subprocess.Popen(command("clogsweep", *SWEEP, ranks=RANKS), cwd=case.folder,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
         time.sleep(case.chance.uniform(0, self.duration))

@@ -80,5 +80,5 @@ class Faults:
         if outcome.code == 2:
             case.expect((case.folder / JOURNAL).read_bytes() == content, "clogsweep: refuses a journal, but changes it")
             (case.folder / JOURNAL).unlink()  # as it asks for
-            case.expect(run(case, "clogsweep", *STOPPED).code == 0, "clogsweep: does not go on without the journal")
+            case.expect(run(case, "clogsweep", *STOPPED).code == 0, "clogsweep: does not resume without the journal")
         check_complete(case, case.folder / FILE, self.stopped.rows)

@@ -56,7 +56,7 @@ class Faults:
         later = self.finished(case, folder)
         case.expect(all(later.get(task) == row for task, row in finished.items()), "a finished row was lost")
         outcome = run(case, "clogsweep", *SWEEP, f"{folder}/{FILE}", ranks=RANKS)
-        case.expect(outcome.code == 0, f"clogsweep: does not go on, exit code {outcome.code}")
+        case.expect(outcome.code == 0, f"clogsweep: does not resume, exit code {outcome.code}")
         check_complete(case, path, self.usual.rows, ignored=[*TIMING, "attempt"])
 
     @staticmethod

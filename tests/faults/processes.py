@@ -68,7 +68,7 @@ class Limits:
         if not any(status(thread)[0] in BUSY for folder in folders for thread in threads(folder)):
             self.idle_seconds += seconds
         if self.idle_seconds > IDLE_SECONDS:
-            return f"waits for what never comes: it was idle for {IDLE_SECONDS} s"
+            return f"hangs: it was idle for {IDLE_SECONDS} s"
         if sum(status(folder)[1] for folder in folders) > CPU_SECONDS:
             return f"did not end within {CPU_SECONDS} s of processor time"
         return None

@@ -42,7 +42,7 @@ class Faults:
         case.note(f"mode {mode:03o}, owner and group {before[1:]}")
         mask = case.chance.choice(MASKS)
         outcome = run(case, "clogsweep", *SWEEP, prepare=lambda: os.umask(mask), ranks=case.chance.choice([None, kills.RANKS]))
-        case.expect(outcome.code == 0, f"clogsweep: does not go on, exit code {outcome.code}")
+        case.expect(outcome.code == 0, f"clogsweep: does not resume, exit code {outcome.code}")
         case.expect(rights_of(path) == before, f"a table's rights changed: {before} to {rights_of(path)}")
         check_complete(case, path, self.usual.rows, ignored=[*TIMING, "attempt"])
 

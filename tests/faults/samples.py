@@ -119,15 +119,15 @@ def samples(folder):
 
 
 def check_readers(case, sample):
-    """Nobody who reads the case's file says anything else than of the whole one, unless he says that it is damaged."""
+    """Every reader of the case's file reports the undamaged numbers, or that the file is damaged."""
     path = case.folder / FILE
     before = path.read_bytes()
     for report, told in zip(REPORTS, sample.reports):
         outcome = run(case, *report)
         case.expect(outcome.code != 0 or outcome.output == told,
-                    f"{outcome.name}: other numbers than of the whole file, exit code 0")
+                    f"{outcome.name}: other numbers than from the undamaged file, exit code 0")
     table, why = in_child(read_with_python, path)
-    case.expect(table is None or table == sample.table, "read_table: other numbers than of the whole file")
+    case.expect(table is None or table == sample.table, "read_table: other numbers than from the undamaged file")
     case.expect(table is not None or why.startswith("refused"), f"read_table: {str(why).split(':')[0]}")
     if run(case, *VERIFY).code == 0 and SEAL in before:  # of a copy only rows and settings are known to be whole
         check_called_whole(case, sample, path)
@@ -136,27 +136,27 @@ def check_readers(case, sample):
 
 
 def check_salvaged(case, sample):
-    """What is called whole of a damaged file is as it was."""
+    """Rows that salvage keeps of a damaged file are as they were."""
     outcome = run(case, "clogsweep", "salvage", FILE, "--output", SALVAGED)
     if outcome.code != 0:
         return
     rows, why = in_child(stored_rows, case.folder / SALVAGED)
     case.expect(rows is not None, f"{outcome.name}: makes a file that cannot be read: {why}")
     case.expect(all(sample.rows.get(task) == row for task, row in (rows or {}).items()),
-                f"{outcome.name}: calls a changed row whole")
+                f"{outcome.name}: accepts a changed row as undamaged")
 
 
 def check_called_whole(case, sample, path):
-    """A file of which verify says that it is whole is as it was, to everybody's eyes."""
+    """A file that verify accepts as undamaged is as it was, for every reader."""
     rows, why = in_child(stored_rows, path)
     texts, why_no_texts = in_child(stored_texts, path)
     if rows is None or texts is None:
-        case.findings.append("clogsweep verify: calls a file whole that h5py cannot read")
+        case.findings.append("clogsweep verify: accepts a file as undamaged that h5py cannot read")
         case.note(why or why_no_texts)
         return
     changed = differing(rows, sample.rows)
     changed += [name for name in texts.keys() | sample.texts.keys() if texts.get(name) != sample.texts.get(name)]
-    case.expect(not changed, "clogsweep verify: calls a changed file whole")
+    case.expect(not changed, "clogsweep verify: accepts a changed file as undamaged")
     if changed:
         case.note(f"changed: {', '.join(changed)}")
 
@@ -170,7 +170,7 @@ def check_resumed(case, sweep, rows):
     before = path.read_bytes()
     outcome = run(case, "clogsweep", *sweep, exit_codes={0, 2})
     if outcome.code == 2:
-        case.expect(path.read_bytes() == before, "clogsweep: refuses to go on, but has changed the file")
+        case.expect(path.read_bytes() == before, "clogsweep: refuses to resume, but has changed the file")
     if outcome.code == 0:
         check_complete(case, path, rows)
 

@@ -29,7 +29,7 @@ const std::map<std::int64_t, std::pair<int, std::string>> crashes = {
     {8, {SIGFPE, "its process was ended by SIGFPE (Floating point exception)"}},
     {17, {SIGABRT, "its process was ended by SIGABRT (Aborted)"}},
     {29, {SIGKILL, "its process was ended by SIGKILL (Killed, as the kernel does when memory runs out)"}},
-    {34, {0, "its process left with exit code 3"}},
+    {34, {0, "its process exited with code 3"}},
 };
 
 /// From here on tasks are slow, for a rank to ask them how far they are.
@@ -208,10 +208,11 @@ void a_rank_goes_on_without_its_helper(const parallel::Communicator& ranks, cons
     status[report.row.task] = name(report.row.status);
     if (report.row.status == RunStatus::failed) {
       ++failures[report.row.rank];
-      expect(report.row.message ==
-                 "the helper that starts its rank's processes was killed or stopped; the rank goes on "
-                 "without, and now a crash there ends the sweep",
-             "the row says what happened");
+      expect(
+          report.row.message ==
+              "the helper process of its rank was killed or stopped; the rank continues without one, and now "
+              "a crash of a task ends the sweep",
+          "the row says what happened");
     } else if (report.row.rank == 0) {
       expect(report.row.num_arcs == rank_pid, "the rank does the work itself");
     }

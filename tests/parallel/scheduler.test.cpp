@@ -63,7 +63,7 @@ void a_stop_ends_running_tasks_as_interrupted(const parallel::Communicator& rank
 }
 
 void running_tasks_report_and_go_on_from_there(const parallel::Communicator& ranks) {
-  // Stopped at its first report, the sweep goes on with what was reported last.
+  // Stopped at its first report, the sweep resumes from the last report.
   std::map<std::int64_t, std::vector<std::byte>> snapshots;
   int num_reports = 0;
   bool stop = false;

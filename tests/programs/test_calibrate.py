@@ -137,7 +137,7 @@ class Calibrate(ProgramTest):
         except OSError:  # nobody writes to it any more
             return b""
 
-    def test_it_reads_what_clogrun_writes_unless_that_is_another_thing(self):
+    def test_it_reads_only_channel_runs_of_clogrun(self):
         keys = ["vertices=32", "line-tension=0.3", "terminal-speed=0.3"]
         self.succeed("clogrun", "channel", "--output", "channel.h5", "--orifice=0.9", "--start=-2.5", "--end=1.3", *keys)
         self.succeed("clogrun", "array", "--output", "array.h5", "box=20", "max-time=1", *keys)

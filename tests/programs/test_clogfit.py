@@ -439,7 +439,7 @@ class Fit(ProgramTest):
         self.assertIn("1 run is under way or interrupted: lambda holds for the distances reached so far", text)
         self.assertIn("1 failed", text)
 
-    def test_rows_that_hold_what_cannot_be_are_left_out_with_a_doubt(self):
+    def test_physically_impossible_rows_are_excluded_with_a_doubt(self):
         self.sweep("seeds=1..8", *FAR)
         distance = np.array([1.0, 2, 3, 4, 5, 6, 7, 8])
         self.change(distance=distance, status=[b"clogged"] * 8)

@@ -15,7 +15,7 @@ import pandas
 import stored_rows
 from support import BIN, BLOCKED, LONGEST, MPI, MPIRUN, QUICK, ROOT, SMALL, STEPS_PER_SNAPSHOT, ProgramTest
 
-# Columns that tell where and how fast a row was made, not what came out.
+# Columns that tell where and how fast a row was made, not its results.
 CIRCUMSTANCES = ["wall_seconds", "rank", "host"]
 
 
@@ -113,16 +113,16 @@ class Sweep(ProgramTest):
         self.assertEqual(len(lines), 1 + 12 + 3)
         self.assertIn("12 tasks: 3 parameter sets, 4 seeds each", lines[-3])
         self.assertRegex(lines[-2], "^# at most [0-9.e+-]+ core-hours on this machine")
-        self.assertRegex(lines[-1], self.EXPECTED + r"tried for [0-9.e+-]+ s in all, \d+ of them over$")
+        self.assertRegex(lines[-1], self.EXPECTED + r"tried for [0-9.e+-]+ s in total, \d+ of them ended$")
         self.assertLess(float(re.search("tried for ([^ ]+) s", lines[-1])[1]), 1.05 * elapsed)  # of two figures
         self.assertEqual(self.snapshot(), {})
 
-    def test_a_dry_run_expects_what_the_file_s_runs_took(self):
+    def test_a_dry_run_estimates_from_stored_runs(self):
         sweep = [*QUICK, "line-tension=0.5,1", "--output", "s.h5"]
         self.succeed("clogsweep", *sweep, "seeds=1..3")
         before = self.snapshot()
         expected, left = self.succeed("clogsweep", *sweep, "seeds=1..30", "--dry-run").stdout.splitlines()[-2:]
-        self.assertRegex(expected, self.EXPECTED + "that s.h5 holds, 6 of them over$")
+        self.assertRegex(expected, self.EXPECTED + "in s.h5, 6 of them ended$")
         self.assertEqual(self.snapshot(), before)
         hours = table(self.folder / "s.h5").wall_seconds.sum() / 3600
         self.assertRegex(left, r"^# s.h5 has 6 of 60 tasks; 54 to go: expected \S+ core-hours more \(95 %: \S+ to \S+\)$")
@@ -132,7 +132,7 @@ class Sweep(ProgramTest):
         told = self.succeed("clogsweep", *sweep, "seeds=1..3", "--dry-run").stdout.splitlines()[-1]
         self.assertEqual(told, f"# s.h5 has all 6 tasks, which took {hours:.2g} core-hours; nothing is left to do")
 
-    def test_a_dry_run_expects_of_what_is_left_what_its_own_parameter_set_takes(self):
+    def test_a_dry_run_estimates_remaining_runs_from_their_own_parameter_set(self):
         sweep = [*QUICK, "--output", "s.h5"]
         self.succeed("clogsweep", *sweep, "line-tension=0.5", "seeds=1..6")
         self.succeed("clogsweep", *sweep, "line-tension=1", "seeds=1..3")
@@ -147,11 +147,11 @@ class Sweep(ProgramTest):
     def test_runs_beyond_shorter_lists_stay_and_are_counted_everywhere(self):
         sweep = [*QUICK, "line-tension=0.5,1", "--output", "s.h5"]
         self.assertNotIn("beyond", self.succeed("clogsweep", *sweep, "seeds=1..5").stderr)
-        self.assertIn("10 rows of 10 runs, all whole", self.succeed("clogsweep", "verify", "s.h5").stdout)
+        self.assertIn("10 rows of 10 runs, all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
         told = self.succeed("clogsweep", *sweep, "seeds=1..3").stderr
-        self.assertIn("s.h5 holds 4 runs beyond the lists of this command", told)
-        beyond = "(4 beyond the lists of its last command)"
-        self.assertIn(f"10 rows of 10 runs {beyond}, all whole", self.succeed("clogsweep", "verify", "s.h5").stdout)
+        self.assertIn("s.h5 also has 4 runs outside this command's lists; they are kept", told)
+        beyond = "(4 outside the lists of its last command)"
+        self.assertIn(f"10 rows of 10 runs {beyond}, all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
         status = self.succeed("clogsweep", "status", "s.h5").stdout
         self.assertIn(f"10 of 10 runs over {beyond}, ", status)
         self.assertIn("; complete", status)
@@ -178,7 +178,7 @@ class Sweep(ProgramTest):
     def test_a_dry_run_of_runs_that_cannot_begin_fails(self):
         done = self.run_program("clogsweep", *BLOCKED, "seeds=64", "--dry-run")
         self.assertEqual(done.returncode, 1)
-        self.assertIn("none of the runs that were tried can begin, the first one: cannot release the droplet", done.stderr)
+        self.assertIn("no trial run can start; the first one: cannot release the droplet", done.stderr)
 
     def test_a_dry_run_of_many_tasks_shows_the_first_and_the_last(self):
         for seeds, num_tasks in [("1..500", 1000), ("1..501", 1002), ("1..1000000", 2_000_000)]:
@@ -217,8 +217,8 @@ class Sweep(ProgramTest):
         self.assertIn("1 run on 1 computing rank, results go to s.h5\n", self.succeed("clogsweep", *sweep).stderr)
         self.assertIn("s.h5 has 1 of 1 run; there is nothing left to do\n", self.succeed("clogsweep", *sweep).stderr)
         self.assertIn("s.h5: 1 of 1 run over, ", self.succeed("clogsweep", "status", "s.h5").stdout)
-        self.assertIn("s.h5: 1 row of 1 run, all whole\n", self.succeed("clogsweep", "verify", "s.h5").stdout)
-        self.assertIn("whole.h5: 1 whole row\n", self.succeed("clogsweep", "salvage", "s.h5", "--output", "whole.h5").stdout)
+        self.assertIn("s.h5: 1 row of 1 run, all undamaged\n", self.succeed("clogsweep", "verify", "s.h5").stdout)
+        self.assertIn("whole.h5: 1 undamaged row\n", self.succeed("clogsweep", "salvage", "s.h5", "--output", "whole.h5").stdout)
 
     def test_help_and_version(self):
         self.assertIn("--line-tension", self.succeed("clogsweep", "--help").stdout)
@@ -303,7 +303,7 @@ class Isolated(ProgramTest):
     def wait_for_end_of(self, processes):
         self.wait_for(lambda: not any(pathlib.Path(f"/proc/{pid}").exists() for pid in processes))
 
-    def test_rows_are_the_same_without(self):
+    def test_rows_are_the_same_without_isolation(self):
         sweep = [*QUICK, "line-tension=0.3,2", "obstacle-gap=0.2,0.6", "seeds=1..4", "--output"]
         self.succeed("clogsweep", *sweep, "yes.h5", "--isolate=yes", ranks=2)
         self.succeed("clogsweep", *sweep, "no.h5", "--isolate=no", ranks=2)
@@ -333,7 +333,7 @@ class Isolated(ProgramTest):
         sweep = ["seeds=1", "max-time=2e4", "--report-seconds=0.1"]
         process = self.start(*sweep)
         computing = self.computing_process(process)
-        # Before its first snapshot a run would go on from its beginning.
+        # Before its first snapshot a run would restart.
         self.wait_for(lambda: table(self.folder / "s.h5").steps.gt(STEPS_PER_SNAPSHOT).any())
         os.kill(computing, signal.SIGSTOP)
         time.sleep(0.5)  # reports are asked for meanwhile
@@ -345,14 +345,14 @@ class Isolated(ProgramTest):
         self.assertGreater(rows.distance[0], 0, "the last report counts")
         self.wait_for_end_of([computing])
         hung_at = rows.distance[0]
-        # Hung once more, before anything was heard of it: it is where it was.
+        # Hung again, before its first report: its state is that of the stored row.
         process = self.start(*sweep[:2], "--report-seconds=100")
         os.kill(self.computing_process(process), signal.SIGSTOP)
         process.send_signal(signal.SIGTERM)
         _, error = process.communicate(timeout=LONGEST)
         self.assertEqual(process.returncode, 75, error)
         self.assertEqual(table(self.folder / "s.h5").distance[0], hung_at)
-        self.assertIn("1 goes on where it was", self.succeed("clogsweep", *self.LONG, *sweep).stderr)
+        self.assertIn("1 run resumes from the last checkpoint", self.succeed("clogsweep", *self.LONG, *sweep).stderr)
         self.assertEqual(table(self.folder / "s.h5").status[0], "flowing")
 
     def test_a_sweep_goes_on_without_the_helper(self):
@@ -361,7 +361,7 @@ class Isolated(ProgramTest):
         os.kill(self.children_of(process.pid)[0], signal.SIGKILL)
         _, error = process.communicate(timeout=LONGEST)
         self.assertEqual(process.returncode, 0, error)
-        self.assertEqual(error.count("the helper that starts its rank's processes was killed"), 1, error)
+        self.assertEqual(error.count("the helper process of its rank was killed"), 1, error)
         self.assertEqual(list(table(self.folder / "s.h5").status), ["flowing", "flowing"])
 
     def test_no_process_outlives_its_rank(self):

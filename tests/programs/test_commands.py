@@ -77,7 +77,7 @@ class Meant(ProgramTest):
         self.write("bom.csv", "\ufeffh [sigma], v [v_t]\n0,1\n1,1\n2,1\n")
         self.succeed("clogfit", "deviation", "bom.csv", "bom.csv")
 
-    def test_a_decimal_comma_is_asked_after_where_its_values_cannot_be(self):
+    def test_a_decimal_comma_with_out_of_range_values_is_questioned(self):
         question = "invalid obstacle-gap=0 (must be positive) use a value above 0; 0,3 are two values: did you mean 0.3?"
         self.refuse("clogsweep", "obstacle-gap=0,3", "--output", "s.h5", words=[question])
         self.refuse("clogrun", "array", "obstacle-gap=0,3", "--output", "s.h5", words=[question])
@@ -99,7 +99,7 @@ class Meant(ProgramTest):
                                     ["clogrun", "array", "--output", name], ["clogrun", "array", "--config", name, "--output", "w.h5"]]:
             self.refuse(program, *arguments, words=["File name too long"])
 
-    def test_what_is_too_stiff_blames_itself(self):
+    def test_a_line_tension_that_is_too_large_is_named(self):
         for program in (["clogsweep"], ["clogsweep", "--dry-run"], ["clogsweep", "--print-config"], ["clogrun", "array"]):
             self.refuse(*program, "line-tension=1e300", "seeds=1", "--output", "s.h5", words=["invalid line-tension=1e300"])
 
@@ -110,7 +110,7 @@ class Failing(ProgramTest):
             done = self.run_program("clogsweep", *BLOCKED, "seeds=64", "--output", "f.h5")
             self.assertEqual(done.returncode, 1, done.stderr)
             self.assertIn(told, done.stderr)
-            self.assertIn("clogsweep: every run has failed, the first one: cannot release the droplet", done.stderr.splitlines()[-1])
+            self.assertIn("clogsweep: every run has failed; the first one: cannot release the droplet", done.stderr.splitlines()[-1])
         self.succeed("clogsweep", *BLOCKED, "seeds=51,64", "--output", "f.h5")
 
     def test_quiet_tells_it_too(self):

@@ -57,7 +57,7 @@ class Damage(ProgramTest):
         self.assertEqual({name: content for name, content in self.snapshot().items() if not name.endswith(".journal")}, before)
         verified = self.run_program("clogsweep", "verify", "s.h5")
         self.assertEqual(verified.returncode, 1)
-        self.assertIn("row 1 (task 1) is not as it was written\ns.h5: 5 whole rows, 1 fault\n", verified.stdout)
+        self.assertIn("row 1 (task 1) is not as it was written\ns.h5: 5 undamaged rows, 1 fault\n", verified.stdout)
         with self.assertRaises(stored.Damaged):
             stored.read_rows(self.file)
         # Readers who know nothing of it: HDF5's own checksum of the table's chunks.
@@ -98,7 +98,7 @@ class Damage(ProgramTest):
                 self.assertEqual(len(table(self.folder / "whole.h5")), 6)
                 self.succeed("clogsweep", "verify", "whole.h5")
                 self.succeed("clogsweep", *SETTINGS[:-1], "whole.h5")
-                self.assertIn("6 rows of 6 runs, all whole", self.succeed("clogsweep", "verify", "whole.h5").stdout)
+                self.assertIn("6 rows of 6 runs, all undamaged", self.succeed("clogsweep", "verify", "whole.h5").stdout)
                 pandas.testing.assert_frame_equal(table(self.folder / "whole.h5"), self.rows)
             (self.folder / "whole.h5").unlink(missing_ok=True)
             self.file.write_bytes(undamaged)
@@ -107,9 +107,9 @@ class Damage(ProgramTest):
         with h5py.File(self.file, "r+") as file:
             file.attrs.modify("config", "line-tension = 3\n")
         self.succeed("clogsweep", "salvage", "s.h5", "--output", "whole.h5")
-        self.refuse("clogsweep", *[word.replace("=60", "=70") for word in SETTINGS[:-1]], "whole.h5", words=["other settings: max-time=70 (there 60)"])
+        self.refuse("clogsweep", *[word.replace("=60", "=70") for word in SETTINGS[:-1]], "whole.h5", words=["other settings: max-time=70 (file: 60)"])
 
-    def test_copies_of_other_programs_are_read_with_a_word(self):
+    def test_copies_by_other_programs_are_read_with_a_warning(self):
         with h5py.File(self.file) as file, h5py.File(self.folder / "copy.h5", "w") as copy:
             file.copy("runs", copy)
             file.copy("row_checksums", copy)
@@ -146,7 +146,7 @@ class Damage(ProgramTest):
         with h5py.File(copy) as file:
             chunks = {name: file[name].id.get_chunk_info(0) for name in ("runs", "row_checksums")}
             num_rows, row_size = len(file["runs"]), file["runs"].dtype.itemsize
-        self.assertIn("all whole", self.succeed("clogsweep", "verify", "copy.h5").stdout)
+        self.assertIn("all undamaged", self.succeed("clogsweep", "verify", "copy.h5").stdout)
         last = {name: chunk.byte_offset + chunk.size - 1 for name, chunk in chunks.items()}  # of the checksum
         for place in (*last.values(), chunks["runs"].byte_offset + num_rows * row_size):
             content = bytearray(whole)
@@ -157,7 +157,7 @@ class Damage(ProgramTest):
                     [file[name][:] for name in chunks]
                 verified = self.run_program("clogsweep", "verify", "copy.h5")
                 self.assertEqual(verified.returncode, 1)
-                self.assertIn("h5py, pandas and other readers refuse the file; `clogsweep salvage` makes one", verified.stdout)
+                self.assertIn("h5py, pandas and other readers refuse the file; `clogsweep salvage` writes a file", verified.stdout)
                 self.succeed("clogsweep", "salvage", "copy.h5", "--output", "whole.h5")
                 pandas.testing.assert_frame_equal(table(self.folder / "whole.h5"), self.rows)
                 (self.folder / "whole.h5").unlink()
@@ -182,8 +182,8 @@ class Damage(ProgramTest):
                         clogsweep.open(copy)
         self.assertGreater(refused, 15)
 
-    def test_what_is_known_of_a_copy_is_of_that_copy(self):
-        """It was known by its name and time: another one of the same was taken for whole."""
+    def test_the_check_of_a_copy_is_not_reused_for_a_changed_copy(self):
+        """The check was once remembered by name and time, so a changed copy with the same time passed as undamaged."""
         copy = self.copied()
         clogsweep.open(copy)
         content = copy.read_bytes()
@@ -193,7 +193,7 @@ class Damage(ProgramTest):
         with self.assertRaises(clogsweep.Damaged):
             clogsweep.open(copy)
 
-    def test_python_reads_the_copy_of_a_run_only_if_nobody_can_tell_more(self):
+    def test_python_reads_unsealed_runs_only_of_formats_without_checksums(self):
         self.succeed("clogrun", "array", *QUICK, "seeds=1", "--output", "r.h5", "--polygon-interval", 5)
         run = self.folder / "r.h5"
         content = run.read_bytes()
@@ -262,7 +262,7 @@ class Damage(ProgramTest):
             self.assertIn("older format without checksums", self.succeed(name, *arguments).stderr)
         self.assertEqual(stored.is_sealed(self.file), True, "the sweep has written it anew")
 
-    def test_a_row_that_reaches_beyond_itself_is_not_read(self):
+    def test_a_column_offset_beyond_the_row_is_refused(self):
         """Foreign memory was shown as a value: the offset of a member in the table's description."""
         stored_rows.make_older(self.file, "4")
         content = bytearray(self.file.read_bytes())

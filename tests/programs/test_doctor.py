@@ -44,15 +44,15 @@ class Doctor(ProgramTest):
 
     def test_the_mpirun_of_another_mpi_is_seen(self):
         other = {"Open MPI": "PMI_SIZE", "MPICH": "OMPI_COMM_WORLD_SIZE"}[MPI]
-        self.assertIn(f"use the mpirun of {MPI}", self.fault(self.examine(**{other: "2"}), "mpirun has started 2"))
+        self.assertIn(f"this mpirun belongs to another MPI: use that of {MPI}", self.fault(self.examine(**{other: "2"}), "mpirun has started 2"))
 
-    def test_a_rank_that_mpirun_has_started_alone_is_meant_so(self):
+    def test_a_single_rank_of_mpirun_in_a_larger_allocation_is_accepted(self):
         self.assertEqual(self.faults(self.examine(ranks=1, SLURM_NTASKS="8")), {})
 
     def test_root_in_a_container_is_told(self):
         done = self.examine()
         if os.geteuid() == 0 and MPI == "Open MPI":
-            self.assertIn("jobs/mpi-settings.sh", self.fault(done, "refuse to start more for root"))
+            self.assertIn("jobs/mpi-settings.sh", self.fault(done, "refuses to start more as root"))
         else:
             self.assertEqual(self.faults(done), {})
 

@@ -65,7 +65,7 @@ class Names(SweepTest):
                 for command in ("verify", "status"):
                     self.succeed("clogsweep", command, "s.h5")
                 self.succeed("clogfit", "s.h5")
-                self.assertEqual(self.sweep_among(name).returncode, 0, "the same command goes on")
+                self.assertEqual(self.sweep_among(name).returncode, 0, "the same command resumes the sweep")
                 (self.folder / "s.h5").unlink()
 
     def test_a_config_that_was_printed_names_the_same_file(self):
@@ -98,7 +98,7 @@ class Places(SweepTest):
     def num_over(self, name):
         return (~table(self.folder / name).status.isin(["running", "interrupted"])).sum()
 
-    def test_a_link_that_moves_takes_no_table_along(self):
+    def test_changing_a_link_does_not_redirect_the_table(self):
         self.succeed("clogsweep", *FINISHED, "--output", "run-1.h5")
         before = (self.folder / "run-1.h5").read_bytes()
         (self.folder / "latest.h5").symlink_to("run-2.h5")
@@ -210,7 +210,7 @@ class LinksOfOthers(SweepTest):
             (folder / name).symlink_to(self.folder / "elsewhere")
             os.lchown(folder / name, 12, 34)
         for output in ("open/s.h5", "open/t.h5"):
-            self.refuse("clogsweep", *FINISHED, "--output", output, words=["cannot follow the link", "somebody else made it"])
+            self.refuse("clogsweep", *FINISHED, "--output", output, words=["cannot follow the link", "it belongs to another user"])
         self.assertFalse((self.folder / "elsewhere").exists())
 
 

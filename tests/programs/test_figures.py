@@ -440,9 +440,9 @@ class Pictures(Analysis):
             os.link(self.folder / "profile.csv", self.folder / folder / "reduced" / kept)
         before = self.snapshot()
         for command, source, output, words in [
-            ("report", "s.h5", "s.h5", ["is what is to be read"]),
-            ("report", "s.h5", "soft.h5", ["is what is to be read"]),
-            ("report", "s.h5", "hard.h5", ["is what is to be read"]),
+            ("report", "s.h5", "s.h5", ["it is an input"]),
+            ("report", "s.h5", "soft.h5", ["it is an input"]),
+            ("report", "s.h5", "hard.h5", ["it is an input"]),
             ("report", "soft.h5", "run.h5", ["run.h5", "it is no HTML file"]),
             ("report", "s.h5", "page.html", ["page.html", "it is no HTML file"]),
             ("clogging-length", "fit.json", "own", ["own.png", "it is no PNG file"]),
@@ -458,12 +458,12 @@ class Pictures(Analysis):
                 self.refuse_analysis(command, source, "--output", output, *film, *where, words=words)
         self.refuse_analysis("figures", "4", "--programs", BIN, "--output", "own5", words=["figure-4.png", "no PNG file"])
         self.refuse_analysis("figures", "4", "--programs", BIN, "--output", "own6", "--profile", "profile.csv",
-                             words=["figure-4.txt", "is what is to be read"])
+                             words=["figure-4.txt", "it is an input"])
         for film in ("own4", "own4.mp4", "own4.gif"):
             self.refuse("clogrun", "array", *QUICK, "--polygon-interval", 15, "--frames", film, "--output", "r.h5", words=["own4.", "it exists"])
         after = self.snapshot()
         self.assertEqual({name: after[name] for name in before}, before)
-        # An earlier page or picture of one's own is replaced.
+        # An earlier page or picture of ours is replaced.
         for _ in range(2):
             self.draw("report", "s.h5", "--output", "report.html", "--programs", BIN, "--examples", 0)
             self.draw("clogging-length", "fit.json", "--output", "length")

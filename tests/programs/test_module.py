@@ -132,7 +132,7 @@ class Module(Analysis):
             with self.assertRaises(clogsweep.UserError):
                 sweep.clogs(**options)
 
-    def test_a_run_of_a_sweep_once_more_is_the_row(self):
+    def test_a_replay_reproduces_the_row(self):
         sweep = self.sweep()
         run = sweep.replay(3, interval=5)
         for column in ("status", "distance", "lateral_displacement", "steps"):
@@ -225,7 +225,7 @@ class Module(Analysis):
                 sweep.report(self.folder / name, examples=0)
         self.assertEqual(self.snapshot(), before)
 
-    def test_arguments_that_cannot_be_are_named(self):
+    def test_invalid_arguments_are_named(self):
         sweep, run = self.sweep(), self.run_of_one_droplet("--polygon-interval", 10)
         film = self.folder / "film.gif"
         for words, call in {
@@ -245,7 +245,7 @@ class Module(Analysis):
             with self.subTest(words), self.assertRaisesRegex(clogsweep.UserError, words):
                 call()
 
-    def test_what_it_is_can_be_seen(self):
+    def test_repr_and_dir_describe_the_objects(self):
         self.assertEqual(repr(self.sweep().fit()), "<fit of 8 runs in 2 groups>")
         self.assertIn("Sweep", dir(clogsweep))
         self.assertIn(f"clogsweep {clogsweep.__version__} ", self.succeed("clogsweep", "--version").stdout)

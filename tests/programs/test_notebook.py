@@ -1,4 +1,4 @@
-"""The notebook of the gallery, run once more: its cells end well and say what stands in it.
+"""The notebook of the gallery, run again: its cells succeed and print the stored outputs.
 
 Numbers may differ as they do between compilers: docs/notes/2026-11-23-compilers.md.
 """
@@ -35,7 +35,7 @@ def numbers(outputs):
 
 
 class Notebook(ProgramTest):
-    def test_it_says_today_what_stands_in_it(self):
+    def test_stored_outputs_are_up_to_date(self):
         settings = subprocess.run(["bash", "-c", f". {ROOT}/jobs/mpi-settings.sh && env -0"], check=True, capture_output=True, text=True)
         environment = dict(line.split("=", 1) for line in settings.stdout.split("\0") if line)
         environment |= {"PATH": f"{BIN}:{environment['PATH']}", "PYTHONPATH": str(ROOT / "analysis"), "HOME": str(self.folder)}

@@ -68,7 +68,7 @@ class Calls(Analysis):
             self.draw("droplet", "run.h5", "-o", "run", "--pictures", "--most-frames", most)
             self.assertEqual(len(list((self.folder / "run-frames").iterdir())), most)
 
-    def test_numbers_that_cannot_be_and_clogs_that_are_not_there_get_one_line(self):
+    def test_invalid_numbers_and_missing_clogs_get_one_line(self):
         self.succeed("clogsweep", *QUICK, "line-tension=3", "seeds=1", "--output", "s.h5")
         self.succeed("clogsweep", "model=sp", "wall-stiffness=30", "box=20", "max-time=60", "seeds=1", "--output", "disk.h5")
         for arguments, words in [

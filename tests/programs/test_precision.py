@@ -64,7 +64,7 @@ class Precision(ProgramTest):
         self.succeed("clogsweep", *SWEEP, "--output", "whole.h5")
         self.check_equal("s.h5", "whole.h5")
 
-    def test_less_precision_finishes_what_more_had_begun(self):
+    def test_a_lower_precision_finishes_runs_of_a_higher_one(self):
         more = [*SWEEP[:-2], "--until-precision=30%", "--most-seeds=60"]
         hours = 0.00004
         while True:  # stopped when a later round has begun
@@ -97,7 +97,7 @@ class Precision(ProgramTest):
 
         self.assertFalse(any("round" in line for line in self.succeed("clogsweep", *SWEEP[:-2], "--dry-run").stdout.splitlines()))
         *_, bound, expected, first, rounds = told("--until-precision=20%", "--most-seeds=400")
-        self.assertEqual(first, "# this is the first round: +-20 % takes 100 clogs a parameter set")
+        self.assertEqual(first, "# this is the first round: +-20 % needs 100 clogs per parameter set")
         bound = float(re.search("at most ([^ ]+) core-hours", bound)[1])
         expected = float(re.search("expected ([^ ]+) core-hours", expected)[1])
         found = re.fullmatch(r"# all rounds: 100 seeds each if every run clogs, expected (\S+) core-hours; "

@@ -1,4 +1,4 @@
-"""Sweeps that are killed, stopped, changed or wrong: nothing is lost, and the same command goes on.
+"""Sweeps that are killed, stopped, changed or wrong: nothing is lost, and the same command resumes them.
 
 KILLS=100 test_resume.py  kills a hundred times instead of eight.
 """
@@ -75,7 +75,7 @@ class Resumed(SweepTest):
         self.check_equal("s.h5", "whole.h5")
         self.assertEqual({path.name for path in self.folder.iterdir()}, {"s.h5", "whole.h5"})
 
-    def test_a_signal_stops_and_the_same_command_goes_on(self):
+    def test_a_signal_stops_and_the_same_command_resumes(self):
         sweep = [word.replace("max-time=2e4", "max-time=6e4") for word in SLOW]  # three sessions of a second and more
         self.succeed("clogsweep", *sweep[:-1], "whole.h5", ranks=2)
         for signal_number in (signal.SIGUSR1, signal.SIGINT, signal.SIGTERM):
@@ -85,13 +85,13 @@ class Resumed(SweepTest):
             process.send_signal(signal_number)
             _, error = process.communicate(timeout=LONGEST)
             if signal_number == signal.SIGUSR1:  # mpirun kills what is left a second after it forwarded the others
-                self.assertIn("the same command goes on", error)
+                self.assertIn("the same command resumes the sweep", error)
                 rows = table(self.folder / "s.h5")
                 self.assertGreater((rows.status == "interrupted").sum(), 0)
             if MPI == "Open MPI":  # MPICH's mpirun may end with 0 after any signal
                 self.assertEqual(process.returncode, 75 if signal_number == signal.SIGUSR1 else 1, error)
         done = self.succeed("clogsweep", *sweep, ranks=2)
-        self.assertRegex(done.stderr, "1 goes on where it was|2 go on where they were")
+        self.assertRegex(done.stderr, "1 run resumes from the last checkpoint|2 runs resume from the last checkpoint")
         self.check_equal("s.h5", "whole.h5")
         again = self.succeed("clogsweep", *sweep, ranks=2)
         self.assertIn("there is nothing left to do", again.stderr)
@@ -163,8 +163,8 @@ class Resumed(SweepTest):
             clogs = (members.status == "clogged").sum()
             if clogs:
                 self.assertAlmostEqual(group["clogging_length"], members.distance.sum() / clogs)
-        self.assertIn("the command that began it goes on", self.succeed("clogsweep", "status", "s.h5").stdout)
-        self.assertIn("all whole", self.succeed("clogsweep", "verify", "s.h5").stdout)
+        self.assertIn("the command that started it resumes it", self.succeed("clogsweep", "status", "s.h5").stdout)
+        self.assertIn("all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
 
     def test_a_smaller_sweep_keeps_what_the_larger_one_has_under_way(self):
         under_way = self.stop_under_way(SWEEP)
@@ -174,7 +174,7 @@ class Resumed(SweepTest):
         self.succeed("clogsweep", *smaller)
         self.assertTrue((self.folder / "s.h5.journal").exists(), "a snapshot is still needed")
         done = self.succeed("clogsweep", *SWEEP, ranks=2)
-        self.assertIn("1 goes on where it was", done.stderr)
+        self.assertIn("1 run resumes from the last checkpoint", done.stderr)
 
     def test_salvage_keeps_what_only_the_journal_of_a_killed_sweep_has(self):
         self.succeed("clogsweep", *SWEEP[:-1], "whole.h5", ranks=2)
@@ -184,9 +184,9 @@ class Resumed(SweepTest):
         content = (self.folder / "s.h5").read_bytes()
         (self.folder / "s.h5").write_bytes(content.replace(struct.pack("<d", distance), struct.pack("<d", 16 * distance)))
         done = self.succeed("clogsweep", "salvage", "s.h5", "--output", "salvaged.h5")
-        self.assertRegex(done.stdout, r"salvaged.h5: \d+ whole rows?, 1 snapshot\n")
+        self.assertRegex(done.stdout, r"salvaged.h5: \d+ undamaged rows?, 1 snapshot\n")
         done = self.succeed("clogsweep", *SWEEP[:-1], "salvaged.h5", ranks=2)
-        self.assertIn("1 goes on where it was", done.stderr)
+        self.assertIn("1 run resumes from the last checkpoint", done.stderr)
         self.check_equal("salvaged.h5", "whole.h5")
 
     def test_a_journal_without_its_table_is_refused(self):
@@ -199,7 +199,7 @@ class Resumed(SweepTest):
         process = self.start(*SLOW)
         self.wait_for(lambda: self.journal()[0] >= 2)
         self.kill_all(process)
-        self.assertIn(", all whole", self.succeed("clogsweep", "verify", "s.h5").stdout)
+        self.assertIn(", all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
         journal = self.folder / "s.h5.journal"
         content = bytearray(journal.read_bytes())
         content[500] ^= 1  # of the first record
@@ -209,7 +209,7 @@ class Resumed(SweepTest):
         self.assertRegex(verified.stdout, r"1 more damaged; the last one is torn, as after a kill")
         self.assertEqual(journal.read_bytes()[:-22], content)
         done = self.succeed("clogsweep", *SLOW, ranks=2)
-        self.assertIn("s.h5.journal: 1 record is damaged; what was in there is computed again\n", done.stderr)
+        self.assertIn("s.h5.journal: 1 record is damaged; its run resumes from an earlier record or restarts\n", done.stderr)
         self.check_equal("s.h5", "whole.h5")
 
     def test_a_link_is_followed(self):
@@ -300,7 +300,7 @@ class Resumed(SweepTest):
         kept = before.merge(rows, on=["line_tension", "seed", "distance", "wall_seconds"])
         self.assertEqual(len(kept), 4)
 
-    def test_a_row_that_holds_what_cannot_be_is_named_and_computed_again(self):
+    def test_a_physically_impossible_row_is_named_and_recomputed(self):
         keys = [*QUICK, "line-tension=2", "seeds=1..4", "--output", "s.h5"]
         self.succeed("clogsweep", *keys)
         shutil.copy(self.folder / "s.h5", self.folder / "whole.h5")
@@ -308,11 +308,11 @@ class Resumed(SweepTest):
         done = self.run_program("clogsweep", "verify", "s.h5")
         self.assertEqual(done.returncode, 1)
         self.assertIn("task 2: distance=1e308", done.stdout)
-        self.assertIn("4 whole rows, 1 fault", done.stdout)
+        self.assertIn("4 undamaged rows, 1 fault", done.stdout)
         done = self.succeed("clogsweep", *keys)
-        self.assertIn("s.h5: 1 row holds what cannot be", done.stderr)
+        self.assertIn("s.h5: 1 row is physically impossible", done.stderr)
         self.assertIn("s.h5 has 3 of 4 runs", done.stderr)
-        self.assertIn("all whole", self.succeed("clogsweep", "verify", "s.h5").stdout)
+        self.assertIn("all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
         self.check_equal("s.h5", "whole.h5")
 
     def test_a_config_that_cannot_be_read_is_said_to_be_the_file_s(self):
@@ -330,7 +330,7 @@ class Resumed(SweepTest):
         self.succeed("clogsweep", *keys)
         stored_rows.change_attribute(self.folder / "s.h5", "config", "")
         self.refuse("clogsweep", "status", "s.h5", words=["its attribute config: it is missing; the sweep's own command restores it"])
-        self.assertIn("its config is missing, the sweep's own command restores it", self.succeed("clogsweep", "verify", "s.h5").stdout)
+        self.assertIn("its config is missing: the sweep's own command restores it", self.succeed("clogsweep", "verify", "s.h5").stdout)
         self.succeed("clogsweep", *keys)
         self.assertIn("1 of 1 run", self.succeed("clogsweep", "status", "s.h5").stdout)
 
@@ -338,7 +338,7 @@ class Resumed(SweepTest):
         self.succeed("clogsweep", "vertices=64", "box=20", "max-time=20", "seeds=1", "--output", "s.h5")
         self.refuse("clogsweep", "vertices=64", "box=20", "max-time=20", "seeds=1", "clog-energy=1e-16", "gravity=vertex",
                     "perimeter-spring=mean", "--output", "s.h5",
-                    words=["clog-energy=1e-16 (there 1e-17)", "gravity=vertex (there area)", "another --output"])
+                    words=["clog-energy=1e-16 (file: 1e-17)", "gravity=vertex (file: area)", "another --output"])
         # Numbers written otherwise are the same.
         done = self.succeed("clogsweep", "vertices=64", "box=2e1", "max-time=20", "seeds=1", "--output", "s.h5")
         self.assertIn("nothing left to do", done.stderr)
@@ -454,7 +454,7 @@ class Batch(ProgramTest):
         done = subprocess.run([str(BIN / "clogsweep"), *self.sweep()], capture_output=True, text=True,
                               env={**os.environ, other: "2"}, timeout=LONGEST)
         self.assertEqual(done.returncode, 2)
-        self.assertIn(f"use the mpirun of {MPI}", done.stderr)
+        self.assertIn(f"this mpirun belongs to another MPI: use that of {MPI}", done.stderr)
         self.assertFalse((self.folder / "s.h5").exists())
 
 

@@ -1,4 +1,4 @@
-"""Sweeps of channels, flat walls and circles of one's own: the same keys as for one run, one row for each."""
+"""Sweeps of channels, flat walls and user-supplied circles: the same keys as for one run, one row for each."""
 
 import json
 import math
@@ -53,7 +53,7 @@ class BreakUp(Analysis):
         self.succeed("clogfit", "report", "s.h5", "--examples", 0)
         self.assertIn("2 broken", (self.folder / "s-report.html").read_text())
 
-    def test_a_wider_neck_breaks_whom_the_thinnest_neck_of_the_row_says(self):
+    def test_break_up_agrees_with_the_thinnest_neck_of_the_row(self):
         self.succeed("clogsweep", *self.KEYS, "line-tension=0.066,0.07,0.08,0.1", "--output", "s.h5")
         wider = 0.1
         self.succeed("clogsweep", *self.KEYS[:-1], "line-tension=0.066,0.07,0.08,0.1", f"break-up-neck={wider}", "--output", "t.h5")
@@ -188,7 +188,7 @@ class Channels(Analysis):
             self.assertAlmostEqual(perimeter**2 / (4 * np.pi * area), row["largest_shape_parameter"], delta=0.003)
             self.assertIn(row["status"].decode(), figure.axes[0].get_title())
 
-    def test_what_stops_goes_on(self):
+    def test_a_stopped_sweep_resumes(self):
         keys = [*CHANNEL[:-1], "line-tension=0.3,0.6,1", "vertices=256"]
         self.succeed("clogsweep", *keys, "--output", "whole.h5")
         self.run_program("clogsweep", *keys, "--max-hours", 0.0001, "--output", "parts.h5")
@@ -197,7 +197,7 @@ class Channels(Analysis):
             self.assertEqual((whole.distance, whole.smallest_relative_speed, whole.largest_shape_parameter_at),
                              (parts.distance, parts.smallest_relative_speed, parts.largest_shape_parameter_at))
 
-    def test_what_means_nothing_is_refused(self):
+    def test_keys_without_effect_or_out_of_range_are_refused(self):
         for words, told in [(["obstacle-gap=0.3"], ["obstacle-gap", "no array"]), (["seeds=1..5"], ["seeds=1..5", "nothing is random"]),
                             (["obstacles=none", "box=20"], ["box", "no array"]), (["start=-0.1"], ["start", "clear of the wedges"]),
                             (["end=-3"], ["end", "downstream"]), (["orifice=0"], ["orifice"])]:
@@ -298,7 +298,7 @@ class OwnCircles(ProgramTest):
         self.succeed("clogsweep", "replay", "s.h5", 1)
         self.succeed("clogsweep", "verify", "s.h5")
 
-    def test_a_way_longer_than_the_file_asks_for_a_longer_one(self):
+    def test_a_run_longer_than_its_circles_asks_for_a_longer_file(self):
         keys = [key for key in OWN if not key.startswith("max-time")]
         told = self.succeed("clogsweep", *keys, "release=anywhere", "max-time=5000", "--dry-run")
         self.assertIn("give a file of circles that is as long", told.stdout + told.stderr)

@@ -64,7 +64,7 @@ class EveryKey(Analysis):
                         self.assertEqual(groups.abscissa, key["column"])
                         self.assertEqual([(label, len(members)) for label, members in groups.curves()], [("", 2)])
                         self.assertIn(key["column"].replace("_", " "), groups.axis_label())
-                # Curves and, run once more, a clog.
+                # Curves and, replayed, a clog.
                 self.assertGreater(sum(group["clogs"] for group in groups.members), 0)
                 self.draw("report", "s.h5", "--programs", BIN, "--output", "r.html", "--examples", 1)
                 self.assertIn("touched obstacles blue", (self.folder / "r.html").read_text())

@@ -35,15 +35,15 @@ class Streams(SweepTest):
         self.write("speeds.csv", SPEEDS)
 
     def check_complete(self):
-        self.assertIn("3 rows of 3 runs, all whole", self.succeed("clogsweep", "verify", "s.h5").stdout)
+        self.assertIn("3 rows of 3 runs, all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
         self.assertFalse((self.folder / "s.h5.journal").exists())
         (self.folder / "s.h5").unlink()
 
-    def test_a_script_that_nobody_can_read_ends_as_its_fault_says(self):
+    def test_a_script_with_full_stdout_and_stderr_exits_with_2(self):
         done = self.redirect(">/dev/full 2>/dev/full", "clogfit", "report", "--help")
         self.assertEqual(done.returncode, 2)
 
-    def test_a_closed_stream_is_a_wish_for_silence(self):
+    def test_a_closed_stream_suppresses_output(self):
         for redirection in (">&-", "2>&-", "<&-", "<&- >&- 2>&-"):
             # MPICH's mpirun does not start without its streams.
             for ranks in (None, 2) if MPI == "Open MPI" else (None,):

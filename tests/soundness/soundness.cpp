@@ -292,7 +292,7 @@ void print_release_table(const std::vector<CaseReport>& reports, std::size_t num
   table.print();
 }
 
-/// One line for each run, for whoever wants to know more than the table says.
+/// One line for each run, for users who need more than the table.
 void write_runs(std::ofstream& out, const std::string& path, const std::vector<CaseReport>& all) {
   std::vector<CaseReport> reports;
   std::copy_if(all.begin(), all.end(), std::back_inserter(reports), [](const auto& r) { return r.done; });
@@ -429,7 +429,7 @@ int body(int argc, char** argv) {
     runs.open(line.get("runs"));
     if (!runs) throw Error("cannot write " + line.get("runs"));
   }
-  console::catch_stop_signals();  // then only what is finished is told of
+  console::catch_stop_signals();  // then only finished cases are reported
   std::vector<CaseReport> reports;
   if (line.has("releases")) {
     reports = planned_releases(plan, count_given(line, "releases", 0, 10'000'000));

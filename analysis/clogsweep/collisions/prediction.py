@@ -19,7 +19,7 @@ GAP_STEP = 0.04  # of pairs that are tried [sigma]: a twentieth of the range in 
 ANGLE_STEP = 3  # [degrees]
 SPEED = 0.03  # terminal speed by default [sqrt(sigma g)]
 SMALLEST_LENGTH = 4  # [sigma]: shorter ones were too long by a third and more
-SOFTEST = 1  # line tension: of softer droplets up to 42 % of all clogs, and then most, hang on three obstacles
+SOFTEST = 1  # line tension: at 0.5 up to 42 % of all clogs hang on three obstacles, at 0.3 85 % (docs/explanation/predicted.md)
 ARRAYS, ARRAY_BOX = 4, 60  # of random arrays, pairs of so many are counted
 
 # What describes the array. All other keys are the droplet's, and `obstacle-diameter` is one of both.
@@ -98,7 +98,7 @@ def capture_widths(gap: float, diameter: float, held: Sequence[bool]) -> tuple[N
 
 
 def largest_angle(gap: float, diameter: float) -> float:
-    """Up to which a rigid disc rests on two obstacles [degrees]: its centre lies above their line, between them."""
+    """Largest angle at which a rigid disc rests on two obstacles [degrees]: its centre lies above the line between theirs."""
     return math.degrees(math.asin(min(1.0, (gap + diameter) / (1 + diameter))))
 
 

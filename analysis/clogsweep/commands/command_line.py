@@ -22,13 +22,13 @@ _own_name = ""
 
 
 def speak_as(name: str) -> None:
-    """Of a command, how it calls itself; else it has the name of the script."""
+    """Name of the command in its messages; by default that of the script."""
     global _own_name
     _own_name = name
 
 
 def name() -> str:
-    """Of the command in its messages. Whoever calls it under another one, as clogfit report does, wants that."""
+    """Name of the command in its messages; callers under another name, as clogfit report, set CLOG_CALLED_AS."""
     return os.environ.get("CLOG_CALLED_AS") or _own_name or pathlib.Path(sys.argv[0]).name
 
 
@@ -111,7 +111,7 @@ def lab_options(arguments: argparse.Namespace) -> list[object]:
 
 
 def quieten_libraries() -> None:
-    """What matplotlib, pandas or PyTables warn their own users of is nothing that ours can mend; python -W shows it."""
+    """Hides warnings of matplotlib, pandas and PyTables, which our users cannot fix; python -W shows them."""
     if not sys.warnoptions:
         warnings.simplefilter("ignore")
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
@@ -133,7 +133,7 @@ def printable(text: str) -> str:
 
 
 def _refuse(reason: object) -> int:
-    with contextlib.suppress(OSError):  # nobody may be there to read it
+    with contextlib.suppress(OSError):  # its reader may have gone
         print(printable(f"{name()}: {' '.join(str(reason).split())}"), file=sys.stderr, flush=True)
     return USER_FAULT
 

@@ -2,7 +2,7 @@
 
     python3 -m clogsweep dwell sweep.h5        # sweep-dwell.png, sweep-dwell.pdf
 
-An experiment calls a droplet clogged that it has not seen move for a while, though it might go on; the longer the while,
+An experiment calls a droplet clogged that it has not seen move for a while, though it might move on; the longer the while,
 the longer the length. A curve for each group of runs; every number comes from clogfit --dwell, nothing is fitted here.
 The first time is the shortest of which all rows know who stood for longer, the last is the length of the runs, and the
 length there is that of clogs alone. Bars are confidence intervals; a triangle is a lower bound where no run clogged.

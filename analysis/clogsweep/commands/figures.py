@@ -4,7 +4,7 @@
     python3 -m clogsweep figures 6c 7c
     python3 -m clogsweep figures all --size full --output results/figures
 
-The same command goes on with an interrupted sweep, and never repeats finished runs. Figures that share a sweep run it once.
+The same command resumes an interrupted sweep, and never repeats finished runs. Figures that share a sweep run it once.
 Beside FOLDER/SIZE/figure-NAME.png are the same as .pdf, the numbers drawn as .csv, and where they came from as .txt.
 """
 

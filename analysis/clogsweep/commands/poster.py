@@ -3,7 +3,7 @@
     clogsweep --output sweep.h5 line-tension=0.2,0.3,1 seeds=1..10
     python3 -m clogsweep poster sweep.h5                 # sweep-poster.pdf, sweep-poster.png
 
-The page is A3. Every number comes from clogfit; clogs and the way of a droplet are run once more by clogrun, in a
+The page is A3. Every number comes from clogfit; clogs and the path of a droplet are replayed by clogrun, in a
 temporary folder. Of droplets in a channel or on a wall it shows the passage or the sag over what the sweep varies.
 """
 

@@ -2,7 +2,7 @@
 
     clogfit report sweep.h5 --output report.html      # is python3 -m clogsweep report
 
-Every number comes from clogfit. Example clogs are run once more by clogrun, until they rest, in a temporary folder. Of
+Every number comes from clogfit. Example clogs are replayed by clogrun until they rest, in a temporary folder. Of
 droplets in a channel or on a wall it shows the passage or the sag over what the sweep varies, and some outlines.
 """
 

@@ -1,4 +1,4 @@
-"""Clogged droplets of a sweep, run once more until they rest, and what holds each of them."""
+"""Clogged droplets of a sweep, replayed until they rest, and what holds each of them."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ MECHANISMS = ("wrapped", "squeezed", "hybrid", "other")
 def of_polygons(rows: Records, path: object) -> list[np.void]:
     """Rows of the polygons that have clogged. @param path  of their sweep. @throws UserError  if they were in a channel or on a wall"""
     if len(rows) > 0 and rows["obstacle_filling"][0] in (b"channel", b"wall"):
-        raise UserError(f"cannot draw clogs of {path} (its droplets were in a channel or on a wall); clogfit report draws what came out of them")
+        raise UserError(f"cannot draw clogs of {path} (its droplets were in a channel or on a wall); clogfit report draws their results")
     return [row for row in rows if row["status"] == b"clogged" and row["model"] == b"dp"]
 
 
@@ -41,7 +41,7 @@ def mechanism_of(row: np.void) -> str:
 def chosen(rows: list[np.void], path: object, *, mechanism: str | None, tasks: Collection[int] | None, most: int) -> list[np.void]:
     """@param rows  clogs of the sweep. @throws UserError  where there is none, or not all of the tasks"""
     if not rows:
-        raise UserError(f"{path} holds no clogged polygon (soft disks are none); let it go on, or sweep with a longer max-time into another file")
+        raise UserError(f"{path} holds no clogged polygon (soft disks are none); resume it, or sweep with a longer max-time into another file")
     if mechanism not in (None, *MECHANISMS):
         raise UserError(f"no mechanism {mechanism}; they are {', '.join(MECHANISMS)}")
     left = [row for row in rows if mechanism in (None, mechanism_of(row))]

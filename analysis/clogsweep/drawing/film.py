@@ -39,8 +39,8 @@ SHADES = 96  # of the first frame and of the colour bar in a palette
 
 
 def chosen_frames(run: trajectory.Trajectory, most: int) -> npt.NDArray[np.int64]:
-    """Every n-th frame, so that there are no more than `most`; where the droplet moves too far in n frames, n is less and
-    the film has the end of the run alone."""
+    """Every n-th frame, at most `most` of them. If the droplet moves too far in n frames, n is smaller and the film shows
+    only the end of the run."""
     count = len(run.times)
     way = np.abs(np.diff(trajectory.centroids(run.polygons), axis=0)).sum()
     step = max(1, -(-(count - 1) // max(1, most - 1)))
@@ -82,7 +82,7 @@ class Camera:
 
 
 class Layer:
-    """What lies still over every frame: drawn once, then laid over the others."""
+    """A static overlay: drawn once, then copied onto every frame."""
 
     def __init__(self, figure: Figure, artists: Iterable[Artist]) -> None:
         renderer = figure.canvas.get_renderer()
@@ -158,7 +158,7 @@ class Film:
     def _draw_droplet(self, colour: str) -> None:
         self._trail, = self._axes.plot([], [], color=style.DROPLET, linewidth=1.5, alpha=0.6)
         self._inside, = self._axes.fill([0], [0], facecolor=style.DROPLET if colour == "speed" else "0.6", alpha=0.75)
-        # A path for each edge, which share their numbers: to make new ones for every frame takes longer than to draw them.
+        # One path per edge; all are views of one array, because making new paths for each frame takes longer than drawing.
         self._edges = np.zeros((self._run.polygons.shape[2], 2, 2))
         self._outline = PathCollection([Path(edge) for edge in self._edges], cmap="viridis", facecolor="none", linewidth=2, capstyle="round")
         self._axes.add_collection(self._outline)

@@ -1,4 +1,4 @@
-"""What came out of single droplets: their passage through a channel, or their sag on a wall, over what the sweep varies."""
+"""Results of single droplets: their passage through a channel, or their sag on a wall, against what the sweep varies."""
 
 import dataclasses
 import os
@@ -22,7 +22,7 @@ from . import lengths, surroundings
 
 @dataclasses.dataclass(frozen=True)
 class Kind:
-    """What is told of droplets in a channel, or on a wall."""
+    """Headings, labels and columns for droplets in a channel, or on a wall."""
 
     heading: str
     goal: str  # the status of those that came where they should
@@ -100,7 +100,7 @@ def examples(rows: npt.NDArray[np.void], count: int) -> list[np.void]:
 
 
 def followed(rows: Sequence[np.void], clogrun: pathlib.Path, sweep: pathlib.Path, folder: str | os.PathLike[str]) -> list[Trajectory]:
-    """Each row's droplet, run once more. @param folder  for their files"""
+    """Replays each row's droplet. @param folder  for their files"""
     if not rows:
         return []
     # Frames a fiftieth of a diameter apart at terminal speed.

@@ -22,7 +22,7 @@ def data_array(parent: xml.Element, name: str, values: npt.ArrayLike, components
     if components > 1:
         element.set("NumberOfComponents", str(components))
     if not np.isfinite(values).all():
-        raise UserError(f"{name} holds what is no number, which VTK's readers cannot read; run the droplet once more (clogrun replay)")
+        raise UserError(f"{name} holds what is no number, which VTK's readers cannot read; replay the droplet (clogrun replay)")
     element.text = " ".join(map(repr, values.ravel().tolist()))
     return element
 
@@ -59,7 +59,7 @@ def collection(files: Iterable[str], times: Iterable[float]) -> xml.ElementTree:
 
 
 def write(tree: xml.ElementTree, path: pathlib.Path) -> None:
-    """Under another name first: whoever looks in sees whole files."""
+    """Writes under another name first, so that readers see complete files."""
     outputs.refuse_unwritable(path, "vtk")
     fresh = path.with_name(path.name + ".new")
     tree.write(fresh, encoding="utf-8", xml_declaration=True)

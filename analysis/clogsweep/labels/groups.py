@@ -40,7 +40,7 @@ class Groups:
     def with_lengths(self, source: object = "the sweep") -> Groups:
         """The same. @throws UserError  for a sweep of channels or walls, too, which has no clogging lengths"""
         if self.are_passages:
-            raise UserError("cannot draw clogging lengths (these droplets were in a channel or on a wall); clogfit report draws what came out of them")
+            raise UserError("cannot draw clogging lengths (these droplets were in a channel or on a wall); clogfit report draws their results")
         return self.finished(source)
 
     @property
@@ -63,7 +63,7 @@ class Groups:
         return all(known.setdefault(tuple(group[o] for o in others), group[name]) == group[name] for group in self.members)
 
     def _choose_abscissa(self) -> str:
-        """What most curves go over, or else the number that takes most values."""
+        """The usual abscissa if it varies, otherwise the numeric parameter with most values."""
         usual = "line_tension" if self.are_polygons else "wall_stiffness"
         if self.are_lattices and self.varies("lattice_angle"):
             return "lattice_angle"
@@ -76,7 +76,7 @@ class Groups:
         return self.columns[name]["kind"] != "word"
 
     def _is_automatic(self, name: str) -> bool:
-        """May its values follow from the others? What the sweep has a number or a list of is given."""
+        """Can its values follow from other parameters? Not if the sweep gives a number or a list for it."""
         fillings = self.values("obstacle_filling")
         if name in ("obstacle_gap", "obstacle_density") and fillings == {"file"} and self.varies("obstacles"):
             return True  # of the circles of each file
@@ -166,7 +166,7 @@ class Groups:
         return str(self.named("obstacles", *sums)) if len(sums) == 1 and sums <= self._circle_files.keys() else "a file" if len(sums) == 1 else "files"
 
     def _is_worth_a_word(self, name: str, value: Any) -> bool:
-        """What shapes the array, and what is not as by default."""
+        """Parameters that shape the array, and those that differ from their defaults."""
         column = self.columns[name]
         if name == "obstacle_diameter" and self.values("obstacle_filling") == {"file"}:
             return False  # of circles that have none of their own

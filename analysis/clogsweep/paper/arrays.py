@@ -210,7 +210,7 @@ CLOGS = "clogging-friction"  # walls with friction hold droplets that wrap, what
 
 
 def example(shop: Workshop, mechanism: str) -> tuple[trajectory.Trajectory, pandas.Series]:
-    """A clog of the sweep, run once more with its outline. By squeezing: the stiffest that went at least half a diameter, if any
+    """A clog of the sweep, replayed with its outline. By squeezing: the stiffest that went at least half a diameter, if any
     did. By wrapping: the one of median shape, of those that only hang over obstacles, if there are any."""
     shop.sweep(CLOGS)
     rows = shop.rows(CLOGS)

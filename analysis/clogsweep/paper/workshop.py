@@ -87,9 +87,9 @@ class Workshop:
         return CONFIGS / f"{name}.{self.size}.cfg"
 
     def keys(self, name: str) -> dict[str, str]:
-        """What a config and --set say together."""
+        """Settings of a config and --set combined."""
         keys = config_keys(self.config(name))
-        # What is meant for this config alone has the last word.
+        # A --set for this config overrides one for all.
         for config in (None, name):
             keys |= {override.key: override.value for override in self.overrides if override.config == config}
         return keys
@@ -180,7 +180,7 @@ class Workshop:
     # Ways of single droplets
 
     def ways(self, name: str, rows: Iterable[np.void], samples: float, outlines: float | None = None) -> list[Trajectory]:
-        """Rows of a sweep run once more, see replays.follow_all(); reused where a file holds the same already."""
+        """Replays of a sweep's rows, see replays.follow_all(); reused if a file has the same already."""
         folder = self.folder / "runs"
         if not self.draw_only:
             print(f"ways of {name}: {folder}", flush=True)

@@ -23,7 +23,7 @@ else:
 
 
 def reason(text: str) -> str:
-    """The line in which a program of ours says why it stopped; mpirun talks around it."""
+    """The program's own error line; mpirun prints others around it."""
     lines = [line for line in text.splitlines() if line.strip()]
     ours = [line for line in lines if line.startswith(("clogsweep", "clogrun", "clogfit"))]
     return (ours or lines[-1:] or ["no reason given"])[-1]
@@ -71,7 +71,7 @@ def _outputs(program: str | os.PathLike[str], *arguments: object, ranks: int = 1
                 out, error = process.communicate()
                 break
             except KeyboardInterrupt:
-                # The terminal has told the programs, too: they end in good order and say where they are.
+                # The terminal also sends SIGINT to the programs: they end cleanly and report their progress.
                 continue
     if process.returncode != 0:
         raise ProgramFailed(reason(error or out), process.returncode)

@@ -1,4 +1,4 @@
-"""What kind of file is this? Reads all of it, and may die of it: HDF5 does of some damage. So it is run by itself, as a script."""
+"""Determines the kind of a file by reading all of it. HDF5 may crash on damage, so this runs as a separate script."""
 
 import json
 import os
@@ -13,7 +13,7 @@ BYTES_A_SECOND = 50_000_000
 
 
 def is_table(part: object) -> bool:
-    """Has it rows with named columns? What pandas writes of its own is a group."""
+    """Is it a dataset with named columns? (A table written by pandas itself is a group.)"""
     return isinstance(part, h5py.Dataset) and part.ndim == 1 and part.dtype.names is not None
 
 

@@ -1,4 +1,4 @@
-"""Rows of a sweep run once more by clogrun, for what is not in them: h, v and A on the way, outlines."""
+"""Replays rows of a sweep with clogrun, for quantities that the rows lack: h, v and A along the path, outlines."""
 
 import concurrent.futures
 import os
@@ -15,12 +15,12 @@ from . import stored, trajectory
 from .programs import run_program
 from .trajectory import Trajectory
 
-# What may differ between a row and the same run once more.
+# Columns that may differ between a row and its replay.
 CIRCUMSTANCES = {"task", "wall_seconds", "rank", "host", "attempt"}
 
 
 def replay(clogrun: pathlib.Path, sweep: AnyPath, task: int, output: AnyPath, *options: str) -> None:
-    """Runs a row once more. @throws ProgramFailed  with the reason of clogrun"""
+    """Replays a row. @throws ProgramFailed  with the reason of clogrun"""
     run_program(clogrun, "replay", sweep, task, *options, "--output", output)
 
 

@@ -34,7 +34,7 @@ WRITERS: dict[str | None, str] = {
 
 
 def is_sealed(path: AnyPath) -> bool:
-    """Is every bit of the file as it was written? Or does its end not say? @throws Damaged if it is not"""
+    """True if the file's seal matches, False if it has none. @throws Damaged if the seal does not match"""
     with open(path, "rb") as file:
         content = file.read()
     seal = SEAL.fullmatch(content[-SEAL_SIZE:])
@@ -50,7 +50,7 @@ def text(value: object) -> str:
 
 
 def unreadable(path: AnyPath, reason: object, kind: str | None = None) -> UserError:
-    """What is to be thrown where a file is not of the kind that is wanted."""
+    """The error for a file of the wrong kind."""
     return UserError(f"cannot read {path} ({reason}); give {WRITERS[kind]}")
 
 
@@ -71,15 +71,15 @@ def kind_of(path: AnyPath, folder: AnyPath | None = None) -> str:
 
 
 def look(path: AnyPath) -> dict[str, str | bool]:
-    """What kind of file it is, found by reading all of it in another process. @throws Damaged  if that dies of it"""
+    """Kind of the file, determined by reading all of it in a separate process. @throws Damaged  if that process crashes"""
     done = subprocess.run([sys.executable, pathlib.Path(__file__).with_name("rehearsal.py"), path], capture_output=True, text=True)
     if done.returncode != 0:
-        raise Damaged(f"cannot trust {path} (damaged: reading it fails); put a copy in its place")
+        raise Damaged(f"cannot trust {path} (damaged: reading it fails); restore it from a copy")
     return json.loads(done.stdout)
 
 
 def ask_clogsweep(path: AnyPath, folder: AnyPath | None) -> None:
-    """Has the program check rows, attributes and types of a sweep, and say what it has to say. @throws Damaged; UserError"""
+    """Has clogsweep check rows, attributes and types of a sweep, and prints its warnings. @throws Damaged; UserError"""
     try:
         clogsweep = programs.programs_in(folder) / "clogsweep"
     except UserError as error:
@@ -93,7 +93,7 @@ def ask_clogsweep(path: AnyPath, folder: AnyPath | None) -> None:
 
 @functools.lru_cache
 def check_copy(path: str, folder: str | None, *_as_it_is: float) -> None:
-    """Of a file without a seal, which another program has copied or changed. Once for each, as it is then. @throws Damaged; UserError"""
+    """Checks a file without a seal, which another program copied or changed; once for each state of the file. @throws Damaged; UserError"""
     found = look(path)
     if not found["is_ours"]:
         return  # for check_kind()
@@ -103,7 +103,7 @@ def check_copy(path: str, folder: str | None, *_as_it_is: float) -> None:
         print(f"{path} is of an older format without checksums: damage to it may go unnoticed", file=sys.stderr)
     else:
         raise UserError(f"cannot trust {path} (another program copied or changed it, and outlines have no checksums of their own); "
-                        "give the file that clogrun wrote, or run the droplet once more")
+                        "give the file that clogrun wrote, or run the droplet again")
 
 
 def why_not_open(path: AnyPath, error: OSError) -> str:
@@ -148,7 +148,7 @@ def writer(attributes: dict[str, str]) -> str:
 
 
 def source(attributes: dict[str, str]) -> str:
-    """Where the rows of a file come from, for whoever finds a picture of them. @param attributes  of the file"""
+    """Provenance of a file's rows, for the reader of a picture of them. @param attributes  of the file"""
     began = f", begun {attributes['start_time']}" if "start_time" in attributes else ""
     return f"clogsweep {writer(attributes)}{began}\n{attributes.get('command_line', '')}".strip()
 
@@ -165,7 +165,7 @@ def unescaped(value: str) -> str:
 
 
 def circle_files(file: h5py.File) -> dict[str, str]:
-    """Names of the files that circles of one's own come from, by the check sums that rows have of them."""
+    """Names of the files of user-supplied circles, by the checksum that rows store."""
     return {sum_: pathlib.Path(text(circles.attrs["file"])).name for sum_, circles in file.get("obstacles", {}).items() if "file" in circles.attrs}
 
 

@@ -109,7 +109,7 @@ def wedge_outline(wedge: Numbers, reach: float = 50.0) -> Numbers:
 
 
 def described(trajectory: Trajectory) -> str:
-    """What was run, without what came out."""
+    """Parameters of the run, without results."""
     row = trajectory.row
     words = [rf"$\Gamma = {row['line_tension']:.4g}$" if trajectory.word("model") == "dp" else rf"$E_w = {row['wall_stiffness']:.4g}$"]
     if np.isfinite(row["obstacle_gap"]):

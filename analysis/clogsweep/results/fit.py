@@ -59,7 +59,7 @@ class Fit:
         return pandas.DataFrame(flat)
 
     def survival(self, group: int) -> pandas.DataFrame:
-        """P(r) of a group, by its index in `groups`: the probability of not having clogged on a way r [sigma].
+        """P(r) of a group, by its index in `groups`: the probability of travelling farther than r without a clog [sigma].
         @throws UserError  if there is no such group"""
         import pandas
 
@@ -76,7 +76,7 @@ class Fit:
         return style.Picture(style.figure_of(curve.draw_on, self.known.with_lengths()), self.source)
 
     def speeds(self) -> Picture:
-        """Mean speeds over the speed of a free droplet, over what the sweep varies. @throws UserError  if there are none"""
+        """Mean speeds divided by the terminal speed, against the parameter that the sweep varies. @throws UserError  if there are none"""
         from .. import style
         from ..drawing import lengths
 

@@ -32,13 +32,13 @@ class Status(dict[str, Any]):
 
 
 class Sweep:
-    """What ``clogsweep --output`` wrote, finished or still under way.
+    """What ``clogsweep --output`` wrote, finished or still in progress.
 
     - `rows`: table with a row for each run, as it was when the file was opened; `rows.attrs` holds `units` and
       `meanings` of the columns
     - `attributes`: version, commit, config, command line
 
-    Everything else asks the programs, of the file as it is then.
+    All other methods run the programs on the file as it is at that moment.
     """
 
     def __init__(self, path: str | os.PathLike[str], programs: str | os.PathLike[str] | None = None) -> None:
@@ -74,7 +74,7 @@ class Sweep:
         return Status(json.loads(programs.run_program(self._program("clogsweep"), "status", self.path, "--format", "json")))
 
     def clogs(self, *, mechanism: str | None = None, tasks: Collection[int] | None = None, most: int = 6, jobs: int = 2) -> Clogs:
-        """Clogged polygons, run once more until they rest.
+        """Clogged polygons, replayed until they rest.
 
         @param mechanism  only "wrapped", "squeezed", "hybrid" or "other"; @param tasks  only these
         @param most  so many at most, the first; @param jobs  runs at a time
@@ -102,7 +102,7 @@ class Sweep:
         return Picture(device.draw(place, device.ways_of(place, self.path, self._program("clogrun"), ways, jobs)), stored.source(self.attributes))
 
     def replay(self, task: int, output: str | os.PathLike[str] | None = None, *, interval: float = 1.0) -> Run:
-        """A run once more, with outlines. @param output  file to keep it in; @param interval  between outlines [t0]. @throws UserError"""
+        """Replays a run, with outlines. @param output  file to keep it in; @param interval  between outlines [t0]. @throws UserError"""
         if task not in self._records["task"]:
             raise UserError(f"{self.path} holds no task {task}; it has {len(self._records)} rows")
         options = ["--sample-interval", repr(float(interval)), "--polygon-interval", repr(float(interval))]

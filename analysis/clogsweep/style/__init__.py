@@ -37,7 +37,7 @@ DROPLET = "#D55E00"
 
 
 def new_figure(**options: Any) -> Figure:
-    """Not one of `pyplot`'s, which stay in memory and belong to a backend: whoever draws in a notebook has chosen one."""
+    """Not one of `pyplot`'s, which stay in memory and belong to a backend: a notebook has already chosen one."""
     made = Figure(**options)
     FigureCanvasAgg(made)
     return made
@@ -58,7 +58,7 @@ def figure_of(draw: Callable[..., None], *what: Any) -> Figure:
 
 
 def curve_style(index: int) -> dict[str, Any]:
-    """Of no two curves the same: once colours and markers are used up, lines are broken, by more dots each time."""
+    """A different style for each curve: when colours and markers are used up, lines become dashed, with one more dot each round."""
     round_, which = divmod(index, len(COLOURS))
     line = (0, (6, 2) + (1, 2) * (round_ - 1)) if round_ > 0 else "-"
     return {"color": COLOURS[which], "marker": MARKERS[which], "linestyle": line}
@@ -72,7 +72,7 @@ def mark(kind: str, groups: Collection[Group]) -> str | None:
 
 
 def mark_legend(legend: Legend, handles: Sequence[Any]) -> None:
-    """Entries of what has a name of mark() stand for the same."""
+    """Gives the legend entry of each marked artist the name of the same groups."""
     for handle, text in zip(handles, legend.get_texts()):
         name = (handle.lines[0] if hasattr(handle, "lines") else handle).get_gid()
         if name:
@@ -89,8 +89,8 @@ def main_mechanism(group: Group) -> str:
 
 
 def legend(axes: Axes, groups: Collection[Group] = (), other: str = "other clogs") -> None:
-    """Of the curves if they have names, and of the markers that draw_lengths() gave these groups. That of many is
-    beside the axes, in a figure that is as much wider. @param other  what clogs are called that are of no mechanism"""
+    """Legend of named curves and of the markers that draw_lengths() gave these groups. A long legend is placed
+    beside the axes, and the figure gets wider. @param other  what clogs are called that are of no mechanism"""
     curves = [(handle, label) for handle, label in zip(*axes.get_legend_handles_labels()) if label]
     names = {main_mechanism(group) for group in groups if group["clogs"] > 0}
     markers = [(Line2D([], [], color="0.4", marker=marker, linestyle="none"), f"most clogs {name}" if name != "other" else other)

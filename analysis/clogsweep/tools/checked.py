@@ -1,4 +1,4 @@
-"""Arguments of the module that cannot be, refused as the commands refuse theirs."""
+"""Checks arguments of the module, with the same messages as the commands."""
 
 import operator
 from collections.abc import Collection

@@ -1,4 +1,4 @@
-"""What can go wrong and is not a mistake of this package."""
+"""Errors that are not bugs of this package."""
 
 
 def lacking(error: ImportError) -> str:
@@ -7,11 +7,11 @@ def lacking(error: ImportError) -> str:
 
 
 class UserError(Exception):
-    """What the user can mend, in one line: what, why, remedy. Commands end with exit code 2."""
+    """A fault that the user can fix, in one line: what, why, remedy. Commands end with exit code 2."""
 
 
 class NotThere(UserError):
-    """Nothing was to be run, and what is asked for has not been run before."""
+    """--draw-only was given, but the result has not been computed yet, or belongs to another run."""
 
 
 class ProgramFailed(Exception):

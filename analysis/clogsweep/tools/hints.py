@@ -11,7 +11,7 @@ import numpy.typing as npt
 AnyPath = str | os.PathLike[str]
 
 Column = dict[str, Any]  # a parameter as clogsweep describes it: its name, symbol, unit, default
-Group = dict[str, Any]  # of clogfit's JSON: parameters that its runs have in common, and what came out of them
+Group = dict[str, Any]  # of clogfit's JSON: parameters that its runs have in common, and their results
 Numbers = npt.NDArray[np.float64]
 Point = Sequence[float] | Numbers  # x and y
 Records = npt.NDArray[np.void]  # rows of a table, whose columns have names

@@ -23,7 +23,7 @@ def refuse_unwritable(path: pathlib.Path, kind: str, *inputs: pathlib.Path) -> N
     if not os.access(path if path.exists() else path.parent, os.W_OK):
         raise UserError(f"cannot write {path} (permission denied); give another --output")
     if any(path.exists() and source.exists() and path.samefile(source) for source in inputs):
-        raise UserError(f"will not overwrite {path} (it is what is to be read); give another --output")
+        raise UserError(f"will not overwrite {path} (it is an input); give another --output")
     if path.is_file() and not is_of_kind(path, kind):
         raise UserError(f"will not overwrite {path} (it is no {kind.upper()} file); give another --output, or remove it first")
 

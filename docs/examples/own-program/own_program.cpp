@@ -1,4 +1,4 @@
-/// A program of one's own: a few droplets among obstacles, and their clogging length.
+/// Your own program: a few droplets among obstacles, and their clogging length.
 
 #include <cstdio>
 #include <vector>

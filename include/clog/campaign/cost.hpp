@@ -11,7 +11,7 @@ struct RunCost {
   double begin_seconds = 0;  ///< until it moved: its obstacles, its release
   double seconds = 0;        ///< since then
   double work = 0;           ///< done in these seconds
-  double longest_work = 0;   ///< if it goes on to max-time
+  double longest_work = 0;   ///< if it lasts to max-time
   bool is_over = false;
 };
 
@@ -22,32 +22,33 @@ struct WaitingRuns {
   double longest_work = 0;  ///< of each
 };
 
-/// Computing time of a whole sweep, or of what is left of it [s].
+/// Computing time of a whole sweep, or of the rest of it [s].
 struct SweepCost {
   double seconds_per_work = 0;
-  double bound = 0;  ///< if every run goes on to max-time
-  /// What is to be expected, and roughly a 95 % interval of it.
+  double bound = 0;  ///< if every run lasts to max-time
+  /// The estimate, and roughly its 95 % interval.
   double expected = 0;
   double lower = 0;
   double upper = 0;
 };
 
-/// From some of its runs, which were begun as if drawn at random.
+/// Cost of a sweep, estimated from some of its runs, which were chosen as if at random.
 ///
-/// How long the unfinished ones will go on is judged by how the sample fared lately, from half the shortest
-/// time on that an unfinished one has had; early ends say little of that. The low end of the interval takes
-/// late ends for exponential, the high end for those of a mixture of short and long runs, whose ends become
-/// rarer; the expectation is their geometric mean. A parameter set none of whose runs has ended may be one
-/// whose runs go on to max-time: the high end is that, and the expectation takes every order of magnitude for
-/// as likely. The interval has the error of each law, joined with that of the sample.
+/// The remaining time of unfinished runs is estimated from late ends: those after half the shortest time that
+/// an unfinished run has taken, since earlier ends say little about it. The lower limit assumes that late
+/// ends are exponentially distributed; the upper limit, that they come from a mixture of short and long runs
+/// and become rarer with time; the estimate is the geometric mean of both. If no run of a parameter set has
+/// ended, all may last to max-time: this is the upper limit, and for the estimate every order of magnitude of
+/// the remaining time is equally likely. The interval combines the error of each law with that of the sample.
 /// @param sample  of at least one run that has done some work, in some time
-/// @param all_work  of all runs of the sweep, if every run goes on to max-time
+/// @param all_work  of all runs of the sweep, if every run lasts to max-time
 SweepCost sweep_cost(std::span<const RunCost> sample, double all_work, std::int64_t num_runs);
 
-/// What a sweep still costs, from all its runs that have begun. These are no sample of it: long ones are
-/// begun first. So each parameter set is judged by itself, as above: what its runs still take by how those
-/// fared of which it has one that is over, otherwise by how all did. A set of which none has begun is taken
-/// for the mean of all, with an error as large as that.
+/// Remaining cost of a sweep, from all its runs that have begun. They are not a random sample, because long
+/// runs start first. So each parameter set is estimated separately, as above: the remaining time of its
+/// unfinished runs from its own runs if one of them has ended, otherwise from all runs. A set without a
+/// started run is assumed to cost the same fraction of its bound as the others, with an error as large as
+/// that estimate.
 /// @param begun  at least one that has done some work, in some time
 SweepCost cost_left(std::span<const RunCost> begun, std::span<const WaitingRuns> waiting);
 

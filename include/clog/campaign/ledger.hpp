@@ -15,20 +15,22 @@
 
 namespace clog::campaign {
 
-/// What is known of a sweep's runs, on rank 0 and on the disk: the table of runs, published now and then as a
-/// whole, and the journal beside it, which has what came since and the snapshots of running tasks. A sweep
-/// that was stopped or killed goes on from there. Runs are known by what they are (sweep::identity), not by
-/// their number.
+/// The state of a sweep's runs, on rank 0 and on disk: the table, which is published as a whole from time to
+/// time, and the journal beside it, which holds later results and the snapshots of running tasks. A stopped
+/// or killed sweep resumes from these files. A run is identified by its parameters and seed
+/// (sweep::identity), not by its task number.
 class Ledger {
  public:
   /// Reads what is there, and checks that it belongs to this sweep.
-  /// @param num_wanted  how many of the plan's tasks, from its beginning, are to be done for the time being
+  /// @param num_wanted  number of tasks, from the start of the plan, that are requested at first (rounds may
+  /// request more)
   /// @param attempts  how often a run that fails is tried, over all sessions
-  /// @throws Error if the file is foreign, of another model or other settings, or written to by another sweep
+  /// @throws Error if the file is not a sweep's, has another model version or other settings, or another
+  /// sweep is writing to it
   Ledger(std::string path, const sweep::Plan& plan, const sweep::Settings& settings,
          store::Provenance provenance, std::int64_t num_wanted, std::int64_t attempts);
 
-  /// More of the plan's tasks are to be done; tasks_left() are then those of them that are not over.
+  /// Requests more of the plan's tasks; tasks_left() then returns the unfinished ones among these.
   void want(const std::vector<std::int64_t>& tasks);
   std::int64_t num_wanted() const { return num_wanted_; }
   /// Tasks that have begun and are not over, wanted or not.
@@ -36,30 +38,30 @@ class Ledger {
 
   /// Tasks that are wanted and not over.
   const std::vector<std::int64_t>& tasks_left() const { return tasks_left_; }
-  /// Of those, how many have a snapshot to go on from.
+  /// How many of these resume from a snapshot.
   std::int64_t num_resumed() const;
-  /// Runs of the file that are not of this plan: they stay.
+  /// Runs in the file that are outside this plan; the file keeps them.
   std::int64_t num_beyond() const { return static_cast<std::int64_t>(other_runs_.size()); }
-  /// Runs whose row held what cannot be: they are computed again.
+  /// Physically impossible rows; their runs are recomputed.
   std::int64_t num_faulty() const { return num_faulty_; }
-  /// Records of the journal that were damaged: their runs are a few seconds behind, or begin anew.
+  /// Damaged records of the journal: their runs resume from an earlier record, or restart.
   std::int64_t num_unreadable() const { return journal_.num_unreadable(); }
 
-  /// What could not be checked of the file that it goes on with; empty if all was.
+  /// What could not be checked in the file that the sweep resumes from; empty if everything was checked.
   const std::string& caution() const { return caution_; }
 
   sweep::Start start(std::int64_t task, int rank);
   void report(const sweep::Report& report);
-  /// Of a run that has begun.
+  /// Row of a run that has begun.
   const sweep::RunRow& row(std::int64_t task) const { return runs_.at(task).row; }
   /// The first run if all that have begun have failed, otherwise nullptr.
   const sweep::RunRow* first_if_all_failed() const;
-  /// Of a run that failed: it is to be done again, as the same attempt.
+  /// Discards a failure: the task runs again with the same attempt number.
   void withdraw_failure(std::int64_t task);
   bool tries_again(const sweep::RunRow& failed) const { return failed.attempt < attempts_; }
   /// Publishes the table if it is time to.
   void tick();
-  /// Publishes it; a sweep that is complete needs no journal any more.
+  /// Publishes the table, and removes the journal of a complete sweep.
   void finish();
 
  private:
@@ -82,7 +84,7 @@ class Ledger {
   /// What is known of a task from earlier sessions or attempts.
   struct Past {
     double seconds = 0;           // spent on it
-    std::string instruction_set;  // of the snapshot that it goes on from; empty if it begins anew
+    std::string instruction_set;  // of the snapshot that it resumes from; empty if it restarts
   };
   std::unordered_map<std::int64_t, Past> past_;
   std::string caution_;
@@ -94,7 +96,7 @@ class Ledger {
   sweep::RunRow new_row(std::int64_t task) const;
   void keep_circles(const store::SweepFile& file);
   store::SweepFile read_table();
-  void take_over(const store::SweepFile& file, const sweep::Settings& settings);
+  void adopt(const store::SweepFile& file, const sweep::Settings& settings);
   std::string settings_that_differ(const store::SweepFile& file, const sweep::Settings& settings) const;
   void refuse_foreign(const std::vector<Entry>& entries, const std::unordered_map<std::string, Entry>& known,
                       const sweep::Settings& settings) const;

@@ -23,15 +23,15 @@ class Progress {
   /// @param num_sets  parameter sets; task i is of set i % num_sets
   Progress(std::ostream& out, Screen screen, int num_computing_ranks, std::int64_t num_sets);
 
-  /// More tasks.
+  /// Adds tasks to the total against which progress is measured.
   /// @param num_wanted  runs of the whole sweep; those that are not expected were done before
   void expect(std::span<const std::int64_t> tasks, std::int64_t num_wanted);
 
   void started(std::int64_t task);
   void ended(const sweep::RunRow& row);
-  /// In vain; it will be tried again.
+  /// An attempt failed; the task will be tried again.
   void tried(std::int64_t task) { running_.erase(task); }
-  /// One that ended as failed is to be done again.
+  /// A task that ended as failed will run again.
   void not_ended(const sweep::RunRow& failed);
   /// Prints a line that stays, whatever the screen.
   void say(const std::string& text) { status_.say(text); }

@@ -7,10 +7,10 @@
 
 namespace clog::campaign {
 
-/// One run of a sweep, done once more.
+/// Replay of one run of a sweep.
 struct Repetition {
   sweep::RunRow row;
-  std::vector<std::string> differing;  ///< columns of results that have other bits than the first time
+  std::vector<std::string> differing;  ///< columns of results whose bits differ from the row
 };
 /// @param row  see replayable_row()
 Repetition repeat(const sweep::RunRow& row);

@@ -8,7 +8,7 @@
 
 namespace clog::campaign {
 
-/// What is whole of a damaged sweep file and of the journal beside it.
+/// The undamaged rows of a damaged sweep file and of the journal beside it.
 struct Salvage {
   store::SweepFile table;                        ///< with the results that only the journal had
   std::vector<store::Journal::Entry> snapshots;  ///< of unfinished runs

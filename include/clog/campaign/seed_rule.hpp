@@ -10,10 +10,10 @@
 
 namespace clog::campaign {
 
-/// Adds seeds to a sweep until the clogging length of every parameter set is known well enough: in rounds, of
-/// which each is decided when the one before it is over, by the number of clogs alone. So the runs of a sweep
-/// depend neither on the ranks nor on interruptions, and lambda stays unbiased (stopping at a number of clogs
-/// is inverse sampling; the interval's relative width hangs on nothing else).
+/// Adds seeds to a sweep until the clogging length of every parameter set is known well enough: in rounds.
+/// Each round is determined when the previous one has ended, from the number of clogs alone. So the runs of a
+/// sweep depend neither on the ranks nor on interruptions, and lambda stays unbiased (stopping at a number of
+/// clogs is inverse sampling; the relative width of the interval depends on nothing else).
 class SeedRule {
  public:
   /// @param precision  half the 95 % interval's width over lambda, to be reached
@@ -21,13 +21,13 @@ class SeedRule {
   SeedRule(double precision, std::int64_t num_groups, std::int64_t first_seeds, std::int64_t most_seeds);
 
   /// Tasks of the next round, once all tasks so far are over; empty at the end. Task s num_groups + g is the
-  /// s-th seed of parameter set g. A set that is not precise enough gets as many seeds as its share of clogs
-  /// so far makes necessary, but no more than it has.
+  /// s-th seed of parameter set g. A set that is not precise enough gets as many more seeds as its fraction
+  /// of clogs so far requires, but at most as many as it has already.
   /// @param has_clogged  of a task that is over
   std::vector<std::int64_t> next_round(const std::function<bool(std::int64_t task)>& has_clogged);
 
   std::int64_t num_groups() const { return static_cast<std::int64_t>(num_seeds_.size()); }
-  /// Of a parameter set that is precise enough.
+  /// Number of clogs of a parameter set that is precise enough.
   std::int64_t clogs_needed() const;
   double precision() const { return precision_; }
   std::int64_t most_seeds() const { return most_seeds_; }

@@ -34,7 +34,7 @@ struct Status {
   }
 };
 
-/// Of a sweep's file, while it is written or afterwards. Runs under way count as not clogged so far, at the
+/// Status from a sweep's file, also while it is written. Runs in progress count as not clogged so far, at the
 /// distance they have reached: finished runs alone would give too short lengths, since runs that clog early
 /// finish first.
 /// @throws Error if the file does not say what its sweep is

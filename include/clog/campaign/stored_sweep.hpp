@@ -18,12 +18,14 @@ store::SweepFile read_with_caution(const std::string& path);
 
 /// Text of an attribute; empty if there is none.
 std::string attribute(const store::Provenance& provenance, const std::string& name);
-/// @throws Error that names the file, as the next two do, if it does not say, or nothing that can be read
+/// @throws Error, which names the file, if the attribute is missing or cannot be parsed; so does
+/// stored_plan()
 sweep::Settings stored_settings(const std::string& path, const store::Provenance& provenance);
 sweep::Plan stored_plan(const std::string& path, const store::SweepFile& file);
 /// Columns of the keys that its config has lists for; none if that cannot be read.
 std::vector<std::string> listed_columns(const store::Provenance& provenance);
 /// How many runs are wanted so far: of --until-precision those asked for, otherwise all of the plan.
+/// @throws Error, which names the file, if the attribute cannot be parsed
 std::int64_t stored_num_wanted(const std::string& path, const store::Provenance& provenance,
                                const sweep::Plan& plan);
 /// What a file's sweep comes to: the runs that are wanted, and those that it holds besides.
@@ -36,8 +38,7 @@ struct RunCount {
 };
 RunCount stored_num_runs(const std::string& path, const store::SweepFile& file, const sweep::Plan& plan);
 
-/// The row of a task that is to be computed once more; the instruction set that it asks for is in use from
-/// then on.
+/// The row of a task to be replayed. Switches to its instruction set.
 /// @throws Error if there is none, it is not over, or this program would come to something else
 sweep::RunRow replayable_row(const store::SweepFile& file, const std::string& task);
 

@@ -23,10 +23,10 @@ struct SetTimes {
   double seconds = 0;  ///< that finished ones took and running ones have taken, together
 };
 /// Short runs end first, so the mean over finished runs alone is too small: running ones count as censored,
-/// as for the clogging length. Each parameter set has a mean of its own; one of which no run has finished
-/// takes that of all, with an error as large. What remains is then a share of the waiting runs for every
-/// rank, and a tail in which the ranks run dry one by one (the largest of W exponential times is 1 + 1/2 +
-/// ... + 1/W means). The range is that of the means, 80 %.
+/// as for the clogging length. Each parameter set has its own mean; a set without a finished run gets the
+/// mean of all, with an error as large. The time left is then each rank's share of the waiting runs, plus a
+/// tail in which ranks run out of tasks one by one (the largest of W exponential times is 1 + 1/2 + ... + 1/W
+/// means). The range is that of the means, 80 %.
 TimeLeft time_left(std::span<const SetTimes> sets, std::size_t num_ranks);
 
 }  // namespace clog::campaign

@@ -6,7 +6,7 @@
 
 namespace clog::campaign {
 
-/// Is a sweep's file whole, and the journal beside it?
+/// Are a sweep's file and the journal beside it undamaged?
 struct Verification {
   std::vector<std::string> findings;  ///< a line for each fault, then what is there
   std::int64_t num_faults = 0;

@@ -10,7 +10,7 @@ namespace clog::cli {
 /// @throws Error  if it is not there
 std::filesystem::path find_python_module();
 
-/// The program goes on as `python3 -m clogsweep`; its exit code is the module's.
+/// The process continues as `python3 -m clogsweep`; its exit code is the module's.
 /// @param name  under which the module speaks of itself
 /// @param module  as find_python_module() gives it
 /// @param arguments  a command of the module first

@@ -15,7 +15,7 @@ struct Assignment {
   bool is_isolated = true;  ///< do tasks run in processes of their own?
   std::string settings;     ///< see sweep::Settings::packed()
 
-  /// As it travels.
+  /// Serialised form, for messages.
   std::string text() const;
   static Assignment from(const std::string& text);
 };

@@ -23,8 +23,8 @@ struct LeadOptions {
   Log::Level log = Log::Level::normal;
 };
 
-/// Rank 0's part of a sweep, while the other ranks are in follow_sweep(): joins the scheduler with
-/// what is kept (the ledger) and what is told (log and progress). Returns the exit code.
+/// Rank 0's part of a sweep, while the other ranks are in follow_sweep(): connects the scheduler with the
+/// ledger, the log and the progress line. Returns the exit code.
 /// @param rule  adds tasks in further rounds, if there is one
 int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, const sweep::Plan& plan,
                const sweep::JobFactory& make_job, campaign::Ledger& ledger, campaign::SeedRule* rule);

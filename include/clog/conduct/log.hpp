@@ -12,18 +12,18 @@ namespace clog::conduct {
 class Log {
  public:
   enum class Level {
-    quiet,   ///< what calls for somebody: a rank that is set aside
-    normal,  ///< and what is out of the ordinary
-    verbose  ///< and every task that starts or ends
+    quiet,   ///< events that need action: a rank that is set aside
+    normal,  ///< also failures and the reason for a stop
+    verbose  ///< also every task that starts or ends
   };
   enum class From { release, snapshot };
   enum class Then { over, tried_again };
 
-  /// @param progress  whose lines these go between
+  /// @param progress  the progress line; log lines are printed above it
   Log(campaign::Progress& progress, Level level) : progress_(progress), level_(level) {}
 
   void started(const sweep::RunRow& row, From from);
-  /// Of a task that is over, failed or not, or interrupted.
+  /// Called for a task that has ended, failed or not, or was interrupted.
   void ended(const sweep::RunRow& row);
   void failed(const sweep::RunRow& row, Then then);
   void failure_withdrawn(const sweep::RunRow& row);

@@ -12,8 +12,8 @@ namespace clog::host {
 /// @param root  holds proc and sys
 double granted_cores(const std::filesystem::path& root = "/");
 
-/// Memory still available [bytes], on the host and in the control groups; 0 if the host does not tell. What
-/// the kernel keeps of files that were not read of late counts as available: it gives that up first.
+/// Memory still available [bytes], on the host and in the control groups; 0 if unknown. Inactive page cache
+/// counts as available, since the kernel evicts it first.
 /// @param root  holds proc and sys
 double available_memory(const std::filesystem::path& root = "/");
 

@@ -14,7 +14,7 @@ struct RankFacts {
   std::vector<int> cores;           ///< that the rank may run on
   double cores_granted = 0;         ///< by control groups, to all of their processes; 0: no limit
   double memory = 0;                ///< still available, on the host and in control groups [bytes]
-  double nanoseconds_per_step = 0;  ///< and vertex, while all ranks compute
+  double nanoseconds_per_step = 0;  ///< per step and vertex, while all ranks compute
 };
 
 /// Takes about `seconds` of computing.

@@ -22,19 +22,18 @@ namespace clog::parallel {
 /// memory runs out the kernel takes the processes that compute first.
 class IsolatedJobs {
  public:
-  /// From a text, such as a config, to the jobs that it describes. Called once in the helper, and once in the
-  /// rank, whose jobs are only made, for the row that they begin with, and do no work while there is a
-  /// helper.
+  /// Makes the jobs that a text, such as a config, describes. Called once in the helper and once in the rank.
+  /// While there is a helper, the rank constructs jobs only for their initial row; they do no work.
   using Describe = std::function<sweep::JobFactory(const std::string& description)>;
 
   /// Forks the helper: to be called before MPI_Init, while there are no threads.
-  /// @throws std::system_error if the system has no process or socket left
+  /// @throws Error if no process can be started; std::system_error if no socket can be made
   explicit IsolatedJobs(const Describe& describe);
   ~IsolatedJobs();
   IsolatedJobs(const IsolatedJobs&) = delete;
   IsolatedJobs& operator=(const IsolatedJobs&) = delete;
 
-  /// To be called once. Of its jobs one at a time may exist, and none after this object.
+  /// Call once. At most one of its jobs may exist at a time, and none may outlive this object.
   sweep::JobFactory jobs(const std::string& description);
 
  private:

@@ -10,15 +10,14 @@ namespace clog::parallel {
 /// Whose fault is a failed task: its own, or that of the rank (a broken node)? A task's result depends on no
 /// rank, so the way to know is to try it elsewhere:
 ///
-/// - A failure is held against its rank until the rank succeeds with another task, or until the task has
-/// failed on
-///   another rank that is trusted: then it is the task's own fault. Trusted is who has succeeded and is not
-///   on hold.
-/// - Three failures held against a rank put it on hold: no more tasks for it until their cause is known.
-/// - If one of the three then succeeds elsewhere, the rank is set aside for good.
-/// - The last rank left of several cannot be compared with any: it is set aside with three failures held
-/// against it.
-///   A rank that was alone from the beginning never is.
+/// - A failure counts against its rank until the rank succeeds with another task, or until the task also
+///   fails on a trusted rank: then the task is at fault. A rank is trusted if it has succeeded and is not on
+///   hold.
+/// - Three failures that count against a rank put it on hold: it gets no more tasks until their cause is
+///   known.
+/// - If one of the three tasks then succeeds elsewhere, the rank is set aside for good.
+/// - The last rank left of several cannot be compared with any: three failures set it aside at once. A rank
+///   that was alone from the beginning is never set aside.
 class RankTrust {
  public:
   explicit RankTrust(const std::vector<int>& ranks);
@@ -26,7 +25,8 @@ class RankTrust {
   /// Returns the ranks that this sets aside.
   std::vector<int> succeeded(std::int64_t task, int rank);
   std::vector<int> failed(std::int64_t task, int rank);
-  /// Takes all ranks that are left off hold: when none is left to clear up whose fault it is.
+  /// Releases all ranks on hold that are still in service, when no rank is left that could decide whether
+  /// rank or task is at fault.
   void let_go();
 
   int num_in_service() const { return num_in_service_; }
@@ -36,8 +36,9 @@ class RankTrust {
   bool is_trusted(int rank) const;
   /// Tasks that failed on this rank, without having failed on a trusted one or succeeded on any.
   std::vector<std::int64_t> unsettled_tasks(int rank) const;
-  /// Those of them that other ranks are to try, to find out whether this rank may go off hold: as long as
-  /// there are some that have not yet, and not where all tasks seem to fail everywhere.
+  /// Unsettled tasks of this rank that other ranks should try, to decide whether it may be released: those
+  /// that some rank in service has not tried yet. Empty if this rank is not on hold, or if all tasks seem to
+  /// fail on all ranks.
   std::vector<std::int64_t> tasks_in_doubt(int rank) const;
 
  private:

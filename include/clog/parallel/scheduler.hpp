@@ -20,19 +20,21 @@ enum class MasterComputes { automatic, yes, no };
 using sweep::Report;
 using sweep::Start;
 
-/// What rank 0 is told while a sweep runs, and asked. Called on rank 0 only, between slices of its own work.
+/// Callbacks by which the scheduler informs and queries its caller during a sweep. Called on rank 0 only,
+/// between slices of its own work.
 struct SweepEvents {
   std::function<Start(std::int64_t task, int rank)> started = [](std::int64_t, int) { return Start(); };
-  /// Of a task that runs on; its row says `running`. Now and then.
+  /// Called from time to time for a running task; the status of its row is `running`.
   std::function<void(const Report&)> progressed = [](const Report&) {};
   /// Every task that was started ends here once for each attempt; `interrupted` after a stop.
   std::function<void(const Report&)> ended = [](const Report&) {};
-  /// Of a task that ended as `failed`: is it to be tried again?
+  /// Should a task that ended as `failed` be tried again?
   std::function<bool(const sweep::RunRow&)> tries_again = [](const sweep::RunRow&) { return false; };
-  /// Of a task that ended as `failed`: it may have been the rank's fault (see RankTrust), the attempt does
-  /// not count. The task is done once more, whatever tries_again() said.
+  /// Called for a task that `failed` when the rank may be at fault (see RankTrust): the attempt does not
+  /// count, and the task is tried once more whatever tries_again() returned.
   std::function<void(std::int64_t task)> failure_withdrawn = [](std::int64_t) {};
-  /// A rank gets no more tasks; the row, of rank and host, is that of the last task that failed on it.
+  /// Called when a rank gets no more tasks. The row is that of the last task that failed on it, with rank and
+  /// host.
   std::function<void(const sweep::RunRow& failed)> set_aside = [](const sweep::RunRow&) {};
   /// About every 0.1 s; less often while this rank samples an array or releases a droplet (a second, in large
   /// boxes).
@@ -41,12 +43,12 @@ struct SweepEvents {
   std::function<bool()> stop_requested = [] { return false; };
 };
 
-/// Does rank 0 compute? With `automatic` up to 16 ranks: beyond that one rank more or less is not worth the
-/// delay that its slices put between a worker and its next task.
+/// Does rank 0 compute? `automatic`: with up to 16 ranks. With more, the gain of one rank is not worth the
+/// delay that its slices add before each worker's next task.
 bool computes(int num_ranks, MasterComputes choice);
 
-/// What rank 0 knows of a sweep's tasks and ranks. It lasts over all rounds of a sweep: who was set aside
-/// stays so, and measured run times go on to count.
+/// Rank 0's state of a sweep's tasks and ranks, kept over all rounds: ranks that were set aside stay set
+/// aside, and measured run times remain in use.
 struct Schedule {
   /// @param first  tasks of the first round
   Schedule(TaskOrder first, int num_ranks, bool with_master);
@@ -67,10 +69,10 @@ enum class SweepEnd {
 ///
 /// Rank 0 hands out one task at a time, since tasks differ a thousandfold in length, and gathers the rows.
 /// Rows do not depend on the order of the tasks. A task that failed is tried again on another rank, if there
-/// is one, before others are begun. A rank on which everything fails is set aside: see RankTrust. If it
-/// computes, it does so in slices between polls. Nobody spins: who has nothing to do sleeps, longer and
-/// longer, up to a few milliseconds.
-/// A task that is stopped has two seconds to say how far it is; else its last report is taken.
+/// is one, before new tasks start. A rank on which everything fails is set aside: see RankTrust. Rank 0, if
+/// it computes, does so in slices between polls. No rank spins: an idle rank sleeps, with a backoff of up to
+/// a few milliseconds. A stopped task has two seconds to report its progress; otherwise its previous report
+/// is used.
 /// @param schedule  matters on rank 0
 /// @param make_job  called on the rank that works on the task
 /// @param report_interval  time between two reports of a running task

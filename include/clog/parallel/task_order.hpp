@@ -18,7 +18,7 @@ class TaskOrder {
  public:
   /// All tasks of a plan.
   explicit TaskOrder(std::int64_t num_tasks, std::int64_t num_groups = 1);
-  /// Those of its tasks that are left to be done.
+  /// Its remaining tasks.
   TaskOrder(const std::vector<std::int64_t>& tasks, std::int64_t num_groups);
 
   /// More of them, for another round.
@@ -29,7 +29,7 @@ class TaskOrder {
   /// @param now  time [s], from any moment on, the same in all calls
   std::int64_t take(double now);
   void ended(std::int64_t task, double now);
-  /// A task that ended before is begun once more.
+  /// A task that ended before starts again.
   void begun_again(std::int64_t task, double now);
 
  private:

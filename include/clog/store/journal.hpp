@@ -17,20 +17,20 @@ namespace clog::store {
 std::string journal_path(const std::string& table);
 Place journal_place(const Place& table);
 
-/// What must not be lost between two publications of a sweep's table: rows, and snapshots of runs that go on,
-/// one after the other in a file beside the table. What add() returned from survives the death of the
-/// process, what flush() returned from that of the machine. When the file is opened again, a torn record at
-/// the end is dropped, and one that is damaged costs no other. While a journal is open nobody else can open
-/// it; the lock dies with its process. A file that somebody has removed or replaced meanwhile locks nobody
-/// out any more: then nothing is written, neither here nor over what another has made. A journal without
-/// records is removed when it is closed.
+/// The records of a sweep since its table was last published, appended to a file beside the table: finished
+/// rows, and rows of running tasks with their snapshots. A record survives the death of the process once
+/// add() has returned, and a crash of the machine once flush() has returned. Opening the file drops an
+/// incomplete record at its end; a damaged record costs no other. An open journal is locked; the lock
+/// disappears with its process. If somebody removes or replaces the file, the lock no longer protects it:
+/// then nothing is written, neither to it nor to the file that took its place. Closing a journal without
+/// records removes it.
 class Journal {
  public:
   using Entry = sweep::Report;
   struct Contents {
     std::vector<Entry> entries;       ///< oldest first
     std::int64_t num_unreadable = 0;  ///< damaged records between readable ones
-    bool has_torn_end = false;        ///< its writer died within a record; or is still at it
+    bool has_torn_end = false;        ///< its writer died while writing a record, or is still writing it
     std::uint64_t num_bytes = 0;      ///< without a torn end
   };
 
@@ -42,14 +42,15 @@ class Journal {
 
   /// Is a sweep writing to this one?
   static bool is_open(const std::string& path);
-  /// What is in the file, which stays as it is; nothing if there is none. @throws Error if it cannot be read
+  /// Reads the records without changing the file; nothing if there is no file. @throws Error if it cannot be
+  /// read
   static std::optional<Contents> look(const std::string& path);
 
   const std::string& path() const { return place_.path(); }
   /// Is the open file still the one at its place?
   bool is_there() const { return place_.holds(descriptor_); }
-  /// Makes and locks an empty one in the place of one that was removed. Returns whether that could be done:
-  /// another sweep may have begun there. @throws Error if it cannot be written
+  /// Creates and locks an empty journal where the old one was removed. Returns false if another sweep has
+  /// started there. @throws Error if it cannot be written
   bool make_anew(const Place& table);
 
   /// What the file held when it was opened, oldest first.
@@ -60,7 +61,7 @@ class Journal {
   void add(const sweep::RunRow& row, std::span<const std::byte> snapshot);
   void flush();
   std::uint64_t num_bytes() const { return contents_.num_bytes; }
-  /// Is it large, and twice as long as it was after it was rewritten last?
+  /// Is it larger than 64 MB, and more than twice as large as after its last rewrite?
   bool is_to_be_rewritten() const;
   /// Replaces the file by one that holds these entries only.
   void rewrite(std::span<const Entry* const> entries);
@@ -70,7 +71,7 @@ class Journal {
  private:
   Place place_;
   int descriptor_ = -1;
-  Contents contents_;  ///< when it was opened, but its size is that of now
+  Contents contents_;  ///< contents at opening; num_bytes is kept up to date
   std::uint64_t num_rewritten_bytes_ = 0;
   bool has_begun_ = false;
 

@@ -7,13 +7,13 @@
 
 namespace clog::store {
 
-/// Where a file is, or is to be: its folder, held open, and its name in there. Links are followed once, when
-/// the place is named; whoever re-points them later, or moves the folder, does not move what is written to
-/// it.
+/// The location of a file, which may not exist yet: its folder, held open, and its name in that folder.
+/// Symbolic links are followed once, by the constructor; changing them or moving the folder later does not
+/// redirect writes.
 class Place {
  public:
-  /// @throws Error if the path has no name of a file, its folder cannot be opened, or a link on the way to it
-  /// was made by somebody else in a folder in which everybody may make some
+  /// @throws Error if the path names no file, its folder cannot be opened, or a link on the path is in a
+  /// world-writable sticky folder and belongs neither to this user nor to the folder's owner
   Place(const std::string& path);  // NOLINT(google-explicit-constructor): a path names a place
   /// The same folder, and the name with this ending. A link there is not followed.
   Place beside(const std::string& ending) const;
@@ -27,17 +27,17 @@ class Place {
   /// Is this open file still the one here? Somebody may have replaced or removed it meanwhile.
   bool holds(int descriptor) const;
   void remove() const;
-  /// Gives a file of the same folder this name. Returns whether that succeeded; otherwise see errno.
+  /// Renames a file of the same folder to this name. Returns whether it succeeded; otherwise see errno.
   bool take_from(const Place& other) const;
   /// The same, but never onto a file that is there.
   bool take_as_new_from(const Place& other) const;
-  /// Brings to the disk what the folder's files are called. Returns whether that succeeded.
+  /// Synchronises the folder to disk, so that renames survive a power cut. Returns whether it succeeded.
   bool sync_folder() const;
-  /// An open file gets mode, owner, group and access list of the one here, as far as its maker may. Returns
-  /// whether there is one.
+  /// Copies mode, owner, group and access list of the file here to an open file, as far as permitted. Returns
+  /// whether there is a file here.
   bool lend_access_to(int descriptor) const;
-  /// What tells the file here from any other that is moved to its place, whatever happens to its mode and
-  /// times; empty if there is none.
+  /// The file's identity (device, inode, size), which differs from that of any file moved here and does not
+  /// depend on mode and times; empty if there is no file.
   std::string stamp() const;
 
  private:

@@ -27,8 +27,8 @@ void refuse_existing(const std::string& path);
 /// To be asked before hours of work. @throws Error if the path exists or no file can be made there
 void refuse_unwritable(const std::string& path);
 
-/// Circles of a user's own, and the file that they were read from; empty of ones that the sweep's last
-/// command does not name.
+/// User-supplied circles, and the file that they were read from; its name is empty if the sweep's last
+/// command does not name it.
 struct CircleFile {
   std::string name;
   OwnCircles circles;

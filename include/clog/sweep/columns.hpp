@@ -11,14 +11,14 @@
 #include "clog/sweep/run_row.hpp"
 
 /// Every column of the table of runs, described once: those of the parameters follow from parameter_schema(),
-/// what came out is listed in columns.cpp. A new result is a member of RunRow, an entry there, and the line
+/// results are listed in columns.cpp. A new result is a member of RunRow, an entry there, and the line
 /// of record() that fills it.
 namespace clog::sweep {
 
 /// What a column tells of a run.
 enum class ColumnRole {
   parameter,     ///< what was run: equal runs have equal values
-  result,        ///< what came out: equal runs have equal values, bit for bit
+  result,        ///< equal runs have equal values, bit for bit
   circumstance,  ///< by whom, how long it took: differs from one time to the next
 };
 

@@ -11,7 +11,7 @@
 
 namespace clog::sweep {
 
-/// One task being worked on, in slices, so that whoever works on it can look after messages in between.
+/// One task being worked on, in slices, so that its process can handle messages in between.
 class Job {
  public:
   virtual ~Job() = default;
@@ -23,11 +23,11 @@ class Job {
   virtual bool refresh() { return true; }
   /// The task's row; `interrupted` if it is not over.
   virtual RunRow row() const = 0;
-  /// From which another job of this task can go on; empty if there is none yet.
+  /// A snapshot from which another job of this task can resume; empty if there is none yet.
   virtual std::vector<std::byte> snapshot() const { return {}; }
 };
 
-/// Begins a task, or goes on with it from a snapshot that is not empty.
+/// Starts a task, or resumes it from a snapshot that is not empty.
 using JobFactory =
     std::function<std::unique_ptr<Job>(std::int64_t task, std::span<const std::byte> snapshot)>;
 

@@ -7,7 +7,7 @@
 
 #include "clog/sweep/run_row.hpp"
 
-/// What those who work on a sweep tell each other: ranks, and the processes that compute for them.
+/// Messages between the ranks of a sweep and the processes that compute for them.
 namespace clog::sweep {
 
 /// Where a task begins.
@@ -16,8 +16,8 @@ struct Start {
   std::int64_t attempt = 1;
 };
 
-/// How far a task has come: its row, and a snapshot to go on from, if there is one. A sweep's journal is made
-/// of them, too.
+/// Progress of a task: its row, and a snapshot from which it can resume, if there is one. A sweep's journal
+/// consists of reports, too.
 struct Report {
   RunRow row;
   std::vector<std::byte> snapshot;

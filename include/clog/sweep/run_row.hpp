@@ -31,7 +31,7 @@ namespace clog::sweep {
 /// Instruction set of a run that went on from a snapshot of another one.
 inline constexpr const char* mixed_instruction_sets = "mixed";
 
-/// One row of the table of runs: what was run, what came out, where. Its columns, their units and meanings
+/// One row of the table of runs: parameters, results, circumstances. Its columns, their units and meanings
 /// are listed in columns.cpp.
 struct RunRow {
   static constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
@@ -92,7 +92,7 @@ inline bool is_result(RunStatus status) {
   return status == RunStatus::clogged || status == RunStatus::broken || status == RunStatus::flowing ||
          status == RunStatus::passed;
 }
-/// Is it under way, or was it stopped on its way?
+/// Is the run in progress, or was it interrupted?
 inline bool is_unfinished(RunStatus status) {
   return status == RunStatus::running || status == RunStatus::interrupted;
 }
@@ -103,7 +103,7 @@ std::string identity(const RunRow& row);
 /// The columns that say what was run.
 /// @param run  resolved
 RunRow describe(const RunParameters& run);
-/// Fills the columns that say what came out.
+/// Fills the columns of results.
 void record(const RunResult& result, RunRow& row);
 
 /// The row as bytes, one column after the other: so it is stored, and sent to other processes of this

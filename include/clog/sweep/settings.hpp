@@ -64,8 +64,8 @@ class Settings {
   static Settings from_config(const std::string& text);
 
   /// A preset sets the keys that have not been given themselves, before or after it. So does what leaves no
-  /// choice: a channel or a wall, where nothing is random, the seed; keys of a channel and circles of one's
-  /// own the layout.
+  /// choice: a channel or a wall, where nothing is random, the seed; keys of a channel and user-supplied
+  /// circles the layout.
   /// @throws Error if there is no such key or its list cannot be read
   void set(const std::string& name, const std::string& text);
   /// By set(), not by a preset or default.

@@ -24,7 +24,7 @@ using clog::shortest;
 /// `1 run`, `2 runs`.
 std::string counted(std::int64_t number, const std::string& noun);
 
-/// What a text is that begins with a number and goes on with something like a unit.
+/// What a text is that begins with a number and continues with something like a unit.
 struct NumberWithUnit : Error {
   using Error::Error;
 };

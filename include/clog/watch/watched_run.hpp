@@ -33,7 +33,7 @@ class WatchedRun {
   const DropletRun& run() const { return run_; }
   /// Of the run; `interrupted` if a signal ended it.
   RunResult result() const;
-  /// Samples, polygons, the obstacles near them, and the row's columns of what came out.
+  /// Samples, polygons, the obstacles near them, and the row's columns of results.
   /// @param row  the columns of what was run, see sweep::describe()
   /// @param origin  where the trajectory comes from
   store::Trajectory trajectory(sweep::RunRow row, store::Provenance origin) const;

@@ -21,11 +21,11 @@ using Eigen::VectorXd;
 /// Most searches end within ten.
 constexpr int most_iterations = 30;
 constexpr int most_halvings = 10;
-/// Of the central differences [sigma]: far below a contact's range, far above round-off.
+/// Step of the central differences [sigma]: far below a contact's range, far above round-off.
 constexpr double difference_step = 1e-6;
 /// Force on a point over its weight; round-off of the contact forces is 1e-10.
 constexpr double force_tolerance = 1e-7;
-/// Way that is left [sigma].
+/// Remaining Newton step [sigma].
 constexpr double move_tolerance = 1e-7;
 
 MatrixXd symmetric(const MatrixXd& matrix) { return (matrix + matrix.transpose()) / 2; }
@@ -37,19 +37,19 @@ bool is_definite(double bound, const MatrixXd& k) {
   return Eigen::LLT<MatrixXd>(shifted).info() == Eigen::Success;
 }
 
-/// Do all of them die out under a drag, dx/dt = -Kx, faster than with this stiffness? True of all that are
-/// definite, which costs less to see, and where forces have an energy, K being symmetric, of no others.
-/// Springs along the interface have none: what they do to the shape makes K a little unsymmetric, and where
-/// it is soft it may be stable without being definite.
+/// Does every displacement decay under drag, dx/dt = -Kx, faster than with stiffness `bound`? True if K -
+/// bound is positive definite, which is cheaper to test; if the forces have an energy, K is symmetric and
+/// this is also necessary. Springs along the interface have no energy: they make K slightly unsymmetric, and
+/// a soft K may be stable without being definite.
 bool is_stable(double bound, const MatrixXd& k, bool has_energy) {
   if (is_definite(bound, k)) return true;
   return !has_energy && Eigen::EigenSolver<MatrixXd>(k, false).eigenvalues().real().minCoeff() > bound;
 }
 
-/// K, minus the derivative of the force, in two parts: K_tt, of the vertices along the interface, and the
-/// stiffness of the shape, to which the vertices on it adapt at once: K_nn - K_nt K_tt^-1 K_tn. Were they
-/// held where they are, a droplet that is free to drift aside would seem to be held by its own
-/// discretisation.
+/// The stiffness K, which is minus the derivative of the force, in two parts: K_tt of the vertices along the
+/// interface, and the Schur complement K_nn - K_nt K_tt^-1 K_tn, the stiffness of the shape when the vertices
+/// along it adapt at once. With vertices held in place, a droplet that is free to drift aside would seem to
+/// be held by its own discretisation.
 class Stiffness {
  public:
   Stiffness(const MatrixXd& k, bool has_energy)
@@ -132,9 +132,9 @@ class ForceField {
 
 }  // namespace
 
-/// Newton's method, its steps cut until they shorten what is left of the way, as the stiffness here measures
-/// it (P. Deuflhard's natural monotonicity test). Measured by forces, hardly a step would pass: those of a
-/// contact that opens or closes outweigh all others.
+/// Newton's method with step halving: a step is accepted if it shortens the remaining Newton step, computed
+/// with the present stiffness (P. Deuflhard's natural monotonicity test). A test on forces would reject
+/// nearly every step, because contacts that open or close dominate them.
 std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, const DropletState& initial) {
   const double point_weight = units::droplet_mass * units::gravity / static_cast<double>(initial.size());
   ForceField field(forces, initial);

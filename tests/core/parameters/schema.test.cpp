@@ -13,7 +13,7 @@
 
 namespace clog {
 
-/// For whoever reads of a test that fails.
+/// For the reader of a failed test.
 void PrintTo(const Parameter& parameter, std::ostream* out) { *out << parameter.key; }
 
 namespace {

@@ -9,27 +9,27 @@
 
 namespace clog {
 
-/// How far any coordinate of a vertex, or of the soft disk, may be from its place at rest [sigma].
+/// Largest distance of any coordinate of a vertex, or of the soft disk, from its equilibrium [sigma].
 inline constexpr double farthest_rest = 0.03;
-/// Smallest stiffness that an equilibrium must have against any displacement [M g/sigma]: the force that
-/// pulls a droplet back, over the way it has been displaced as a whole.
+/// Smallest stiffness that an equilibrium must have against any displacement [M g/sigma]: the restoring force
+/// on a droplet divided by its displacement as a whole.
 inline constexpr double least_stiffness = 1e-3;
 
-/// Coordinates of a displacement: of every vertex first that normal to the interface, to the chord between
-/// its neighbours, then that along it. Of the soft disk: x, y.
+/// Coordinates of a displacement: the normal ones of all vertices (perpendicular to the chord between a
+/// vertex's neighbours), then the tangential ones. For the soft disk: x, y.
 struct Axes {
   Eigen::SparseMatrix<double> directions;  ///< orthonormal columns over all x, then all y
-  /// The interface slides around itself: unit vector over the displacements along it, empty where that counts
-  /// as any other motion. After one edge the polygon is the same again, with other names for its vertices:
-  /// the energy only has ripples along this way, from the edges' corners on obstacles, and however far a
-  /// droplet slides, it goes nowhere. So neither the force along it nor the stiffness is asked for. It is the
-  /// last motion to die out, and may stand on top of a ripple now.
+  /// Unit vector, in the tangential coordinates, of the motion in which all vertices slide along the
+  /// interface; empty if this motion is tested like any other. A slide by one edge maps the polygon onto
+  /// itself with its vertices renumbered, and does not move the droplet. The energy along it has only
+  /// ripples, because corners between edges touch obstacles. So the search tests neither force nor stiffness
+  /// along it. This motion dies out last, and may at present be on top of a ripple.
   Eigen::VectorXd slide;
 };
 
 /// The forces on a droplet, as the search asks for them.
 struct EquilibriumForces {
-  /// Where nothing moves farther than that until the next call.
+  /// Brings the contact lists up to date: they are valid while no point moves farther than `travel`.
   std::function<void(const DropletState& state, const Travel& travel)> update_contacts;
   /// Of all points, all x then all y [g rho sigma^2].
   std::function<void(const DropletState& state, Eigen::ArrayXd& force)> evaluate;

@@ -18,8 +18,8 @@ struct Obstacle {
   bool operator==(const Obstacle&) const = default;
 };
 
-/// Circles of a user's own, told apart by what they are, not by the name of a file. A row of a result holds
-/// their check sum only.
+/// User-supplied circles, distinguished by their values, not by the name of a file. A row of a result holds
+/// only their checksum.
 class OwnCircles {
  public:
   /// @param circles  a radius of 0 stands for half of obstacle-diameter
