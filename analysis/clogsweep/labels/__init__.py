@@ -14,7 +14,7 @@ AXES = {
     "sag": r"sag under its own weight $\delta_s/\sigma$",
     "length": r"clogging length $\lambda/\sigma$",
     "speed": r"mean speed $\langle v_g\rangle/v_t$",
-    "h": r"distance from the orifice $h/\sigma$",
+    "h": r"position relative to the orifice $h/\sigma$",
     "shape": r"shape parameter $\mathcal{A} = P^2/(4\pi a)$",
     "profile": r"speed $v_g/v_t$",
 }
@@ -60,4 +60,4 @@ def said(column: Column, value: float | str | None) -> str:
 
 def runs_a_point(groups: Collection[Group]) -> str:
     counts = sorted({group["runs"] for group in groups})
-    return f"{rounded.counted(counts[0], 'run')} a point" if len(counts) == 1 else f"{counts[0]} to {counts[-1]} runs a point"
+    return f"{rounded.counted(counts[0], 'run')} per point" if len(counts) == 1 else f"{counts[0]} to {counts[-1]} runs per point"
