@@ -23,7 +23,7 @@ constexpr const char* usage =
   clogsweep doctor
   mpirun -np 4 clogsweep doctor --output results/sweep.h5    as the sweep will be started, on 4 cores
 
-Exit code 1 if there is something to mend.
+Exit code 1 if there is something to fix.
 )";
 
 /// Returns the exit code.
