@@ -12,7 +12,7 @@ from .tools.errors import UserError
 
 COMMANDS = {
     "figures": "a figure of the article from runs of our own",
-    "agreement": "the statements of the article against what comes out here",
+    "agreement": "the statements of the article compared with the results of this program",
     "report": "one page of HTML about a sweep, as clogfit report",
     "poster": "one page of a sweep to be printed",
     "clogging-length": "the clogging length against what a sweep varies",

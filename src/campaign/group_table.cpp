@@ -106,12 +106,12 @@ std::string left_out(const std::vector<Group>& groups) {
   }
   std::string text;
   if (are_mechanisms_shown(groups))
-    text += fmt::format("w/s/h/o: clogs by wrapping, by squeezing, by both, by neither{}\n",
-                        std::ranges::any_of(groups, is_dwell_possible) ? " or droplets that went on" : "");
+    text += fmt::format("w/s/h/o: clogs that are wrapped, squeezed, hybrid, other{}\n",
+                        std::ranges::any_of(groups, is_dwell_possible) ? " (or droplets that moved on)" : "");
   if (have_some_broken(groups))
     text +=
-        "lambda_b: of break-ups; where droplets break up they count as not clogged so far, and the other way "
-        "round\n";
+        "lambda_b: mean distance before break-up. Broken droplets are censored in lambda, clogged ones in "
+        "lambda_b\n";
   if (num_left_out > 0)
     text += fmt::format(
         "   {} ended before --from-distance, left out of runs, clogs and lambda; <v_g> is still of all "
@@ -258,12 +258,14 @@ std::string definition_of_clogs(const std::vector<Group>& groups) {
   if (std::isinf(dwell)) return "";
   const auto num_possible = std::ranges::count_if(groups, is_dwell_possible);
   if (num_possible == 0)
-    return fmt::format("\nno run is longer than --dwell={}: this is the usual fit", shortest(dwell));
+    return fmt::format("\nno run lasts longer than --dwell={}, so this is the fit without --dwell",
+                       shortest(dwell));
   std::set<std::string> lengths;
   for (const Group& group : groups) lengths.insert(shortest(group.first_row.parameters.dwell_length));
   std::string text = fmt::format("\nclogged: has not moved by {} sigma for {} t0",
                                  lengths.size() > 1 ? "dwell_length" : *lengths.begin(), shortest(dwell));
-  if (num_possible < std::ssize(groups)) text += "; where max_time is not longer, this is the usual fit";
+  if (num_possible < std::ssize(groups))
+    text += "; where max_time is not longer, this is the fit without --dwell";
   return text;
 }
 

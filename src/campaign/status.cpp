@@ -54,8 +54,8 @@ Status status_of(const std::string& path, const store::SweepFile& file, double c
 std::string to_text(const std::string& path, const Status& status, double confidence,
                     SharedParameters shared) {
   std::string text = fmt::format(
-      "{}: {} of {} over{}, {} clogged, {} flowing, {} failed", console::printable(path), status.num_over(),
-      sweep::counted(status.runs.num_runs, "run"), status.runs.text_of_beyond(),
+      "{}: {} of {} finished{}, {} clogged, {} flowing, {} failed", console::printable(path),
+      status.num_over(), sweep::counted(status.runs.num_runs, "run"), status.runs.text_of_beyond(),
       status.count(RunStatus::clogged), status.count(RunStatus::flowing), status.count(RunStatus::failed));
   if (const std::int64_t broken = status.count(RunStatus::broken); broken > 0)
     text += fmt::format(", {} broken", broken);

@@ -181,7 +181,7 @@ void CommandLine::read_config(const std::string& path) {
     std::set<std::string> seen;
     for (const po::option& option : parsed.options) {
       if (!seen.insert(option.string_key).second)
-        throw Error("the key " + option.string_key + " stands there twice");
+        throw Error("the key " + option.string_key + " is given twice");
       if (option.value.empty() || option.value.front().empty())
         throw Error("invalid " + option.string_key + "= (has no value)");
       settings_.set(option.string_key, sweep::unescaped(option.value.front()));

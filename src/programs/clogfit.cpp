@@ -47,9 +47,9 @@ error comes from the scatter between runs. For lattices, lateral/r is the latera
 tangent of the migration angle, positive towards +y. csv and json have more: intervals by profile likelihood, the
 published least squares (biased), Weibull's shape with its p-value, capillary numbers; json also P(r).
 
-What an experiment calls clogged has not moved for a while. With --dwell so does clogfit: a droplet that stood for
-longer, which is to say that it came no farther than dwell-length (0.05 sigma by default), counts as clogged where it
-did so first, even if it went on.
+An experiment calls a droplet clogged if it has not moved for a waiting time. --dwell applies this rule: a droplet that
+advanced no farther than dwell-length (0.05 sigma by default) for longer than this time counts as clogged where it first
+did so, even if it moved on.
 )";
 
 /// Of --lab, or else of the sweep's own.
@@ -74,7 +74,8 @@ int body(int argc, char** argv) {
   line.add_options()("file", po::value<std::string>(), "sweep file")(
       "format", po::value<std::string>()->default_value("text"), "text, csv or json")(
       "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals")(
-      "all-parameters", "name in the text also what all runs have as by default")(
+      "all-parameters",
+      "in the text, also list the parameters that all runs share with their default values")(
       "from-distance", po::value<std::string>(),
       "count lambda from this distance on; runs that ended before are left out [sigma]")(
       "lab", po::value<std::string>(),

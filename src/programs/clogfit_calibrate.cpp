@@ -44,8 +44,8 @@ root-mean-square deviation of the speeds. One file per trial.
 A profile is a CSV file with the header h [sigma], v [v_t], A or, with --diameter and --speed, in laboratory units such
 as h [mm], v [mm/s], A; or what clogrun channel has written. With --angle the terminal speed V_t follows from the laboratory's quantities.
 
-Errors (+-) are those of the scatter of a trial's frames about the best run, taken for independent noise. What the model
-or its mesh lacks is not in them: frames without noise give errors that are too small.
+Errors (+-) come from the scatter of a trial's frames about the best run, treated as independent noise. They do not
+contain errors of the model or its mesh: for frames without noise they are too small.
 )";
 
 using Text = std::string;
@@ -55,10 +55,10 @@ cli::CommandLine parse(int argc, const char* const* argv) {
   cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::accepted);
   const auto text = [] { return po::value<Text>(); };
   line.add_options()("profiles", po::value<std::vector<Text>>()->composing(),
-                     "CSV files or of clogrun channel, one per trial")(
-      "diameter", text(), "of the undeformed droplet, e.g. 3.5mm")("speed", text(),
-                                                                   "terminal, far from walls, e.g. 7mm/s")(
-      "angle", text(), "of the plates against the horizontal, e.g. 28deg")(
+                     "CSV files, or files written by clogrun channel, one per trial")(
+      "diameter", text(), "of the undeformed droplet, e.g. 3.5mm")(
+      "speed", text(), "terminal, far from walls, e.g. 7mm/s")("angle", text(),
+                                                               "of the plates to the horizontal, e.g. 28deg")(
       "density", text()->default_value("0.703g/ml"), "of the droplet")(
       "outer-density", text()->default_value("0.997g/ml"), "of the liquid around it")(
       "tension", text(), "interfacial, e.g. 10mN/m: for Gamma_exp")(

@@ -296,9 +296,8 @@ std::vector<Column> make_columns() {
              "wrapped around obstacles, squeezed in gaps, hybrid (docs/explanation/clogged.md); none unless "
              "clogged, or if nothing that it touches makes a gap; empty: not known",
              16),
-      member(
-          "wrapped_support", &RunRow::wrapped_support, result, "",
-          "part of the support against the flow that wrapped obstacles give; NaN unless a clogged polygon"),
+      member("wrapped_support", &RunRow::wrapped_support, result, "",
+             "part of the upstream support that wrapped obstacles give; NaN unless a clogged polygon"),
       member("num_wrapped", &RunRow::num_wrapped, result, "",
              "touched obstacles that the clogged polygon hangs over, otherwise 0; -1: not known"),
       member("num_gaps", &RunRow::num_gaps, result, "",

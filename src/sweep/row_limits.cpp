@@ -39,7 +39,7 @@ std::string unproven_tension(const std::string& preset_name, const DpParameters&
                                     [&](const SoundPreset& one) { return one.name == preset_name; });
   if (preset == std::end(sound_presets))
     return "preset=" + preset_name +
-           (preset_name == "custom" ? " (an interface that was not looked at)"
+           (preset_name == "custom" ? " (this interface was not tested)"
                                     : " (droplets cross themselves and obstacles)");
   constexpr int fine = 128;
   const double smallest = *dp.vertices >= fine ? preset->smallest_tension : preset->smallest_tension_coarse;
@@ -51,18 +51,18 @@ std::string unproven_tension(const std::string& preset_name, const DpParameters&
 
 std::string unproven_vertices(const DpParameters& dp) {
   if (*dp.vertices >= fewest_vertices && *dp.vertices <= most_vertices) return "";
-  return fmt::format("vertices={} ({} to {} were looked at)", *dp.vertices, fewest_vertices, most_vertices);
+  return fmt::format("vertices={} (tested from {} to {})", *dp.vertices, fewest_vertices, most_vertices);
 }
 
 /// @param hold  of walls, by friction or a yield traction
 std::string unproven_hold(const char* key, double hold, double most, const char* unit) {
   if (hold <= most) return "";
-  return fmt::format("{}={} (up to {}{} was looked at)", key, shortest(hold), shortest(most), unit);
+  return fmt::format("{}={} (tested up to {}{})", key, shortest(hold), shortest(most), unit);
 }
 
 std::string unproven_angle(const DpParameters& dp) {
   if (!dp.receding_angle || *dp.receding_angle >= smallest_receding_angle) return "";
-  return fmt::format("receding-angle={} (from {} on was looked at)", shortest(*dp.receding_angle),
+  return fmt::format("receding-angle={} (tested from {} on)", shortest(*dp.receding_angle),
                      shortest(smallest_receding_angle));
 }
 
@@ -134,8 +134,8 @@ std::string possible_repetition(const Plan& plan) {
   }
   if (num_groups == 0) return "";
   return fmt::format(
-      "droplets of {} of {} may come farther than their array is long and meet the same obstacles again: "
-      "terminal-speed*max-time is up to {:.4g}, boxes*box {:.4g}; {}",
+      "droplets of {} of {} may travel farther than the length of their array and meet the same obstacles "
+      "again: terminal-speed*max-time is up to {:.4g}, boxes*box {:.4g}; {}",
       num_groups, counted(plan.num_groups(), "parameter set"), farthest, shortest_length,
       is_of_user ? "give a file of circles that is as long, or a shorter max-time"
                  : fmt::format("boxes={:.4g} is long enough", std::ceil(most_boxes)));

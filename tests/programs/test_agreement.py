@@ -13,7 +13,7 @@ from support import BIN
 
 from clogsweep import agreement
 from clogsweep.agreement import evidence, lengths, passages, statements
-from clogsweep.agreement.statements import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, NOT_RUN
+from clogsweep.agreement.statements import AGREES, DOES_NOT, FITTED, IN_KIND, NOT_KNOWN, NOT_RUN
 from clogsweep.tools.errors import UserError
 
 FACTOR = 1.5  # of a confidence interval, on both sides
@@ -46,7 +46,7 @@ class Lengths(unittest.TestCase):
     def test_a_rise_within_the_errors_is_not_known(self):
         self.assertEqual(lengths.is_not_monotonic(curve((0.1, 600), (0.3, 700), (1.09, 13))).verdict, NOT_KNOWN)
 
-    def test_one_gap_of_two_with_a_peak_agrees_in_kind(self):
+    def test_one_gap_of_two_with_a_peak_agrees_qualitatively(self):
         falling = curve((0.1, -2000), (0.3, 700), (1.09, 13), gap=0.3)
         self.assertEqual(lengths.is_not_monotonic(self.RISES_AND_FALLS + falling).verdict, IN_KIND)
 
@@ -74,7 +74,7 @@ class Lengths(unittest.TestCase):
         self.assertEqual(lengths.hybrids_between(clogs(0, 0)).verdict, NOT_KNOWN)
 
     def test_the_published_length_is_compared_with_the_interval(self):
-        for length, verdict in [(24, AGREES), (35, AGREES), (38, IN_KIND), (200, DOES_NOT), (-2000, NOT_KNOWN)]:
+        for length, verdict in [(24, FITTED), (35, FITTED), (38, IN_KIND), (200, DOES_NOT), (-2000, NOT_KNOWN)]:
             self.assertEqual(lengths.published_length([point(1.09, length), point(1.09, 1, gap=0.3)]).verdict, verdict)
 
 
@@ -138,7 +138,7 @@ class Table(Analysis):
         for one in statements.STATEMENTS:
             with self.subTest(statement=one.text):
                 self.assertTrue(one.figures or one.reasons)
-                self.assertLessEqual(set(one.reasons), {IN_KIND, DOES_NOT, NOT_KNOWN})
+                self.assertLessEqual(set(one.reasons), {FITTED, IN_KIND, DOES_NOT, NOT_KNOWN})
 
 
 if __name__ == "__main__":

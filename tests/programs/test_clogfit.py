@@ -146,7 +146,7 @@ class Fit(ProgramTest):
                 self.assertEqual(group["relative_speed"], of_clogs["relative_speed"])
                 stood_and_went_on += clogs - of_clogs["clogs"]
         self.assertGreater(stood_and_went_on, 0)
-        self.assertIn("by neither or droplets that went on\n", self.succeed("clogfit", "sweep.h5", "--dwell=25").stdout)
+        self.assertIn("hybrid, other (or droplets that moved on)\n", self.succeed("clogfit", "sweep.h5", "--dwell=25").stdout)
 
     def test_lengths_rise_with_the_time_to_those_of_clogs_alone(self):
         self.sweep(*self.DWELLING)
@@ -173,9 +173,9 @@ class Fit(ProgramTest):
     def test_a_fit_of_dwells_says_what_it_calls_clogged(self):
         self.sweep("seeds=1..2", "line-tension=0.05", "max-time=40,60")
         text = self.succeed("clogfit", "sweep.h5", "--dwell=50").stdout
-        self.assertIn("\nclogged: has not moved by 0.05 sigma for 50 t0; where max_time is not longer, this is the usual fit\n", text)
+        self.assertIn("\nclogged: has not moved by 0.05 sigma for 50 t0; where max_time is not longer, this is the fit without --dwell\n", text)
         self.assertIn("\nclogged: has not moved by 0.05 sigma for 20 t0\n", self.succeed("clogfit", "sweep.h5", "--dwell=20").stdout)
-        self.assertIn("\nno run is longer than --dwell=60: this is the usual fit\n", self.succeed("clogfit", "sweep.h5", "--dwell=60").stdout)
+        self.assertIn("\nno run lasts longer than --dwell=60, so this is the fit without --dwell\n", self.succeed("clogfit", "sweep.h5", "--dwell=60").stdout)
         self.assertNotIn("clogged:", self.succeed("clogfit", "sweep.h5").stdout)
         self.assertEqual([group["dwell"] for group in self.fit("--dwell=50")["groups"]], [None, 50])
 
@@ -187,7 +187,7 @@ class Fit(ProgramTest):
         group, = self.fit()["groups"]
         self.assertEqual((group["runs"], group["dwell_length"], group["dwells_known_from"]), (2, 0.05, None))
         self.refuse("clogfit", "sweep.h5", "--dwell=20", words=["--dwell=20 (2 rows of a version", "compute the sweep anew"])
-        self.assertIn("this is the usual fit", self.succeed("clogfit", "sweep.h5", "--dwell=60").stdout)
+        self.assertIn("this is the fit without --dwell", self.succeed("clogfit", "sweep.h5", "--dwell=60").stdout)
         self.succeed("clogsweep", "replay", "sweep.h5", 1)  # all that the row knows is found again
 
     def test_numbers_have_their_unit_in_json_as_in_the_table(self):
@@ -314,7 +314,7 @@ class Fit(ProgramTest):
         self.change(mesh_hold=[0.009] * 9 + [0.011])
         group, = self.fit()["groups"]
         self.assertEqual((group["on_mesh"], group["doubts"]), (1, "held_by_mesh"))
-        self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, "m: a tenth of the clogs or more .* mesh_hold")
+        self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, "m: in a tenth of the clogs or more .* mesh_hold")
 
     def test_of_files_without_a_word_on_the_mesh_all_that_hang_are_marked(self):
         self.sweep("seeds=1..10", *FAR)
@@ -342,7 +342,7 @@ class Fit(ProgramTest):
         self.assertEqual(group["censored_distances"], [2, 3, 5, 7, 8, 10])  # of clogs
         text = self.succeed("clogfit", "sweep.h5").stdout
         self.assertRegex(text, r"95 % +broken +lambda_b/sigma.*\n.* 4 +13\.\d+ ")
-        self.assertIn("lambda_b: of break-ups", text)
+        self.assertIn("lambda_b: mean distance before break-up", text)
         self.assertNotIn("w/s/h/o", text)
         # A droplet that stood for long ended there, also if it broke later on; else it ends where it broke.
         dwells = [name for name in stored_rows.columns(self.folder / "sweep.h5") if name.startswith(("longest_dwell", "earlier_dwell"))]

@@ -153,14 +153,14 @@ class Sweep(ProgramTest):
         beyond = "(4 outside the lists of its last command)"
         self.assertIn(f"10 rows of 10 runs {beyond}, all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
         status = self.succeed("clogsweep", "status", "s.h5").stdout
-        self.assertIn(f"10 of 10 runs over {beyond}, ", status)
+        self.assertIn(f"10 of 10 runs finished {beyond}, ", status)
         self.assertIn("; complete", status)
         status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
         self.assertEqual((status["runs"], status["over"], status["runs_beyond_lists"]), (10, 10, 4))
 
     def test_an_array_that_may_repeat_is_told_once_when_the_sweep_starts(self):
         sweep = [*SMALL, "max-time=700", "seeds=1", "--output", "s.h5"]
-        repeats = "may come farther than their array is long"
+        repeats = "may travel farther than the length of their array"
         self.assertEqual(self.succeed("clogsweep", *sweep, ranks=2).stderr.count(repeats), 1)
         self.assertNotIn(repeats, self.succeed("clogsweep", *sweep).stderr, "nothing is left to do")
         self.assertEqual(self.succeed("clogsweep", *sweep[:-1], "quiet.h5", "--quiet").stderr, "")
@@ -198,7 +198,7 @@ class Sweep(ProgramTest):
         self.assertNotIn("box", told)
         self.assertNotIn("proved", told)
         told = self.succeed("clogsweep", *SMALL, "max-time=2000", "--dry-run").stdout
-        self.assertIn("# droplets of 1 of 1 parameter set may come farther than their array is long ", told)
+        self.assertIn("# droplets of 1 of 1 parameter set may travel farther than the length of their array ", told)
         self.assertIn("# not proved sound (docs/explanation/soundness.md): line-tension=30 ", self.succeed("clogsweep", *QUICK, "line-tension=30", "--dry-run").stdout)
 
     def test_what_was_not_proved_sound_is_said_once_when_the_sweep_starts(self):

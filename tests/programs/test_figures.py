@@ -367,12 +367,12 @@ class Pictures(Analysis):
         places, notes = hollow_places()
         self.assertEqual(places, [30])
         for reason in ("outside the range that was tested for soundness", "shorter than one obstacle spacing"):
-            self.assertIn(f"hollow: {reason}", notes)
+            self.assertIn(reason, " ".join(notes.partition("hollow: ")[2].split()))
         self.assertNotIn("incomplete", notes)
         groups.members[0]["doubts"] = "few_clogs incomplete"
         places, notes = hollow_places()
         self.assertEqual(places, [2, 30])
-        self.assertIn("hollow: fewer than 5 clogs (run more seeds)", notes)
+        self.assertIn("hollow: fewer than 5 clogs", notes)
         self.assertIn("incomplete: runs of 1 of 2 points are unfinished or failed", notes)
         groups.members[0]["clogs"] = 0  # a triangle, which says it
         self.assertNotIn("fewer than 5 clogs", hollow_places()[1])

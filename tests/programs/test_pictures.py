@@ -112,13 +112,13 @@ class Looks(Analysis):
         groups = self.fit(*ONE_CURVE)
         for drawing in (style.figure_of(lengths.draw_on, groups), style.figure_of(lengths.draw_speeds_on, groups), style.figure_of(report.draw_survival, groups, "", groups.members)):
             self.assert_title_is_whole(drawing)
-            self.assertIn("2 runs a point", drawing.axes[0].get_title())
+            self.assertIn("2 runs per point", drawing.axes[0].get_title())
         # The speed of the stiffer droplets, which clog at once, is not known.
         for group, speed in zip(groups.members, (0.4, None)):
             group.update(relative_speed=speed, relative_speed_error=0.1)
         drawing = style.figure_of(lengths.draw_speeds_on, groups)
         axes = drawing.axes[0]
-        self.assertIn("interface robust", axes.get_title())
+        self.assertIn("preset robust", axes.get_title())
         low, high = axes.get_xlim()
         self.assertTrue(low < 0.5 and high > 3, (low, high))
 
@@ -229,14 +229,14 @@ class Looks(Analysis):
         drawing = way.draw(trajectory.read(self.folder / "run.h5"), 4)
         drawing.canvas.draw()
         axes, = drawing.axes
-        self.assertIn("from the orifice $h", axes.get_xlabel())
+        self.assertIn("relative to the orifice $h", axes.get_xlabel())
         np.testing.assert_allclose(axes.patches[2].get_xy().mean(axis=0), [-1, 0], atol=0.02)
         bar, = axes.child_axes
         self.assertAlmostEqual(bar.get_window_extent().height, axes.get_window_extent().height)
 
     def test_notes_explain_only_what_is_drawn(self):
         groups = self.fit(*SMALL, "max-time=20", "line-tension=0.05,0.1", "seeds=1..2")
-        bars, dotted, triangles = "bars: ", "dotted lines: ", "triangles: "
+        bars, dotted, triangles = "bars: ", "joined by dotted lines", "triangles: "
 
         def explained(drawing):
             notes = "".join(text.get_text() for text in drawing.axes[0].texts if text.get_gid() == style.NOTES)
@@ -260,7 +260,7 @@ class Looks(Analysis):
         self.succeed("clogsweep", *QUICK, "line-tension=3", "seeds=1", "--output", "s.h5")
         row, = stored.read_rows(self.folder / "s.h5")
         row["obstacle_gap"] = 0.22190123
-        self.assertIn(r"smallest gap $0.2219\,\sigma$", clogs.title(row))
+        self.assertIn(r"minimum gap $0.2219\,\sigma$", clogs.title(row))
 
     def test_examples_are_of_droplets_that_came_a_diameter_far_if_there_are_any(self):
         columns = [("task", int), ("distance", float), ("shape_parameter", float), ("mechanism", "S8")]
@@ -272,7 +272,7 @@ class Looks(Analysis):
     def test_one_is_no_plural(self):
         self.assertEqual([rounded.counted(number, "run") for number in (0, 1, 2)], ["0 runs", "1 run", "2 runs"])
         self.assertEqual([labels.runs_a_point([{"runs": runs} for runs in all_runs]) for all_runs in ([1, 1], [4], [1, 3])],
-                         ["1 run a point", "4 runs a point", "1 to 3 runs a point"])
+                         ["1 run per point", "4 runs per point", "1 to 3 runs per point"])
         self.succeed("clogsweep", *QUICK, "seeds=1", "--output", "s.h5")
         self.succeed("clogfit", "report", "s.h5", "--output", "s.html", "--examples", 0)
         self.assertNotRegex((self.folder / "s.html").read_text(), r"\b1 (runs|points|clogs|gaps|contacts)\b")
@@ -367,7 +367,7 @@ class Looks(Analysis):
                 self.assert_picture(f"{name}-poster")
         drawing = poster.draw(self.folder / "arrays.h5", BIN)
         texts = " ".join(text.get_text() for text in drawing.findobj(Text))
-        for once in ("deformable polygon", "2 runs a point", "interface robust"):
+        for once in ("deformable polygon", "2 runs per point", "preset robust"):
             self.assertEqual(texts.count(once), 1, once)
         for words in ("Clogging length vs line tension", "12 runs:", "begun 20", "\nclogsweep vertices=64", "share of the runs"):
             self.assertIn(words, texts)

@@ -149,7 +149,7 @@ class Resumed(SweepTest):
         _, error = process.communicate(timeout=LONGEST)
         self.assertEqual(process.returncode, 0, error)
         watched = self.succeed("clogsweep", "status", "s.h5", "--watch").stdout
-        self.assertIn("24 of 24 runs over", watched)
+        self.assertIn("24 of 24 runs finished", watched)
         self.assertNotIn("\x1b", watched)  # no terminal, whose screen would be cleared
 
     def test_status_counts_runs_under_way_as_not_clogged(self):
@@ -219,7 +219,7 @@ class Resumed(SweepTest):
         self.assertEqual({path.name for path in (self.folder / "scratch").iterdir()}, {"target.h5", "target.h5.journal"})
         self.succeed("clogsweep", *FEW[:-1], "scratch/target.h5", ranks=2)
         self.assertTrue((self.folder / "s.h5").is_symlink())
-        self.assertIn("4 of 4 runs over", self.succeed("clogsweep", "status", "s.h5").stdout)
+        self.assertIn("4 of 4 runs finished", self.succeed("clogsweep", "status", "s.h5").stdout)
 
     def test_other_files_beside_the_table_stay(self):
         short = self.write("s.h5.journal", "to do: eat")

@@ -169,7 +169,7 @@ TEST(FaultOf, NamesEveryWordThatIsUnknown) {
   int num_tried = 0;
   for (const Column& column : columns()) {
     if (column.kind != ValueKind::word || column.role == ColumnRole::circumstance) continue;
-    const char* what = column.name == "obstacles" ? "is no check sum of circles" : "is unknown";
+    const char* what = column.name == "obstacles" ? "is no checksum of circles" : "is unknown";
     EXPECT_EQ(fault_of(damaged<std::string>(column, "wrapqed")), column.name + "='wrapqed' " + what);
     ++num_tried;
   }

@@ -44,13 +44,13 @@ TEST(UnprovenParameters, AreNamedWithTheirValueBeyondIt) {
       {{{"preset", "heavy-interface"}, {"line-tension", "0.04"}},
        "line-tension=0.04 (heavy-interface is sound from 0.05 to 10)"},
       {{{"preset", "literal"}}, "preset=literal (droplets cross themselves and obstacles)"},
-      {{{"self-contact", "off"}}, "preset=custom (an interface that was not looked at)"},
-      {{{"receding-angle", "50"}}, "receding-angle=50 (from 60 on was looked at)"},
-      {{{"preset", "elastic"}, {"friction", "0.6"}}, "friction=0.6 (up to 0.5 was looked at)"},
+      {{{"self-contact", "off"}}, "preset=custom (this interface was not tested)"},
+      {{{"receding-angle", "50"}}, "receding-angle=50 (tested from 60 on)"},
+      {{{"preset", "elastic"}, {"friction", "0.6"}}, "friction=0.6 (tested up to 0.5)"},
       {{{"preset", "elastic"}, {"yield-traction", "0.2"}},
-       "yield-traction=0.2 (up to 0.1 g rho sigma was looked at)"},
-      {{{"vertices", "32"}}, "vertices=32 (64 to 1024 were looked at)"},
-      {{{"vertices", "2048"}}, "vertices=2048 (64 to 1024 were looked at)"},
+       "yield-traction=0.2 (tested up to 0.1 g rho sigma)"},
+      {{{"vertices", "32"}}, "vertices=32 (tested from 64 to 1024)"},
+      {{{"vertices", "2048"}}, "vertices=2048 (tested from 64 to 1024)"},
       {{{"obstacle-diameter", "0.04"}, {"vertices", "128"}},
        "obstacle-diameter=0.04 (obstacles thinner than two edges, 0.04909, slip into the droplet; use more "
        "vertices)"}};
@@ -102,10 +102,10 @@ TEST(Repetition, IsTheNatureOfALattice) {
 TEST(Repetition, IsForeseenFromTheLongestTime) {
   EXPECT_EQ(possible_repetition(plan_of({{"box", "20"}, {"max-time", "600"}})), "");
   EXPECT_EQ(possible_repetition(plan_of({{"obstacle-layout", "lattice"}, {"obstacle-gap", "1.2"}})), "");
-  EXPECT_EQ(possible_repetition(plan_of({{"box", "20,500"}, {"max-time", "1e3,1e4"}})),
-            "droplets of 2 of 4 parameter sets may come farther than their array is long and meet the same "
-            "obstacles "
-            "again: terminal-speed*max-time is up to 300, boxes*box 20; boxes=15 is long enough");
+  EXPECT_EQ(
+      possible_repetition(plan_of({{"box", "20,500"}, {"max-time", "1e3,1e4"}})),
+      "droplets of 2 of 4 parameter sets may travel farther than the length of their array and meet the same "
+      "obstacles again: terminal-speed*max-time is up to 300, boxes*box 20; boxes=15 is long enough");
 }
 
 TEST(BareArrays, AreThoseThatCirclesOfAFileDoNotFill) {

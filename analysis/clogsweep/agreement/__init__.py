@@ -1,4 +1,4 @@
-"""The statements of the article against what comes out here: see python3 -m clogsweep agreement."""
+"""The statements of the article compared with the results of this program: see python3 -m clogsweep agreement."""
 
 from . import lengths, passages, speeds  # noqa: F401  each registers its statements
 from .statements import Judged, judge_all

@@ -57,7 +57,7 @@ def falls(curve: Sequence[Group], is_less: Callable[[Group, Group], bool]) -> bo
 
 
 def overall(verdicts: Sequence[str]) -> str:
-    """One verdict for several curves: theirs if all are alike, `in kind` if only some of those known agree."""
+    """One verdict for several curves: theirs if all are alike, `qualitatively` if only some of those known agree."""
     known = set(verdicts) - {NOT_KNOWN}
     if not known:
         return NOT_KNOWN
@@ -65,7 +65,7 @@ def overall(verdicts: Sequence[str]) -> str:
 
 
 def by_tolerance(value: float, published: float, tolerance: float) -> str:
-    """`agrees` within the tolerance, `in kind` within four times the tolerance."""
+    """`agrees` within the tolerance, `qualitatively` within four times the tolerance."""
     difference = abs(value - published)
     return AGREES if difference <= tolerance else IN_KIND if difference <= 4 * tolerance else DOES_NOT
 

@@ -11,10 +11,11 @@ from ..paper.dilute import PUBLISHED, Family
 from ..paper.workshop import Workshop
 from ..tools.hints import Group
 from .evidence import bounds, curves, falls, fisher_p_value, grow_with_gap, length_of, overall, rises, shorter
-from .statements import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding, statement, statement_of_family, statement_of_walls
+from .statements import AGREES, DOES_NOT, FITTED, IN_KIND, NOT_KNOWN, Finding, statement, statement_of_family, statement_of_walls
 
 
 DENSITY = "the density of the published arrays is unknown, and λ depends on it"
+BY_DENSITY = "the density was fitted to this length, with other seeds"
 
 
 def peak(curve: Sequence[Group]) -> Group | None:
@@ -133,7 +134,7 @@ def hybrids_between(groups: list[Group]) -> Finding:
 
 
 @statement_of_walls("appendix C", "λ = 24 ± 1 at Γ = 1.09 and a gap of 0.2",
-                    in_kind=DENSITY, does_not_agree=DENSITY)
+                    fitted=BY_DENSITY, in_kind=DENSITY, does_not_agree=DENSITY)
 def published_length(groups: list[Group]) -> Finding:
     found = [group for group in groups if all(math.isclose(group[name], PUBLISHED[name]) for name in ("line_tension", "obstacle_gap"))]
     return length_as_published(found)
@@ -144,12 +145,12 @@ def length_as_published(found: Sequence[Group]) -> Finding:
         return Finding(NOT_KNOWN, "no run clogged, or none of this line tension")
     low, high = bounds(found[0])
     least, most = (PUBLISHED["clogging_length"] + sign * PUBLISHED["error"] for sign in (-1, 1))
-    verdict = AGREES if low <= most and high >= least else IN_KIND if low <= 2 * most and high >= least / 2 else DOES_NOT
+    verdict = FITTED if low <= most and high >= least else IN_KIND if low <= 2 * most and high >= least / 2 else DOES_NOT
     return Finding(verdict, f"{length_of(found[0])} at {found[0]['obstacle_density']:g} obstacles per σ²")
 
 
 @statement("appendix C, figure C2", "λ = 24 ± 1 at Γ = 1.09 and a gap of 0.2", "C2",
-           in_kind=DENSITY, does_not_agree=DENSITY)
+           fitted=BY_DENSITY, in_kind=DENSITY, does_not_agree=DENSITY)
 def length_of_survival(shop: Workshop) -> Finding:
     return length_as_published(shop.sweep("survival"))
 
@@ -162,7 +163,7 @@ def is_law_exponential(group: Group) -> Finding:
 
 
 @statement("4.2, appendix C", "P(r) is exponential", "C2",
-           does_not_agree="λ is no longer than the void of release, or the runs differ")
+           does_not_agree="λ is no longer than the release void, or the runs differ")
 def is_exponential(shop: Workshop) -> Finding:
     return is_law_exponential(shop.sweep("survival")[0])
 
@@ -224,12 +225,12 @@ def over_the_sag(is_beyond: bool) -> Callable[[Workshop, Family], Finding]:
         if not points:
             return Finding(NOT_KNOWN, "no polygon of such a sag")
         right = [is_alike != is_beyond for *_, is_alike in points]
-        return Finding(AGREES if all(right) else IN_KIND if any(right) else DOES_NOT, f"polygon over disk: {words}")
+        return Finding(AGREES if all(right) else IN_KIND if any(right) else DOES_NOT, f"polygon/disk ratio at each sag: {words}")
 
     return judge
 
 
 statement_of_family("4.2, figure 7c", "λ against the sag is the same for disks and polygons below 0.25 σ", "7c", over_the_sag(is_beyond=False),
-                    in_kind="they part at a smaller sag", not_known="no polygon of such a sag")
+                    in_kind="they separate at a smaller sag", not_known="no polygon of such a sag")
 statement_of_family("4.2, figure 7c", "λ against the sag differs between disks and polygons beyond 0.25 σ", "7c", over_the_sag(is_beyond=True),
                     not_known="the softest polygon does not sink that far")

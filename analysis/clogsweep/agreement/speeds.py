@@ -59,7 +59,7 @@ def soft_by_diameter(shop: Workshop) -> Finding:
     return Finding(verdict, ", ".join(f"{speed_of(group)} of {group['obstacle_diameter']:g}" for group in soft))
 
 
-@statement("4.3, figure 8ca", "the speed is nearly constant at small Ca and falls at large Ca", "8ca",
+@statement("4.3, text on figure 8a", "the speed is nearly constant at small Ca and falls at large Ca", "8ca",
            in_kind="at small Ca it is not constant")
 def speed_by_capillary_number(shop: Workshop) -> Finding:
     verdicts, words = [], []

@@ -12,12 +12,13 @@ from ..paper.workshop import Workshop
 from ..tools.errors import NotThere, UserError
 from ..tools.hints import Group
 
-AGREES, IN_KIND, DOES_NOT, NOT_KNOWN, NOT_RUN = "agrees", "in kind", "does not agree", "not known", "not run"
+AGREES, IN_KIND, FITTED = "agrees", "qualitatively", "by construction"
+DOES_NOT, NOT_KNOWN, NOT_RUN = "does not agree", "not known", "not run"
 
 
 @dataclasses.dataclass(frozen=True)
 class Finding:
-    """What comes out here. @param value  in words, with numbers and their intervals"""
+    """The result of this program. @param value  in words, with numbers and their intervals"""
 
     verdict: str
     value: str
@@ -41,7 +42,7 @@ STATEMENTS: list[Statement] = []
 
 
 def _by_verdict(reasons: Mapping[str, str]) -> dict[str, str]:
-    names = {"in_kind": IN_KIND, "does_not_agree": DOES_NOT, "not_known": NOT_KNOWN}
+    names = {"in_kind": IN_KIND, "fitted": FITTED, "does_not_agree": DOES_NOT, "not_known": NOT_KNOWN}
     return {names[name]: why for name, why in reasons.items()}
 
 
@@ -49,7 +50,7 @@ def statement(where: str, text: str, *figures: str, **reasons: str) -> Callable[
     """Registers a function that judges a statement.
 
     @param figures  whose sweeps it needs
-    @param reasons  for a verdict: in_kind, does_not_agree, not_known
+    @param reasons  for a verdict: in_kind, fitted, does_not_agree, not_known
     """
 
     def register(judge: Judge) -> Judge:

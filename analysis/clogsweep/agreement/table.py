@@ -5,7 +5,7 @@ import csv
 import io
 from collections.abc import Callable, Sequence
 
-from .statements import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, NOT_RUN, Judged
+from .statements import AGREES, DOES_NOT, FITTED, IN_KIND, NOT_KNOWN, NOT_RUN, Judged
 
 COLUMNS = ["where", "statement", "walls", "here", "verdict", "reason"]
 
@@ -15,9 +15,10 @@ def cells(one: Judged) -> list[str]:
 
 
 def counts(judged: Sequence[Judged]) -> str:
-    """Such as 31 agree, 12 agree in kind."""
+    """Such as 31 agree, 12 agree qualitatively."""
     number = collections.Counter(one.finding.verdict for one in judged)
-    words = {AGREES: "agree", IN_KIND: "agree in kind", DOES_NOT: "do not agree", NOT_KNOWN: "are not known", NOT_RUN: "have not been run"}
+    words = {AGREES: "agree", IN_KIND: "agree qualitatively", FITTED: "agree by construction",
+             DOES_NOT: "do not agree", NOT_KNOWN: "are not known", NOT_RUN: "have not been run"}
     return ", ".join(f"{number[verdict]} {word}" for verdict, word in words.items() if number[verdict])
 
 

@@ -1,10 +1,11 @@
-"""Compares the statements of the article with what comes out here, one by one.
+"""Compares the statements of the article with the results of this program, one by one.
 
     python3 -m clogsweep agreement
     python3 -m clogsweep agreement --run --format csv
 
-Judges every statement from the sweeps of the figures, and prints what comes out here with its interval, and the verdict:
-agrees, in kind, does not agree, not known (too few clogs to tell), not run. All rows must be of one model version.
+Judges every statement from the sweeps of the figures, and prints the result with its interval, and the verdict: agrees,
+qualitatively, by construction (a parameter was fitted to the published number), does not agree, not known (too few clogs
+to tell), not run. All rows must be of one model version.
 """
 
 import argparse

@@ -163,7 +163,7 @@ def title(row: np.void) -> str:
     """What clogged and how, in words."""
     wrapped = f"{row['num_wrapped']} wrapped (bears {100 * row['wrapped_support']:.0f} %)" if row["num_wrapped"] > 0 else "none wrapped"
     return (rf"task {row['task']}: {mechanism_of(row)} after $r = {rounded.plain(row['distance'])}\,\sigma$" "\n"
-            rf"$\Gamma = {row['line_tension']:.4g}$, smallest gap ${row['obstacle_gap']:.4g}\,\sigma$, seed {row['seed']}" "\n"
+            rf"$\Gamma = {row['line_tension']:.4g}$, minimum gap ${row['obstacle_gap']:.4g}\,\sigma$, seed {row['seed']}" "\n"
             f"{wrapped}, {rounded.counted(row['num_gaps'], 'gap')}, {rounded.counted(row['num_arcs'], 'contact')}")
 
 

@@ -2,6 +2,7 @@
 
 import functools
 import math
+import textwrap
 from collections.abc import Callable, Collection, Iterable, Sequence
 
 from matplotlib.axes import Axes
@@ -14,9 +15,9 @@ from ..tools.hints import Group
 
 # Doubts of clogfit in a length itself, and how a note explains them.
 HOLLOW_MARKERS = {
-    "few_clogs": "fewer than 5 clogs (run more seeds)",
-    "held_by_mesh": "the polygon's corners may hold droplets (use more vertices)",
-    "array_repeats": "droplets went farther than the period of the array",
+    "few_clogs": "fewer than 5 clogs",
+    "held_by_mesh": "clogs that the polygon's corners may hold",
+    "array_repeats": "longer paths than the period of the array",
     "below_spacing": "shorter than one obstacle spacing (reflects the release site, not clogging)",
     "not_proved_sound": "outside the range that was tested for soundness",
 }
@@ -39,10 +40,10 @@ def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[
     marks = [f"bars: {100 * confidence:g} % confidence intervals"] if any(group["clogs"] > 0 for group in groups) else []
     if any(group["clogs"] == 0 for group in groups):
         are_dotted = any(line.get_label() == THROUGH_BOUNDS for axes in panels for line in axes.lines)
-        marks.append("triangles: lower bounds (no run clogged)")
-        marks += ["dotted lines: through bounds"] if are_dotted else []
+        marks.append("triangles: lower bounds (no run clogged)" + (", joined by dotted lines" if are_dotted else ""))
     lines = ["; ".join(marks)] if marks else []
-    lines += [f"hollow: {HOLLOW_MARKERS[reason]}" for reason in dict.fromkeys(reason for group in groups for reason in reasons_for_hollow_marker(group))]
+    if reasons := dict.fromkeys(HOLLOW_MARKERS[reason] for group in groups for reason in reasons_for_hollow_marker(group)):
+        lines += textwrap.wrap(f"hollow: {', or '.join(reasons)}", NOTE_WIDTH)
     if num_incomplete := sum("incomplete" in style.doubts(group) for group in groups):
         lines.append(f"incomplete: runs of {num_incomplete} of {rounded.counted(len(groups), 'point')} are unfinished or failed")
     return lines

@@ -41,7 +41,7 @@ CHANNEL = Kind(
      "smallest_relative_speed_at": "at h/&sigma;", "largest_relative_speed": "largest v<sub>g</sub>/v<sub>t</sub>",
      "largest_relative_speed_at": "at h/&sigma;"},
     "where its shape parameter is largest",
-    "h is the distance of the droplet's centre from the orifice, v<sub>t</sub> the speed of a free droplet.")
+    "h is the position of the droplet's centre relative to the orifice, v<sub>t</sub> the speed of a free droplet.")
 WALL = Kind(
     "Sags", "clogged", {"clogged": "at rest", "broken": "broken up", "flowing": "not yet at rest"},
     {"sag": AXES["sag"], "top_sag": r"sag of the top $/\sigma$"},

@@ -1,4 +1,4 @@
-"""P(r) of a group of clogfit's JSON, the probability of not having clogged on a way r, as a curve."""
+"""P(r) of a group of clogfit's JSON, the probability of not having clogged within a distance r, as a curve."""
 
 from collections.abc import Sequence
 

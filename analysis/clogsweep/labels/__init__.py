@@ -68,4 +68,4 @@ def said(column: Column, value: float | str | None) -> str:
 
 def runs_a_point(groups: Collection[Group]) -> str:
     counts = sorted({group["runs"] for group in groups})
-    return f"{rounded.counted(counts[0], 'run')} a point" if len(counts) == 1 else f"{counts[0]} to {counts[-1]} runs a point"
+    return f"{rounded.counted(counts[0], 'run')} per point" if len(counts) == 1 else f"{counts[0]} to {counts[-1]} runs per point"

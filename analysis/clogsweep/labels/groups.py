@@ -151,7 +151,7 @@ class Groups:
         if not self.are_passages:
             words.append(runs_a_point(self.members))
         if self.are_polygons and not self.varies("preset"):
-            words.append(f"interface {first['preset']}")
+            words.append(f"preset {first['preset']}")
         return ", ".join(words)
 
     def _only_circle_file(self) -> dict[str, str]:

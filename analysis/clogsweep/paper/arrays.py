@@ -82,7 +82,7 @@ def lengths_of_polygons_in_saturated_arrays(shop: Workshop) -> Plate:
     return curves(shop, "clogging-saturated", "line_tension", "obstacle_gap", "length")
 
 
-@figure("7a", "clogging length against wall stiffness for four smallest gaps (soft disk), dilute arrays", ["clogging-sp"], "1 min")
+@figure("7a", "clogging length against wall stiffness for four values of the minimum gap (soft disk), dilute arrays", ["clogging-sp"], "1 min")
 def lengths_of_disks(shop: Workshop) -> Plate:
     return curves(shop, "clogging-sp", "wall_stiffness", "obstacle_gap", "length")
 
@@ -165,7 +165,7 @@ def lengths_over_sag_in_saturated_arrays(shop: Workshop) -> Plate:
     return over_sag(shop, [("clogging-saturated", "deformable polygon", list), ("clogging-sp-saturated", "soft disk", list)], 0.2, "length")
 
 
-@figure("9b", "mean speed against sag, deformable polygon and soft disk, smallest gap 1.1", ["speed", "speed-sp"], "shared with 8a, 9a")
+@figure("9b", "mean speed against sag, deformable polygon and soft disk, minimum gap 1.1", ["speed", "speed-sp"], "shared with 8a, 9a")
 def speeds_over_sag(shop: Workshop) -> Plate:
     return over_sag(shop, [("speed", "deformable polygon", list), ("speed-sp", "soft disk", list)], 1.1, "speed")
 
@@ -313,7 +313,7 @@ def kinetic_energy(shop: Workshop) -> Plate:
     axes.text(0.99, threshold * 2, "threshold of a clog", ha="right", fontsize=8, color="0.4", transform=axes.get_yaxis_transform())
     axes.set_yscale("log")
     axes.set_xlabel(r"time $t/t_0$")
-    axes.set_ylabel(r"kinetic energy over that at terminal speed $E_k/E_t$")
+    axes.set_ylabel(r"kinetic energy divided by that at terminal speed $E_k/E_t$")
     style.grid(axes)
     axes.legend(frameon=False)
     row = run.row
@@ -367,7 +367,7 @@ def survival(shop: Workshop) -> Plate:
                  + [{"clogging_length": length, "clogging_length_lower": lower, "clogging_length_upper": upper}])
 
 
-@figure("D", "displacement against time for five line tensions, smallest gap 1.1", ["trajectory"], "3 s")
+@figure("D", "displacement against time for five line tensions, minimum gap 1.1", ["trajectory"], "3 s")
 def displacement(shop: Workshop) -> Plate:
     drawing, axes = style.subplots(figsize=(6.8, 5.0))
     data = []

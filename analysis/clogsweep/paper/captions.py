@@ -30,17 +30,16 @@ def describe(columns: dict[str, Column], groups: Sequence[Group], without: Colle
     words = [] if polygons else ["soft disk"]
     if polygons and "vertices" not in without:
         meshes = sorted({group["vertices"] for group in polygons})
-        words.append(rf"$N_v = {', '.join(map(str, meshes))}$")
+        words.append(f"{' or '.join(map(str, meshes))} vertices")
     words += [said(columns[name], groups[0][name]) for name in NAMED if common(name) and groups[0][name]]
     if "obstacle_density" not in without:
         words.append(arrays_of(groups))
     if common("terminal_speed"):
         words.append(f"$V_t = {groups[0]['terminal_speed']:g}$")
-    times = {group["max_time"] for group in groups}
-    words.append(rf"$T = {max(times):g}\,t_0$" if len(times) == 1 else rf"$T \leq {max(times):g}\,t_0$")
+    words.append(rf"up to ${max(group['max_time'] for group in groups):g}\,t_0$")
     if common("box"):
-        words.append(rf"$L = {groups[0]['box']:g}\sigma$")
+        words.append(rf"arrays ${groups[0]['box']:g}\,\sigma$ wide")
     words.append(runs_a_point(groups))
     if polygons and common("preset", polygons):
-        words.append(f"interface {polygons[0]['preset']}")
+        words.append(f"preset {polygons[0]['preset']}")
     return ", ".join(words)

@@ -17,9 +17,9 @@ from .captions import describe
 from .plate import Plate, figure
 from .workshop import Workshop
 
-PUBLISHED_LENGTH, PUBLISHED_ERROR = 24.0, 1.0  # [sigma], at Gamma = 1.09 and a smallest gap of 0.2 sigma
+PUBLISHED_LENGTH, PUBLISHED_ERROR = 24.0, 1.0  # [sigma], at Gamma = 1.09 and a minimum gap of 0.2 sigma
 NORMAL_QUANTILE = 1.96  # two-sided 95 %
-CONFIGS = {"density-robust": "robust", "density-elastic": "elastic", "density-friction": r"elastic, walls with friction, $\mu = 0.05$"}
+CONFIGS = {"density-robust": "robust", "density-elastic": "elastic", "density-friction": r"elastic, wall friction, $\mu = 0.05$"}
 
 
 @dataclasses.dataclass(frozen=True)

@@ -49,10 +49,10 @@ class Family:
 
 
 FAMILIES = [
-    Family("clogging-robust", "walls that hold nothing"),
-    Family("clogging-friction", "walls with friction", 0.05),
-    Family("clogging-friction", "walls with friction", 0.1),
-    Family("clogging-elastic", "no friction: corners of the polygon hold"),
+    Family("clogging-robust", "no friction, no corner pinning"),
+    Family("clogging-friction", "wall friction", 0.05),
+    Family("clogging-friction", "wall friction", 0.1),
+    Family("clogging-elastic", "no friction, corner pinning"),
 ]
 FRICTIONLESS, FRICTION = FAMILIES[:2]
 
@@ -69,7 +69,8 @@ def legend(below: SubFigure, axes: Axes, groups: Sequence[Group], has_finer: boo
     marks = [(Line2D([], [], color="0.4", marker=marker, linestyle="none"), f"most clogs {name}")
              for name, marker in style.MECHANISM_MARKERS.items() if name in held]
     if has_finer:
-        marks.append((Line2D([], [], color="0.4", marker="s", markersize=3, linestyle=FINER), "a finer mesh"))
+        meshes = {group["vertices"] for group in groups}
+        marks.append((Line2D([], [], color="0.4", marker="s", markersize=3, linestyle=FINER), f"{max(meshes)} vertices (others: {min(meshes)})"))
     marks.append((Line2D([], [], color="black", marker="*", markersize=11, markerfacecolor="gold", linestyle="none"), r"published, $w_\mathrm{ob} = 0.2\sigma$"))
     below.legend(*zip(*curves, *marks), loc="center", ncols=4, frameon=False, fontsize=8)
 
@@ -115,7 +116,7 @@ def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
     return Plate(drawing, data)
 
 
-@figure("6c", "clogging length against line tension for four smallest gaps, dilute arrays: what walls hold, on two meshes",
+@figure("6c", "clogging length against line tension for four values of the minimum gap, dilute arrays: what holds droplets, on two meshes",
         ["clogging-robust", "clogging-robust-mesh", "clogging-friction", "clogging-friction-mesh", "clogging-elastic", "clogging-elastic-mesh"], "90 min")
 def lengths_of_polygons(shop: Workshop) -> Plate:
     return families(shop, FAMILIES, True)
@@ -130,7 +131,7 @@ def lengths_at_one_filling(shop: Workshop) -> Plate:
     return families(shop, FILLINGS, False)
 
 
-@figure("7c", "clogging length against sag, deformable polygons and soft disk, smallest gap 0.2, dilute arrays",
+@figure("7c", "clogging length against sag, deformable polygons and soft disk, minimum gap 0.2, dilute arrays",
         ["clogging-robust", "clogging-friction", "clogging-elastic", "clogging-sp"], "shared with 6c, 7a")
 def lengths_over_sag(shop: Workshop) -> Plate:
     return over_sag(shop, [*((family.config, family.label, family.of) for family in FAMILIES), ("clogging-sp", "soft disk", list)], 0.2, "length")
@@ -138,11 +139,11 @@ def lengths_over_sag(shop: Workshop) -> Plate:
 
 # The map
 
-MAPS = [Family("map-robust", "walls that hold nothing"), Family("map-friction", "walls with friction", 0.05)]
+MAPS = [Family("map-robust", "no friction, no corner pinning"), Family("map-friction", "wall friction", 0.05)]
 
 
 def is_exponential(group: Group) -> bool | None:
-    """Is Weibull's shape compatible with 1, and lambda no void of release? None if there are too few clogs to tell."""
+    """Is Weibull's shape compatible with 1, and lambda more than the release void? None if there are too few clogs to tell."""
     if group["clogs"] < ENOUGH_CLOGS or group["weibull_p_value"] is None:
         return None
     return group["weibull_p_value"] >= 0.05 and "below_spacing" not in style.doubts(group)
@@ -203,9 +204,10 @@ def lengths_on_a_map(shop: Workshop) -> Plate:
     for axes in [axes for axes, gap in zip(panels.T, gaps) if math.isclose(gap, PUBLISHED["obstacle_gap"]) for axes in axes]:
         axes.plot(place_of(tensions, PUBLISHED["line_tension"]) + 0.33, place_of(numbered, PUBLISHED["obstacle_density"]) + 0.28, marker="*", color="black",
                   markerfacecolor="gold", markersize=11)
-    drawing.colorbar(ScalarMappable(norm, style.VIRIDIS), ax=panels, label=AXES["length"], shrink=0.8)
+    drawing.colorbar(ScalarMappable(norm, style.VIRIDIS), ax=panels, label=AXES["length"], shrink=0.8, extend="min")
     drawing.suptitle(describe(shop.columns(MAPS[0].config), every, ["obstacle_density", "preset"]), fontsize=8, color="0.25")
     style.notes_of_panels(drawing, [
         f"framed: $P(r)$ is exponential (Weibull's shape compatible with 1, at least {ENOUGH_CLOGS} clogs, $\\lambda$ longer than a spacing)",
+        *(f"{family.label}: fewer than {ENOUGH_CLOGS} runs per cell, too few for a frame" for family, groups in kinds if max(group["runs"] for group in groups) < ENOUGH_CLOGS),
         "hatched, >: lower bound (no run clogged); star: the published $\\lambda = 24\\sigma$, at the density that gives this length here"])
     return Plate(drawing, data)

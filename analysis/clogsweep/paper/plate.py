@@ -13,10 +13,10 @@ from .workshop import Workshop
 CATALOGUE: dict[str, Entry] = {}
 # Presets of the interface, in words; docs/explanation/model.md says what is behind them.
 INTERFACES = {
-    "robust": "robust, weight on the liquid",
-    "heavy-interface": "heavy-interface, weight on the interface",
-    "elastic": "elastic, weight on the interface, which stretches",
-    "literal": "literal, as published",
+    "robust": "preset robust: weight on the liquid",
+    "heavy-interface": "preset heavy-interface: weight on the interface",
+    "elastic": "preset elastic: weight on the interface, tension grows with length",
+    "literal": "preset literal: as published",
 }
 
 

@@ -113,7 +113,7 @@ def described(trajectory: Trajectory) -> str:
     row = trajectory.row
     words = [rf"$\Gamma = {row['line_tension']:.4g}$" if trajectory.word("model") == "dp" else rf"$E_w = {row['wall_stiffness']:.4g}$"]
     if np.isfinite(row["obstacle_gap"]):
-        words.append(rf"smallest gap ${row['obstacle_gap']:.4g}\,\sigma$")
+        words.append(rf"minimum gap ${row['obstacle_gap']:.4g}\,\sigma$")
         words.append(f"seed {row['seed']}")
     return ", ".join(words)
 

@@ -44,14 +44,14 @@ inline constexpr DoubtText doubt_texts[] = {
      "P(r) is not exponential (p < 0.05, Holm's test of all groups of ten clogs or more): one length does "
      "not describe these runs"},
     {Doubt::censored_by_time, 't', "censored_by_time",
-     "runs ended by max-time: lambda is right only if slow droplets are as likely to clog as fast ones"},
+     "some runs were ended by max-time: lambda is right only if slow droplets are as likely to clog per "
+     "distance as fast ones"},
     {Doubt::incomplete, 'i', "incomplete",
-     "runs are under way or interrupted (they count as not clogged so far) or have failed (left out)"},
-    {Doubt::damaged, 'd', "damaged",
-     "rows hold what cannot be (left out; clogsweep verify names them): the file is damaged"},
+     "some runs are in progress or interrupted (they count as not clogged so far) or failed (excluded)"},
+    {Doubt::damaged, 'd', "damaged", "damaged rows were excluded (clogsweep verify lists them)"},
     {Doubt::held_by_mesh, 'm', "held_by_mesh",
-     "a tenth of the clogs or more hang over obstacles with edges so long that the polygon's corners may "
-     "hold them (column mesh_hold): use more vertices"},
+     "in a tenth of the clogs or more, the polygon's edges are so long that its corners may hold the droplet "
+     "(corner pinning, column mesh_hold): use more vertices"},
     {Doubt::array_repeats, 'r', "array_repeats",
      "runs went farther than boxes times box, where obstacles repeat: what lets a droplet pass once does so "
      "again"},
@@ -59,11 +59,11 @@ inline constexpr DoubtText doubt_texts[] = {
      "droplets met no obstacle: what they sank freely is in lambda; lambda_met is that of the others, from "
      "the first obstacle on"},
     {Doubt::below_spacing, 'v', "below_spacing",
-     "lambda is below one obstacle spacing (diameter + gap): it says how deep the void of release is, "
-     "not how often gaps clog droplets (of circles of your own the spacing is 1/sqrt(circles per area))"},
+     "lambda is below one obstacle spacing (diameter + gap): it reflects the release void, not how often "
+     "gaps clog droplets (for user-supplied circles the spacing is 1/sqrt(circles per area))"},
     {Doubt::not_proved_sound, 'u', "not_proved_sound",
-     "line tension, preset, vertices or obstacles are outside of what was proved sound "
-     "(docs/explanation/soundness.md)"}};
+     "line tension, preset, vertices or obstacles are outside the range tested for soundness: droplets may "
+     "cross themselves or obstacles (docs/explanation/soundness.md)"}};
 const DoubtText& text_of(Doubt doubt);
 
 /// By what a run may end, each a competing risk for the others: how a clog is held (`other` are clogs by none

@@ -15,7 +15,7 @@ struct CompetingEnd {
   std::optional<int> cause;
 };
 
-/// A step of the estimated F_c(r), the probability to end by cause c on a way r, the other causes being at
+/// A step of the estimated F_c(r), the probability to end by cause c within r, the other causes being at
 /// work.
 struct IncidenceStep {
   double distance;        ///< of one or more ends by this cause [sigma]

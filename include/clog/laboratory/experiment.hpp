@@ -16,12 +16,12 @@ double si_factor(const std::string& unit, const std::string& units);
 struct Experiment {
   double diameter = 0;        ///< of the undeformed droplet [m]
   double terminal_speed = 0;  ///< far from walls [m/s]
-  double tilt = 0;            ///< of the plates against the horizontal [rad]
+  double tilt = 0;            ///< of the plates to the horizontal [rad]
   double droplet_density = 0;
   double outer_density = 0;
   double interfacial_tension = 0;  ///< NaN if it is not known [N/m]
 
-  /// g_exp = sin(tilt) g |rho_outer - rho_droplet|/rho_droplet, what buoyancy leaves [m/s^2]
+  /// g_exp = sin(tilt) g |rho_outer - rho_droplet|/rho_droplet, acceleration by weight and buoyancy [m/s^2]
   double gravity() const;
   /// V_t = v_t/sqrt(sigma g_exp)
   double reduced_terminal_speed() const;

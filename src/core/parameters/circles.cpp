@@ -33,7 +33,7 @@ OwnCircles OwnCircles::from_check_sum(std::string_view text) {
   const char* end = text.data() + text.size();
   constexpr std::size_t num_digits = 16;
   if (text.size() != num_digits || std::from_chars(text.data(), end, sum, 16).ptr != end)
-    throw Error("is no check sum of circles");
+    throw Error("is no checksum of circles");
   return OwnCircles(sum);
 }
 
@@ -41,8 +41,8 @@ std::string OwnCircles::check_sum() const { return fmt::format("{:016x}", check_
 
 const std::vector<Obstacle>& OwnCircles::circles() const {
   if (!circles_)
-    throw Error("of the obstacles " + check_sum() +
-                " only the check sum is known; give the file that they are from");
+    throw Error("only the checksum " + check_sum() +
+                " of the obstacles is known; give the CSV file that they were read from");
   return *circles_;
 }
 

@@ -24,7 +24,7 @@ constexpr ParameterScope arrays = {
       return run.obstacles.layout != ObstacleLayout::channel && run.obstacles.layout != ObstacleLayout::wall;
     }};
 constexpr ParameterScope own_circles = {
-    "file", "there are no circles of a user's own", "add obstacles=FILE.csv, or leave it out",
+    "file", "there are no user-supplied circles", "add obstacles=FILE.csv, or leave it out",
     [](const RunParameters& run) { return run.obstacles.layout == ObstacleLayout::file; }};
 constexpr ParameterScope channels = {
     "channel", "there is no channel", "add obstacle-layout=channel, or leave it out",
@@ -196,8 +196,8 @@ std::vector<Parameter> make_schema() {
             {.column = "wall_stiffness",
              .symbol = "E_w",
              .unit = "g rho sigma^3",
-             .meaning =
-                 "E_w, stiffness of contact; auto: the stiffest that time-step and vertices hold (dp only)",
+             .meaning = "E_w, stiffness of contact; auto: the stiffest that is stable with time-step and "
+                        "vertices (dp only)",
              .automatic_in = &polygons,
              .range = {positive, {}},
              .words = {"auto"}}),
@@ -213,8 +213,8 @@ std::vector<Parameter> make_schema() {
             {.column = "obstacle_diameter",
              .symbol = R"(\sigma_\mathrm{ob})",
              .unit = "sigma",
-             .meaning =
-                 "sigma_ob, diameter of the obstacles; of circles of your own, of those whose line has none",
+             .meaning = "sigma_ob, diameter of the obstacles; of user-supplied circles, of those without a "
+                        "diameter in the file",
              .scope = &arrays,
              .range = {positive, {}},
              .shapes_array = true}),
@@ -233,9 +233,8 @@ std::vector<Parameter> make_schema() {
           {.column = "obstacle_density",
            .symbol = R"(\rho_\mathrm{ob})",
            .unit = "1/sigma^2",
-           .meaning =
-               "obstacles per area; 12.5%: of the mean density of saturated arrays; saturated: until not one "
-               "more fits. More than every seed reaches is refused",
+           .meaning = "obstacles per area; 12.5%: of the mean density of saturated arrays; saturated: until "
+                      "not one more fits. Refused if some seed cannot reach it",
            .scope = &arrays,
            .automatic_in = &arrays,
            .range = {positive, {}},
@@ -244,16 +243,15 @@ std::vector<Parameter> make_schema() {
            .words = {"saturated"}}),
       entry("obstacle-layout", [](auto& run) -> auto& { return run.obstacles.layout; },
             {.column = "obstacle_filling",
-             .meaning =
-                 "random: sequential addition, lattice: square, obstacle-gap + obstacle-diameter from centre "
-                 "to centre, file: circles of your own (obstacles), channel: between two wedges, wall: onto "
-                 "a flat one",
+             .meaning = "random: random sequential addition, lattice: square, obstacle-gap + "
+                        "obstacle-diameter from centre to centre, file: user-supplied circles (obstacles), "
+                        "channel: two wedges, wall: a flat wall",
              .has_own_column = false,
              .shapes_array = true}),
       entry("obstacles", [](auto& run) -> auto& { return run.obstacles.own; },
             {.column = "obstacles",
-             .meaning = "CSV file of circles of your own: x, y and, if it is another than obstacle-diameter, "
-                        "the diameter; the result holds them, too, and each row their check sum",
+             .meaning = "CSV file of user-supplied circles: x, y and, if it differs from obstacle-diameter, "
+                        "the diameter; the result file stores the circles, each row their checksum",
              .scope = &own_circles,
              .shapes_array = true}),
       entry(
@@ -327,16 +325,16 @@ std::vector<Parameter> make_schema() {
             {.column = "wedge_angle",
              .symbol = R"(\beta)",
              .unit = "degrees",
-             .meaning = "of the wedges' flanks against the flow; 0: parallel walls",
+             .meaning = "angle between the wedges' flanks and the flow; 0: parallel walls",
              .scope = &channels,
-             .range = {from(0, "an angle against the flow", "use 5..85, or 0 for parallel walls"),
-                       to(85, "an angle against the flow", "use 5..85, or 0 for parallel walls")},
+             .range = {from(0, "an angle between flank and flow", "use 5..85, or 0 for parallel walls"),
+                       to(85, "an angle between flank and flow", "use 5..85, or 0 for parallel walls")},
              .shapes_array = true}),
       entry("tip-radius", [](auto& run) -> auto& { return run.channel.tip_radius; },
             {.column = "tip_radius",
              .symbol = "r_t",
              .unit = "sigma",
-             .meaning = "of the wedges' rounded tips",
+             .meaning = "radius of the wedges' rounded tips",
              .scope = &channels,
              .range = {not_negative, to(10, "such tips are flat for a droplet", "try 0.03")},
              .shapes_array = true}),
@@ -347,20 +345,20 @@ std::vector<Parameter> make_schema() {
              .meaning =
                  "h of the droplet's centre at release, from the line through the tips, negative upstream",
              .scope = &channels,
-             .range = {from(-100, "the way to the orifice would take most of the time", "try -10"), {}}}),
+             .range = {from(-100, "the approach would take most of the time", "try -10"), {}}}),
       entry("end", [](auto& run) -> auto& { return run.channel.end; },
             {.column = "end",
              .symbol = "h_1",
              .unit = "sigma",
              .meaning = "h at which the droplet has passed",
              .scope = &channels,
-             .range = {{}, to(100, "the way behind the orifice would take most of the time", "try 3")}}),
+             .range = {{}, to(100, "the path behind the orifice would take most of the time", "try 3")}}),
       entry("lattice-angle", [](auto& run) -> auto& { return run.obstacles.lattice_angle; },
             {.column = "lattice_angle",
              .symbol = R"(\theta)",
              .unit = "degrees",
-             .meaning =
-                 "of the lattice's rows from +x (the flow) to +y; the nearest with a period of at most box",
+             .meaning = "angle of the lattice's rows from +x (the flow) towards +y; adjusted to the nearest "
+                        "with a period of at most box",
              .scope = &lattices,
              .range = {from(-45, "a square lattice turned by 90 degrees is the same", "use -45..45"),
                        to(45, "a square lattice turned by 90 degrees is the same", "use -45..45")},
@@ -382,13 +380,13 @@ std::vector<Parameter> make_schema() {
              .role = numerics,
              .scope = &arrays,
              .range = {from(5, "the droplet would meet its own periodic image", "use at least 5"),
-                       to(1e5, "no droplet gets as far", "use at most 1e5; the array is periodic")},
+                       to(1e5, "no droplet travels that far", "use at most 1e5; the array is periodic")},
              .shapes_array = true}),
       entry("boxes", [](auto& run) -> auto& { return run.obstacles.boxes; },
             {.column = "boxes",
              .symbol = R"(n_\mathrm{box})",
-             .meaning = "the array is so many boxes long, along the flow, before it repeats: with "
-                        "terminal-speed*max-time/box and more never",
+             .meaning = "number of boxes along the flow after which the array repeats; no droplet gets that "
+                        "far if boxes is at least terminal-speed*max-time/box",
              .role = numerics,
              .scope = &arrays,
              .range = {from(1, "boxes in a row along the flow, after which the array repeats", "use 1..1e6"),
@@ -413,15 +411,16 @@ std::vector<Parameter> make_schema() {
       entry("near-wall-drag", [](auto& run) -> auto& { return run.drag.near_wall; },
             {.column = "near_wall_drag",
              .symbol = R"(b_0/b_\infty)",
-             .meaning = "b_0/b_inf, drag near walls over that far from them",
+             .meaning = "b_0/b_inf, extra drag at a distance of one diameter from a wall, divided by the "
+                        "drag far from walls",
              .scope = &polygons,
-             .range = {not_negative, to(1000, "the droplet would hang in the drag of its surroundings",
-                                        "use at most 1000")},
+             .range = {not_negative,
+                       to(1000, "near-wall drag would stop the droplet everywhere", "use at most 1000")},
              .elsewhere = 0.0}),
       entry("near-wall-exponent", [](auto& run) -> auto& { return run.drag.near_wall_exponent; },
             {.column = "near_wall_exponent",
              .symbol = R"(\alpha)",
-             .meaning = "alpha, of the near-wall drag's power of sigma/d",
+             .meaning = "alpha, exponent of sigma/d in the near-wall drag",
              .scope = &polygons,
              .range = {from(0, "drag would grow away from walls", "the published exponent is 4/3"),
                        to(4, "lubrication gives no more", "the published exponent is 4/3")}}),
@@ -429,14 +428,14 @@ std::vector<Parameter> make_schema() {
             {.column = "near_wall_cutoff",
              .symbol = R"(d_\mathrm{min})",
              .unit = "sigma",
-             .meaning = "d of the near-wall drag counts as no less",
+             .meaning = "d_min, smallest distance from a wall that enters the near-wall drag",
              .scope = &polygons,
              .range = {positive, to(1, "drag would hardly depend on the distance",
                                     "use at most 1, a droplet diameter")}}),
       entry("relative-drag", [](auto& run) -> auto& { return run.drag.relative; },
             {.column = "relative_drag",
              .symbol = "c",
-             .meaning = "c, drag of motion relative to the centre of mass over b_inf",
+             .meaning = "c, drag coefficient of motion relative to the centre of mass, divided by b_inf",
              .scope = &polygons,
              .range = {not_negative, to(1000, "the droplet would hardly change its shape",
                                         "use at most 1000; 1 is the published model")},
@@ -445,26 +444,25 @@ std::vector<Parameter> make_schema() {
       entry("vertices", [](auto& run) -> auto& { return run.dp.vertices; },
             {.column = "vertices",
              .symbol = "N_v",
-             .meaning = "N_v, number of vertices of the polygon; auto: 128, or so many more that edges on "
-                        "obstacles are short against their radius",
+             .meaning = "N_v, number of vertices of the polygon; auto: 128, or more if edges would not be "
+                        "short compared with the obstacles' radius",
              .role = numerics,
              .scope = &polygons,
              .automatic_in = &polygons,
-             .range = {from(16, "a droplet is no circle any more", "use 16..4096"),
+             .range = {from(16, "with fewer the polygon is far from a circle", "use 16..4096"),
                        to(4096, "a run would take months", "use 16..4096")},
              .words = {"auto"},
              .elsewhere = std::int64_t{1}}),
-      entry(
-          "time-step", [](auto& run) -> auto& { return run.time_step; },
-          {.column = "time_step",
-           .symbol = R"(\Delta t)",
-           .unit = "t0",
-           .meaning = "step of the integrator; auto: the largest at which nothing stiff matters, 1e-3 is the "
-                      "published one",
-           .role = numerics,
-           .automatic_in = &every_run,
-           .range = {from(1e-9, "smaller than any mode needs", "try 1e-3"), {}},
-           .words = {"auto"}}),
+      entry("time-step", [](auto& run) -> auto& { return run.time_step; },
+            {.column = "time_step",
+             .symbol = R"(\Delta t)",
+             .unit = "t0",
+             .meaning = "step of the integrator; auto: the largest at which stiff modes do not affect the "
+                        "result; published: 1e-3",
+             .role = numerics,
+             .automatic_in = &every_run,
+             .range = {from(1e-9, "smaller than any mode needs", "try 1e-3"), {}},
+             .words = {"auto"}}),
       entry("area-stiffness", [](auto& run) -> auto& { return run.dp.area_stiffness; },
             {.column = "area_stiffness",
              .symbol = "K_a",
@@ -515,14 +513,15 @@ std::vector<Parameter> make_schema() {
                "as published",
            .scope = &polygons,
            .range = {not_negative,
-                     to(0.1, "walls would push from afar, and gaps be narrower by twice as much",
+                     to(0.1, "walls would act at a distance, and gaps would be narrower by twice as much",
                         "use 0, the surface, to 0.1")},
            .words = {"half-vertex"}}),
       entry(
           "wall-tension", [](auto& run) -> auto& { return run.dp.wall_tension; },
           {.column = "wall_tension",
-           .symbol = R"(\gamma_\mathrm{w}/\Gamma)",
-           .meaning = "tension where the interface touches a wall, over Gamma: -cos of the contact angle",
+           .symbol = R"(\Gamma_\mathrm{w}/\Gamma)",
+           .meaning = "tension of the interface where it touches a wall, divided by Gamma: minus the cosine "
+                      "of the contact angle",
            .scope = &polygons,
            .range =
                {from(0.1,
@@ -557,8 +556,8 @@ std::vector<Parameter> make_schema() {
       entry("friction", [](auto& run) -> auto& { return run.dp.friction; },
             {.column = "friction",
              .symbol = R"(\mu)",
-             .meaning = "mu, dry friction of walls: force along the wall over push; not with "
-                        "perimeter-spring=along",
+             .meaning = "mu, coefficient of dry friction of walls: largest tangential force divided by "
+                        "normal force; not with perimeter-spring=along",
              .scope = &polygons,
              .range = {not_negative, to(10, "more than any wall has", "try 0.3")},
              .elsewhere = 0.0,
@@ -567,8 +566,8 @@ std::vector<Parameter> make_schema() {
             {.column = "yield_traction",
              .symbol = R"(\tau_\mathrm{y})",
              .unit = "g rho sigma",
-             .meaning = "tau_y, force along the wall per wetted length that a wall bears besides; not with "
-                        "perimeter-spring=along",
+             .meaning = "tau_y, yield traction of walls: tangential force per wetted length that they bear "
+                        "in addition to friction; not with perimeter-spring=along",
              .scope = &polygons,
              .range = {not_negative, to(1000, "no droplet would ever move", "try 0.1")},
              .elsewhere = 0.0,
@@ -578,14 +577,15 @@ std::vector<Parameter> make_schema() {
              .meaning = "does the interface repel itself",
              .role = numerics,
              .scope = &polygons}),
-      entry("self-contact-range", [](auto& run) -> auto& { return run.dp.self_contact_range; },
-            {.column = "self_contact_range",
-             .symbol = R"(d_\mathrm{s})",
-             .unit = "sigma",
-             .meaning = "distance below which the interface repels itself",
-             .scope = &polygons,
-             .range = {positive, to(0.1, "no film could be thinner, and the droplet could not be folded",
-                                    "use at most 0.1")}}),
+      entry(
+          "self-contact-range", [](auto& run) -> auto& { return run.dp.self_contact_range; },
+          {.column = "self_contact_range",
+           .symbol = R"(d_\mathrm{s})",
+           .unit = "sigma",
+           .meaning = "distance below which the interface repels itself",
+           .scope = &polygons,
+           .range = {positive, to(0.1, "thin parts of the droplet could be no thinner, and it could not fold",
+                                  "use at most 0.1")}}),
       entry("gravity", [](auto& run) -> auto& { return run.dp.gravity; },
             {.column = "gravity",
              .meaning =
@@ -594,7 +594,8 @@ std::vector<Parameter> make_schema() {
       entry("clog-energy", [](auto& run) -> auto& { return run.clog_energy; },
             {.column = "clog_energy",
              .symbol = "E_k/E_t",
-             .meaning = "clogged when the kinetic energy, over that at terminal speed, stays below this",
+             .meaning = "a droplet is clogged when its kinetic energy, divided by that at terminal speed, "
+                        "stays below this",
              .role = numerics,
              .range = {above(0, "no droplet comes to rest altogether", "try 1e-17"),
                        below(1e-3,
@@ -612,9 +613,8 @@ std::vector<Parameter> make_schema() {
             {.column = "dwell_length",
              .symbol = R"(\delta_\mathrm{d})",
              .unit = "sigma",
-             .meaning =
-                 "a droplet that comes no farther than this counts as standing: how long, is told by the "
-                 "columns of dwells",
+             .meaning = "a droplet that advances no farther than this is at rest (a dwell); the dwell "
+                        "columns record for how long",
              .role = numerics,
              .range = {positive, to(0.5, "a droplet that hangs moves less", "try 0.05")},
              .before = RunParameters().dwell_length}),

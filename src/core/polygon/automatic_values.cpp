@@ -99,8 +99,8 @@ void resolve_contact_angles(DpParameters& dp) {
   });
   if (has_hysteresis(dp) && dp.perimeter_spring != PerimeterSpring::along)
     throw Error(fmt::format(
-        "{} contradicts perimeter-spring={} (walls hold such an interface by friction) use friction, or "
-        "preset=robust",
+        "{} contradicts perimeter-spring={} (on such an interface walls act by friction, not by hysteresis) "
+        "use friction, or preset=robust",
         *dp.receding_angle < young ? "receding-angle" : "advancing-angle", name(dp.perimeter_spring)));
 }
 
@@ -157,8 +157,8 @@ void resolve_polygon(RunParameters& run, double sharpest_bend) {
   resolve_contact_angles(dp);
   if (dp.perimeter_spring == PerimeterSpring::along && (dp.friction > 0 || dp.yield_traction > 0))
     throw Error(fmt::format(
-        "{} contradicts perimeter-spring=along (an interface of constant tension cannot carry what friction "
-        "gives along it) use preset=elastic",
+        "{} contradicts perimeter-spring=along (an interface of constant tension cannot balance a "
+        "tangential force) use preset=elastic",
         dp.friction > 0 ? "friction" : "yield-traction"));
 
   const double vertex_mass = units::droplet_mass / *dp.vertices;

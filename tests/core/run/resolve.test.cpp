@@ -83,13 +83,13 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"relative-drag=-1", [](auto& run) { run.drag.relative = -1; }},
         Refusal{"near-wall-cutoff=0", [](auto& run) { run.drag.near_wall_cutoff = 0; }},
         Refusal{"contact-range=-0.01", [](auto& run) { run.dp.contact_range = -0.01; }},
-        Refusal{"contact-range=0.2 (walls would push from afar",
+        Refusal{"contact-range=0.2 (walls would act at a distance",
                 [](auto& run) { run.dp.contact_range = 0.2; }},
         Refusal{"self-contact-range=0", [](auto& run) { run.dp.self_contact_range = 0; }},
         Refusal{"wall-tension=-1", [](auto& run) { run.dp.wall_tension = -1; }},
         Refusal{"friction=-0.1 (must not be negative", [](auto& run) { run.dp.friction = -0.1; }},
-        Refusal{"friction contradicts perimeter-spring=along (an interface of constant tension cannot carry "
-                "what friction gives along it) use preset=elastic",
+        Refusal{"friction contradicts perimeter-spring=along (an interface of constant tension cannot balance "
+                "a tangential force) use preset=elastic",
                 [](auto& run) { run.dp.friction = 0.1; }},
         Refusal{"yield-traction contradicts perimeter-spring=along",
                 [](auto& run) { run.dp.yield_traction = 0.1; }},
@@ -100,8 +100,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"advancing-angle=150 (below Young's angle, which wall-tension sets) use at least 180, or "
                 "young",
                 [](auto& run) { run.dp.advancing_angle = 150; }},
-        Refusal{"receding-angle contradicts perimeter-spring=mean (walls hold such an interface by friction) "
-                "use friction, or preset=robust",
+        Refusal{"receding-angle contradicts perimeter-spring=mean (on such an interface walls act by "
+                "friction, not by hysteresis) use friction, or preset=robust",
                 [](auto& run) {
                   run.dp.receding_angle = 120, run.dp.perimeter_spring = PerimeterSpring::mean;
                 }},

@@ -190,8 +190,8 @@ struct ObstacleParameters {
 /// Two wedges, tip to tip across the flow (Cheng et al., Fig. 1a). h is the distance of the centre of mass
 /// from the line through the tips, positive downstream.
 struct ChannelParameters {
-  double orifice = 0.7;     ///< w, distance between the tips [sigma]
-  double wedge_angle = 45;  ///< of the wedges' flanks against the flow direction [degrees]; 0: parallel walls
+  double orifice = 0.7;      ///< w, distance between the tips [sigma]
+  double wedge_angle = 45;   ///< between the wedges' flanks and the flow [degrees]; 0: parallel walls
   double tip_radius = 0.03;  ///< of the wedges' rounded tips [sigma]
   double start = -10;        ///< h at release [sigma]
   double end = 3;            ///< h at which the run is over [sigma]
