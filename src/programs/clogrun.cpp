@@ -31,7 +31,7 @@ constexpr const char* usage = R"(clogrun follows one droplet and writes what hap
   clogrun channel --output run.h5 orifice=0.7 line-tension=1.08 near-wall-drag=0.07 terminal-speed=0.032
   clogrun array --output run.h5 line-tension=0.3 max-time=3000 --polygon-interval 5 --frames film
   clogrun replay sweep.h5 12 --output run.h5 --polygon-interval 1     replays a run of a sweep
-  clogrun sag line-tension=0.1,0.3,1          prints how far the droplet sinks onto a flat wall
+  clogrun sag line-tension=0.1,0.3,1          prints how far the droplet sinks on a flat wall
 
 In an array, the same keys and seed as a row of a sweep give that row's run, bit for bit.
 )";

@@ -85,7 +85,7 @@ class Units(ProgramTest):
         self.assertIn("lambda/mm", self.succeed("clogfit", "plain.h5", "--lab", lab).stdout)
 
     def test_mistakes_in_a_lab_file_get_one_line(self):
-        for text, words in [
+        mistakes = [
             ("diameter = 3.5 mm\n", ["lab.cfg has no angle", "angle = 28 deg"]),
             ("diameter = 3.5\nangle = 28 deg\n", ["lab.cfg", "diameter=3.5", "has no unit"]),
             ("diameter = 3.5 mm\nangle = 128 deg\n", ["beyond 90 degrees"]),
@@ -93,7 +93,9 @@ class Units(ProgramTest):
             ("diameter = 3.5 mm\nangle = 28 deg\ncolour = red\n", ["line 3", "unknown key 'colour'"]),
             ("diameter = 3.5 mm\ndiameter = 3.6 mm\n", ["line 2", "twice"]),
             ("diameter\n", ["line 1", "not key = value"]),
-            ("diameter = 3.5 mm\nangle = 28 deg\ndensity = 1 g/ml\nouter-density = 1 g/ml\n", ["nothing drives"])]:
+            ("diameter = 3.5 mm\nangle = 28 deg\ndensity = 1 g/ml\nouter-density = 1 g/ml\n", ["nothing drives"]),
+        ]
+        for text, words in mistakes:
             self.write("lab.cfg", text)
             with self.subTest(text=text):
                 self.refuse("clogfit", "units", "lab.cfg", words=words)

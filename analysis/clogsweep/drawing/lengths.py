@@ -29,6 +29,7 @@ def reasons_for_hollow_marker(group: Group) -> list[str]:
 
 
 SPEED_NOTES = ["bars: standard errors"]
+NOTE_WIDTH = 100  # characters of a line below a picture
 OF_ALL_RUNS = "relative_speed_all"  # of clogfit: way over time, whatever way a run came
 THROUGH_BOUNDS = "_through bounds"  # label of a line, in no legend
 

@@ -11,8 +11,8 @@ namespace clog::campaign {
 
 /// What a sweep's file says of its sweep, apart from the rows.
 
-/// A sweep's file for whoever prints something of it: what could not be checked is said on the standard
-/// error, and rows know their circles, with the name of the file that these are from.
+/// Opens a sweep for reading; warns on stderr about anything that could not be verified. Rows know their
+/// circles, with the name of the file that these are from.
 /// @throws Error as store::read_sweep()
 store::SweepFile read_with_caution(const std::string& path);
 
