@@ -25,7 +25,8 @@ struct Puddle {
 /// Runge and Kutta's fourth-order rule.
 Puddle puddle(double line_tension, double apex_curvature) {
   using State = Eigen::Array<double, 5, 1>;  // phi, x, z, area, moment
-  const double step = 1e-3 * std::min(1.0, std::sqrt(line_tension));
+  // The interface bends over sqrt(Gamma) at a puddle's rim, over a radius of 1/2 elsewhere.
+  const double step = 0.02 * std::min(0.5, std::sqrt(line_tension));
   const auto slope = [&](const State& y) {
     const double deepening = std::sin(y[0]);
     return State(apex_curvature + y[2] / line_tension, std::cos(y[0]), deepening, 2 * y[1] * deepening,
