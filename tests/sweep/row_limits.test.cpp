@@ -122,7 +122,7 @@ TEST(BareArrays, AreThoseThatCirclesOfAFileDoNotFill) {
     return bare_arrays(Plan(settings));
   };
   const std::string lanes =
-      "obstacles=posts.csv leaves y=8.5 to 10.5, 2.5 to 4.5, 5.5 to 7.5 bare, wider than a droplet; the "
+      "obstacles=posts.csv leaves y=2.5 to 4.5, 5.5 to 7.5, 8.5 to 10.5 bare, wider than a droplet; the "
       "array "
       "repeats at box=9: droplets sink there and touch nothing (n); if that is not meant, give a smaller box";
   EXPECT_EQ(bare_in("9", "1"), std::vector<std::string>{lanes});
