@@ -28,7 +28,8 @@ std::vector<Stretch> bare_stretches(std::span<const Obstacle> circles, double Ob
     covered = std::max(covered, shadow.end);
   }
   if (const double again = shadows.front().begin + period; again > covered) bare.push_back({covered, again});
-  std::sort(bare.begin(), bare.end(), [](const Stretch& a, const Stretch& b) { return width(a) > width(b); });
+  std::stable_sort(bare.begin(), bare.end(),
+                   [](const Stretch& a, const Stretch& b) { return width(a) > width(b); });
   return bare;
 }
 
