@@ -13,7 +13,7 @@ import subprocess
 import sys
 
 COMMANDS = {"clogsweep": ["status", "verify", "salvage", "replay", "doctor"], "clogrun": ["array", "channel", "sag", "replay"],
-            "clogfit": ["calibrate", "deviation", "drag", "report", "units"]}
+            "clogfit": ["calibrate", "curve", "deviation", "drag", "report", "units"]}
 POSITIONAL = {"--file", "--system", "--task"}
 FILES = {"--config", "--frames", "--lab", "--output", "--programs", "--write-obstacles"}
 # Those of an option are the ones that its help names.

@@ -18,6 +18,7 @@
 #include "clog/laboratory/scales.hpp"
 #include "clog/store/run_table.hpp"
 #include "clogfit_calibrate.hpp"
+#include "clogfit_curve.hpp"
 #include "clogfit_deviation.hpp"
 #include "clogfit_drag.hpp"
 #include "clogfit_units.hpp"
@@ -39,6 +40,7 @@ confidence interval and the mean speed with its standard error.
   clogfit deviation a.csv b.csv                Delta_v and Delta_A of one profile from others
   clogfit drag speeds.csv                      exponent of the near-wall drag from speeds along a wall
   clogfit units lab.cfg                        between a laboratory's quantities and the model's numbers
+  clogfit curve sweep.h5                       a smooth curve through the lengths, its peak, where it crosses a length
   clogfit report sweep.h5 --output page.html   curves, doubts, example clogs, table, provenance on one page
 
 Runs that did not clog count as censored at the distance they reached. Where no run clogged, lambda is a lower
@@ -82,7 +84,7 @@ int body(int argc, char** argv) {
       "file that describes the laboratory, see clogfit units: lengths, speeds and times in its units, too")(
       "dwell", po::value<std::string>(), "droplets that have not moved for so long count as clogged [t0]");
   line.add_positional("file", 1);
-  line.add_commands({"calibrate", "deviation", "drag", "report", "units"});
+  line.add_commands({"calibrate", "curve", "deviation", "drag", "report", "units"});
   line.explain_surplus_words("one sweep file is read at a time; call clogfit for each");
   line.parse(argc, argv);
   if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return console::exit_success;
@@ -129,6 +131,8 @@ int main(int argc, char** argv) {
   console::prepare_streams();
   if (argc > 1 && std::string_view(argv[1]) == "calibrate")
     return cli::run_program("clogfit calibrate", [&] { return clogfit_calibrate(argc, argv); });
+  if (argc > 1 && std::string_view(argv[1]) == "curve")
+    return cli::run_program("clogfit curve", [&] { return clogfit_curve(argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "deviation")
     return cli::run_program("clogfit deviation", [&] { return clogfit_deviation(argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "drag")

@@ -15,7 +15,7 @@ REPORTS = [
     ["clogsweep", "status", FILE, "--format", "json"],
     ["clogsweep", "verify", FILE], ["clogsweep", "replay", FILE, "0"], ["clogsweep", "doctor"],
     ["clogfit", FILE], ["clogfit", FILE, "--format", "csv"], ["clogfit", FILE, "--format", "json"],
-    ["clogfit", "--help"],
+    ["clogfit", "--help"], ["clogfit", "curve", "--help"],
     ["clogfit", "deviation", "p.csv", "p.csv"], ["clogfit", "drag", "d.csv"], ["clogfit", "report", "--help"],
     ["clogrun", "sag", "vertices=64", "line-tension=1"], ["clogrun", "--version"], ["clogsweep", "no-such-word"],
 ]

@@ -18,7 +18,7 @@ from support import BIN, LONGEST, ROOT
 KEYS = ["line-tension=0.5", "obstacle-density=saturated", "obstacle-gap=0.3", "vertices=64", "box=20", "max-time=200", "seeds=1..4"]
 
 COMMANDS = {"clogsweep": ["status", "verify", "salvage", "replay", "doctor"], "clogrun": [],
-            "clogfit": ["calibrate", "deviation", "drag", "report", "units"]}
+            "clogfit": ["calibrate", "curve", "deviation", "drag", "report", "units"]}
 
 # What words without dashes stand for.
 POSITIONAL = {"--file", "--system", "--task"}

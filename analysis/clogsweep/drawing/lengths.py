@@ -32,6 +32,7 @@ SPEED_NOTES = ["bars: standard errors"]
 NOTE_WIDTH = 100  # characters of a line below a picture
 OF_ALL_RUNS = "relative_speed_all"  # of clogfit: way over time, whatever way a run came
 THROUGH_BOUNDS = "_through bounds"  # label of a line, in no legend
+FITTED = "_fitted"  # likewise
 
 
 def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[Axes]) -> list[str]:
@@ -42,6 +43,8 @@ def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[
     if any(group["clogs"] == 0 for group in groups):
         are_dotted = any(line.get_label() == THROUGH_BOUNDS for axes in panels for line in axes.lines)
         marks.append("triangles: lower bounds (no run clogged)" + (", joined by dotted lines" if are_dotted else ""))
+    if any(line.get_label() == FITTED for axes in panels for line in axes.lines):
+        marks.append(f"lines: fitted curves, with {100 * confidence:g} % bands")
     lines = ["; ".join(marks)] if marks else []
     if reasons := dict.fromkeys(HOLLOW_MARKERS[reason] for group in groups for reason in reasons_for_hollow_marker(group)):
         lines += textwrap.wrap(f"hollow: {', or '.join(reasons)}", NOTE_WIDTH)
@@ -77,7 +80,7 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
         face = "white" if reasons_for_hollow_marker(group) else colour
         axes.plot(x, y, color=colour, marker=style.MECHANISM_MARKERS[style.main_mechanism(group)], markerfacecolor=face, markersize=size, zorder=3,
                   gid=style.mark("point", [group]) if group["clogs"] > 0 else None)
-    if len(groups) > 1 and any(group["clogs"] == 0 for group in groups):
+    if linestyle != "none" and len(groups) > 1 and any(group["clogs"] == 0 for group in groups):
         through = [group["clogging_length_lower"] if group["clogs"] == 0 else group["clogging_length"] for group in groups]
         axes.plot(places, through, color=colour, linewidth=0.8, linestyle=":", zorder=1, label=THROUGH_BOUNDS)
     bounds = [(x, group) for x, group in zip(places, groups) if group["clogs"] == 0]
@@ -157,8 +160,26 @@ def draw_abscissa(axes: Axes, groups: Groups) -> None:
     axes.set_xlabel(groups.axis_label())
 
 
+def draw_fitted(axes: Axes, groups: Groups, members: Sequence[Group], index: int) -> bool:
+    """The smooth curve that clogfit fits through these groups, with its band. @return whether there is one"""
+    fitted = groups.fitted_curve(members)
+    if not fitted:
+        return False
+    x = [place[groups.abscissa] for place in fitted["curve"]]
+    lengths, lower, upper = ([place[f"clogging_length{end}"] for place in fitted["curve"]] for end in ("", "_lower", "_upper"))
+    style_of_curve = style.curve_style(index)
+    axes.fill_between(x, lower, upper, color=style_of_curve["color"], alpha=0.13, linewidth=0, zorder=0)
+    axes.plot(x, lengths, color=style_of_curve["color"], linestyle=style_of_curve["linestyle"], linewidth=1.2, label=FITTED, zorder=1)
+    return True
+
+
 def draw_on(axes: Axes, groups: Groups) -> None:
-    draw_curves(axes, groups, draw_lengths)
+    """Points with their bars; through them clogfit's curves, or straight lines where there are none."""
+    def draw_curve(axes: Axes, places: Sequence[float], members: Sequence[Group], index: int, label: str) -> None:
+        is_fitted = draw_fitted(axes, groups, members, index)
+        draw_lengths(axes, places, members, index, label, linestyle="none" if is_fitted else None)
+
+    draw_curves(axes, groups, draw_curve)
     finish_lengths(axes, groups, groups.members)
     add_laboratory(axes, groups, "length")
 

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import functools
 import pathlib
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable
 from typing import Any
 
-from ..reading import stored
+from ..reading import fits, stored
 from ..tools.errors import UserError
-from ..tools.hints import Column, Group
+from ..tools.hints import AnyPath, Column, Group
 from . import AXES, is_number, runs_a_point, said, symbol
 
+FEWEST_POINTS = 3  # that a fitted curve is drawn through
 FINISHED = ("passed", "clogged", "broken", "flowing")
 
 
@@ -22,6 +24,7 @@ class Groups:
         # In a channel and on a wall nothing is random: a group is one run, which has a status.
         self.are_passages = any("status" in group for group in fit["groups"])
         self.members: list[Group] = [group for group in fit["groups"] if (group["status"] in FINISHED if self.are_passages else group["runs"] > 0)]
+        self._told: list[Group] = fit["groups"]
         self.confidence: float = fit["confidence"]
         self.laboratory: dict[str, float | None] = fit.get("laboratory", {})  # what the model's units are there
         self.columns: dict[str, Column] = {column["name"]: column for column in fit["columns"]}
@@ -30,6 +33,7 @@ class Groups:
         self._circle_files = circle_files or self._only_circle_file()
         self.tells_what_all_share = True  # in caption()
         self.abscissa = self._choose_abscissa() if self.members else ""  # there is nothing to draw
+        self._ask_for_curves: Callable[[], list[dict[str, Any]]] = list  # none; see fit_curves()
 
     def finished(self, source: object = "the sweep") -> Groups:
         """@throws UserError  if no run of theirs has finished"""
@@ -42,6 +46,21 @@ class Groups:
         if self.are_passages:
             raise UserError("cannot draw clogging lengths (these droplets were in a channel or on a wall); clogfit report draws their results")
         return self.finished(source)
+
+    def fit_curves(self, clogfit: pathlib.Path, sweep: AnyPath, *options: str) -> Groups:
+        """The same, whose pictures have clogfit's smooth curves over the abscissa, where these can be drawn. @param options  of the fit"""
+        if self.members and not self.are_passages and self.is_logarithmic():
+            self._ask_for_curves = lambda: fits.curves_if_any(clogfit, sweep, self.abscissa, *options)
+        return self
+
+    @functools.cached_property
+    def _fitted(self) -> list[dict[str, Any]]:
+        return [curve for curve in self._ask_for_curves() if len(curve["points"]) >= FEWEST_POINTS]
+
+    def fitted_curve(self, members: Collection[Group]) -> dict[str, Any] | None:
+        """That through these groups, if there is one."""
+        through = [curve for curve in self._fitted if any(self._told[point["group"]] is group for point in curve["points"] for group in members)]
+        return through[0] if len(through) == 1 else None
 
     @property
     def are_polygons(self) -> bool:

@@ -121,7 +121,7 @@ def of_passages(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> l
 
 def draw(sweep: pathlib.Path, folder: pathlib.Path) -> Figure:
     """@param folder  of the programs. @throws UserError, ProgramFailed"""
-    groups = Groups(*fits.fitted(folder / "clogfit", sweep)).finished(sweep)
+    groups = Groups(*fits.fitted(folder / "clogfit", sweep)).finished(sweep).fit_curves(folder / "clogfit", sweep)
     with stored.opened(sweep, folder=folder) as file:
         about = stored.attributes(file)
     abscissa = groups.abscissa.replace("_", " ")

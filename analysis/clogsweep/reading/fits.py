@@ -4,8 +4,12 @@ import json
 import pathlib
 from typing import Any
 
+from ..tools.errors import ProgramFailed
 from ..tools.hints import AnyPath
 from . import programs, stored
+
+
+NO_CURVE = 2  # exit code of clogfit, for what cannot be asked of a sweep
 
 
 def fitted(clogfit: pathlib.Path, sweep: AnyPath, *options: object) -> tuple[dict[str, Any], dict[str, str]]:
@@ -13,3 +17,20 @@ def fitted(clogfit: pathlib.Path, sweep: AnyPath, *options: object) -> tuple[dic
     told = json.loads(programs.run_program(clogfit, sweep, "--format", "json", *options))
     with stored.opened(sweep, folder=clogfit.parent) as file:
         return told, stored.circle_files(file)
+
+
+def curves(clogfit: pathlib.Path, sweep: AnyPath, key: str, *options: str) -> dict[str, Any]:
+    """What clogfit curve says of lambda over a key, or over two with a comma between; the sole one that varies if it is empty.
+    @throws ProgramFailed  with its reason"""
+    words = [f"--key={key}"] if key else []
+    return json.loads(programs.run_program(clogfit, "curve", sweep, "--format", "json", *words, *options))
+
+
+def curves_if_any(clogfit: pathlib.Path, sweep: AnyPath, key: str, *options: str) -> list[dict[str, Any]]:
+    """Those to be drawn: none over a key that clogfit fits no curve over, such as one with the value 0."""
+    try:
+        return curves(clogfit, sweep, key, *options)["curves"]
+    except ProgramFailed as error:
+        if error.exit_code != NO_CURVE:
+            raise
+        return []

@@ -106,7 +106,10 @@ def read(path: pathlib.Path, folder: pathlib.Path | None, *options: object) -> F
     except OSError as error:
         raise UserError(f"cannot read {path} ({error.strerror}); give a sweep, or the output of clogfit --format json") from error
     if content.startswith(HDF5_BEGINNING):
-        return Fit(*fits.fitted(programs.programs_in(folder) / "clogfit", path, *options))
+        clogfit = programs.programs_in(folder) / "clogfit"
+        told = Fit(*fits.fitted(clogfit, path, *options))
+        told.known.fit_curves(clogfit, path)
+        return told
     try:
         return Fit(json.loads(content))
     except ValueError as error:

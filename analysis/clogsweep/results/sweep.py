@@ -7,7 +7,7 @@ import json
 import os
 import pathlib
 import tempfile
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..reading import fits, programs, replays, stored
@@ -66,8 +66,20 @@ class Sweep:
         """
         given = {"--dwell": dwell, "--from-distance": from_distance, "--confidence": confidence}
         options = [word for name, value in given.items() if value is not None for word in (name, repr(float(value)))]
-        options += ["--lab", os.fspath(lab)] if lab is not None else []
-        return Fit(*fits.fitted(self._program("clogfit"), self.path, *options))
+        of_lab = ["--lab", os.fspath(lab)] if lab is not None else []
+        fit = Fit(*fits.fitted(self._program("clogfit"), self.path, *options, *of_lab))
+        fit.known.fit_curves(self._program("clogfit"), self.path, *options)
+        return fit
+
+    def fitted_curves(self, *keys: str, crossing: Sequence[float] = ()) -> dict[str, Any]:
+        """Smooth curves through the clogging lengths, with bands, peaks and crossings, as `clogfit curve --format json` says.
+
+        @param keys  that they go over, one or two; may be left out if only one varies
+        @param crossing  lengths that a curve may cross, in droplet diameters
+        @throws ProgramFailed  with the reason of clogfit
+        """
+        options = [f"--crossing={','.join(repr(float(length)) for length in crossing)}"] if crossing else []
+        return fits.curves(self._program("clogfit"), self.path, ",".join(keys), *options)
 
     def status(self) -> Status:
         """How far the sweep is, as clogsweep status says."""

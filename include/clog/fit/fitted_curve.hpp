@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+/// A smooth curve through clogging lengths: lambda as a function of one or two keys.
+///
+/// Runs that went the way S together and clogged d times are a Poisson count with exposure S: with f = log
+/// lambda, log L = -d f - S exp(-f), which is concave in f (Lawless, Statistical Models and Methods for
+/// Lifetime Data, ch. 4). f itself is a Gaussian process over the logarithms of the keys, its kernel a
+/// product of Matern's with smoothness 5/2. Its posterior is Laplace's approximation (Rasmussen and Williams,
+/// Gaussian Processes for Machine Learning, algorithms 3.1, 3.2), averaged over amplitudes and correlation
+/// lengths by the marginal likelihood.
+namespace clog::fit {
+
+/// A place of the curve: logarithms of the keys; the second is 0 where there is one key.
+using CurvePlace = Eigen::Vector2d;
+
+/// What all runs at one place have come to. Points without a clog are bounds, and inform the curve as such.
+struct CurvePoint {
+  CurvePlace place;
+  double num_clogs;
+  double distance;  ///< S, of all runs together [sigma]
+};
+
+/// Of the process: standard deviation of log lambda, correlation length of each key's logarithm.
+struct CurveScales {
+  double amplitude;
+  Eigen::Array2d lengths;
+};
+
+/// Normal distribution of log lambda at some places.
+struct Curve {
+  Eigen::VectorXd mean;
+  Eigen::MatrixXd covariance;
+  double log_evidence = 0;  ///< logarithm of the marginal likelihood, up to a constant of the points
+
+  /// Standard deviation at each place.
+  Eigen::VectorXd deviation() const { return covariance.diagonal().cwiseMax(0).cwiseSqrt(); }
+};
+
+/// The curve for scales that are known. @throws std::invalid_argument unless there is a point, its way is
+/// positive and finite, and all places are finite
+Curve curve_of_scales(std::span<const CurvePoint> points, const CurveScales& scales,
+                      std::span<const CurvePlace> places);
+
+/// The curve, averaged over the scales. Amplitudes from a factor of 1.3 to one of 3000 are equally likely
+/// beforehand, and correlation lengths from a tenth of the range of places to three times that.
+/// @throws std::invalid_argument as curve_of_scales()
+Curve fit_curve(std::span<const CurvePoint> points, std::span<const CurvePlace> places);
+
+/// What `num_clogs` more at a place would add to what is known: the covariance of `curve` at all places with
+/// that one, times the square root of the share that falls (rank-one update): their squares are by how much
+/// the variances fall.
+/// @param place_index  of a place of the curve
+Eigen::VectorXd fall_of_deviation(const Curve& curve, Eigen::Index place_index, double num_clogs);
+/// The same runs are taken as done. The mean stays: what they will say is not known.
+void take_as_done(Curve& curve, Eigen::Index place_index, double num_clogs);
+
+}  // namespace clog::fit

@@ -1,0 +1,100 @@
+#include "clogfit_curve.hpp"
+
+#include <fmt/core.h>
+
+#include <iostream>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "clog/campaign/curve_table.hpp"
+#include "clog/campaign/curves.hpp"
+#include "clog/campaign/stored_sweep.hpp"
+#include "clog/cli/command_line.hpp"
+#include "clog/cli/program.hpp"
+#include "clog/console/exit_codes.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/store/run_table.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::programs {
+namespace {
+
+constexpr const char* usage =
+    R"(clogfit curve fits a smooth curve through the clogging lengths of a sweep, as a function of a key that it varies
+(or of two), and says with intervals how long lambda is anywhere between, where it is highest, and where it crosses a
+given length.
+
+  clogfit curve sweep.h5
+  clogfit curve sweep.h5 --key line-tension --crossing 10,100
+  clogfit curve sweep.h5 --key line-tension,friction --format csv > surface.csv
+
+Runs that went a way S together and clogged d times are a Poisson count with exposure, so points without a clog inform
+the curve as bounds. log lambda is a Gaussian process over the logarithm of the key. Keys that are not named tell curves
+apart. csv and json have the whole curve, in 97 places (25 x 25 with two keys), and those of each mechanism.
+)";
+
+double confidence_of(const cli::CommandLine& line) {
+  const double confidence = line.get_positive("confidence");
+  if (confidence < 1) return confidence;
+  throw Error("invalid --confidence=" + line.get("confidence") + " (must lie between 0 and 1)");
+}
+
+std::vector<double> lengths_of(const cli::CommandLine& line) {
+  std::vector<double> lengths;
+  if (!line.has("crossing")) return lengths;
+  std::string text = line.get("crossing");
+  try {
+    for (const std::string& word : sweep::expand_list(text, ValueKind::number, {}))
+      lengths.push_back(sweep::to_number(word));
+  } catch (const Error& error) {
+    throw Error(fmt::format("invalid --crossing={} ({}) try 10,100", text, error.what()));
+  }
+  for (const double length : lengths)
+    if (!(length > 0))
+      throw Error(fmt::format("invalid --crossing={} (lengths must be positive) try 10,100", text));
+  return lengths;
+}
+
+}  // namespace
+
+int clogfit_curve(int argc, const char* const* argv) {
+  namespace po = boost::program_options;
+  cli::CommandLine line("clogfit curve", usage, cli::CommandLine::SweepKeys::none);
+  const auto text = [] { return po::value<std::string>(); };
+  line.add_options()("file", text(), "sweep file")(
+      "key", text(), "that the curve is drawn over, or two with a comma between")(
+      "crossing", text(), "lengths that the curve may cross [sigma]")("format", text()->default_value("text"),
+                                                                      "text, csv or json")(
+      "confidence", text()->default_value("0.95"), "of the intervals")(
+      "from-distance", text(), "see clogfit --help [sigma]")("dwell", text(), "see clogfit --help [t0]");
+  line.add_positional("file", 1);
+  line.parse(argc - 1, argv + 1);
+  if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return console::exit_success;
+  if (!line.has("file")) throw Error("missing sweep file; try clogfit curve sweep.h5");
+  const std::string format = line.get("format");
+  if (format != "text" && format != "csv" && format != "json")
+    throw Error("invalid --format=" + format + " (is not one of text, csv, json)");
+  campaign::CurveQuestion question{{}, confidence_of(line), lengths_of(line)};
+  const double from_distance = line.has("from-distance") ? line.get_positive("from-distance") : 0;
+  const double dwell =
+      line.has("dwell") ? line.get_positive("dwell") : std::numeric_limits<double>::infinity();
+
+  const store::SweepFile sweep = campaign::read_with_caution(line.get("file"));
+  if (sweep.rows.empty()) throw Error(line.get("file") + " has no runs yet; let the sweep finish some first");
+  if (!campaign::has_clogging_length(sweep.rows.front()))
+    throw Error("cannot fit a curve (droplets in a channel or on a wall have no clogging length)");
+  const std::vector<campaign::Group> groups =
+      campaign::group_runs(sweep.rows, question.confidence, from_distance, dwell);
+  question.keys = campaign::curve_keys(groups, line.has("key") ? line.get("key") : "");
+  if (question.keys.size() > 1 && !question.crossed_lengths.empty())
+    throw Error(
+        "no place for --crossing (a surface over two keys crosses a length along lines); give one --key");
+  const std::vector<campaign::FittedCurve> curves = campaign::fit_curves(groups, question);
+  std::cout << (format == "csv"    ? campaign::curves_to_csv(curves, question)
+                : format == "json" ? campaign::curves_to_json(curves, groups, question)
+                                   : campaign::curves_to_text(curves, groups, question));
+  return console::exit_success;
+}
+
+}  // namespace clog::programs

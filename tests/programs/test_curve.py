@@ -1,0 +1,142 @@
+"""clogfit curve: a smooth curve through the clogging lengths of a sweep, from rows whose distances are known."""
+
+import csv
+import io
+import json
+import math
+import sys
+import unittest
+
+import numpy as np
+import pandas
+
+import stored_rows
+from support import BIN, ROOT, SMALL, ProgramTest
+
+sys.path.insert(0, str(ROOT / "analysis"))
+import clogsweep  # noqa: E402
+
+# Such droplets might get a thousand diameters far: rows of theirs can be given any distance up to that.
+FAR = ["max-time=10", "terminal-speed=100", "seeds=1..6"]
+TENSIONS = [0.03, 0.1, 0.3, 1.0, 3.0]
+LENGTHS = [1.0, 10.0, 100.0, 10.0, 1.0]  # a peak at 0.3
+# As six runs would have it whose law is exponential, exactly.
+EXPONENTIAL = -np.log(1 - (np.arange(6) + 0.5) / 6)
+PEAKED = [*FAR, "line-tension=" + ",".join(map(str, TENSIONS))]
+
+
+class Curve(ProgramTest):
+    def sweep(self, *settings, lengths=None):
+        """@param lengths  by line tension; other runs keep what came out"""
+        self.succeed("clogsweep", *SMALL, *settings, "--output", "sweep.h5")
+        table = pandas.read_hdf(self.folder / "sweep.h5", "runs")
+        if lengths is not None:
+            way = np.array([lengths[row.line_tension] * EXPONENTIAL[row.seed - 1] for row in table.itertuples()])
+            stored_rows.change_columns(self.folder / "sweep.h5", distance=way, status=np.array([b"clogged"] * len(table)),
+                                       clogged_by=np.array([b"certified"] * len(table)), mechanism=np.array([b"wrapped"] * len(table)))
+        return table
+
+    def curve(self, *arguments):
+        return json.loads(self.succeed("clogfit", "curve", "sweep.h5", *arguments, "--format", "json").stdout)
+
+    def test_it_goes_through_the_points_and_finds_peak_and_crossings(self):
+        self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
+        told = self.curve("--crossing=5")
+        self.assertEqual(told["keys"], ["line_tension"])
+        self.assertEqual(told["units"]["clogging_length"], "sigma")
+        curve, = told["curves"]
+        self.assertEqual([point["clogs"] for point in curve["points"]], [6] * 5)
+        self.assertEqual(len(curve["curve"]), 97)
+        for place in curve["curve"]:
+            self.assertLess(place["clogging_length_lower"], place["clogging_length"])
+            self.assertLess(place["clogging_length"], place["clogging_length_upper"])
+            self.assertAlmostEqual(place["clogging_length_wrapped"], place["clogging_length"], places=9)
+        at_points = {place["line_tension"]: place for place in curve["curve"]}
+        for tension, length in zip(TENSIONS, LENGTHS):
+            nearest = at_points[min(at_points, key=lambda other: abs(math.log(other / tension)))]
+            self.assertLess(abs(math.log(nearest["clogging_length"] / length)), 0.6)
+        peak = curve["peak"]
+        self.assertLess(peak["line_tension_lower"], 0.3)
+        self.assertGreater(peak["line_tension_upper"], 0.3)
+        self.assertLess(peak["clogging_length_lower"], 100)
+        self.assertGreater(peak["clogging_length_upper"], 100)
+        self.assertGreater(peak["probability_between_borders"], 0.99)
+        up, down = curve["crossings"]
+        self.assertEqual((up["direction"], down["direction"]), ("upwards", "downwards"))
+        self.assertLess(up["line_tension_lower"], up["line_tension"])
+        self.assertTrue(0.03 < up["line_tension"] < 0.1 and 1 < down["line_tension"] < 3)
+
+    def test_text_and_csv_say_the_same(self):
+        self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
+        text = self.succeed("clogfit", "curve", "sweep.h5", "--crossing=5,1e5").stdout
+        for words in ("fitted; 95 % intervals", "through 5 points with 30 clogs", "highest at line_tension", "crosses 5 sigma upwards",
+                      "does not cross 1e5 sigma", "lambda/sigma"):
+            self.assertIn(words, text)
+        lines = list(csv.DictReader(io.StringIO(self.succeed("clogfit", "curve", "sweep.h5", "--format=csv").stdout)))
+        curve, = self.curve()["curves"]
+        self.assertEqual([float(line["clogging_length"]) for line in lines], [place["clogging_length"] for place in curve["curve"]])
+        self.assertTrue(all(line["clogging_length_squeezed"] == "" for line in lines))
+
+    def test_a_wider_confidence_has_a_wider_band(self):
+        self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
+        narrow, wide = (self.curve(f"--confidence={confidence}")["curves"][0]["curve"][40] for confidence in (0.5, 0.99))
+        self.assertGreater(wide["clogging_length_upper"], narrow["clogging_length_upper"])
+        self.assertAlmostEqual(wide["clogging_length"], narrow["clogging_length"], places=9)
+
+    def test_other_keys_tell_curves_apart_and_two_keys_make_a_surface(self):
+        self.sweep(FAR[0], FAR[2], "line-tension=0.1,1", "terminal-speed=50,100", lengths={0.1: 1.0, 1.0: 10.0})
+        self.refuse("clogfit", "curve", "sweep.h5", words=["--key", "line-tension", "terminal-speed"])
+        told = self.curve("--key=line-tension")
+        self.assertEqual([curve["shared"]["terminal_speed"] for curve in told["curves"]], [50, 100])
+        surface, = self.curve("--key=line-tension,terminal-speed")["curves"]
+        self.assertEqual(len(surface["curve"]), 25 * 25)
+        self.assertEqual(len(surface["points"]), 4)
+        self.assertIn("terminal_speed_upper", surface["peak"])
+
+    def test_points_without_a_clog_are_bounds_that_inform_it(self):
+        self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
+        before = self.curve()["curves"][0]["peak"]["clogging_length"]
+
+        def not_clogged(rows):
+            of_peak = rows["line_tension"] == 0.3
+            rows["status"][of_peak], rows["clogged_by"][of_peak], rows["mechanism"][of_peak] = b"flowing", b"none", b"none"
+            rows["distance"][of_peak] = 900
+
+        stored_rows.change(self.folder / "sweep.h5", not_clogged)
+        point = self.curve()["curves"][0]["points"][2]
+        self.assertEqual((point["clogs"], point["clogging_length"]), (0, None))
+        self.assertGreater(self.curve()["curves"][0]["peak"]["clogging_length"], 3 * before)
+
+    def test_the_module_gives_and_draws_it(self):
+        self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
+        sweep = clogsweep.open(self.folder / "sweep.h5", programs=BIN)
+        told = sweep.fitted_curves("line_tension", crossing=[5])
+        self.assertEqual(len(told["curves"][0]["crossings"]), 2)
+        axes = sweep.fit().curve().figure.axes[0]
+        fitted, = (line for line in axes.lines if line.get_label() == "_fitted")
+        self.assertEqual(len(fitted.get_xdata()), 97)
+        self.assertIn("fitted curves, with 95 % bands", "\n".join(text.get_text() for text in axes.figure.findobj() if hasattr(text, "get_text")))
+
+    def test_mistakes_get_one_line_and_exit_code_2(self):
+        self.sweep(*FAR, "line-tension=0.1,1", "preset=elastic", "friction=0,0.2")
+        self.write("empty.h5", "")
+        for arguments, words in [
+            ([], ["missing sweep file"]),
+            (["empty.h5"], ["empty.h5"]),
+            (["no.h5"], ["no.h5"]),
+            (["sweep.h5", "--key=friction"], ["friction", "0", "logarithm"]),
+            (["sweep.h5", "--key=vertices"], ["--key=vertices"]),
+            (["sweep.h5", "--key=line-tensoin"], ["line-tension"]),
+            (["sweep.h5", "--key=obstacle-gap"], ["--key=obstacle-gap", "same value"]),
+            (["sweep.h5", "--key=line-tension,line-tension"], ["--key"]),
+            (["sweep.h5", "--key=line-tension", "--crossing=-1"], ["--crossing=-1"]),
+            (["sweep.h5", "--key=line-tension", "--crossing=10sigma"], ["--crossing=10sigma"]),
+            (["sweep.h5", "--key=line-tension", "--confidence=2"], ["--confidence=2"]),
+            (["sweep.h5", "--key=line-tension", "--format=xml"], ["--format=xml"]),
+        ]:
+            with self.subTest(arguments=arguments):
+                self.refuse("clogfit", "curve", *arguments, words=words)
+
+
+if __name__ == "__main__":
+    unittest.main()
