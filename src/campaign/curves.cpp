@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -12,8 +13,8 @@
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/number_text.hpp"
 #include "clog/sweep/settings.hpp"
-#include "clog/sweep/value_list.hpp"
 
 namespace clog::campaign {
 namespace {
