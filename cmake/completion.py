@@ -12,10 +12,10 @@ import shlex
 import subprocess
 import sys
 
-COMMANDS = {"clogsweep": ["status", "verify", "salvage", "replay", "doctor"], "clogrun": ["array", "channel", "sag", "replay"],
-            "clogfit": ["calibrate", "curve", "deviation", "drag", "report", "units"]}
+COMMANDS = {"clogsweep": ["status", "verify", "salvage", "replay", "merge", "select", "doctor"], "clogrun": ["array", "channel", "sag", "replay"],
+            "clogfit": ["calibrate", "compare", "curve", "deviation", "drag", "report", "units"]}
 POSITIONAL = {"--file", "--system", "--task"}
-FILES = {"--config", "--frames", "--lab", "--output", "--programs", "--write-obstacles"}
+FILES = {"--config", "--frames", "--lab", "--output", "--picture", "--points", "--programs", "--write-obstacles"}
 # Those of an option are the ones that its help names.
 WORDS = {"--format": ["text", "csv", "json"], "--instruction-set": ["avx512", "avx2", "baseline"], "--isolate": ["yes", "no"],
          "--master-computes": ["auto", "yes", "no"]}

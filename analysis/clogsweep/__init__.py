@@ -57,12 +57,14 @@ def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
 
 
-def open(path: str | os.PathLike[str], programs: str | os.PathLike[str] | None = None) -> Sweep | Run:
-    """A file of clogsweep, or of clogrun.
+def open(path: str | os.PathLike[str] | list[str | os.PathLike[str]], programs: str | os.PathLike[str] | None = None) -> Sweep | Run:
+    """A file of clogsweep, or of clogrun; a list of several files of clogsweep is read as one sweep, that of `clogsweep merge`.
 
     @param programs  folder of clogsweep, clogrun and clogfit, if they are not in the PATH or beside this module
     @throws UserError  if it is neither; Damaged  if anything in it is not as it was written
     @throws ImportError  if this python3 lacks a module
     """
     run, stored, sweep = (_loaded(module) for module in ("results.run", "reading.stored", "results.sweep"))
+    if isinstance(path, list):
+        return sweep.merged(path, programs)
     return run.Run(path) if stored.kind_of(path, programs) == stored.RUN else sweep.Sweep(path, programs)

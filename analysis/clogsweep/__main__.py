@@ -17,6 +17,7 @@ COMMANDS = {
     "poster": "one page of a sweep to be printed",
     "clogging-length": "the clogging length against what a sweep varies",
     "dwell": "the same over the time after which a droplet that stands counts as clogged",
+    "compare": "ratios of the clogging lengths of two sweeps",
     "clogs": "the clogs of a sweep on one sheet",
     "predict": "the clogging length of stiff droplets in an array in which none has run",
     "collision": "which droplets break up on a single obstacle",

@@ -17,6 +17,7 @@
 #include "clog/campaign/usual_parameters.hpp"
 #include "clog/console/build_info.hpp"
 #include "clog/console/rounded.hpp"
+#include "clog/console/table.hpp"
 #include "clog/core/model/model.hpp"
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/scene/scene.hpp"
@@ -53,20 +54,6 @@ nlohmann::ordered_json json_of(const Value& value) {
 }
 
 nlohmann::ordered_json number_or_null(double number) { return json_of(Value(number)); }
-
-/// Columns aligned to the right.
-std::string aligned(const std::vector<std::vector<std::string>>& lines) {
-  std::vector<std::size_t> widths(lines.front().size(), 0);
-  for (const auto& line : lines)
-    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
-  std::string text;
-  for (const auto& line : lines) {
-    for (std::size_t i = 0; i < line.size(); ++i)
-      text += fmt::format("{:>{}}", line[i], widths[i] + (i > 0 ? 2 : 0));
-    text += '\n';
-  }
-  return text;
-}
 
 std::string letters(const std::vector<Doubt>& doubts) {
   std::string all;
@@ -287,7 +274,7 @@ std::string to_text(const std::vector<Group>& groups, double confidence, SharedP
     append_shown(parameter_texts(group), shown, line);
     for (const ResultColumn& column : columns) line.push_back(column.cell(group));
   }
-  return text + "\n\n" + aligned(lines) + legend(groups) + left_out(groups);
+  return text + "\n\n" + console::aligned(lines) + legend(groups) + left_out(groups);
 }
 
 std::string to_csv(const std::vector<Group>& groups, const std::optional<LaboratoryScale>& lab) {

@@ -3,7 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <map>
 #include <utility>
+
+#include "clog/core/tools/joined.hpp"
 
 namespace clog::campaign {
 namespace {
@@ -27,6 +30,13 @@ bool have_common_value(const std::vector<std::string>& some, const std::vector<s
   });
 }
 
+/// As it was typed, if points have no other values.
+std::string shown(const sweep::Settings& settings, const sweep::Key& key,
+                  const std::map<std::string, std::vector<std::string>>& values) {
+  const std::vector<std::string>& all = values.at(key.name);
+  return all == settings.values(key.name) ? settings.text(key.name) : joined(all, ",");
+}
+
 void append(std::string& all, const std::string& key, const std::string& here, const std::string& there) {
   all += fmt::format("{}{}={} (file: {})", all.empty() ? "" : ", ", key, here, there);
 }
@@ -35,10 +45,12 @@ void append(std::string& all, const std::string& key, const std::string& here, c
 
 std::string differing_keys(const sweep::Settings& there, const sweep::Settings& here) {
   std::string all;
+  const auto values_there = there.all_values();
+  const auto values_here = here.all_values();
   for (const sweep::Key& key : sweep::keys())
     if (!may_grow_along(key) && key.name != "preset" &&
-        !have_common_value(there.values(key.name), here.values(key.name)))
-      append(all, key.name, here.text(key.name), there.text(key.name));
+        !have_common_value(values_there.at(key.name), values_here.at(key.name)))
+      append(all, key.name, shown(here, key, values_here), shown(there, key, values_there));
   return all;
 }
 
@@ -46,7 +58,7 @@ FixedValues::FixedValues(const sweep::Plan& plan, sweep::Settings settings) : se
   for (const sweep::Key& key : sweep::keys())
     if (key.parameter && !may_grow_along(key) && !is_automatic(key, settings_)) keys_.push_back({&key, {}});
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
-    const RunParameters run = plan.task(group);
+    const RunParameters run = plan.group(group);
     for (auto& [key, values] : keys_) values.insert(key->parameter->get(run));
   }
 }

@@ -47,12 +47,13 @@ Ledger::Ledger(std::string path, const sweep::Plan& plan, const sweep::Settings&
                store::Provenance provenance, std::int64_t num_wanted, std::int64_t attempts)
     : place_(store::require_regular(std::move(path))),
       path_(place_.path()),
-      plan_(plan),
+      plan_(&plan),
       provenance_(std::move(provenance)),
       attempts_(attempts),
       journal_(store::journal_place(place_), &place_),
       num_wanted_(num_wanted) {
   for (const auto& [name, circles] : plan.circle_files()) circles_.push_back({name, circles});
+  session_time_ = attribute(provenance_, "start_time");
   std::string session;
   for (const char* name : {"start_time", "version", "git_describe", "num_ranks", "command_line"})
     session += attribute(provenance_, name) + ' ';
@@ -88,7 +89,7 @@ Ledger::Ledger(std::string path, const sweep::Plan& plan, const sweep::Settings&
   num_faulty_ = static_cast<std::int64_t>(
       std::erase_if(known, [](const auto& run) { return !sweep::fault_of(run.second.row).empty(); }));
   set_attribute(provenance_, "sessions", latest_lines(attribute(provenance_, "sessions") + session));
-  find_tasks(std::move(known));
+  find_tasks(std::move(known), 0);
   publish();
   last_publication_ = Clock::now();
 }
@@ -109,7 +110,7 @@ std::string Ledger::settings_that_differ(const store::SweepFile& file,
                                          const sweep::Settings& settings) const {
   if (!attribute(file.provenance, "config").empty())
     return differing_keys(stored_settings(path_, file.provenance), settings);
-  const FixedValues fixed(plan_, settings);
+  const FixedValues fixed(*plan_, settings);
   for (const sweep::RunRow& row : file.rows)
     if (std::string differing = fixed.differing_keys(row); !differing.empty()) return differing;
   return "";
@@ -142,7 +143,7 @@ void Ledger::adopt(const store::SweepFile& file, const sweep::Settings& settings
 void Ledger::refuse_foreign(const std::vector<Entry>& entries,
                             const std::unordered_map<std::string, Entry>& known,
                             const sweep::Settings& settings) const {
-  const FixedValues fixed(plan_, settings);
+  const FixedValues fixed(*plan_, settings);
   for (const auto& [row, snapshot] : entries) {
     if (row.model_version == model_version && known.contains(sweep::identity(row))) continue;
     const std::string differing = fixed.differing_keys(row);
@@ -166,15 +167,17 @@ bool Ledger::is_over(const sweep::RunRow& row) const {
   return !sweep::is_unfinished(row.status);
 }
 
-void Ledger::find_tasks(std::unordered_map<std::string, Entry> known) {
+/// @param known  runs by what they are
+/// @param first  task to begin with: those before it are known
+void Ledger::find_tasks(std::unordered_map<std::string, Entry> known, std::int64_t first) {
   std::int64_t last_seed = -1;
   for (const auto& [run, entry] : known)
     last_seed = std::max(last_seed, std::int64_t{entry.row.parameters.seed});
-  for (std::int64_t task = 0; task < plan_.size(); ++task) {
+  for (std::int64_t task = first; task < plan_->size(); ++task) {
     // Seeds that may be added later follow in increasing order: none beyond has begun yet.
-    if (task >= num_wanted_ && (known.empty() || plan_.task(task).seed > last_seed)) break;
+    if (task >= num_wanted_ && (known.empty() || plan_->task(task).seed > last_seed)) break;
     if (!known.empty())
-      if (auto found = known.extract(sweep::identity(sweep::describe(plan_.task(task)))); !found.empty()) {
+      if (auto found = known.extract(sweep::identity(sweep::describe(plan_->task(task)))); !found.empty()) {
         Entry& entry = runs_[task] = std::move(found.mapped());
         entry.row.task = task;
         if (is_over(entry.row)) continue;
@@ -188,9 +191,22 @@ void Ledger::find_tasks(std::unordered_map<std::string, Entry> known) {
             [](const Entry& a, const Entry& b) { return a.row.task < b.row.task; });
   for (std::size_t i = 0; i < other_runs_.size(); ++i) {
     sweep::RunRow& row = other_runs_[i].row;
-    row.task = plan_.size() + static_cast<std::int64_t>(i);
+    row.task = plan_->size() + static_cast<std::int64_t>(i);
     if (row.status == RunStatus::running) row.status = RunStatus::interrupted;
   }
+}
+
+void Ledger::grow(const sweep::Plan& plan, const sweep::Settings& settings) {
+  const std::int64_t first = plan_->size();
+  plan_ = &plan;
+  num_wanted_ = plan.size();
+  set_attribute(provenance_, "config", settings.to_config(false));
+  std::unordered_map<std::string, Entry> known;
+  for (Entry& entry : other_runs_) known.emplace(sweep::identity(entry.row), std::move(entry));
+  other_runs_.clear();
+  tasks_left_.clear();
+  find_tasks(std::move(known), first);
+  publish();
 }
 
 void Ledger::want(const std::vector<std::int64_t>& tasks) {
@@ -218,14 +234,25 @@ std::int64_t Ledger::num_resumed() const {
 }
 
 sweep::RunRow Ledger::new_row(std::int64_t task) const {
-  sweep::RunRow row = sweep::describe(plan_.task(task));
+  sweep::RunRow row = sweep::describe(plan_->task(task));
   row.task = task;
   row.clogged_by = sweep::FoundBy::nothing;
   row.mechanism = ClogMechanism::none;
   return row;
 }
 
+void Ledger::watch_ranks(int num_ranks) {
+  earlier_activity_ = attribute(provenance_, "activity");
+  activity_.emplace(num_ranks);
+  begin_ = Clock::now();
+}
+
+void Ledger::rank_is_free() {
+  if (activity_) activity_->ended(seconds_so_far());
+}
+
 sweep::Start Ledger::start(std::int64_t task, int rank) {
+  if (activity_) activity_->started(seconds_so_far());
   const auto [run, is_new] = runs_.try_emplace(task);
   Entry& entry = run->second;
   sweep::Start start{entry.snapshot, entry.row.attempt};
@@ -319,6 +346,9 @@ void Ledger::publish() {
     rewrite_journal(true);
   }
   journal_.flush();
+  if (activity_)
+    set_attribute(provenance_, "activity",
+                  with_session(earlier_activity_, activity_->line(session_time_, seconds_so_far())));
   store::publish_sweep(place_, rows, provenance_, circles_);
   stamp_ = place_.stamp();
   is_published_ = true;

@@ -42,7 +42,7 @@ std::vector<const sweep::Column*> varying_columns(const sweep::Plan& plan) {
   for (const sweep::Column& column : sweep::columns())
     varies.push_back(column.parameter && column.parameter->role == ParameterRole::ensemble);
   for (std::int64_t group = 1; group < plan.num_groups(); ++group) {
-    const sweep::RunRow row = sweep::describe(plan.task(group));
+    const sweep::RunRow row = sweep::describe(plan.group(group));
     for (std::size_t i = 0; i < varies.size(); ++i) {
       const sweep::Column& column = sweep::columns()[i];
       if (column.role == sweep::ColumnRole::parameter && !varies[i])
@@ -117,13 +117,13 @@ Stored stored_runs(const sweep::Plan& plan, const std::string& path) {
   for (const sweep::RunRow& row : read_with_caution(path).rows)
     if (sweep::fault_of(row).empty()) rows.emplace(sweep::identity(row), row);
   for (std::int64_t set = 0; set < plan.num_groups(); ++set)
-    stored.waiting.push_back({set, plan.size() / plan.num_groups(), longest_work(plan.task(set))});
+    stored.waiting.push_back({set, plan.num_seeds(set), longest_work(plan.group(set))});
   for (std::int64_t task = 0; task < plan.size() && !rows.empty(); ++task) {
     const RunParameters run = plan.task(task);
     const auto found = rows.extract(sweep::identity(sweep::describe(run)));
     if (found.empty()) continue;
     const sweep::RunRow& row = found.mapped();
-    const std::int64_t set = task % plan.num_groups();
+    const std::int64_t set = plan.group_of(task);
     const bool is_over = !sweep::is_unfinished(row.status);
     const bool has_moved = row.steps > 0 && row.wall_seconds > 0;
     stored.num_done += is_over;
@@ -142,11 +142,11 @@ std::vector<std::int64_t> tasks_to_try(const sweep::Plan& plan) {
   const std::int64_t num_tasks = std::min(plan.size(), most_tasks);
   const std::int64_t num_groups = plan.num_groups();
   std::vector<std::int64_t> tasks;
-  for (std::int64_t i = 0; i < num_tasks; ++i)
-    tasks.push_back(num_groups <= num_tasks
-                        ? i
-                        : i * num_groups / num_tasks +
-                              num_groups * (i % std::min(most_seeds, plan.size() / num_groups)));
+  for (std::int64_t i = 0; i < num_tasks; ++i) {
+    const std::int64_t group = i * num_groups / num_tasks;
+    tasks.push_back(
+        num_groups <= num_tasks ? i : plan.task_of(group, i % std::min(most_seeds, plan.num_seeds(group))));
+  }
   std::stable_sort(tasks.begin(), tasks.end(), [&](std::int64_t a, std::int64_t b) {
     const auto array = [&](std::int64_t task) {
       const RunParameters run = plan.task(task);
@@ -194,7 +194,7 @@ Sample tried_sample(const sweep::Plan& plan) {
     const sweep::RunRow row = sweep::unpack(whole.last(sweep::packed_size()));
     sample.count(row);
     if (row.steps > 0)
-      sample.costs.push_back(cost_of(row, first, plan.task(tasks[i]), tasks[i] % plan.num_groups()));
+      sample.costs.push_back(cost_of(row, first, plan.task(tasks[i]), plan.group_of(tasks[i])));
     else if (sample.failure.empty())
       sample.failure = row.message;
   }
@@ -207,9 +207,8 @@ Sample tried_sample(const sweep::Plan& plan) {
 
 SweepCost tried_cost(const sweep::Plan& plan, const Sample& sample) {
   double all_work = 0;
-  for (std::int64_t group = 0; group < plan.num_groups(); ++group) all_work += longest_work(plan.task(group));
-  const std::int64_t num_seeds = plan.size() / plan.num_groups();
-  all_work *= static_cast<double>(num_seeds);
+  for (std::int64_t group = 0; group < plan.num_groups(); ++group)
+    all_work += longest_work(plan.group(group)) * static_cast<double>(plan.num_seeds(group));
   return sweep_cost(sample.costs, all_work, plan.size());
 }
 
@@ -278,6 +277,15 @@ void print_rounds(const SeedRule& rule, std::int64_t first_seeds, double expecte
              hours(bound, rule.most_seeds()));
 }
 
+std::string seeds_in_words(const sweep::Plan& plan) {
+  std::int64_t fewest = plan.num_seeds(0), most = 0;
+  for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
+    fewest = std::min(fewest, plan.num_seeds(group));
+    most = std::max(most, plan.num_seeds(group));
+  }
+  return fewest == most ? sweep::counted(most, "seed") : fmt::format("{} to {} seeds", fewest, most);
+}
+
 }  // namespace
 
 void print_tasks(const sweep::Plan& plan) {
@@ -296,9 +304,8 @@ void print_tasks(const sweep::Plan& plan) {
     print_task(plan, task, columns);
   }
   if (console::stop_signalled()) return;
-  const std::int64_t seeds = plan.size() / plan.num_groups();
   fmt::print(std::cout, "# {}: {}, {} each\n", sweep::counted(plan.size(), "task"),
-             sweep::counted(plan.num_groups(), "parameter set"), sweep::counted(seeds, "seed"));
+             sweep::counted(plan.num_groups(), "parameter set"), seeds_in_words(plan));
 }
 
 void print_limits(const sweep::Plan& plan) {

@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "clog/console/duration.hpp"
@@ -16,8 +18,14 @@ double seconds_since(std::chrono::steady_clock::time_point begin) {
 
 }  // namespace
 
-Progress::Progress(std::ostream& out, Screen screen, int num_computing_ranks, std::int64_t num_sets)
-    : status_(out, screen), sets_(num_sets), num_ranks_(num_computing_ranks) {}
+Progress::Progress(std::ostream& out, Screen screen, int num_computing_ranks, sweep::GroupOf set_of)
+    : status_(out, screen), number_of_set_(std::move(set_of)), num_ranks_(num_computing_ranks) {}
+
+SetTimes& Progress::set_of(std::int64_t task) {
+  const auto number = static_cast<std::size_t>(number_of_set_(task));
+  if (number >= sets_.size()) sets_.resize(number + 1);
+  return sets_[number];
+}
 
 void Progress::expect(std::span<const std::int64_t> tasks, std::int64_t num_wanted) {
   for (const std::int64_t task : tasks) ++set_of(task).num_waiting;
@@ -77,7 +85,7 @@ std::string Progress::time_left() const {
   if (num_ended_ == num_tasks_) return "";
   std::vector<SetTimes> sets = sets_;
   for (const auto& [task, begin] : running_) {
-    SetTimes& set = sets[task % sets.size()];
+    SetTimes& set = sets[static_cast<std::size_t>(number_of_set_(task))];
     ++set.num_running;
     --set.num_waiting;
     set.seconds += seconds_since(begin);

@@ -7,7 +7,6 @@
 #include "clog/sweep/run_job.hpp"
 
 namespace clog::campaign {
-namespace {
 
 using sweep::RunRow;
 
@@ -23,8 +22,6 @@ std::vector<std::string> differing_results(const RunRow& a, const RunRow& b) {
       all.push_back(column.name);
   return all;
 }
-
-}  // namespace
 
 Repetition repeat(const RunRow& row) {
   sweep::RunJob job(row.parameters, row.task);

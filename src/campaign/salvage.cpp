@@ -82,13 +82,14 @@ Salvage salvage(const std::string& path) {
   return found;
 }
 
-void write(const Salvage& salvage, const std::string& path) {
+void write(const store::SweepFile& table, const std::vector<store::Journal::Entry>& snapshots,
+           const std::string& path) {
   store::refuse_existing(path);
   const store::Place place(path);
-  store::publish_sweep(place, salvage.table.rows, salvage.table.provenance, salvage.table.circles);
-  if (salvage.snapshots.empty()) return;
+  store::publish_sweep(place, table.rows, table.provenance, table.circles);
+  if (snapshots.empty()) return;
   store::Journal journal(store::journal_place(place), &place);
-  for (const auto& [row, snapshot] : salvage.snapshots) journal.add(row, snapshot);
+  for (const auto& [row, snapshot] : snapshots) journal.add(row, snapshot);
   journal.flush();
 }
 

@@ -107,6 +107,12 @@ GrowingSweep growing_sweep(const sweep::Settings& settings, double precision, st
   const std::vector<std::string>& seeds = settings.values("seeds");
   const auto first_seeds = static_cast<std::int64_t>(seeds.size());
   const sweep::Plan plan(settings);
+  if (!plan.has_equal_seeds() || plan.size() != plan.num_groups() * first_seeds ||
+      !settings.shard().is_whole())
+    throw Error(
+        "--until-precision adds seeds to parameter sets that begin with the same ones; remove the seeds "
+        "of "
+        "points, and --shard");
   GrowingSweep sweep{settings, plan.size(), {precision, plan.num_groups(), first_seeds, most_seeds}};
   if (most_seeds == first_seeds) return sweep;
   long long last = 0;

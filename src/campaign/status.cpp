@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 
 #include "clog/console/printable.hpp"
@@ -19,16 +20,19 @@ using sweep::RunRow;
 /// others, which is not known here: each is taken to want the mean of all.
 std::vector<SetTimes> times_of_sets(const std::vector<RunRow>& rows, const sweep::Plan& plan,
                                     std::int64_t num_wanted) {
-  const std::int64_t num_sets = plan.num_groups();
-  std::vector<SetTimes> sets(num_sets);
+  std::vector<SetTimes> sets(static_cast<std::size_t>(plan.num_groups()));
   for (const RunRow& row : rows) {
     if (row.task < 0 || row.task >= plan.size()) continue;
-    SetTimes& set = sets[row.task % num_sets];
+    SetTimes& set = sets[static_cast<std::size_t>(plan.group_of(row.task))];
     ++(sweep::is_unfinished(row.status) ? set.num_running : set.num_finished);
     set.seconds += row.wall_seconds;
   }
-  for (SetTimes& set : sets)
-    set.num_waiting = std::max<std::int64_t>(0, num_wanted / num_sets - set.num_finished - set.num_running);
+  for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
+    SetTimes& set = sets[static_cast<std::size_t>(group)];
+    const std::int64_t wanted =
+        num_wanted == plan.size() ? plan.num_seeds(group) : num_wanted / plan.num_groups();
+    set.num_waiting = std::max<std::int64_t>(0, wanted - set.num_finished - set.num_running);
+  }
   return sets;
 }
 

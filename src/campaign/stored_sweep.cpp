@@ -89,11 +89,22 @@ sweep::Plan stored_plan(const std::string& path, const store::SweepFile& file) {
   });
 }
 
+/// Has the key a list of its own, or one in points? Others may vary because they follow from a word.
+static bool is_listed(const sweep::Key& key, const sweep::Settings& settings) {
+  const auto is_key = [&](const sweep::Points& points) {
+    return std::ranges::find(points.keys, key.name) != points.keys.end();
+  };
+  return settings.values(key.name).size() > 1 || is_key(settings.points()) ||
+         std::ranges::any_of(settings.rounds(), is_key);
+}
+
 std::vector<std::string> listed_columns(const store::Provenance& provenance) try {
   const sweep::Settings settings = settings_from(attribute(provenance, "config"));
   std::vector<std::string> columns;
+  const auto values = settings.all_values();
   for (const sweep::Key& key : sweep::keys())
-    if (key.parameter && settings.values(key.name).size() > 1) columns.emplace_back(key.parameter->column);
+    if (key.parameter && values.at(key.name).size() > 1 && is_listed(key, settings))
+      columns.emplace_back(key.parameter->column);
   return columns;
 } catch (const Error&) {
   return {};  // of a version that had other keys

@@ -180,6 +180,10 @@ void CommandLine::read_config(const std::string& path) {
     const po::parsed_options parsed = po::parse_config_file(file, all, true);
     std::set<std::string> seen;
     for (const po::option& option : parsed.options) {
+      if (sweep::Settings::is_plan_line(option.string_key)) {
+        settings_.set_line(option.string_key, option.value.empty() ? "" : option.value.front());
+        continue;
+      }
       if (!seen.insert(option.string_key).second)
         throw Error("the key " + option.string_key + " is given twice");
       if (option.value.empty() || option.value.front().empty())

@@ -68,7 +68,8 @@ class Lead {
  public:
   Lead(const LeadOptions& options, const sweep::Plan& plan, campaign::Ledger& ledger, int num_ranks)
       : ledger_(ledger),
-        progress_(std::cerr, screen(options.log), num_ranks, plan.num_groups()),
+        progress_(std::cerr, screen(options.log), num_ranks,
+                  [&plan](std::int64_t task) { return plan.group_of(task); }),
         log_(progress_, options.log),
         max_hours_(options.max_hours) {}
 
@@ -127,6 +128,7 @@ class Lead {
   }
 
   void end(sweep::Report report) {
+    ledger_.rank_is_free();
     // Stopped before its first report after a resume: its state is that of the stored snapshot and row.
     if (report.row.status == RunStatus::interrupted && report.row.steps == 0 && !report.snapshot.empty()) {
       report.row = ledger_.row(report.row.task);
@@ -160,7 +162,9 @@ int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, 
   if (options.log != Log::Level::quiet)
     announce(options.output, plan, ledger, rule != nullptr, computing_ranks);
   Lead lead(options, plan, ledger, computing_ranks);
-  parallel::Schedule schedule(parallel::TaskOrder(0, plan.num_groups()), ranks.size(), computes);
+  ledger.watch_ranks(computing_ranks);
+  parallel::Schedule schedule(parallel::TaskOrder([&plan](std::int64_t task) { return plan.group_of(task); }),
+                              ranks.size(), computes);
   parallel::SweepEnd end = parallel::SweepEnd::complete;
   bool is_complete = true;
   while (true) {

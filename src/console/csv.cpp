@@ -17,7 +17,8 @@ std::string trimmed(std::string_view text) {
 }
 
 void read_csv(const std::string& path,
-              const std::function<void(int number, const std::vector<std::string>& cells)>& each) {
+              const std::function<void(int number, const std::vector<std::string>& cells)>& each,
+              EmptyEnd end) {
   std::istringstream file(read_text(path));
   int number = 0;
   for (std::string line; std::getline(file, line);) {
@@ -26,6 +27,7 @@ void read_csv(const std::string& path,
     std::vector<std::string> cells;
     std::istringstream in(line);
     for (std::string cell; std::getline(in, cell, ',');) cells.push_back(trimmed(cell));
+    if (end == EmptyEnd::kept && trimmed(line).ends_with(',')) cells.emplace_back();
     try {
       each(number, cells);
     } catch (const Error& error) {

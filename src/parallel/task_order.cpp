@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstddef>
 #include <limits>
 #include <numeric>
 
@@ -20,7 +21,8 @@ std::vector<std::int64_t> all_tasks(std::int64_t num_tasks) {
 TaskOrder::TaskOrder(std::int64_t num_tasks, std::int64_t num_groups)
     : TaskOrder(all_tasks(num_tasks), num_groups) {}
 
-TaskOrder::TaskOrder(const std::vector<std::int64_t>& tasks, std::int64_t num_groups) : groups_(num_groups) {
+TaskOrder::TaskOrder(const std::vector<std::int64_t>& tasks, std::int64_t num_groups)
+    : TaskOrder([num_groups](std::int64_t task) { return task % num_groups; }) {
   assert(num_groups > 0);
   add(tasks);
 }
@@ -28,6 +30,12 @@ TaskOrder::TaskOrder(const std::vector<std::int64_t>& tasks, std::int64_t num_gr
 void TaskOrder::add(const std::vector<std::int64_t>& tasks) {
   num_left_ += static_cast<std::int64_t>(tasks.size());
   for (const std::int64_t task : tasks) group_of(task).waiting.push_back(task);
+}
+
+TaskOrder::Group& TaskOrder::group_of(std::int64_t task) {
+  const auto number = static_cast<std::size_t>(number_of_group_(task));
+  if (number >= groups_.size()) groups_.resize(number + 1);
+  return groups_[number];
 }
 
 void TaskOrder::begin(Group& group, std::int64_t task, double now) {

@@ -1,5 +1,8 @@
 /// clogfit: from the table of runs to clogging lengths and mean speeds.
 
+#include <fmt/core.h>
+
+#include <filesystem>
 #include <iostream>
 #include <limits>
 #include <optional>
@@ -8,16 +11,18 @@
 #include <vector>
 
 #include "clog/campaign/group_table.hpp"
-#include "clog/campaign/stored_sweep.hpp"
+#include "clog/campaign/merger.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/cli/python_command.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/joined.hpp"
 #include "clog/laboratory/scales.hpp"
 #include "clog/store/run_table.hpp"
 #include "clogfit_calibrate.hpp"
+#include "clogfit_compare.hpp"
 #include "clogfit_curve.hpp"
 #include "clogfit_deviation.hpp"
 #include "clogfit_drag.hpp"
@@ -36,6 +41,8 @@ confidence interval and the mean speed with its standard error.
 
   clogfit sweep.h5
   clogfit sweep.h5 --format csv > table.csv
+  clogfit a.h5 b.h5                            several files as one sweep
+  clogfit compare a.h5 b.h5                    ratios of clogging lengths, paired by seed
   clogfit calibrate trial.csv --orifice 0.7    line tension and near-wall drag from measured speeds
   clogfit deviation a.csv b.csv                Delta_v and Delta_A of one profile from others
   clogfit drag speeds.csv                      exponent of the near-wall drag from speeds along a wall
@@ -73,7 +80,7 @@ std::optional<campaign::LaboratoryScale> laboratory_of(const cli::CommandLine& l
 int body(int argc, char** argv) {
   namespace po = boost::program_options;
   cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::none);
-  line.add_options()("file", po::value<std::string>(), "sweep file")(
+  line.add_options()("file", po::value<std::vector<std::string>>(), "sweep files")(
       "format", po::value<std::string>()->default_value("text"), "text, csv or json")(
       "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals")(
       "all-parameters",
@@ -83,9 +90,8 @@ int body(int argc, char** argv) {
       "lab", po::value<std::string>(),
       "file that describes the laboratory, see clogfit units: lengths, speeds and times in its units, too")(
       "dwell", po::value<std::string>(), "droplets that have not moved for so long count as clogged [t0]");
-  line.add_positional("file", 1);
-  line.add_commands({"calibrate", "curve", "deviation", "drag", "report", "units"});
-  line.explain_surplus_words("one sweep file is read at a time; call clogfit for each");
+  line.add_positional("file", -1);
+  line.add_commands({"calibrate", "compare", "curve", "deviation", "drag", "report", "units"});
   line.parse(argc, argv);
   if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return console::exit_success;
   if (!line.has("file")) throw Error("missing sweep file; try clogfit sweep.h5");
@@ -101,8 +107,13 @@ int body(int argc, char** argv) {
   const double dwell =
       line.has("dwell") ? line.get_positive("dwell") : std::numeric_limits<double>::infinity();
 
-  const store::SweepFile sweep = campaign::read_with_caution(line.get("file"));
-  if (sweep.rows.empty()) throw Error(line.get("file") + " has no runs yet; let the sweep finish some first");
+  const std::vector<std::string> paths = line.get_all("file");
+  for (const std::string& path : paths)
+    if (path.find('=') != std::string::npos && !std::filesystem::exists(path))
+      throw Error(fmt::format(
+          "no place for '{}' (clogfit reads files; clogsweep select takes some rows of one)", path));
+  const store::SweepFile sweep = campaign::read_together(paths);
+  if (sweep.rows.empty()) throw Error(joined(paths) + " has no runs yet; let the sweep finish some first");
   if (line.has("dwell") && !campaign::has_clogging_length(sweep.rows.front()))
     throw Error(
         "no place for --dwell (droplets in a channel or on a wall have no clogging length) leave it out");
@@ -131,6 +142,8 @@ int main(int argc, char** argv) {
   console::prepare_streams();
   if (argc > 1 && std::string_view(argv[1]) == "calibrate")
     return cli::run_program("clogfit calibrate", [&] { return clogfit_calibrate(argc, argv); });
+  if (argc > 1 && std::string_view(argv[1]) == "compare")
+    return cli::run_program("clogfit compare", [&] { return clogfit_compare(argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "curve")
     return cli::run_program("clogfit curve", [&] { return clogfit_curve(argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "deviation")

@@ -48,6 +48,8 @@ given values, on all MPI ranks, and gathers the results in one HDF5 table.
   clogsweep verify sweep.h5         is the file undamaged?
   clogsweep salvage sweep.h5 --output whole.h5     copies the undamaged rows of a damaged file
   clogsweep replay sweep.h5 TASK    runs a task again: the same bits?
+  clogsweep merge a.h5 b.h5 --output c.h5          one file of several
+  clogsweep select sweep.h5 'line_tension>1' --output stiff.h5     some rows of a file
   mpirun -np 4 clogsweep doctor     will a sweep started like this go well here?
 
 The same command resumes a stopped or killed sweep.

@@ -2,13 +2,17 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "clog/cli/obstacle_file.hpp"
+#include "clog/cli/points_file.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/laboratory/scales.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -64,6 +68,36 @@ double precision(const cli::CommandLine& line) {
               " (must lie between 0.1% and 100%) try 20%");
 }
 
+/// Has every point a text for this key, so that what it has otherwise is of no use?
+bool is_full(const sweep::Points& points, std::size_t place) {
+  return std::ranges::none_of(points.rows, [&](const auto& row) { return row[place].empty(); });
+}
+
+/// What --points and --shard add to the settings.
+void add_plan_options(cli::CommandLine& line) {
+  sweep::Settings& settings = line.settings();
+  if (line.has("points")) {
+    const std::string path = line.get("points");
+    const sweep::Points points = cli::read_points(path);
+    for (std::size_t i = 0; i < points.keys.size(); ++i)
+      if (const std::string& key = points.keys[i]; line.has(key) && is_full(points, i))
+        throw Error(fmt::format(
+            "{0} names the key {1}, and so does the command line; give {1} in one of them only", path, key));
+    try {
+      settings.set_points(points);
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: {}", path, error.what()));
+    }
+    for (const std::string& file : settings.missing_files()) settings.attach(file, cli::read_circles(file));
+  }
+  if (!line.has("shard")) return;
+  try {
+    settings.set_shard(sweep::Shard::from(line.get("shard")));
+  } catch (const Error& error) {
+    throw Error(fmt::format("invalid --shard={} ({})", line.get("shard"), error.what()));
+  }
+}
+
 std::int64_t most_seeds(const cli::CommandLine& line, std::int64_t first_seeds) {
   const double number = line.get_number("most-seeds", static_cast<double>(20 * first_seeds));
   if (!(number >= static_cast<double>(first_seeds) && number <= 1e5 && number == std::floor(number)))
@@ -112,6 +146,9 @@ void parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
       "whether rank 0 also runs tasks: auto (with up to 16 ranks), yes, no")(
       "max-hours", po::value<std::string>(),
       "stop after so many hours, as after a signal; the same command resumes the sweep")(
+      "points", po::value<std::string>(),
+      "CSV file whose first line names keys and whose lines are parameter sets, in place of these keys' "
+      "lists")("shard", po::value<std::string>(), "run one part of the sweep, e.g. 2/5, the second of five")(
       "until-precision", po::value<std::string>(),
       "add seeds until half of lambda's 95 % interval is within this fraction of lambda, e.g. 10%")(
       "most-seeds", po::value<std::string>(),
@@ -130,6 +167,7 @@ void parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
   line.parse(argc, argv);
   refuse_other_format(line);
   if (line.has("lab")) set_by(laboratory::read_laboratory(line.get("lab")), line.settings());
+  add_plan_options(line);
 }
 
 conduct::LeadOptions lead_options(const cli::CommandLine& line) {

@@ -39,7 +39,7 @@ int clogsweep_salvage(int argc, const char* const* argv) {
   store::refuse_existing(output);
   const campaign::Salvage found = campaign::salvage(line.get("file"));
   for (const std::string& damage : found.damage) std::cout << console::printable(damage) << '\n';
-  campaign::write(found, output);
+  campaign::write(found.table, found.snapshots, output);
   const auto num_rows = static_cast<std::int64_t>(found.table.rows.size());
   std::cout << console::printable(output) << ": " << sweep::counted(num_rows, "undamaged row");
   if (found.num_from_journal > 0)

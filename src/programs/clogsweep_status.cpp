@@ -1,15 +1,20 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <string>
 #include <thread>
 
+#include "clog/campaign/events.hpp"
 #include "clog/campaign/status.hpp"
 #include "clog/campaign/stored_sweep.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/store/journal.hpp"
+#include "clog/store/place.hpp"
+#include "clog/store/run_table.hpp"
 #include "clogsweep_commands.hpp"
 #include "file_command.hpp"
 
@@ -23,6 +28,40 @@ namespace {
 
 constexpr const char* clear_screen = "\x1b[H\x1b[2J";
 
+/// Waits in short steps. Returns whether a signal has come.
+bool wait(std::chrono::milliseconds time) {
+  constexpr std::chrono::milliseconds step{100};
+  for (; time.count() > 0 && !console::stop_signalled(); time -= step) std::this_thread::sleep_for(step);
+  return console::stop_signalled();
+}
+
+/// Prints a line for each event until the sweep ends. What a look costs is at most a tenth of the time.
+int follow(const std::string& path) {
+  constexpr int rest = 10;
+  constexpr std::chrono::milliseconds shortest{200};
+  campaign::Events events(path);
+  std::string stamp;
+  for (bool is_first = true;; is_first = false) {
+    const bool is_alive =
+        store::Journal::is_open(store::journal_path(path));  // before what it wrote last is read
+    const auto begin = std::chrono::steady_clock::now();
+    const std::string now = store::Place(path).stamp();
+    if (now != stamp || is_first || !is_alive) {
+      const store::SweepFile file = is_first ? campaign::read_with_caution(path) : store::read_sweep(path);
+      for (const std::string& line : events.look(file)) std::cout << line;
+      std::cout << std::flush;
+      stamp = now;
+    }
+    if (!is_alive) {
+      std::cout << events.end() << std::flush;
+      return console::exit_success;
+    }
+    const auto time =
+        std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - begin);
+    if (wait(std::max(shortest, rest * time))) return console::exit_success;
+  }
+}
+
 }  // namespace
 
 int clogsweep_status(int argc, const char* const* argv) {
@@ -31,11 +70,14 @@ int clogsweep_status(int argc, const char* const* argv) {
 
   clogsweep status sweep.h5
   clogsweep status sweep.h5 --watch
+  clogsweep status sweep.h5 --follow --format json
 
 Clogging lengths count runs in progress as not clogged so far, at the distance they have reached: finished runs alone
 would give too short ones, since runs that clog early finish first.
 )");
   line.add_options()("watch", "again every two seconds, until the sweep ends")(
+      "follow",
+      "with --format json: a line for every start, end, new attempt and round, until the sweep ends")(
       "format", po::value<std::string>()->default_value("text"), "text or json")(
       "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals")(
       "all-parameters", "name in the text also what all runs have as by default");
@@ -50,6 +92,10 @@ would give too short ones, since runs that clog early finish first.
       line.has("all-parameters") ? SharedParameters::all : SharedParameters::unusual;
   console::catch_stop_signals();
   const std::string path = line.get("file");
+  if (line.has("follow") && line.has("watch"))
+    throw Error("--follow and --watch exclude each other; give one");
+  if (line.has("follow") && format != "json") throw Error("--follow prints lines of JSON; add --format json");
+  if (line.has("follow")) return follow(path);
   for (bool is_first = true;; is_first = false) {
     const Status status = campaign::status_of(
         path, is_first ? campaign::read_with_caution(path) : store::read_sweep(path), confidence);
@@ -58,10 +104,7 @@ would give too short ones, since runs that clog early finish first.
                                    : campaign::to_text(path, status, confidence, shared))
               << std::flush;
     if (!line.has("watch") || !status.is_alive) return console::exit_success;
-    for (int i = 0; i < 20; ++i) {
-      if (console::stop_signalled()) return console::exit_success;
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    }
+    if (wait(std::chrono::seconds(2))) return console::exit_success;
   }
 }
 

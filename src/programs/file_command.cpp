@@ -4,7 +4,6 @@
 
 #include "clog/cli/program.hpp"
 #include "clog/core/tools/error.hpp"
-#include "clog/store/run_table.hpp"
 
 namespace clog::programs {
 
@@ -22,6 +21,12 @@ bool parse_file_command(cli::CommandLine& line, int argc, const char* const* arg
   if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return false;
   if (!line.has("file")) throw Error("missing sweep file; try " + line.program() + " sweep.h5");
   return true;
+}
+
+store::Provenance origin_of_table(const cli::CommandLine& line) {
+  store::Provenance all = cli::origin(line);
+  all.emplace_back("hdf5_version", store::library_version());
+  return all;
 }
 
 }  // namespace clog::programs

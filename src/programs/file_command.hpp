@@ -1,6 +1,7 @@
 #pragma once
 
 #include "clog/cli/command_line.hpp"
+#include "clog/store/run_table.hpp"
 
 namespace clog::programs {
 
@@ -8,5 +9,8 @@ namespace clog::programs {
 cli::CommandLine file_command(const char* name, const char* usage);
 /// Parses what follows the command's name. Returns whether there is something to do. @throws Error
 bool parse_file_command(cli::CommandLine& line, int argc, const char* const* argv);
+
+/// Where a table comes from that a command makes of others.
+store::Provenance origin_of_table(const cli::CommandLine& line);
 
 }  // namespace clog::programs

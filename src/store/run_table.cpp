@@ -105,6 +105,25 @@ std::string line_of(std::uint32_t sum, const std::string& name) {
   return fmt::format("{:08x} {}\n", sum, name);
 }
 
+/// An attribute holds less than 64 KiB: what is left of a longer text goes to others, `config.2` and so on.
+constexpr std::size_t longest_part = 60'000;
+
+std::string name_of_part(const std::string& name, std::size_t part) {
+  return part == 0 ? name : fmt::format("{}.{}", name, part + 1);
+}
+
+/// Puts together what name_of_part() has named.
+void join_parts(Provenance& provenance) {
+  for (std::size_t i = 0; i < provenance.size(); ++i)
+    for (std::size_t part = 1;; ++part) {
+      const std::string name = name_of_part(provenance[i].first, part);
+      const auto next = std::ranges::find(provenance, name, [](const auto& one) { return one.first; });
+      if (next == provenance.end()) break;
+      provenance[i].second += next->second;
+      provenance.erase(next);
+    }
+}
+
 std::string name_of_rows(std::size_t num_rows) { return fmt::format("{} rows", num_rows); }
 
 }  // namespace
@@ -120,7 +139,9 @@ void write_runs(hid_t file, const std::string& kind, std::span<const RunRow> row
   };
   write("kind", kind);
   write("format_version", format_version);
-  for (const auto& [name, text] : provenance) write(name, text);
+  for (const auto& [name, text] : provenance)
+    for (std::size_t part = 0; part == 0 || part * longest_part < text.size(); ++part)
+      write(name_of_part(name, part), text.substr(part * longest_part, longest_part));
   write_attribute(file, list_name, lines);
 }
 
@@ -286,10 +307,18 @@ void compare_rows(const PackedTable& table, const CheckSums& sums, Examination& 
   }
 }
 
+/// The rest of an attribute of which a part is damaged says nothing.
+void drop_attribute(const std::string& part, Provenance& provenance) {
+  const std::string name = part.substr(0, part.find('.'));
+  std::erase_if(provenance,
+                [&](const auto& one) { return one.first.substr(0, one.first.find('.')) == name; });
+}
+
 /// The same for attributes, and for the rows' checksums as a whole.
 void compare_attributes(hid_t file, const CheckSums& sums, Examination& found) {
   const std::pair rows_line(name_of_rows(sums.size()), joint_check_sum(sums));
   bool has_rows_line = false;
+  std::vector<std::string> damaged;
   std::istringstream lines(read_attribute(file, list_name));
   for (std::string line; std::getline(lines, line);) {
     const auto listed = check_sum_line(line);
@@ -301,8 +330,10 @@ void compare_attributes(hid_t file, const CheckSums& sums, Examination& found) {
       found.whole.provenance.emplace_back(listed->first, std::move(text));
     } else {
       found.damage.push_back("its attribute " + listed->first + " is not as it was written");
+      damaged.push_back(listed->first);
     }
   }
+  for (const std::string& name : damaged) drop_attribute(name, found.whole.provenance);
   if (!has_rows_line)
     found.damage.emplace_back("its table is not the one that was written: rows are missing, or exchanged");
 }
@@ -332,6 +363,7 @@ Examination examine(std::vector<std::byte>& image, Seal seal, const std::string&
   }
   if (seal != Seal::whole)
     found.is_refused_by_others = is_refused(file, table_name) || is_refused(file, sums_name);
+  join_parts(found.whole.provenance);
   for (const char* ours : {"kind", "format_version"})
     std::erase_if(found.whole.provenance, [&](const auto& attribute) { return attribute.first == ours; });
   if (seal == Seal::broken && found.damage.empty())

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <iterator>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -15,87 +17,47 @@
 #include "clog/core/world/lattice.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "contradictions.hpp"
 
 namespace clog::sweep {
 namespace {
 
 constexpr std::int64_t largest_sweep = 100'000'000;
 
-/// A key that another one leaves without effect was given for nothing.
-void refuse_contradictions(const Settings& settings) {
-  if (settings.text("model") == "sp") {
-    if (settings.text("preset") != find_key("preset").default_text)
-      throw Error("invalid preset=" + settings.text("preset") +
-                  " (model=sp has no interface) leave it out, or use model=dp");
-    return;
-  }
-  const std::string ratio = "perimeter-stiffness-ratio";
-  if (!settings.is_given(ratio) || settings.text(ratio) == find_key(ratio).default_text) return;
-  if (settings.text("perimeter-spring") != "rest")
-    throw Error(
-        fmt::format("invalid {}={} (it belongs to perimeter-spring=rest, not to {}) give "
-                    "perimeter-stiffness, or add perimeter-spring=rest",
-                    ratio, settings.text(ratio), settings.text("perimeter-spring")));
-  if (settings.text("perimeter-stiffness") != "auto")
-    throw Error(fmt::format("invalid {}={} (perimeter-stiffness={} is given as well) leave one of them out",
-                            ratio, settings.text(ratio), settings.text("perimeter-stiffness")));
-}
-
-/// Is it given, and something else than what it would be anyway?
-bool is_changed(const Settings& settings, const char* key) {
-  return settings.is_given(key) && settings.text(key) != find_key(key).default_text;
-}
-
-/// Keys that a scene leaves without effect, beyond those that check_each() knows.
-void refuse_useless_keys(const Settings& settings) {
-  if (const std::vector<std::string> missing = settings.missing_files(); !missing.empty())
-    throw Error("invalid obstacles=" + missing.front() + " (the file has not been read)");
-  const std::string& layout = settings.text("obstacle-layout");
-  if (layout != "file" && settings.text(circles_key) != "none")
-    throw Error("obstacles and obstacle-layout=" + layout + " contradict each other; leave one of them out");
-  const Scene* scene = settings.scene();
-  if (scene && scene->walls_from == WallsFrom::droplet && settings.text("seeds") != "1")
-    throw Error(fmt::format("invalid seeds={} (nothing is random with obstacle-layout={}) leave it out",
-                            settings.text("seeds"), layout));
-  if (layout != "file") return;
-  if (!settings.is_given("box"))
-    throw Error("invalid obstacles=" + settings.text(circles_key) +
-                " (nothing says how wide their array is) give box, the width after which it repeats");
-  for (const char* key : {"obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "lattice-angle"})
-    if (is_changed(settings, key))
-      throw Error(
-          fmt::format("obstacles and {0}={1} contradict each other (the file's own gap, density and layout "
-                      "count); leave it out, or give {0}={2}",
-                      key, settings.text(key), find_key(key).default_text));
-  if (settings.values("seeds").size() > 1 && settings.text("release") == "centre")
-    throw Error(
-        fmt::format("invalid seeds={} (the droplet starts at the centre of your circles, whatever the seed) "
-                    "add release=anywhere or release=entrance, or give one seed",
-                    settings.text("seeds")));
-}
-
-/// Empty unless the list could be a decimal below one.
-std::string possible_decimal(const Key& key, const Settings& settings) {
-  const std::string& text = settings.text(key.name);
-  const std::string meant = with_decimal_point(text);
-  const bool is_number = key.kind == ValueKind::number || key.kind == ValueKind::number_or_share;
-  if (!is_number || !meant.starts_with("0.")) return "";
-  return fmt::format("{}={} is a list of {}; decimals have a point, {}", key.name, text,
-                     joined(settings.values(key.name), " and "), meant);
-}
-
-/// The parameters of a task. A list like 0,3 may have been meant as 0.3: where one of its values is refused,
-/// the message asks.
-RunParameters checked_task(const Plan& plan, std::int64_t index, const Settings& settings) try {
-  return plan.task(index);
+/// What a check of one branch of the settings returns. Where a list like 0,3 may have been meant as 0.3 and
+/// one of its values is refused, the message asks.
+/// @param where  what the message is to begin with
+template <class Check>
+auto checked(const Settings& branch, const std::string& where, const Check& check) try {
+  return check();
 } catch (const Error& error) {
-  const std::string message = error.what();
+  std::string message = error.what();
   for (const Key& key : keys())
-    if (const std::string meant = with_decimal_point(settings.text(key.name));
+    if (const std::string meant = with_decimal_point(branch.text(key.name));
         !meant.empty() && message.starts_with("invalid " + key.name + "="))
-      throw Error(
-          fmt::format("{}; {} are two values: did you mean {}?", message, settings.text(key.name), meant));
-  throw;
+      message += fmt::format("; {} are two values: did you mean {}?", branch.text(key.name), meant);
+  throw Error(where + message);
+}
+
+std::vector<std::uint32_t> seeds_of(const Settings& settings) {
+  const Key& key = find_key("seeds");
+  std::vector<std::uint32_t> seeds;
+  for (const std::string& text : settings.values("seeds")) {
+    RunParameters run;
+    key.apply(run, text);
+    seeds.push_back(run.seed);
+  }
+  return seeds;
+}
+
+/// Of a shard: every n-th seed, another one in each parameter set, so that all shards are as much work.
+std::vector<std::uint32_t> part_of(const std::vector<std::uint32_t>& seeds, std::size_t share,
+                                   const Shard& shard) {
+  const auto of = static_cast<std::size_t>(shard.of);
+  std::vector<std::uint32_t> part;
+  for (std::size_t place = 0; place < seeds.size(); ++place)
+    if ((place + share) % of == static_cast<std::size_t>(shard.number - 1)) part.push_back(seeds[place]);
+  return part;
 }
 
 /// Of each parameter alone; resolve() says what is wrong.
@@ -108,75 +70,293 @@ bool is_each_possible(const RunParameters& run) try {
 
 }  // namespace
 
+/// Fills a plan, batch by batch.
+class Plan::Builder {
+ public:
+  explicit Builder(Plan& plan) : plan_(plan) {}
+
+  void add_all(const Settings& settings) {
+    if (!settings.shard().is_whole() && !settings.rounds().empty())
+      throw Error("a part of a sweep cannot have rounds; merge the parts first");
+    begin_batch();
+    settings.visit_branches([&](const Settings& branch, std::int64_t point) {
+      add_branch(branch, point < 0 ? "" : fmt::format("point {}", point + 1));
+    });
+    if (!settings.shard().is_whole()) keep(settings.shard());
+    lay();
+    for (std::size_t round = 0; round < settings.rounds().size(); ++round) {
+      begin_batch();
+      settings.visit_round(round, [&](const Settings& branch, std::int64_t point) {
+        add_branch(branch, fmt::format("point {} of round {}", point + 1, round + 1));
+      });
+      lay();
+    }
+  }
+
+ private:
+  Plan& plan_;
+  std::unordered_map<std::string, std::int64_t> known_;  // groups by what they are
+  std::vector<std::string> names_;                       // of products, for messages; empty for lists
+  std::int64_t num_runs_ = 0;                            // of all shards
+  Seeds last_seeds_;                                     // which many branches have in common
+  std::size_t batch_ = 0;
+
+  void begin_batch() {
+    batch_ = plan_.batches_.size();
+    plan_.batches_.emplace_back();
+  }
+
+  void add_branch(const Settings& branch, const std::string& name) {
+    const std::string where = name.empty() ? "" : name + ": ";
+    checked(branch, where, [&] {
+      refuse_contradictions(branch);
+      refuse_useless_keys(branch);
+    });
+    names_.push_back(name);
+    add_product(branch);
+    const std::size_t product = plan_.products_.size() - 1;
+    std::vector<std::uint32_t> seeds = seeds_of(branch);
+    if (!last_seeds_ || *last_seeds_ != seeds)
+      last_seeds_ = std::make_shared<const std::vector<std::uint32_t>>(std::move(seeds));
+    const std::int64_t num_places = size_of_product(branch);
+    refuse_misfitting_angles(product, num_places, where);
+    for (std::int64_t place = 0; place < num_places; ++place) {
+      const RunRow run = checked(
+          branch, where, [&] { return describe(plan_.parameters(product, place, last_seeds_->front())); });
+      add_group(run, product, place);
+    }
+  }
+
+  void add_product(const Settings& branch) {
+    OwnLists& own = plan_.products_.emplace_back();
+    const bool is_first = plan_.axes_.empty();
+    for (const Key& key : keys())
+      if (is_first && key.name != "seeds") plan_.axes_.push_back({&key, branch.values(key.name)});
+    for (std::size_t axis = 0; axis < plan_.axes_.size(); ++axis)
+      if (const auto& values = branch.values(plan_.axes_[axis].key->name); values != plan_.axes_[axis].values)
+        own[axis] = values;
+  }
+
+  /// All at once; a single one resolve() refuses.
+  void refuse_misfitting_angles(std::size_t product, std::int64_t num_places,
+                                const std::string& where) const {
+    std::vector<std::string> angles;
+    double box = 0;
+    for (std::int64_t place = 0; place < num_places; ++place) {
+      const RunParameters run = plan_.unresolved(product, place, last_seeds_->front());
+      const ObstacleParameters& obstacles = run.obstacles;
+      if (!is_each_possible(run) || obstacles.layout != ObstacleLayout::lattice || fitting_lattice(obstacles))
+        continue;
+      const std::string angle = shortest(obstacles.lattice_angle);
+      if (std::ranges::find(angles, angle) != angles.end()) continue;
+      angles.push_back(angle);
+      box = std::max(box, box_that_fits(obstacles));
+    }
+    if (angles.size() > 1)
+      throw Error(
+          fmt::format("{}invalid lattice-angle={} (no lattice within {:.3g} degrees of any of these has "
+                      "so short a period) use box={} or more, or leave them out",
+                      where, joined(angles, ","), largest_angle_error, box));
+  }
+
+  /// Without the seeds, which count for the limit.
+  std::int64_t size_of_product(const Settings& branch) {
+    auto num_places = std::int64_t{1};
+    const std::int64_t num_seeds = std::ssize(*last_seeds_);
+    for (const Axis& axis : plan_.axes_) {
+      num_places *= std::ssize(branch.values(axis.key->name));
+      if (num_runs_ + num_places * num_seeds > largest_sweep)
+        throw Error("the sweep has more than a hundred million runs; shorten its lists");
+    }
+    num_runs_ += num_places * num_seeds;
+    return num_places;
+  }
+
+  /// Different texts may mean the same parameter set: tilts that lead to the same lattice, `auto` and the
+  /// value behind it. With other seeds that is one group.
+  void add_group(RunRow run, std::size_t product, std::int64_t place) {
+    run.parameters.seed = 0;
+    const auto [known, is_new] = known_.emplace(identity(run), plan_.num_groups());
+    if (is_new) plan_.groups_.push_back({product, place, {}});
+    Group& group = plan_.groups_[static_cast<std::size_t>(known->second)];
+    Batch& batch = plan_.batches_.back();
+    refuse_repeated_seeds(known->second, product);
+    if (group.parts.empty() || group.parts.back().batch != batch_) {
+      group.parts.push_back({batch_, batch.size()});
+      batch.push_back({known->second, last_seeds_});
+      return;
+    }
+    Share& share = batch[group.parts.back().share];
+    std::vector<std::uint32_t> all = *share.seeds;
+    all.insert(all.end(), last_seeds_->begin(), last_seeds_->end());
+    share.seeds = std::make_shared<const std::vector<std::uint32_t>>(std::move(all));
+  }
+
+  void refuse_repeated_seeds(std::int64_t number, std::size_t product) const {
+    const Group& group = plan_.groups_[static_cast<std::size_t>(number)];
+    if (group.parts.empty()) return;
+    std::set<std::uint32_t> seen;
+    for (const Group::Part& part : group.parts) {
+      const Seeds& seeds = plan_.batches_[part.batch][part.share].seeds;
+      seen.insert(seeds->begin(), seeds->end());
+    }
+    for (const std::uint32_t seed : *last_seeds_) {
+      if (!seen.contains(seed)) continue;
+      const std::string& here = names_[product];
+      const std::string& there = names_[group.product];
+      throw Error(
+          here.empty() || there.empty()
+              ? fmt::format("the sweep's lists lead to the same run twice (parameter sets {} and {} mean the "
+                            "same); leave one of them out",
+                            number, plan_.num_groups())
+              : fmt::format("{} and {} mean the same run with seed {}; leave one of them out", there, here,
+                            seed));
+    }
+  }
+
+  /// One part of what there is.
+  void keep(const Shard& shard) {
+    Batch& batch = plan_.batches_.back();
+    Batch kept;
+    std::vector<Group> groups;
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      std::vector<std::uint32_t> seeds = part_of(*batch[i].seeds, i, shard);
+      if (seeds.empty()) continue;
+      groups.push_back(plan_.groups_[static_cast<std::size_t>(batch[i].group)]);
+      groups.back().parts = {{batch_, kept.size()}};
+      kept.push_back(
+          {std::ssize(groups) - 1, std::make_shared<const std::vector<std::uint32_t>>(std::move(seeds))});
+    }
+    if (kept.empty())
+      throw Error(fmt::format("part {} of the sweep is empty, which has {}", shard.text(),
+                              counted(num_runs_, "run")));
+    batch = std::move(kept);
+    plan_.groups_ = std::move(groups);
+  }
+
+  /// Numbers the tasks of the last batch.
+  void lay() {
+    const Batch& batch = plan_.batches_.back();
+    std::set<std::size_t> numbers;
+    for (const Share& share : batch) numbers.insert(share.seeds->size());
+    std::size_t first = 0;
+    for (const std::size_t number : numbers) {
+      Layer layer{plan_.size_, static_cast<std::int64_t>(first), batch_, {}};
+      for (std::size_t i = 0; i < batch.size(); ++i)
+        if (batch[i].seeds->size() >= number) layer.shares.push_back(i);
+      plan_.size_ += static_cast<std::int64_t>((number - first) * layer.shares.size());
+      plan_.layers_.push_back(std::move(layer));
+      first = number;
+    }
+  }
+};
+
 Plan::Plan(const Settings& settings) : circle_files_(settings.circle_files()) {
-  refuse_contradictions(settings);
-  refuse_useless_keys(settings);
-  for (const Key& key : keys()) {
-    const std::vector<std::string>& values = settings.values(key.name);
-    axes_.push_back({&key, values});
+  for (const Key& key : keys())
     if (std::string words = possible_decimal(key, settings); !words.empty())
       possible_decimals_.push_back(std::move(words));
-    size_ *= static_cast<std::int64_t>(values.size());
-    if (size_ > largest_sweep)
-      throw Error("the sweep has more than a hundred million runs; shorten its lists");
-  }
-  const auto seeds =
-      std::find_if(axes_.begin(), axes_.end(), [](const Axis& axis) { return axis.key->name == "seeds"; });
-  std::rotate(axes_.begin(), seeds, seeds + 1);
-  refuse_misfitting_angles();
-  // Different texts may mean the same run: tilts that lead to the same lattice, `auto` and the value behind
-  // it.
-  std::unordered_map<std::string, std::int64_t> seen;
-  for (std::int64_t index = 0; index < num_groups(); ++index) {
-    const auto [first, is_new] =
-        seen.emplace(identity(describe(checked_task(*this, index, settings))), index);
-    if (!is_new)
-      throw Error(
-          fmt::format("the sweep's lists lead to the same run twice (parameter sets {} and {} mean the "
-                      "same); leave one of them out",
-                      first->second, index));
-  }
+  Builder(*this).add_all(settings);
 }
 
-/// All at once; a single one resolve() refuses.
-void Plan::refuse_misfitting_angles() const {
-  std::vector<std::string> angles;
-  double box = 0;
-  for (std::int64_t index = 0; index < num_groups(); ++index) {
-    const RunParameters run = unresolved(index);
-    const ObstacleParameters& obstacles = run.obstacles;
-    if (!is_each_possible(run) || obstacles.layout != ObstacleLayout::lattice || fitting_lattice(obstacles))
+const Plan::Layer& Plan::layer_of(std::int64_t task) const {
+  assert(task >= 0 && task < size_);
+  const auto next = std::upper_bound(layers_.begin(), layers_.end(), task,
+                                     [](std::int64_t t, const Layer& layer) { return t < layer.first_task; });
+  return *std::prev(next);
+}
+
+const Plan::Share& Plan::share_of(std::int64_t task) const {
+  const Layer& layer = layer_of(task);
+  const std::int64_t place = (task - layer.first_task) % std::ssize(layer.shares);
+  return batches_[layer.batch][layer.shares[static_cast<std::size_t>(place)]];
+}
+
+RunParameters Plan::task(std::int64_t index) const {
+  const Layer& layer = layer_of(index);
+  const Share& share = share_of(index);
+  const std::int64_t seed = layer.first_seed + (index - layer.first_task) / std::ssize(layer.shares);
+  const Group& group = groups_[static_cast<std::size_t>(share.group)];
+  return parameters(group.product, group.place, (*share.seeds)[static_cast<std::size_t>(seed)]);
+}
+
+RunParameters Plan::group(std::int64_t group) const {
+  const Group& one = groups_[static_cast<std::size_t>(group)];
+  const Group::Part& part = one.parts.front();
+  return parameters(one.product, one.place, batches_[part.batch][part.share].seeds->front());
+}
+
+std::int64_t Plan::group_of(std::int64_t task) const { return share_of(task).group; }
+
+std::int64_t Plan::num_seeds(std::int64_t group) const {
+  std::int64_t number = 0;
+  for (const Group::Part& part : groups_[static_cast<std::size_t>(group)].parts)
+    number += std::ssize(*batches_[part.batch][part.share].seeds);
+  return number;
+}
+
+std::vector<std::uint32_t> Plan::seeds(std::int64_t group) const {
+  std::vector<std::uint32_t> all;
+  for (const Group::Part& part : groups_[static_cast<std::size_t>(group)].parts) {
+    const Seeds& seeds = batches_[part.batch][part.share].seeds;
+    all.insert(all.end(), seeds->begin(), seeds->end());
+  }
+  return all;
+}
+
+std::int64_t Plan::task_of(std::int64_t group, std::int64_t place) const {
+  for (const Group::Part& part : groups_[static_cast<std::size_t>(group)].parts) {
+    const std::int64_t number = std::ssize(*batches_[part.batch][part.share].seeds);
+    if (place >= number) {
+      place -= number;
       continue;
-    const std::string angle = shortest(obstacles.lattice_angle);
-    if (std::ranges::find(angles, angle) != angles.end()) continue;
-    angles.push_back(angle);
-    box = std::max(box, box_that_fits(obstacles));
+    }
+    const Layer* last = nullptr;  // the last one that begins with this seed or an earlier one
+    for (const Layer& layer : layers_)
+      if (layer.batch == part.batch && layer.first_seed <= place) last = &layer;
+    assert(last);
+    const auto share = std::lower_bound(last->shares.begin(), last->shares.end(), part.share);
+    return last->first_task + (place - last->first_seed) * std::ssize(last->shares) +
+           std::distance(last->shares.begin(), share);
   }
-  if (angles.size() > 1)
-    throw Error(
-        fmt::format("invalid lattice-angle={} (no lattice within {:.3g} degrees of any of these has so "
-                    "short a period) use box={} or more, or leave them out",
-                    joined(angles, ","), largest_angle_error, box));
+  assert(false && "the group has no such seed");
+  return -1;
 }
 
-std::int64_t Plan::num_groups() const {
-  return size_ / static_cast<std::int64_t>(axes_.front().values.size());
+/// A text for every axis.
+std::vector<const std::string*> Plan::texts(std::size_t product, std::int64_t place) const {
+  const OwnLists& own = products_[product];
+  std::vector<const std::string*> texts(axes_.size());
+  for (std::size_t i = axes_.size(); i-- > 0;) {
+    const auto found = own.find(i);
+    const std::vector<std::string>& values = found == own.end() ? axes_[i].values : found->second;
+    texts[i] = &values[static_cast<std::size_t>(place % std::ssize(values))];
+    place /= std::ssize(values);
+  }
+  return texts;
 }
 
-RunParameters Plan::task(std::int64_t index) const { return resolve(unresolved(index)); }
+std::vector<std::string> Plan::texts(std::int64_t group) const {
+  const Group& one = groups_[static_cast<std::size_t>(group)];
+  std::vector<std::string> all;
+  for (const std::string* text : texts(one.product, one.place)) all.push_back(*text);
+  const auto seeds = std::ranges::find(keys(), "seeds", &Key::name);
+  all.insert(all.begin() + std::distance(keys().begin(), seeds), "");
+  return all;
+}
 
-RunParameters Plan::unresolved(std::int64_t index) const {
-  assert(index >= 0 && index < size_);
+RunParameters Plan::parameters(std::size_t product, std::int64_t place, std::uint32_t seed) const {
+  return resolve(unresolved(product, place, seed));
+}
+
+RunParameters Plan::unresolved(std::size_t product, std::int64_t place, std::uint32_t seed) const {
+  const std::vector<const std::string*> values = texts(product, place);
   RunParameters run;
-  for (auto axis = axes_.rbegin(); axis != axes_.rend(); ++axis) {
-    const auto count = static_cast<std::int64_t>(axis->values.size());
-    const std::string& value = axis->values[index % count];
-    if (axis->key->kind == ValueKind::file && value != "none")
-      run.obstacles.own = circle_files_.at(value);
+  for (std::size_t i = axes_.size(); i-- > 0;)
+    if (axes_[i].key->kind == ValueKind::file && *values[i] != "none")
+      run.obstacles.own = circle_files_.at(*values[i]);
     else
-      axis->key->apply(run, value);
-    index /= count;
-  }
+      axes_[i].key->apply(run, *values[i]);
+  run.seed = seed;
   return run;
 }
 

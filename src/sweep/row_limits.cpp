@@ -96,7 +96,7 @@ std::vector<std::string> unproven_parameters(const RunRow& row) {
 std::string unproven_parameters(const Plan& plan) {
   std::vector<std::string> all;
   for (std::int64_t group = 0; group < plan.num_groups(); ++group)
-    for (const std::string& one : unproven_parameters(describe(plan.task(group))))
+    for (const std::string& one : unproven_parameters(describe(plan.group(group))))
       if (std::find(all.begin(), all.end(), one) == all.end()) all.push_back(one);
   if (all.empty()) return "";
   constexpr std::size_t most_named = 4;
@@ -121,7 +121,7 @@ std::string possible_repetition(const Plan& plan) {
   double farthest = 0, shortest_length = 0, most_boxes = 0;  // of the set that lacks most
   bool is_of_user = false;                                   // whose circles boxes do not multiply
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
-    const RunRow row = describe(plan.task(group));
+    const RunRow row = describe(plan.group(group));
     const RunParameters& run = row.parameters;
     const double way = run.drag.terminal_speed * run.max_time;
     if (way <= repetition_length(row)) continue;
@@ -175,7 +175,7 @@ std::vector<std::string> bare_arrays(const Plan& plan) {
   std::vector<std::string> all;
   std::set<std::tuple<std::string, double, double>> seen;
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
-    const RunParameters run = plan.task(group);
+    const RunParameters run = plan.group(group);
     const ObstacleParameters& obstacles = run.obstacles;
     if (scene_of(run).walls_from != WallsFrom::circles) continue;
     if (!seen.emplace(obstacles.own->check_sum(), obstacles.box, obstacles.period().along()).second) continue;

@@ -257,7 +257,7 @@ Settings Settings::from_config(const std::string& text) {
     if (line.empty() || line[0] == '#') continue;
     const auto equals = line.find(" = ");
     if (equals == std::string::npos) throw Error(fmt::format("'{}' is not key = value", line.substr(0, 60)));
-    settings.set(line.substr(0, equals), unescaped(line.substr(equals + 3)));
+    settings.set_line(line.substr(0, equals), line.substr(equals + 3));
   }
   return settings;
 }
@@ -291,8 +291,14 @@ const Scene* Settings::scene() const {
 
 std::vector<std::string> Settings::missing_files() const {
   std::vector<std::string> missing;
-  for (const std::string& file : values(circles_key))
-    if (file != "none" && !circle_files_.contains(file)) missing.push_back(file);
+  const auto look = [&](const std::vector<std::string>& files) {
+    for (const std::string& file : files)
+      if (file != "none" && !circle_files_.contains(file) &&
+          std::ranges::find(missing, file) == missing.end())
+        missing.push_back(file);
+  };
+  look(values(circles_key));
+  if (!points_.empty() || !rounds_.empty()) look(all_values().at(circles_key));
   return missing;
 }
 
@@ -347,7 +353,6 @@ void Settings::assign(const std::string& name, const std::string& text) {
       RunParameters scratch;
       key.apply(scratch, value);
     }
-    if (key.kind == ValueKind::word && values.size() > 1) throw Error("takes one value, not a list");
   } catch (const NumberWithUnit& error) {
     refuse_value(
         name, text,
@@ -361,11 +366,16 @@ void Settings::assign(const std::string& name, const std::string& text) {
 
 std::string Settings::to_config(bool with_comments) const {
   std::string config;
+  const std::set<std::string> following = keys_that_follow();
   for (const Key& key : keys()) {
+    if (following.contains(key.name)) {
+      if (with_comments) config += fmt::format("# {} follows from other keys\n", key.name);
+      continue;
+    }
     if (with_comments) config += fmt::format("# {}\n", key.help);
     config += fmt::format("{} = {}\n", key.name, escaped(text(key.name)));
   }
-  return config;
+  return config + config_lines(points_, rounds_, shard_);
 }
 
 }  // namespace clog::sweep

@@ -89,7 +89,8 @@ int main(int argc, char** argv) {
   const sweep::Plan plan(settings);
   std::optional<campaign::Ledger> ledger;
   std::ostringstream screen;  // progress goes nowhere, but is made
-  campaign::Progress progress(screen, campaign::Progress::Screen::terminal, num_workers, num_groups);
+  campaign::Progress progress(screen, campaign::Progress::Screen::terminal, num_workers,
+                              [num_groups](std::int64_t task) { return task % num_groups; });
   std::vector<std::int64_t> tasks(num_tasks);
   std::iota(tasks.begin(), tasks.end(), std::int64_t{0});
   progress.expect(tasks, num_tasks);

@@ -284,7 +284,7 @@ TEST_F(LedgerTest, SalvagesResultsAndSnapshotsThatOnlyItsJournalHas) {
   EXPECT_EQ(found.num_from_journal, 1);
   EXPECT_TRUE(found.damage.empty());
   const std::string copy = (folder_ / "copy.h5").string();
-  write(found, copy);
+  write(found.table, found.snapshots, copy);
   const store::SweepFile file = store::read_sweep(copy);
   ASSERT_EQ(file.rows.size(), 2u);
   EXPECT_EQ(file.rows[0].distance, 2);

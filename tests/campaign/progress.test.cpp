@@ -20,7 +20,7 @@ sweep::RunRow row(std::int64_t task, RunStatus status) {
 class ProgressTest : public testing::Test {
  protected:
   std::ostringstream out_;
-  Progress progress_{out_, Progress::Screen::plain, 2, 1};
+  Progress progress_{out_, Progress::Screen::plain, 2, [](std::int64_t) { return std::int64_t{0}; }};
 
   /// The last line, up to the rate, which depends on the time.
   std::string line() {
@@ -68,7 +68,7 @@ TEST_F(ProgressTest, CountsFurtherRounds) {
 
 TEST(Progress, JudgesWhatIsLeftByItsOwnParameterSet) {
   std::ostringstream out;
-  Progress progress(out, Progress::Screen::plain, 2, 2);
+  Progress progress(out, Progress::Screen::plain, 2, [](std::int64_t task) { return task % 2; });
   progress.expect(std::vector<std::int64_t>{0, 2, 4, 1, 3, 5}, 6);
   const auto end = [&](std::int64_t task, double seconds) {
     progress.started(task);

@@ -77,12 +77,13 @@ class Faults:
                 *case.chance.choice([[], ["--config", "s.cfg"]]), case.chance.choice(["--dry-run", "--print-config"])]
 
     def report(self, case):
-        names = ("status", "verify", "replay", "salvage")
+        names = ("status", "verify", "replay", "salvage", "merge", "select")
         words = case.chance.choice([["clogfit"], *(["clogsweep", name] for name in names)])
         options = self.options.get(tuple(words), {})
-        options = {name: value for name, value in options.items() if name != "watch"}
+        options = {name: value for name, value in options.items() if name not in ("watch", "follow")}
         task = case.chance.choice(["0", "1", *NUMBERS])
-        more = {"replay": [task], "salvage": ["--output", "w.h5"]}.get(words[-1], [])
+        more = {"replay": [task], "salvage": ["--output", "w.h5"], "merge": [self.file_name(case), "--output", "w.h5"],
+                "select": [case.chance.choice(["seed<=1", "status=clogged", "line_tension>1", self.value(case)]), "--output", "w.h5"]}.get(words[-1], [])
         return [*words, self.file_name(case), *more, *self.some_options(case, options)]
 
     def droplet(self, case):

@@ -11,7 +11,7 @@ from support import BIN, MPIRUN
 
 EXIT_CODES = {0, 1, 2, 75}  # docs/reference/exit-codes.md
 READER_GONE = 141  # of a program whose output nobody reads any more
-SUBCOMMANDS = {"status", "verify", "replay", "salvage", "doctor", "array", "channel", "sag", "calibrate", "deviation",
+SUBCOMMANDS = {"status", "verify", "replay", "salvage", "merge", "select", "doctor", "array", "channel", "sag", "calibrate", "compare", "deviation",
                "drag", "report"}
 # What a program says that met a fault of its own.
 SIGNS_OF_FAULTS = {

@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "clog/core/tools/error.hpp"
 
@@ -176,6 +181,137 @@ TEST(Plan, AsksAfterListsThatCouldBeDecimals) {
   for (const char* other : {"0", "0.05", "0,0.5", "0,1,2", "1,5", "0, 5"})
     EXPECT_TRUE(asked("line-tension", other).empty()) << other;
   EXPECT_TRUE(asked("seeds", "0,5").empty()) << "integers";
+}
+
+/// Line tension, gap, seed, preset of every task.
+std::vector<std::tuple<double, double, std::uint32_t, std::string>> runs_of(const Plan& plan) {
+  std::vector<std::tuple<double, double, std::uint32_t, std::string>> all;
+  for (std::int64_t task = 0; task < plan.size(); ++task) {
+    const RunParameters run = plan.task(task);
+    all.emplace_back(run.dp.line_tension, run.obstacles.gap, run.seed, preset_name(run));
+  }
+  return all;
+}
+
+TEST(Plan, TakesListsOfWords) {
+  const Plan plan(settings_of({{"preset", "robust,elastic"}, {"line-tension", "0.5,1"}, {"seeds", "1..2"}}));
+  EXPECT_EQ(plan.num_groups(), 4);
+  EXPECT_EQ(plan.size(), 8);
+  EXPECT_EQ(preset_name(plan.task(0)), "robust");
+  EXPECT_EQ(preset_name(plan.task(7)), "elastic");
+  EXPECT_EQ(plan.task(7).dp.perimeter_spring, PerimeterSpring::rest);
+}
+
+TEST(Plan, HasTheProductOfTheOtherListsAtEachPoint) {
+  Settings settings = settings_of({{"obstacle-gap", "0.2,0.3"}, {"seeds", "1..2"}});
+  settings.set_points({{"line-tension", "preset"}, {{"0.5", "robust"}, {"2", "elastic"}, {"3", ""}}});
+  const Plan plan(settings);
+  EXPECT_EQ(plan.num_groups(), 6);
+  EXPECT_TRUE(plan.has_equal_seeds());
+  const auto runs = runs_of(plan);
+  using Run = decltype(runs)::value_type;
+  EXPECT_EQ(runs[0], Run(0.5, 0.2, 1, "robust"));
+  EXPECT_EQ(runs[3], Run(2, 0.3, 1, "elastic"));
+  EXPECT_EQ(runs[5], Run(3, 0.3, 1, "robust"));
+  EXPECT_EQ(runs[6], Run(0.5, 0.2, 2, "robust"));
+}
+
+Settings points_with_seeds() {
+  Settings settings;
+  settings.set_points({{"line-tension", "seeds"}, {{"0.5", "1..3"}, {"2", "7"}, {"0.5", "10,11"}}});
+  return settings;
+}
+
+TEST(Plan, JoinsThePointsThatDifferInTheirSeeds) {
+  const Plan plan(points_with_seeds());
+  EXPECT_EQ(plan.num_groups(), 2);
+  EXPECT_EQ(plan.num_seeds(0), 5);
+  EXPECT_EQ(plan.num_seeds(1), 1);
+  std::vector<std::pair<double, std::uint32_t>> runs;
+  for (std::int64_t task = 0; task < plan.size(); ++task)
+    runs.emplace_back(plan.task(task).dp.line_tension, plan.task(task).seed);
+  EXPECT_EQ(runs, (std::vector<std::pair<double, std::uint32_t>>{
+                      {0.5, 1}, {2, 7}, {0.5, 2}, {0.5, 3}, {0.5, 10}, {0.5, 11}}));
+}
+
+TEST(Plan, KeepsTheNumbersOfTasksWhenARoundIsAdded) {
+  Settings settings = points_with_seeds();
+  const auto before = runs_of(Plan(settings));
+  settings.add_round({{"line-tension", "seeds"}, {{"0.7", "101..102"}, {"2", "8"}}});
+  settings.add_round({{"line-tension", "seeds"}, {{"0.7", "200"}}});
+  const Plan plan(settings);
+  auto after = runs_of(plan);
+  ASSERT_EQ(after.size(), before.size() + 4);
+  EXPECT_EQ(std::get<2>(after.back()), 200u);
+  EXPECT_EQ(plan.group_of(plan.size() - 1), plan.group_of(static_cast<std::int64_t>(before.size())));
+  after.resize(before.size());
+  EXPECT_EQ(after, before);
+  std::set<std::int64_t> tasks;
+  for (std::int64_t group = 0; group < plan.num_groups(); ++group)
+    for (std::int64_t place = 0; place < plan.num_seeds(group); ++place) {
+      const std::int64_t task = plan.task_of(group, place);
+      EXPECT_EQ(plan.group_of(task), group);
+      tasks.insert(task);
+    }
+  EXPECT_EQ(std::ssize(tasks), plan.size());
+}
+
+TEST(Plan, IsTheSameAfterItsConfigWasReadBack) {
+  Settings settings = settings_of({{"preset", "elastic,robust"}, {"box", "30"}});
+  settings.set_points({{"line-tension", "seeds", "obstacles"}, {{"0.5", "1..3", ""}, {"2", "7,9", "none"}}});
+  settings.add_round({{"line-tension", "seeds"}, {{"0.7", "101..102"}}});
+  const Settings again = Settings::from_config(settings.to_config(true));
+  EXPECT_EQ(again.to_config(false), settings.to_config(false));
+  EXPECT_EQ(runs_of(Plan(again)), runs_of(Plan(settings)));
+  EXPECT_EQ(Settings::from_packed(settings.packed()).points().rows, settings.points().rows);
+}
+
+TEST(Plan, KeepsNamesOfFilesInPointsWhateverTheirBytes) {
+  for (const char* name : {"a b.csv", "#x.csv", "*", "tab\there", "back\\slash"}) {
+    Settings settings = settings_of({{"box", "10"}, {"seeds", "1"}});
+    settings.set_points({{"obstacles"}, {{name}}});
+    EXPECT_EQ(settings.missing_files(), std::vector<std::string>{name});
+    EXPECT_EQ(Settings::from_config(settings.to_config(false)).points().rows, settings.points().rows) << name;
+  }
+}
+
+TEST(Plan, IsTheUnionOfItsShards) {
+  Settings settings =
+      settings_of({{"line-tension", "0.5,1,2"}, {"obstacle-gap", "0.2,0.3"}, {"seeds", "1..7"}});
+  const auto whole = runs_of(Plan(settings));
+  std::multiset<decltype(whole)::value_type> joined;
+  for (std::int64_t number = 1; number <= 4; ++number) {
+    settings.set_shard({number, 4});
+    const Plan part(Settings::from_config(settings.to_config(false)));
+    const auto runs = runs_of(part);
+    joined.insert(runs.begin(), runs.end());
+    EXPECT_EQ(part.num_groups(), 6) << "every shard has seeds of each";
+    EXPECT_NEAR(static_cast<double>(part.size()), static_cast<double>(whole.size()) / 4, 1.5);
+  }
+  EXPECT_EQ(joined, std::multiset<decltype(whole)::value_type>(whole.begin(), whole.end()));
+}
+
+TEST(Plan, NamesThePointThatCannotBe) {
+  const auto message = [](const Points& points) -> std::string {
+    try {
+      Settings settings;
+      settings.set_points(points);
+      const Plan plan(settings);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(message({{"line-tension"}, {{"1"}, {"-1"}}}).find("point 2: invalid line-tension=-1"),
+            std::string::npos);
+  EXPECT_NE(message({{"line-tension"}, {{"1"}, {"1.0"}}}).find("point 1 and point 2 mean the same"),
+            std::string::npos);
+  EXPECT_NE(message({{"line-tension", "line-tension"}, {{"1", "2"}}}).find("twice"), std::string::npos);
+  EXPECT_NE(message({{"lime-tension"}, {{"1"}}}).find("did you mean line-tension"), std::string::npos);
+  EXPECT_NE(message({{"line-tension"}, {{"1", "2"}}}).find("2 values for 1 key"), std::string::npos);
+  EXPECT_NE(message({{"line-tension"}, {}}).find("no points"), std::string::npos);
+  for (const char* text : {"0/5", "6/5", "2", "a/b", "2/5/7", "-1/5"})
+    EXPECT_THROW(Shard::from(text), Error) << text;
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import style
-from ..drawing import clogs, curve, device, lengths, passages, survival_curve
+from ..drawing import activity, clogs, curve, device, lengths, passages, survival_curve
 from ..labels.groups import Groups
 from ..reading import fits, programs, stored
 from ..tools import outputs, rounded
@@ -305,12 +305,21 @@ def of_passages(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathli
     return {kind.heading: f"<ul>{reached}</ul>{side_by_side(curves)}", "Outlines": outlines or "<p>None.</p>"}
 
 
+def busy_ranks(about: dict[str, str], charts: Charts) -> str:
+    """@param about  attributes of the sweep's file"""
+    sessions = activity.sessions_of(about)
+    if not sessions:
+        return ""
+    caption = "busy ranks over time"
+    return f"<p>{html.escape(activity.lost(sessions))}</p>" + side_by_side([framed(charts.draw(style.figure_of(activity.draw_on, sessions), caption), caption)])
+
+
 def side_by_side(pictures: Iterable[str]) -> str:
     shown = "".join(pictures)
     return f'<div class="pictures">{shown}</div>' if shown else ""
 
 
-PROVENANCE = ("command_line", "version", "git_describe", "git_hash", "compiler", "mpi_version", "hdf5_version", "start_time", "num_ranks")
+PROVENANCE = ("command_line", "parts", "version", "git_describe", "git_hash", "compiler", "mpi_version", "hdf5_version", "start_time", "num_ranks")
 RANDOM_ARRAYS = ("obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "obstacle-layout")
 
 
@@ -351,7 +360,8 @@ def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: path
     label, tell = (label_of_passage, of_passages) if groups.are_passages else (label_of_length, of_lengths)
     charts = Charts([label(groups, group) for group in groups.members])
     sections = tell(groups, sweep, examples, folder / "clogrun", charts)
-    sections |= {"What may spoil these numbers": doubts(groups.members, sentences, rows),
+    sections |= {"How busy the ranks were": busy_ranks(about, charts),
+                 "What may spoil these numbers": doubts(groups.members, sentences, rows),
                  "Table": table_of_passages(groups, sentences) if groups.are_passages else table_of_lengths(groups, sentences, rows)}
     try:
         output.write_text(page(sweep.name, groups, sections, progress_of(status, rows), about, charts, stored.writer(told)))

@@ -137,8 +137,16 @@ def opened(path: AnyPath, kind: str | None = None, folder: AnyPath | None = None
 
 
 def attributes(file: h5py.File) -> dict[str, str]:
-    """Of an open file: where it comes from, as text."""
-    return {name: text(value) for name, value in file.attrs.items()}
+    """Of an open file: where it comes from, as text. A long one is in parts, `config`, `config.2` and so on."""
+    parts = {name: text(value) for name, value in file.attrs.items()}
+    for name in list(parts):
+        if name not in parts:
+            continue
+        number = 2
+        while (part := f"{name}.{number}") in parts:
+            parts[name] += parts.pop(part)
+            number += 1
+    return parts
 
 
 def writer(attributes: dict[str, str]) -> str:
@@ -155,8 +163,9 @@ def source(attributes: dict[str, str]) -> str:
 
 def settings(config: str) -> dict[str, str]:
     """Keys and values of a config as it is stored: of all keys, `auto` and the like where nothing else was given."""
-    pairs = (line.partition(" = ") for line in config.split("\n"))
-    return {key: unescaped(value) for key, equals, value in pairs if equals}
+    pairs = [line.partition(" = ") for line in config.split("\n")]
+    of_points = {key for name, _, keys in pairs if name in ("point-keys", "round-keys") for key in keys.split()}
+    return {key: unescaped(value) for key, equals, value in pairs if equals and key not in of_points}
 
 
 def unescaped(value: str) -> str:

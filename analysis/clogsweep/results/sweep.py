@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..reading import fits, programs, replays, stored
 from ..tools import checked
-from ..tools.errors import UserError
+from ..tools.errors import ProgramFailed, UserError
 from .fit import Fit
 from .run import Run
 
@@ -46,6 +46,8 @@ class Sweep:
         @throws UserError  if the file is no sweep or is damaged"""
         self.path = pathlib.Path(path)
         self._programs = programs
+        self._name = ""
+        self._folder: tempfile.TemporaryDirectory[str] | None = None  # of a file that goes with this object
         with stored.opened(self.path, stored.SWEEP, programs) as file:
             self._records = file["runs"][:]
             self.rows = stored.table_of(file)
@@ -142,8 +144,26 @@ class Sweep:
         return Picture(poster.draw(self.path, programs.programs_in(self._programs)), stored.source(self.attributes))
 
     def __repr__(self) -> str:
+        """Of several files it has the names of all."""
         counts = ", ".join(f"{number} {status}" for status, number in self.rows.status.value_counts().items())
-        return f"<sweep {self.path}: {len(self.rows)} runs ({counts})>"
+        return f"<sweep {self._name or self.path}: {len(self.rows)} runs ({counts})>"
 
     def _repr_html_(self) -> str:
         return f"<p>{html.escape(repr(self)[1:-1])}; the first rows:</p>{self.rows.head()._repr_html_()}"
+
+
+def merged(paths: Sequence[str | os.PathLike[str]], folder: str | os.PathLike[str] | None = None) -> Sweep:
+    """Several files as one sweep, which lies in a file of its own as long as it is used. @param folder  of the programs.
+    @throws UserError  if they contradict each other, or are not sweeps"""
+    if len(paths) < 2:
+        raise UserError("one file or none in a list of files; give the name of the file alone")
+    place = tempfile.TemporaryDirectory(prefix="clogsweep-merged-")
+    path = pathlib.Path(place.name) / "merged.h5"
+    try:
+        programs.run_program(programs.programs_in(folder) / "clogsweep", "merge", *paths, "--output", path)
+        sweep = Sweep(path, folder)
+    except ProgramFailed as failure:
+        place.cleanup()
+        raise UserError(str(failure).removeprefix("clogsweep merge: ")) from failure
+    sweep._folder, sweep._name = place, " + ".join(map(str, paths))
+    return sweep

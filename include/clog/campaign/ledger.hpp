@@ -3,10 +3,12 @@
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
+#include "clog/campaign/activity.hpp"
 #include "clog/store/journal.hpp"
 #include "clog/store/place.hpp"
 #include "clog/store/run_table.hpp"
@@ -33,6 +35,10 @@ class Ledger {
   /// Requests more of the plan's tasks; tasks_left() then returns the unfinished ones among these.
   void want(const std::vector<std::int64_t>& tasks);
   std::int64_t num_wanted() const { return num_wanted_; }
+  /// The sweep goes on with a plan that has the same tasks and more behind them, which are all to be done:
+  /// tasks_left() are then those of them that are not over. The table on the disk says so when this returns.
+  /// @param plan, settings  with one more round
+  void grow(const sweep::Plan& plan, const sweep::Settings& settings);
   /// Tasks that have begun and are not over, wanted or not.
   std::vector<std::int64_t> tasks_begun() const;
 
@@ -50,6 +56,10 @@ class Ledger {
   /// What could not be checked in the file that the sweep resumes from; empty if everything was checked.
   const std::string& caution() const { return caution_; }
 
+  /// From now on it keeps how many of so many ranks are busy (Activity), for readers of the table.
+  void watch_ranks(int num_ranks);
+  /// A rank has ended its task, for good or not.
+  void rank_is_free();
   sweep::Start start(std::int64_t task, int rank);
   void report(const sweep::Report& report);
   /// Row of a run that has begun.
@@ -71,7 +81,7 @@ class Ledger {
   store::Place place_;
   std::string path_;   // for messages and readers: links followed
   std::string stamp_;  // of the table as it was read or published last; empty if there was none
-  const sweep::Plan& plan_;
+  const sweep::Plan* plan_;
   store::Provenance provenance_;
   std::int64_t attempts_;
   store::Journal journal_;
@@ -88,6 +98,10 @@ class Ledger {
   };
   std::unordered_map<std::int64_t, Past> past_;
   std::string caution_;
+  std::optional<Activity> activity_;
+  std::string earlier_activity_;  // of other sessions
+  std::string session_time_;
+  Clock::time_point begin_ = Clock::now();
   bool is_published_ = false;
   Clock::time_point last_publication_;
   Clock::duration publication_time_{0};
@@ -100,7 +114,8 @@ class Ledger {
   std::string settings_that_differ(const store::SweepFile& file, const sweep::Settings& settings) const;
   void refuse_foreign(const std::vector<Entry>& entries, const std::unordered_map<std::string, Entry>& known,
                       const sweep::Settings& settings) const;
-  void find_tasks(std::unordered_map<std::string, Entry> known);
+  void find_tasks(std::unordered_map<std::string, Entry> known, std::int64_t first);
+  double seconds_so_far() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
   sweep::RunRow published(const sweep::RunRow& row) const;
   void write_down(const Entry& entry);
   void publish();

@@ -10,6 +10,7 @@
 
 #include "clog/campaign/time_left.hpp"
 #include "clog/console/status_line.hpp"
+#include "clog/sweep/plan.hpp"
 #include "clog/sweep/run_row.hpp"
 
 namespace clog::campaign {
@@ -20,8 +21,8 @@ class Progress {
  public:
   using Screen = console::StatusLine::Screen;
 
-  /// @param num_sets  parameter sets; task i is of set i % num_sets
-  Progress(std::ostream& out, Screen screen, int num_computing_ranks, std::int64_t num_sets);
+  /// @param set_of  parameter set of a task
+  Progress(std::ostream& out, Screen screen, int num_computing_ranks, sweep::GroupOf set_of);
 
   /// Adds tasks to the total against which progress is measured.
   /// @param num_wanted  runs of the whole sweep; those that are not expected were done before
@@ -43,6 +44,7 @@ class Progress {
   using Clock = std::chrono::steady_clock;
 
   console::StatusLine status_;
+  sweep::GroupOf number_of_set_;
   std::vector<SetTimes> sets_;  // without those that run: these are in running_, and wait here
   std::int64_t num_tasks_ = 0;
   std::int64_t num_before_ = 0;
@@ -52,7 +54,7 @@ class Progress {
   std::map<RunStatus, std::int64_t> ended_by_status_;
   std::int64_t num_ended_ = 0;  // of all sets
 
-  SetTimes& set_of(std::int64_t task) { return sets_[task % static_cast<std::int64_t>(sets_.size())]; }
+  SetTimes& set_of(std::int64_t task);
   std::string line() const;
   std::string time_left() const;
 };

@@ -12,6 +12,8 @@ struct Repetition {
   sweep::RunRow row;
   std::vector<std::string> differing;  ///< columns of results whose bits differ from the row
 };
+/// Columns of results of which two rows of the same run have other bits.
+std::vector<std::string> differing_results(const sweep::RunRow& a, const sweep::RunRow& b);
 /// @param row  see replayable_row()
 Repetition repeat(const sweep::RunRow& row);
 

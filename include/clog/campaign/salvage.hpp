@@ -19,6 +19,7 @@ struct Salvage {
 /// Reads, and changes nothing. @throws Error if the table is missing, not ours, or nothing of it can be read
 Salvage salvage(const std::string& path);
 /// Makes the table, and a journal beside it if there are snapshots. @throws Error if the table exists
-void write(const Salvage& salvage, const std::string& path);
+void write(const store::SweepFile& table, const std::vector<store::Journal::Entry>& snapshots,
+           const std::string& path);
 
 }  // namespace clog::campaign

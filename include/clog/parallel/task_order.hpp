@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace clog::parallel {
@@ -10,18 +12,22 @@ namespace clog::parallel {
 /// Which task to hand out next: the one expected to run longest, so that no long one is left for the end,
 /// when ranks without work would wait for it.
 ///
-/// Task i of a plan belongs to group i % num_groups, whose tasks differ in their seed only and are handed out
-/// in order. A group's expected run time is the mean of an exponential distribution fitted to its finished
-/// and, as censored, its running tasks: all their time over the number that ended. A group of which none has
-/// ended is expected to be longer than any other; among those the one with fewest tasks handed out is next.
+/// The tasks of a group differ in their seed only, and are handed out in order. A group's expected run time
+/// is the mean of an exponential distribution fitted to its finished and, as censored, its running tasks: all
+/// their time over the number that ended. A group of which none has ended is expected to be longer than any
+/// other; among those the one with fewest tasks handed out is next.
 class TaskOrder {
  public:
-  /// All tasks of a plan.
+  using GroupOf = std::function<std::int64_t(std::int64_t task)>;
+
+  /// No tasks yet.
+  explicit TaskOrder(GroupOf group_of) : number_of_group_(std::move(group_of)) {}
+  /// Tasks from 0 on, task i of group i % num_groups.
   explicit TaskOrder(std::int64_t num_tasks, std::int64_t num_groups = 1);
-  /// Its remaining tasks.
+  /// Some of its tasks.
   TaskOrder(const std::vector<std::int64_t>& tasks, std::int64_t num_groups);
 
-  /// More of them, for another round.
+  /// More of them, for another round; maybe of new groups.
   void add(const std::vector<std::int64_t>& tasks);
 
   bool empty() const { return num_left_ == 0; }
@@ -40,12 +46,13 @@ class TaskOrder {
     double time_ended = 0;     // run times of the tasks that ended [s]
     double start_running = 0;  // sum of the starts of those that run
   };
+  GroupOf number_of_group_;
   std::int64_t num_left_ = 0;
   std::vector<Group> groups_;
   std::unordered_map<std::int64_t, double> running_since_;  // by task
 
   void begin(Group& group, std::int64_t task, double now);
-  Group& group_of(std::int64_t task) { return groups_[task % static_cast<std::int64_t>(groups_.size())]; }
+  Group& group_of(std::int64_t task);
   double expected_time(const Group& group, double now) const;
 };
 

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,8 +13,17 @@
 
 namespace clog::sweep {
 
-/// The product of a sweep's lists: a description, from which any task can be had in any order.
-/// Seeds vary slowest, so that every curve fills evenly and neighbouring tasks share their obstacle array.
+/// Parameter set of a task, by its number.
+using GroupOf = std::function<std::int64_t(std::int64_t task)>;
+
+/// The runs of a sweep: a description, from which any task can be had in any order. It is a list of parameter
+/// sets, called groups, each with its seeds. They come from products of the settings' lists, one product for
+/// each point.
+///
+/// Seeds vary slowest, so that every curve fills evenly and neighbouring tasks share their obstacle array:
+/// task s num_groups() + g is seed s of group g, as long as all groups have as many. Then come the tasks of
+/// the first round, of the second, and so on; a round may bring more seeds to groups that there are. So a
+/// plan with one more round has the same tasks before it, under the same numbers.
 class Plan {
  public:
   /// Checks every parameter set of the sweep.
@@ -20,26 +33,72 @@ class Plan {
   std::int64_t size() const { return size_; }
   /// Resolved parameters of task `index`, 0 <= index < size().
   RunParameters task(std::int64_t index) const;
+  /// Number of parameter sets without the seeds.
+  std::int64_t num_groups() const { return static_cast<std::int64_t>(groups_.size()); }
+  /// Resolved parameters of the group's first task.
+  RunParameters group(std::int64_t group) const;
+  std::int64_t group_of(std::int64_t task) const;
+  std::int64_t num_seeds(std::int64_t group) const;
+  std::vector<std::uint32_t> seeds(std::int64_t group) const;
+  /// Its values as lists have them, in the order of keys(); that of the seeds is empty.
+  std::vector<std::string> texts(std::int64_t group) const;
+  /// @param place  of its seed among those of the group, 0 <= place < num_seeds(group)
+  std::int64_t task_of(std::int64_t group, std::int64_t place) const;
+  /// Has every group as many seeds, and is task s num_groups() + g seed s of group g?
+  bool has_equal_seeds() const { return layers_.size() == 1; }
+
   /// Circles that its tasks are among.
   const CircleFiles& circle_files() const { return circle_files_; }
   /// Lists that were typed like a decimal with a comma, 0,5, one line each.
   const std::vector<std::string>& possible_decimals() const { return possible_decimals_; }
-  /// Number of parameter sets without the seeds.
-  std::int64_t num_groups() const;
 
  private:
   struct Axis {
     const Key* key;
     std::vector<std::string> values;
   };
-  std::vector<Axis> axes_;  // the first varies slowest
+  /// The lists of one branch of the settings that are others than those of the first branch, by place in
+  /// axes_.
+  using OwnLists = std::map<std::size_t, std::vector<std::string>>;
+  using Seeds = std::shared_ptr<const std::vector<std::uint32_t>>;
+  /// Seeds of a group that come from the lists or points, or from one round.
+  struct Share {
+    std::int64_t group;
+    Seeds seeds;
+  };
+  using Batch = std::vector<Share>;
+  struct Group {
+    std::size_t product;
+    std::int64_t place;  ///< in the product, seeds excepted
+    struct Part {
+      std::size_t batch, share;
+    };
+    std::vector<Part> parts;
+  };
+  /// Successive tasks that go through the same shares again and again, seed by seed.
+  struct Layer {
+    std::int64_t first_task;
+    std::int64_t first_seed;  ///< place among the seeds of a share
+    std::size_t batch;
+    std::vector<std::size_t> shares;
+  };
+  class Builder;
+
+  std::vector<Axis> axes_;  // without the seeds; the first varies slowest
+  std::vector<OwnLists> products_;
+  std::vector<Group> groups_;
+  std::vector<Batch> batches_;
+  std::vector<Layer> layers_;
   CircleFiles circle_files_;
   std::vector<std::string> possible_decimals_;
-  std::int64_t size_ = 1;
+  std::int64_t size_ = 0;
 
+  const Layer& layer_of(std::int64_t task) const;
+  const Share& share_of(std::int64_t task) const;
+  std::vector<const std::string*> texts(std::size_t product, std::int64_t place) const;
   /// Before automatic values are known.
-  RunParameters unresolved(std::int64_t index) const;
-  void refuse_misfitting_angles() const;
+  RunParameters unresolved(std::size_t product, std::int64_t place, std::uint32_t seed) const;
+  RunParameters parameters(std::size_t product, std::int64_t place, std::uint32_t seed) const;
 };
 
 }  // namespace clog::sweep

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -9,6 +11,7 @@
 #include "clog/core/parameters/circles.hpp"
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/scene/scene.hpp"
+#include "clog/sweep/points.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::sweep {
@@ -55,7 +58,9 @@ bool is_same_value(const std::string& a, const std::string& b);
 /// The preset whose interface this resolved parameter set has, or `custom`.
 std::string preset_name(const RunParameters& run);
 
-/// The settings of a sweep: for every key the text given, or that of the preset, or the default.
+/// The settings of a sweep: for every key the text given, or that of the preset, or the default. The
+/// parameter sets are the product of all lists; or points, each with the product of the other keys' lists;
+/// and then those of rounds, which were added one after the other while the sweep ran.
 class Settings {
  public:
   Settings();
@@ -76,6 +81,31 @@ class Settings {
   /// Of all runs; nullptr if there are several.
   const Scene* scene() const;
 
+  /// @throws Error that names the point, if it has an unknown key or a text that cannot be read; so does
+  /// add_round()
+  void set_points(const Points& points);
+  const Points& points() const { return points_; }
+  /// More runs, after all that there are: their tasks have the next numbers, the others keep theirs.
+  void add_round(const Points& points);
+  const std::vector<Points>& rounds() const { return rounds_; }
+  void set_shard(Shard shard) { shard_ = shard; }
+  const Shard& shard() const { return shard_; }
+
+  /// Settings without points in which every word has one value: their lists of numbers are a product. There
+  /// is one for each combination of words, of each point.
+  /// @param point  its place; -1 where there are no points
+  using VisitBranch = std::function<void(const Settings& branch, std::int64_t point)>;
+  void visit_branches(const VisitBranch& visit) const;
+  /// The same for a round. @param round  its place in rounds()
+  void visit_round(std::size_t round, const VisitBranch& visit) const;
+  /// By key, what values() are in any branch.
+  std::map<std::string, std::vector<std::string>> all_values() const;
+
+  /// A line of a config: a key with its text, or one of `point-keys`, `point`, `round-keys`, `shard`.
+  void set_line(const std::string& name, const std::string& text);
+  /// Is this the name of such a line and no key?
+  static bool is_plan_line(const std::string& name);
+
   /// What is in the files that the key obstacles names. Nothing is read here: whoever sets the key does that.
   const CircleFiles& circle_files() const { return circle_files_; }
   void attach(const std::string& file, OwnCircles circles) { circle_files_.insert_or_assign(file, circles); }
@@ -95,7 +125,14 @@ class Settings {
   std::map<std::string, std::string> texts_;
   std::map<std::string, std::vector<std::string>> values_;
   CircleFiles circle_files_;
+  Points points_;
+  std::vector<Points> rounds_;
+  Shard shard_;
 
+  Settings without_points() const;
+  void begin_points(Points& points, const std::vector<std::string>& keys) const;
+  void add_point(Points& points, const std::vector<std::string>& texts) const;
+  std::set<std::string> keys_that_follow() const;
   void assign(const std::string& name, const std::string& text);
 };
 

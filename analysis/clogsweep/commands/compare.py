@@ -1,0 +1,37 @@
+"""Draws how many times longer the clogging lengths of one sweep are than those of another.
+
+    python3 -m clogsweep compare robust.h5 elastic.h5                # robust-compare.png, robust-compare.pdf
+    python3 -m clogsweep compare sweep.h5 --by friction
+
+Every number comes from clogfit compare, and its options are the same; `clogfit compare --picture NAME` draws this, too.
+Bars are its confidence intervals. A filled marker has one from pairs of the same seed, a hollow one from the numbers of
+clogs alone.
+"""
+
+import json
+import pathlib
+
+from .. import style
+from ..drawing import ratios
+from ..reading import programs
+from ..tools import outputs
+from .command_line import Parser, add_output, beside
+
+
+def body() -> int:
+    parser = Parser(__doc__)
+    parser.add_argument("sweeps", type=pathlib.Path, nargs="+", help="files of clogsweep --output; the others are compared with the first")
+    parser.add_argument("--by", help="key whose values are compared with each other")
+    parser.add_argument("--within", help="clogs of a pair so near to each other are at the same place [sigma]")
+    parser.add_argument("--confidence", help="of the intervals (0.95)")
+    add_output(parser, "name of the picture; .png and .pdf are made (FIRST-compare)", ".png", ".pdf")
+    programs.add_option(parser)
+    arguments = parser.parse_args()
+    output = arguments.output or beside(arguments.sweeps[0], "compare")
+    outputs.refuse_unwritable_picture(output, arguments.sweeps[0])
+    options = [word for name in ("by", "within", "confidence") if (value := getattr(arguments, name)) is not None for word in (f"--{name}", value)]
+    clogfit = programs.programs_in(arguments.programs) / "clogfit"
+    told = json.loads(programs.run_program(clogfit, "compare", *arguments.sweeps, *options, "--format", "json"))
+    source = f"clogfit compare {' '.join(map(str, [*arguments.sweeps, *options]))}"
+    print(f"{style.Picture(style.figure_of(ratios.draw_on, told), source).save(output)} (and .pdf)")
+    return 0

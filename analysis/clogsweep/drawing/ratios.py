@@ -1,0 +1,94 @@
+"""Ratios of clogging lengths: how many times longer those of one sweep are than those of another."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from matplotlib.axes import Axes
+
+from .. import style
+from ..labels import AXES, is_number
+from ..tools.errors import UserError
+from ..tools.rounded import counted
+
+Comparison = dict[str, Any]
+
+
+def abscissa_of(told: dict[str, Any]) -> str:
+    """The number that takes most values, line tension first; empty if nothing varies."""
+    comparisons = told["comparisons"]
+    numbers = [name for name in told["columns"] if all(is_number(str(one[name])) for one in comparisons)]
+    return max(numbers, key=lambda name: (len({one[name] for one in comparisons}), name == "line_tension"), default="")
+
+
+def curves_of(told: dict[str, Any], abscissa: str) -> list[tuple[str, list[Comparison]]]:
+    """A label, and the comparisons that differ in the abscissa only."""
+    others = [name for name in told["columns"] if name != abscissa]
+    curves: dict[tuple[Any, ...], list[Comparison]] = {}
+    for one in told["comparisons"]:
+        curves.setdefault((one["here"], *(one[name] for name in others)), []).append(one)
+    told_apart = {key[0] for key in curves}
+    labels = [", ".join([*([key[0]] if len(told_apart) > 1 or not others else []),
+                         *(f"{name.replace('_', ' ')} {value:g}" if isinstance(value, int | float) else str(value) for name, value in zip(others, key[1:]))])
+              for key in curves]
+    return list(zip(labels, curves.values()))
+
+
+def draw_curve(axes: Axes, places: Sequence[float], curve: Sequence[Comparison], index: int, label: str) -> None:
+    order = sorted(range(len(curve)), key=lambda i: places[i])
+    known = [(places[i], curve[i]) for i in order if curve[i]["ratio_lower"] is not None]
+    looks = style.curve_style(index)
+    axes.errorbar([x for x, _ in known], [one["ratio"] for _, one in known],
+                  yerr=[[abs(one["ratio"] - one[end]) for _, one in known] for end in ("ratio_lower", "ratio_upper")],
+                  color=looks["color"], linestyle=looks["linestyle"], linewidth=1, elinewidth=1, capsize=2.5, label=label)
+    for x, one in known:
+        face = looks["color"] if one["interval"] == "paired" else "white"
+        axes.plot(x, one["ratio"], color=looks["color"], marker=looks["marker"], markerfacecolor=face, markersize=5.5, zorder=3)
+
+
+def note_lines(told: dict[str, Any]) -> list[str]:
+    kinds = {one["interval"] for one in told["comparisons"] if one["ratio_lower"] is not None}
+    lines = [f"bars: {100 * told['confidence']:g} % confidence intervals"]
+    meanings = {"paired": "filled: from pairs of the same seed", "unpaired": "hollow: from numbers of clogs alone"}
+    lines += ["; ".join(meaning for kind, meaning in meanings.items() if kind in kinds)]
+    unknown = sum(one["ratio_lower"] is None for one in told["comparisons"])
+    if unknown:
+        lines.append(f"{counted(unknown, 'point')} without clogs on one side: no ratio")
+    return lines
+
+
+def draw_on(axes: Axes, told: dict[str, Any]) -> None:
+    """@param told  the JSON of clogfit compare. @throws UserError  if there is no ratio"""
+    comparisons = told["comparisons"]
+    if all(one["ratio_lower"] is None for one in comparisons):
+        raise UserError("no ratio to draw: in every comparison one side has no clogs")
+    abscissa = abscissa_of(told)
+    curves = curves_of(told, abscissa)
+    values = [one[abscissa] for one in comparisons] if abscissa else []
+    is_logarithmic = bool(values) and min(values) > 0
+    for index, (label, curve) in enumerate(curves):
+        if not abscissa:
+            places = [float(index)]
+        elif is_logarithmic:
+            places = [one[abscissa] * style.side_by_side(index, len(curves), values) for one in curve]
+        else:
+            places = [one[abscissa] for one in curve]
+        draw_curve(axes, places, curve, index, label)
+    axes.axhline(1, color="0.4", linewidth=0.8, linestyle="--", zorder=1)
+    style.logarithmic_ordinate(axes)
+    if is_logarithmic:
+        style.logarithmic_abscissa(axes, values)
+    if abscissa:
+        axes.set_xlabel(AXES.get(abscissa, abscissa.replace("_", " ")))
+    else:
+        axes.set_xticks([])
+    reference = comparisons[0]["there"]
+    names = {one["here"] for one in comparisons}
+    axes.set_ylabel(rf"$\lambda$ of {names.pop()} / $\lambda$ of {reference}" if len(names) == 1 else rf"$\lambda$ / $\lambda$ of {reference}")
+    style.grid(axes)
+    if len(curves) > 1 or not abscissa:
+        style.legend(axes)
+    if told["differing"]:
+        style.caption(axes, "they differ in " + ", ".join(name.replace("_", " ") for name in told["differing"]))
+    style.notes(axes, note_lines(told))

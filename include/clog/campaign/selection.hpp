@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "clog/store/run_table.hpp"
+#include "clog/sweep/columns.hpp"
+#include "clog/sweep/run_row.hpp"
+
+namespace clog::campaign {
+
+/// What a row must have in a column: `line_tension>=0.5`, `status=clogged,broken`, `preset!=robust`.
+class Condition {
+ public:
+  /// @throws Error if it is none, there is no such column, or the value is not one of it
+  explicit Condition(const std::string& text);
+
+  /// A row that has no value in the column holds to no condition.
+  bool holds(const sweep::RunRow& row) const;
+
+ private:
+  enum class Relation { equal, unequal, less, at_most, more, at_least };
+
+  const sweep::Column* column_;
+  Relation relation_;
+  std::vector<std::string> words_;  // one of them
+  std::vector<double> numbers_;
+
+  template <class T>
+  bool compare(const T& value, const std::vector<T>& others) const;
+};
+
+/// The rows of a file that hold to all conditions, as a sweep that has just these runs.
+/// @param maker  the program that makes the file, as cli::origin() says it
+/// @throws Error if no row does
+store::SweepFile select(const std::string& path, const std::vector<std::string>& conditions,
+                        const store::Provenance& maker);
+
+}  // namespace clog::campaign

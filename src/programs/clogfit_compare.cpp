@@ -1,0 +1,83 @@
+#include "clogfit_compare.hpp"
+
+#include <iostream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clog/campaign/comparison.hpp"
+#include "clog/campaign/merger.hpp"
+#include "clog/cli/command_line.hpp"
+#include "clog/cli/program.hpp"
+#include "clog/cli/python_command.hpp"
+#include "clog/console/exit_codes.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/store/run_table.hpp"
+
+namespace clog::programs {
+namespace {
+
+constexpr const char* usage =
+    R"(clogfit compare says how many times longer the clogging lengths of one sweep are than those
+of another.
+
+  clogfit compare robust.h5 elastic.h5
+  clogfit compare sweep.h5 --by friction
+  clogfit compare robust.h5 elastic.h5 --picture ratio.png
+
+Every file is compared with the first, or every value of the key --by with the smallest, wherever all else that varies
+is the same. Runs of the same seed met the same obstacles: where their lengths rise and fall together, the interval comes
+from these pairs and is narrower than that of two independent lengths.
+)";
+
+std::vector<campaign::Side> sides(const cli::CommandLine& line, const std::vector<std::string>& paths) {
+  if (line.has("by")) return campaign::sides_of_column(line.get("by"), campaign::read_together(paths));
+  if (paths.size() < 2)
+    throw Error("one file is not compared with anything; give another, or --by and a key that varies in it");
+  return campaign::sides_of_files(paths);
+}
+
+/// Does not return.
+void draw(const cli::CommandLine& line, const std::vector<std::string>& paths) {
+  std::vector<std::string> arguments = {"compare", "--programs", cli::own_folder(), "--output",
+                                        line.get("picture")};
+  for (const char* option : {"by", "within", "confidence"})
+    if (line.has(option)) arguments.insert(arguments.end(), {std::string("--") + option, line.get(option)});
+  arguments.insert(arguments.end(), paths.begin(), paths.end());
+  cli::become_python("clogfit compare", cli::find_python_module(), arguments);
+}
+
+}  // namespace
+
+int clogfit_compare(int argc, const char* const* argv) {
+  namespace po = boost::program_options;
+  cli::CommandLine line("clogfit compare", usage, cli::CommandLine::SweepKeys::none);
+  line.add_options()("file", po::value<std::vector<std::string>>(), "sweep files")(
+      "by", po::value<std::string>(), "key whose values are compared with each other")(
+      "within", po::value<std::string>(),
+      "clogs of a pair so near to each other are at the same place (half an obstacle spacing) [sigma]")(
+      "format", po::value<std::string>()->default_value("text"), "text, csv or json")(
+      "picture", po::value<std::string>(), "name of a picture to draw; .png and .pdf are made")(
+      "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals");
+  line.add_positional("file", -1);
+  line.parse(argc - 1, argv + 1);
+  if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return console::exit_success;
+  const std::vector<std::string> paths = line.get_all("file");
+  if (paths.empty()) throw Error("missing sweep files; try clogfit compare a.h5 b.h5");
+  const std::string format = line.get("format");
+  if (format != "text" && format != "csv" && format != "json")
+    throw Error("invalid --format=" + format + " (is not one of text, csv, json)");
+  const double confidence = line.get_positive("confidence");
+  if (confidence >= 1)
+    throw Error("invalid --confidence=" + line.get("confidence") + " (must lie between 0 and 1)");
+  const std::optional<double> within =
+      line.has("within") ? std::optional(line.get_positive("within")) : std::nullopt;
+  if (line.has("picture")) draw(line, paths);
+  const campaign::Comparisons found = campaign::compare(sides(line, paths), confidence, within);
+  std::cout << (format == "csv"    ? campaign::to_csv(found)
+                : format == "json" ? campaign::to_json(found, confidence)
+                                   : campaign::to_text(found, confidence));
+  return console::exit_success;
+}
+
+}  // namespace clog::programs

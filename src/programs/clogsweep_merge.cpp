@@ -1,0 +1,65 @@
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "clog/campaign/merger.hpp"
+#include "clog/campaign/salvage.hpp"
+#include "clog/cli/command_line.hpp"
+#include "clog/cli/program.hpp"
+#include "clog/console/exit_codes.hpp"
+#include "clog/console/printable.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/store/run_table.hpp"
+#include "clog/sweep/value_list.hpp"
+#include "clogsweep_commands.hpp"
+#include "file_command.hpp"
+
+namespace clog::programs {
+namespace {
+
+constexpr const char* usage = R"(clogsweep merge makes one sweep file of several.
+
+  clogsweep merge a.h5 b.h5 c.h5 --output all.h5
+
+A run that several files have is in the new one once. Two rows of the same run with different results are an error: then
+nothing is written. The new file names its parts: their sessions, versions and hosts. It holds a sweep of all their
+runs, which goes on, and grows, as any other.
+)";
+
+void print(const std::string& output, const std::vector<std::string>& paths, const campaign::Merger& merger) {
+  std::cout << console::printable(output) << ": "
+            << sweep::counted(static_cast<std::int64_t>(merger.table.rows.size()), "row") << " of "
+            << sweep::counted(static_cast<std::int64_t>(paths.size()), "file");
+  if (merger.num_shared > 0)
+    std::cout << ", " << sweep::counted(merger.num_shared, "run") << " in more than one of them";
+  if (merger.num_other_bits > 0)
+    std::cout << " (" << merger.num_other_bits
+              << " with other bits under another instruction set: those of the file named first were kept)";
+  if (merger.num_faulty > 0)
+    std::cout << "; " << sweep::counted(merger.num_faulty, "row") << " with what cannot be left out";
+  if (!merger.snapshots.empty())
+    std::cout << ", " << sweep::counted(static_cast<std::int64_t>(merger.snapshots.size()), "snapshot");
+  std::cout << '\n';
+}
+
+}  // namespace
+
+int clogsweep_merge(int argc, const char* const* argv) {
+  namespace po = boost::program_options;
+  cli::CommandLine line("clogsweep merge", usage, cli::CommandLine::SweepKeys::none);
+  line.add_options()("file", po::value<std::vector<std::string>>(), "sweep files")(
+      "output", po::value<std::string>(), "HDF5 file to make");
+  line.add_positional("file", -1);
+  line.parse(argc - 1, argv + 1);
+  if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return console::exit_success;
+  const std::vector<std::string> paths = line.get_all("file");
+  if (paths.size() < 2) throw Error("missing sweep files; try clogsweep merge a.h5 b.h5 --output c.h5");
+  const std::string output = line.require("output");
+  store::refuse_existing(output);
+  const campaign::Merger merger = campaign::merge(paths, origin_of_table(line));
+  campaign::write(merger.table, merger.snapshots, output);
+  print(output, paths, merger);
+  return console::exit_success;
+}
+
+}  // namespace clog::programs

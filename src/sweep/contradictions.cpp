@@ -1,0 +1,75 @@
+#include "contradictions.hpp"
+
+#include <fmt/core.h>
+
+#include "clog/core/scene/scene.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/core/tools/joined.hpp"
+
+namespace clog::sweep {
+
+void refuse_contradictions(const Settings& settings) {
+  if (settings.text("model") == "sp") {
+    if (settings.text("preset") != find_key("preset").default_text)
+      throw Error("invalid preset=" + settings.text("preset") +
+                  " (model=sp has no interface) leave it out, or use model=dp");
+    return;
+  }
+  const std::string ratio = "perimeter-stiffness-ratio";
+  if (!settings.is_given(ratio) || settings.text(ratio) == find_key(ratio).default_text) return;
+  if (settings.text("perimeter-spring") != "rest")
+    throw Error(
+        fmt::format("invalid {}={} (it belongs to perimeter-spring=rest, not to {}) give "
+                    "perimeter-stiffness, or add perimeter-spring=rest",
+                    ratio, settings.text(ratio), settings.text("perimeter-spring")));
+  if (settings.text("perimeter-stiffness") != "auto")
+    throw Error(fmt::format("invalid {}={} (perimeter-stiffness={} is given as well) leave one of them out",
+                            ratio, settings.text(ratio), settings.text("perimeter-stiffness")));
+}
+
+namespace {
+
+/// Is it given, and something else than what it would be anyway?
+bool is_changed(const Settings& settings, const char* key) {
+  return settings.is_given(key) && settings.text(key) != find_key(key).default_text;
+}
+
+}  // namespace
+
+void refuse_useless_keys(const Settings& settings) {
+  if (const std::vector<std::string> missing = settings.missing_files(); !missing.empty())
+    throw Error("invalid obstacles=" + missing.front() + " (the file has not been read)");
+  const std::string& layout = settings.text("obstacle-layout");
+  if (layout != "file" && settings.text(circles_key) != "none")
+    throw Error("obstacles and obstacle-layout=" + layout + " contradict each other; leave one of them out");
+  const Scene* scene = settings.scene();
+  if (scene && scene->walls_from == WallsFrom::droplet && settings.text("seeds") != "1")
+    throw Error(fmt::format("invalid seeds={} (nothing is random with obstacle-layout={}) leave it out",
+                            settings.text("seeds"), layout));
+  if (layout != "file") return;
+  if (!settings.is_given("box"))
+    throw Error("invalid obstacles=" + settings.text(circles_key) +
+                " (nothing says how wide their array is) give box, the width after which it repeats");
+  for (const char* key : {"obstacle-gap", "obstacle-density", "obstacle-diameter-spread", "lattice-angle"})
+    if (is_changed(settings, key))
+      throw Error(
+          fmt::format("obstacles and {0}={1} contradict each other (the file's own gap, density and layout "
+                      "count); leave it out, or give {0}={2}",
+                      key, settings.text(key), find_key(key).default_text));
+  if (settings.values("seeds").size() > 1 && settings.text("release") == "centre")
+    throw Error(
+        fmt::format("invalid seeds={} (the droplet starts at the centre of your circles, whatever the seed) "
+                    "add release=anywhere or release=entrance, or give one seed",
+                    settings.text("seeds")));
+}
+
+std::string possible_decimal(const Key& key, const Settings& settings) {
+  const std::string& text = settings.text(key.name);
+  const std::string meant = with_decimal_point(text);
+  const bool is_number = key.kind == ValueKind::number || key.kind == ValueKind::number_or_share;
+  if (!is_number || !meant.starts_with("0.")) return "";
+  return fmt::format("{}={} is a list of {}; decimals have a point, {}", key.name, text,
+                     joined(settings.values(key.name), " and "), meant);
+}
+
+}  // namespace clog::sweep

@@ -1,0 +1,137 @@
+"""Clogging lengths of two sweeps compared, several files as one sweep, and what happens in a sweep as events."""
+
+import json
+import math
+
+import pandas
+from PIL import Image
+
+import stored_rows
+from drawing import Analysis
+from support import BIN, QUICK, SLOW, SMALL, SweepTest, table
+
+import clogsweep
+from clogsweep.drawing import activity
+
+
+class Compared(Analysis):
+    KEYS = ["line-tension=0.5,2", "obstacle-gap=0.4", "max-time=200"]
+
+    def sweep(self, output, *keys):
+        self.succeed("clogsweep", *SMALL, *self.KEYS, *keys, "--quiet", "--output", output)
+
+    def compare(self, *arguments):
+        return json.loads(self.succeed("clogfit", "compare", *arguments, "--format", "json").stdout)
+
+    def test_ratios_are_those_of_the_lengths_that_clogfit_gives(self):
+        self.sweep("both.h5", "preset=robust,elastic", "seeds=1..12")
+        groups = pandas.DataFrame(json.loads(self.succeed("clogfit", "both.h5", "--format", "json").stdout)["groups"])
+        told = self.compare("both.h5", "--by", "preset")
+        self.assertEqual(told["columns"], ["line_tension"])
+        self.assertIn("preset", told["differing"])
+        self.assertEqual(len(told["comparisons"]), 2)
+        rows = table(self.folder / "both.h5")
+        for one in told["comparisons"]:
+            self.assertEqual((one["here"], one["there"], one["pairs"]), ("preset=robust", "preset=elastic", 12))
+            lengths = {group.preset: group for group in groups[groups.line_tension == one["line_tension"]].itertuples()}
+            self.assertEqual(one["clogging_length_here"], lengths["robust"].clogging_length)
+            if one["interval"] == "unpaired":
+                self.assertAlmostEqual(one["ratio"], lengths["robust"].clogging_length / lengths["elastic"].clogging_length)
+            own = rows[rows.line_tension == one["line_tension"]]
+            sides = [own[own.preset == preset].set_index("seed") for preset in ("robust", "elastic")]
+            both = [side[side.status == "clogged"] for side in sides]
+            pairs = both[0].join(both[1], rsuffix="_there", how="inner")
+            near = (0.3 + 0.4) / 2
+            same = ((pairs.distance - pairs.distance_there).abs() <= near) & ((pairs.lateral_displacement - pairs.lateral_displacement_there).abs() <= near)
+            self.assertEqual((one["both_clogged"], one["same_place"]), (len(pairs), same.sum()))
+
+    def test_files_are_compared_as_values_of_one_file_are(self):
+        self.sweep("robust.h5", "preset=robust", "seeds=1..6")
+        self.sweep("elastic.h5", "preset=elastic", "seeds=1..6")
+        self.succeed("clogsweep", "merge", "robust.h5", "elastic.h5", "--output", "both.h5")
+        of_files, of_values = self.compare("elastic.h5", "robust.h5"), self.compare("both.h5", "--by", "preset")
+        for told in (of_files, of_values):
+            for one in told["comparisons"]:
+                del one["here"], one["there"]
+        self.assertEqual(of_files["comparisons"], of_values["comparisons"])
+        self.assertEqual(self.compare("robust.h5", "elastic.h5", "--by", "preset")["comparisons"][0]["there"], "preset=elastic")
+
+    def test_a_sweep_is_at_the_same_place_as_itself(self):
+        self.sweep("s.h5", "seeds=1..6")
+        (self.folder / "t.h5").write_bytes((self.folder / "s.h5").read_bytes())
+        for one in self.compare("s.h5", "t.h5")["comparisons"]:
+            self.assertEqual((one["ratio"], one["same_place"], one["unlike_pairs"]), (1, one["both_clogged"], 0))
+
+    def test_text_csv_and_a_picture(self):
+        self.sweep("s.h5", "near-wall-drag=0,2", "seeds=1..6")
+        text = self.succeed("clogfit", "compare", "s.h5", "--by", "near-wall-drag").stdout
+        self.assertRegex(text, r"lambda of each over that of near_wall_drag=0")
+        self.assertRegex(text, r"of +line_tension +clogs +lambda +lambda there +ratio +95 % +paired +gain +same place")
+        self.succeed("clogfit", "compare", "s.h5", "--by", "near_wall_drag", "--format", "csv", "--confidence", "0.9")
+        drawn = self.run_program("clogfit", "compare", "s.h5", "--by", "near-wall-drag", "--picture", "ratio.png")
+        self.assertEqual(drawn.returncode, 0, drawn.stderr)
+        self.assertGreater(min(Image.open(self.folder / "ratio.png").size), 400)
+        self.assertTrue((self.folder / "ratio.pdf").exists())
+
+    def test_mistakes_get_one_line(self):
+        self.sweep("s.h5", "seeds=1..2")
+        self.succeed("clogsweep", *QUICK, "line-tension=3,4", "seeds=1..2", "--output", "t.h5")
+        for arguments, words in [(["s.h5"], ["--by"]), ([], ["missing sweep files"]), (["s.h5", "t.h5"], ["line_tension", "no value in common"]),
+                                 (["s.h5", "--by", "line-tention"], ["did you mean line_tension?"]), (["s.h5", "--by", "friction"], ["all runs have the same"]),
+                                 (["s.h5", "none.h5"], ["none.h5"]), (["s.h5", "t.h5", "--within", "0"], ["--within=0"])]:
+            self.refuse("clogfit", "compare", *arguments, words=words)
+
+
+class Together(Analysis):
+    def test_several_files_are_fitted_and_read_as_one_sweep(self):
+        self.succeed("clogsweep", *QUICK, "line-tension=0.5,2", "seeds=1..6", "--output", "whole.h5")
+        self.succeed("clogsweep", *QUICK, "line-tension=0.5", "seeds=1..6", "--output", "a.h5")
+        self.succeed("clogsweep", *QUICK, "line-tension=2", "seeds=1..6", "--output", "b.h5")
+        whole, both = (json.loads(self.succeed("clogfit", *names, "--format", "json").stdout) for names in (["whole.h5"], ["a.h5", "b.h5"]))
+        self.assertEqual(both["groups"], whole["groups"])
+        self.assertEqual((both["lists"], both["sweep"]["config"]), (whole["lists"], whole["sweep"]["config"]))
+        sweep = clogsweep.open([self.folder / "a.h5", self.folder / "b.h5"], BIN)
+        self.assertEqual(sweep.rows.distance.tolist(), table(self.folder / "whole.h5").distance.tolist())
+        self.assertEqual(sweep.fit().groups.clogs.tolist(), [group["clogs"] for group in whole["groups"]])
+        self.assertIn("a.h5 + ", repr(sweep))
+        stored_rows.change_columns(self.folder / "b.h5", model_version=1)
+        with self.assertRaisesRegex(clogsweep.UserError, "model versions"):
+            clogsweep.open([self.folder / "a.h5", self.folder / "b.h5"], BIN)
+        with self.assertRaisesRegex(clogsweep.UserError, "one file or none"):
+            clogsweep.open([self.folder / "a.h5"], BIN)
+
+
+class Events(SweepTest):
+    def test_every_start_and_end_is_a_line_until_the_sweep_ends(self):
+        process = self.start(*SLOW)
+        self.wait_for(lambda: (self.folder / "s.h5").exists() or process.poll() is not None)
+        lines = [json.loads(line) for line in self.succeed("clogsweep", "status", "s.h5", "--follow", "--format", "json").stdout.splitlines()]
+        self.assertEqual(process.wait(), 0)
+        self.assertEqual((lines[0]["event"], lines[0]["runs"]), ("begin", 2))
+        self.assertEqual((lines[-1]["event"], lines[-1]["over"], lines[-1]["complete"]), ("done", 2, True))
+        ended = {line["task"]: line for line in lines if line["event"] == "end"}
+        rows = table(self.folder / "s.h5").set_index("task")
+        for task, line in ended.items():
+            self.assertEqual((line["status"], line["distance"], line["seed"]), (rows.status[task], rows.distance[task], rows.seed[task]))
+        self.assertEqual(len(ended), 2 - lines[0]["over"])
+
+    def test_a_sweep_that_is_over_has_a_beginning_and_an_end(self):
+        self.succeed("clogsweep", *QUICK, "seeds=1..2", "--output", "s.h5")
+        lines = self.succeed("clogsweep", "status", "s.h5", "--follow", "--format", "json").stdout.splitlines()
+        self.assertEqual([json.loads(line)["event"] for line in lines], ["begin", "done"])
+        self.refuse("clogsweep", "status", "s.h5", "--follow", words=["--format json"])
+        self.refuse("clogsweep", "status", "s.h5", "--follow", "--watch", words=["--follow and --watch"])
+
+    def test_the_file_knows_how_busy_the_ranks_were(self):
+        for seeds in ("1..4", "1..6"):
+            self.succeed("clogsweep", *SMALL, "obstacle-gap=0.4", "max-time=500", f"seeds={seeds}", "--output", "s.h5", ranks=2)
+        sessions = activity.sessions_of(clogsweep.open(self.folder / "s.h5", BIN).attributes)
+        self.assertEqual([session["ranks"] for session in sessions], [2, 2])
+        busy = sum(mean * min(session["stretch"], session["seconds"] - i * session["stretch"])
+                   for session in sessions for i, mean in enumerate(session["busy"]))
+        worked = table(self.folder / "s.h5").wall_seconds.sum()
+        self.assertGreater(busy, 0.9 * worked)
+        for session in sessions:
+            self.assertLessEqual(session["tail_seconds"], session["idle_seconds"] + 0.01)
+        self.assertIn("core-hours", activity.lost(sessions))
+        self.assertTrue(math.isfinite(busy))
