@@ -11,6 +11,8 @@ scheduled() { ../mpirun.sh "$@"; }
 echo "== a step (bench_step)"
 "$bin/bench_step" --benchmark_min_time=0.3 --benchmark_repetitions=3 --benchmark_report_aggregates_only=true \
   --benchmark_enable_random_interleaving=true 2>/dev/null | grep -E '^-|^Benchmark|_median'
+echo "== runs of real sweeps, and the limit of a step without contacts (bench_sweep)"
+"$bin/bench_sweep" 3
 echo "== a step in a large box (bench_box)"
 "$bin/bench_box"
 echo "== an obstacle array (bench_array)"
