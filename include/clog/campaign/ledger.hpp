@@ -35,8 +35,9 @@ class Ledger {
   /// Requests more of the plan's tasks; tasks_left() then returns the unfinished ones among these.
   void want(const std::vector<std::int64_t>& tasks);
   std::int64_t num_wanted() const { return num_wanted_; }
-  /// The sweep goes on with a plan that has the same tasks and more behind them, which are all to be done:
-  /// tasks_left() are then those of them that are not over. The table on the disk says so when this returns.
+  /// Continues with a plan that has the same tasks and more behind them, which are all requested:
+  /// tasks_left() then returns the unfinished ones among these. The table on the disk says so when this
+  /// returns.
   /// @param plan, settings  with one more round
   void grow(const sweep::Plan& plan, const sweep::Settings& settings);
   /// Tasks that have begun and are not over, wanted or not.

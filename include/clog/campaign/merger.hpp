@@ -26,8 +26,8 @@ struct Merger {
 /// damaged or being written, or has other circles under the same name
 Merger merge(const std::vector<std::string>& paths, const store::Provenance& maker);
 
-/// The same for whoever only reads the rows: also of running sweeps, and of files whose config cannot be read
-/// any more. One file is as it is.
+/// The rows of several files together, for reading only: also those of running sweeps, and of files whose
+/// config cannot be read any more. A single file is returned as it is.
 store::SweepFile read_together(const std::vector<std::string>& paths);
 
 /// Tasks get the numbers, and circles the names, that they have in the settings; rows beyond follow at the
