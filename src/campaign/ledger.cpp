@@ -297,6 +297,14 @@ const sweep::RunRow* Ledger::first_if_all_failed() const {
   return &runs_.begin()->second.row;
 }
 
+std::vector<sweep::RunRow> Ledger::rows() const {
+  std::vector<sweep::RunRow> rows;
+  rows.reserve(runs_.size() + other_runs_.size());
+  for (const auto& [task, entry] : runs_) rows.push_back(published(entry.row));
+  for (const Entry& entry : other_runs_) rows.push_back(published(entry.row));
+  return rows;
+}
+
 void Ledger::write_down(const Entry& entry) {
   if (!journal_.is_there()) publish();
   journal_.add(entry.row, entry.snapshot);
@@ -334,10 +342,7 @@ sweep::RunRow Ledger::published(const sweep::RunRow& row) const {
 /// If the journal was removed or the table replaced, writes everything once more and ends the sweep. A
 /// removed table is written again.
 void Ledger::publish() {
-  std::vector<sweep::RunRow> rows;
-  rows.reserve(runs_.size() + other_runs_.size());
-  for (const auto& [task, entry] : runs_) rows.push_back(published(entry.row));
-  for (const Entry& entry : other_runs_) rows.push_back(published(entry.row));
+  const std::vector<sweep::RunRow> rows = this->rows();
   const std::string there = place_.stamp();
   if (!there.empty() && there != stamp_) rescue(rows);
   const bool has_journal = journal_.is_there();

@@ -312,14 +312,15 @@ void print_limits(const sweep::Plan& plan) {
   for (const std::string& words : sweep::limits_of_results(plan)) std::cout << "# " << words << '\n';
 }
 
-int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRule* rule) {
+int print_cost(const sweep::Plan& plan, const std::string& output, const RoundsToCome& rounds) {
+  const bool has_rounds = rounds.rule || rounds.refiner;
   const Stored stored = stored_runs(plan, output);
   const bool is_done = stored.num_done == plan.size();
   if (is_done)
     fmt::print(std::cout, "# {} has all {}, which took {:.2g} core-hours{}\n", console::printable(output),
                sweep::counted(plan.size(), "task"), stored.seconds / hour,
-               rule ? "" : "; nothing is left to do");
-  if (is_done && !rule) return console::exit_success;
+               has_rounds ? "" : "; nothing is left to do");
+  if (is_done && !has_rounds) return console::exit_success;
   const Sample sample = stored.knows_enough() ? stored.sample : tried_sample(plan);
   if (console::stop_signalled()) return console::exit_incomplete;
   if (sample.costs.empty()) {
@@ -332,7 +333,11 @@ int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRul
   if (!is_done) print_short_lengths(sample);
   if (!is_done) print_expected(plan, sample, cost);
   if (!is_done && stored.seconds > 0) print_left(plan, output, stored, cost);
-  if (rule) print_rounds(*rule, plan.size() / plan.num_groups(), cost.expected, alike.bound);
+  if (rounds.rule) print_rounds(*rounds.rule, plan.size() / plan.num_groups(), cost.expected, alike.bound);
+  if (rounds.refiner)
+    for (const std::string& words :
+         rounds.refiner->rounds_in_words(cost.expected / static_cast<double>(plan.size())))
+      std::cout << "# " << words << '\n';
   return console::exit_success;
 }
 

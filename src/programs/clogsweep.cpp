@@ -31,6 +31,7 @@
 #include "clog/sweep/schema_json.hpp"
 #include "clogsweep_commands.hpp"
 #include "clogsweep_options.hpp"
+#include "clogsweep_refine.hpp"
 
 namespace {
 
@@ -44,6 +45,7 @@ given values, on all MPI ranks, and gathers the results in one HDF5 table.
 
   mpirun -np 4 clogsweep --config sweep.cfg --output sweep.h5 line-tension=0.2,1,5
   clogsweep --config sweep.cfg --dry-run
+  clogsweep --config sweep.cfg --output sweep.h5 --refine line-tension line-tension=0.03,3 --until curve=20%
   clogsweep status sweep.h5         how far it is: lambda, <v_g>, time left; also while it runs
   clogsweep verify sweep.h5         is the file undamaged?
   clogsweep salvage sweep.h5 --output whole.h5     copies the undamaged rows of a damaged file
@@ -55,16 +57,20 @@ given values, on all MPI ranks, and gathers the results in one HDF5 table.
 The same command resumes a stopped or killed sweep.
 )";
 
+/// @param growing, refined  at most one of them, if the sweep adds runs by itself
 store::Provenance provenance(const cli::CommandLine& line,
-                             const std::optional<campaign::GrowingSweep>& growing, int num_ranks) {
+                             const std::optional<campaign::GrowingSweep>& growing,
+                             const std::optional<RefinedSweep>& refined, int num_ranks) {
   store::Provenance all = cli::origin(line);
   all.emplace_back("mpi_version", parallel::Communicator::library_version());
   all.emplace_back("hdf5_version", store::library_version());
   all.emplace_back("num_ranks", std::to_string(num_ranks));
   if (line.has("lab")) all.emplace_back("laboratory", laboratory::read_laboratory(line.get("lab")).text);
-  if (!growing) return all;
+  if (!growing && !refined) return all;
   for (auto& [name, text] : all)
-    if (name == "config") text = growing->settings.to_config(false);
+    if (name == "config") text = (growing ? growing->settings : refined->settings()).to_config(false);
+  if (refined) all.emplace_back("stopping_rule", refined->refiner().text());
+  if (!growing) return all;
   all.emplace_back("stopping_rule", growing->rule.text());
   all.emplace_back("num_wanted", std::to_string(growing->num_first));
   return all;
@@ -83,15 +89,19 @@ std::optional<int> prepare(const cli::CommandLine& line) {
   lead_options(line);
   attempts(line);
   assignment(line, line.settings());
-  const sweep::Plan plan(line.settings());
   const std::optional<campaign::GrowingSweep> growing = growing_sweep(line);
-  if (line.has("print-config")) campaign::print_config(line.settings(), plan);
+  std::optional<RefinedSweep> refined;
+  if (std::optional<campaign::Refiner> rule = refiner(line)) refined.emplace(std::move(*rule), "");
+  const sweep::Plan plan(refined ? refined->settings() : line.settings());
+  if (line.has("print-config")) campaign::print_config(refined ? refined->settings() : line.settings(), plan);
   if (line.has("dry-run")) {
     campaign::print_tasks(plan);
     console::flush_output();
     if (console::stop_signalled()) return console::exit_incomplete;
     campaign::print_limits(plan);
-    return campaign::print_cost(plan, lead_options(line).output, growing ? &growing->rule : nullptr);
+    return campaign::print_cost(
+        plan, lead_options(line).output,
+        {growing ? &growing->rule : nullptr, refined ? &refined->refiner() : nullptr});
   }
   if (line.has("print-config")) return console::exit_success;
   line.require("output");
@@ -101,15 +111,29 @@ std::optional<int> prepare(const cli::CommandLine& line) {
 /// What rank 0 keeps of a sweep.
 struct Led {
   std::optional<campaign::GrowingSweep> growing;
+  std::optional<RefinedSweep> refined;
   sweep::Plan plan;
   campaign::Ledger ledger;
 
-  Led(const cli::CommandLine& line, std::optional<campaign::GrowingSweep> growing_sweep, int num_ranks)
-      : growing(std::move(growing_sweep)),
-        plan(growing ? growing->settings : line.settings()),
-        ledger(line.get("output"), plan, growing ? growing->settings : line.settings(),
-               provenance(line, growing, num_ranks), growing ? growing->num_first : plan.size(),
-               attempts(line)) {}
+  Led(const cli::CommandLine& line, int num_ranks)
+      : growing(growing_sweep(line)),
+        refined(refined_sweep(line)),
+        plan(settings(line)),
+        ledger(line.get("output"), plan, settings(line), provenance(line, growing, refined, num_ranks),
+               growing ? growing->num_first : plan.size(), attempts(line)) {}
+
+  const sweep::Settings& settings(const cli::CommandLine& line) const {
+    return growing ? growing->settings : refined ? refined->settings() : line.settings();
+  }
+  conduct::Growth growth(const cli::CommandLine& line) {
+    if (growing) return {.rule = &growing->rule, .refiner = nullptr, .grow = {}};
+    if (!refined) return {};
+    return {.rule = nullptr, .refiner = &refined->refiner(), .grow = [&](const sweep::Points& round) {
+              refined->grow(round);
+              return conduct::GrownSweep{&refined->plan(), &refined->settings(),
+                                         assignment(line, refined->settings()).text()};
+            }};
+  }
 };
 
 int sweep_on_all_ranks(const parallel::Communicator& ranks, parallel::IsolatedJobs& isolated, int argc,
@@ -123,8 +147,8 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, parallel::IsolatedJo
       parse_sweep_options(line, argc, argv);
       if (const auto over = prepare(line)) return *over;
       host::refuse_to_be_alone(ranks.size());
-      led.emplace(line, growing_sweep(line), ranks.size());
-      word = assignment(line, led->growing ? led->growing->settings : line.settings()).text();
+      led.emplace(line, ranks.size());
+      word = assignment(line, led->settings(line)).text();
       return console::exit_success;
     });
     if (!led || exit_code != console::exit_success) word = fmt::format("exit {}", exit_code);
@@ -132,13 +156,14 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, parallel::IsolatedJo
   word = ranks.broadcast(word);
   if (word.starts_with("exit ")) return std::stoi(word.substr(5));
 
-  const auto assignment = conduct::Assignment::from(word);
-  const sweep::JobFactory make_job =
-      assignment.is_isolated ? isolated.jobs(word) : conduct::assigned_jobs(word);
+  const conduct::JobsOf jobs_of = [&](const std::string& assignment) {
+    return conduct::Assignment::from(assignment).is_isolated ? isolated.jobs(assignment)
+                                                             : conduct::assigned_jobs(assignment);
+  };
   if (ranks.rank() == 0)
-    return conduct::lead_sweep(ranks, lead_options(line), led->plan, make_job, led->ledger,
-                               led->growing ? &led->growing->rule : nullptr);
-  conduct::follow_sweep(ranks, make_job, assignment.report_interval);
+    return conduct::lead_sweep(ranks, lead_options(line), led->plan, jobs_of, word, led->ledger,
+                               led->growth(line));
+  conduct::follow_sweep(ranks, jobs_of, word);
   return console::exit_success;
 }
 

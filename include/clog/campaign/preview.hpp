@@ -2,11 +2,18 @@
 
 #include <string>
 
+#include "clog/campaign/refiner.hpp"
 #include "clog/campaign/seed_rule.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/settings.hpp"
 
 namespace clog::campaign {
+
+/// What decides on rounds after the first: one of these, or nothing.
+struct RoundsToCome {
+  const SeedRule* rule = nullptr;
+  const Refiner* refiner = nullptr;
+};
 
 /// What a sweep would do, on the standard output.
 
@@ -18,9 +25,8 @@ void print_limits(const sweep::Plan& plan);
 /// (sweep_cost()): from the runs in `output` or, if these are few, from short trial runs. Then prints how
 /// much of the sweep `output` has, and the rest. Returns the exit code: a fault if no run can begin.
 /// @param output  the sweep's file, which need not exist; empty: no file
-/// @param rule  of a sweep whose first round is `plan`: then also prints what the other rounds may add; or
-/// nullptr
-int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRule* rule);
+/// @param rounds  if `plan` is the first of several: then also prints what the others may add
+int print_cost(const sweep::Plan& plan, const std::string& output, const RoundsToCome& rounds);
 /// Every key with its value, and the values of `auto` for the first task.
 void print_config(const sweep::Settings& settings, const sweep::Plan& plan);
 

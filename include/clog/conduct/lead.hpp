@@ -1,17 +1,21 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
 
 #include "clog/campaign/ledger.hpp"
+#include "clog/campaign/refiner.hpp"
 #include "clog/campaign/seed_rule.hpp"
 #include "clog/conduct/log.hpp"
 #include "clog/parallel/communicator.hpp"
 #include "clog/parallel/scheduler.hpp"
 #include "clog/sweep/job.hpp"
 #include "clog/sweep/plan.hpp"
+#include "clog/sweep/points.hpp"
+#include "clog/sweep/settings.hpp"
 
 namespace clog::conduct {
 
@@ -23,14 +27,34 @@ struct LeadOptions {
   Log::Level log = Log::Level::normal;
 };
 
+/// Makes the jobs of a rank from the text of an Assignment.
+using JobsOf = std::function<sweep::JobFactory(const std::string& assignment)>;
+
+/// A sweep with one more round.
+struct GrownSweep {
+  const sweep::Plan* plan;
+  const sweep::Settings* settings;
+  std::string assignment;  ///< text of the Assignment of all ranks
+};
+/// What may enlarge a sweep when all its tasks are over: a rule that wants more of the plan's tasks, or a
+/// refiner, for whose rounds the plan itself grows; or nothing.
+struct Growth {
+  campaign::SeedRule* rule = nullptr;
+  campaign::Refiner* refiner = nullptr;
+  /// Makes the sweep grow by a round of the refiner. What it returns lasts as long as the sweep.
+  std::function<GrownSweep(const sweep::Points& round)> grow;
+
+  bool is_possible() const { return rule != nullptr || refiner != nullptr; }
+};
+
 /// Rank 0's part of a sweep, while the other ranks are in follow_sweep(): connects the scheduler with the
 /// ledger, the log and the progress line. Returns the exit code.
-/// @param rule  adds tasks in further rounds, if there is one
+/// @param assignment  of all ranks, as text
 int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, const sweep::Plan& plan,
-               const sweep::JobFactory& make_job, campaign::Ledger& ledger, campaign::SeedRule* rule);
+               const JobsOf& jobs_of, const std::string& assignment, campaign::Ledger& ledger,
+               const Growth& growth);
 
 /// The part of the other ranks.
-void follow_sweep(const parallel::Communicator& ranks, const sweep::JobFactory& make_job,
-                  std::chrono::milliseconds report_interval);
+void follow_sweep(const parallel::Communicator& ranks, const JobsOf& jobs_of, const std::string& assignment);
 
 }  // namespace clog::conduct

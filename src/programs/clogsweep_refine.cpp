@@ -1,0 +1,161 @@
+#include "clogsweep_refine.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "clog/campaign/stored_sweep.hpp"
+#include "clog/core/tools/error.hpp"
+#include "clog/store/run_table.hpp"
+#include "clog/sweep/value_list.hpp"
+
+namespace clog::programs {
+namespace {
+
+using campaign::RefinementGoal;
+using campaign::RefinementOptions;
+
+constexpr double hour = 3600;  // [s]
+
+/// `20%` or `0.2`. NaN if it is neither.
+double share(std::string text) {
+  const bool is_percent = text.ends_with('%');
+  if (is_percent) text.pop_back();
+  try {
+    return sweep::to_number(text) / (is_percent ? 100 : 1);
+  } catch (const Error&) {
+    return std::nan("");
+  }
+}
+
+double positive(const std::string& text) {
+  try {
+    return sweep::to_number(text);
+  } catch (const Error&) {
+    return std::nan("");
+  }
+}
+
+RefinementGoal goal_of(const std::string& text) {
+  const auto refuse = [&](const std::string& why) {
+    throw Error(fmt::format("invalid --until={} ({}) try curve=20%, peak=10% or crossing=10:5%", text, why));
+  };
+  const std::size_t equals = std::min(text.find('='), text.size());
+  const std::string kind = text.substr(0, equals);
+  std::string rest = equals < text.size() ? text.substr(equals + 1) : "";
+  RefinementGoal goal;
+  if (kind == "curve") {
+    goal.kind = RefinementGoal::Kind::curve;
+  } else if (kind == "peak") {
+    goal.kind = RefinementGoal::Kind::peak;
+  } else if (kind == "crossing") {
+    goal.kind = RefinementGoal::Kind::crossing;
+    const std::size_t colon = std::min(rest.find(':'), rest.size());
+    goal.length = positive(rest.substr(0, colon));
+    rest = colon < rest.size() ? rest.substr(colon + 1) : "";
+    if (!(goal.length > 0)) refuse("a crossing has a length and a precision");
+  } else {
+    refuse("is not one of curve, peak, crossing");
+  }
+  goal.precision = share(rest);
+  if (!(goal.precision >= 0.001 && goal.precision < 1))
+    refuse("the precision must lie between 0.1% and 100%");
+  return goal;
+}
+
+/// In seconds.
+double budget_of(std::string text) {
+  const std::string given = text;
+  if (text.ends_with('h')) text.pop_back();
+  const double hours = positive(text);
+  if (hours > 0) return hours * hour;
+  throw Error("invalid --budget=" + given + " (must be a number of core-hours above zero) try 10h");
+}
+
+std::vector<std::string> split(const std::string& names) {
+  std::vector<std::string> all(1);
+  for (const char letter : names)
+    if (letter == ',')
+      all.emplace_back();
+    else
+      all.back() += letter == '_' ? '-' : letter;
+  return all;
+}
+
+std::int64_t most_seeds_of(const cli::CommandLine& line, std::int64_t block) {
+  constexpr std::int64_t usual_blocks = 50;
+  const double number = line.get_number("most-seeds", static_cast<double>(usual_blocks * block));
+  if (number >= static_cast<double>(block) && number <= 1e5 && number == std::floor(number))
+    return static_cast<std::int64_t>(number);
+  throw Error(
+      fmt::format("invalid --most-seeds={} (must be a whole number from {}, the number of `seeds`, to 1e5)",
+                  line.get("most-seeds"), block));
+}
+
+/// The rounds that a file has of a sweep that begins like this one.
+sweep::Settings continued(sweep::Settings settings, const std::string& output) {
+  if (output.empty() || !std::filesystem::exists(output)) return settings;
+  const store::SweepFile file = store::read_sweep(output);
+  if (campaign::attribute(file.provenance, "config").empty()) return settings;
+  const sweep::Settings stored = campaign::stored_settings(output, file.provenance);
+  if (stored.points().keys != settings.points().keys || stored.points().rows != settings.points().rows)
+    return settings;
+  for (const sweep::Points& round : stored.rounds()) settings.add_round(round);
+  return settings;
+}
+
+}  // namespace
+
+void add_refine_options(cli::CommandLine& line) {
+  namespace po = boost::program_options;
+  const auto text = [] { return po::value<std::string>(); };
+  line.add_options()("refine", text(),
+                     "key, or two with a comma between: put values and seeds where the curve of lambda needs "
+                     "them, between the "
+                     "outermost values of the key's list")(
+      "until", text(),
+      "with --refine: what is to be known, curve=20%, peak=10% or crossing=10:5% (where lambda is 10 sigma)")(
+      "budget", text(), "with --refine: core-hours that all runs may take, e.g. 10h")(
+      "same-seeds", "with --refine: all values have the same seeds, not seeds of their own");
+}
+
+std::optional<campaign::Refiner> refiner(const cli::CommandLine& line) {
+  if (!line.has("refine")) {
+    for (const char* option : {"until", "budget", "same-seeds"})
+      if (line.has(option)) throw Error(fmt::format("--{} needs --refine", option));
+    return std::nullopt;
+  }
+  for (const char* option : {"until-precision", "points", "shard"})
+    if (line.has(option)) throw Error(fmt::format("--refine and --{} exclude each other; give one", option));
+  if (!line.has("until") && !line.has("budget"))
+    throw Error("--refine needs an end; try --until curve=20%, or --budget 10h");
+  RefinementOptions options;
+  options.keys = split(line.get("refine"));
+  if (line.has("until")) options.goal = goal_of(line.get("until"));
+  if (line.has("budget")) options.budget = budget_of(line.get("budget"));
+  if (line.has("same-seeds")) options.seeds = RefinementOptions::Seeds::same;
+  options.most_seeds = most_seeds_of(line, static_cast<std::int64_t>(line.settings().values("seeds").size()));
+  return campaign::Refiner(line.settings(), options);
+}
+
+std::optional<RefinedSweep> refined_sweep(const cli::CommandLine& line) {
+  std::optional<campaign::Refiner> rule = refiner(line);
+  if (!rule) return std::nullopt;
+  return std::optional<RefinedSweep>(std::in_place, std::move(*rule), line.get("output"));
+}
+
+RefinedSweep::RefinedSweep(campaign::Refiner refiner, const std::string& output)
+    : refiner_(std::move(refiner)), settings_(continued(refiner_.first(), output)) {
+  plans_.emplace_back(settings_);
+}
+
+void RefinedSweep::grow(const sweep::Points& round) {
+  settings_.add_round(round);
+  plans_.emplace_back(settings_);
+}
+
+}  // namespace clog::programs

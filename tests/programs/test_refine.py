@@ -1,0 +1,125 @@
+"""--refine: values and seeds are put where the fitted curve needs them, the same ones however the sweep goes."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+import unittest
+
+import h5py
+import pandas
+from support import BIN, QUICK, ROOT, TIMING, ProgramTest, table
+
+SWEEP = [*QUICK, "obstacle-gap=0.3", "seeds=1..3", "line-tension=0.3,3", "--refine=line-tension", "--most-seeds=12"]
+GOAL = "--until=curve=70%"
+
+
+class Refine(ProgramTest):
+    def check_equal(self, name, other):
+        rows, others = (table(self.folder / n).drop(columns=TIMING) for n in (name, other))
+        pandas.testing.assert_frame_equal(rows, others, check_exact=True)
+
+    def test_it_adds_values_and_seeds_until_the_curve_is_known(self):
+        done = self.succeed("clogsweep", *SWEEP, GOAL, "--output", "s.h5", ranks=2)
+        rows = table(self.folder / "s.h5")
+        self.assertGreater(len(rows), 7 * 3)
+        self.assertTrue(rows.line_tension.between(0.3, 3).all())
+        self.assertTrue(all(value == float(f"{value:.3g}") for value in rows.line_tension))
+        self.assertLessEqual(rows.groupby("line_tension").size().max(), 12)
+        self.assertEqual(rows.seed.nunique(), len(rows), "values have seeds of their own")
+        last = done.stderr.strip().splitlines()[-1]
+        for words in ("lambda is known within", "% along the curve", "highest at line-tension"):
+            self.assertIn(words, last)
+        with h5py.File(self.folder / "s.h5") as file:
+            self.assertIn("until curve=70%", file.attrs["stopping_rule"].decode())
+            self.assertIn("round-keys = line-tension seeds", file.attrs["config"].decode())
+        status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format=json").stdout)
+        self.assertEqual((status["runs"], status["over"]), (len(rows), len(rows)))
+        self.succeed("clogsweep", "verify", "s.h5")
+        self.assertIn("the same bits", self.succeed("clogsweep", "replay", "s.h5", rows.task.max()).stdout)
+        again = self.succeed("clogsweep", *SWEEP, GOAL, "--output", "s.h5")
+        self.assertEqual(again.stderr.strip().splitlines()[-1], last)
+        self.assertEqual(len(table(self.folder / "s.h5")), len(rows))
+
+    def test_the_rows_depend_neither_on_ranks_nor_on_interruptions_nor_on_isolation(self):
+        self.succeed("clogsweep", *SWEEP, GOAL, "--output", "one.h5")
+        self.succeed("clogsweep", *SWEEP, GOAL, "--isolate=no", "--output", "three.h5", ranks=3)
+        self.check_equal("one.h5", "three.h5")
+        stopped, hours = 0, 0.0001
+        while self.run_program("clogsweep", *SWEEP, GOAL, "--output", "stopped.h5", f"--max-hours={hours}").returncode == 75:
+            stopped += 1
+            hours *= 1.1  # on a machine that is busy a session may come to nothing
+            self.assertLess(stopped, 200)
+        self.assertGreater(stopped, 0)
+        self.check_equal("one.h5", "stopped.h5")
+
+    def test_a_sweep_that_is_there_informs_it(self):
+        self.succeed("clogsweep", *QUICK, "obstacle-gap=0.3", "line-tension=0.5,0.9,1.7", "seeds=1..10", "--output", "s.h5")
+        self.succeed("clogsweep", *SWEEP, "--until=curve=95%", "--output", "s.h5")
+        rows = table(self.folder / "s.h5")
+        self.assertEqual((rows.line_tension == 0.9).sum(), 10)
+        self.assertGreaterEqual(len(rows), 30 + 7 * 3 - 3)
+
+    def test_all_values_may_have_the_same_seeds(self):
+        self.succeed("clogsweep", *SWEEP, "--until=curve=90%", "--same-seeds", "--output", "s.h5")
+        rows = table(self.folder / "s.h5")
+        for _, of_value in rows.groupby("line_tension"):
+            self.assertEqual(sorted(of_value.seed), list(range(1, len(of_value) + 1)))
+
+    def test_a_budget_ends_it(self):
+        done = self.succeed("clogsweep", *SWEEP, "--budget=0.000001h", "--output", "s.h5")
+        self.assertEqual(len(table(self.folder / "s.h5")), 7 * 3)
+        self.assertIn("the budget is used up", done.stderr)
+
+    def test_a_dry_run_tells_what_the_rounds_may_cost(self):
+        told = self.succeed("clogsweep", *SWEEP, "--until=curve=20%", "--dry-run").stdout
+        for words in ("21 tasks: 7 parameter sets, 3 seeds each", "this is the first round", "if every run clogs"):
+            self.assertIn(words, told)
+        told = self.succeed("clogsweep", *SWEEP, "--budget=10h", "--dry-run").stdout
+        self.assertIn("10 core-hours at most", told)
+
+    def test_mistakes_get_one_line_and_exit_code_2(self):
+        good = [word for word in SWEEP if not word.startswith("line-tension")]
+        for settings, words in [
+            (["line-tension=0.3,3"], ["--refine needs an end"]),
+            (["line-tension=0.3,3", "--budget=0"], ["--budget=0"]),
+            (["line-tension=0.3,3", "--until=curve"], ["--until=curve"]),
+            (["line-tension=0.3,3", "--until=curve=0%"], ["--until=curve=0%"]),
+            (["line-tension=0.3,3", "--until=slope=10%"], ["--until=slope=10%", "curve, peak, crossing"]),
+            (["line-tension=0.3,3", "--until=crossing=5%"], ["--until=crossing=5%"]),
+            (["line-tension=3,0.3", GOAL], ["line-tension=3,0.3", "lower bound"]),
+            (["line-tension=0.3", GOAL], ["line-tension=0.3", "bounds"]),
+            (["line-tension=0,3", GOAL], ["line-tension=0,3", "positive"]),
+            (["line-tension=0.3cm,3", GOAL], ["line-tension=0.3cm,3"]),
+            (["line-tension=0.3,3", "obstacle-gap=0.3,0.4", GOAL], ["obstacle-gap"]),
+            (["line-tension=0.3,3", "seeds=1,3", GOAL], ["seeds=1,3"]),
+            (["line-tension=0.3,3", GOAL, "--until-precision=20%"], ["--until-precision"]),
+            (["line-tension=0.3,3", GOAL, "--refine=vertices"], ["refine"]),
+        ]:
+            with self.subTest(settings=settings):
+                kept = [word for word in good if word.split("=")[0] not in {setting.split("=")[0] for setting in settings}]
+                self.refuse("clogsweep", *kept, *settings, "--output", "no.h5", words=words)
+                self.assertFalse((self.folder / "no.h5").exists())
+        self.refuse("clogsweep", *QUICK, "line-tension=0.3,3", GOAL, "--output", "no.h5", words=["--until needs --refine"])
+
+
+class Optimiser(ProgramTest):
+    """The ten lines of docs/how-to/optimiser.md."""
+
+    def test_a_script_may_choose_the_points_and_goes_on_when_called_again(self):
+        page = (ROOT / "docs" / "how-to" / "optimiser.md").read_text()
+        script = re.search(r"```python\n(.*?)```", page, re.DOTALL)[1]
+        self.assertLessEqual(sum(bool(line.strip()) for line in script.splitlines()), 13)
+        self.write("optimiser.py", script)
+        self.write("sweep.cfg", "\n".join(word.replace("=", " = ", 1) for word in [*QUICK, "seeds=1..3"]) + "\n")
+        paths = {"PATH": f"{BIN}:{os.environ['PATH']}", "PYTHONPATH": str(ROOT / "analysis")}
+        said = [subprocess.run([sys.executable, "optimiser.py"], cwd=self.folder, env=os.environ | paths, check=True, capture_output=True, text=True).stdout
+                for _ in range(2)]
+        self.assertIn("farthest between", said[0])
+        self.assertEqual(said[0], said[1])
+        self.assertGreaterEqual(table(self.folder / "sweep.h5").line_tension.nunique(), 6)
+
+
+if __name__ == "__main__":
+    unittest.main()
