@@ -24,7 +24,7 @@ std::optional<RefinedSweep> refined_sweep(const cli::CommandLine& line);
 /// A sweep that is refined: its settings with all rounds so far, and its plans, of which the last counts.
 class RefinedSweep {
  public:
-  /// Goes on with the rounds that the output has, if it began like this one. @throws Error if it cannot be
+  /// Continues with the rounds that the output has, if it began like this one. @throws Error if it cannot be
   /// read
   RefinedSweep(campaign::Refiner refiner, const std::string& output);
   RefinedSweep(const RefinedSweep&) = delete;
