@@ -12,6 +12,7 @@
 
 #include "clog/campaign/group_table.hpp"
 #include "clog/campaign/merger.hpp"
+#include "clog/campaign/stored_sweep.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/cli/python_command.hpp"
@@ -63,12 +64,13 @@ did so, even if it moved on.
 
 /// Of --lab, or else of the sweep's own.
 std::optional<campaign::LaboratoryScale> laboratory_of(const cli::CommandLine& line,
-                                                       const store::SweepFile& sweep) {
+                                                       const store::SweepFile& sweep,
+                                                       const std::string& path) {
   const std::string stored = campaign::attribute(sweep.provenance, "laboratory");
   if (!line.has("lab") && stored.empty()) return std::nullopt;
   const laboratory::Laboratory lab =
       line.has("lab") ? laboratory::read_laboratory(line.get("lab"))
-                      : laboratory::parse_laboratory(stored, line.get("file") + ", attribute laboratory,");
+                      : laboratory::parse_laboratory(stored, path + ", attribute laboratory,");
   constexpr double milli = 1e-3;
   const laboratory::Scales scales = laboratory::scales_of(lab);
   return campaign::LaboratoryScale{.length = scales.length / milli,
@@ -119,7 +121,7 @@ int body(int argc, char** argv) {
         "no place for --dwell (droplets in a channel or on a wall have no clogging length) leave it out");
   const std::vector<campaign::Group> groups =
       campaign::group_runs(sweep.rows, confidence, from_distance, dwell);
-  const std::optional<campaign::LaboratoryScale> lab = laboratory_of(line, sweep);
+  const std::optional<campaign::LaboratoryScale> lab = laboratory_of(line, sweep, paths.front());
   const SharedParameters shared =
       line.has("all-parameters") ? SharedParameters::all : SharedParameters::unusual;
   std::cout << (format == "csv"    ? campaign::to_csv(groups, lab)

@@ -181,7 +181,8 @@ using enum ParameterRole;
 
 ParameterValue young_angle_of(const RunParameters& run) { return young_angle(run.dp); }
 
-std::vector<Parameter> make_schema() {
+/// What a droplet is.
+std::vector<Parameter> droplet_entries() {
   return {
       entry("model", [](auto& run) -> auto& { return run.model; },
             {.column = "model", .meaning = "dp: deformable polygon, sp: soft disk"}),
@@ -201,6 +202,12 @@ std::vector<Parameter> make_schema() {
              .automatic_in = &polygons,
              .range = {positive, {}},
              .words = {"auto"}}),
+  };
+}
+
+/// Obstacle arrays.
+std::vector<Parameter> array_entries() {
+  return {
       entry("obstacle-gap", [](auto& run) -> auto& { return run.obstacles.gap; },
             {.column = "obstacle_gap",
              .symbol = R"(w_\mathrm{ob})",
@@ -248,6 +255,12 @@ std::vector<Parameter> make_schema() {
                         "channel: two wedges, wall: a flat wall",
              .has_own_column = false,
              .shapes_array = true}),
+  };
+}
+
+/// Circles of a file, and the device around them.
+std::vector<Parameter> own_circle_entries() {
+  return {
       entry("obstacles", [](auto& run) -> auto& { return run.obstacles.own; },
             {.column = "obstacles",
              .meaning = "CSV file of user-supplied circles: x, y and, if it differs from obstacle-diameter, "
@@ -313,6 +326,12 @@ std::vector<Parameter> make_schema() {
              .scope = &own_circles,
              .range = {not_negative, {}},
              .before = 0.0}),
+  };
+}
+
+/// The channel between two wedges.
+std::vector<Parameter> channel_entries() {
+  return {
       entry("orifice", [](auto& run) -> auto& { return run.channel.orifice; },
             {.column = "orifice",
              .symbol = "w",
@@ -353,6 +372,12 @@ std::vector<Parameter> make_schema() {
              .meaning = "h at which the droplet has passed",
              .scope = &channels,
              .range = {{}, to(100, "the path behind the orifice would take most of the time", "try 3")}}),
+  };
+}
+
+/// Lattices, and what repeats: seeds, boxes.
+std::vector<Parameter> period_entries() {
+  return {
       entry("lattice-angle", [](auto& run) -> auto& { return run.obstacles.lattice_angle; },
             {.column = "lattice_angle",
              .symbol = R"(\theta)",
@@ -394,6 +419,12 @@ std::vector<Parameter> make_schema() {
              .shapes_array = true,
              .elsewhere = std::int64_t{1},
              .before = std::int64_t{1}}),
+  };
+}
+
+/// Time, speed and drag.
+std::vector<Parameter> motion_entries() {
+  return {
       entry("max-time", [](auto& run) -> auto& { return run.max_time; },
             {.column = "max_time",
              .symbol = "T",
@@ -441,6 +472,12 @@ std::vector<Parameter> make_schema() {
                                         "use at most 1000; 1 is the published model")},
              .elsewhere = 1.0,
              .before = 1.0}),
+  };
+}
+
+/// The polygon and the springs along it.
+std::vector<Parameter> interface_entries() {
+  return {
       entry("vertices", [](auto& run) -> auto& { return run.dp.vertices; },
             {.column = "vertices",
              .symbol = "N_v",
@@ -498,6 +535,12 @@ std::vector<Parameter> make_schema() {
              .scope = &polygons,
              .range = {not_negative, {}},
              .has_own_column = false}),
+  };
+}
+
+/// Contact with walls, and what walls hold.
+std::vector<Parameter> wall_entries() {
+  return {
       entry("wall-contact", [](auto& run) -> auto& { return run.dp.wall_contact; },
             {.column = "wall_contact",
              .meaning = "a wall pushes the nearest point of every edge, or the vertices alone (as published)",
@@ -572,6 +615,12 @@ std::vector<Parameter> make_schema() {
              .range = {not_negative, to(1000, "no droplet would ever move", "try 0.1")},
              .elsewhere = 0.0,
              .before = 0.0}),
+  };
+}
+
+/// Contact of the interface with itself, and where the weight acts.
+std::vector<Parameter> self_contact_entries() {
+  return {
       entry("self-contact", [](auto& run) -> auto& { return run.dp.self_contact; },
             {.column = "self_contact",
              .meaning = "does the interface repel itself",
@@ -591,6 +640,12 @@ std::vector<Parameter> make_schema() {
              .meaning =
                  "weight and mean drag act on the area, as a pressure, or on the vertices (as published)",
              .scope = &polygons}),
+  };
+}
+
+/// When a run ends, and how.
+std::vector<Parameter> verdict_entries() {
+  return {
       entry("clog-energy", [](auto& run) -> auto& { return run.clog_energy; },
             {.column = "clog_energy",
              .symbol = "E_k/E_t",
@@ -629,6 +684,16 @@ std::vector<Parameter> make_schema() {
            .range = {not_negative, to(0.5, "a droplet in a gap is no wider", "try 0.05")},
            .before = 0.0}),
   };
+}
+
+/// In the order of the table's columns.
+std::vector<Parameter> make_schema() {
+  std::vector<Parameter> all;
+  for (const auto& entries :
+       {droplet_entries(), array_entries(), own_circle_entries(), channel_entries(), period_entries(),
+        motion_entries(), interface_entries(), wall_entries(), self_contact_entries(), verdict_entries()})
+    all.insert(all.end(), entries.begin(), entries.end());
+  return all;
 }
 
 std::string text_of(const ParameterValue& value) {
