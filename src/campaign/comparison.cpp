@@ -87,8 +87,8 @@ ByValues by_values(const std::vector<ParameterSet>& sets, const std::vector<std:
     for (const sweep::Column* column : group_columns())
       if (column->get(known->second->first) != column->get(set.first)) differing.push_back(column->name);
     throw Error(fmt::format(
-        "cannot compare (parameter sets of {} differ in {}, of which the two sides have no value in "
-        "common: it is not clear which to take); clogsweep select takes some of the rows",
+        "cannot compare (several parameter sets of {0} differ only in {1}, and the other side has none of "
+        "these values: it is not clear which set to compare); choose one with clogsweep select",
         side.name, joined(differing)));
   }
   return all;
@@ -214,7 +214,7 @@ Comparisons compare(const std::vector<Side>& sides, double confidence, std::opti
   }
   if (comparisons.all.empty())
     throw Error(fmt::format(
-        "cannot compare {} with {} (no parameter set of the one has the values of one of the other)",
+        "cannot compare {} with {} (no parameter set of one has the values of any set of the other)",
         sides[1].name, there.name));
   comparisons.differing = differing_columns(compared);
   return comparisons;

@@ -16,6 +16,7 @@
 #include "clog/campaign/stored_sweep.hpp"
 #include "clog/campaign/usual_parameters.hpp"
 #include "clog/console/build_info.hpp"
+#include "clog/console/printable.hpp"
 #include "clog/console/rounded.hpp"
 #include "clog/console/table.hpp"
 #include "clog/core/model/model.hpp"
@@ -42,7 +43,7 @@ std::string rounded(const Value& value) {
 std::string rounded(const sweep::RunRow& row, const Field& field) {
   const std::optional<OwnCircles>& own = row.parameters.obstacles.own;
   if (field.first == std::string_view("obstacles") && own && !own->source().empty())
-    return std::filesystem::path(own->source()).filename().string();
+    return console::printable(std::filesystem::path(own->source()).filename().string());
   return rounded(field.second);
 }
 

@@ -95,10 +95,12 @@ class Rows {
     }
     const std::vector<std::string> differing = differing_results(known, row);
     if (differing.empty()) return false;
-    if (known.instruction_set == row.instruction_set)
+    // A run under two instruction sets is reproduced by none.
+    const bool is_mixed = row.instruction_set == sweep::mixed_instruction_sets;
+    if (known.instruction_set == row.instruction_set && !is_mixed)
       throw Error(fmt::format(
-          "cannot join {} and {} (task {} there and task {} here are the same run, but have other "
-          "results: {}); drop the file that is wrong, `clogsweep replay` tells which",
+          "cannot join {} and {} (task {} of the first and task {} of the second are the same run, but their "
+          "results differ: {}); leave out the wrong file, `clogsweep replay` tells which",
           paths_[place], path, known.task, row.task, joined(differing)));
     ++num_other_bits_;
     return false;
@@ -117,7 +119,7 @@ void add_circles(const store::SweepFile& file, std::vector<store::CircleFile>& a
   }
 }
 
-/// Of the whole plan, but of --until-precision those that have begun; and what the file has beyond.
+/// Adds all runs of the plan (with --until-precision only those that have begun), and those outside it.
 void add_runs(const Part& part, RunList& runs) {
   const sweep::Plan plan = stored_plan(part.path, part.table);
   if (attribute(part.table.provenance, "stopping_rule").empty()) runs.add(plan);

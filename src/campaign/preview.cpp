@@ -201,7 +201,7 @@ Sample tried_sample(const sweep::Plan& plan) {
   if (sample.failure.empty())
     sample.failure = fmt::format("its release takes longer than {:.2g} s", seconds_to_try);
   sample.source =
-      fmt::format("tried for {:.2g} s in all", std::chrono::duration<double>(Clock::now() - begin).count());
+      fmt::format("tried for {:.2g} s in total", std::chrono::duration<double>(Clock::now() - begin).count());
   return sample;
 }
 

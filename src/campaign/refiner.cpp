@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <utility>
 
@@ -45,7 +46,7 @@ std::vector<double> bounds_of(const sweep::Settings& settings, const std::string
   if (values.size() < 2)
     throw Error(fmt::format("invalid {0}={1} (--refine {0} needs its bounds) try {0}={2},{3}", name,
                             settings.text(name), shortest(0.1), shortest(3)));
-  if (!std::ranges::is_sorted(values))
+  if (std::ranges::adjacent_find(values, std::ranges::greater_equal()) != values.end())
     throw Error(fmt::format("invalid {}={} (with --refine values increase: the lower bound comes first)",
                             name, settings.text(name)));
   if (!(values.front() > 0))
@@ -127,7 +128,7 @@ Refiner::Refiner(const sweep::Settings& settings, RefinementOptions options)
     throw Error("invalid --refine=" + joined(options_.keys, ",") + " (names one key, or two different ones)");
   if (num_keys == 2 && options_.goal.kind == RefinementGoal::Kind::crossing)
     throw Error("invalid --until=" + options_.goal.text() +
-                " (over two keys lambda crosses a value along a line)");
+                " (with two keys lambda crosses it along a line) give one key");
   require_one_of_others(settings, options_.keys);
   const std::vector<std::string>& seeds = settings.values("seeds");
   block_ = static_cast<std::int64_t>(seeds.size());
@@ -281,8 +282,8 @@ std::optional<sweep::Points> Refiner::next_round(std::span<const sweep::RunRow> 
   const std::vector<ExpectedRun> runs = expected_runs(now.points, now.candidates, now.curve.mean);
   const std::vector<std::int64_t> blocks = choose_blocks(now.curve, runs, options_.goal, limits);
   if (std::ranges::all_of(blocks, [](std::int64_t number) { return number == 0; })) {
-    end_ = std::isfinite(limits.most_work) ? "the budget is used up"
-                                           : "no value may get more seeds (--most-seeds)";
+    const bool may_grow = std::ranges::any_of(limits.blocks_left, [](std::int64_t left) { return left > 0; });
+    end_ = may_grow ? "the budget is used up" : "no value may get more seeds (--most-seeds)";
     return std::nullopt;
   }
   if (options_.seeds == RefinementOptions::Seeds::own) {

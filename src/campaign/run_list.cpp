@@ -93,8 +93,8 @@ RunList::ParameterSet& RunList::set_of(const sweep::Plan& plan, const sweep::Run
     const auto [known, is_new] = circle_files_.emplace(name, circles);
     if (!is_new && !(known->second == circles))
       throw Error(
-          fmt::format("the files name their circles {}, but these are others in one than in another; "
-                      "sweeps of other circles cannot be joined under one name",
+          fmt::format("two files contain different circles under the same name {}; "
+                      "sweeps with different circles cannot be joined under one name",
                       name));
   }
   const auto [place, is_new] = places_.emplace(identity_without_seed(run), sets_.size());

@@ -110,9 +110,8 @@ GrowingSweep growing_sweep(const sweep::Settings& settings, double precision, st
   if (!plan.has_equal_seeds() || plan.size() != plan.num_groups() * first_seeds ||
       !settings.shard().is_whole())
     throw Error(
-        "--until-precision adds seeds to parameter sets that begin with the same ones; remove the seeds "
-        "of "
-        "points, and --shard");
+        "--until-precision needs the same first seeds in all parameter sets, and the whole sweep; remove "
+        "seeds from the points, and leave out --shard");
   GrowingSweep sweep{settings, plan.size(), {precision, plan.num_groups(), first_seeds, most_seeds}};
   if (most_seeds == first_seeds) return sweep;
   long long last = 0;

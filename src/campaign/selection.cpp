@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <set>
 #include <utility>
 #include <variant>
 
@@ -48,7 +49,7 @@ std::string trimmed(const std::string& text) {
 
 }  // namespace
 
-Condition::Condition(const std::string& text) {
+Condition::Condition(const std::string& text) : text_(text) {
   constexpr std::pair<const char*, Relation> relations[] = {
       {"!=", Relation::unequal}, {"<=", Relation::at_most}, {">=", Relation::at_least},
       {"==", Relation::equal},   {"=", Relation::equal},    {"<", Relation::less},
@@ -107,16 +108,30 @@ bool Condition::holds(const sweep::RunRow& row) const {
   return false;
 }
 
+void Condition::require_known_words(std::span<const sweep::RunRow> rows) const {
+  if (words_.empty()) return;
+  std::set<std::string> known;
+  for (const sweep::RunRow& row : rows)
+    if (const sweep::Value value = column_->get(row); const auto* word = std::get_if<std::string>(&value))
+      known.insert(*word);
+  for (const std::string& word : words_)
+    if (!known.contains(word))
+      throw Error(fmt::format("invalid condition '{}' (no row has {}={}) the rows have {}", text_,
+                              column_->name, word,
+                              joined(std::vector<std::string>(known.begin(), known.end()))));
+}
+
 store::SweepFile select(const std::string& path, const std::vector<std::string>& conditions,
                         const store::Provenance& maker) {
   const std::vector<Condition> all(conditions.begin(), conditions.end());
   store::SweepFile file = read_with_caution(path);
+  for (const Condition& one : all) one.require_known_words(file.rows);
   const sweep::Plan plan = stored_plan(path, file);
   std::erase_if(file.rows, [&](const sweep::RunRow& row) {
     return !std::ranges::all_of(all, [&](const Condition& one) { return one.holds(row); });
   });
   if (file.rows.empty())
-    throw Error(fmt::format("no row of {} holds to {}", path, joined(conditions, " and ")));
+    throw Error(fmt::format("no row of {} satisfies {}", path, joined(conditions, " and ")));
   for (sweep::RunRow& row : file.rows)
     if (row.status == RunStatus::running) row.status = RunStatus::interrupted;
   RunList runs;

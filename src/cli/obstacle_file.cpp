@@ -123,8 +123,8 @@ std::optional<Columns> columns_named(const std::vector<std::string>& cells) {
   if (columns.x < 0 || columns.y < 0 || (!has_size && !others.empty()) ||
       (columns.diameter >= 0 && columns.radius >= 0))
     throw Error(fmt::format(
-        "the columns have to be x, y and, if obstacle-diameter is not theirs, diameter or radius, "
-        "in any order, with others beside these; here they are '{}'",
+        "the columns have to be x, y and one of diameter and radius, in any order, with or without others; "
+        "or x and y alone, if all diameters are obstacle-diameter; here they are '{}'",
         shortened(joined(cells, ","))));
   return columns;
 }

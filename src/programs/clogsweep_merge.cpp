@@ -36,7 +36,7 @@ void print(const std::string& output, const std::vector<std::string>& paths, con
     std::cout << " (" << merger.num_other_bits
               << " with other bits under another instruction set: those of the file named first were kept)";
   if (merger.num_faulty > 0)
-    std::cout << "; " << sweep::counted(merger.num_faulty, "row") << " with what cannot be left out";
+    std::cout << "; " << sweep::counted(merger.num_faulty, "row") << " left out as physically impossible";
   if (!merger.snapshots.empty())
     std::cout << ", " << sweep::counted(static_cast<std::int64_t>(merger.snapshots.size()), "snapshot");
   std::cout << '\n';

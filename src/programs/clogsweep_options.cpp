@@ -69,7 +69,7 @@ double precision(const cli::CommandLine& line) {
               " (must lie between 0.1% and 100%) try 20%");
 }
 
-/// Has every point a text for this key, so that what it has otherwise is of no use?
+/// Does every point have a text for this key, so that its text on the command line would be of no use?
 bool is_full(const sweep::Points& points, std::size_t place) {
   return std::ranges::none_of(points.rows, [&](const auto& row) { return row[place].empty(); });
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <string_view>
@@ -96,14 +97,21 @@ std::int64_t most_seeds_of(const cli::CommandLine& line, std::int64_t block) {
                   line.get("most-seeds"), block));
 }
 
-/// The rounds that a file has of a sweep that begins like this one.
+/// Do both describe the same curve? Then its rounds are those of the other.
+bool have_same_curve(const sweep::Settings& one, const sweep::Settings& other) {
+  return one.points().keys == other.points().keys && one.points().rows == other.points().rows &&
+         std::ranges::all_of(sweep::keys(), [&](const sweep::Key& key) {
+           return one.values(key.name) == other.values(key.name);
+         });
+}
+
+/// The settings, with the rounds of the output file if that has the same curve.
 sweep::Settings continued(sweep::Settings settings, const std::string& output) {
   if (output.empty() || !std::filesystem::exists(output)) return settings;
   const store::SweepFile file = store::read_sweep(output);
   if (campaign::attribute(file.provenance, "config").empty()) return settings;
   const sweep::Settings stored = campaign::stored_settings(output, file.provenance);
-  if (stored.points().keys != settings.points().keys || stored.points().rows != settings.points().rows)
-    return settings;
+  if (!have_same_curve(stored, settings)) return settings;
   for (const sweep::Points& round : stored.rounds()) settings.add_round(round);
   return settings;
 }

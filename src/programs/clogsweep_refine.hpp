@@ -14,18 +14,19 @@ namespace clog::programs {
 
 /// Declares --refine, --until, --budget, --same-seeds.
 void add_refine_options(cli::CommandLine& line);
-/// From these; nothing if the sweep is not to be refined. @throws Error
+/// The refiner that these options ask for; nothing without --refine. @throws Error if they are invalid
 std::optional<campaign::Refiner> refiner(const cli::CommandLine& line);
 
 class RefinedSweep;
-/// The same with the rounds that its output has. @throws Error
+/// The refined sweep of a command, with the rounds in its output file; nothing without --refine.
+/// @throws Error if an option is invalid or the file cannot be read
 std::optional<RefinedSweep> refined_sweep(const cli::CommandLine& line);
 
 /// A sweep that is refined: its settings with all rounds so far, and its plans, of which the last counts.
 class RefinedSweep {
  public:
-  /// Continues with the rounds that the output has, if it began like this one. @throws Error if it cannot be
-  /// read
+  /// Continues with the rounds that the output file has if its points are the same (other keys are not
+  /// compared). @throws Error if it cannot be read
   RefinedSweep(campaign::Refiner refiner, const std::string& output);
   RefinedSweep(const RefinedSweep&) = delete;
 

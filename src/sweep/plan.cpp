@@ -228,7 +228,7 @@ class Plan::Builder {
           {std::ssize(groups) - 1, std::make_shared<const std::vector<std::uint32_t>>(std::move(seeds))});
     }
     if (kept.empty())
-      throw Error(fmt::format("part {} of the sweep is empty, which has {}", shard.text(),
+      throw Error(fmt::format("part {} of the sweep is empty: the whole sweep has only {}", shard.text(),
                               counted(num_runs_, "run")));
     batch = std::move(kept);
     plan_.groups_ = std::move(groups);

@@ -314,7 +314,7 @@ class Fit(ProgramTest):
         self.change(mesh_hold=[0.009] * 9 + [0.011])
         group, = self.fit()["groups"]
         self.assertEqual((group["on_mesh"], group["doubts"]), (1, "held_by_mesh"))
-        self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, "m: in a tenth of the clogs or more .* mesh_hold")
+        self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, "m: in a tenth of the clogs or more.* mesh_hold")
 
     def test_of_files_without_a_word_on_the_mesh_all_that_hang_are_marked(self):
         self.sweep("seeds=1..10", *FAR)

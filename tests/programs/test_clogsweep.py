@@ -216,7 +216,7 @@ class Sweep(ProgramTest):
         self.assertIn(", from 1 run tried ", told)
         self.assertIn("1 run on 1 computing rank, results go to s.h5\n", self.succeed("clogsweep", *sweep).stderr)
         self.assertIn("s.h5 has 1 of 1 run; there is nothing left to do\n", self.succeed("clogsweep", *sweep).stderr)
-        self.assertIn("s.h5: 1 of 1 run over, ", self.succeed("clogsweep", "status", "s.h5").stdout)
+        self.assertIn("s.h5: 1 of 1 run finished, ", self.succeed("clogsweep", "status", "s.h5").stdout)
         self.assertIn("s.h5: 1 row of 1 run, all undamaged\n", self.succeed("clogsweep", "verify", "s.h5").stdout)
         self.assertIn("whole.h5: 1 undamaged row\n", self.succeed("clogsweep", "salvage", "s.h5", "--output", "whole.h5").stdout)
 

@@ -47,7 +47,7 @@ class Points(PointsTest):
         self.sweep("s.h5", "--points", "p.csv")
         status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
         self.assertEqual((status["runs"], status["over"], len(status["groups"])), (14, 14, 3))
-        self.assertIn("14 rows of 14 runs, all whole", self.succeed("clogsweep", "verify", "s.h5").stdout)
+        self.assertIn("14 rows of 14 runs, all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
 
     def test_a_file_grows_by_points_and_by_lists(self):
         self.sweep("s.h5", "line-tension=0.5", "obstacle-gap=0.4", "seeds=1..2")
@@ -121,7 +121,7 @@ class Merged(PointsTest):
         self.assertLessEqual(max(map(len, parts)) - min(map(len, parts)), 2)
         self.assertIn("all.h5: 20 rows of 3 files\n", self.merge("2.h5", "1.h5", "3.h5"))
         self.check_same_rows("all.h5", "whole.h5")
-        self.assertIn("20 rows of 20 runs, all whole", self.succeed("clogsweep", "verify", "all.h5").stdout)
+        self.assertIn("20 rows of 20 runs, all undamaged", self.succeed("clogsweep", "verify", "all.h5").stdout)
 
     def test_files_of_other_values_and_overlapping_seeds_become_what_one_sweep_would_have_made(self):
         self.sweep("whole.h5", "line-tension=0.5,1,2", "obstacle-gap=0.4", "seeds=1..6")
@@ -143,7 +143,7 @@ class Merged(PointsTest):
         self.sweep("a.h5", "line-tension=0.5", "obstacle-gap=0.4", "preset=elastic", "seeds=1..2")
         self.sweep("b.h5", "line-tension=2,3", "obstacle-gap=0.5", "boxes=2", "seeds=2..3")
         self.merge("a.h5", "b.h5")
-        self.assertIn("6 rows of 6 runs, all whole", self.succeed("clogsweep", "verify", "all.h5").stdout)
+        self.assertIn("6 rows of 6 runs, all undamaged", self.succeed("clogsweep", "verify", "all.h5").stdout)
         own, a = self.rows("all.h5"), self.rows("a.h5")
         self.assertEqual(own[own.preset == "elastic"].drop(columns="task").to_csv(index=False), a.drop(columns="task").to_csv(index=False))
         config = self.write("c.cfg", self.attribute("all.h5", "config"))

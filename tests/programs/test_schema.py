@@ -20,6 +20,8 @@ SURROUNDINGS = {
     "friction": ["obstacle-density=saturated", "preset=elastic", "box=20", "vertices=64", "max-time=60"],
     "yield-traction": ["obstacle-density=saturated", "preset=elastic", "box=20", "vertices=64", "max-time=60"],
     "obstacles": ["box=10", "vertices=64", "max-time=300"],
+    **{key: ["obstacles=one.csv", "box=10", "vertices=64", "max-time=300", "release=entrance"]
+       for key in ("entrance", "entrance-from", "entrance-to", "exit", "length")},
 }
 # These belong to channels, which have passages and no clogging lengths: test_scenes.
 OF_CHANNELS = {"orifice", "wedge-angle", "tip-radius", "start", "end"}
@@ -31,7 +33,8 @@ VALUES = {"line-tension": "1,3", "wall-stiffness": "0.05,0.08", "obstacle-gap": 
           "perimeter-stiffness-ratio": "0.1,0.2", "contact-range": "0,0.01", "wall-tension": "0.5,1",
           "receding-angle": "120,150", "advancing-angle": "130,150", "friction": "0.1,0.2", "yield-traction": "0.05,0.1",
           "self-contact-range": "0.01,0.012", "clog-energy": "1e-17,1e-16", "dwell-length": "0.04,0.05", "break-up-neck": "0,0.05",
-          "obstacles": "one.csv,other.csv"}
+          "obstacles": "one.csv,other.csv", "length": "12,15", "entrance": "2,3", "entrance-from": "1,2", "entrance-to": "8,9",
+          "exit": "8,9"}
 
 
 class EveryKey(Analysis):

@@ -29,21 +29,23 @@ struct Comparison {
   int num_same_place = 0;    ///< of these, pairs that clogged at the same place
 };
 struct Comparisons {
-  std::vector<std::string> columns;    ///< of what varies on both sides: its values name a comparison
+  std::vector<std::string> columns;    ///< on either side's list, with a common value; they name a comparison
   std::vector<std::string> differing;  ///< columns with other values here than there
   std::vector<Comparison> all;
-  double within = 0;  ///< so near to each other two clogs are at the same place [sigma]; 0: see compare()
+  double within = 0;  ///< clogs no farther apart are at the same place [sigma]; 0: half a spacing
 };
 
 /// The sides of a comparison of files: the first is what the others are compared with.
 /// @throws Error as read_with_caution()
 std::vector<Side> sides_of_files(const std::vector<std::string>& paths);
-/// The values of a column: the first, in the order of numbers or words, is what the others are compared with.
+/// The sides of a comparison of a column's values, in the order of numbers or words: the others are compared
+/// with the first.
 /// @throws Error if there is no such column of parameters, or only one value
 std::vector<Side> sides_of_column(const std::string& name, const store::SweepFile& file);
 
-/// Each side with the first one, wherever they have the same values of what both vary. Runs of the same seed
-/// are pairs.
+/// Compares each side with the first one: parameter sets with the same values of Comparisons::columns. Runs
+/// of the same seed are pairs.
+/// @param sides  two or more
 /// @param within  see Comparisons; nothing: half an obstacle spacing
 /// @throws Error if they have no value in common, or if it is not clear which parameter sets belong together
 Comparisons compare(const std::vector<Side>& sides, double confidence, std::optional<double> within);

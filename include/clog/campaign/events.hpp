@@ -11,15 +11,16 @@
 
 namespace clog::campaign {
 
-/// What happens in a sweep, found by looking at its file again and again: a line of JSON for every start and
-/// end of a task, every new attempt, every round. A task that starts and ends between two looks has both
-/// lines.
+/// Events of a sweep, found by reading its file repeatedly: a line of JSON for every start, end and
+/// interruption of a task, every new attempt, every round. A task that starts and ends between two looks has
+/// both lines.
 class Events {
  public:
   /// @param path  of the file, for messages
   explicit Events(std::string path) : path_(std::move(path)) {}
 
-  /// What is new since the last look; at first how far the sweep is. @throws Error as stored_plan()
+  /// Events since the last look; the first look returns only how many runs there are, and how many are over.
+  /// @throws Error as stored_plan()
   std::vector<std::string> look(const store::SweepFile& file);
   /// The last line, when no sweep writes to the file any more.
   std::string end() const;

@@ -44,8 +44,7 @@ inline constexpr DoubtText doubt_texts[] = {
      "P(r) is not exponential (p < 0.05, Holm's test of all groups of ten clogs or more): one length does "
      "not describe these runs"},
     {Doubt::censored_by_time, 't', "censored_by_time",
-     "some runs were ended by max-time: lambda is right only if slow droplets are as likely to clog per "
-     "distance as fast ones"},
+     "runs ended by max-time: lambda is right only if slow droplets clog as often per distance as fast ones"},
     {Doubt::incomplete, 'i', "incomplete",
      "some runs are in progress or interrupted (they count as not clogged so far) or failed (excluded)"},
     {Doubt::damaged, 'd', "damaged", "damaged rows were excluded (clogsweep verify lists them)"},

@@ -35,9 +35,9 @@ class Ledger {
   /// Requests more of the plan's tasks; tasks_left() then returns the unfinished ones among these.
   void want(const std::vector<std::int64_t>& tasks);
   std::int64_t num_wanted() const { return num_wanted_; }
-  /// Continues with a plan that has the same tasks and more behind them, which are all requested:
-  /// tasks_left() then returns the unfinished ones among these. The table on the disk says so when this
-  /// returns.
+  /// Continues with a plan that has the same tasks and one more round after them, which it requests as a
+  /// whole: tasks_left() then returns the unfinished tasks of this round. The table on disk has the new
+  /// settings when this returns.
   /// @param plan, settings  with one more round
   void grow(const sweep::Plan& plan, const sweep::Settings& settings);
   /// Tasks that have begun and are not over, wanted or not.
@@ -57,9 +57,9 @@ class Ledger {
   /// What could not be checked in the file that the sweep resumes from; empty if everything was checked.
   const std::string& caution() const { return caution_; }
 
-  /// From now on it keeps how many of so many ranks are busy (Activity), for readers of the table.
+  /// From now on, the table tells its readers how many of `num_ranks` ranks are busy (Activity).
   void watch_ranks(int num_ranks);
-  /// A rank has ended its task, for good or not.
+  /// A rank has ended its task, whatever the outcome.
   void rank_is_free();
   sweep::Start start(std::int64_t task, int rank);
   void report(const sweep::Report& report);

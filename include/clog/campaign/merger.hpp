@@ -10,18 +10,19 @@
 
 namespace clog::campaign {
 
-/// Rows of several files as those of one sweep. A run that several have is there once: its result rather than
-/// where it has come to, and of two that are under way the one that has come farther.
+/// Rows of several files as those of one sweep. A run that several files have is there once: a result rather
+/// than an unfinished or failed row, an unfinished row rather than a failed one, otherwise the row with more
+/// steps. Of results that differ by instruction set, those of the file named first are kept.
 struct Merger {
   store::SweepFile table;
   std::vector<store::Journal::Entry> snapshots;  ///< of unfinished runs
   std::int64_t num_shared = 0;                   ///< runs that several files have
-  std::int64_t num_other_bits = 0;  ///< of these, runs with other bits under another instruction set
-  std::int64_t num_faulty = 0;      ///< rows with what cannot be, which are left out
+  std::int64_t num_other_bits = 0;  ///< rows left out: other bits of the same run, another instruction set
+  std::int64_t num_faulty = 0;      ///< rows left out: physically impossible
 };
 
-/// For a file of its own: complete sweeps and stopped ones.
-/// @param maker  the program that makes it, as cli::origin() says it
+/// Merges complete or stopped sweeps, to be written to a new file.
+/// @param maker  provenance of the program that makes the new file, from cli::origin()
 /// @throws Error that names the files and the task, if two rows of a run contradict each other, a file is
 /// damaged or being written, or has other circles under the same name
 Merger merge(const std::vector<std::string>& paths, const store::Provenance& maker);
@@ -30,19 +31,19 @@ Merger merge(const std::vector<std::string>& paths, const store::Provenance& mak
 /// config cannot be read any more. A single file is returned as it is.
 store::SweepFile read_together(const std::vector<std::string>& paths);
 
-/// Tasks get the numbers, and circles the names, that they have in the settings; rows beyond follow at the
-/// end.
+/// Gives tasks the numbers, and circles the names, that they have in the settings; rows of runs outside the
+/// settings follow at the end.
 void number_tasks(const sweep::Settings& settings, store::SweepFile& table);
 
-/// Where the rows of a file made of others come from.
+/// Provenance of a file that is made from rows of other files.
 /// @param maker  the program that makes the file, as cli::origin() says it
 /// @param config  of the new file
 /// @param parts  a line for each part, see part_line()
 store::Provenance joint_provenance(const store::Provenance& maker, const std::string& config,
                                    const std::vector<const store::SweepFile*>& files,
                                    const std::string& parts);
-/// One part in JSON: its name, the number of its rows, versions, hosts, first call; and those of its own
-/// parts.
+/// One part as a line of JSON (file name, number of rows, versions, hosts, command line), followed by the
+/// lines of its own parts.
 std::string part_line(const std::string& path, const store::SweepFile& file,
                       const std::string& condition = "");
 

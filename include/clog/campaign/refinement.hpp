@@ -52,7 +52,7 @@ std::vector<ExpectedRun> expected_runs(std::span<const RefinedPoint> points,
 double known_precision(const fit::Curve& curve, std::span<const fit::CurvePlace> places,
                        const RefinementGoal& goal);
 
-/// Blocks of seeds for the next round: how many more each candidate gets.
+/// Limits of the next round, which adds blocks of seeds to candidates.
 struct RoundLimits {
   std::int64_t seeds_per_block = 1;
   std::vector<std::int64_t> blocks_left;  ///< that each candidate may still get
@@ -60,14 +60,14 @@ struct RoundLimits {
   /// Of all that remains: a block that costs more is not chosen.
   double most_work = std::numeric_limits<double>::infinity();
 };
-/// Greedy: each block goes where the variance of log lambda, weighed along the curve by what it matters to
-/// the goal, falls most for its work (rank-one update of the posterior covariance with the clogs to be
-/// expected there).
+/// How many more blocks of seeds each candidate gets. Greedy: each block goes where it lowers the variance of
+/// log lambda most for its work. The variance is weighted along the curve by how much each place matters to
+/// the goal (rank-one update of the posterior covariance with the expected clogs).
 std::vector<std::int64_t> choose_blocks(const fit::Curve& curve, std::span<const ExpectedRun> runs,
                                         const RefinementGoal& goal, RoundLimits limits);
 
-/// A round is to cost so much of what all before it did, so that few rounds do, and none is decided on
-/// little.
+/// Cost of a round as a share of the cost of all earlier rounds: large enough that few rounds suffice, small
+/// enough that none is decided on little data.
 inline constexpr double share_of_round = 0.5;
 
 }  // namespace clog::campaign

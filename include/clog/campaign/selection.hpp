@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,15 +13,21 @@ namespace clog::campaign {
 /// What a row must have in a column: `line_tension>=0.5`, `status=clogged,broken`, `preset!=robust`.
 class Condition {
  public:
-  /// @throws Error if it is none, there is no such column, or the value is not one of it
+  /// @throws Error if `text` is not a condition, its column does not exist, a number cannot be read, or the
+  /// relation orders words or a list
   explicit Condition(const std::string& text);
 
   /// A row that has no value in the column holds to no condition.
   bool holds(const sweep::RunRow& row) const;
 
+  /// A misspelt word would be equal to no row's, and so select none or all.
+  /// @throws Error if no row has one of the words
+  void require_known_words(std::span<const sweep::RunRow> rows) const;
+
  private:
   enum class Relation { equal, unequal, less, at_most, more, at_least };
 
+  std::string text_;
   const sweep::Column* column_;
   Relation relation_;
   std::vector<std::string> words_;  // one of them
@@ -32,7 +39,7 @@ class Condition {
 
 /// The rows of a file that hold to all conditions, as a sweep that has just these runs.
 /// @param maker  the program that makes the file, as cli::origin() says it
-/// @throws Error if no row does
+/// @throws Error if no row does, or a word is in no row
 store::SweepFile select(const std::string& path, const std::vector<std::string>& conditions,
                         const store::Provenance& maker);
 

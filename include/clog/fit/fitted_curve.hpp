@@ -6,12 +6,12 @@
 
 /// A smooth curve through clogging lengths: lambda as a function of one or two keys.
 ///
-/// Runs that went the way S together and clogged d times are a Poisson count with exposure S: with f = log
-/// lambda, log L = -d f - S exp(-f), which is concave in f (Lawless, Statistical Models and Methods for
-/// Lifetime Data, ch. 4). f itself is a Gaussian process over the logarithms of the keys, its kernel a
-/// product of Matern's with smoothness 5/2. Its posterior is Laplace's approximation (Rasmussen and Williams,
-/// Gaussian Processes for Machine Learning, algorithms 3.1, 3.2), averaged over amplitudes and correlation
-/// lengths by the marginal likelihood.
+/// Runs that travelled the distance S in all and clogged d times are a Poisson count d with exposure S: with
+/// f = log lambda, log L = -d f - S exp(-f), which is concave in f (Lawless, Statistical Models and Methods
+/// for Lifetime Data, ch. 4). f itself is a Gaussian process over the logarithms of the keys, its kernel a
+/// product of Matern kernels with smoothness 5/2. Its posterior is Laplace's approximation (Rasmussen and
+/// Williams, Gaussian Processes for Machine Learning, algorithms 3.1, 3.2), averaged over amplitudes and
+/// correlation lengths by the marginal likelihood.
 namespace clog::fit {
 
 /// A place of the curve: logarithms of the keys; the second is 0 where there is one key.
@@ -40,8 +40,8 @@ struct Curve {
   Eigen::VectorXd deviation() const { return covariance.diagonal().cwiseMax(0).cwiseSqrt(); }
 };
 
-/// The curve for scales that are known. @throws std::invalid_argument unless there is a point, its way is
-/// positive and finite, and all places are finite
+/// The curve for known scales. @throws std::invalid_argument unless there is a point, and every point has a
+/// finite place, a positive, finite distance, and no negative number of clogs
 Curve curve_of_scales(std::span<const CurvePoint> points, const CurveScales& scales,
                       std::span<const CurvePlace> places);
 
@@ -50,12 +50,12 @@ Curve curve_of_scales(std::span<const CurvePoint> points, const CurveScales& sca
 /// @throws std::invalid_argument as curve_of_scales()
 Curve fit_curve(std::span<const CurvePoint> points, std::span<const CurvePlace> places);
 
-/// What `num_clogs` more at a place would add to what is known: the covariance of `curve` at all places with
-/// that one, times the square root of the share that falls (rank-one update): their squares are by how much
-/// the variances fall.
+/// How `num_clogs` more clogs at a place would narrow the curve (rank-one update): the squares of the values
+/// returned are the falls of the variance at all places. The values are the covariances with that place,
+/// times sqrt(num_clogs / (1 + num_clogs variance)).
 /// @param place_index  of a place of the curve
 Eigen::VectorXd fall_of_deviation(const Curve& curve, Eigen::Index place_index, double num_clogs);
-/// The same runs are taken as done. The mean stays: what they will say is not known.
+/// Updates the covariance as if these clogs had been observed. The mean stays: the results are not known yet.
 void take_as_done(Curve& curve, Eigen::Index place_index, double num_clogs);
 
 }  // namespace clog::fit

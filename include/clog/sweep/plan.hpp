@@ -21,8 +21,8 @@ using GroupOf = std::function<std::int64_t(std::int64_t task)>;
 /// each point.
 ///
 /// Seeds vary slowest, so that every curve fills evenly and neighbouring tasks share their obstacle array:
-/// task s num_groups() + g is seed s of group g, as long as all groups have as many. Then come the tasks of
-/// the first round, of the second, and so on; a round may bring more seeds to groups that there are. So a
+/// task s * num_groups() + g is seed s of group g if all groups have equally many seeds. The tasks of the
+/// first round follow, then those of the second, and so on; a round may add seeds to existing groups. So a
 /// plan with one more round has the same tasks before it, under the same numbers.
 class Plan {
  public:
@@ -40,7 +40,7 @@ class Plan {
   std::int64_t group_of(std::int64_t task) const;
   std::int64_t num_seeds(std::int64_t group) const;
   std::vector<std::uint32_t> seeds(std::int64_t group) const;
-  /// Its values as lists have them, in the order of keys(); that of the seeds is empty.
+  /// The group's values as texts of the lists, in the order of keys(); the text of the seeds is empty.
   std::vector<std::string> texts(std::int64_t group) const;
   /// @param place  of its seed among those of the group, 0 <= place < num_seeds(group)
   std::int64_t task_of(std::int64_t group, std::int64_t place) const;

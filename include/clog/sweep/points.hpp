@@ -7,8 +7,8 @@
 
 namespace clog::sweep {
 
-/// Parameter sets one by one: in each of them these keys have its texts, and all others have those of the
-/// settings. A text may be a list, and that of the key seeds mostly is one.
+/// Parameter sets, listed one by one: each gives texts for these keys, and all other keys have the texts of
+/// the settings. A text may be a list; that of the key seeds usually is.
 struct Points {
   std::vector<std::string> keys;
   /// A text for every key; an empty one stands for what the settings say.

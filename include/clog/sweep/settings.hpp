@@ -68,9 +68,9 @@ class Settings {
   /// From the text that to_config() wrote. @throws Error as set(), or if a line is not one of a config
   static Settings from_config(const std::string& text);
 
-  /// A preset sets the keys that have not been given themselves, before or after it. So does what leaves no
-  /// choice: a channel or a wall, where nothing is random, the seed; keys of a channel and user-supplied
-  /// circles the layout.
+  /// A preset sets the keys that have not been given themselves, before or after it. Other keys set what
+  /// follows from them in the same way: user-supplied circles and keys of a channel set the layout; a channel
+  /// or a wall, where nothing is random, sets the seed.
   /// @throws Error if there is no such key or its list cannot be read
   void set(const std::string& name, const std::string& text);
   /// By set(), not by a preset or default.
@@ -91,8 +91,8 @@ class Settings {
   void set_shard(Shard shard) { shard_ = shard; }
   const Shard& shard() const { return shard_; }
 
-  /// Settings without points in which every word has one value: their lists of numbers are a product. There
-  /// is one for each combination of words, of each point.
+  /// Called for each combination of words of each point, with settings that have no points and one value for
+  /// each key of words, so that the runs are the product of the other lists.
   /// @param point  its place; -1 where there are no points
   using VisitBranch = std::function<void(const Settings& branch, std::int64_t point)>;
   void visit_branches(const VisitBranch& visit) const;
