@@ -299,10 +299,10 @@ class Run(ProgramTest):
         self.write("twice.csv", "x,y\n3,3\n\n1,1\n# again\n1,1\n")
         self.write("narrow.csv", "# 0.005 apart\n1,1,0.5\n5,5,0.5\n1.505,1,0.5\n")
         self.write("wide.csv", "5,5,20\n")
-        self.write("radius.csv", "x,y,radius\n1,2,0.5\n")
+        self.write("both.csv", "x,y,radius,diameter\n1,2,0.5,1\n")
         self.write("millimetres.csv", "x [mm],y [mm]\n1,2\n")
-        self.write("semicolons.csv", "x;y;diameter" + 60 * ";" + "\n1;2;0.5\n")
-        self.write("numbers.csv", "1;2;0.5\n")
+        self.write("semicolons.csv", "a;b;diameter" + 60 * ";" + "\n1;2;0.5\n")
+        self.write("numbers.csv", "1;2;0.5;7\n")
         self.write("nan.csv", "x,y\n1,2\n3,nan\n")
         self.write("infinite.csv", "1,2,inf\n")
         self.write("header.csv", "x,y\n")
@@ -342,10 +342,10 @@ class Run(ProgramTest):
             (["array", "--obstacles", "nan.csv", *out], ["nan.csv line 3", "nan"]),
             (["array", "--obstacles", "infinite.csv", *out], ["infinite.csv line 1", "inf"]),
             (["array", "--obstacles", "header.csv", *out], ["no obstacles"]),
-            (["array", "--obstacles", "radius.csv", *out], ["radius.csv", "the columns have to be x,y or x,y,diameter"]),
+            (["array", "--obstacles", "both.csv", *out], ["both.csv line 1", "one of diameter and radius"]),
             (["array", "--obstacles", "millimetres.csv", *out],
-             ["millimetres.csv line 1", "separated by commas, in droplet diameters; here they are 'x [mm],y [mm]'"]),
-            (["array", "--obstacles", "semicolons.csv", *out], ["separated by commas", f"'x;y;diameter{48 * ';'}...'"]),
+             ["millimetres.csv line 1", "the columns have to be x, y", "here they are 'x [mm],y [mm]'"]),
+            (["array", "--obstacles", "semicolons.csv", *out], ["the columns have to be x, y", f"'a,b,diameter{48 * ','}...'"]),
             (["array", "--obstacles", "numbers.csv", *out], ["numbers.csv line 1: needs x,y or x,y,diameter, separated by commas"]),
             (["array", "--obstacles", "empty.csv", *out], ["no obstacles"]),
             (["array", "--obstacles", "outside.csv", "obstacle-gap=0.3", *out], ["contradict", "the file's own gap"]),
