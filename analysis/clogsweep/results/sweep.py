@@ -83,7 +83,7 @@ class Sweep:
         options = [f"--crossing={','.join(repr(float(length)) for length in crossing)}"] if crossing else []
         return fits.curves(self._program("clogfit"), self.path, ",".join(keys), *options)
 
-    def status(self) -> Status:
+    def status(self) -> dict[str, Any]:
         """How far the sweep is, as clogsweep status says."""
         return Status(json.loads(programs.run_program(self._program("clogsweep"), "status", self.path, "--format", "json")))
 
