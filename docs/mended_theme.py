@@ -63,5 +63,5 @@ def mend(app, exception):
 
 def setup(app):
     """For Sphinx."""
-    app.connect("build-finished", mend)
+    app.connect("build-finished", mend, priority=900)  # after furo, which writes its own style sheets then
     return {"parallel_read_safe": True}

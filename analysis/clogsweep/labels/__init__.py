@@ -15,7 +15,7 @@ AXES = {
     "length": r"clogging length $\lambda/\sigma$",
     "speed": r"mean speed $\langle v_g\rangle/v_t$",
     "slope": r"lateral displacement per distance",
-    "h": r"distance from the orifice $h/\sigma$",
+    "h": r"position relative to the orifice $h/\sigma$",
     "shape": r"shape parameter $\mathcal{A} = P^2/(4\pi a)$",
     "profile": r"speed $v_g/v_t$",
 }
