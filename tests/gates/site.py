@@ -71,7 +71,7 @@ def faults_of_page(driver, address, page, width, scheme):
     wait_for(driver, "document.readyState == 'complete'")
     if page.startswith("search"):
         wait_for(driver, "/matching/.test(document.body.innerText) && document.querySelector('.search li .context')")
-    elif driver.execute_script("return !!document.querySelector('.math')"):
+    elif driver.execute_script("return [...document.scripts].some((script) => /mathjax/i.test(script.src))"):
         wait_for(driver, "window.MathJax && document.querySelector('.MathJax, .mjx-chtml, .MathJax_CHTML')")
     yield from (entry["message"] for entry in driver.get_log("browser") if entry["level"] in ("WARNING", "SEVERE"))
     yield from (f"asks {asked}" for asked in requests(driver) if not asked.startswith((address, "data:", "about:", "blob:")))

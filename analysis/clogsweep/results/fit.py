@@ -86,7 +86,8 @@ class Fit:
     def summary(self) -> pandas.DataFrame:
         """Of `groups` what varies, lengths and speeds, or what came of a channel or a wall, and doubts."""
         known, columns = self.groups, [column["name"] for column in self.told["columns"]]
-        varies = [name for name in columns if name in known and known[name].nunique(dropna=False) > 1]
+        chosen = {self.known.abscissa, *self.known.curve_parameters()}  # what is automatic follows from these
+        varies = [name for name in columns if name in chosen and known[name].nunique(dropna=False) > 1]
         told = [name for name in (PASSAGE if self.known.are_passages else LENGTHS) if name in known and not known[name].isna().all()]
         return known[[*varies, *(name for name in told if name not in varies)]]
 
