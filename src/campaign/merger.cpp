@@ -100,7 +100,7 @@ class Rows {
     if (known.instruction_set == row.instruction_set && !is_mixed)
       throw Error(fmt::format(
           "cannot join {} and {} (task {} of the first and task {} of the second are the same run, but their "
-          "results differ: {}); leave out the wrong file, `clogsweep replay` tells which",
+          "results differ: {}); exclude the wrong file, `clogsweep replay` tells which",
           paths_[place], path, known.task, row.task, joined(differing)));
     ++num_other_bits_;
     return false;

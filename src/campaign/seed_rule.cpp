@@ -111,7 +111,7 @@ GrowingSweep growing_sweep(const sweep::Settings& settings, double precision, st
       !settings.shard().is_whole())
     throw Error(
         "--until-precision needs the same first seeds in all parameter sets, and the whole sweep; remove "
-        "seeds from the points, and leave out --shard");
+        "seeds from the points, and --shard");
   GrowingSweep sweep{settings, plan.size(), {precision, plan.num_groups(), first_seeds, most_seeds}};
   if (most_seeds == first_seeds) return sweep;
   long long last = 0;
