@@ -31,6 +31,7 @@ struct ParameterSet {
 
 std::vector<Value> values_of(const RunRow& row, const std::vector<std::string>& columns) {
   std::vector<Value> values;
+  values.reserve(columns.size());
   for (const std::string& name : columns) values.push_back(sweep::column(name).get(row));
   return values;
 }
@@ -47,6 +48,7 @@ std::vector<ParameterSet> sets_of(const std::vector<RunRow>& rows) {
     set.by_seed.emplace(row.parameters.seed, &row);
   }
   std::vector<ParameterSet> all;
+  all.reserve(sets.size());
   for (auto& [values, set] : sets) all.push_back(std::move(set));
   return all;
 }
@@ -177,6 +179,7 @@ std::vector<Side> sides_of_column(const std::string& name, const store::SweepFil
   std::vector<std::string> lists = listed_columns(file.provenance);
   std::erase(lists, column);
   std::vector<Side> sides;
+  sides.reserve(rows.size());
   for (auto& [value, own] : rows)
     sides.push_back({fmt::format("{}={}", column, sweep::text_of(value)), std::move(own), lists});
   return sides;
