@@ -100,6 +100,7 @@ fit::Observation observation(const RunRow& row) { return {row.distance, row.stat
 
 std::vector<fit::Observation> observations(const ParameterSet& set) {
   std::vector<fit::Observation> all;
+  all.reserve(set.by_seed.size());
   for (const auto& [seed, row] : set.by_seed) all.push_back(observation(*row));
   return all;
 }

@@ -172,6 +172,7 @@ void fit_clogging(Group& group, std::span<const Ending> runs, double confidence,
   // Observations in which only some of the ends are such, the other runs being censored where they ended.
   const auto observe = [&](auto is_end) {
     std::vector<fit::Observation> observations;
+    observations.reserve(runs.size());
     for (const Ending& run : runs) observations.push_back({run.distance - from_distance, is_end(run)});
     return observations;
   };

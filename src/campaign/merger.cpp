@@ -128,6 +128,7 @@ void add_runs(const Part& part, RunList& runs) {
 
 std::vector<const store::SweepFile*> tables_of(const std::vector<Part>& parts) {
   std::vector<const store::SweepFile*> tables;
+  tables.reserve(parts.size());
   for (const Part& part : parts) tables.push_back(&part.table);
   return tables;
 }
@@ -212,6 +213,7 @@ store::Provenance joint_provenance(const store::Provenance& maker, const std::st
 
 Merger merge(const std::vector<std::string>& paths, const store::Provenance& maker) {
   std::vector<Part> parts;
+  parts.reserve(paths.size());
   for (const std::string& path : paths) parts.push_back(whole_part(path));
   Merger merger = join(parts);
   RunList runs;
@@ -238,6 +240,7 @@ Merger merge(const std::vector<std::string>& paths, const store::Provenance& mak
 store::SweepFile read_together(const std::vector<std::string>& paths) {
   if (paths.size() == 1) return read_with_caution(paths.front());
   std::vector<Part> parts;
+  parts.reserve(paths.size());
   for (const std::string& path : paths) parts.push_back({path, read_with_caution(path), {}});
   Merger merger = join(parts);
   std::string config;

@@ -23,7 +23,7 @@ constexpr double confidence = 0.95;
 /// How much each place of the curve matters. A little of it is spread over all, so that none is forgotten.
 VectorXd weights_of(const fit::Curve& curve, const RefinementGoal& goal) {
   constexpr double spread = 0.1;
-  const VectorXd even = VectorXd::Constant(curve.mean.size(), 1.0 / static_cast<double>(curve.mean.size()));
+  VectorXd even = VectorXd::Constant(curve.mean.size(), 1.0 / static_cast<double>(curve.mean.size()));
   VectorXd special;
   if (goal.kind == Kind::peak) special = fit::peak_probabilities(curve);
   if (goal.kind == Kind::crossing) {
@@ -88,7 +88,6 @@ std::vector<ExpectedRun> expected_runs(std::span<const RefinedPoint> points,
 
 double known_precision(const fit::Curve& curve, std::span<const fit::CurvePlace> places,
                        const RefinementGoal& goal) {
-  constexpr double nothing = std::numeric_limits<double>::infinity();
   if (goal.kind == Kind::curve) {
     const double mean_square = curve.covariance.diagonal().cwiseMax(0).mean();
     return std::sinh(fit::normal_deviate(confidence) * std::sqrt(mean_square));
@@ -102,9 +101,9 @@ double known_precision(const fit::Curve& curve, std::span<const fit::CurvePlace>
     double widest = 0;
     for (const fit::CurveCrossing& one : fit::find_crossings(curve, places, goal.length, confidence))
       widest = std::max(widest, half_width(one.interval.lower, one.interval.upper));
-    return widest > 0 ? widest : nothing;
+    if (widest > 0) return widest;
   }
-  return nothing;
+  return std::numeric_limits<double>::infinity();  // nothing is known
 }
 
 std::vector<std::int64_t> choose_blocks(const fit::Curve& curve, std::span<const ExpectedRun> runs,

@@ -72,6 +72,7 @@ std::vector<std::string> preferred_values(const std::vector<double>& given, std:
     if (values.size() <= std::max(most, given.size() + 1)) break;
   }
   std::vector<std::string> texts;
+  texts.reserve(values.size());
   for (const auto& [value, text] : values) texts.push_back(text);
   return texts;
 }

@@ -142,10 +142,10 @@ std::vector<std::size_t> differing_places(const std::vector<const Texts*>& all) 
 /// Every text of a key once.
 Texts values_of(const std::vector<const Texts*>& all, std::size_t place) {
   Texts values;
+  values.reserve(all.size());
   for (const Texts* one : all) values.push_back((*one)[place]);
   std::ranges::sort(values, is_less);
-  const auto rest = std::ranges::unique(values);
-  values.erase(rest.begin(), rest.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
   return values;
 }
 
@@ -153,6 +153,7 @@ Texts values_of(const std::vector<const Texts*>& all, std::size_t place) {
 
 sweep::Settings RunList::settings() const {
   std::vector<const Texts*> all;
+  all.reserve(sets_.size());
   for (const ParameterSet& set : sets_) all.push_back(&set.texts);
   const std::vector<std::size_t> differing = differing_places(all);
   const bool have_same_seeds =

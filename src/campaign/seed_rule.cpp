@@ -88,7 +88,7 @@ std::string SeedRule::text() const {
 
 std::string outcome(const SeedRule& rule, const sweep::Plan& plan) {
   const std::string sets = sweep::counted(rule.num_groups(), "parameter set");
-  const std::string reached = fmt::format("{} of {} reached --until-precision", rule.num_reached(), sets);
+  std::string reached = fmt::format("{} of {} reached --until-precision", rule.num_reached(), sets);
   if (rule.unreached().empty()) return reached;
   constexpr std::size_t most_named = 4;
   std::vector<std::string> named;

@@ -25,6 +25,7 @@ const std::map<std::string, std::string> known_keys = {
 
 std::string names_of_keys() {
   std::vector<std::string> names;
+  names.reserve(known_keys.size());
   for (const auto& [name, units] : known_keys) names.push_back(name);
   return joined(names);
 }

@@ -108,6 +108,7 @@ Key preset_key() {
 
 std::vector<Key> make_keys() {
   std::vector<Key> all;
+  all.reserve(parameter_schema().size());
   for (const Parameter& parameter : parameter_schema()) all.push_back(key_of(parameter));
   all.insert(all.begin() + 1, preset_key());  // behind the model
   return all;
@@ -185,6 +186,7 @@ const Key& find_key(std::string_view name) {
   const auto key = std::find_if(keys().begin(), keys().end(), [&](const Key& k) { return k.name == name; });
   if (key != keys().end()) return *key;
   std::vector<std::string> names;
+  names.reserve(keys().size());
   for (const Key& k : keys()) names.push_back(k.name);
   const std::vector<std::string> meant = meant_names(name, names);
   throw Error(meant.empty() ? fmt::format("unknown key '{}'; --help lists the keys", name)

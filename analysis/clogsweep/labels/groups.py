@@ -97,8 +97,8 @@ class Groups:
     def _is_automatic(self, name: str) -> bool:
         """Can its values follow from other parameters? Not if the sweep gives a number or a list for it."""
         fillings = self.values("obstacle_filling")
-        if name in ("obstacle_gap", "obstacle_density") and fillings == {"file"} and self.varies("obstacles"):
-            return True  # of the circles of each file
+        if name in ("obstacle_gap", "obstacle_density") and fillings == {"file"}:
+            return True  # it follows from the circles and the length of their array
         if name in self.lists or self._is_given_number(name):
             return False
         of_filling = fillings <= {"saturated", "lattice"} or bool(self._share_of_saturated())
