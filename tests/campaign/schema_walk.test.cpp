@@ -39,6 +39,7 @@ sweep::Settings settings_for(const Parameter& parameter) {
     settings.attach("one.csv", OwnCircles({{5, 5, 0.2}, {7, 5.5, 0.3}}));
     settings.attach("other.csv", OwnCircles({{5, 5, 0.2}, {7, 5.5, 0.4}}));
     settings.set("obstacles", "one.csv");
+    if (std::string(parameter.key).starts_with("entrance")) settings.set("release", "entrance");
     return settings;
   }
   settings.set("obstacle-gap", "0.6");
@@ -61,6 +62,9 @@ std::string other_value(const Parameter& parameter, const sweep::Settings& setti
                                  [&](const std::string& word) { return ParameterValue(word) != value; });
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer + 1);
   if (parameter.key == std::string("advancing-angle")) return "150";
+  if (parameter.key == std::string("exit")) return "40";  // downstream of the release at the centre
+  if (parameter.key == std::string("length")) return "50";
+  if (parameter.key == std::string("entrance-to")) return "10";
   if (parameter.unit == std::string("degrees")) return "10";  // a little less may be the same lattice
   if (const auto* number = std::get_if<double>(&value)) return shortest(*number == 0 ? 0.05 : 0.8 * *number);
   return "0.5";

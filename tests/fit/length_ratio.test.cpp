@@ -42,7 +42,7 @@ LengthRatio fit_pairs(const std::vector<Pair>& pairs) {
 
 TEST(LengthRatio, IsInverseWhenTheSidesAreExchanged) {
   std::mt19937 engine(1);
-  std::vector<Pair> pairs = drawn_pairs(engine, 40, 0.6, 1.5);
+  std::vector<Pair> pairs = drawn_pairs(engine, 400, 0.6, 1.5);
   const LengthRatio ratio = fit_pairs(pairs);
   for (Pair& pair : pairs) std::swap(pair.here, pair.there);
   const LengthRatio inverse = fit_pairs(pairs);
