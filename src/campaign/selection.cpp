@@ -55,7 +55,7 @@ Condition::Condition(const std::string& text) : text_(text) {
       {"==", Relation::equal},   {"=", Relation::equal},    {"<", Relation::less},
       {">", Relation::more}};
   const std::size_t place = std::min(text.find_first_of("!<>="), text.size());
-  const auto relation = std::ranges::find_if(relations, [&](const auto& one) {
+  const auto* const relation = std::ranges::find_if(relations, [&](const auto& one) {
     return text.compare(place, std::string(one.first).size(), one.first) == 0;
   });
   if (place == 0 || place == text.size() || relation == std::end(relations))
