@@ -76,7 +76,7 @@ class Compared(Analysis):
     def test_mistakes_get_one_line(self):
         self.sweep("s.h5", "seeds=1..2")
         self.succeed("clogsweep", *QUICK, "line-tension=3,4", "seeds=1..2", "--output", "t.h5")
-        for arguments, words in [(["s.h5"], ["--by"]), ([], ["missing sweep files"]), (["s.h5", "t.h5"], ["line_tension", "no value in common"]),
+        for arguments, words in [(["s.h5"], ["--by"]), ([], ["missing sweep files"]), (["s.h5", "t.h5"], ["line_tension", "none of these values"]),
                                  (["s.h5", "--by", "line-tention"], ["did you mean line_tension?"]), (["s.h5", "--by", "friction"], ["all runs have the same"]),
                                  (["s.h5", "none.h5"], ["none.h5"]), (["s.h5", "t.h5", "--within", "0"], ["--within=0"])]:
             self.refuse("clogfit", "compare", *arguments, words=words)
