@@ -47,7 +47,7 @@ CurveKeys varying_keys(std::span<const Group> groups) {
 
 std::string names_of(const CurveKeys& keys) {
   std::vector<std::string> names;
-  for (const sweep::Column* key : keys) names.push_back(key->parameter->key);
+  for (const sweep::Column* key : keys) names.emplace_back(key->parameter->key);
   return joined(names, ", ");
 }
 
