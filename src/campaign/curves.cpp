@@ -14,6 +14,7 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/number_text.hpp"
+#include "clog/core/tools/split.hpp"
 #include "clog/sweep/settings.hpp"
 
 namespace clog::campaign {
@@ -49,16 +50,6 @@ std::string names_of(const CurveKeys& keys) {
   std::vector<std::string> names;
   for (const sweep::Column* key : keys) names.emplace_back(key->parameter->key);
   return joined(names, ", ");
-}
-
-std::vector<std::string> split(const std::string& names) {
-  std::vector<std::string> all(1);
-  for (const char letter : names)
-    if (letter == ',')
-      all.emplace_back();
-    else
-      all.back() += letter;
-  return all;
 }
 
 const sweep::Column* named_key(const std::string& name, std::span<const Group> groups) {
@@ -156,7 +147,7 @@ CurveKeys curve_keys(std::span<const Group> groups, const std::string& names) {
     return keys;
   }
   CurveKeys keys;
-  for (const std::string& name : split(names)) keys.push_back(named_key(name, groups));
+  for (const std::string& name : split_at_commas(names)) keys.push_back(named_key(name, groups));
   if (keys.size() > most_keys || (keys.size() == most_keys && keys[0] == keys[1]))
     throw Error(
         fmt::format("invalid --key={} (a curve is drawn over one key, or over two different ones)", names));

@@ -13,6 +13,7 @@
 #include "clog/campaign/stored_sweep.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/split.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::campaign {
@@ -30,16 +31,6 @@ const sweep::Column& find_column(const std::string& name, const std::string& con
   throw Error(fmt::format(
       "invalid condition '{}' (the table has no column '{}'){}", condition, name,
       meant.empty() ? "; clogsweep --schema lists them" : fmt::format("; did you mean {}?", meant)));
-}
-
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    parts.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return parts;
 }
 
 std::string trimmed(const std::string& text) {
@@ -64,7 +55,8 @@ Condition::Condition(const std::string& text) : text_(text) {
   column_ = &find_column(trimmed(text.substr(0, place)), text);
   relation_ = relation->second;
   const bool is_word = column_->kind == ValueKind::word;
-  for (const std::string& value : split(text.substr(place + std::string(relation->first).size()))) try {
+  for (const std::string& value : split_at_commas(text.substr(place + std::string(relation->first).size())))
+    try {
       if (is_word)
         words_.push_back(trimmed(value));
       else

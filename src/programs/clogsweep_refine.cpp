@@ -11,6 +11,7 @@
 
 #include "clog/campaign/stored_sweep.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/split.hpp"
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/value_list.hpp"
 
@@ -77,16 +78,6 @@ double budget_of(std::string text) {
   throw Error("invalid --budget=" + given + " (must be a number of core-hours above zero) try 10h");
 }
 
-std::vector<std::string> split(const std::string& names) {
-  std::vector<std::string> all(1);
-  for (const char letter : names)
-    if (letter == ',')
-      all.emplace_back();
-    else
-      all.back() += letter == '_' ? '-' : letter;
-  return all;
-}
-
 std::int64_t most_seeds_of(const cli::CommandLine& line, std::int64_t block) {
   constexpr std::int64_t usual_blocks = 50;
   const double number = line.get_number("most-seeds", static_cast<double>(usual_blocks * block));
@@ -142,7 +133,8 @@ std::optional<campaign::Refiner> refiner(const cli::CommandLine& line) {
   if (!line.has("until") && !line.has("budget"))
     throw Error("--refine needs an end; try --until curve=20%, or --budget 10h");
   RefinementOptions options;
-  options.keys = split(line.get("refine"));
+  options.keys = split_at_commas(line.get("refine"));
+  for (std::string& key : options.keys) std::ranges::replace(key, '_', '-');
   if (line.has("until")) options.goal = goal_of(line.get("until"));
   if (line.has("budget")) options.budget = budget_of(line.get("budget"));
   if (line.has("same-seeds")) options.seeds = RefinementOptions::Seeds::same;
