@@ -146,7 +146,7 @@ std::vector<bool> shown_fields(const std::vector<Group>& groups, const std::vect
     shown[i] = (varies[i] && !group_columns()[i]->may_be_automatic(run)) ||
                (is_there && is_of(scene_of(run).gap_key)) || is_of(model_of(run).stiffness_key);
   }
-  // Of automatic values that are given, those that others follow from come first.
+  // A given automatic value that others follow from comes before these.
   std::vector<std::size_t> order(first.size());
   std::iota(order.begin(), order.end(), 0);
   const auto rank = [&](std::size_t i) {
@@ -170,7 +170,7 @@ std::vector<bool> shown_fields(const std::vector<Group>& groups, const std::vect
   return shown;
 }
 
-/// Of the fields of a group that have one, and of what is in its lists.
+/// Units of a group's fields, where they have one, and of the entries of its lists.
 nlohmann::ordered_json field_units(const Group& group, const std::optional<LaboratoryScale>& lab) {
   nlohmann::ordered_json all;
   for (const auto& [name, value] : all_fields(group, lab))
@@ -180,7 +180,7 @@ nlohmann::ordered_json field_units(const Group& group, const std::optional<Labor
   return all;
 }
 
-/// Of parameters that do not differ: are they worth a word?
+/// Whether each parameter is worth a word, if it does not differ.
 std::vector<bool> named_if_shared(const sweep::RunRow& row, SharedParameters shared) {
   const std::vector<Field> fields = parameter_fields(row);
   const std::vector<Field> usual =
@@ -196,7 +196,7 @@ std::vector<bool> named_if_shared(const sweep::RunRow& row, SharedParameters sha
   return named;
 }
 
-/// Of what all runs share, what is worth a word.
+/// The shared parameters that are worth a word.
 std::vector<std::string> shared_words(const sweep::RunRow& row, const std::vector<bool>& varies,
                                       const std::vector<bool>& shown, SharedParameters shared) {
   const std::vector<Field> fields = parameter_fields(row);

@@ -363,7 +363,7 @@ void Ledger::publish() {
         " (it was removed while the sweep was running); nothing is lost; the same command resumes the sweep");
 }
 
-/// What somebody else has put in the table's place is not overwritten: the table gets another name.
+/// Writes the table under another name, to keep the file that somebody else has put in its place.
 void Ledger::rescue(const std::vector<sweep::RunRow>& rows) {
   if (journal_.is_there()) rewrite_journal(true);
   int number = 1;

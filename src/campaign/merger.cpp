@@ -43,7 +43,7 @@ Part whole_part(const std::string& path) {
   return {path, std::move(found.table), std::move(found.snapshots)};
 }
 
-/// What two rows of one run come to.
+/// The rows of all parts, each run once.
 class Rows {
  public:
   void add(const Part& part) {
@@ -184,7 +184,7 @@ std::string part_line(const std::string& path, const store::SweepFile& file, con
   return part.dump(-1, ' ', false, replace) + '\n' + attribute(file.provenance, "parts");
 }
 
-/// Of the maker: of a new file they say what its parts do.
+/// Attributes about the program's call: a new file has its own, which summarise those of its parts.
 static constexpr std::string_view replaced_attributes[] = {"config", "sessions", "parts", "stopping_rule",
                                                            "num_wanted"};
 

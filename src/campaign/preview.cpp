@@ -35,7 +35,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double hour = 3600;
 
-/// What differs from one task to the next.
+/// The columns that differ between tasks.
 std::vector<const sweep::Column*> varying_columns(const sweep::Plan& plan) {
   const sweep::RunRow first = sweep::describe(plan.task(0));
   std::vector<bool> varies;

@@ -77,7 +77,7 @@ std::vector<std::string> preferred_values(const std::vector<double>& given, std:
   return texts;
 }
 
-/// So many of the values, evenly on a logarithmic scale, the outermost among them.
+/// Chooses `number` of the values, evenly on a logarithmic scale, including the outermost.
 std::vector<std::string> spread(const std::vector<std::string>& values, std::size_t number) {
   const double low = std::log(sweep::to_number(values.front()));
   const double high = std::log(sweep::to_number(values.back()));
@@ -160,7 +160,7 @@ Refiner::Refiner(const sweep::Settings& settings, RefinementOptions options)
   first_.set_points(points_of(places, std::vector<std::int64_t>(places.size(), 1), next_seeds));
 }
 
-/// Of the lists of all keys; the first varies fastest.
+/// All combinations of the keys' values; the first key varies fastest.
 std::vector<std::vector<std::string>> Refiner::combinations(
     const std::vector<std::vector<std::string>>& lists) const {
   std::vector<std::vector<std::string>> all;
@@ -172,7 +172,7 @@ std::vector<std::vector<std::string>> Refiner::combinations(
   return all;
 }
 
-/// Those of the places that get blocks.
+/// The points of the places that get blocks.
 sweep::Points Refiner::points_of(const std::vector<std::vector<std::string>>& places,
                                  std::span<const std::int64_t> blocks,
                                  std::span<const std::int64_t> next_seeds) const {

@@ -15,7 +15,7 @@
 namespace clog::campaign {
 namespace {
 
-/// Of a group whose clogs are of known mechanisms; so are those of all that know of break-up.
+/// The group's break-ups; nullptr unless all mechanisms are known: files with break-ups have mechanisms, too.
 const fit::CloggingLength* break_ups(const Group& group) {
   for (const Group::EndsBy& cause : group.causes)
     if (cause.text->cause == Cause::broken) return &cause.ends;
@@ -75,7 +75,7 @@ std::string interval_text(const fit::CloggingLength& clogging) {
   return has_length(clogging) ? length.lower + " .. " + length.upper : "-";
 }
 
-/// Of the lambda of groups in which some droplets met nothing, beside that of all.
+/// Columns of lambda for the droplets that met an obstacle, in groups in which some met none.
 std::vector<ResultColumn> columns_of_met(const std::string& confidence) {
   return {{"met none", [](const Group& group) { return std::to_string(group.num_free); }},
           {"lambda_met", [](const Group& group) { return length_text(group.clogging_met); }},
@@ -89,7 +89,8 @@ console::RoundedError speed_of_all(const Group& group) {
   return console::with_error(group.relative_speed_all.mean, group.relative_speed_all.standard_error);
 }
 
-/// Where some runs are too short to have a speed: of how many the mean is, and that of all.
+/// Columns for groups in which some runs are too short to have a speed: the number of the others, whose mean is
+/// shown, and the speed of all runs.
 std::vector<ResultColumn> columns_of_all_speeds() {
   return {{"of", [](const Group& group) { return std::to_string(group.relative_speed.num_runs); }},
           {"all runs", [](const Group& group) { return speed_of_all(group).value; }},

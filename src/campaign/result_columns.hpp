@@ -17,7 +17,7 @@ struct ResultColumn {
 /// What the runs of the scene have found. @param groups  not empty
 std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, double confidence);
 
-/// Where clogs are not all of one kind, or some are left out, it is said of which kind they are.
+/// Whether the table shows the mechanisms: if clogs differ in them, or some are excluded.
 bool are_mechanisms_shown(const std::vector<Group>& groups);
 bool have_some_broken(const std::vector<Group>& groups);
 

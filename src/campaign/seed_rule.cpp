@@ -30,7 +30,7 @@ std::int64_t clogs_for(double precision) {
   return enough;
 }
 
-/// Of one parameter set, what tells it from the others.
+/// The keys that distinguish one parameter set from the others.
 std::string name_of(std::int64_t group, const sweep::Plan& plan) {
   const sweep::RunRow row = sweep::describe(plan.task(group));
   std::vector<std::string> words;

@@ -50,7 +50,7 @@ void write_all(int descriptor, std::span<const std::byte> bytes) {
   }
 }
 
-/// Until the other end is gone, or the time is over.
+/// Reads until the other end is closed, or the time is over.
 std::vector<std::byte> read_until(Clock::time_point end, int descriptor) {
   constexpr std::chrono::milliseconds between_looks{50};
   std::vector<std::byte> bytes;

@@ -24,7 +24,7 @@ RunParameters defaults_for(const sweep::RunRow& row) {
   return run;
 }
 
-/// Those of the row, but what may be automatic as its preset has it.
+/// The row's parameters, but with its preset's values for those that may be automatic.
 RunParameters with_usual_values(const sweep::RunRow& row) {
   RunParameters run = defaults_for(row);
   for (const Parameter& parameter : parameter_schema())
@@ -33,11 +33,11 @@ RunParameters with_usual_values(const sweep::RunRow& row) {
   return run;
 }
 
-/// Of user-supplied circles a row has only the checksum; automatic values hardly depend on them.
+/// A row has only the checksum of user-supplied circles; automatic values hardly depend on them.
 RunParameters resolved_in_any_layout(RunParameters run) {
   if (scene_of(run).walls_from != WallsFrom::circles) return resolve(run);
   const ObstacleParameters own = run.obstacles;
-  // Of an array that is not of a user's own.
+  // Resolved in a generated array.
   run.obstacles = {.gap = own.gap, .diameter = own.diameter, .box = own.box, .boxes = own.boxes};
   run = resolve(run);
   run.obstacles = own;

@@ -31,7 +31,7 @@ bool is_key(const std::string& name) {
 /// Takes the words for which there is no other place; no name that can be typed as an option.
 constexpr const char* surplus_words = "surplus words";
 
-/// In the order in which a newcomer thinks of them.
+/// The keys that a newcomer needs, in the order of a newcomer's questions.
 constexpr std::string_view usual_keys[] = {
     "line-tension", "obstacle-gap",  "obstacle-density", "obstacle-diameter", "seeds",          "max-time",
     "box",          "boxes",         "obstacles",        "release",           "terminal-speed", "vertices",
@@ -44,7 +44,7 @@ bool is_assignment(const std::string& word) {
          word.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == equals;
 }
 
-/// Or is it like `Key=value`, where no key is called so, and no file?
+/// Whether a word that is no file looks like `Key=value`, with an unknown key.
 bool begins_like_key(const std::string& word) {
   const auto equals = word.find('=');
   return equals != std::string::npos && equals > 0 && word.find_first_of("./ ") > equals;

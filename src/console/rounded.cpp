@@ -14,10 +14,10 @@ constexpr int most_figures = 8;
 std::string scientific(double value, int figures) { return fmt::format("{:.{}e}", value, figures - 1); }
 std::string fixed(double value, int decimals) { return fmt::format("{:.{}f}", value, decimals); }
 
-/// As it is when it is printed.
+/// The value that is printed with so many figures.
 double rounded(double value, int figures) { return std::strtod(scientific(value, figures).c_str(), nullptr); }
 
-/// Of ten, of the first figure.
+/// The first figure's power of ten.
 int exponent(double value) {
   return value == 0 ? 0 : static_cast<int>(std::floor(std::log10(std::abs(value))));
 }

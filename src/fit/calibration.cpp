@@ -76,7 +76,7 @@ std::vector<double> shape_residuals(const Profile& measured, const Profile& simu
   return residuals;
 }
 
-/// Of successive values about zero.
+/// Correlation of successive values about zero.
 double serial_correlation(std::span<const double> values) {
   constexpr std::size_t fewest = 8;
   if (values.size() < fewest) return undefined;
@@ -261,7 +261,7 @@ struct Linearised {
 
   bool is_known() const { return !std::isnan(errors.log_tension); }
 };
-/// By differences over these steps.
+/// Linearises the residuals by differences over these steps.
 Linearised linearise(Trier& trier, const Place& place, const Place& step) {
   const double drag_below = std::max(0.0, place.drag - step.drag);
   const std::vector<SpeedResiduals> all = for_all({place,

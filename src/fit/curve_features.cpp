@@ -38,7 +38,7 @@ Interval quantiles(std::vector<double> numbers, double confidence) {
   return {at(tail), at(1 - tail)};
 }
 
-/// Of a line of places, the one where a parabola through the highest and its neighbours is highest.
+/// The highest point of a parabola through the highest place of a line and its neighbours.
 struct Top {
   CurvePlace place;
   double height;

@@ -9,7 +9,7 @@
 namespace clog::fit {
 namespace {
 
-/// At one distance.
+/// The runs that end at one distance.
 struct Ends {
   double at_risk;
   double all, own;  ///< by any cause, by the one looked at

@@ -13,7 +13,7 @@
 namespace clog::fit {
 namespace {
 
-/// Of the mean distance; shorter ones count as that in the test, for Weibull's law knows no zero.
+/// A share of the mean distance; the test counts shorter distances as that one: Weibull's law has no zero.
 constexpr double shortest_share = 1e-3;
 
 /// The interval of a falling function's root, [high/2, high] or further down; nothing if there is no root.

@@ -18,7 +18,7 @@ namespace {
 
 using Entries = std::map<std::string, std::string>;
 
-/// Of each key what it measures; the ratio is a number.
+/// The quantity that each key gives; the ratio is a plain number.
 const std::map<std::string, std::string> known_keys = {
     {"diameter", "length"}, {"thickness", "length"}, {"density", "density"}, {"outer-density", "density"},
     {"tension", "tension"}, {"angle", "angle"},      {"speed", "speed"},     {"tension-ratio", ""}};
@@ -51,7 +51,7 @@ Entries entries_of(const std::string& text) {
   return entries;
 }
 
-/// In SI units; the default where the key is not there.
+/// A key's value in SI units; `otherwise` if the file does not have the key.
 double value_of(const Entries& entries, const std::string& key, double otherwise) {
   const auto found = entries.find(key);
   if (found == entries.end()) return otherwise;

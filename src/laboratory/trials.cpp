@@ -51,7 +51,7 @@ class ChannelSimulation {
     settings_.set("max-time", sweep::shortest(30 * (end - start) / usual.drag.terminal_speed));
   }
 
-  /// From several threads at a time, as many as there are cores.
+  /// Called from several threads at a time; as many compute as there are cores.
   /// @throws console::Stopped after a signal
   fit::Profile operator()(double line_tension, double near_wall_drag) const {
     const UseOfCore core;

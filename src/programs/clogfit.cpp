@@ -62,7 +62,7 @@ advanced no farther than dwell-length (0.05 sigma by default) for longer than th
 did so, even if it moved on.
 )";
 
-/// Of --lab, or else of the sweep's own.
+/// The scale from --lab, or else from the sweep's own laboratory.
 std::optional<campaign::LaboratoryScale> laboratory_of(const cli::CommandLine& line,
                                                        const store::SweepFile& sweep,
                                                        const std::string& path) {

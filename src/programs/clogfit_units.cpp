@@ -97,7 +97,7 @@ std::vector<Line> lines_of(const Laboratory& lab, const Scales& scales) {
   return lines;
 }
 
-/// Of the options that give numbers of the model.
+/// Values of the options that give numbers of the model.
 struct Given {
   double length, time, line_tension, terminal_speed, wall_stiffness;  ///< NaN if it was not given
 };

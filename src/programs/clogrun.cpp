@@ -119,7 +119,7 @@ std::vector<std::string> film_options(const cli::CommandLine& line) {
   return options;
 }
 
-/// Those of which a file is written, and a film can be made.
+/// Systems whose runs can be written to a file and filmed.
 const std::map<std::string, int (*)(cli::CommandLine&)> followed_systems = {
     {"array", clogrun_array}, {"channel", clogrun_channel}, {"replay", clogrun_replay}};
 

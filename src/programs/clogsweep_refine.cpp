@@ -69,7 +69,7 @@ RefinementGoal goal_of(const std::string& text) {
   return goal;
 }
 
-/// In seconds.
+/// The budget in seconds.
 double budget_of(std::string text) {
   const std::string given = text;
   if (text.ends_with('h')) text.pop_back();

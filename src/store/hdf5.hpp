@@ -67,7 +67,7 @@ File open_image(std::vector<std::byte>& image, const std::string& path);
 
 /// Fixed-length, zero-padded text; the length is at least 1.
 Type text_type(std::size_t length);
-/// Of a compound type; empty if there is none.
+/// Name of a member of a compound type; empty if there is none.
 std::string member_name(hid_t type, unsigned index);
 void write_attribute(hid_t object, const std::string& name, const std::string& text);
 /// Empty if there is none, or one that is no text of fixed length.

@@ -31,7 +31,7 @@ std::vector<const Column*> all_columns() {
   return all;
 }
 
-/// Those that a stored row has, in its order; names that are not ours, or come twice, are left out.
+/// The columns of a stored row, in its order; unknown and repeated names are ignored.
 std::vector<const Column*> columns_of(hid_t stored) {
   std::vector<const Column*> left = all_columns();
   std::vector<const Column*> found;

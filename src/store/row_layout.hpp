@@ -19,7 +19,7 @@ class RowLayout {
 
   /// What this version writes.
   static RowLayout present();
-  /// That of a stored table; nothing unless it is, member for member, a row of ours.
+  /// The layout of a stored table; nothing unless each member is one of our columns.
   static std::optional<RowLayout> of(hid_t stored, Columns expected);
 
   hid_t type() const { return type_; }

@@ -198,7 +198,7 @@ std::string text_as_written(hid_t file, const std::string& name, const Texts& ca
   return text;
 }
 
-/// Of an open file that is one of our sweeps. @throws Error if it is not
+/// Format version of an open file. @throws Error if it is not one of our sweeps, or of an unknown version
 std::string version_of(hid_t file, const std::string& path) {
   const std::array<std::string_view, 1> kinds = {file_kind};
   if (text_as_written(file, "kind", kinds) != file_kind || H5Lexists(file, table_name, H5P_DEFAULT) <= 0)

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t number_size = 8;
 constexpr std::int64_t no_count = -1;
 
-/// Of the columns with words: two lengths are enough.
+/// Size of a column of words: two sizes are enough.
 std::size_t text_size(std::size_t longest_word) { return longest_word < 8 ? 8 : 16; }
 
 std::size_t longest(const std::vector<std::string>& words) {
@@ -248,7 +248,7 @@ std::vector<Column> make_columns() {
   using enum ColumnRole;
   std::vector<Column> all = {
       member("task", &RunRow::task, circumstance, "", "number of the task in its sweep")};
-  // What says which parameters mean something comes first.
+  // Parameters that decide which others have a meaning come first.
   const auto schema = parameter_schema();
   for (std::size_t i = 0; i < schema.size(); ++i) {
     if (schema[i].has_own_column) all.push_back(parameter_column(schema[i], i));

@@ -50,7 +50,7 @@ std::vector<std::uint32_t> seeds_of(const Settings& settings) {
   return seeds;
 }
 
-/// Of a shard: every n-th seed, another one in each parameter set, so that all shards are as much work.
+/// A shard's seeds: every n-th, offset in each parameter set, so that all shards have equal work.
 std::vector<std::uint32_t> part_of(const std::vector<std::uint32_t>& seeds, std::size_t share,
                                    const Shard& shard) {
   const auto of = static_cast<std::size_t>(shard.of);
@@ -60,7 +60,7 @@ std::vector<std::uint32_t> part_of(const std::vector<std::uint32_t>& seeds, std:
   return part;
 }
 
-/// Of each parameter alone; resolve() says what is wrong.
+/// Whether each parameter by itself is possible; resolve() says which is not.
 bool is_each_possible(const RunParameters& run) try {
   check_each(run);
   return true;

@@ -27,14 +27,14 @@ namespace {
 /// Round-off of a sum of time steps, and of a polygon's perimeter and area.
 constexpr double round_off = 1e-9;
 
-/// Of a polygon that has neither burst nor lost its area.
+/// The largest shape parameter of a polygon that has neither burst nor lost its area.
 constexpr double most_shape =
     burst_perimeter * burst_perimeter / (4 * std::numbers::pi * units::rest_area * (1 - diverged_area_error));
 
-/// Of whoever waits for a run: a hundred years [s].
+/// No run takes longer than a hundred years [s].
 constexpr double longest_patience = 3.2e9;
 
-/// Of obstacles, gaps and arcs. No droplet lies on more.
+/// No droplet lies on more obstacles, gaps or arcs.
 constexpr std::int64_t most_contacts = 1'000'000;
 
 /// The same as a part of the weight: x^2/16 of an edge as long as the droplet, on a needle.
@@ -170,7 +170,7 @@ std::string dwells_fault(const RunRow& row) {
   return "";
 }
 
-/// Of a droplet that has moved: before that its shape is not known.
+/// Checks the shape of a droplet that has moved: before that it is not known.
 std::string shape_fault(const RunRow& row) {
   if (row.steps == 0) return "";
   if (!(row.kinetic_energy_ratio >= 0 && row.kinetic_energy_ratio < diverged_energy_ratio))
@@ -266,7 +266,7 @@ std::string neck_fault(const RunRow& row) {
   return "";
 }
 
-/// Only among user-supplied circles a place of release is known, within the array or in a void across its
+/// A place of release is known only among user-supplied circles; it is in the array, or in a void across its
 /// border.
 std::string release_fault(const RunRow& row) {
   if (std::isnan(row.release_x) && std::isnan(row.release_y)) return "";

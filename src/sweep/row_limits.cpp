@@ -19,7 +19,7 @@
 namespace clog::sweep {
 namespace {
 
-/// As docs/explanation/soundness.md has it.
+// These limits are those of docs/explanation/soundness.md.
 constexpr double largest_tension = 10;
 constexpr int fewest_vertices = 64;
 constexpr int most_vertices = 1024;
@@ -180,7 +180,7 @@ std::vector<std::string> bare_arrays(const Plan& plan) {
     if (scene_of(run).walls_from != WallsFrom::circles) continue;
     if (!seen.emplace(obstacles.own->check_sum(), obstacles.box, obstacles.period().along()).second) continue;
     const std::vector<Obstacle> circles = obstacles.own->with_radii(obstacles.diameter / 2);
-    // What is bare before an exit, or between walls, is meant.
+    // A bare band before an exit, or a bare lane between walls, is meant to be there.
     if (obstacles.exit == 0) all.push_back(bare_band(circles, obstacles));
     if (obstacles.side_walls == SideWalls::off) all.push_back(bare_lanes(circles, obstacles));
   }

@@ -16,7 +16,7 @@
 namespace clog::sweep {
 namespace {
 
-/// Of a value in the config: all keys together must fit an attribute of the file, 64 KiB.
+/// The longest text of a key's values in a config, in characters.
 constexpr std::size_t longest_text = 3000;
 
 /// What a preset means for the keys of the interface and of its numerics.

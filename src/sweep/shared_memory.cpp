@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr int seals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE;
 
-/// Without the seals its maker is still at work.
+/// An array without the seals is not complete: the process that builds it has not finished.
 bool is_complete_and_own(int descriptor) {
   struct stat status;
   const int found = fcntl(descriptor, F_GET_SEALS);
@@ -46,7 +46,7 @@ bool write_all(int descriptor, std::span<const std::byte> bytes) {
 /// Visits files that processes of this user have open, as /proc names them, until told that it is enough.
 /// @param link  where the entry of such a file leads
 void visit_open_files(const fs::path& link, const std::function<bool(const fs::path&)>& visit) {
-  // What cannot be read is another user's, or has just ended.
+  // An unreadable process belongs to another user, or has just ended.
   std::error_code error;
   for (fs::directory_iterator process("/proc", error); process != fs::directory_iterator();
        process.increment(error)) {
@@ -62,7 +62,7 @@ void visit_open_files(const fs::path& link, const std::function<bool(const fs::p
   }
 }
 
-/// Of the socket that is bound to an abstract address; empty if there is none, or it cannot be known.
+/// The inode of the socket bound to an abstract address; empty if there is none, or it cannot be known.
 std::string inode_of(const std::string& address) {
   std::ifstream sockets("/proc/net/unix");
   for (std::string line; std::getline(sockets, line);) {

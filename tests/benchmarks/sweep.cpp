@@ -154,7 +154,7 @@ struct Measured {
   double limit;            ///< [ns]
 };
 
-/// Of a few runs one after another, each in slices that take turns with the bare step.
+/// Measures a few runs one after another, each in slices that alternate with the bare step.
 Measured measure(const Task& task) {
   constexpr std::uint32_t num_runs = 3;
   constexpr int checks_per_slice = 400, bare_steps = 3000;

@@ -70,7 +70,7 @@ std::string other_value(const Parameter& parameter, const sweep::Settings& setti
   return "0.5";
 }
 
-/// Of a number: the sweep over both values.
+/// The sweep over two values of a number.
 sweep::Plan plan_of_both(const Parameter& parameter) {
   sweep::Settings settings = settings_for(parameter);
   settings.set(parameter.key, settings.text(parameter.key) + "," + other_value(parameter, settings));

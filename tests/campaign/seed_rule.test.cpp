@@ -14,7 +14,7 @@ namespace clog::campaign {
 namespace {
 
 TEST(SeedRule, AsksForMoreOnlyWhereTheIntervalIsWide) {
-  // Of two parameter sets one clogs always, the other every fourth time. 60 % takes 14 clogs.
+  // One of two parameter sets clogs always, the other every fourth time. 60 % takes 14 clogs.
   const auto has_clogged = [](std::int64_t task) { return task % 2 == 0 || task / 2 % 4 == 3; };
   SeedRule rule(0.6, 2, 16, 100);
   const std::vector<std::int64_t> next = rule.next_round(has_clogged);

@@ -10,7 +10,7 @@ from launch import run
 from metadata import JOURNAL, STOPPED, Stopped
 from samples import FILE, REPORTS, VERIFY, check_complete, in_child, results, stored_rows
 
-# Of sweeps that cannot become part of this one.
+# Settings of sweeps that cannot become part of this one.
 FOREIGN = ["max-time=2900", "vertices=48", "box=25"]
 FILE_HEADER = 24
 RECORD_HEADER = struct.Struct("<QII")  # size and CRC-32 of row and snapshot, a magic word
@@ -134,7 +134,7 @@ class Faults:
 
     @staticmethod
     def hostile_value(chance, kind):
-        """Of a column: a number that no run has, or any bytes."""
+        """A column's value: a number that no run has, or any bytes."""
         if kind.kind == "f" and chance.random() < 0.7:
             return chance.choice(SPECIAL)
         if kind.kind in "iu" and chance.random() < 0.7:

@@ -52,7 +52,7 @@ def in_child(function, *arguments):
 
 
 def stored_rows(path):
-    """Of every task the bytes of its columns, as h5py finds them."""
+    """The bytes of every task's columns, as h5py finds them."""
     with h5py.File(path, "r") as file:
         rows = file["runs"][()]
     return {int(row["task"]): {name: row[name].tobytes() for name in rows.dtype.names} for row in rows}

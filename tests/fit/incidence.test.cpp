@@ -84,7 +84,7 @@ TEST(CumulativeIncidence, OfUncensoredRunsIsTheirShareWithABinomialError) {
     }
 }
 
-/// Of a single cause it is one minus the survival curve, with Greenwood's error.
+/// For a single cause it is one minus the survival curve, with Greenwood's error.
 TEST(CumulativeIncidence, OfOneCauseIsOneMinusSurvival) {
   std::vector<CompetingEnd> runs = twenty_runs;
   std::vector<Observation> observations;

@@ -92,7 +92,7 @@ TEST(LengthRatio, IsNotKnownWithoutClogs) {
   EXPECT_FALSE(ratio.is_paired);
 }
 
-/// Of so many sweeps, in how many the interval has the true ratio, and in how many it was paired.
+/// Shares of the sweeps whose interval contains the true ratio, and whose runs were paired.
 struct Coverage {
   double covered = 0, paired = 0;
 };

@@ -33,7 +33,7 @@ def table(text):
 
 
 def room_of(parts, rooms):
-    """Of the folders of a file, below include/clog or src."""
+    """The room of a file. @param parts  its folders below include/clog or src"""
     inner = "/".join(parts[:2])
     return inner if inner in rooms else parts[0]
 

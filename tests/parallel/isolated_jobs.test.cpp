@@ -41,7 +41,7 @@ constexpr std::int64_t first_hanging_task = 10'000;
 constexpr std::int64_t first_task_that_kills_the_helper = 20'000;
 constexpr std::int64_t first_task_that_stops_the_helper = 30'000;
 
-/// Of the test itself, before it forks.
+/// The test's own process, before it forks.
 const pid_t rank_pid = getpid();
 
 int oom_score_adj() {

@@ -113,7 +113,7 @@ class Fit(ProgramTest):
     DWELLING = ["seeds=1..8", "line-tension=0.05,0.3", "max-time=400"]
 
     def longest_first(self, table):
-        """Of every row its dwells, length and place, from the longest back."""
+        """Every row's dwells, length and place, from the longest back."""
         names = ["longest_dwell", *(f"earlier_dwell_{i}" for i in range(1, 8))]
         return [[(row[name], row[name + "_at"]) for name in names if row[name] > 0] for _, row in table.iterrows()]
 
@@ -165,7 +165,7 @@ class Fit(ProgramTest):
         usual = self.fit()["groups"]
         for dwell in (400, 1e9):
             self.assertEqual(self.fit("--dwell", dwell)["groups"], usual)
-        # Of what was last seen going, less than a dwell-length is not counted a little earlier.
+        # The fit that stops earlier counts at most one dwell length less for each droplet last seen moving.
         for (way, clogs), group in zip(results[-3], usual):
             self.assertEqual(clogs, group["clogs"])
             self.assertLess(group["total_distance"] - way, 0.05 * (group["flowing"] + 1))

@@ -15,7 +15,7 @@ from support import BIN, LONGEST, QUICK, ROOT, SMALL, ProgramTest, table
 
 
 def centroid_x(polygon):
-    """Of the area inside, for coordinates of shape (2, N)."""
+    """Centroid of the area inside, for coordinates of shape (2, N)."""
     (x, y), (after_x, after_y) = polygon, np.roll(polygon, -1, axis=1)
     cross = x * after_y - after_x * y
     return ((x + after_x) * cross).sum() / (3 * cross.sum())

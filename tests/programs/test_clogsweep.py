@@ -170,7 +170,7 @@ class Sweep(ProgramTest):
         self.assertNotIn("obstacle spacing", self.succeed("clogsweep", *keys, "seeds=1..8", "--dry-run").stdout)
         saturated = [*keys, "obstacle-density=saturated"]
         self.assertRegex(self.succeed("clogsweep", *saturated, "seeds=1..8", "--dry-run").stdout, r"# \d of \d runs clogged within one obstacle spacing \(0.5 sigma\)")
-        # Of runs that the file holds, too, and as clogfit says it.
+        # It counts runs that the file holds, too, and says so as clogfit does.
         self.succeed("clogsweep", *saturated, "seeds=1..8", "--output", "s.h5")
         self.assertIn("clogged within one obstacle spacing", self.succeed("clogsweep", *saturated, "seeds=1..9", "--dry-run", "--output", "s.h5").stdout)
         self.assertIn("below_spacing", self.succeed("clogfit", "s.h5", "--format", "csv").stdout)

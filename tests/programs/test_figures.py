@@ -125,7 +125,7 @@ class Figures(Analysis):
             if point["model"] == "sp":
                 self.assertAlmostEqual(float(point["sag"]), math.pi / 16 / float(point["wall_stiffness"]), delta=1e-4)
 
-        # Of 6c, all families, both meshes, every point.
+        # Figure 6c: all families, both meshes, every point.
         drawn = {(row["curve"].split(",")[0], row["vertices"], row["friction"], row["obstacle_gap"], row["line_tension"], row["clogging_length_lower"]) for row in self.drawn("6c")}
         told = {(config, *(str(group[name]) for name in ("vertices", "friction", "obstacle_gap", "line_tension", "clogging_length_lower")))
                 for config in ("clogging-robust", "clogging-friction", "clogging-elastic")

@@ -203,7 +203,7 @@ class Installed(unittest.TestCase):
         self.read_until(terminal, b"clogsweep preset=elastic ")
 
     def read_until(self, terminal, text):
-        """Of a terminal that may be slow."""
+        """Reads from a terminal, which may be slow, until the text is there."""
         seen = b""
         while text not in seen:
             ready, _, _ = select.select([terminal], [], [], LONGEST)

@@ -8,7 +8,7 @@ from support import BIN, QUICK
 
 from clogsweep.labels.groups import Groups
 
-# Of keys that mean something in certain runs only, and of words, which take no list.
+# Surroundings for keys that mean something in certain runs only, and for words, which take no list.
 SURROUNDINGS = {
     "lattice-angle": ["obstacle-layout=lattice", "box=60", "obstacle-gap=0.5"],
     "perimeter-stiffness-ratio": ["preset=elastic"],

@@ -54,7 +54,7 @@ constexpr int checks_per_look = 32;
 /// The last part of a run that tells how it ends.
 constexpr double tail_part = 0.2;
 
-/// Of this thread: other work on the machine does not count [s].
+/// CPU time of this thread: other work on the machine does not count [s].
 double cpu_seconds() {
   std::timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

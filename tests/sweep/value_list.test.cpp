@@ -122,7 +122,7 @@ TEST(Lists, OfAnyNumbersHaveNoRanges) {
   }
 }
 
-/// Of all magnitudes, of both signs; half of them have few digits.
+/// Numbers of all magnitudes and both signs; half of them have few digits.
 std::vector<double> numbers_of_all_kinds() {
   std::mt19937_64 random(1);
   std::vector<double> numbers;

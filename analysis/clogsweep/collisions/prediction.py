@@ -85,7 +85,7 @@ class Pairs:
 
 
 def capture_widths(gap: float, diameter: float, held: Sequence[bool]) -> tuple[Numbers, float]:
-    """Of a pair: the width across the flow on which a droplet that arrives there is stopped [sigma].
+    """The width across the flow within which a pair stops a droplet [sigma].
 
     It is what both centres are apart across the flow, if the pair holds it, and otherwise nothing: a droplet that
     arrives beside it slides off outwards.

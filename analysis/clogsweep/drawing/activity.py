@@ -16,7 +16,7 @@ UNITS = [("s", 1.0, 120.0), ("min", 60.0, 7200.0), ("h", 3600.0, float("inf"))] 
 
 
 def sessions_of(attributes: dict[str, str]) -> list[Session]:
-    """Of a sweep's file, those in which something ran; none of a file of older programs."""
+    """The sessions of a sweep's file in which something ran; files of older programs have none."""
     lines = attributes.get("activity", "").splitlines()
     return [session for session in map(json.loads, lines) if session["seconds"] > 0 and any(session["busy"])]
 

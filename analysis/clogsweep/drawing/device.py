@@ -27,7 +27,7 @@ STEP = 0.1  # between two points of a way, of a free droplet [sigma]
 
 
 def axes_for(length: float, width: float, rows: int = 1) -> tuple[Figure, Numbers]:
-    """Of a figure in which a device of this shape has equal scales along and across. @param rows  2: with a strip below it"""
+    """A figure and its axes, with equal scales along and across a device of this shape. @param rows  2: with a strip below it"""
     figure_width = min(WIDEST, max(NARROWEST, 0.45 * length))
     height = min(12.0, max(2.2, figure_width * width / length))
     figure, axes = style.subplots(rows, figsize=(figure_width, height + 1.3 + 1.5 * (rows - 1)), squeeze=False, sharex=True,

@@ -49,7 +49,7 @@ def chosen_frames(run: trajectory.Trajectory, most: int) -> npt.NDArray[np.int64
 
 
 def around(values: Numbers, width: int) -> Numbers:
-    """Of every value its neighbours, `width` on either side. @return one row each"""
+    """Every value with its neighbours, `width` on either side. @return one row each"""
     return np.lib.stride_tricks.sliding_window_view(np.pad(values, width, mode="edge"), 2 * width + 1)
 
 
@@ -72,7 +72,7 @@ class Camera:
         half_height = np.maximum(self.HALF_HEIGHT, 0.75 * np.maximum(length / aspect, height))
         self._aspect = aspect
         self._middle = np.stack([smoothed(middle, frames_of_a_turn) for middle in ((low + high) / 2).T], axis=1)
-        # Of the largest nearby, so that the average is nowhere too small.
+        # Averages the largest nearby, so that it is nowhere too small.
         self._half_height = smoothed(around(half_height, frames_of_a_turn).max(axis=1), frames_of_a_turn)
 
     def corners(self, frame: int) -> tuple[Numbers, Numbers]:
@@ -258,7 +258,7 @@ class Film:
 
 
 def size_for(path: pathlib.Path | None) -> str:
-    """Of SIZES, if none is asked for: a .gif holds all its frames in memory, and is large. @param path  of a film; None: pictures"""
+    """The default among SIZES: smaller for a .gif, which is large and held in memory. @param path  of a film; None: pictures"""
     return "540p" if path is not None and path.suffix == ".gif" else "1080p"
 
 

@@ -54,7 +54,7 @@ def kind_of(groups: Groups) -> Kind:
 
 
 def share(kind: Kind, members: Sequence[Group]) -> str:
-    """Of a curve's droplets, how many came where they should."""
+    """How many of a curve's droplets came where they should."""
     return f"{sum(group['status'] == kind.goal for group in members)} of {len(members)} {kind.outcomes[kind.goal]}"
 
 

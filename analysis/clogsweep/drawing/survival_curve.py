@@ -10,7 +10,7 @@ from ..tools.hints import Group, Numbers
 
 
 def longest_way(group: Group) -> float:
-    """Of all runs, those that were still going included [sigma]."""
+    """The longest way of all runs, including those that were still going [sigma]."""
     return max([step["distance"] for step in group["survival"]] + group["censored_distances"])
 
 

@@ -48,8 +48,8 @@ def is_number(word: str) -> bool:
 
 
 def symbol(column: Column) -> str:
-    """Of a parameter as clogsweep describes it, with its unit, so that what follows is a pure number; for words the name itself.
-    One with an axis of its own is a pure number already, the axis says of what."""
+    """A parameter's symbol divided by its unit, so that a pure number follows; for words, the name itself.
+    A parameter in AXES is a pure number already."""
     if column["symbol"] and column["name"] in AXES:
         return column["symbol"]
     if not column["symbol"]:

@@ -55,7 +55,7 @@ function hide() {
   for (const element of document.querySelectorAll(".of")) element.classList.remove("of");
 }
 
-/** Of points that lie over each other the one whose middle is nearest. */
+/** The point at a place; where points overlap, the one whose middle is nearest. */
 function pointAt(x, y) {
   const distance = point => {
     const {left, right, top, bottom} = point.getBoundingClientRect();

@@ -90,7 +90,7 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> li
     curves = shown_curves(groups)
     survivals = [curve_drawing(report.draw_survival, label, members) for label, members in curves if any(group["survival"] for group in members)]
     ends = [curve_drawing(report.draw_causes, label, members) for label, members in curves]
-    # Of one curve both are side by side.
+    # With a single curve, both are side by side.
     below: list[Row] = [(1.35, survivals + ends)] if len(curves) == 1 else [(1.35, survivals), (1.0, ends)]
     rows: list[Row] = [(1.6, first), *((height, drawings) for height, drawings in below if drawings)]
     clogged = clogs.of_polygons(stored.read_rows(sweep, clogrun.parent), sweep)

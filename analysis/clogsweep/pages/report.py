@@ -132,7 +132,7 @@ def slope(group: Group) -> str:
 
 
 def value(cell: float | str | None, digits: int = 6) -> str:
-    """Of a parameter, as a table shows it."""
+    """A parameter's value as a table shows it."""
     return "-" if cell is None else cell if isinstance(cell, str) else f"{cell:.{digits}g}"
 
 
@@ -324,7 +324,7 @@ RANDOM_ARRAYS = ("obstacle-gap", "obstacle-density", "obstacle-diameter-spread",
 
 
 def settings(config: str) -> str:
-    """Of a sweep, without those that say nothing of its array: that of a file has its own."""
+    """A sweep's settings; with user-supplied circles, without the keys of random arrays."""
     own_circles = stored.settings(config).get("obstacles", "none") != "none"
     return "\n".join(line for line in config.split("\n") if not (own_circles and line.partition(" = ")[0] in RANDOM_ARRAYS))
 

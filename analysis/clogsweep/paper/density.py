@@ -98,5 +98,5 @@ def density_of_the_published_arrays(shop: Workshop) -> Plate:
 
 
 def saturated_density(group: Group) -> float:
-    """Of equal circles, at the jamming limit of random sequential addition [1/sigma^2]: they cover 0.547069 of the plane (Feder 1980)."""
+    """Density of equal circles at the jamming limit of random sequential addition [1/sigma^2]: 0.547069 of the plane (Feder 1980)."""
     return 0.547069 / (math.pi / 4 * (group["obstacle_diameter"] + group["obstacle_gap"]) ** 2)

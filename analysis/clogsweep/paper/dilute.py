@@ -160,7 +160,7 @@ def density_key(group: Group) -> tuple[bool, float]:
 
 
 def place_of(values: Sequence[float], value: float) -> float:
-    """Of a value between the columns or rows of a map, which are as wide as each other."""
+    """Where a value lies among the equally wide columns or rows of a map."""
     return float(np.interp(math.log(value), np.log(values), np.arange(len(values))))
 
 

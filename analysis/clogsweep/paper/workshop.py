@@ -36,7 +36,7 @@ def config_keys(path: pathlib.Path) -> dict[str, str]:
 
 
 def as_text(value: object) -> str:
-    """Of a key."""
+    """A key's value as text."""
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
@@ -160,7 +160,7 @@ class Workshop:
         return {column["name"]: column for column in self._fits[name]["columns"]}
 
     def confidence(self, name: str) -> float:
-        """Of the intervals of a sweep that sweep() has run."""
+        """The confidence of a sweep's intervals, after sweep() has run it."""
         return self._fits[name]["confidence"]
 
     def rows(self, name: str) -> pandas.DataFrame:
@@ -209,7 +209,7 @@ class Workshop:
         return file
 
     def model_versions(self) -> dict[str, set[int]]:
-        """Of the rows of every sweep used so far."""
+        """The model versions in the rows of every sweep used so far."""
         return self._model_versions
 
     def take_sources(self) -> list[str]:

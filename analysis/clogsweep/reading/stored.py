@@ -137,7 +137,7 @@ def opened(path: AnyPath, kind: str | None = None, folder: AnyPath | None = None
 
 
 def attributes(file: h5py.File) -> dict[str, str]:
-    """Of an open file: where it comes from, as text. A long one is in parts, `config`, `config.2` and so on."""
+    """An open file's attributes, its provenance, as text. A long one is stored in parts, `config`, `config.2` and so on."""
     parts = {name: text(value) for name, value in file.attrs.items()}
     for name in list(parts):
         if name not in parts:

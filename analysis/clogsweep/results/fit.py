@@ -84,7 +84,7 @@ class Fit:
 
     @property
     def summary(self) -> pandas.DataFrame:
-        """Of `groups` what varies, lengths and speeds, or what came of a channel or a wall, and doubts."""
+        """The columns of `groups` that vary, lengths and speeds, or the results of a channel or a wall, and doubts."""
         known, columns = self.groups, [column["name"] for column in self.told["columns"]]
         chosen = {self.known.abscissa, *self.known.curve_parameters()}  # what is automatic follows from these
         varies = [name for name in columns if name in chosen and known[name].nunique(dropna=False) > 1]

@@ -144,7 +144,7 @@ class Sweep:
         return Picture(poster.draw(self.path, programs.programs_in(self._programs)), stored.source(self.attributes))
 
     def __repr__(self) -> str:
-        """Of several files it has the names of all."""
+        """Names all files, if the sweep has several."""
         counts = ", ".join(f"{number} {status}" for status, number in self.rows.status.value_counts().items())
         return f"<sweep {self._name or self.path}: {len(self.rows)} runs ({counts})>"
 

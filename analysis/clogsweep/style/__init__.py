@@ -121,7 +121,7 @@ def side_by_side(index: int, num_curves: int, values: Collection[float]) -> floa
 
 
 def far_apart(values: Collection[float]) -> list[float]:
-    """Of values on a logarithmic axis those whose labels have room side by side."""
+    """The values whose labels have room side by side on a logarithmic axis."""
     ordered = sorted(set(values))
     room = 0.08 * math.log(ordered[-1] / ordered[0])
     kept = ordered[:1]

@@ -47,7 +47,7 @@ def refuse_ending(output: pathlib.Path, *made: str) -> None:
 
 
 def refuse_unwritable_picture(output: str | os.PathLike[str], *inputs: pathlib.Path) -> None:
-    """Of the two files of style.save(). @param output  path without ending"""
+    """Refuses a path where one of the two files of style.save() cannot be written. @param output  path without ending"""
     refuse_ending(pathlib.Path(output), ".png", ".pdf")
     for kind in ("png", "pdf"):
         refuse_unwritable(pathlib.Path(f"{output}.{kind}"), kind, *inputs)

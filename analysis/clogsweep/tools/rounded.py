@@ -13,7 +13,7 @@ def is_number(value: float | None) -> TypeGuard[float]:
 
 
 def exponent(value: float) -> int:
-    """Of ten, of the first figure."""
+    """The first figure's power of ten."""
     return math.floor(math.log10(abs(value))) if value else 0
 
 

@@ -16,10 +16,10 @@ namespace clog::campaign {
 /// The keys that a curve is drawn over, one or two, as columns of the table.
 using CurveKeys = std::vector<const sweep::Column*>;
 
-/// From names of keys or columns, separated by commas; if there are none, the one number of physics that
+/// Reads names of keys or columns, separated by commas; without any, takes the one physical parameter that
 /// varies.
-/// @throws Error if it is not such a key, does not vary, has values of which there is no logarithm; or if
-/// several vary
+/// @throws Error if a name is no such key, does not vary, or has values without a logarithm; or if there is
+/// no name and several vary
 CurveKeys curve_keys(std::span<const Group> groups, const std::string& names);
 
 /// A curve of the clogs by one mechanism, all others being censored.
@@ -40,7 +40,7 @@ struct FittedCurve {
   std::vector<CurveByCause> causes;  ///< that occur; none if some clogs are of unknown mechanism
 };
 
-/// What is to be known of curves.
+/// What curves are asked for.
 struct CurveQuestion {
   CurveKeys keys;
   double confidence = 0.95;

@@ -65,10 +65,10 @@ inline constexpr DoubtText doubt_texts[] = {
      "cross themselves or obstacles (docs/explanation/soundness.md)"}};
 const DoubtText& text_of(Doubt doubt);
 
-/// By what a run may end, each a competing risk for the others: how a clog is held (`other` are clogs by none
-/// of the mechanisms), or the droplet's break-up.
+/// The ways in which a run may end, competing risks: the mechanism that holds a clog (`other`: none of them),
+/// or the droplet's break-up.
 enum class Cause { wrapped, squeezed, hybrid, other, broken };
-/// How files name the number of its ends, their length (S over that number) and that one's interval.
+/// The names in files of the number of its ends, of their length (S divided by that number), and its interval.
 struct CauseText {
   Cause cause;
   bool is_clog;
@@ -93,7 +93,7 @@ struct Group {
   fit::CloggingLength clogging;
   double least_squares_length = 0;  ///< the published way, biased; NaN for fewer than two clogs
   fit::WeibullTest weibull;
-  /// Of the runs that met an obstacle, from the first one on. Runs of files that do not tell are left out.
+  /// The runs that met an obstacle, each from its first one on. Runs of files without contacts are excluded.
   fit::CloggingLength clogging_met;
   double contacts_per_length = std::numeric_limits<double>::quiet_NaN();  ///< of all that tell [1/sigma]
   std::vector<fit::SurvivalStep> survival;
@@ -143,12 +143,12 @@ using Field = std::pair<const char*, Value>;
 std::span<const sweep::Column* const> group_columns();
 /// What a row holds in them.
 std::vector<Field> parameter_fields(const sweep::RunRow& row);
-/// Not in a channel and on a wall, where nothing is random: there each group is one run, and what came out is
-/// in its row.
+/// False in a channel and on a wall, where nothing is random: each group is one run there, and its row has the
+/// results.
 bool has_clogging_length(const sweep::RunRow& row);
-/// What came out.
+/// The results of a group, by name.
 std::vector<Field> result_fields(const Group& group);
-/// Of a number among them, e.g. "sigma"; empty for one without a unit, counts and words.
+/// The unit of one of these fields, e.g. "sigma"; empty for counts, words and numbers without a unit.
 std::string_view unit_of(std::string_view field);
 
 }  // namespace clog::campaign

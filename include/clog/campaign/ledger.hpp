@@ -65,7 +65,7 @@ class Ledger {
   void report(const sweep::Report& report);
   /// Row of a run that has begun.
   const sweep::RunRow& row(std::int64_t task) const { return runs_.at(task).row; }
-  /// Of all runs, also of those that are not of this plan.
+  /// The rows of all runs, including those outside this plan.
   std::vector<sweep::RunRow> rows() const;
   /// The first run if all that have begun have failed, otherwise nullptr.
   const sweep::RunRow* first_if_all_failed() const;

@@ -57,7 +57,7 @@ struct RoundLimits {
   std::int64_t seeds_per_block = 1;
   std::vector<std::int64_t> blocks_left;  ///< that each candidate may still get
   double work = 0;                        ///< of the round, about; at least one block is chosen
-  /// Of all that remains: a block that costs more is not chosen.
+  /// The work that the budget still allows: a block that costs more is not chosen.
   double most_work = std::numeric_limits<double>::infinity();
 };
 /// How many more blocks of seeds each candidate gets. Greedy: each block goes where it lowers the variance of

@@ -20,7 +20,7 @@ struct RefinementOptions {
   std::vector<std::string> keys;  ///< one or two; the outermost values of their lists are the bounds
   RefinementGoal goal;
   double budget = std::numeric_limits<double>::infinity();  ///< computing time of all runs [s]
-  /// Of different values: seeds of their own, so that their errors are independent, or the same.
+  /// Whether each value has its own seeds, so that their errors are independent, or all have the same.
   enum class Seeds { own, same };
   Seeds seeds = Seeds::own;
   std::int64_t most_seeds = 0;  ///< of each value

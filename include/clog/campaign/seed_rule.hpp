@@ -33,7 +33,7 @@ class SeedRule {
   std::int64_t most_seeds() const { return most_seeds_; }
   /// Parameter sets that were precise enough when next_round() looked last.
   std::int64_t num_reached() const { return num_reached_; }
-  /// Those that were not: their clogs of so many seeds.
+  /// The clogs and seeds of a parameter set that was not measured as precisely.
   struct Unreached {
     std::int64_t group, num_clogs, num_seeds;
   };

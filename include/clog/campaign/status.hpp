@@ -40,7 +40,7 @@ struct Status {
 /// @throws Error if the file does not say what its sweep is
 Status status_of(const std::string& path, const store::SweepFile& file, double confidence);
 
-/// For people.
+/// The status as text for people.
 std::string to_text(const std::string& path, const Status& status, double confidence,
                     SharedParameters shared);
 std::string to_json(const Status& status, double confidence);

@@ -19,7 +19,7 @@ class CommandLine {
 
   CommandLine(std::string program, std::string usage, SweepKeys sweep_keys);
 
-  /// To declare the program's own options on, before parse().
+  /// Declares the program's own options; to be called before parse().
   boost::program_options::options_description_easy_init add_options() { return own_.add_options(); }
   /// Declares what a word without dashes means; at most `most` of them.
   void add_positional(const std::string& option, int most) { positional_.add(option.c_str(), most); }
@@ -33,7 +33,7 @@ class CommandLine {
 
   bool has(const std::string& option) const { return values_.count(option) > 0; }
   std::string get(const std::string& option) const { return values_.at(option).as<std::string>(); }
-  /// Of an option that may be given several times: all its values.
+  /// All values of an option that may be given several times.
   std::vector<std::string> get_all(const std::string& option) const;
   /// @throws Error if the option was not given
   std::string require(const std::string& option) const;

@@ -18,7 +18,7 @@ std::filesystem::path find_python_module();
 [[noreturn]] void become_python(const std::string& name, const std::filesystem::path& module,
                                 std::vector<std::string> arguments);
 
-/// Such a command, as it is typed.
+/// The command as a user types it.
 std::string python_command(const std::filesystem::path& module, const std::vector<std::string>& arguments);
 
 /// Is there a program of this name in PATH?

@@ -7,7 +7,7 @@
 
 namespace clog::console {
 
-/// Without the blanks around it.
+/// The text without blanks at its ends.
 std::string trimmed(std::string_view text);
 
 enum class EmptyEnd { dropped, kept };

@@ -21,9 +21,9 @@ class StatusLine {
   void renew(const std::string& text);
   /// Prints a line that stays, whatever the screen.
   void say(const std::string& text);
-  /// What is on a terminal stays; other words follow below it.
+  /// Keeps the line on a terminal; other text follows below it.
   void keep();
-  /// What is on a terminal goes.
+  /// Removes the line from a terminal.
   void wipe();
 
  private:

@@ -13,7 +13,7 @@ struct CurveValue {
   double length;
   Interval band;
 };
-/// At every place of the curve. @throws std::invalid_argument unless 0 < confidence < 1
+/// The values at every place of the curve. @throws std::invalid_argument unless 0 < confidence < 1
 std::vector<CurveValue> curve_values(const Curve& curve, double confidence);
 
 /// Where a curve is highest.

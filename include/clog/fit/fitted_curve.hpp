@@ -24,7 +24,7 @@ struct CurvePoint {
   double distance;  ///< S, of all runs together [sigma]
 };
 
-/// Of the process: standard deviation of log lambda, correlation length of each key's logarithm.
+/// The process's scales: standard deviation of log lambda, correlation length of each key's logarithm.
 struct CurveScales {
   double amplitude;
   Eigen::Array2d lengths;

@@ -27,8 +27,8 @@ struct LengthRatio {
   bool is_paired = false;   ///< is `interval` the paired one, and `ratio` that of the pairs?
   int num_pairs = 0;
   int num_unlike = 0;  ///< pairs that are not alike
-  /// Of the two logarithms over the pairs. Above zero pairs gain: the error of the ratio is smaller than that
-  /// of two independent lengths by `gain`.
+  /// Correlation of the two logarithms over the pairs. Above zero pairing gains: the error of the ratio is
+  /// smaller than that of two independent lengths by `gain`.
   double correlation = 0;  ///< NaN where it is not known
   double gain = 0;  ///< standard error without pairing over that with it, from the same pairs; NaN likewise
 };

@@ -7,8 +7,8 @@
 
 namespace clog::fit {
 
-/// Of a probability P between 0 and 1: P^exp(-+ z s/|log P|), s^2 being the variance of log P, with which
-/// log(-log P) has the error s/|log P|. NaN otherwise.
+/// Interval of a probability P between 0 and 1: P^exp(-+ z s/|log P|), where s^2 is the variance of log P, so
+/// that log(-log P) has the error s/|log P|. NaN otherwise.
 Interval log_log_interval(double probability, double log_variance, double confidence);
 
 /// A step of the estimated P(r), the probability to travel farther than r without a clog.

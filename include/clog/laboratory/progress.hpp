@@ -18,7 +18,7 @@ class CalibrationProgress {
   explicit CalibrationProgress(std::size_t num_trials);
   void tried(std::size_t trial, const fit::CalibrationAttempt& attempt);
   void ended();
-  /// Of a trial so far, in words.
+  /// Describes the best trial so far in words.
   std::string best(std::size_t trial) const;
   void finish() { status_.wipe(); }
 

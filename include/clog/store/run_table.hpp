@@ -40,7 +40,7 @@ struct CircleFile {
 void publish_sweep(const Place& place, std::span<const sweep::RunRow> rows, const Provenance& provenance,
                    std::span<const CircleFile> circles = {});
 
-/// What of a file has been compared with a checksum.
+/// Which parts of a file have been compared with a checksum.
 enum class Checked {
   everything,         ///< every bit of it
   rows_and_settings,  ///< each row and each attribute: another program copied or changed the file

@@ -49,7 +49,7 @@ struct Column {
   std::function<Value(const RunRow&)> get;
   /// @throws Error if no row can hold this
   std::function<void(RunRow&, const Value&)> set;
-  /// For a row whose file does not have this column.
+  /// Sets the value of a row whose file does not have this column.
   std::function<void(RunRow&)> set_unknown;
 
   /// See Parameter.
@@ -57,20 +57,20 @@ struct Column {
     return parameter && parameter->may_be_automatic(run);
   }
 
-  /// Of `size` bytes, as they lie in a file. Nothing is NaN, -1, or an empty text.
+  /// Writes `size` bytes as they lie in a file. Nothing is NaN, -1, or an empty text.
   void pack(const RunRow& row, std::byte* bytes) const;
   /// A value that cannot be is noted in the row. Columns are to be read in the order of columns().
   void unpack(const std::byte* bytes, RunRow& row) const;
 };
 
-/// In the order in which they lie in files.
+/// All columns, in their order in files.
 std::span<const Column> columns();
-/// Of a dwell in Dwells::longest; `_at` and `_from` follow for where and when it began.
+/// The column's name of a dwell in Dwells::longest; with `_at` and `_from`, where and when it began.
 std::string dwell_column(std::size_t place);
 /// @throws std::out_of_range if there is none
 const Column& column(std::string_view name);
 
-/// For people: words as they are, numbers by their shortest exact text; empty for nothing.
+/// The value as people read it: a word as it is, a number by its shortest exact text; empty for nothing.
 std::string text_of(const Value& value);
 
 }  // namespace clog::sweep

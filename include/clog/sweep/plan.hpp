@@ -96,7 +96,7 @@ class Plan {
   const Layer& layer_of(std::int64_t task) const;
   const Share& share_of(std::int64_t task) const;
   std::vector<const std::string*> texts(std::size_t product, std::int64_t place) const;
-  /// Before automatic values are known.
+  /// Parameters before automatic values are known.
   RunParameters unresolved(std::size_t product, std::int64_t place, std::uint32_t seed) const;
   RunParameters parameters(std::size_t product, std::int64_t place, std::uint32_t seed) const;
 };

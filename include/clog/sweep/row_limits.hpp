@@ -8,8 +8,8 @@
 
 namespace clog::sweep {
 
-/// What of a run lies outside of what tests/soundness has looked at and found sound, each with its value and
-/// with what was found: "line-tension=30 (robust is sound from 0.01 to 10)".
+/// The parameters of a run outside the range that tests/soundness found sound, each with its value and that
+/// range: "line-tension=30 (robust is sound from 0.01 to 10)".
 std::vector<std::string> unproven_parameters(const RunRow& row);
 /// One line about all runs of a plan; empty if all are within.
 std::string unproven_parameters(const Plan& plan);

@@ -73,12 +73,12 @@ class Settings {
   /// or a wall, where nothing is random, sets the seed.
   /// @throws Error if there is no such key or its list cannot be read
   void set(const std::string& name, const std::string& text);
-  /// By set(), not by a preset or default.
+  /// Whether set() gave the key its text, not a preset or default.
   bool is_given(const std::string& name) const { return given_.contains(name); }
   const std::string& text(const std::string& name) const { return texts_.at(name); }
   /// The expanded values of a key.
   const std::vector<std::string>& values(const std::string& name) const { return values_.at(name); }
-  /// Of all runs; nullptr if there are several.
+  /// The scene of all runs; nullptr if they have several.
   const Scene* scene() const;
 
   /// @throws Error that names the point, if it has an unknown key or a text that cannot be read; so does
@@ -98,7 +98,7 @@ class Settings {
   void visit_branches(const VisitBranch& visit) const;
   /// The same for a round. @param round  its place in rounds()
   void visit_round(std::size_t round, const VisitBranch& visit) const;
-  /// By key, what values() are in any branch.
+  /// The values() of each key in all branches together.
   std::map<std::string, std::vector<std::string>> all_values() const;
 
   /// A line of a config: a key with its text, or one of `point-keys`, `point`, `round-keys`, `shard`.

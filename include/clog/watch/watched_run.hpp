@@ -31,7 +31,7 @@ class WatchedRun {
   MostCost measure_cost();
 
   const DropletRun& run() const { return run_; }
-  /// Of the run; `interrupted` if a signal ended it.
+  /// The run's result; its status is `interrupted` if a signal ended it.
   RunResult result() const;
   /// Samples, polygons, the obstacles near them, and the row's columns of results.
   /// @param row  the columns of what was run, see sweep::describe()

@@ -28,7 +28,7 @@ void leave_one_point(RunParameters&, double) {}
 int one_point(const RunParameters&) { return 1; }
 double no_width(const RunParameters&) { return 0; }
 
-/// On one obstacle [1/t0].
+/// Frequency of a disk that oscillates on one obstacle [1/t0].
 double frequency(const RunParameters& run) {
   return std::sqrt(contact_stiffness(*run.wall_stiffness, units::droplet_diameter) / units::droplet_mass);
 }
@@ -75,7 +75,7 @@ DropletState release_disk(const RunParameters& run, const ObstacleArray& obstacl
   return state;
 }
 
-/// As many obstacles as find room in its reach, each pushed in by no more than its centre.
+/// Bound: as many obstacles as find room in the disk's reach, each pushed in no farther than its centre.
 double energy_of_overlaps(const RunParameters& run) {
   const double spacing = run.obstacles.smallest_diameter() + run.obstacles.gap;
   const double across = (units::droplet_diameter + run.obstacles.diameter + spacing) / spacing;
@@ -99,12 +99,12 @@ std::optional<DropletState> equilibrium_of_disk(const RunParameters& run, const 
   return find_equilibrium(EquilibriumForces::of(forces, x_and_y, true), state);
 }
 
-/// It cannot hang over an obstacle.
+/// A disk cannot hang over an obstacle, so every clog is squeezed.
 Hold hold_of_disk(const RunParameters&, const ObstacleArray&, const DropletState&) {
   return {.mechanism = ClogMechanism::squeezed, .geometry = {}};
 }
 
-/// It stays round.
+/// A disk stays round, so it has no neck.
 double neck_of_disk(const DropletState&, double) { return no_neck; }
 
 }  // namespace

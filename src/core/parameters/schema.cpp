@@ -126,7 +126,7 @@ struct Outside<std::optional<OwnCircles>> {
   }
 };
 
-/// What an entry says of a parameter, but for its key, its member and what follows from that one's type.
+/// An entry's facts about a parameter, except its key, its member and what follows from the member's type.
 struct Facts {
   const char* column;
   const char* symbol = "";
@@ -645,7 +645,7 @@ std::vector<Parameter> self_contact_entries() {
   };
 }
 
-/// When a run ends, and how.
+/// Parameters of a run's end and its verdict.
 std::vector<Parameter> verdict_entries() {
   return {
       entry("clog-energy", [](auto& run) -> auto& { return run.clog_energy; },

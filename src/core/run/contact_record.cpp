@@ -8,7 +8,7 @@
 namespace clog {
 namespace {
 
-/// Between the same obstacle seen from two frames there is round-off only [sigma].
+/// Only round-off separates places of the same obstacle seen from two frames [sigma].
 constexpr double same_place = 1e-6;
 /// Obstacles so much farther away than they matter are listed, so that lists are seldom renewed [sigma].
 constexpr double skin = 0.25;
@@ -36,7 +36,7 @@ double distance_from(const Obstacle& circle, const DropletState& state, bool mee
                   distance_to_edge(centre, middle, vertex(nearest + 1)));
 }
 
-/// Of the nearest point that moves [sigma].
+/// Distance of the nearest point that moves [sigma].
 double gap_to(const Wedge& wedge, const DropletState& state) {
   double gap = std::numeric_limits<double>::infinity();
   for (Eigen::Index i = 0; i < state.size(); ++i) {

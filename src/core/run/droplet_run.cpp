@@ -34,7 +34,7 @@ constexpr double rise_of_a_moving_droplet = 10;
 /// Changes with what a snapshot holds.
 constexpr std::uint64_t snapshot_kind = 0x636c6f6773000004;
 
-/// Of a frame that a snapshot holds. @param way  no droplet of the run gets farther [sigma]
+/// Whether a snapshot's frame is possible. @param way  no droplet of the run gets farther [sigma]
 bool is_in_range(const LocalFrame& frame, const Period& period, double way) {
   return frame.period[0] == period.along() && frame.period[1] == period.across() &&
          (frame.origin >= 0).all() && (frame.origin < frame.period).all() &&
@@ -44,7 +44,7 @@ bool is_in_range(const LocalFrame& frame, const Period& period, double way) {
 /// Twice as far as a droplet falls without obstacles [sigma].
 double farthest_way(const RunParameters& run) { return 2 * run.drag.terminal_speed * run.max_time; }
 
-/// Of a state that a snapshot holds, before anything is computed with it.
+/// Checks a snapshot's state before anything is computed with it.
 void check_state(const DropletState& state, const RunParameters& run, const ObstacleArray& obstacles) {
   const Period& period = obstacles.period();
   if (state.size() != model_of(run).num_points(run) || state.velocity.size() != state.position.size() ||
@@ -90,7 +90,7 @@ DropletRun::DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> o
 
 PotentialEnergy DropletRun::potential_energy() const {
   PotentialEnergy energy = droplet_->potential_energy();
-  // From the start to the frame's origin.
+  // Gravity's part between the place of release and the frame's origin.
   energy.gravity -= units::droplet_mass * units::gravity * displacement_of({0, 0})[0];
   return energy;
 }
@@ -164,7 +164,7 @@ DropletRun DropletRun::resume(const RunParameters& run, std::shared_ptr<const Ob
   }
 }
 
-/// Of what a snapshot tells beside the droplet itself.
+/// Checks the members that a snapshot holds beside the droplet itself.
 bool DropletRun::is_in_range() const {
   return (start_.abs() < burst_perimeter).all() &&
          clog::is_in_range(start_frame_, obstacles_->period(), farthest_way(run_)) && steps_done_ > 0 &&

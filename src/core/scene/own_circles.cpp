@@ -66,7 +66,7 @@ void check_place(const Obstacle& circle, const ObstacleParameters& obstacles) {
                     shortest(period.box)));
 }
 
-/// Of all circles in their period. Every task of a plan asks for it, mostly of the same circles.
+/// The closest two of all circles of one period; kept, because most tasks of a plan have the same circles.
 ObstacleArray::Pair closest_pair(const ObstacleParameters& obstacles) {
   using Key = std::tuple<std::string, double, double, double, double>;
   static std::mutex mutex;
@@ -156,7 +156,7 @@ void check_circles(const RunParameters& run) {
 
 void find_gap_and_density(RunParameters& run) {
   ObstacleParameters& obstacles = run.obstacles;
-  // Of few circles the gap may be wider than an array of this box can have.
+  // The gap between a few circles may be wider than an array of this box can have.
   const double widest = obstacles.box / 2 - obstacles.diameter;
   obstacles.gap = std::min(closest_pair(obstacles).gap, widest);
   obstacles.density = static_cast<double>(obstacles.own->circles().size()) / obstacles.period().area();

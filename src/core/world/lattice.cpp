@@ -71,7 +71,7 @@ std::optional<CommensurateLattice> nearest_lattice(double spacing, double angle,
     for (const double q : {std::floor(wanted), std::ceil(wanted)}) {
       const CommensurateLattice candidate = lattice(spacing, p, static_cast<int>(q));
       if (candidate.box < smallest_box * (1 - box_rounding) || candidate.box > longest) continue;
-      // As p grows, so does the box: the later of two as near is the larger one.
+      // The box grows with p: of two equally near candidates, the later is the larger.
       if (!nearest || std::abs(candidate.angle - angle) <= std::abs(nearest->angle - angle) + same_angle)
         nearest = candidate;
     }

@@ -28,7 +28,7 @@ struct CellAxis {
   int num_per_edge;  ///< cells
   int number;        ///< cells in the period
 
-  /// As floor() leaves it; may be outside the period.
+  /// The cell's index by floor(), which may be outside the period.
   int index(double place) const { return static_cast<int>(std::floor(place * (num_per_edge / edge))); }
   int index_within(double place) const {
     return std::min(static_cast<int>(place / edge * num_per_edge), number - 1);

@@ -69,7 +69,7 @@ struct Surroundings {
     return any(is_near) != 0;
   }
 
-  /// Which quarters, each of this size, of a square in the cell lie wholly within the distance of one point?
+  /// The quarters, each of this size, of a square in the cell that lie wholly within the distance of one point.
   /// One bit each: first along x, then along y.
   std::int32_t cover_quarters(float square_x, float square_y, float size) const {
     const float half = size / 2;
@@ -427,7 +427,7 @@ class SequentialAddition {
 
 }  // namespace
 
-/// At most `target` discs; what was needed to find them is given back.
+/// Adds at most `target` discs, then releases the memory that the search needed.
 std::vector<Obstacle> add_circles(const ObstacleParameters& parameters, std::size_t target,
                                   std::uint32_t seed) {
   const double smallest = parameters.smallest_diameter();

@@ -58,7 +58,7 @@ DropletRun falls_onto(RunParameters run, std::vector<Obstacle> obstacles, double
 const std::vector<Obstacle> narrow_gap{{10, 9.6, 0.15}, {10, 10.4, 0.15}};
 const std::vector<Obstacle> single{{10, 10, 0.15}};
 
-/// Of the area; the vertices' mean also moves when the interface slides around itself.
+/// The area's centroid; the vertices' mean also moves when the interface slides around itself.
 Eigen::Array2d centre(const DropletState& state) {
   return state.size() > 1 ? area_centroid(state.position) : state.centre();
 }

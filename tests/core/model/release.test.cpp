@@ -49,7 +49,7 @@ TEST(Release, NeverEnclosesAnObstacleAndStartsAtRest) {
 }
 
 TEST(Release, ComesToRestWhereSpringsKeepTheInterfaceSliding) {
-  // Of the first three the springs it grows with, of the others its own.
+  // The springs of growth keep the first three sliding, the droplet's own springs the others.
   for (const auto& [vertices, line_tension, seed] :
        {std::tuple{64, 0.1, 141u}, {64, 0.05, 113u}, {64, 0.05, 141u}, {32, 0.1, 76u}, {32, 0.05, 303u}}) {
     SCOPED_TRACE(std::to_string(vertices) + " vertices, seed " + std::to_string(seed));

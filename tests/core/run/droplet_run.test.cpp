@@ -86,7 +86,7 @@ DropletRun resume_in_array(const RunParameters& run, std::span<const std::byte> 
                             snapshot);
 }
 
-/// Of interfaces that walls hold, with anchors at the snapshots.
+/// The walls hold these interfaces, with anchors at the snapshots.
 TEST(DropletRun, GoesOnFromASnapshotWithItsAnchors) {
   for (const bool by_friction : {true, false}) {
     RunParameters run;

@@ -104,7 +104,7 @@ TEST(DwellRecord, AFreeDropletHasNone) {
   EXPECT_EQ(record.found(100, false).known_from, DwellRecord::shortest * dwell_length / speed);
 }
 
-/// Of any course and any time it may be asked for: the same as from a list of all dwells.
+/// Whatever the course and the time asked for, the answer is that of a list of all dwells.
 TEST(DwellRecord, AgreesWithAListOfAllDwells) {
   std::mt19937 random(7);
   std::geometric_distribution<int> draw(0.02);

@@ -23,7 +23,7 @@ std::vector<double> correlated_noise(std::size_t size, double correlation, unsig
   return values;
 }
 
-/// Of the mean of `size` such values: 1/n (1 + 2 sum_k (1 - k/n) c^k).
+/// Error of the mean of `size` such values: its square is 1/n (1 + 2 sum_k (1 - k/n) c^k).
 double exact_error(std::size_t size, double correlation) {
   const double n = static_cast<double>(size);
   double sum = 1;

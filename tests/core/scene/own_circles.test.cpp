@@ -36,7 +36,7 @@ std::string refusal(const RunParameters& run) {
 }
 
 TEST(OwnCircles, AreKnownByAStandardCheckSum) {
-  // Of the 24 bytes "123456789" and 15 zeros, as three numbers: CRC-64/XZ, computed bit by bit with Python.
+  // CRC-64/XZ of the 24 bytes "123456789" and 15 zeros, as three numbers; computed bit by bit with Python.
   Obstacle text;
   const char bytes[sizeof text] = "123456789";
   std::memcpy(&text, bytes, sizeof text);

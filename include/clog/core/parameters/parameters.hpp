@@ -38,7 +38,7 @@ template <>
 struct Words<Gravity> {
   static constexpr Worded<Gravity> all[] = {{Gravity::area, "area"}, {Gravity::vertex, "vertex"}};
 };
-/// What of the interface a wall pushes: its vertices (the paper), or the nearest point of every edge.
+/// Which points of the interface a wall pushes: its vertices (the paper), or the nearest point of every edge.
 enum class WallContact { vertex, edge };
 template <>
 struct Words<WallContact> {
@@ -161,7 +161,7 @@ struct ObstacleParameters {
   double gap = 0.2;            ///< w_ob, smallest surface-to-surface distance [sigma]
   double diameter = 0.3;       ///< sigma_ob, of a mixture the mean of the arriving ones [sigma]
   double diameter_spread = 0;  ///< diameters are uniform in diameter (1 -+ spread)
-  /// Of random arrays; what a lattice or a user's own circles come to is not kept here.
+  /// The density of random arrays; that of a lattice or of user-supplied circles is not kept here.
   ObstacleDensity density = ObstacleDensity::share_of_saturated(published_share_of_saturated);
   double box = 500;  ///< period L across the flow [sigma]
   int boxes = 1;     ///< period along the flow over that across it
@@ -169,7 +169,7 @@ struct ObstacleParameters {
   double lattice_angle = 0;            ///< of the lattice's rows from +x to +y [degrees]
   std::optional<OwnCircles> own = {};  ///< of layout file; gap and density are then theirs
   Release release = Release::centre;
-  // Of a user's own circles, in their coordinates.
+  // For user-supplied circles, in their coordinates:
   double length = 0;                      ///< period along the flow; 0: boxes times box [sigma]
   SideWalls side_walls = SideWalls::off;  ///< at y = 0 and y = box
   double entrance = 0;                    ///< x of the line on which droplets are released [sigma]

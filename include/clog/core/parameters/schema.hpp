@@ -68,7 +68,7 @@ struct Parameter {
   bool shapes_array;                   ///< do two values of it make two obstacle arrays?
   /// What the column holds where the parameter means nothing; mostly nothing.
   ParameterValue elsewhere;
-  /// Of files from before the parameter was there: what all runs had then. Nothing: it is not known.
+  /// The value of all runs in files older than the parameter. Nothing: it is not known.
   ParameterValue before;
   /// The same where it followed from the others; nullptr where it did not.
   ParameterValue (*before_from)(const RunParameters&);
@@ -87,8 +87,8 @@ struct Parameter {
   bool may_be_automatic(const RunParameters& run) const { return automatic_in && automatic_in->holds(run); }
 };
 
-/// In the order in which they are shown, and in which the axes of a plan follow each other: numbers of tasks
-/// depend on it.
+/// All parameters, in the order in which they are shown and in which the axes of a plan follow each other:
+/// numbers of tasks depend on it.
 std::span<const Parameter> parameter_schema();
 /// @throws std::out_of_range if there is none
 const Parameter& parameter(std::string_view key);

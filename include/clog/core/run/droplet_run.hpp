@@ -109,12 +109,12 @@ class DropletRun {
   /// Goes on for at most `num_checks` intervals of `steps_per_check` steps. Returns whether the run is over.
   bool advance(int num_checks);
 
-  /// Of the run so far; status `running` while it is not over.
+  /// The run's result so far; status `running` while it is not over.
   RunResult result() const;
   double time() const { return static_cast<double>(steps_done_) * run_.time_step.value(); }
   /// Along and across the flow since release [sigma].
   Eigen::Array2d displacement() const { return displacement_of(droplet_->centre()); }
-  /// Of a point in the droplet's frame from the place of release [sigma].
+  /// Displacement of a point, given in the droplet's frame, from the place of release [sigma].
   Eigen::Array2d displacement_of(const Eigen::Array2d& local) const {
     return droplet_->state().frame.displacement(local, start_frame_, start_);
   }

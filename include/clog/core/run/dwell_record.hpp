@@ -15,21 +15,21 @@ struct Dwell {
   double begin = std::numeric_limits<double>::quiet_NaN();     ///< [t0]
 };
 
-/// What is kept of a run's dwells: those longer than all before.
+/// The dwells of a run that were longer than all before them.
 struct Dwells {
   static constexpr std::size_t most = 8;
 
   /// The longest of all, the longest of those before it, and so on. Of more than `most` the earliest are
   /// dropped.
   std::array<Dwell, most> longest;
-  /// Of any time from this on first_longer() tells the first dwell that was longer; NaN: of none [t0].
+  /// first_longer() knows the first longer dwell for times from this one on; NaN: for no time [t0].
   double known_from = std::numeric_limits<double>::quiet_NaN();
   double last_distance = std::numeric_limits<double>::quiet_NaN();  ///< where the last dwell began [sigma]
   double last_begin = std::numeric_limits<double>::quiet_NaN();     ///< and when [t0]
 
   /// @param time  not less than known_from [t0]; @return nullptr if there was none
   const Dwell* first_longer(double time) const;
-  /// Of a dwell later than all before.
+  /// @param dwell  later than all before
   void keep(const Dwell& dwell);
 };
 

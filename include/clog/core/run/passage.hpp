@@ -12,7 +12,7 @@ struct Extreme {
   double place = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// What is kept of a passage through a channel.
+/// The extremes of a passage through a channel.
 struct Passage {
   Extreme largest_shape_parameter;
   Extreme largest_speed;   ///< along the flow [V_t]

@@ -6,7 +6,7 @@
 
 namespace clog {
 
-/// What runs in a scene are there to tell.
+/// The result that runs in a scene are made for.
 enum class Finding { clogging_length, passage, sag };
 
 /// What walls follow from.
@@ -32,12 +32,12 @@ struct Scene {
   void (*check)(const RunParameters& run);
   /// Replaces what follows from the others, and refuses what cannot be once these are known. @throws Error
   void (*resolve)(RunParameters& run);
-  /// Of the sharpest bend that the interface is expected to take, as a diameter [sigma].
+  /// Diameter of the sharpest bend that the interface is expected to take [sigma].
   double (*sharpest_bend)(const RunParameters& run);
   /// Obstacles per area [1/sigma^2]; NaN if there are none, or only the array itself could tell.
   double (*density)(const ObstacleParameters& obstacles);
 
-  // Of resolved parameters:
+  // For resolved parameters:
   ObstacleArray (*walls)(const RunParameters& run);
   /// A droplet at rest. @throws Error if there is no room for it
   DropletState (*release)(const RunParameters& run, const ObstacleArray& walls);

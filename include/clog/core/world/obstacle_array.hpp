@@ -15,7 +15,7 @@ struct BinnedObstacles {
   Period period;
   double largest_radius = 0;  ///< [sigma]
   std::span<const Obstacle> obstacles;
-  /// Of each cell, the index of its first obstacle; at the end, their number.
+  /// Index of each cell's first obstacle; at the end, the number of obstacles.
   std::span<const std::uint32_t> cell_start;
 };
 
