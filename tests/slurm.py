@@ -29,7 +29,7 @@ def slurm(*command):
 
 
 def described(kind, name):
-    """What Slurm says of a job or a node."""
+    """Slurm's answer about a job or a node."""
     return dict(re.findall(r"(\w+)=(\S*)", slurm("scontrol", "--oneliner", "show", kind, name)))
 
 
@@ -69,7 +69,7 @@ class Slurm(SweepTest):
         self.assertNotIn(now, {"COMPLETED", "CANCELLED", "FAILED", "TIMEOUT", "NODE_FAIL"} - {state}, self.log())
 
     def wait_for_runs_under_way(self):
-        """Until some are so far that they have snapshots, and some are over."""
+        """Waits until some tasks have snapshots, and some are over."""
         def seen():
             if not (self.folder / "s.h5").exists():
                 return False

@@ -37,7 +37,7 @@ else
   hosts=127.0.0.1:$num_ranks,127.0.0.2:$num_ranks
   second_host=
 fi
-# As ssh: the host's name, then a command for its shell.
+# Stands in for ssh: the host's name, then a command for its shell.
 printf '#!/bin/sh\nshift\nexec %s /bin/sh -c "$*"\n' "$second_host" >"$agent"
 
 export OMPI_MCA_plm_rsh_agent=$agent

@@ -89,8 +89,8 @@ console::RoundedError speed_of_all(const Group& group) {
   return console::with_error(group.relative_speed_all.mean, group.relative_speed_all.standard_error);
 }
 
-/// Columns for groups in which some runs are too short to have a speed: the number of the others, whose mean is
-/// shown, and the speed of all runs.
+/// Columns for groups in which some runs are too short to have a speed: the number of the others, whose mean
+/// is shown, and the speed of all runs.
 std::vector<ResultColumn> columns_of_all_speeds() {
   return {{"of", [](const Group& group) { return std::to_string(group.relative_speed.num_runs); }},
           {"all runs", [](const Group& group) { return speed_of_all(group).value; }},

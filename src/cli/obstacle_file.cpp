@@ -74,8 +74,8 @@ void read_scale(const std::string& comment, Scale& scale) {
     throw Error("droplet must be a diameter above 0, as in '# units=um droplet=200um'");
 }
 
-/// Splits a line at semicolons, tabs or commas, whichever comes first in this list, or else at blanks. A comma
-/// beside semicolons or tabs is a decimal comma.
+/// Splits a line at semicolons, tabs or commas, whichever comes first in this list, or else at blanks. A
+/// comma beside semicolons or tabs is a decimal comma.
 std::vector<std::string> cells_of(std::string line) {
   const char separator = line.find(';') != std::string::npos    ? ';'
                          : line.find('\t') != std::string::npos ? '\t'

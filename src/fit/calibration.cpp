@@ -261,7 +261,7 @@ struct Linearised {
 
   bool is_known() const { return !std::isnan(errors.log_tension); }
 };
-/// Linearises the residuals by differences over these steps.
+/// Approximates the residuals as linear, by differences over these steps.
 Linearised linearise(Trier& trier, const Place& place, const Place& step) {
   const double drag_below = std::max(0.0, place.drag - step.drag);
   const std::vector<SpeedResiduals> all = for_all({place,

@@ -166,7 +166,7 @@ TEST_F(LedgerTest, RefusesARowOfAnotherRunThanTheTasks) {
   EXPECT_EQ(ledger.tasks_left(), std::vector<std::int64_t>{1});
 }
 
-/// What is thrown, in words.
+/// The message of the error that is thrown.
 template <class Action>
 std::string refusal(const Action& action) {
   try {

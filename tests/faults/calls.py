@@ -68,7 +68,7 @@ class Faults:
             content = text.encode()
             (case.folder / name).write_bytes(self.scatter(case, content) if case.chance.random() < 0.5 else content)
 
-    # What is asked for, before mistakes are made.
+    # Sound calls, before mistakes are made in them.
 
     def preview(self, case):
         """A sweep that is not run."""

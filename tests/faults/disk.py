@@ -16,7 +16,7 @@ LOADER_GAVE_UP = 127  # libraries did not find room, and the program did not beg
 
 
 def limit_files(size):
-    """What a process writes beyond it fails, as on a full disk."""
+    """Limits the size of files: writes beyond it fail, as on a full disk."""
     def prepare():
         os.environ["UCX_TLS"] = "self,tcp"  # MPICH's shared memory is of files, too
         resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
@@ -104,7 +104,7 @@ class Faults:
                     f"{outcome.name}: exit code {outcome.code}, and leaves {', '.join(files) or 'no file'}")
 
     def limited_output(self, case):
-        """What is printed goes to a file that may not grow: who says 0 has written all."""
+        """Printed text goes to a file that may not grow: exit code 0 must mean that all was written."""
         words = case.chance.choice([["clogsweep", "--help"], ["clogsweep", *self.sample.sweep, "--dry-run"],
                                     ["clogsweep", "status", FILE], ["clogfit", FILE, "--format", "json"],
                                     ["clogrun", "--help"]])

@@ -15,7 +15,7 @@ SWEEP = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=2000
 RANKS = 2
 GENERATIONS = ["mpirun", "a rank", "a helper", "a computing process"]
 SIGNALS = [signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGSTOP]
-# With what a sweep ends whose mpirun got this signal and nothing else: docs/reference/exit-codes.md. On SIGINT the code is mpirun's own.
+# Exit codes of a sweep whose mpirun alone got this signal: docs/reference/exit-codes.md. On SIGINT the code is mpirun's own.
 CODES_OF_MPIRUN = {signal.SIGTERM: {0, 1, 75}, signal.SIGSTOP: {0}}
 PATIENCE = 5  # seconds for processes that have lost others, before they are killed as a batch system would
 

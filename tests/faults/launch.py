@@ -13,7 +13,7 @@ EXIT_CODES = {0, 1, 2, 75}  # docs/reference/exit-codes.md
 READER_GONE = 141  # of a program whose output nobody reads any more
 SUBCOMMANDS = {"status", "verify", "replay", "salvage", "merge", "select", "doctor", "array", "channel", "sag", "calibrate", "compare", "deviation",
                "drag", "report"}
-# What a program says that met a fault of its own.
+# Words of a program that met a fault of its own.
 SIGNS_OF_FAULTS = {
     b"Traceback (most recent call last)": "a traceback",
     b"internal fault": "an internal fault",
@@ -73,7 +73,7 @@ def title(name, arguments):
 
 
 def wrongs(outcome, exit_codes=EXIT_CODES):
-    """What no program may do."""
+    """Names anything that no program may do."""
     if outcome.hung:
         yield f"{outcome.name}: {outcome.hung}"
     elif outcome.code < 0:
@@ -86,7 +86,7 @@ def wrongs(outcome, exit_codes=EXIT_CODES):
 
 
 def quoted(arguments):
-    """As bash understands it, without characters that a terminal would obey."""
+    """The command for bash, without characters that a terminal would obey."""
     return " ".join(quoted_word(os.fsencode(word)) for word in arguments)
 
 

@@ -1,4 +1,4 @@
-"""What describes the rows of a sweep's file is damaged, or the journal of one that was stopped."""
+"""Damages the metadata of a sweep's file, or the journal of a stopped sweep."""
 
 import itertools
 import pathlib
@@ -58,7 +58,7 @@ class Faults:
         case.chance.choice([self.harm_a_table, self.harm_a_table, self.harm_a_journal])(case)
 
     def harm_a_table(self, case):
-        """As a sweep wrote it, or as another program copies it: then no seal says that it is not whole."""
+        """Harms a file as a sweep wrote it, or as another program copies it: then no seal shows that something is missing."""
         sample = case.chance.choice(self.samples)
         end = case.chance.choice([len(sample.content), sample.content.rindex(SEAL)])
         places = [place for place in self.places[sample.name] if place < end]

@@ -9,7 +9,7 @@ from samples import FILE, check_complete, stored_rows
 CIRCLES = "x,y,diameter\n2,3,0.6\n7,8,1\n"
 SWEEP = ["obstacle-layout=file", "box=10", "vertices=64", "max-time=10", "line-tension=0.5,1", "--output", FILE]
 PLAIN = "posts.csv"
-# What means something in a config, in a list of values, or to who prints it.
+# Text with a meaning in a config, in a list of values, or to printf.
 PARTS = [b"\nline-tension = 0.1", b"\n", b"\r\n", b"#", b"\n#circles ", b" = ", b"\\x0a", b"\\", b"\\x", b"%", b"{}", b"(", b")", b"..", b"lin(1,2,3)",
          b"auto", b"\x1b[2J", b"\x7f", b"\xff", b"\xc2\x85", b"\xe2\x80\xa8", b" ", b"\t", b"'", b'"', b"$(date)"]
 LONGEST = 200

@@ -47,7 +47,7 @@ class Faults:
         check_complete(case, path, self.usual.rows, ignored=[*TIMING, "attempt"])
 
     def meet_a_link(self, case):
-        """In a folder where everybody may make files, only links of one's own, or of the folder's owner, lead on."""
+        """In a folder where everybody may make files, only links of the same user, or of the folder's owner, are followed."""
         shared = case.folder / "shared"
         shared.mkdir()
         shared.chmod(0o1777)

@@ -66,7 +66,7 @@ def stored_texts(path):
 
 
 def read_with_python(path):
-    """What our own reader for Python gives, as text with every digit."""
+    """The rows that the Python module reads, as text with every digit."""
     return stored.read_table(path).to_csv()
 
 
@@ -189,7 +189,7 @@ def check_complete(case, path, rows, ignored=TIMING):
 
 
 def rows_place(path):
-    """Where the rows begin, how many bytes one has, place and size of each column in it, and where the rows end."""
+    """Where the rows begin and end, the size of one in bytes, place and size of each column in it."""
     with h5py.File(path, "r") as file:
         table = file["runs"]
         begin = table.id.get_chunk_info(0).byte_offset if table.chunks else table.id.get_offset()

@@ -49,7 +49,7 @@ class Streams:
         return descriptor
 
     def close_those_closed(self):
-        """In the new process."""
+        """To be called in the new process."""
         for number, name in enumerate(NAMES):
             if self.states[name] == "closed":
                 os.close(number)

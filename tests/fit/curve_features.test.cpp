@@ -16,7 +16,7 @@ std::vector<CurvePlace> line(int number = 41) {
   return places;
 }
 
-/// What is known to within `deviation` everywhere, all errors being the same.
+/// A curve known to within `deviation` everywhere, with one common error.
 template <class Function>
 Curve shifted_together(const std::vector<CurvePlace>& places, const Function& mean, double deviation) {
   const auto size = static_cast<Eigen::Index>(places.size());

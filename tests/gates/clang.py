@@ -73,7 +73,7 @@ def chosen(sources, most):
 
 
 def compiler_words(source, command):
-    """What clang++ says that only parses and checks: all of its warnings but those of its optimiser."""
+    """Warnings of a clang++ that only parses and checks: all but those of its optimiser."""
     arguments, folder = command
     words = [word for word in arguments if word != "-c"] + ["-Werror", "-fsyntax-only"]
     done = subprocess.run(words, cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)

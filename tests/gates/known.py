@@ -6,12 +6,12 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# Where nothing else says what changed: the last commits, as many as a push may bring.
+# The number of last commits to look at, where nothing else says what changed: as many as a push may bring.
 LAST_COMMITS = 10
 
 
 def git(*arguments):
-    """What git answers, or None if it refuses."""
+    """git's answer, or None if it refuses."""
     done = subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, text=True)
     return done.stdout if done.returncode == 0 else None
 

@@ -50,7 +50,7 @@ def browser(scheme):
 
 
 def wait_for(driver, condition):
-    """Until a script is true, or half a minute is over; what it was to bring is then missed below."""
+    """Waits until a script is true, or for half a minute; if it never is, the checks below fail."""
     end = time.monotonic() + 30
     while not driver.execute_script(f"return !!({condition})") and time.monotonic() < end:
         time.sleep(0.1)

@@ -23,7 +23,7 @@ PYTHON_LIBRARIES = {"h5py": {"reading"}, "matplotlib": DRAWING, "mpl_toolkits": 
 
 
 def table(text):
-    """What each room uses, by a part of the page."""
+    """The rooms that each room uses, from a part of the page."""
     rooms = {}
     for line in text.splitlines():
         cells = [cell.strip() for cell in line.strip("|").split("|")]

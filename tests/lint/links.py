@@ -40,7 +40,7 @@ def without(pattern, text):
 
 
 def anchors(text):
-    """What a link may name after `#`, by the rules of GitHub and MyST; a heading that comes again has a number."""
+    """The anchors that links may name, by the rules of GitHub and MyST; a repeated heading has a number."""
     text = without(BLOCK, text)
     found = set(TARGET.findall(text))
     for heading in HEADING.findall(text):

@@ -1,4 +1,4 @@
-"""What layers.py refuses, on small trees.
+"""Tests on small trees what layers.py refuses.
 
     tests/lint/test_layers.py
 """
@@ -31,7 +31,7 @@ def page(cpp, python):
 
 class Layers(unittest.TestCase):
     def found(self, files=(), cpp=CPP, python=PYTHON):
-        """What the lint says of the sound tree with other files, and other lines in its tables."""
+        """The lint's answer for the sound tree with other files, and other lines in its tables."""
         with tempfile.TemporaryDirectory() as folder:
             for name, text in {**SOUND, "docs/explanation/architecture.md": page(cpp, python), **dict(files)}.items():
                 path = pathlib.Path(folder, name)

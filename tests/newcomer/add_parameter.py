@@ -26,7 +26,7 @@ def output(*command, **options):
 
 
 def copy_of_tree(folder):
-    """What git knows of, as it is now."""
+    """Copies the files that git tracks, as they are now."""
     for name in output("git", "ls-files", "--cached", "--others", "--exclude-standard", cwd=ROOT).splitlines():
         if (ROOT / name).is_file():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
@@ -42,7 +42,7 @@ def build(folder):
 
 
 def findings(programs, folder):
-    """What should be there and is not."""
+    """Names what is missing."""
     schema = json.loads(output(programs / "clogsweep", "--schema"))
     yield "a key", any(key["key"] == "quiet-checks" and key["range"] == "at least 1, at most 1000" for key in schema["keys"])
     yield "a column", any(column["name"] == "quiet_checks" for column in schema["columns"])

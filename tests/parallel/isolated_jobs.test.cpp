@@ -23,7 +23,7 @@ namespace {
 
 using namespace clog;
 
-/// How a task crashes, and what its row then says.
+/// Ways in which a task crashes, with the words of its row.
 const std::map<std::int64_t, std::pair<int, std::string>> crashes = {
     {3, {SIGSEGV, "its process was ended by SIGSEGV (Segmentation fault)"}},
     {8, {SIGFPE, "its process was ended by SIGFPE (Floating point exception)"}},
@@ -32,12 +32,12 @@ const std::map<std::int64_t, std::pair<int, std::string>> crashes = {
     {34, {0, "its process exited with code 3"}},
 };
 
-/// From here on tasks are slow, for a rank to ask them how far they are.
+/// Tasks from here on are slow, so that a rank asks them for their progress.
 constexpr std::int64_t first_slow_task = 60;
 
-/// From here on tasks stop their process for good, in their first slice.
+/// Tasks from here on stop their process for good, in their first slice.
 constexpr std::int64_t first_hanging_task = 10'000;
-/// From here on tasks kill, or stop, the helper of their process.
+/// Tasks from here on kill, or stop, the helper of their process.
 constexpr std::int64_t first_task_that_kills_the_helper = 20'000;
 constexpr std::int64_t first_task_that_stops_the_helper = 30'000;
 
@@ -233,7 +233,7 @@ void a_rank_goes_on_without_its_helper(const parallel::Communicator& ranks, cons
 
 }  // namespace
 
-/// That of now, and those that begin after a crash.
+/// The present helper, and those that start after a crash.
 void a_later_description_reaches_all_processes(const parallel::Communicator& ranks,
                                                const sweep::JobFactory& make_job) {
   std::set<double> generations;

@@ -147,7 +147,7 @@ sweep::JobFactory failing_on(const parallel::Communicator& ranks,
   };
 }
 
-/// What a sweep with broken ranks came to, on rank 0.
+/// Results of a sweep with broken ranks, on rank 0.
 struct Outcome {
   parallel::SweepEnd end;
   std::map<std::int64_t, std::string> status;     // by task

@@ -12,7 +12,7 @@ import unittest
 import pandas
 
 BIN = pathlib.Path(os.environ["CLOG_BIN"])
-# What mpirun itself does differs: Open MPI, or MPICH?
+# mpirun's own behaviour differs between Open MPI and MPICH.
 MPI = re.search(r"^MPI: (.*) v?\d", subprocess.run([BIN / "clogsweep", "--version"], check=True, capture_output=True, text=True).stdout, re.MULTILINE)[1]
 STEPS_PER_SNAPSHOT = 2**18  # runs that were stopped go on from a snapshot
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -32,7 +32,7 @@ SLOW = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05", "max-time=2e4", "se
         "--report-seconds=0.1", "--output", "s.h5"]
 # Obstacles so near to each other that some seeds (53 and 64 of 51..70) leave no void to release the droplet in.
 BLOCKED = ["vertices=64", "box=13", "obstacle-density=saturated", "max-time=5", "obstacle-diameter=3", "obstacle-gap=0.06", "self-contact-range=0.1"]
-# What a second computation of the same run may change: who did it, and how long it took.
+# Columns that differ when the same run is recomputed: who did it, and how long it took.
 TIMING = ["wall_seconds", "rank", "host"]
 
 

@@ -94,7 +94,7 @@ class Calibrate(ProgramTest):
             self.assertIn("close to a clog", " ".join(trial["warnings"]))
 
     def calibrate_on_a_terminal(self, *arguments):
-        """With a terminal for its standard error, on which it tells how far it is."""
+        """Runs with a terminal as standard error, which shows the progress."""
         ours, theirs = pty.openpty()
         self.addCleanup(os.close, ours)
         shown = []

@@ -21,7 +21,7 @@ from clogsweep.reading import stored  # noqa: E402
 
 # Such droplets might get a hundred diameters far: rows of theirs can be given any distance up to that.
 FAR = ["max-time=1", "terminal-speed=100"]
-# As ten runs would have it whose law is exponential, exactly.
+# Ten runs whose distances follow the exponential law exactly.
 EXPONENTIAL = -np.log(1 - (np.arange(10) + 0.5) / 10)
 
 
@@ -118,7 +118,7 @@ class Fit(ProgramTest):
         return [[(row[name], row[name + "_at"]) for name in names if row[name] > 0] for _, row in table.iterrows()]
 
     def expected_endings(self, table, dwell):
-        """How far each run got until its droplet had not moved for so long, and whether it had, from the table alone."""
+        """Each run's distance until its droplet had stood for so long, and whether it had, from the table alone."""
         for row, dwells in zip(table.itertuples(), self.longest_first(table)):
             stood = [place for length, place in reversed(dwells) if length > dwell]
             is_clogged = row.status == "clogged"
@@ -139,7 +139,7 @@ class Fit(ProgramTest):
                 self.assertEqual(group["clogging_length"] is None, clogs == 0)
                 if clogs:
                     self.assertAlmostEqual(group["clogging_length"], total / clogs, places=12)
-                # What held a droplet that went on is not known; speeds are those of all runs.
+                # The mechanism of a droplet that moved on is not known; speeds are those of all runs.
                 of_clogs = usual[group["line_tension"]]
                 self.assertEqual(group["flowing"], 8 - clogs)
                 self.assertLessEqual(group["squeezed"], of_clogs["squeezed"])

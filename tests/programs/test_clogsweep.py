@@ -373,7 +373,7 @@ class Isolated(ProgramTest):
 
 
 class Told(ProgramTest):
-    """What a sweep says while it runs."""
+    """Tests the messages of a running sweep."""
 
     RUNS = [*QUICK, "seeds=1..3", "--output", "s.h5"]
     EVENT = r"\d\d:\d\d:\d\d task \d rank 0: (starts|(clogged|flowing) at \S+ sigma after \S+ t0) \(Gamma=1, gap=0.2, seed \d\)"
@@ -404,7 +404,7 @@ class Told(ProgramTest):
             pass
         os.close(ours)
         self.assertEqual(process.wait(), 0)
-        # What is on the screen in the end: a carriage return writes over the line, and the escape clears its rest.
+        # The final screen: a carriage return overwrites the line, and the escape clears its rest.
         lines = []
         for line in seen.decode().removesuffix("\r\n").split("\r\n"):
             lines.append(line.split("\r")[-1].removesuffix("\x1b[K"))

@@ -1,4 +1,4 @@
-"""What the programs say to commands that were meant otherwise, and what they refuse to do."""
+"""Tests the answers to commands that were meant otherwise, and what the programs refuse to do."""
 
 import unittest
 

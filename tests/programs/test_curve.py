@@ -20,7 +20,7 @@ import clogsweep  # noqa: E402
 FAR = ["max-time=10", "terminal-speed=100", "seeds=1..6"]
 TENSIONS = [0.03, 0.1, 0.3, 1.0, 3.0]
 LENGTHS = [1.0, 10.0, 100.0, 10.0, 1.0]  # a peak at 0.3
-# As six runs would have it whose law is exponential, exactly.
+# Six runs whose distances follow the exponential law exactly.
 EXPONENTIAL = -np.log(1 - (np.arange(6) + 0.5) / 6)
 PEAKED = [*FAR, "line-tension=" + ",".join(map(str, TENSIONS))]
 

@@ -40,7 +40,7 @@ class Damage(ProgramTest):
         self.rows = table(self.file)
 
     def multiply_a_distance(self):
-        """As a single flipped bit of the exponent does: a clogged row 16 times as far."""
+        """Puts a clogged row 16 times as far, as a single flipped bit of the exponent does."""
         content = self.file.read_bytes()
         self.file.write_bytes(content.replace(struct.pack("<d", self.rows.distance[1]), struct.pack("<d", 16 * self.rows.distance[1])))
         self.assertNotEqual(self.file.read_bytes(), content)

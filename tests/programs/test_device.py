@@ -108,7 +108,7 @@ class Drawings(Analysis):
         space.add_text("not a post")
         drawing.saveas(self.folder / "device.dxf")
         self.assert_posts(self.circles("device.dxf"), 1e-6)
-        # What clogsweep makes of it is what the command says.
+        # clogsweep reads it as the command describes it.
         self.succeed("clogsweep", "obstacles=posts.csv", *KEYS[:-2], "max-time=5", "seeds=1", "--output", "s.h5")
         self.assertEqual(len(table(self.folder / "s.h5")), 1)
 

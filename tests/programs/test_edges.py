@@ -1,4 +1,4 @@
-"""What is around a sweep: names with any byte, links that move, modes and journals of others. No row is lost there."""
+"""Tests a sweep's surroundings: names with any byte, links that move, modes and journals of others. No row is lost there."""
 
 import errno
 import os
@@ -187,7 +187,7 @@ class Access(SweepTest):
 
 
 class LinksOfOthers(SweepTest):
-    """As the kernel does with fs.protected_symlinks: where everybody may make links, only one's own lead on."""
+    """Follows links as the kernel does with fs.protected_symlinks: where everybody may make links, only the user's own."""
 
     def open_folder(self):
         folder = self.folder / "open"

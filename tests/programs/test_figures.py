@@ -149,7 +149,7 @@ class Figures(Analysis):
         stored_rows.change(sweep, edit)
 
     def draw_clogs(self, sweep):
-        """So short a sweep wraps no droplet: one of its clogs is said to be one."""
+        """Marks one clog as wrapped: so short a sweep wraps no droplet."""
         self.call_wrapped(sweep, -1)
         before = table(sweep)
         # Once more: nothing runs again.
@@ -164,7 +164,7 @@ class Figures(Analysis):
         task = clogs.task.iloc[-1]
         with h5py.File(sweep.parent.parent / "runs" / f"clogging-friction-{task}.h5") as file:
             self.assertEqual(file["runs"]["distance"][0], float(wrapped["distance"]), "the same run, bit for bit")
-        # What is drawn from files alone is not labelled as another droplet.
+        # A figure drawn from files alone is not labelled as another droplet.
         self.call_wrapped(sweep, 0)
         self.refuse_analysis("figures", "6a", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["clogging-friction-", "leave out --draw-only"])
 
@@ -358,7 +358,7 @@ class Pictures(Analysis):
             self.assertEqual(lengths.reasons_for_hollow_marker(group), doubts)
 
         def hollow_places():
-            """With the notes."""
+            """Draws with the notes."""
             axes = style.figure_of(lengths.draw_on, groups).axes[0]
             notes, = [text.get_text() for text in axes.texts if text.get_gid() == style.NOTES]
             return [line.get_xdata()[0] for line in axes.lines if line.get_markerfacecolor() == "white" and line.get_marker() != "^"], notes

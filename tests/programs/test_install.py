@@ -1,4 +1,4 @@
-"""What cmake --install puts somewhere, tried where nothing else is."""
+"""Tests an installation by cmake --install where nothing else is installed."""
 
 import json
 import os
@@ -20,7 +20,7 @@ KEYS = ["line-tension=0.5", "obstacle-density=saturated", "obstacle-gap=0.3", "v
 COMMANDS = {"clogsweep": ["status", "verify", "salvage", "replay", "doctor"], "clogrun": [],
             "clogfit": ["calibrate", "curve", "deviation", "drag", "report", "units"]}
 
-# What words without dashes stand for.
+# Meanings of words without dashes.
 POSITIONAL = {"--file", "--system", "--task"}
 
 
@@ -32,13 +32,13 @@ class Installed(unittest.TestCase):
         cls.folder = pathlib.Path(folder.name)
         first = cls.folder / "first"
         cls.called("cmake", "--install", BIN.parent, "--prefix", first)
-        # To another place: whatever knows where it was installed no longer finds it.
+        # Moves the installation: a program that relies on its old place fails.
         cls.prefix = cls.folder / "moved"
         first.rename(cls.prefix)
 
     @classmethod
     def called(cls, *command, **options):
-        # Only what is installed, and the system.
+        # Only the installation and the system are visible.
         environment = {"PATH": f"{cls.folder}/moved/bin:{BIN.parent}/launcher:/usr/bin:/bin", "HOME": str(cls.folder), "OMPI_ALLOW_RUN_AS_ROOT": "1",
                        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "PYTHONDONTWRITEBYTECODE": "1",
                        "PYTHONPATH": f"{cls.folder}/moved/lib/python3/dist-packages", "ASAN_OPTIONS": os.environ.get("ASAN_OPTIONS", "")}
@@ -69,7 +69,7 @@ class Installed(unittest.TestCase):
         self.assertTrue((self.folder / "film.gif").exists())
 
     def man_page(self, name, section):
-        """Without fonts."""
+        """The page without its fonts."""
         return re.sub(r"\\f[BIP]", "", (self.prefix / f"share/man/man{section}/{name}.{section}").read_text().replace("\\-", "-"))
 
     def test_man_pages_have_every_option_with_its_default_and_no_other(self):
@@ -124,7 +124,7 @@ class Installed(unittest.TestCase):
         self.assertIn("line-tension = 0.05,0.2,0.25,0.3,0.4,0.6", said)
 
     def test_the_script_for_slurm_finds_what_is_installed(self):
-        # As Slurm does, from a copy somewhere else.
+        # Runs the script from a copy somewhere else, as Slurm does.
         copy = shutil.copy(self.prefix / "share/clogsweep/jobs/slurm.sh", self.folder / "slurm_script")
         self.called("bash", copy, *KEYS[:-1], "seeds=1", "--output", "slurm.h5")
         self.assertEqual(len(pandas.read_hdf(self.folder / "slurm.h5", "runs")), 1)
@@ -144,7 +144,7 @@ class Installed(unittest.TestCase):
         self.assertRegex(said[-1], r"^lambda = \S+ sigma \(95 %: ")
 
     def completed(self, *words, function="_clogsweep"):
-        """What bash offers for the last word."""
+        """The words that bash offers for the last word."""
         script = f"""
             compopt() {{ :; }}
             . {self.prefix}/share/bash-completion/completions/{words[0]}

@@ -19,14 +19,14 @@ NUMBER = re.compile(r"\d+\.\d+(?:e[+-]?\d+)?")  # a count has no point, and is t
 
 
 def said(notebook):
-    """In words, by every cell of code, without what is only for the eyes of who waits. A film is .mp4 or .gif."""
+    """The text output of every cell of code, without progress bars. A film is .mp4 or .gif."""
     return [[(output["data"]["text/plain"] if "data" in output else output["text"]).replace(".gif>", ".mp4>")
              for output in cell.outputs if output.get("name") != "stderr"]
             for cell in notebook.cells if cell.cell_type == "code"]
 
 
 def words(outputs):
-    """What is said without its numbers and the widths of its columns."""
+    """A text without its numbers and the widths of its columns."""
     return [[" ".join(NUMBER.sub("#", text).split()) for text in cell] for cell in outputs]
 
 

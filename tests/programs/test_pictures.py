@@ -1,4 +1,4 @@
-"""How the commands of the Python module are called, and what their pictures and pages say."""
+"""Tests the commands of the Python module, and the texts of their pictures and pages."""
 
 import json
 import os
@@ -280,7 +280,7 @@ class Looks(Analysis):
     def test_the_last_frame_of_a_film_is_the_end_of_the_run(self):
         self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 20, "--output", "run.h5")
         run = trajectory.read(self.folder / "run.h5")
-        # As of a certified clog, whose equilibrium is beyond the last frame.
+        # It looks like a certified clog, whose equilibrium lies beyond the last frame.
         run.row["distance"] = run.table["distance"][-1] + 0.01
         moving = film.Film(run, film.chosen_frames(run, 50), "speed", 20)
         moving.show(len(moving) - 1)
@@ -310,7 +310,7 @@ class Looks(Analysis):
             red, green, blue = colour_at(index, trajectory.centroids(run.polygons)[frames[index]])
             self.assertTrue(red > green > blue, "the droplet is orange")
             (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
-            # In the middle of the picture, where nothing lies over it.
+            # It lies in the middle of the picture, where nothing covers it.
             inside = [(x, y) for x, y, _ in run.obstacles if left + 0.3 * (right - left) < x < left + 0.6 * (right - left)
                       and low + 0.4 * (high - low) < y < high - 0.3 * (high - low)]
             self.assertGreater(len(inside), 0)

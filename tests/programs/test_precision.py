@@ -8,7 +8,7 @@ import h5py
 import pandas
 from support import QUICK, TIMING, ProgramTest, table
 
-# At Gamma = 2 every droplet clogs, at 0.3 few do in so short a time.
+# Every droplet clogs at Gamma = 2; few do at 0.3 in so short a time.
 SWEEP = [*QUICK, "obstacle-gap=0.3", "line-tension=0.3,2", "seeds=1..4", "--until-precision=75%", "--most-seeds=14"]
 
 

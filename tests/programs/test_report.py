@@ -72,7 +72,7 @@ class Browser(Analysis):
         return [cell.text for cell in self.find_all(f"tbody td:nth-child({titles.index(heading) + 1})")]
 
     def shown(self):
-        """What the card beside the mouse says, by its headings."""
+        """The text of the card beside the mouse, by its headings."""
         self.wait(self.find("#card").is_displayed)
         terms = [[element.text for element in self.find_all(f"#card {name}")] for name in ("dt", "dd")]
         return dict(zip(*terms, strict=True))

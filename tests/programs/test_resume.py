@@ -59,7 +59,7 @@ class Resumed(SweepTest):
                     os.kill(victim, signal.SIGKILL)
                 except ProcessLookupError:
                     pass
-            # Those that are left notice, or are killed as a batch system would.
+            # The remaining ranks notice, or are killed as by a batch system.
             try:
                 process.wait(timeout=3)
             except subprocess.TimeoutExpired:

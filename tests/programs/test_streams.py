@@ -111,7 +111,7 @@ class Streams(SweepTest):
 
 class Files(SweepTest):
     def make_others(self):
-        """What is no regular file, by name."""
+        """Makes files of every kind but a regular one; returns their names."""
         os.mkdir(self.folder / "folder")
         os.mkfifo(self.folder / "pipe")
         with socket.socket(socket.AF_UNIX) as address:

@@ -17,7 +17,7 @@ from support import BIN, LONGEST, ROOT, ProgramTest
 BLOCK = re.compile(r"^```(bash|python|text)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 FILE = re.compile(r"`([\w-]+\.(?:h5|csv|cfg|json|png|pdf|gif|mp4|html))`")
 TOCTREE = re.compile(r"^```{toctree}\n(?::.*\n)*\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-# As on the page before the tutorials; `set` ends a block at the first command that fails.
+# Settings from the page before the tutorials; `set` ends a block at the first command that fails.
 BEFORE = f"set -euo pipefail; . {ROOT}/jobs/mpi-settings.sh\n"
 
 

@@ -1,4 +1,4 @@
-/// How much a refined sweep gains over grids, and how often what it says of a known curve is true.
+/// Measures the gain of refined sweeps against grids, and how often their intervals contain a known curve.
 ///
 ///     build/release/tests/refinement_study KEYS REPETITIONS        # KEYS is 1 or 2; a table on the standard
 ///     output
@@ -102,7 +102,7 @@ std::vector<CurvePlace> grid(int num_keys, int num_values) {
   return places;
 }
 
-/// What is to be said of one way to a curve, at one stage: means over repetitions.
+/// Results of one way to a curve at one stage: means over repetitions.
 struct Tally {
   int number = 0;
   double work = 0;
@@ -199,7 +199,7 @@ void refine(Sweep& sweep, const std::vector<CurvePlace>& places, const Refinemen
   }
 }
 
-/// As --until-precision does it: twice the seeds at most in a round, until there are so many clogs.
+/// Adds seeds as --until-precision does: at most doubles them in a round, until there are so many clogs.
 void fill_grid(Sweep& sweep, std::span<const CurvePlace> values, std::int64_t clogs) {
   for (const CurvePlace& place : values) {
     std::int64_t num_seeds = 4;

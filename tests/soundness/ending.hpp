@@ -8,7 +8,7 @@
 
 namespace clog::soundness {
 
-/// How a droplet ends that did not clog in the time given.
+/// The ways in which a droplet ends that did not clog in the time given.
 enum class Ending {
   moving,      ///< travels: mean speed of its centre above `slowest_travel` V_t
   decaying,    ///< stopped, its kinetic energy is falling
@@ -17,7 +17,7 @@ enum class Ending {
 };
 const char* name(Ending ending);
 
-/// What the end of a run looks like, measured over a window of time. The ending is the first that holds of:
+/// Judges the end of a run, measured over a window of time. The ending is the first of these that holds:
 /// moving      mean_speed > slowest_travel
 /// decaying    fall > least_fall, and the last quarter of the window is not above the third
 /// chattering  coherence < least_coherence: the vertices' way is much shorter than their speed would take

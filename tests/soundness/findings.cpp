@@ -13,7 +13,7 @@
 namespace clog::soundness {
 namespace {
 
-/// How deep an obstacle's surface lies in the interface, 0 if none does [sigma].
+/// The largest depth of an obstacle's surface in the interface; 0 if none reaches it [sigma].
 double deepest_wall(const DropletState& state, const ObstacleArray& obstacles) {
   const Eigen::ArrayXd interface = refined(state.position);
   const Eigen::Index n = interface.size() / 2;

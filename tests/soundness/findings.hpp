@@ -5,7 +5,7 @@
 
 namespace clog::soundness {
 
-/// What a deformable droplet looks like at one moment, or the worst of several moments.
+/// Measures of a deformable droplet at one moment, or the worst of several moments.
 struct Findings {
   int crossings = 0;   ///< see num_self_crossings()
   int enclosed = 0;    ///< obstacles whose centre lies inside the droplet

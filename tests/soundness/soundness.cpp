@@ -49,7 +49,7 @@ constexpr const char* usage =
 The exit code is 0 when all were sound, 1 when one was not, 75 when it was stopped before it knew.
 )";
 
-/// Between two looks at a droplet, in checks of its run: 2 t0 at the default time step.
+/// Time between two looks at a droplet, in checks of its run: 2 t0 at the default time step.
 constexpr int checks_per_look = 32;
 /// The last part of a run that tells how it ends.
 constexpr double tail_part = 0.2;
@@ -78,7 +78,7 @@ struct CaseReport {
            release_force <=
                1.01 * release_force_tolerance;  // sums may run in another order than in the release
   }
-  /// In one word.
+  /// The ending in one word.
   std::string ending() const {
     if (!refusal.empty()) return "refused";
     if (result.status == RunStatus::running) return result.time > 0 ? "given up" : "released";
@@ -131,7 +131,7 @@ CaseReport run_case(const RunParameters& parameters, double longest) {
   return report;
 }
 
-/// Only the release, and the force that it leaves behind.
+/// Looks only at the release, and at the force that it leaves behind.
 CaseReport release_case(const RunParameters& parameters) {
   CaseReport report;
   report.run = parameters;

@@ -116,7 +116,7 @@ TEST(Ending, IsChatteringWhenVerticesShakeAboutTheirPlaces) {
   const auto shake = [&](DropletState& state, double) {
     for (double& value : state.position) value += 1e-6 * scatter(engine);
   };
-  // At 1e-2 V_t a vertex would get 6e-4 far between two places.
+  // A vertex at 1e-2 V_t would move by 6e-4 between two places.
   const Tail tail = tail_of(shake, [&](double) { return 1e-4 * std::pow(10, scatter(engine)); });
   EXPECT_EQ(tail.ending(), Ending::chattering);
   EXPECT_GT(tail.band, 1);

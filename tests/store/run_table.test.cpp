@@ -152,7 +152,7 @@ TEST_F(RunTableTest, IsWholeForAReaderAtEveryMoment) {
 }
 
 TEST_F(RunTableTest, IsNeverLockedWhereReadersLookForIt) {
-  // As HDF5 does before it reads, in h5py and pandas.
+  // HDF5 does this before it reads, in h5py and pandas.
   publish_sweep(path(), some_rows(1), {});
   const pid_t writer = fork();
   if (writer == 0) {

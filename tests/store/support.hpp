@@ -45,7 +45,7 @@ class FolderTest : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// To be run in a process of its own: a limit on the size of files stands for a full disk. Leaves with exit
+/// Must run in its own process: a limit on the size of files stands for a full disk. Leaves with exit
 /// code 2 if an Error was thrown, whose text goes to the error stream.
 [[noreturn]] inline void run_on_full_disk(rlim_t num_bytes, const std::function<void()>& action) {
   std::signal(SIGXFSZ, SIG_IGN);

@@ -38,7 +38,8 @@ RunParameters run_in(const ObstacleParameters& obstacles, std::uint32_t seed) {
   return run;
 }
 
-/// That no other test, run at the same time, shares with this one, nor the odd one after it.
+/// A seed that no other test, run at the same time, shares with this one; nor does one have the odd seed
+/// after it.
 std::uint32_t own_seed() { return 2 * static_cast<std::uint32_t>(getpid()); }
 
 ObstacleParameters lattice() {
@@ -245,7 +246,7 @@ TEST(ObstacleArrays, AreNotWaitedForAgainAfterAWaitForNothing) {
   get_and_signal(arrays, start_and_stop_builder(), SIGCONT);
   EXPECT_EQ(arrays.num_built(), 3);
 
-  // What is there is still found, and then again waited for.
+  // The array that is there is still found; then the wait begins again.
   ObstacleArrays other;
   other.get(run_in(large, seed));
   arrays.get(run_in(large, seed));

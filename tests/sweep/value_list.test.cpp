@@ -149,7 +149,7 @@ TEST(Shortest, IsNoLongerThanAnyTextThatReadsBack) {
   }
 }
 
-/// These texts are in the rows' identity: other ones would be other runs.
+/// These texts belong to the rows' identity: other texts would mean other runs.
 TEST(Shortest, IsWrittenAsPeopleDo) {
   const std::pair<double, const char*> texts[] = {{0, "0"},
                                                   {-0.0, "-0"},

@@ -54,7 +54,7 @@ def peak_moves(groups: list[Group]) -> Finding:
 
 
 def transition(curve: Sequence[Group]) -> tuple[float, float] | None:
-    """Where the branches meet: the largest line tension at which wrapped clogs prevail, and the next at which squeezed ones do."""
+    """The crossover of the branches: the largest line tension at which wrapped clogs prevail, the next at which squeezed ones do."""
     wrapped = [point["line_tension"] for point in curve if point["wrapped"] > point["squeezed"]]
     if not wrapped:
         return None

@@ -50,7 +50,7 @@ def first_minimum(shop: Workshop) -> Finding:
 
 
 def slowest_before(way: Any) -> float:
-    """Where a droplet is slowest on the last diameter before the orifice; farther away it starts, from rest."""
+    """The place of a droplet's least speed on the last diameter before the orifice; farther away it starts from rest."""
     before = way[(way["h"] > -1) & (way["h"] < 0)]
     return float(before["h"][np.argmin(before["speed_ratio"])])
 

@@ -15,7 +15,7 @@ def cells(one: Judged) -> list[str]:
 
 
 def counts(judged: Sequence[Judged]) -> str:
-    """Such as 31 agree, 12 agree qualitatively."""
+    """The verdicts counted, such as 31 agree, 12 agree qualitatively."""
     number = collections.Counter(one.finding.verdict for one in judged)
     words = {AGREES: "agree", IN_KIND: "agree qualitatively", FITTED: "agree by construction",
              DOES_NOT: "do not agree", NOT_KNOWN: "are not known", NOT_RUN: "have not been run"}

@@ -36,7 +36,7 @@ class Collisions:
         self.keys.setdefault("max-time", f"{4 * FALL / float(self.keys['terminal-speed']):g}")
 
     def break_up(self, offset: float, tensions: Sequence[float]) -> list[bool]:
-        """Which of the droplets do."""
+        """Whether each of the droplets breaks up."""
         circles, sweep = self.folder / "circle.csv", self.folder / "collisions.h5"
         circles.write_text(f"x,y,diameter\n{BOX / 2 + FALL},{BOX / 2 + offset},{DIAMETER}\n")
         programs.run_program(self.clogsweep, f"obstacles={circles}", f"box={BOX}", "seeds=1", *(f"{key}={value}" for key, value in self.keys.items()),

@@ -22,7 +22,7 @@ SMALLEST_LENGTH = 4  # [sigma]: shorter ones were too long by a third and more
 SOFTEST = 1  # line tension: at 0.5 up to 42 % of all clogs hang on three obstacles, at 0.3 85 % (docs/explanation/predicted.md)
 ARRAYS, ARRAY_BOX = 4, 60  # of random arrays, pairs of so many are counted
 
-# What describes the array. All other keys are the droplet's, and `obstacle-diameter` is one of both.
+# The keys of the array. All other keys belong to the droplet; `obstacle-diameter` belongs to both.
 OF_ARRAYS = ("obstacle-layout", "obstacle-gap", "obstacle-density", "obstacles", "lattice-angle", "box", "boxes")
 REFUSED = {"seeds": "arrays and pairs have seeds of their own here", "max-time": "nothing runs in the array", "release": "nothing runs in the array",
            "obstacle-diameter-spread": "pairs are of obstacles alike"}

@@ -53,7 +53,7 @@ def options() -> argparse.Namespace:
 
 
 def metres_of(arguments: argparse.Namespace, drawing: shapes.Drawing) -> float:
-    """In a unit of the drawing. @throws UserError"""
+    """Metres per unit of the drawing. @throws UserError"""
     if arguments.pixel:
         return shapes.length_in_metres(arguments.pixel, "--pixel")
     if arguments.unit:
@@ -65,13 +65,13 @@ def metres_of(arguments: argparse.Namespace, drawing: shapes.Drawing) -> float:
 
 
 def call_of(device: shapes.Device, output: pathlib.Path) -> str:
-    """How a sweep of it begins."""
+    """The command that starts a sweep of it."""
     return (f"clogsweep obstacles={output}.csv box={device.width:.6g} length={device.length:.6g} side-walls=on "
             f"release=entrance exit={device.length:.6g} ...")
 
 
 def told(device: shapes.Device, drawing: shapes.Drawing) -> list[str]:
-    """What was understood, in words."""
+    """Describes in words what was read from the drawing."""
     edge = "its own edge" if device.has_frame else "no edge is drawn: that of what surrounds the posts"
     lines = [f"{rounded.counted(len(device.circles), 'post')}, device {device.length:.4g} x {device.width:.4g} droplet diameters ({edge})"]
     if len(device.circles):

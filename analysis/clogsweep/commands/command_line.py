@@ -1,4 +1,4 @@
-"""How every command here is called, and how it says what went wrong: one line, exit code 2, as the programs do."""
+"""Calls every command here, and reports mistakes as the programs do: one line, exit code 2."""
 
 import argparse
 import contextlib
@@ -119,7 +119,7 @@ def quieten_libraries() -> None:
 
 @contextlib.contextmanager
 def needs_modules() -> Iterator[None]:
-    """For a block that loads modules which a machine may lack."""
+    """Guards a block that loads modules which a machine may lack."""
     quieten_libraries()
     try:
         yield

@@ -51,7 +51,7 @@ def hours(seconds: float) -> str:
 
 
 def lost(sessions: Sequence[Session]) -> str:
-    """What ranks without work cost, in a sentence."""
+    """States the cost of idle ranks in a sentence."""
     whole = sum(session["ranks"] * session["seconds"] for session in sessions)
     idle, tail = (sum(session[name] for session in sessions) for name in ("idle_seconds", "tail_seconds"))
     return (f"Of {hours(whole)} core-hours {hours(idle)} ({100 * idle / whole:.2g} %) were lost to ranks without work, {hours(tail)} "

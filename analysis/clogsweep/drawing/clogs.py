@@ -33,7 +33,7 @@ def of_polygons(rows: Records, path: object) -> list[np.void]:
 
 
 def mechanism_of(row: np.void) -> str:
-    """As clogfit calls it: a clog whose mechanism is `none` of the three is another one."""
+    """The mechanism by clogfit's name: `other`, if it is none of the three."""
     name = row["mechanism"].decode()
     return "other" if name == "none" else name
 
@@ -134,7 +134,7 @@ def run_all(clogrun: pathlib.Path, sweep: pathlib.Path, rows: Sequence[np.void],
 
 
 def distances(polygon: Numbers, obstacle: Numbers) -> Numbers:
-    """From an obstacle's surface to every edge."""
+    """Distances from an obstacle's surface to every edge."""
     begin, way = polygon, np.roll(polygon, -1, axis=1) - polygon
     to_centre = obstacle[:2, None] - begin
     along = np.clip((to_centre * way).sum(axis=0) / (way**2).sum(axis=0), 0, 1)
@@ -160,7 +160,7 @@ def hull(points: Numbers) -> Numbers:
 
 
 def title(row: np.void) -> str:
-    """What clogged and how, in words."""
+    """Describes in words the droplet and its clog."""
     wrapped = f"{row['num_wrapped']} wrapped (bears {100 * row['wrapped_support']:.0f} %)" if row["num_wrapped"] > 0 else "none wrapped"
     return (rf"task {row['task']}: {mechanism_of(row)} after $r = {rounded.plain(row['distance'])}\,\sigma$" "\n"
             rf"$\Gamma = {row['line_tension']:.4g}$, minimum gap ${row['obstacle_gap']:.4g}\,\sigma$, seed {row['seed']}" "\n"
@@ -168,7 +168,7 @@ def title(row: np.void) -> str:
 
 
 def draw(axes: Axes, clog: Clog) -> None:
-    """In coordinates from the droplet's middle. Panels of one shape: titles over flat ones would leave the sheet."""
+    """Draws around the droplet's middle. All panels have one shape: titles over flat ones would leave the sheet."""
     row, polygon, obstacles = clog.row, clog.polygon, clog.obstacles
     low, high = polygon.min(axis=1), polygon.max(axis=1)
     middle, half = (low + high) / 2, (high - low).max() / 2 + 0.3
@@ -191,7 +191,7 @@ def sheet(clogs: Sequence[Clog]) -> Figure:
     down = -(-len(clogs) // across)
     height = 3.9 * down + MARGIN
     figure, axes = style.subplots(down, across, figsize=(2.8 * across, height), squeeze=False)
-    # Or the titles of the first row leave the sheet.
+    # Otherwise the titles of the first row leave the sheet.
     figure.get_layout_engine().set(h_pad=0.1, rect=(0, 0, 1, 1 - MARGIN / height))
     for place in axes.flat:
         place.axis("off")

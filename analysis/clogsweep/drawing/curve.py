@@ -7,7 +7,7 @@ from . import lengths, migration
 
 
 def draw_on(axes: Axes, groups: Groups) -> None:
-    """In lattices how far droplets migrate sideways, elsewhere their clogging lengths."""
+    """Draws how far droplets migrate sideways in lattices, and their clogging lengths elsewhere."""
     (migration if groups.are_lattices else lengths).draw_on(axes, groups)
 
 

@@ -153,7 +153,7 @@ def unbroken(points: Numbers, place: Place) -> Numbers:
 
 
 def draw_ends(axes: Axes, place: Place) -> None:
-    """Where droplets clogged, by what; where they passed the exit, broke up, or were when their time was up."""
+    """Draws where droplets clogged and by which mechanism, and where they passed the exit, broke up, or ran out of time."""
     ends = place.wrapped(place.ends)
     words = {"flowing": (".", "0.2", "still moving"), "passed": (">", "0.2", "passed"), "broken": ("*", style.CAUSE_COLOURS["broken"], "broken")}
     for status, (marker, colour, name) in words.items():
@@ -171,7 +171,7 @@ def draw_ends(axes: Axes, place: Place) -> None:
 
 
 def draw_passages(axes: Axes, place: Place) -> None:
-    """How many droplets came past each place along the flow. One that goes through the device twice counts twice."""
+    """The number of droplets that passed each place along the flow. One that passes the device twice counts twice."""
     cells = np.linspace(0, place.length, 201)
     middles = (cells[1:] + cells[:-1]) / 2
     counts = np.zeros(len(middles))

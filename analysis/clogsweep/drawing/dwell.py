@@ -27,7 +27,7 @@ def times_of(groups: Groups) -> list[float]:
 
 
 def label_of(groups: Groups, member: Group) -> str:
-    """What tells a group from the others."""
+    """The values that distinguish a group from the others."""
     names = [name for name in [groups.abscissa, *groups.curve_parameters()] if groups.varies(name)]
     return ", ".join(groups.said(name, member[name]) for name in names)
 

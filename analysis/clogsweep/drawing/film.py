@@ -92,7 +92,7 @@ class Layer:
         pixels = pixels_of(figure)
         rows, columns = (np.flatnonzero(pixels[..., 3].any(axis=axis)) for axis in (1, 0))
         self._corner = columns[0], len(pixels) - 1 - rows[-1]
-        # From the bottom to the top, as matplotlib takes it.
+        # Rows run from the bottom to the top, as matplotlib expects.
         self._pixels = pixels[rows[0]:rows[-1] + 1, columns[0]:columns[-1] + 1][::-1].copy()
 
     def draw(self, renderer: Any) -> None:
@@ -100,7 +100,7 @@ class Layer:
 
 
 def pixels_of(figure: Figure) -> Pixels:
-    """As drawn so far; drawing on changes them."""
+    """The pixels as drawn so far; further drawing changes them."""
     return np.asarray(figure.canvas.buffer_rgba())
 
 
@@ -138,7 +138,7 @@ class Film:
         self._separate(inset, arrow)
 
     def _separate(self, inset: list[Artist], arrow: list[Artist]) -> None:
-        """What lies still from what moves. The bar is as long as the droplet is wide: it changes when the camera steps back."""
+        """Separates what lies still from what moves. The bar is as long as the droplet is wide: it changes when the camera steps back."""
         under = [*self._axes.patches[:self._num_walls], self._obstacles, self._trail, self._inside, self._outline, self._frame]
         over = [self._course, self._head, self._clock, self._verdict]
         for artist in (*under, *inset, *arrow, *over, self._bar):
@@ -307,7 +307,7 @@ def write_mp4(film: Film, path: pathlib.Path, rate: int) -> None:
 
 
 def palette_of(first: Pixels) -> Image.Image:
-    """For all frames: the colours of the first, shades of the colour bar however small it is, greys, and what may come at the end."""
+    """One palette for all frames: the colours of the first, shades of the colour bar, greys, and colours that come only at the end."""
     seen = np.reshape(Image.fromarray(first[..., :3]).quantize(SHADES).getpalette()[:3 * SHADES], (-1, 3)) / 255
     bar = style.VIRIDIS(np.linspace(0, 1, SHADES))[:, :3]
     greys = np.repeat(np.linspace(0, 1, 32), 3).reshape(-1, 3)
@@ -333,7 +333,7 @@ def write_pictures(film: Film, output: str) -> pathlib.Path:
     folder.mkdir(parents=True, exist_ok=True)
     for index, pixels in enumerate(film.play()):
         Image.fromarray(pixels[..., :3]).save(folder / f"{index:05d}.png")
-    # Those of a longer run that were there before are no part of this one.
+    # Frames left from an earlier, longer run are no part of this one.
     for earlier in folder.glob("[0-9]" * 5 + ".png"):
         if int(earlier.stem) >= len(film):
             earlier.unlink()

@@ -69,7 +69,7 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
     length in doubt (HOLLOW_MARKERS), a triangle a lower bound, where no run clogged."""
     order = sorted(range(len(groups)), key=lambda i: places[i])
     places, groups = [places[i] for i in order], [groups[i] for i in order]
-    # Not a number where no run clogged: the line is broken there, and goes on dotted.
+    # NaN where no run clogged: the line breaks there and continues dotted.
     lengths = [math.nan if group["clogs"] == 0 else group["clogging_length"] for group in groups]
     bars = [[math.nan if group["clogs"] == 0 else abs(group["clogging_length"] - group[end]) for group in groups]
             for end in ("clogging_length_lower", "clogging_length_upper")]
@@ -100,7 +100,7 @@ def draw_speeds(axes: Axes, places: Sequence[float], groups: Sequence[Group], in
 
 
 def speed_column(groups: Iterable[Group]) -> str:
-    """Where droplets clog, the mean of single runs is that of the fast ones, which came far enough. Older programs tell no other, nor do files without dwells."""
+    """The mean of single runs is that of the fast ones, which came far enough before they clogged. Files without dwells have no other mean."""
     return OF_ALL_RUNS if any(group.get(OF_ALL_RUNS) is not None for group in groups) else "relative_speed"
 
 
@@ -109,7 +109,7 @@ def have_speeds(groups: Collection[Group]) -> bool:
 
 
 def speed_notes(groups: Collection[Group]) -> list[str]:
-    """What the points of draw_speeds_on() are."""
+    """Says what the points of draw_speeds_on() are."""
     if speed_column(groups) == OF_ALL_RUNS:
         return ["way over time of all runs; bars: standard errors"]
     fewer = any(group["relative_speed_runs"] < group["runs"] for group in groups)
@@ -145,7 +145,7 @@ def draw_curves(axes: Axes, groups: Groups, draw_curve: Callable[..., None]) -> 
 
 
 def places(groups: Groups, members: Sequence[Group], index: int, num_curves: int) -> list[float]:
-    """Where a curve's points are drawn: apart from those of the others, so that their bars can be told apart."""
+    """Shifts a curve's points away from those of the others, so that their bars can be told apart."""
     values = groups.values(groups.abscissa)
     if groups.is_logarithmic():
         return [group[groups.abscissa] * style.side_by_side(index, num_curves, values) for group in members]

@@ -24,7 +24,7 @@ def draw_slopes(axes: Axes, places: Sequence[float], groups: Sequence[Group], in
 
 
 def draw_rows(axes: Axes, groups: Groups) -> None:
-    """What a droplet has that follows the rows, and one that goes straight on."""
+    """Lines for a droplet that follows the rows, and for one that goes straight on."""
     angles = [group["lattice_angle"] for group in groups.members]
     axes.axhline(0, color="0.6", linewidth=0.8, linestyle=":", zorder=1)
     if groups.abscissa == "lattice_angle" and min(angles) < max(angles):
@@ -33,7 +33,7 @@ def draw_rows(axes: Axes, groups: Groups) -> None:
 
 
 def notes(groups: Groups) -> list[str]:
-    """What is drawn, and of how many droplets it is not known."""
+    """Says what is drawn, and for how many droplets it is not known."""
     lines = ["dashed: along the rows; dotted: straight on; bars: standard errors"]
     unknown = sum(group["lateral_slope"] is None for group in groups.members)
     return lines + ([f"{unknown} of {len(groups.members)} points: no droplet went half a diameter"] if unknown else [])

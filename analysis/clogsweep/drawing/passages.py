@@ -59,7 +59,7 @@ def share(kind: Kind, members: Sequence[Group]) -> str:
 
 
 def drawn_columns(groups: Groups) -> dict[str, str]:
-    """What there is a curve of, and how it is called."""
+    """The quantities with a curve, and their names."""
     return {column: column.replace("_", " ") for column in kind_of(groups).curves
             if groups.are_polygons or column != "largest_shape_parameter"}  # a soft disk stays a circle
 

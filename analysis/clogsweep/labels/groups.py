@@ -21,7 +21,7 @@ class Groups:
 
     def __init__(self, fit: dict[str, Any], circle_files: dict[str, str] | None = None) -> None:
         """@param fit  the JSON of clogfit; @param circle_files  see stored.circle_files()"""
-        # In a channel and on a wall nothing is random: a group is one run, which has a status.
+        # Nothing is random in a channel or on a wall: a group is one run, which has a status.
         self.are_passages = any("status" in group for group in fit["groups"])
         self.members: list[Group] = [group for group in fit["groups"] if (group["status"] in FINISHED if self.are_passages else group["runs"] > 0)]
         self._told: list[Group] = fit["groups"]
@@ -58,7 +58,7 @@ class Groups:
         return [curve for curve in self._ask_for_curves() if len(curve["points"]) >= FEWEST_POINTS]
 
     def fitted_curve(self, members: Collection[Group]) -> dict[str, Any] | None:
-        """That through these groups, if there is one."""
+        """The fitted curve through these groups, if there is one."""
         through = [curve for curve in self._fitted if any(self._told[point["group"]] is group for point in curve["points"] for group in members)]
         return through[0] if len(through) == 1 else None
 
@@ -106,7 +106,7 @@ class Groups:
         return from_array or self.columns[name].get("automatic_in") in ("all", self.members[0]["model"])
 
     def _share_of_saturated(self) -> str:
-        """How densely all random arrays are filled, such as `12%`; empty if that is not one share."""
+        """The filling of all random arrays, such as `12%`; empty if they differ."""
         share = self.settings.get("obstacle-density", "")
         return share if share.endswith("%") and is_number(share[:-1]) and self.values("obstacle_filling") == {"density"} else ""
 
@@ -153,7 +153,7 @@ class Groups:
         return min(values) > 0 and (self.abscissa in AXES or max(values) > 5 * min(values))
 
     def caption(self) -> str:
-        """What all curves have in common, and how many runs are behind them."""
+        """The parameters that all curves share, and their number of runs."""
         if not self.tells_what_all_share:
             return ""
         first = self.members[0]
@@ -174,7 +174,7 @@ class Groups:
         return ", ".join(words)
 
     def _only_circle_file(self) -> dict[str, str]:
-        """As the config names it, for a fit without its sweep; of several it does not say which is which."""
+        """The file of circles that the config names, for a fit without its sweep; with several, the config does not say which is which."""
         name = self.settings.get("obstacles", "none")
         if name == "none" or "," in name:
             return {}

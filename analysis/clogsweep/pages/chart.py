@@ -32,7 +32,7 @@ def element(name: str, **attributes: str) -> ElementTree.Element:
 
 
 def luminance(colour: Colour) -> float:
-    """As WCAG 2.1 defines it, from 0 to 1. @param colour  red, green, blue, to 255"""
+    """Relative luminance as WCAG 2.1 defines it, from 0 to 1. @param colour  red, green, blue, to 255"""
     linear: list[float] = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in (channel / 255 for channel in colour)]
     return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
 
@@ -53,7 +53,7 @@ def in_the_dark(colour: Colour) -> Colour:
 
 
 class Charts:
-    """Those of one page. They share letters, markers and colours.
+    """The charts of one page. They share letters, markers and colours.
 
     @param labels  what to say of each group
     """
@@ -146,7 +146,7 @@ class Charts:
             node.append(inner)
 
     def _point(self, group: str, kind: str, parts: Iterable[ElementTree.Element]) -> ElementTree.Element:
-        """What a mouse or the keyboard can choose."""
+        """The part that a mouse or the keyboard can choose."""
         label = self._labels[int(group)]
         made = element("g", tabindex="0", role="img", aria_label=label, data_groups=group, **{"class": kind})
         title = element("title")

@@ -1,5 +1,5 @@
 "use strict";
-// Nothing here is needed to read the page: all numbers are in the table, and points have titles.
+// The page can be read without this script: all numbers are in the table, and points have titles.
 
 const table = document.querySelector("table");
 const headings = [...table.tHead.rows[0].cells];

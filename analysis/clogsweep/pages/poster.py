@@ -49,7 +49,7 @@ def page(title: str, about: str, rows: Sequence[Row], footer: str) -> Figure:
 
 
 def cut(text: str) -> str:
-    """So that its lines are no wider than the page."""
+    """Cuts lines that are wider than the page."""
     return "\n".join(line if len(line) < 150 else f"{line[:147]}..." for line in text.splitlines())
 
 
@@ -72,7 +72,7 @@ def run_way(row: np.void, sweep: pathlib.Path, clogrun: pathlib.Path) -> Traject
 
 
 def draw_way(axes: Axes, run: Trajectory) -> None:
-    """As wide as the page."""
+    """Draws the droplet's path as wide as the page."""
     way.draw_on(axes, run, 12)
     axes.set_aspect("equal", adjustable="datalim")
 

@@ -62,7 +62,7 @@ def occurring_causes(members: Sequence[Group]) -> list[str]:
 
 
 def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
-    """How probable an end by each cause is on a way r, the others being at work (Aalen and Johansen's estimate), for one curve's members."""
+    """Probability of an end by each cause within a distance r, with the other causes present (Aalen-Johansen), for one curve's members."""
     names = occurring_causes(members)
     figure, all_axes = style.subplots(1, len(names), figsize=(3.2 * len(names), 4.8), sharex=True, sharey=True, squeeze=False)
     longest = max(survival_curve.longest_way(group) for group in members)
@@ -87,7 +87,7 @@ def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
 
 
 def draw_causes(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
-    """What became of the runs of one curve, as shares."""
+    """How the runs of one curve ended, as shares."""
     ranks, base = np.arange(len(members)), np.zeros(len(members))
     shares = {name if name == "broken" else f"clogged, {name}": (colour, [(group[name] or 0) / group["runs"] for group in members])
               for name, colour in style.CAUSE_COLOURS.items()}
@@ -110,7 +110,7 @@ def length(group: Group) -> str:
 
 
 def speed(group: Group) -> str:
-    """That of all runs, way over time; besides, where only some came far enough to have one, the mean of these."""
+    """The speed of all runs, way divided by time; also the mean of single runs, where only some came far enough to have a speed."""
     runs = rounded.counted(group["relative_speed_runs"], "run")
     mean = None if group["relative_speed"] is None else rounded.with_error(group["relative_speed"], group["relative_speed_error"])
     if group.get(lengths.OF_ALL_RUNS) is None:
@@ -161,7 +161,7 @@ def seeds_of(group: Group, names: Sequence[str], rows: pandas.DataFrame) -> str:
 
 
 def doubts_of(group: Group, sentences: dict[str, str]) -> str:
-    """As words, each with its sentence."""
+    """The doubts as words, each with its sentence."""
     return ", ".join(f'<abbr title="{html.escape(sentences[name])}">{name.replace("_", " ")}</abbr>' for name in style.doubts(group))
 
 
@@ -252,7 +252,7 @@ LENGTHS = ("&lambda; is the way after which 1/e of the droplets have not clogged
 
 
 def label_of_length(groups: Groups, group: Group) -> str:
-    """What a point says where there is no script."""
+    """A point's title, which needs no script."""
     known = "" if speed(group) == "-" else f", speed {speed(group)}"
     return (f"{valued(groups, group)}: length {length(group)}{known}, {group['clogs']} of {rounded.counted(group['runs'], 'run')} clogged")
 
@@ -271,7 +271,7 @@ def devices(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path, charts: 
 
 
 def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
-    """What is told of droplets among obstacles. @param count  clogs to show. @return contents by title"""
+    """The sections about droplets among obstacles. @param count  clogs to show. @return contents by title"""
     def chart(figure: Figure, caption: str) -> str:
         is_wide = figure.get_figwidth() > 1.5 * figure.get_figheight()
         return framed(charts.draw(figure, caption), caption, "wide" if is_wide else "")

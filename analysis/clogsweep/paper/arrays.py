@@ -24,12 +24,12 @@ from .workshop import Workshop
 if TYPE_CHECKING:
     import pandas
 
-# By what droplets are held, as clogfit counts them, and the mesh.
+# The mechanisms that hold droplets, as clogfit counts them, and the mesh.
 HOLDS = ("vertices", "on_mesh", "wrapped", "squeezed", "hybrid")
 
 
 def numbers(groups: Sequence[Group], label: str, **more: Sequence[Any]) -> list[dict[str, Any]]:
-    """What is drawn of each group, as clogfit gives it."""
+    """The values of each group that are drawn, from clogfit."""
     columns = ["model", "line_tension", "wall_stiffness", "obstacle_gap", "obstacle_diameter", "obstacle_density", "near_wall_drag", "runs", "clogs",
                "clogging_length", "clogging_length_lower", "clogging_length_upper", "relative_speed", "relative_speed_error", "capillary_number", "doubts"]
     return [{"curve": label, **{name: group[name] for name in columns}, **{name: values[i] for name, values in more.items()}}

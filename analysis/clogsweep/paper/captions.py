@@ -1,4 +1,4 @@
-"""What the points of a figure have in common, for the line above it."""
+"""The parameters that a figure's points share, for the line above it."""
 
 from collections.abc import Collection, Sequence
 
@@ -10,7 +10,7 @@ NAMED = ("line_tension", "obstacle_gap", "obstacle_diameter", "near_wall_drag")
 
 
 def arrays_of(groups: Sequence[Group]) -> str:
-    """How densely the arrays are filled."""
+    """The filling of the arrays, in words."""
     if {group["obstacle_filling"] for group in groups} == {"saturated"}:
         return "saturated arrays"
     densities = sorted({group["obstacle_density"] for group in groups})

@@ -69,7 +69,7 @@ def finish(axes: Axes, ordinate: str, reach: float = 1.6) -> None:
 
 
 def extremes(run: Trajectory, label: str) -> dict[str, Any]:
-    """What the row says of the passage."""
+    """The row's results of the passage."""
     return {"curve": label} | {f"{extreme}{at}": run.row[f"{extreme}{at}"] for at in ("", "_at")
                                for extreme in ("largest_shape_parameter", "smallest_relative_speed", "largest_relative_speed")}
 

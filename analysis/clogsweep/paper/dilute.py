@@ -150,7 +150,7 @@ def is_exponential(group: Group) -> bool | None:
 
 
 def known_length(group: Group) -> float:
-    """Or the lower bound, where no run clogged."""
+    """The clogging length, or its lower bound where no run clogged."""
     return group["clogging_length_lower"] if group["clogs"] == 0 else group["clogging_length"]
 
 

@@ -24,7 +24,7 @@ def print_list() -> None:
 
 
 def output_of(name: str, shop: Workshop) -> pathlib.Path:
-    """Without ending."""
+    """The path without its ending."""
     return shop.folder / f"figure-{name}"
 
 

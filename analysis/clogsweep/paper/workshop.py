@@ -99,7 +99,7 @@ class Workshop:
         in_file = config_keys(self.config(name))
         keys = self.keys(name) | own_keys
         if own_keys.get("obstacle-layout") in ("channel", "wall"):
-            # Nothing is random or periodic there: such a --set is meant for the others.
+            # Nothing is random or periodic in these scenes: such a --set is meant for the others.
             keys = {key: value for key, value in keys.items() if key not in ("seeds", "box")}
         return ["--config", str(self.config(name)), *(f"{key}={value}" for key, value in keys.items() if in_file.get(key) != value)]
 
@@ -156,7 +156,7 @@ class Workshop:
         return found
 
     def columns(self, name: str) -> dict[str, Column]:
-        """What the parameters of a sweep that sweep() has run are called: see clogfit's JSON, by name."""
+        """The parameters of a sweep that sweep() has run, by name, as clogfit's JSON describes them."""
         return {column["name"]: column for column in self._fits[name]["columns"]}
 
     def confidence(self, name: str) -> float:
@@ -213,7 +213,7 @@ class Workshop:
         return self._model_versions
 
     def take_sources(self) -> list[str]:
-        """Where the numbers of the figure drawn last came from; forgets them."""
+        """Returns the sources of the numbers in the last figure, and forgets them."""
         sources, self._sources = self._sources, []
         return sources
 

@@ -195,7 +195,7 @@ def read_rows(path: AnyPath, folder: AnyPath | None = None) -> Records:
 
 
 def unit(meaning: str) -> str:
-    """What stands in brackets in the meaning of a column; empty for counts, ratios and words."""
+    """A column's unit, in brackets in its description; empty for counts, ratios and words."""
     found = re.search(r"\[(.*?)\]", meaning)
     return found[1] if found else ""
 

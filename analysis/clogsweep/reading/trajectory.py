@@ -1,4 +1,4 @@
-"""What clogrun writes of one droplet."""
+"""Reads the trajectories that clogrun writes."""
 
 import dataclasses
 import math
@@ -37,7 +37,7 @@ class Trajectory:
 
     @property
     def middle(self) -> Numbers:
-        """Where h = 0 and the axis of a channel are in the coordinates of the polygons; of a wall, a point on it."""
+        """The point h = 0 on a channel's axis, in the coordinates of the polygons; for a wall, a point on it."""
         return self.wedges[:, :2].mean(axis=0)
 
 
@@ -56,7 +56,7 @@ def refined(polygons: Numbers, row: np.void) -> Numbers:
 
 
 def outlines(polygons: Numbers, row: np.void) -> Numbers:
-    """What meets walls: refined polygons, or the circle of a soft disk, of which only the centre is stored."""
+    """The outline that meets walls: refined polygons, or the circle of a soft disk, whose centre alone is stored."""
     if row["model"] != b"sp" or polygons.size == 0:
         return refined(polygons, row)
     angle = np.linspace(0, 2 * np.pi, POINTS_OF_DISK, endpoint=False)
@@ -124,7 +124,7 @@ def mechanism(trajectory: Trajectory) -> str:
 
 
 def end_of(trajectory: Trajectory) -> str:
-    """How the run ended, in words."""
+    """Describes in words how the run ended."""
     ends = {"wrapped": "clogged by wrapping", "squeezed": "clogged by squeezing", "hybrid": "clogged by wrapping and squeezing"}
     status = trajectory.word("status")
     return ends.get(mechanism(trajectory), status) if status == "clogged" else {"flowing": "still flowing", "broken": "broken up"}.get(status, status)
@@ -136,7 +136,7 @@ def verdict(trajectory: Trajectory) -> str:
 
 
 def centroids(polygons: Numbers) -> Numbers:
-    """Centroids of the enclosed areas. @param polygons  frames x 2 x N. @return frames x 2"""
+    """The centroid of each enclosed area. @param polygons  frames x 2 x N. @return frames x 2"""
     reference = polygons[:, :, :1]  # near to the polygon: no digits are lost far from the origin
     x, y = np.moveaxis(polygons - reference, 1, 0)
     next_x, next_y = np.roll(x, -1, axis=-1), np.roll(y, -1, axis=-1)

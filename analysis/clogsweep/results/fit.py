@@ -41,7 +41,7 @@ class Fit:
 
     @property
     def source(self) -> str:
-        """Where its rows come from, how many they are, and what fitted them. Older programs do not say the first."""
+        """The source and number of the rows, and the program that fitted them. Files of older programs lack the source."""
         sweep = self.told.get("sweep", {})
         lines = [stored.source(sweep) if sweep else "", sweep.get("config", "").strip(), f"{self._counted()}, fitted by clogfit {stored.writer(self.told)}"]
         return "\n".join(filter(None, lines))
@@ -52,7 +52,7 @@ class Fit:
 
     @property
     def groups(self) -> pandas.DataFrame:
-        """What is known of each group as one number or word; P(r) and incidence are in survival() and `told`."""
+        """All results of each group that are one number or word; P(r) and incidence are in survival() and `told`."""
         import pandas
 
         flat = [{name: value for name, value in group.items() if not isinstance(value, list | dict)} for group in self.told["groups"]]

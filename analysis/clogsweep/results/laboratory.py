@@ -1,4 +1,4 @@
-"""Between a laboratory's quantities and the model's numbers."""
+"""Converts between a laboratory's quantities and the model's numbers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..tools.errors import UserError
 
 def units(lab: str | os.PathLike[str] | Mapping[str, str], *, length: float | None = None, time: float | None = None, line_tension: float | None = None,
           terminal_speed: float | None = None, wall_stiffness: float | None = None, folder: str | os.PathLike[str] | None = None) -> dict[str, Any]:
-    """What `clogfit units` says, as numbers.
+    """The answer of `clogfit units` as numbers.
 
     @param lab  a file, or its lines, such as {"diameter": "3.5 mm", "angle": "28 deg", "tension": "9.6 mN/m", "speed": "7 mm/s"}
     @param length, time, line_tension, terminal_speed, wall_stiffness  of the model, to be converted: under "given"

@@ -55,7 +55,7 @@ class Run:
         self.attributes: dict[str, str] = self.trajectory.attributes
 
     def picture(self, outlines: int = 12) -> Picture:
-        """So many moments of the run in one picture. @throws UserError  if there are no outlines"""
+        """Draws so many moments of the run in one picture. @throws UserError  if there are no outlines"""
         from ..drawing import way  # slow to load, as all that draws
         from ..style import Picture
 

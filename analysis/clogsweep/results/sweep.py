@@ -84,7 +84,7 @@ class Sweep:
         return fits.curves(self._program("clogfit"), self.path, ",".join(keys), *options)
 
     def status(self) -> dict[str, Any]:
-        """How far the sweep is, as clogsweep status says."""
+        """The sweep's progress, as clogsweep status reports it."""
         return Status(json.loads(programs.run_program(self._program("clogsweep"), "status", self.path, "--format", "json")))
 
     def clogs(self, *, mechanism: str | None = None, tasks: Collection[int] | None = None, most: int = 6, jobs: int = 2) -> Clogs:

@@ -37,7 +37,7 @@ DROPLET = "#D55E00"
 
 
 def new_figure(**options: Any) -> Figure:
-    """Not one of `pyplot`'s, which stay in memory and belong to a backend: a notebook has already chosen one."""
+    """Creates a figure without `pyplot`, whose figures stay in memory and belong to a backend: a notebook has already chosen one."""
     made = Figure(**options)
     FigureCanvasAgg(made)
     return made
@@ -84,7 +84,7 @@ def doubts(group: Group) -> list[str]:
 
 
 def main_mechanism(group: Group) -> str:
-    """What holds most of the clogs of a group."""
+    """The mechanism that holds most of a group's clogs."""
     return max(MECHANISM_MARKERS, key=lambda name: group[name])
 
 
@@ -200,7 +200,7 @@ def caption(axes: Axes, text: str) -> None:
 
 
 def notes(axes: Axes, lines: Sequence[str]) -> None:
-    """What marks mean, below the axes and their label."""
+    """Writes the meaning of the marks below the axes and their label."""
     axes.annotate("\n".join(lines), (0.5, 0), xycoords=axes.xaxis.label, xytext=(0, -4), textcoords="offset points", ha="center", va="top",
                   fontsize=NOTE_SIZE, color="0.25", gid=NOTES)
 

@@ -68,7 +68,8 @@ const DoubtText& text_of(Doubt doubt);
 /// The ways in which a run may end, competing risks: the mechanism that holds a clog (`other`: none of them),
 /// or the droplet's break-up.
 enum class Cause { wrapped, squeezed, hybrid, other, broken };
-/// The names in files of the number of its ends, of their length (S divided by that number), and its interval.
+/// The names in files of the number of its ends, of their length (S divided by that number), and its
+/// interval.
 struct CauseText {
   Cause cause;
   bool is_clog;
@@ -143,8 +144,8 @@ using Field = std::pair<const char*, Value>;
 std::span<const sweep::Column* const> group_columns();
 /// What a row holds in them.
 std::vector<Field> parameter_fields(const sweep::RunRow& row);
-/// False in a channel and on a wall, where nothing is random: each group is one run there, and its row has the
-/// results.
+/// False in a channel and on a wall, where nothing is random: each group is one run there, and its row has
+/// the results.
 bool has_clogging_length(const sweep::RunRow& row);
 /// The results of a group, by name.
 std::vector<Field> result_fields(const Group& group);

@@ -23,8 +23,8 @@ struct Interval {
 /// @throws std::invalid_argument unless 0 < confidence < 1
 void require_confidence(double confidence);
 
-/// The z with a share `confidence` of a standard normal number between -z and z. z^2 is chi-squared's quantile
-/// for one degree of freedom; it underflows where little confidence is asked for, z does not.
+/// The z with a share `confidence` of a standard normal number between -z and z. z^2 is chi-squared's
+/// quantile for one degree of freedom; it underflows where little confidence is asked for, z does not.
 double normal_deviate(double confidence);
 
 /// Estimate of the clogging length lambda, the mean distance of an exponential law P(r) = exp(-r/lambda)

@@ -6,9 +6,9 @@
 
 namespace clog::sweep {
 
-/// The first impossible value of a row: a parameter that no run can have, a number that is none, a result that
-/// contradicts another or physics. Empty if nothing is wrong. Columns that are not known, as in files of older
-/// formats, are no fault.
+/// The first impossible value of a row: a parameter that no run can have, a number that is none, a result
+/// that contradicts another or physics. Empty if nothing is wrong. Columns that are not known, as in files of
+/// older formats, are no fault.
 std::string fault_of(const RunRow& row);
 
 /// No droplet gets farther from its release in the time of this row [sigma].

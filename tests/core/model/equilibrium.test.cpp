@@ -44,7 +44,7 @@ RunParameters soft_disk(double wall_stiffness = 5) {
   return run;
 }
 
-/// At rest, above obstacles around x = 10.
+/// A droplet at rest above obstacles around x = 10.
 DropletState droplet_above(const RunParameters& run, double y) {
   DropletState state = test::state_of(model_of(run).free_shape(run));
   state.x() += 9.3;
@@ -170,7 +170,7 @@ TEST(Equilibrium, OfASoftDiskInAGapIsWhereTheForcesBalance) {
 }
 
 TEST(Equilibrium, TooFarAwayIsRefused) {
-  // So soft that it is in touch with both obstacles, and the energy convex, all the way.
+  // The droplet is so soft that it touches both obstacles all the way, and its energy is convex.
   const RunParameters run = resolve(soft_disk(2));
   const ObstacleArray obstacles(20, narrow_gap);
   Eigen::ArrayXd position(2);

@@ -13,7 +13,7 @@
 
 namespace clog {
 
-/// For the reader of a failed test.
+/// Prints a parameter in the message of a failed test.
 void PrintTo(const Parameter& parameter, std::ostream* out) { *out << parameter.key; }
 
 namespace {

@@ -32,7 +32,7 @@ class Passage {
     const Eigen::Array2d release = frame.global({0, 0}) - start_;
     record_.add(state_, obstacles_, release, x);
   }
-  /// In steps as short as those between two checks.
+  /// Moves in steps as short as those between two checks.
   void move_by_steps_to(double x) {
     constexpr double step = 0.002;
     while (x_ + step < x) move_to(x_ + step);

@@ -205,7 +205,7 @@ TEST(DropletRun, EndsWhateverItsSnapshotHolds) {
   EXPECT_GT(refused, 3 * numbers_of_shape);  // infinite, not a number, too large
 }
 
-/// What a droplet stood for before it clogged is the same however the clog is found.
+/// The time that a droplet stood before it clogged does not depend on how the clog is found.
 TEST(DropletRun, ItsDwellsDoNotDependOnHowClogsAreFound) {
   RunParameters run = small_run(2);
   run.max_time = 5000;
@@ -370,7 +370,7 @@ TEST(BreakUp, HeadOnADropletTooHeavyForFourInterfacesBreaks) {
   }
 }
 
-/// What breaks head-on slips off on one side when it comes off-centre, unless it is softer.
+/// A droplet that breaks up head-on slips off to one side when it comes off-centre, unless it is softer.
 TEST(BreakUp, OffCentreADropletHasToBeSofterToBreak) {
   for (const double side : {-1.0, 1.0}) {
     const RunResult passed = result_of(falls_onto_a_circle(0.15, 0.1 * side), 100);

@@ -178,7 +178,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"time-step=0.02 (contact has",
                 [](auto& run) { run.model = Model::sp, run.wall_stiffness = 1e4, run.time_step = 0.02; }}));
 
-/// What resolve() says to these parameters, empty if it takes them.
+/// The message with which resolve() refuses these parameters; empty if it accepts them.
 std::string refusal(const RunParameters& run) {
   try {
     resolve(run);

@@ -115,7 +115,7 @@ TEST(OwnCircles, MayBeAnyLengthAndFindEachOtherOverItsBorder) {
 }
 
 TEST(OwnCircles, StandBetweenWallsWithoutImagesAcross) {
-  // Over the border of a periodic array these would overlap.
+  // These would overlap across the border of a periodic array.
   const RunParameters run = resolve(between_walls({{12, 0.1, 0.3}, {12, 9.9, 0.3}}));
   const ObstacleArray device = scene_of(run).walls(run);
   ASSERT_EQ(device.wedges().size(), 2u);

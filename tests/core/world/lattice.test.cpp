@@ -63,7 +63,7 @@ TEST(Lattice, HasFourNeighboursAtTheExactGapAcrossItsBox) {
 }
 
 TEST(Lattice, IsTheNearestThatIsPeriodic) {
-  // By exhaustion over all boxes.
+  // The reference is an exhaustive search of all boxes.
   for (const double angle : {0.0, 4.0, -20.0, 33.3, 45.0}) {
     const auto found = nearest_lattice(0.7, angle, 5, 40);
     double least = 90;
@@ -165,7 +165,7 @@ TEST(Lattice, LeadsToTheOtherSideInAMirror) {
   EXPECT_NEAR(mirror.lateral, -result.lateral, 1e-6);
   EXPECT_NEAR(mirror.distance, result.distance, 1e-6);
 
-  // And the mirror image is the lattice of the opposite tilt, up to a shift.
+  // The mirror image is the lattice of the opposite tilt, up to a shift.
   const ObstacleArray opposite = lattice_obstacles(soft_disk(-13).obstacles, run.seed);
   ASSERT_EQ(opposite.obstacles().size(), mirrored.size());
   EXPECT_EQ(opposite.period().box, array.period().box);

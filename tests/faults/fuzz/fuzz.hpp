@@ -8,7 +8,7 @@
 
 #include "clog/core/tools/error.hpp"
 
-/// What libFuzzer calls with every input.
+/// libFuzzer calls this with every input.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 
 namespace clog {
@@ -27,7 +27,7 @@ void may_be_refused(Read read) {
   }
 }
 
-/// What must hold of every input that is not refused.
+/// Ends the process unless the condition holds, as it must for every input that is not refused.
 inline void require(bool holds) {
   if (!holds) std::abort();
 }
