@@ -39,7 +39,7 @@ std::string rounded(const Value& value) {
   return text.empty() ? "-" : text;
 }
 
-/// The same of a parameter; circles of a user's own are called by their file, if it is known.
+/// The same for a parameter; user-supplied circles have the name of their file, if it is known.
 std::string rounded(const sweep::RunRow& row, const Field& field) {
   const std::optional<OwnCircles>& own = row.parameters.obstacles.own;
   if (field.first == std::string_view("obstacles") && own && !own->source().empty())

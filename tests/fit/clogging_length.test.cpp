@@ -155,7 +155,7 @@ TEST(LeastSquaresLength, MatchesAnotherOptimiser) {
 }
 
 TEST(LeastSquaresLength, OfAbsurdDistancesIsALengthOrNotKnown) {
-  // Whoever minimises a sum that is not a number does so for ever.
+  // A search for the minimum of a sum that is not a number would never end.
   for (const std::vector<Observation>& runs : absurd_runs())
     EXPECT_TRUE(is_length_or_unknown(least_squares_length(runs))) << runs.front().distance;
 }

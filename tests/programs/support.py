@@ -27,7 +27,7 @@ QUICK = [*SMALL, "max-time=60"]
 # Long runs, each of several snapshots (four a second).
 SWEEP = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=4000", "seeds=1..6",
          "--report-seconds=0.1", "--output", "s.h5"]
-# Two runs of seconds each: whoever stops them at their first snapshot meets both under way.
+# Two runs of seconds each: both are in progress at the first snapshot.
 SLOW = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05", "max-time=2e4", "seeds=1",
         "--report-seconds=0.1", "--output", "s.h5"]
 # Obstacles so near to each other that some seeds (53 and 64 of 51..70) leave no void to release the droplet in.

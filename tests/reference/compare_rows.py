@@ -3,7 +3,7 @@
 
     tests/reference/compare_rows.py BEFORE AFTER        (folders of the programs)
 
-A set of small runs goes through both: either model, every preset, layout and instruction set, a user's own circles, a
+A set of small runs goes through both: either model, every preset, layout and instruction set, user-supplied circles, a
 channel, a wall, a sweep that is interrupted and resumed. Every column that both have must be the same, but for those
 that tell of the circumstances of a run; every number of a trajectory, too. Exit code 1: something differs.
 """

@@ -102,10 +102,10 @@ class Sweep:
         return clogs.run_all(self._program("clogrun"), self.path, rows, jobs)
 
     def device(self, *, ways: int = 6, jobs: int = 2) -> Picture:
-        """Circles of one's own, with the places where droplets were released, passed and clogged.
+        """User-supplied circles, with the places where droplets were released, passed and clogged.
 
-        @param ways  of so many runs, which are run once more; @param jobs  runs at a time
-        @throws UserError  if the sweep has no circles of one's own, or those of several devices
+        @param ways  of so many runs, which are replayed; @param jobs  runs at a time
+        @throws UserError  if the sweep has no user-supplied circles, or those of several devices
         """
         from ..drawing import device
         from ..style import Picture

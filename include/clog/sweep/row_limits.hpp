@@ -37,9 +37,9 @@ inline constexpr double tolerated_mesh_hold = 0.01;
 /// obstacles is.
 bool may_hang_on_mesh(const RunRow& row);
 
-/// Distance between the centres of two obstacles as near to each other as they may be, of a mixture the mean
-/// [sigma]. Of a user's own circles, which may have diameters of their own and one gap narrower than all
-/// others: 1/sqrt(circles per area). The void in which a droplet is released is about as large.
+/// Distance between the centres of two obstacles as near to each other as they may be, the mean for a mixture
+/// [sigma]. For user-supplied circles, which may have any diameters and one gap narrower than all others:
+/// 1/sqrt(circles per area). The void in which a droplet is released is about as large.
 double obstacle_spacing(const RunRow& row);
 
 }  // namespace clog::sweep

@@ -73,7 +73,7 @@ struct RunRow {
   double sag = not_known;  ///< on a flat wall
   double top_sag = not_known;
   ThinnestNeck neck;
-  double release_x = not_known;  ///< among a user's own circles, in their coordinates
+  double release_x = not_known;  ///< in the coordinates of user-supplied circles
   double release_y = not_known;
   std::int64_t steps = 0;
 

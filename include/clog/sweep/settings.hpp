@@ -106,7 +106,7 @@ class Settings {
   /// Is this the name of such a line and no key?
   static bool is_plan_line(const std::string& name);
 
-  /// What is in the files that the key obstacles names. Nothing is read here: whoever sets the key does that.
+  /// The circles in the files that the key obstacles names. The caller that sets the key reads them.
   const CircleFiles& circle_files() const { return circle_files_; }
   void attach(const std::string& file, OwnCircles circles) { circle_files_.insert_or_assign(file, circles); }
   /// Files that are named and not attached.

@@ -33,7 +33,7 @@ double to_number(std::string_view text);
 /// @throws Error if the whole text is not one integer, NumberWithUnit if it has one
 long long to_integer(std::string_view text);
 
-/// What a text like `0,3` means to whoever writes a decimal comma, `0.3`; empty for any other text.
+/// The number `0.3` that a text like `0,3` means with a decimal comma; empty for any other text.
 std::string with_decimal_point(std::string_view text);
 
 /// The candidate nearest to a mistyped word, or empty if none is near.

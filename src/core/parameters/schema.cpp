@@ -267,13 +267,13 @@ std::vector<Parameter> own_circle_entries() {
                         "the diameter; the result file stores the circles, each row their checksum",
              .scope = &own_circles,
              .shapes_array = true}),
-      entry(
-          "release", [](auto& run) -> auto& { return run.obstacles.release; },
-          {.column = "release",
-           .meaning = "among circles of your own the droplet starts near the centre of the array, or near a "
-                      "place that follows from the seed: anywhere, or on the line of the entrance",
-           .scope = &own_circles,
-           .shapes_array = true}),
+      entry("release", [](auto& run) -> auto& { return run.obstacles.release; },
+            {.column = "release",
+             .meaning =
+                 "among user-supplied circles the droplet starts near the centre of the array, or near a "
+                 "place that follows from the seed: anywhere, or on the line of the entrance",
+             .scope = &own_circles,
+             .shapes_array = true}),
       entry("length", [](auto& run) -> auto& { return run.obstacles.length; },
             {.column = "length",
              .symbol = R"(L_x)",

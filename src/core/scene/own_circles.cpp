@@ -135,7 +135,7 @@ void check_circles(const RunParameters& run) {
   if (obstacles.own->circles().empty())
     refuse_circles(*obstacles.own, "there are none) lines are x,y[,diameter]");
   require(obstacles.diameter_spread == 0, "obstacle-diameter-spread", obstacles.diameter_spread,
-          "circles of your own have diameters of their own) leave it out");
+          "user-supplied circles have their own diameters) leave it out");
   check_ways(obstacles);
   const ObstacleArray::Pair pair = closest_pair(obstacles);
   const std::string both = fmt::format("those at {} and {}", place_of(pair.first), place_of(pair.second));

@@ -54,8 +54,8 @@ struct Surroundings {
   float cell_size;
   float distance2;
 
-  /// Cells are this part of the distance or larger: whoever is in the lower half of one need not look further
-  /// than two cells down and one up.
+  /// Cells are this part of the distance or larger: from the lower half of one, a search need not look
+  /// further than two cells down and one up.
   static constexpr double smallest_cell = 1 / 1.49;
 
   /// Is a point within the distance of a place in the cell?

@@ -1,4 +1,4 @@
-/// Files of a user's own circles.
+/// Files of user-supplied circles.
 
 #include "clog/cli/obstacle_file.hpp"
 #include "clog/core/run/resolve.hpp"

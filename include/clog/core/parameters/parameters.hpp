@@ -44,8 +44,8 @@ template <>
 struct Words<WallContact> {
   static constexpr Worded<WallContact> all[] = {{WallContact::edge, "edge"}, {WallContact::vertex, "vertex"}};
 };
-/// What the droplet meets: circles by random sequential addition, a tilted square lattice of them, a user's
-/// own; the two wedges of a channel; a flat wall.
+/// What the droplet meets: circles by random sequential addition, a tilted square lattice of them, or
+/// user-supplied circles; the two wedges of a channel; a flat wall.
 enum class ObstacleLayout { random, lattice, file, channel, wall };
 template <>
 struct Words<ObstacleLayout> {
@@ -55,15 +55,15 @@ struct Words<ObstacleLayout> {
                                                    {ObstacleLayout::channel, "channel"},
                                                    {ObstacleLayout::wall, "wall"}};
 };
-/// Where among a user's own circles a droplet starts: in the void nearest to the centre of the array, or to a
-/// place that is drawn from the seed, of the whole array or of a line across the flow.
+/// Where a droplet starts among user-supplied circles: in the void nearest to the centre of the array, or to
+/// a place that is drawn from the seed, in the whole array or on a line across the flow.
 enum class Release { centre, anywhere, entrance };
 template <>
 struct Words<Release> {
   static constexpr Worded<Release> all[] = {
       {Release::centre, "centre"}, {Release::anywhere, "anywhere"}, {Release::entrance, "entrance"}};
 };
-/// Straight walls along the flow at both sides of a user's own circles.
+/// Straight walls along the flow at both sides of user-supplied circles.
 enum class SideWalls { off, on };
 template <>
 struct Words<SideWalls> {

@@ -65,7 +65,7 @@ struct RunResult {
   Passage passage;                  ///< through a channel; NaN elsewhere
   Sag sag;                          ///< certified: at rest
   ThinnestNeck neck;
-  /// Where the centre of mass was released, in the coordinates of a user's own circles; NaN elsewhere
+  /// Where the centre of mass was released, in the coordinates of user-supplied circles; NaN elsewhere
   /// [sigma].
   Eigen::Array2d release{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
   std::int64_t steps = 0;  ///< integrated steps, sub-steps counted singly
