@@ -51,15 +51,14 @@ class Rows {
   }
   std::vector<RunRow> take() { return std::move(rows_); }
   std::int64_t num_shared() const { return static_cast<std::int64_t>(shared_.size()); }
-  std::int64_t num_other_bits() const { return num_other_bits_; }
+  std::int64_t num_differing() const { return static_cast<std::int64_t>(differing_.size()); }
   std::int64_t num_faulty() const { return num_faulty_; }
 
  private:
   std::vector<RunRow> rows_;
   std::vector<std::string> paths_;                       // that rows are from
   std::unordered_map<std::string, std::size_t> places_;  // by what runs are
-  std::set<std::size_t> shared_;
-  std::int64_t num_other_bits_ = 0;
+  std::set<std::size_t> shared_, differing_;
   std::int64_t num_faulty_ = 0;
 
   void add(const RunRow& row, const std::string& path) {
@@ -102,7 +101,7 @@ class Rows {
           "cannot join {} and {} (task {} of the first and task {} of the second are the same run, but their "
           "results differ: {}); exclude the wrong file, `clogsweep replay` tells which",
           paths_[place], path, known.task, row.task, joined(differing)));
-    ++num_other_bits_;
+    differing_.insert(place);
     return false;
   }
 };
@@ -139,16 +138,16 @@ std::string lines_of(const std::vector<Part>& parts) {
   return lines;
 }
 
-Merger join(const std::vector<Part>& parts) {
-  Merger merger;
+MergedSweep join(const std::vector<Part>& parts) {
+  MergedSweep merged;
   Rows rows;
   for (const Part& part : parts) rows.add(part);
-  for (const Part& part : parts) add_circles(part.table, merger.table.circles);
-  merger.num_shared = rows.num_shared();
-  merger.num_other_bits = rows.num_other_bits();
-  merger.num_faulty = rows.num_faulty();
-  merger.table.rows = rows.take();
-  return merger;
+  for (const Part& part : parts) add_circles(part.table, merged.table.circles);
+  merged.num_shared = rows.num_shared();
+  merged.num_differing = rows.num_differing();
+  merged.num_faulty = rows.num_faulty();
+  merged.table.rows = rows.take();
+  return merged;
 }
 
 }  // namespace
@@ -211,30 +210,30 @@ store::Provenance joint_provenance(const store::Provenance& maker, const std::st
   return all;
 }
 
-Merger merge(const std::vector<std::string>& paths, const store::Provenance& maker) {
+MergedSweep merge(const std::vector<std::string>& paths, const store::Provenance& maker) {
   std::vector<Part> parts;
   parts.reserve(paths.size());
   for (const std::string& path : paths) parts.push_back(whole_part(path));
-  Merger merger = join(parts);
+  MergedSweep merged = join(parts);
   RunList runs;
   for (const Part& part : parts) add_runs(part, runs);
   if (runs.empty()) throw Error("there is nothing to merge: the files have no runs");
   const sweep::Settings settings = runs.settings();
-  number_tasks(settings, merger.table);
+  number_tasks(settings, merged.table);
   std::unordered_map<std::string, const RunRow*> unfinished;
-  for (const RunRow& row : merger.table.rows)
+  for (const RunRow& row : merged.table.rows)
     if (sweep::is_unfinished(row.status)) unfinished.emplace(sweep::identity(row), &row);
   for (Part& part : parts)
     for (store::Journal::Entry& entry : part.snapshots)
       if (const auto row = unfinished.find(sweep::identity(entry.row));
           row != unfinished.end() && row->second->steps == entry.row.steps) {
         entry.row = *row->second;
-        merger.snapshots.push_back(std::move(entry));
+        merged.snapshots.push_back(std::move(entry));
         unfinished.erase(row);
       }
-  merger.table.provenance =
+  merged.table.provenance =
       joint_provenance(maker, settings.to_config(false), tables_of(parts), lines_of(parts));
-  return merger;
+  return merged;
 }
 
 store::SweepFile read_together(const std::vector<std::string>& paths) {
@@ -242,19 +241,19 @@ store::SweepFile read_together(const std::vector<std::string>& paths) {
   std::vector<Part> parts;
   parts.reserve(paths.size());
   for (const std::string& path : paths) parts.push_back({path, read_with_caution(path), {}});
-  Merger merger = join(parts);
+  MergedSweep merged = join(parts);
   std::string config;
   try {
     RunList runs;
     for (const Part& part : parts) add_runs(part, runs);
     const sweep::Settings settings = runs.settings();
     config = settings.to_config(false);
-    number_tasks(settings, merger.table);
+    number_tasks(settings, merged.table);
   } catch (const Error&) {  // of a version that had other keys
   }
-  merger.table.provenance =
+  merged.table.provenance =
       joint_provenance(parts.front().table.provenance, config, tables_of(parts), lines_of(parts));
-  return std::move(merger.table);
+  return std::move(merged.table);
 }
 
 }  // namespace clog::campaign

@@ -119,7 +119,7 @@ std::vector<std::int64_t> choose_blocks(const fit::Curve& curve, std::span<const
     for (std::size_t i = 0; i < runs.size(); ++i) {
       if (blocks[i] >= limits.blocks_left[i] || work + block * runs[i].work > limits.most_work) continue;
       const VectorXd fall =
-          fit::fall_of_deviation(expected, static_cast<Index>(i), block * runs[i].num_clogs);
+          fit::covariance_update(expected, static_cast<Index>(i), block * runs[i].num_clogs);
       const double gain = weights.dot(fall.cwiseAbs2()) / (block * runs[i].work);
       if (!(gain > best_gain)) continue;
       best = i;

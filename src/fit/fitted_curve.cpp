@@ -208,14 +208,14 @@ Curve fit_curve(std::span<const CurvePoint> points, std::span<const CurvePlace> 
   return mixture;
 }
 
-VectorXd fall_of_deviation(const Curve& curve, Index place_index, double num_clogs) {
+VectorXd covariance_update(const Curve& curve, Index place_index, double num_clogs) {
   const double variance = std::max(curve.covariance(place_index, place_index), 0.0);
   return curve.covariance.col(place_index) * std::sqrt(num_clogs / (1 + num_clogs * variance));
 }
 
 void take_as_done(Curve& curve, Index place_index, double num_clogs) {
-  const VectorXd fall = fall_of_deviation(curve, place_index, num_clogs);
-  curve.covariance.noalias() -= fall * fall.transpose();
+  const VectorXd update = covariance_update(curve, place_index, num_clogs);
+  curve.covariance.noalias() -= update * update.transpose();
 }
 
 }  // namespace clog::fit

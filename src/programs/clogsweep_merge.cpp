@@ -26,19 +26,20 @@ nothing is written. The new file names its parts: their sessions, versions and h
 runs, which goes on, and grows, as any other.
 )";
 
-void print(const std::string& output, const std::vector<std::string>& paths, const campaign::Merger& merger) {
+void print(const std::string& output, const std::vector<std::string>& paths,
+           const campaign::MergedSweep& merged) {
   std::cout << console::printable(output) << ": "
-            << sweep::counted(static_cast<std::int64_t>(merger.table.rows.size()), "row") << " of "
+            << sweep::counted(static_cast<std::int64_t>(merged.table.rows.size()), "row") << " of "
             << sweep::counted(static_cast<std::int64_t>(paths.size()), "file");
-  if (merger.num_shared > 0)
-    std::cout << ", " << sweep::counted(merger.num_shared, "run") << " in more than one of them";
-  if (merger.num_other_bits > 0)
-    std::cout << " (" << merger.num_other_bits
-              << " with other bits under another instruction set: those of the file named first were kept)";
-  if (merger.num_faulty > 0)
-    std::cout << "; " << sweep::counted(merger.num_faulty, "row") << " left out as physically impossible";
-  if (!merger.snapshots.empty())
-    std::cout << ", " << sweep::counted(static_cast<std::int64_t>(merger.snapshots.size()), "snapshot");
+  if (merged.num_shared > 0)
+    std::cout << ", " << sweep::counted(merged.num_shared, "run") << " in more than one of them";
+  if (merged.num_differing > 0)
+    std::cout << " (" << merged.num_differing
+              << " with results that differ by instruction set: those of the file named first were kept)";
+  if (merged.num_faulty > 0)
+    std::cout << "; " << sweep::counted(merged.num_faulty, "row") << " left out as physically impossible";
+  if (!merged.snapshots.empty())
+    std::cout << ", " << sweep::counted(static_cast<std::int64_t>(merged.snapshots.size()), "snapshot");
   std::cout << '\n';
 }
 
@@ -56,9 +57,9 @@ int clogsweep_merge(int argc, const char* const* argv) {
   if (paths.size() < 2) throw Error("missing sweep files; try clogsweep merge a.h5 b.h5 --output c.h5");
   const std::string output = line.require("output");
   store::refuse_existing(output);
-  const campaign::Merger merger = campaign::merge(paths, origin_of_table(line));
-  campaign::write(merger.table, merger.snapshots, output);
-  print(output, paths, merger);
+  const campaign::MergedSweep merged = campaign::merge(paths, origin_of_table(line));
+  campaign::write(merged.table, merged.snapshots, output);
+  print(output, paths, merged);
   return console::exit_success;
 }
 

@@ -23,23 +23,20 @@ using campaign::RefinementOptions;
 
 constexpr double hour = 3600;  // [s]
 
-/// `20%` or `0.2`. NaN if it is neither.
-double share(std::string text) {
-  const bool is_percent = text.ends_with('%');
-  if (is_percent) text.pop_back();
-  try {
-    return sweep::to_number(text) / (is_percent ? 100 : 1);
-  } catch (const Error&) {
-    return std::nan("");
-  }
-}
-
-double positive(const std::string& text) {
+/// NaN if the text is not a number.
+double number_of(const std::string& text) {
   try {
     return sweep::to_number(text);
   } catch (const Error&) {
     return std::nan("");
   }
+}
+
+/// `20%` or `0.2`. NaN if it is neither.
+double share(std::string text) {
+  const bool is_percent = text.ends_with('%');
+  if (is_percent) text.pop_back();
+  return number_of(text) / (is_percent ? 100 : 1);
 }
 
 RefinementGoal goal_of(const std::string& text) {
@@ -57,7 +54,7 @@ RefinementGoal goal_of(const std::string& text) {
   } else if (kind == "crossing") {
     goal.kind = RefinementGoal::Kind::crossing;
     const std::size_t colon = std::min(rest.find(':'), rest.size());
-    goal.length = positive(rest.substr(0, colon));
+    goal.length = number_of(rest.substr(0, colon));
     rest = colon < rest.size() ? rest.substr(colon + 1) : "";
     if (!(goal.length > 0)) refuse("a crossing has a length and a precision");
   } else {
@@ -73,7 +70,7 @@ RefinementGoal goal_of(const std::string& text) {
 double budget_of(std::string text) {
   const std::string given = text;
   if (text.ends_with('h')) text.pop_back();
-  const double hours = positive(text);
+  const double hours = number_of(text);
   if (hours > 0) return hours * hour;
   throw Error("invalid --budget=" + given + " (must be a number of core-hours above zero) try 10h");
 }

@@ -98,7 +98,7 @@ TEST(FittedCurve, KnowsBeforehandWhatMoreClogsWillDoToTheVariance) {
   precision(2, 2) += 7;  // seven clogs, each one of information
   const Eigen::MatrixXd expected = precision.inverse();
   const Eigen::VectorXd before = curve.covariance.diagonal();
-  const Eigen::VectorXd fall = fall_of_deviation(curve, 2, 7);
+  const Eigen::VectorXd fall = covariance_update(curve, 2, 7);
   take_as_done(curve, 2, 7);
   EXPECT_LT((curve.covariance - expected).cwiseAbs().maxCoeff(), 1e-7);
   EXPECT_LT((before - fall.cwiseAbs2() - expected.diagonal()).cwiseAbs().maxCoeff(), 1e-7);

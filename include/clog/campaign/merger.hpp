@@ -13,19 +13,19 @@ namespace clog::campaign {
 /// Rows of several files as those of one sweep. A run that several files have is there once: a result rather
 /// than an unfinished or failed row, an unfinished row rather than a failed one, otherwise the row with more
 /// steps. Of results that differ by instruction set, those of the file named first are kept.
-struct Merger {
+struct MergedSweep {
   store::SweepFile table;
   std::vector<store::Journal::Entry> snapshots;  ///< of unfinished runs
   std::int64_t num_shared = 0;                   ///< runs that several files have
-  std::int64_t num_other_bits = 0;  ///< rows left out: other bits of the same run, another instruction set
-  std::int64_t num_faulty = 0;      ///< rows left out: physically impossible
+  std::int64_t num_differing = 0;                ///< of these, runs whose results differ by instruction set
+  std::int64_t num_faulty = 0;                   ///< excluded rows: physically impossible
 };
 
 /// Merges complete or stopped sweeps, to be written to a new file.
 /// @param maker  provenance of the program that makes the new file, from cli::origin()
 /// @throws Error that names the files and the task, if two rows of a run contradict each other, a file is
 /// damaged or being written, or has other circles under the same name
-Merger merge(const std::vector<std::string>& paths, const store::Provenance& maker);
+MergedSweep merge(const std::vector<std::string>& paths, const store::Provenance& maker);
 
 /// The rows of several files together, for reading only: also those of running sweeps, and of files whose
 /// config cannot be read any more. A single file is returned as it is.

@@ -50,11 +50,11 @@ Curve curve_of_scales(std::span<const CurvePoint> points, const CurveScales& sca
 /// @throws std::invalid_argument as curve_of_scales()
 Curve fit_curve(std::span<const CurvePoint> points, std::span<const CurvePlace> places);
 
-/// How `num_clogs` more clogs at a place would narrow the curve (rank-one update): the squares of the values
-/// returned are the falls of the variance at all places. The values are the covariances with that place,
+/// The vector u of the rank-one update, covariance - u u^T, by `num_clogs` more clogs at a place: the squares
+/// of its entries are the reductions of the variance at all places. u is the covariance with that place,
 /// times sqrt(num_clogs / (1 + num_clogs variance)).
 /// @param place_index  of a place of the curve
-Eigen::VectorXd fall_of_deviation(const Curve& curve, Eigen::Index place_index, double num_clogs);
+Eigen::VectorXd covariance_update(const Curve& curve, Eigen::Index place_index, double num_clogs);
 /// Updates the covariance as if these clogs had been observed. The mean stays: the results are not known yet.
 void take_as_done(Curve& curve, Eigen::Index place_index, double num_clogs);
 
