@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <map>
 #include <set>
+#include <stdexcept>
 #include <utility>
 
 #include "clog/campaign/stored_sweep.hpp"
@@ -187,6 +188,7 @@ std::vector<Side> sides_of_column(const std::string& name, const store::SweepFil
 }
 
 Comparisons compare(const std::vector<Side>& sides, double confidence, std::optional<double> within) {
+  if (sides.size() < 2) throw std::invalid_argument("a comparison has two sides or more");
   for (const Side& side : sides) require_lengths(side);
   Comparisons comparisons;
   comparisons.within = within.value_or(0);

@@ -1,12 +1,12 @@
 #include "clog/campaign/events.hpp"
 
 #include <algorithm>
-#include <ctime>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <variant>
 
 #include "clog/campaign/stored_sweep.hpp"
+#include "clog/console/clock.hpp"
 #include "clog/sweep/columns.hpp"
 #include "clog/sweep/plan.hpp"
 
@@ -16,16 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 using sweep::RunRow;
 
-/// ISO 8601.
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  gmtime_r(&now, &parts);
-  char text[32];
-  return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts)};
-}
-
-Json event(const char* name) { return {{"event", name}, {"seen", utc_now()}}; }
+Json event(const char* name) { return {{"event", name}, {"seen", console::utc_now()}}; }
 
 std::string line(const Json& event) {
   return event.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';

@@ -24,7 +24,7 @@ void set_attribute(store::Provenance& provenance, const std::string& name, const
   provenance.emplace_back(name, text);
 }
 
-/// An attribute holds less than 64 kB: the oldest lines go first, and a long one loses its end.
+/// Keeps `sessions` short, however often a sweep is resumed: the oldest lines go, and a long last one is cut.
 std::string latest_lines(std::string text) {
   constexpr std::size_t longest_line = 2000;
   constexpr std::size_t longest = 30'000;

@@ -206,6 +206,17 @@ std::string CommandLine::require(const std::string& option) const {
   return get(option);
 }
 
+std::string CommandLine::get_word(const std::string& option, const std::vector<std::string>& words) const {
+  std::string word = get(option);
+  if (std::ranges::find(words, word) != words.end()) return word;
+  throw Error(fmt::format("invalid --{}={} (is not one of {})", option, word, joined(words)));
+}
+
+double CommandLine::get_share(const std::string& option) const {
+  if (const double value = get_positive(option); value < 1) return value;
+  throw Error(fmt::format("invalid --{}={} (must lie between 0 and 1)", option, get(option)));
+}
+
 double CommandLine::get_positive(const std::string& option) const {
   if (const double value = number(option); value > 0) return value;
   throw Error(fmt::format("invalid --{}={} (must be a positive number)", option, get(option)));

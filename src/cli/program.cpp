@@ -2,13 +2,13 @@
 
 #include <fmt/ostream.h>
 
-#include <ctime>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <new>
 
 #include "clog/console/build_info.hpp"
+#include "clog/console/clock.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/console/streams.hpp"
@@ -23,15 +23,6 @@ namespace {
 
 /// What the libraries take before anything is read or computed: with 8 MB some of them crashed.
 constexpr std::size_t least_memory = 32'000'000;
-
-/// ISO 8601.
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  gmtime_r(&now, &parts);
-  char text[32];
-  return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts)};
-}
 
 }  // namespace
 

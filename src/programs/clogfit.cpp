@@ -57,6 +57,9 @@ error comes from the scatter between runs. For lattices, lateral/r is the latera
 tangent of the migration angle, positive towards +y. csv and json have more: intervals by profile likelihood, the
 published least squares (biased), Weibull's shape with its p-value, capillary numbers; json also P(r).
 
+Runs of the same seed met the same obstacles in every row with the same array, so the errors of such rows are
+correlated: overlapping intervals do not mean that they agree. clogfit compare uses this, and pairs runs by seed.
+
 An experiment calls a droplet clogged if it has not moved for a waiting time. --dwell applies this rule: a droplet that
 advanced no farther than dwell-length (0.05 sigma by default) for longer than this time counts as clogged where it first
 did so, even if it moved on.
@@ -97,12 +100,8 @@ int body(int argc, char** argv) {
   line.parse(argc, argv);
   if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return console::exit_success;
   if (!line.has("file")) throw Error("missing sweep file; try clogfit sweep.h5");
-  const std::string format = line.get("format");
-  if (format != "text" && format != "csv" && format != "json")
-    throw Error("invalid --format=" + format + " (is not one of text, csv, json)");
-  const double confidence = line.get_positive("confidence");
-  if (confidence >= 1)
-    throw Error("invalid --confidence=" + line.get("confidence") + " (must lie between 0 and 1)");
+  const std::string format = line.get_word("format", {"text", "csv", "json"});
+  const double confidence = line.get_share("confidence");
 
   const double from_distance = line.has("from-distance") ? line.get_positive("from-distance") : 0;
 

@@ -210,9 +210,7 @@ int clogfit_calibrate(int argc, const char* const* argv) {
     if (line.has(key)) throw Error(fmt::format("--{} is what {} finds; leave it out", key, program));
   if (line.has("angle") && line.has("terminal-speed"))
     throw Error("--angle and terminal-speed contradict each other; give one of them");
-  const Text format = line.get("format");
-  if (format != "text" && format != "json")
-    throw Error("invalid --format=" + format + " (is not one of text, json)");
+  const Text format = line.get_word("format", {"text", "json"});
   const Experiment lab = experiment(line);
   std::optional<Experiment> other;
   if (line.has("other")) other = other_experiment(line, lab);

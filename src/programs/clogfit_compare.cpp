@@ -27,7 +27,8 @@ of another.
 
 Every file is compared with the first, or every value of the key --by with the smallest, wherever all else that varies
 is the same. Runs of the same seed met the same obstacles: where their lengths rise and fall together, the interval comes
-from these pairs and is narrower than that of two independent lengths.
+from these pairs and is narrower than that of two independent lengths. It does not where fewer than ten pairs differ,
+where no correlation is certain, or where --by changes the array itself: then seeds have no obstacles in common.
 )";
 
 std::vector<campaign::Side> sides(const cli::CommandLine& line, const std::vector<std::string>& paths) {
@@ -64,12 +65,8 @@ int clogfit_compare(int argc, const char* const* argv) {
   if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return console::exit_success;
   const std::vector<std::string> paths = line.get_all("file");
   if (paths.empty()) throw Error("missing sweep files; try clogfit compare a.h5 b.h5");
-  const std::string format = line.get("format");
-  if (format != "text" && format != "csv" && format != "json")
-    throw Error("invalid --format=" + format + " (is not one of text, csv, json)");
-  const double confidence = line.get_positive("confidence");
-  if (confidence >= 1)
-    throw Error("invalid --confidence=" + line.get("confidence") + " (must lie between 0 and 1)");
+  const std::string format = line.get_word("format", {"text", "csv", "json"});
+  const double confidence = line.get_share("confidence");
   const std::optional<double> within =
       line.has("within") ? std::optional(line.get_positive("within")) : std::nullopt;
   if (line.has("picture")) draw(line, paths);

@@ -64,9 +64,7 @@ int clogfit_drag(int argc, const char* const* argv) {
   line.parse(argc - 1, argv + 1);
   if (cli::answer_help_or_version(line, {})) return console::exit_success;
   if (!line.has("file")) throw Error("missing file; try clogfit drag speeds.csv");
-  const std::string format = line.get("format");
-  if (format != "text" && format != "json")
-    throw Error("invalid --format=" + format + " (is not one of text, json)");
+  const std::string format = line.get_word("format", {"text", "json"});
 
   const std::string path = line.get("file");
   const auto speeds = laboratory::read_near_wall_speeds(

@@ -174,9 +174,7 @@ int clogfit_units(int argc, const char* const* argv) {
   line.parse(argc - 1, argv + 1);
   if (cli::answer_help_or_version(line, {})) return console::exit_success;
   if (!line.has("file")) throw Error("missing lab.cfg; clogfit units --help shows what it holds");
-  const std::string format = line.get("format");
-  if (format != "text" && format != "json")
-    throw Error("invalid --format=" + format + " (is not one of text, json)");
+  const std::string format = line.get_word("format", {"text", "json"});
   const Laboratory lab = laboratory::read_laboratory(line.get("file"));
   const Scales scales = laboratory::scales_of(lab);
   const std::vector<Conversion> asked = converted(given(line), lab, scales);

@@ -82,12 +82,8 @@ would give too short ones, since runs that clog early finish first.
       "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals")(
       "all-parameters", "name in the text also what all runs have as by default");
   if (!parse_file_command(line, argc, argv)) return console::exit_success;
-  const std::string format = line.get("format");
-  if (format != "text" && format != "json")
-    throw Error("invalid --format=" + format + " (is not one of text, json)");
-  const double confidence = line.get_positive("confidence");
-  if (confidence >= 1)
-    throw Error("invalid --confidence=" + line.get("confidence") + " (must lie between 0 and 1)");
+  const std::string format = line.get_word("format", {"text", "json"});
+  const double confidence = line.get_share("confidence");
   const SharedParameters shared =
       line.has("all-parameters") ? SharedParameters::all : SharedParameters::unusual;
   console::catch_stop_signals();

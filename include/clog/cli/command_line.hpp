@@ -37,6 +37,10 @@ class CommandLine {
   std::vector<std::string> get_all(const std::string& option) const;
   /// @throws Error if the option was not given
   std::string require(const std::string& option) const;
+  /// @throws Error if the option's value is none of these words
+  std::string get_word(const std::string& option, const std::vector<std::string>& words) const;
+  /// @throws Error if the option's value is not a number between 0 and 1
+  double get_share(const std::string& option) const;
   /// @throws Error if the option's value is not a number above zero
   double get_positive(const std::string& option) const;
   /// The option's value, or the default if it was not given. @throws Error if it is not a finite number
