@@ -17,9 +17,6 @@
 #include "clog/console/status_line.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/parallel/task_order.hpp"
-#include "clog/store/journal.hpp"
-#include "clog/sweep/row_limits.hpp"
-#include "clog/sweep/value_list.hpp"
 
 namespace clog::conduct {
 namespace {
@@ -28,37 +25,6 @@ using Clock = std::chrono::steady_clock;
 // Messages to the other ranks after a round.
 const std::string another_round = "another round";
 const std::string over = "over";
-
-/// @param may_grow  runs may be added later
-void announce(const std::string& output, const sweep::Plan& plan, const campaign::Ledger& ledger,
-              bool may_grow, int num_ranks) {
-  const std::int64_t num_runs = ledger.num_wanted();
-  const auto num_left = static_cast<std::int64_t>(ledger.tasks_left().size());
-  if (!ledger.caution().empty()) console::say(ledger.caution());
-  if (num_left < num_runs)
-    console::say(fmt::format("{} has {} of {}{}", output, num_runs - num_left,
-                             sweep::counted(num_runs, "run"),
-                             num_left == 0 && !may_grow ? "; there is nothing left to do" : ""));
-  if (const std::int64_t number = ledger.num_beyond(); number > 0)
-    console::say(fmt::format("{} also has {} outside this command's lists; {} kept", output,
-                             sweep::counted(number, "run"), number == 1 ? "it is" : "they are"));
-  if (const std::int64_t number = ledger.num_faulty(); number > 0)
-    console::say(fmt::format("{}: {} physically impossible; the sweep recomputes those in its lists", output,
-                             number == 1 ? "1 row is" : fmt::format("{} rows are", number)));
-  if (const std::int64_t number = ledger.num_unreadable(); number > 0)
-    console::say(fmt::format(
-        "{}: {}", store::journal_path(output),
-        number == 1 ? "1 record is damaged; its run resumes from an earlier record or restarts"
-                    : fmt::format("{} records are damaged; their runs resume from earlier records or restart",
-                                  number)));
-  if (const std::int64_t number = ledger.num_resumed(); number > 0)
-    console::say(fmt::format("{} {} from the last checkpoint", sweep::counted(number, "run"),
-                             number == 1 ? "resumes" : "resume"));
-  if (num_left == 0) return;
-  for (const std::string& words : sweep::limits_of_results(plan)) console::say(words);
-  console::say(fmt::format("{} on {}, results go to {}", sweep::counted(num_left, "run"),
-                           sweep::counted(num_ranks, "computing rank"), output));
-}
 
 campaign::Progress::Screen screen(Log::Level level) {
   if (level == Log::Level::quiet) return campaign::Progress::Screen::none;

@@ -2,20 +2,17 @@
 
 #include <fmt/core.h>
 
-#include <ctime>
+#include <cstdint>
 
+#include "clog/console/clock.hpp"
 #include "clog/console/printable.hpp"
+#include "clog/console/streams.hpp"
+#include "clog/store/journal.hpp"
+#include "clog/sweep/row_limits.hpp"
+#include "clog/sweep/value_list.hpp"
 
 namespace clog::conduct {
 namespace {
-
-std::string time_of_day() {
-  const std::time_t now = std::time(nullptr);
-  std::tm parts{};
-  localtime_r(&now, &parts);
-  char text[16];
-  return {text, std::strftime(text, sizeof text, "%H:%M:%S", &parts)};
-}
 
 std::string who(const sweep::RunRow& row) { return fmt::format("task {} rank {}: ", row.task, row.rank); }
 
@@ -34,7 +31,39 @@ std::string where(const sweep::RunRow& row) {
 
 }  // namespace
 
-void Log::say(const std::string& text) { progress_.say(time_of_day() + ' ' + console::printable(text)); }
+void announce(const std::string& output, const sweep::Plan& plan, const campaign::Ledger& ledger,
+              bool may_grow, int num_ranks) {
+  const std::int64_t num_runs = ledger.num_wanted();
+  const auto num_left = static_cast<std::int64_t>(ledger.tasks_left().size());
+  if (!ledger.caution().empty()) console::say(ledger.caution());
+  if (num_left < num_runs)
+    console::say(fmt::format("{} has {} of {}{}", output, num_runs - num_left,
+                             sweep::counted(num_runs, "run"),
+                             num_left == 0 && !may_grow ? "; there is nothing left to do" : ""));
+  if (const std::int64_t number = ledger.num_beyond(); number > 0)
+    console::say(fmt::format("{} also has {} outside this command's lists; {} kept", output,
+                             sweep::counted(number, "run"), number == 1 ? "it is" : "they are"));
+  if (const std::int64_t number = ledger.num_faulty(); number > 0)
+    console::say(fmt::format("{}: {} physically impossible; the sweep recomputes those in its lists", output,
+                             number == 1 ? "1 row is" : fmt::format("{} rows are", number)));
+  if (const std::int64_t number = ledger.num_unreadable(); number > 0)
+    console::say(fmt::format(
+        "{}: {}", store::journal_path(output),
+        number == 1 ? "1 record is damaged; its run resumes from an earlier record or restarts"
+                    : fmt::format("{} records are damaged; their runs resume from earlier records or restart",
+                                  number)));
+  if (const std::int64_t number = ledger.num_resumed(); number > 0)
+    console::say(fmt::format("{} {} from the last checkpoint", sweep::counted(number, "run"),
+                             number == 1 ? "resumes" : "resume"));
+  if (num_left == 0) return;
+  for (const std::string& words : sweep::limits_of_results(plan)) console::say(words);
+  console::say(fmt::format("{} on {}, results go to {}", sweep::counted(num_left, "run"),
+                           sweep::counted(num_ranks, "computing rank"), output));
+}
+
+void Log::say(const std::string& text) {
+  progress_.say(console::time_of_day() + ' ' + console::printable(text));
+}
 
 void Log::started(const sweep::RunRow& row, From from) {
   if (level_ < Level::verbose) return;

@@ -2,10 +2,16 @@
 
 #include <string>
 
+#include "clog/campaign/ledger.hpp"
 #include "clog/campaign/progress.hpp"
+#include "clog/sweep/plan.hpp"
 #include "clog/sweep/run_row.hpp"
 
 namespace clog::conduct {
+
+/// Tells, before a sweep, which runs are known and which remain. @param may_grow  runs may be added later
+void announce(const std::string& output, const sweep::Plan& plan, const campaign::Ledger& ledger,
+              bool may_grow, int num_ranks);
 
 /// Tells what happens in a sweep, a line for each event:
 ///   12:03:17 task 17 rank 3: clogged at 4.21 sigma after 812 t0 (Gamma=0.3, gap=0.2, seed 4)
