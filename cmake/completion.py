@@ -28,7 +28,7 @@ def asked(folder, program, *words):
 
 
 def options(folder, keys, program, *command):
-    """Of a command what follows each, None if nothing does; without keys and what words without dashes stand for."""
+    """What follows each option of a command, None if nothing does; without keys and positional words."""
     found = {}
     one = re.compile(r"^  (?:(-\w)(?: [A-Z]+)?(?:, | \[ ))?(--[a-z][a-z-]*)(?: \])?(\sarg|\s[A-Z]+)?(.*(?:\n {20}.*)*)", re.MULTILINE)
     for short, name, argument, meaning in one.findall(asked(folder, program, *command, "--help")):

@@ -32,7 +32,7 @@ else:
 myst_enable_extensions = ["dollarmath", "deflist", "colon_fence"]
 myst_heading_anchors = 4
 nitpicky = True
-# Of other libraries, whose pages are not beside these.
+# Names of other libraries, whose pages are not beside these.
 nitpick_ignore_regex = [("py:class", r"(os|pathlib|collections|numpy|pandas)\..*|Figure")]
 
 html_theme = "furo"

@@ -174,6 +174,7 @@ ordered_json curve_json(const FittedCurve& curve, std::span<const Group> groups,
                  cause.text->upper);
     entry["curve"].push_back(std::move(place));
   }
+  entry["common_obstacles"] = curve.has_common_obstacles;
   entry["peak"] = peak_json(curve, question);
   entry["crossings"] = crossings_json(curve, question);
   return entry;
@@ -185,7 +186,7 @@ std::string curves_to_text(const std::vector<FittedCurve>& curves, std::span<con
                            const CurveQuestion& question) {
   std::vector<std::string> names;
   for (const sweep::Column* key : question.keys) names.push_back(key->name);
-  std::string text = fmt::format("lambda over {}, fitted; {} % intervals\n", joined(names, " and "),
+  std::string text = fmt::format("lambda vs {}, fitted; {} % intervals\n", joined(names, " and "),
                                  shortest(100 * question.confidence));
   for (const FittedCurve& curve : curves) {
     std::int64_t num_clogs = 0;
@@ -194,6 +195,10 @@ std::string curves_to_text(const std::vector<FittedCurve>& curves, std::span<con
     text += fmt::format("\n{}{}through {} with {}\n", shared, shared.empty() ? "" : ": ",
                         sweep::counted(static_cast<std::int64_t>(curve.groups.size()), "point"),
                         sweep::counted(num_clogs, "clog"));
+    if (curve.has_common_obstacles)
+      text +=
+          "  (points share seeds and so obstacles: their errors are correlated, the band takes them for "
+          "independent)\n";
     text +=
         peak_text(curve, question) + crossings_text(curve, question) + '\n' + values_text(curve, question);
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <map>
 #include <set>
@@ -121,6 +122,19 @@ std::vector<CurveByCause> curves_by_cause(std::span<const Group> groups, const F
   return all;
 }
 
+/// Whether points share seeds, and the obstacles follow from the seed alone: no key shapes the array.
+bool have_common_obstacles(std::span<const Group> groups, const std::vector<std::size_t>& members,
+                           const CurveKeys& keys) {
+  if (std::ranges::any_of(keys, &sweep::Column::shapes_array)) return false;
+  std::set<std::uint32_t> seen;
+  for (const std::size_t index : members) {
+    const std::set<std::uint32_t> seeds(groups[index].seeds.begin(), groups[index].seeds.end());
+    for (const std::uint32_t seed : seeds)
+      if (!seen.insert(seed).second) return true;
+  }
+  return false;
+}
+
 /// Has it two values of each key, as a line or a surface must?
 bool spans_keys(std::span<const fit::CurvePoint> points, std::size_t num_keys) {
   for (std::size_t key = 0; key < num_keys; ++key) {
@@ -195,6 +209,7 @@ std::vector<FittedCurve> fit_curves(std::span<const Group> groups, const CurveQu
     for (const double length : question.crossed_lengths)
       curve.crossings.push_back(fit::find_crossings(fitted, curve.places, length, question.confidence));
     curve.causes = curves_by_cause(groups, curve, points, question.confidence);
+    curve.has_common_obstacles = have_common_obstacles(groups, indices, question.keys);
     curves.push_back(std::move(curve));
   }
   if (curves.empty())

@@ -324,6 +324,7 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
       const bool is_left_out = std::max(ending.distance, 0.0) < from_distance;
       group.num_left_out += is_left_out;
       if (!is_left_out) counted.push_back(ending);
+      if (!is_left_out) group.seeds.push_back(run->parameters.seed);
       if (!is_left_out) meetings.count(*run, ending, from_distance);
       group.num_on_mesh += !is_left_out && sweep::may_hang_on_mesh(*run);
       group.num_flowing += !is_left_out && !ending.is_clog && run->status == RunStatus::flowing;

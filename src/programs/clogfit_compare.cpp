@@ -27,8 +27,9 @@ of another.
 
 Every file is compared with the first, or every value of the key --by with the smallest, wherever all else that varies
 is the same. Runs of the same seed met the same obstacles: where their lengths rise and fall together, the interval comes
-from these pairs and is narrower than that of two independent lengths. It does not where fewer than ten pairs differ,
-where no correlation is certain, or where --by changes the array itself: then seeds have no obstacles in common.
+from these pairs and is narrower than that of two independent lengths. It comes from the numbers of clogs alone where
+fewer than ten pairs differ, where no correlation is certain, and where --by changes the array itself, so that equal
+seeds have no obstacles in common.
 )";
 
 std::vector<campaign::Side> sides(const cli::CommandLine& line, const std::vector<std::string>& paths) {

@@ -113,9 +113,35 @@ class Curve(ProgramTest):
         told = sweep.fitted_curves("line_tension", crossing=[5])
         self.assertEqual(len(told["curves"][0]["crossings"]), 2)
         axes = sweep.fit().curve().figure.axes[0]
-        fitted, = (line for line in axes.lines if line.get_label() == "_fitted")
+        fitted, = (line for line in axes.lines if line.get_label().startswith("_fitted"))
         self.assertEqual(len(fitted.get_xdata()), 97)
-        self.assertIn("fitted curves, with 95 % bands", "\n".join(text.get_text() for text in axes.figure.findobj() if hasattr(text, "get_text")))
+        notes = "\n".join(text.get_text() for text in axes.figure.findobj() if hasattr(text, "get_text"))
+        self.assertIn("fitted curves, with 95 % bands", notes)
+        self.assertIn("points of a curve share seeds and so obstacles: their errors are correlated", notes)
+
+    def test_it_says_where_points_share_obstacles(self):
+        words = "points share seeds and so obstacles"
+        self.sweep(FAR[0], FAR[2], "line-tension=0.1,1", "obstacle-gap=0.4,0.5", lengths={0.1: 1.0, 1.0: 10.0})
+        self.assertEqual([curve["common_obstacles"] for curve in self.curve("--key=line-tension")["curves"]], [True, True])
+        self.assertIn(words, self.succeed("clogfit", "curve", "sweep.h5", "--key=line-tension").stdout)
+        # Another gap makes another array of the same seed.
+        self.succeed("clogsweep", "vertices=64", "box=20", "obstacle-density=0.2", "obstacle-gap=0.4,0.5", FAR[0], FAR[2], "--output", "gaps.h5")
+        self.assertNotIn(words, self.succeed("clogfit", "curve", "gaps.h5").stdout)
+        self.write("p.csv", "line-tension,seeds\n0.1,1..3\n1,4..6\n")
+        self.succeed("clogsweep", *SMALL, FAR[0], FAR[1], "--points", "p.csv", "--output", "own.h5")
+        told = json.loads(self.succeed("clogfit", "curve", "own.h5", "--format", "json").stdout)
+        self.assertFalse(told["curves"][0]["common_obstacles"])
+
+    def test_several_files_are_one_sweep(self):
+        self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
+        whole = self.curve()["curves"]
+        names = []
+        for tensions in ("<=0.1", ">0.1"):
+            names.append(f"part{len(names)}.h5")
+            self.succeed("clogsweep", "select", "sweep.h5", f"line_tension{tensions}", "--output", names[-1])
+        told = json.loads(self.succeed("clogfit", "curve", *names, "--format", "json").stdout)
+        self.assertEqual(told["curves"], whole)
+        self.refuse("clogfit", "curve", "sweep.h5", "no.h5", words=["no.h5"])
 
     def test_mistakes_get_one_line_and_exit_code_2(self):
         self.sweep(*FAR, "line-tension=0.1,1", "preset=elastic", "friction=0,0.2")

@@ -33,6 +33,7 @@ NOTE_WIDTH = 100  # characters of a line below a picture
 OF_ALL_RUNS = "relative_speed_all"  # of clogfit: way over time, whatever way a run came
 THROUGH_BOUNDS = "_through bounds"  # label of a line, in no legend
 FITTED = "_fitted"  # likewise
+FITTED_TO_COMMON_OBSTACLES = "_fitted, common obstacles"  # likewise, where points share seeds
 
 
 def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[Axes]) -> list[str]:
@@ -43,9 +44,12 @@ def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[
     if any(group["clogs"] == 0 for group in groups):
         are_dotted = any(line.get_label() == THROUGH_BOUNDS for axes in panels for line in axes.lines)
         marks.append("triangles: lower bounds (no run clogged)" + (", joined by dotted lines" if are_dotted else ""))
-    if any(line.get_label() == FITTED for axes in panels for line in axes.lines):
+    labels = {line.get_label() for axes in panels for line in axes.lines}
+    if labels & {FITTED, FITTED_TO_COMMON_OBSTACLES}:
         marks.append(f"lines: fitted curves, with {100 * confidence:g} % bands")
     lines = ["; ".join(marks)] if marks else []
+    if FITTED_TO_COMMON_OBSTACLES in labels:
+        lines.append("points of a curve share seeds and so obstacles: their errors are correlated")
     if reasons := dict.fromkeys(HOLLOW_MARKERS[reason] for group in groups for reason in reasons_for_hollow_marker(group)):
         lines += textwrap.wrap(f"hollow: {', or '.join(reasons)}", NOTE_WIDTH)
     if num_incomplete := sum("incomplete" in style.doubts(group) for group in groups):
@@ -169,7 +173,8 @@ def draw_fitted(axes: Axes, groups: Groups, members: Sequence[Group], index: int
     lengths, lower, upper = ([place[f"clogging_length{end}"] for place in fitted["curve"]] for end in ("", "_lower", "_upper"))
     style_of_curve = style.curve_style(index)
     axes.fill_between(x, lower, upper, color=style_of_curve["color"], alpha=0.13, linewidth=0, zorder=0)
-    axes.plot(x, lengths, color=style_of_curve["color"], linestyle=style_of_curve["linestyle"], linewidth=1.2, label=FITTED, zorder=1)
+    label = FITTED_TO_COMMON_OBSTACLES if fitted["common_obstacles"] else FITTED
+    axes.plot(x, lengths, color=style_of_curve["color"], linestyle=style_of_curve["linestyle"], linewidth=1.2, label=label, zorder=1)
     return True
 
 

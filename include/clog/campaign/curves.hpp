@@ -38,6 +38,9 @@ struct FittedCurve {
   fit::CurvePeak peak;
   std::vector<std::vector<fit::CurveCrossing>> crossings;  ///< of each length that is asked for
   std::vector<CurveByCause> causes;  ///< that occur; none if some clogs are of unknown mechanism
+  /// Runs of the same seed at several points met the same obstacles, so the errors of these points are
+  /// correlated (common random numbers), though the band takes them for independent.
+  bool has_common_obstacles = false;
 };
 
 /// What curves are asked for.

@@ -113,7 +113,8 @@ struct Group {
   /// was. Runs that went far enough to have a speed of their own are the faster ones where droplets clog.
   fit::MeanSpeed relative_speed_all;
   fit::Migration migration;
-  int num_flowing = 0;  ///< ended by max-time
+  std::vector<std::uint32_t> seeds;  ///< of the runs behind the clogging length
+  int num_flowing = 0;               ///< ended by max-time
   int num_interrupted = 0;
   int num_failed = 0;     ///< left out of all fits
   int num_damaged = 0;    ///< likewise

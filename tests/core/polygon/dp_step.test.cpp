@@ -70,7 +70,7 @@ class ReadableDroplet {
   }
 };
 
-/// Of the nearest vertex.
+/// Distance of the nearest vertex.
 double distance_from(const Wedge& wedge, const DropletState& state) {
   double nearest = std::numeric_limits<double>::infinity();
   for (Eigen::Index i = 0; i < state.size(); ++i)
@@ -99,7 +99,7 @@ class Step : public testing::TestWithParam<StepCase> {
     GetParam().change(run);
     return resolve(run);
   }
-  /// Of about a droplet's area.
+  /// The dumbbell scaled to about a droplet's area.
   static Eigen::ArrayXd full_size_dumbbell(int vertices, double film) {
     const double thin = units::regular_edge_length(vertices);
     const double size = std::sqrt(units::rest_area / polygon_shape(dumbbell(vertices, thin)).area);

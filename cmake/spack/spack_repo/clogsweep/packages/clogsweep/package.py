@@ -34,7 +34,7 @@ class Clogsweep(CMakePackage):
     depends_on("nlopt@2.7: +cxx ~python")
     depends_on("openmpi@4.1:")
     depends_on("zlib-api")
-    # Of the scripts that draw, and of completion, which is made by a script.
+    # The scripts that draw need it, and so does the one that makes the completion.
     depends_on("python@3.11:", type=("build", "run"))
     depends_on("py-h5py ~mpi", type="run")
     depends_on("py-matplotlib", type="run")
