@@ -49,7 +49,7 @@ class Outlook {
       case Case::middle:
         break;
     }
-    // Not known at all: every order of magnitude of the remaining time is equally likely.
+    // Nothing is known: every order of magnitude of the remaining time is equally likely.
     if (may_never_end) return most / std::log(longest / run.seconds);
     return std::sqrt(if_even(mean(even_), most) * if_slowing(mean(slowing_), run.seconds, longest));
   }
@@ -113,7 +113,7 @@ class Share {
   double left_ = 0;
 };
 
-/// What runs take to begin and per work, on the average.
+/// The mean time of runs to begin, and per work.
 struct Pace {
   double begin_seconds = 0;
   double seconds_per_work = 0;

@@ -216,7 +216,7 @@ std::vector<FittedCurve> fit_curves(std::span<const Group> groups, const CurveQu
     throw Error(
         fmt::format("cannot fit a curve over {} (no set of the other parameters has two of its values)",
                     names_of(question.keys)));
-  // What all curves share tells none apart.
+  // Removes the fields that all curves share.
   for (std::size_t i = curves.front().shared.size(); i-- > 0;)
     if (std::ranges::all_of(curves, [&](const FittedCurve& curve) {
           return curve.shared.size() == curves.front().shared.size() &&

@@ -62,7 +62,7 @@ std::string letters(const std::vector<Doubt>& doubts) {
   return all;
 }
 
-/// What the letters in the last column mean, as far as they occur.
+/// Explains the letters that occur in the last column.
 std::string legend(const std::vector<Group>& groups) {
   std::string text;
   for (const DoubtText& doubt : doubt_texts)
@@ -83,7 +83,7 @@ std::vector<ResultColumn> result_columns(const std::vector<Group>& groups, doubl
   return columns;
 }
 
-/// What is not in the table, or not in all of its columns.
+/// Names the runs that are missing from the table, or from some of its columns.
 std::string left_out(const std::vector<Group>& groups) {
   int num_failed = 0, num_damaged = 0, num_interrupted = 0, num_left_out = 0;
   for (const Group& group : groups) {
@@ -240,7 +240,7 @@ std::string wrapped(const std::vector<std::string>& words) {
   return text;
 }
 
-/// What counts as a clog, if that is more than clogs.
+/// Defines a clog, if droplets that stood still count, too.
 std::string definition_of_clogs(const std::vector<Group>& groups) {
   const double dwell = groups.front().dwell;
   if (std::isinf(dwell)) return "";

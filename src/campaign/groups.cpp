@@ -78,7 +78,7 @@ void doubt_exponentiality(std::vector<Group>& groups) {
   }
 }
 
-/// What a run in a channel or on a wall has come to.
+/// The results of a run in a channel or on a wall.
 std::vector<Field> fields_of_run(const sweep::RunRow& row) {
   std::vector<Field> fields;
   for (const char* name :
@@ -131,7 +131,7 @@ Ending ending_of(const sweep::RunRow& run, double dwell) {
   const bool is_clogged = run.status == RunStatus::clogged;
   const Ending last = {run.distance, is_clogged, cause_of(run)};
   if (!has_dwells_to_tell(run, dwell)) return last;
-  // What held a droplet that went on is not known: it counts among the other mechanisms.
+  // The mechanism of a droplet that moved on is not known: it counts among the others.
   if (const Dwell* first = run.dwells.first_longer(dwell)) return {first->distance, true, Cause::other};
   return is_clogged || last.cause ? last : Ending{run.dwells.last_distance, false, {}};
 }
@@ -199,7 +199,7 @@ void fit_clogging(Group& group, std::span<const Ending> runs, double confidence,
   }
 }
 
-/// What the runs say about obstacles that they met. @param runs  sound, and counted
+/// Fits the runs from the obstacles that they met on. @param runs  sound, and counted
 struct Meetings {
   std::vector<fit::Observation> from_first;  ///< of the runs that met one
   std::int64_t num_contacts = 0;
@@ -245,7 +245,7 @@ fit::MeanSpeed of_enough_runs(fit::MeanSpeed speed) {
   return speed;
 }
 
-/// Until the run ended, or the droplet came to its arrest; not known of files without dwells.
+/// The travel until the run ended or the droplet came to its arrest; not known in files without dwells.
 fit::Travel travel_until_arrest(const sweep::RunRow& run) {
   const bool is_clogged = run.status == RunStatus::clogged;
   const double way = is_clogged ? run.dwells.last_distance : run.distance;

@@ -108,7 +108,7 @@ void require_one_of_others(const sweep::Settings& settings, const std::vector<st
 
 }  // namespace
 
-/// What is known at one moment.
+/// The state of knowledge at one moment.
 struct Refiner::Look {
   std::vector<RefinedPoint> points;
   RefinementCandidates candidates;

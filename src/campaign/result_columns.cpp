@@ -126,7 +126,7 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
                                  {"+-", [](const Group& group) { return speed_of(group).error; }}});
   if (std::ranges::any_of(groups, lacks_speeds))
     for (ResultColumn& column : columns_of_all_speeds()) columns.push_back(std::move(column));
-  // In random arrays a droplet goes straight on the average.
+  // A droplet in a random array goes straight on average.
   if (std::any_of(groups.begin(), groups.end(), is_lattice))
     columns.insert(columns.end(), {{"lateral/r", [](const Group& group) { return slope_of(group).value; }},
                                    {"+-", [](const Group& group) { return slope_of(group).error; }}});

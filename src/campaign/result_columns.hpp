@@ -14,7 +14,7 @@ struct ResultColumn {
   std::function<std::string(const Group&)> cell;
 };
 
-/// What the runs of the scene have found. @param groups  not empty
+/// The columns of the scene's results. @param groups  not empty
 std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, double confidence);
 
 /// Whether the table shows the mechanisms: if clogs differ in them, or some are excluded.

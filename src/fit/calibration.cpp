@@ -125,7 +125,7 @@ class Trier {
   std::atomic<int> num_simulations_ = 0;
 };
 
-/// What the function makes of each place, side by side. @throws what the first that fails throws
+/// The function's results at all places, computed in parallel. @throws the first failure
 template <class Function>
 auto for_all(const std::vector<Place>& places, Function function) {
   using Result = std::invoke_result_t<Function&, Place>;
@@ -342,7 +342,7 @@ LocalMinimum polish(Trier& trier, const Trial& from, const CalibrationRange& ran
   return {best, false};
 }
 
-/// Where Delta_v is least, and where droplets begin to clog.
+/// The place of the least Delta_v, and the border where droplets begin to clog.
 struct SearchResult {
   LocalMinimum minimum;
   std::optional<ClogBracket> clog;

@@ -66,7 +66,7 @@ struct Data {
   double log_likelihood(const ArrayXd& f) const { return (-clogs * f - distances * (-f).exp()).sum(); }
 };
 
-/// Where the posterior is largest, and its curvature there.
+/// The maximum of the posterior, and its curvature there.
 struct Mode {
   VectorXd slopes;                ///< of the log likelihood: K^-1 f
   ArrayXd roots;                  ///< of the expected clogs W = S exp(-f), the likelihood's curvature

@@ -25,7 +25,7 @@ struct VarianceSums {
 
   /// @param before  P before these ends  @param F  behind them
   void add(double before, double F, const Ends& ends) {
-    // Where all end, F no longer grows, and (F - F_s)^2 g stays zero.
+    // If all end here, F no longer grows, and (F - F_s)^2 g stays zero.
     if (ends.all < ends.at_risk) {
       const double g_s = ends.all / (ends.at_risk * (ends.at_risk - ends.all));
       g += g_s, F_g += F * g_s, F2_g += F * F * g_s;

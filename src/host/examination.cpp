@@ -140,7 +140,7 @@ Finding speed(const std::vector<RankFacts>& ranks) {
           "look for other programs on those cores, and for bound ranks"};
 }
 
-/// What the sweep will do in its folder, with a file of our own.
+/// Tries in the sweep's folder, with another file, what the sweep will do.
 Finding folder(const std::string& output) {
   namespace fs = std::filesystem;
   const fs::path parent = fs::path(output).parent_path();

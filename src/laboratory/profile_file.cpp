@@ -21,7 +21,7 @@ namespace {
 
 using console::trimmed;
 
-/// Where a quantity stands in a line, and what to multiply it with.
+/// The column of a quantity, and the factor to multiply it with.
 struct Column {
   std::size_t index;
   double factor;
@@ -44,7 +44,7 @@ double factor(const std::string& unit, const std::string& reduced, const std::st
   return in_si / scale;
 }
 
-/// Where a length and a speed stand in each line, and the shape if it is there.
+/// The columns of a length and a speed, and of the shape if the file has it.
 class Columns {
  public:
   /// @param cells  of the header

@@ -85,7 +85,7 @@ std::string text_of(std::span<const std::byte> bytes) {
   std::int64_t number = 0;
   bool is_over = true;
   while (true) {
-    // At least one slice between two messages: a task that is stopped at once has a snapshot, too.
+    // Computes at least one slice between two messages: a task that is stopped at once has a snapshot, too.
     while (!is_over) {
       is_over = job->advance();
       if (is_over) rank.send(over, number, sweep::to_bytes({job->row(), {}}));

@@ -22,7 +22,7 @@ void choose_layout(cli::CommandLine& line, const std::string& layout);
 void refuse_options(const cli::CommandLine& line, const std::string& system,
                     std::initializer_list<const char*> options);
 
-/// From --sample-interval and --polygon-interval. @throws Error
+/// Reads --sample-interval and --polygon-interval. @throws Error
 watch::WatchedRun::Intervals intervals(const cli::CommandLine& line, double time_step);
 /// On the standard error, what of the runs was not proved sound; nothing if all of it was.
 void say_what_is_unproven(const sweep::Plan& plan);

@@ -108,7 +108,7 @@ std::optional<int> prepare(const cli::CommandLine& line) {
   return std::nullopt;
 }
 
-/// What rank 0 keeps of a sweep.
+/// Rank 0's state of a sweep.
 struct Led {
   std::optional<campaign::GrowingSweep> growing;
   std::optional<RefinedSweep> refined;

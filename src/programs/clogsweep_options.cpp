@@ -74,7 +74,7 @@ bool is_full(const sweep::Points& points, std::size_t place) {
   return std::ranges::none_of(points.rows, [&](const auto& row) { return row[place].empty(); });
 }
 
-/// What --points and --shard add to the settings.
+/// Adds --points and --shard to the settings.
 void add_plan_options(cli::CommandLine& line) {
   sweep::Settings& settings = line.settings();
   if (line.has("points")) {
@@ -108,7 +108,7 @@ std::int64_t most_seeds(const cli::CommandLine& line, std::int64_t first_seeds) 
   return static_cast<std::int64_t>(number);
 }
 
-/// What the laboratory knows of its droplet, unless the user has said it himself.
+/// Sets the keys that follow from the laboratory, unless the user has set them.
 void set_by(const laboratory::Laboratory& lab, sweep::Settings& settings) {
   const laboratory::Scales scales = laboratory::scales_of(lab);
   const auto set = [&](const char* key, double value) {

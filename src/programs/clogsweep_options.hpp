@@ -17,7 +17,7 @@ void parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
 conduct::LeadOptions lead_options(const cli::CommandLine& line);
 conduct::Assignment assignment(const cli::CommandLine& line, const sweep::Settings& settings);
 std::int64_t attempts(const cli::CommandLine& line);
-/// From --until-precision and --most-seeds; nothing if the sweep is not to grow.
+/// The rule by --until-precision and --most-seeds; nothing if the sweep is not to grow.
 std::optional<campaign::GrowingSweep> growing_sweep(const cli::CommandLine& line);
 
 }  // namespace clog::programs

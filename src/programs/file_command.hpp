@@ -10,7 +10,7 @@ cli::CommandLine file_command(const char* name, const char* usage);
 /// Parses what follows the command's name. Returns whether there is something to do. @throws Error
 bool parse_file_command(cli::CommandLine& line, int argc, const char* const* argv);
 
-/// Where a table comes from that a command makes of others.
+/// Provenance of a table that a command makes from others.
 store::Provenance origin_of_table(const cli::CommandLine& line);
 
 }  // namespace clog::programs

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-/// What is asked of files through their descriptors.
+/// Facts about files, through their descriptors.
 namespace clog::store {
 
 /// @throws Error naming the file, and the system's reason if there is one

@@ -17,7 +17,7 @@ class RowLayout {
  public:
   enum class Columns { all, some };
 
-  /// What this version writes.
+  /// The layout that this version writes.
   static RowLayout present();
   /// The layout of a stored table; nothing unless each member is one of our columns.
   static std::optional<RowLayout> of(hid_t stored, Columns expected);

@@ -40,7 +40,7 @@ std::optional<std::string> shared_name(const RunParameters& run) {
                      executable.st_mtim.tv_nsec, array_key(run));
 }
 
-/// What precedes the obstacles and the starts of the cells.
+/// The header before the obstacles and the starts of the cells.
 struct Header {
   Period period;
   double largest_radius;

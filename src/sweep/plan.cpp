@@ -159,7 +159,7 @@ class Plan::Builder {
                       where, joined(angles, ","), largest_angle_error, box));
   }
 
-  /// Without the seeds, which count for the limit.
+  /// The number of groups: without the seeds, which count for the limit.
   std::int64_t size_of_product(const Settings& branch) {
     auto num_places = std::int64_t{1};
     const std::int64_t num_seeds = std::ssize(*last_seeds_);

@@ -21,7 +21,7 @@ constexpr const char* shard_line = "shard";
 constexpr const char* usual_text = "*";  // of a key for which a point has no text
 constexpr std::size_t most_points = 100'000;
 
-/// Without blanks, which separate texts.
+/// The text without blanks, which separate texts.
 std::string word_of(const std::string& text) {
   if (text.empty()) return usual_text;
   if (text == usual_text) return "\\x2a";

@@ -214,7 +214,7 @@ std::string clog_fault(const RunRow& row) {
   return "";
 }
 
-/// What only a channel or a wall gives, and what it cannot be.
+/// Checks the results that only a channel or a wall gives.
 std::string passage_fault(const RunRow& row) {
   const Finding finding = scene_of(row.parameters).finding;
   const double fastest = std::sqrt(diverged_energy_ratio);

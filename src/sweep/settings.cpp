@@ -19,7 +19,7 @@ namespace {
 /// The longest text of a key's values in a config, in characters.
 constexpr std::size_t longest_text = 3000;
 
-/// What a preset means for the keys of the interface and of its numerics.
+/// A preset's values for the keys of the interface and of its numerics.
 struct Preset {
   const char* name;
   std::vector<std::pair<const char*, const char*>> texts;

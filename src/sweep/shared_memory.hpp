@@ -34,7 +34,7 @@ class SharedMemory {
   static std::shared_ptr<const SharedMemory> map(int descriptor);
 };
 
-/// What at most one process of this user on this machine holds at a time. It ends with the process.
+/// A lock that at most one process of this user on this machine holds at a time. It ends with the process.
 class NameLock {
  public:
   enum class State { held, held_by_another, impossible };

@@ -18,7 +18,7 @@
 namespace clog::watch {
 namespace {
 
-/// What a film shows around a droplet [sigma].
+/// The range around a droplet that a film shows [sigma].
 constexpr double surroundings = 5 * units::droplet_diameter;
 
 /// Obstacles, periodic images included, in the surroundings of the polygons. Tips of wedges are none.

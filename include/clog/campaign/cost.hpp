@@ -5,7 +5,7 @@
 
 namespace clog::campaign {
 
-/// What one run of a sweep has cost so far. Work is counted in steps times vertices.
+/// The cost of one run so far. Work is counted in steps times vertices.
 struct RunCost {
   std::int64_t parameter_set = 0;
   double begin_seconds = 0;  ///< until it moved: its obstacles, its release

@@ -12,7 +12,7 @@ namespace clog::campaign {
 /// Which of the parameters that all groups share are named above their table.
 enum class SharedParameters { unusual, all };
 
-/// What the model's units are in a laboratory; NaN where it is not known.
+/// The model's units in a laboratory; NaN where they are not known.
 struct LaboratoryScale {
   double length = 0;   ///< of sigma [mm]
   double time = 0;     ///< of t0 [s]

@@ -143,7 +143,7 @@ using Field = std::pair<const char*, Value>;
 /// Columns that make a group: all parameters but the seed. First those of the physics, and of these first
 /// what shapes the array.
 std::span<const sweep::Column* const> group_columns();
-/// What a row holds in them.
+/// The values of a row in these columns.
 std::vector<Field> parameter_fields(const sweep::RunRow& row);
 /// False in a channel and on a wall, where nothing is random: each group is one run there, and its row has
 /// the results.

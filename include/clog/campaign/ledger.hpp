@@ -54,10 +54,10 @@ class Ledger {
   /// Damaged records of the journal: their runs resume from an earlier record, or restart.
   std::int64_t num_unreadable() const { return journal_.num_unreadable(); }
 
-  /// What could not be checked in the file that the sweep resumes from; empty if everything was checked.
+  /// Names what could not be checked in the file that the sweep resumes from; empty if all was checked.
   const std::string& caution() const { return caution_; }
 
-  /// From now on, the table tells its readers how many of `num_ranks` ranks are busy (Activity).
+  /// Starts to record in the table how many of `num_ranks` ranks are busy (Activity).
   void watch_ranks(int num_ranks);
   /// A rank has ended its task, whatever the outcome.
   void rank_is_free();
@@ -94,7 +94,7 @@ class Ledger {
   std::int64_t num_wanted_;
   std::int64_t num_faulty_ = 0;
   std::vector<std::int64_t> tasks_left_;
-  /// What is known of a task from earlier sessions or attempts.
+  /// Known results of a task, from earlier sessions or attempts.
   struct Past {
     double seconds = 0;           // spent on it
     std::string instruction_set;  // of the snapshot that it resumes from; empty if it restarts

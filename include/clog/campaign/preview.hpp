@@ -9,13 +9,13 @@
 
 namespace clog::campaign {
 
-/// What decides on rounds after the first: one of these, or nothing.
+/// The rule for rounds after the first: one of these, or nothing.
 struct RoundsToCome {
   const SeedRule* rule = nullptr;
   const Refiner* refiner = nullptr;
 };
 
-/// What a sweep would do, on the standard output.
+/// Prints on the standard output what a sweep would do.
 
 /// The tasks, and their number; of more than a thousand the first and the last.
 void print_tasks(const sweep::Plan& plan);

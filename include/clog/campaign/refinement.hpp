@@ -13,7 +13,7 @@
 /// are over.
 namespace clog::campaign {
 
-/// What a refinement is to find out, and how well.
+/// The goal of a refinement, and its precision.
 struct RefinementGoal {
   enum class Kind { curve, peak, crossing, none };
   Kind kind = Kind::none;
@@ -39,7 +39,7 @@ struct RefinementCandidates {
   double max_time = 0;  ///< of a run [t0]
 };
 
-/// What one more run at a place is expected to bring and to cost.
+/// The clogs and the work that one more run at a place is expected to bring.
 struct ExpectedRun {
   double num_clogs;  ///< p = 1 - exp(-L/lambda)
   double work;
@@ -48,7 +48,7 @@ std::vector<ExpectedRun> expected_runs(std::span<const RefinedPoint> points,
                                        const RefinementCandidates& candidates,
                                        const Eigen::VectorXd& log_length);
 
-/// What is known of a goal, in the terms of its precision; infinite where nothing is.
+/// The precision reached so far, in the terms of the goal; infinite where nothing is known.
 double known_precision(const fit::Curve& curve, std::span<const fit::CurvePlace> places,
                        const RefinementGoal& goal);
 

@@ -15,7 +15,7 @@
 
 namespace clog::campaign {
 
-/// What a user asks of a refinement.
+/// A user's settings of a refinement.
 struct RefinementOptions {
   std::vector<std::string> keys;  ///< one or two; the outermost values of their lists are the bounds
   RefinementGoal goal;
@@ -50,9 +50,9 @@ class Refiner {
   const std::vector<std::vector<std::string>>& candidates() const { return values_; }
   /// The rule in words, as it is stored with the result.
   std::string text() const;
-  /// What the rounds after the first may come to. @param seconds_per_run  mean of the first round's runs
+  /// Estimates the rounds after the first. @param seconds_per_run  mean of the first round's runs
   std::vector<std::string> rounds_in_words(double seconds_per_run) const;
-  /// What is known after the last look, in words.
+  /// Describes in words what is known after the last look.
   std::string known(std::span<const sweep::RunRow> rows) const;
 
  private:

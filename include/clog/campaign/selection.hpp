@@ -10,7 +10,7 @@
 
 namespace clog::campaign {
 
-/// What a row must have in a column: `line_tension>=0.5`, `status=clogged,broken`, `preset!=robust`.
+/// A condition on a column: `line_tension>=0.5`, `status=clogged,broken`, `preset!=robust`.
 class Condition {
  public:
   /// @throws Error if `text` is not a condition, its column does not exist, a number cannot be read, or the

@@ -9,7 +9,7 @@
 
 namespace clog::campaign {
 
-/// What a sweep's file says of its sweep, apart from the rows.
+/// The description of a sweep in its file, apart from the rows.
 
 /// Opens a sweep for reading; warns on stderr about anything that could not be verified. Rows know their
 /// circles, with the name of the file that these are from.
@@ -28,7 +28,7 @@ std::vector<std::string> listed_columns(const store::Provenance& provenance);
 /// @throws Error, which names the file, if the attribute cannot be parsed
 std::int64_t stored_num_wanted(const std::string& path, const store::Provenance& provenance,
                                const sweep::Plan& plan);
-/// What a file's sweep comes to: the runs that are wanted, and those that it holds besides.
+/// The number of runs of a file's sweep: those that are wanted, and others that the file holds.
 struct RunCount {
   std::int64_t num_runs = 0;
   std::int64_t num_beyond = 0;  ///< of these, runs that the lists of its last command do not have

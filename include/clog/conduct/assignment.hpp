@@ -8,7 +8,7 @@
 
 namespace clog::conduct {
 
-/// What rank 0 tells the others before a sweep: what they are to do, and how.
+/// Rank 0's message to the others before a sweep: what to compute, and how.
 struct Assignment {
   std::chrono::milliseconds report_interval{10'000};
   std::string instruction_set = "auto";

@@ -10,7 +10,7 @@ class Stopped : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// From now on SIGINT, SIGTERM and SIGUSR1 only raise a flag.
+/// Makes SIGINT, SIGTERM and SIGUSR1 raise a flag, and nothing else.
 void catch_stop_signals();
 bool stop_signalled();
 

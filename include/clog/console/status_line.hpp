@@ -11,7 +11,7 @@ namespace clog::console {
 class StatusLine {
  public:
   enum class Screen { terminal, plain, none };
-  /// What the standard error is.
+  /// The kind of screen that the standard error is.
   static Screen standard_error();
 
   StatusLine(std::ostream& out, Screen screen);

@@ -15,7 +15,7 @@ struct Frame {
 };
 using Profile = std::vector<Frame>;
 
-/// Where the droplet is at h for the first time, interpolated linearly; nothing if it does not come there.
+/// The first frame at h, interpolated linearly; nothing if the droplet does not come there.
 /// @param profile  in the order of time
 std::optional<Frame> frame_at(const Profile& profile, double h);
 
@@ -52,7 +52,7 @@ struct Calibration {
   double clogging_tension =
       0;  ///< Gamma from which on droplets do not come to all frames; NaN if all do, or none
 };
-/// Where Delta_v is sought.
+/// The range in which the minimum of Delta_v is sought.
 struct CalibrationRange {
   double least_tension = 0.02;
   double most_tension = 10;
@@ -60,7 +60,7 @@ struct CalibrationRange {
 };
 /// Simulated profile for a line tension and b_0/b_inf. Called from several threads at a time.
 using Simulation = std::function<Profile(double line_tension, double near_wall_drag)>;
-/// What a simulation has come to.
+/// The result of a simulation.
 struct CalibrationAttempt {
   double line_tension = 0;
   double near_wall_drag = 0;

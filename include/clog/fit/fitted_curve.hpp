@@ -17,7 +17,7 @@ namespace clog::fit {
 /// A place of the curve: logarithms of the keys; the second is 0 where there is one key.
 using CurvePlace = Eigen::Vector2d;
 
-/// What all runs at one place have come to. Points without a clog are bounds, and inform the curve as such.
+/// The sums over all runs at one place. Points without a clog are bounds, and inform the curve as such.
 struct CurvePoint {
   CurvePlace place;
   double num_clogs;

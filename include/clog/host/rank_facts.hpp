@@ -5,7 +5,7 @@
 
 namespace clog::host {
 
-/// What a rank finds where it runs.
+/// Facts about the place where a rank runs.
 struct RankFacts {
   int rank = 0;
   std::string host;

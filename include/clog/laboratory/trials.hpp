@@ -29,7 +29,7 @@ std::vector<Trial> read_trials(const std::vector<std::string>& files, const Prof
 /// @throws console::Stopped after a signal, with the best so far
 std::vector<fit::Calibration> calibrate(const std::vector<Trial>& trials, const sweep::Settings& settings);
 
-/// What a reader must know before he uses a trial's numbers.
+/// Warnings about a trial's numbers.
 std::vector<std::string> warnings(const fit::Calibration& found);
 
 }  // namespace clog::laboratory

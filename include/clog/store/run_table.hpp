@@ -24,7 +24,7 @@ bool looks_like_hdf5(const std::string& path);
 
 /// @throws Error if the path exists: results are never overwritten
 void refuse_existing(const std::string& path);
-/// To be asked before hours of work. @throws Error if the path exists or no file can be made there
+/// To be called before hours of work. @throws Error if the path exists or no file can be made there
 void refuse_unwritable(const std::string& path);
 
 /// User-supplied circles, and the file that they were read from; its name is empty if the sweep's last
@@ -56,7 +56,7 @@ struct SweepFile {
 /// Files of format version 2 and later: columns that they do not have get the values for "not known".
 /// @throws Error if the file is missing, not HDF5, not ours, or damaged in any way
 SweepFile read_sweep(const std::string& path);
-/// What a reader of this file should be told; empty if all of it was checked.
+/// A warning for readers of this file; empty if all of it was checked.
 std::string caution(const std::string& path, const SweepFile& file);
 
 /// A file that may be damaged: the rows and attributes that are as they were written, and what is not.

@@ -34,7 +34,7 @@ struct Trajectory {
 /// Writes a new file, whole or not at all. @throws Error if it exists or cannot be written
 void write_trajectory(const std::string& path, const Trajectory& trajectory);
 
-/// What is read of a trajectory file.
+/// The contents of a trajectory file, as they are read.
 struct TrajectoryTable {
   std::vector<TrajectoryColumn> columns;
   Provenance provenance;

@@ -15,7 +15,7 @@
 /// of record() that fills it.
 namespace clog::sweep {
 
-/// What a column tells of a run.
+/// The kind of information in a column.
 enum class ColumnRole {
   parameter,     ///< what was run: equal runs have equal values
   result,        ///< equal runs have equal values, bit for bit
@@ -33,7 +33,7 @@ struct clog::Words<clog::sweep::ColumnRole> {
 
 namespace clog::sweep {
 
-/// What a row holds in a column. Nothing: it is not known, or means nothing to the run.
+/// A row's value in a column. Nothing: it is not known, or has no meaning for the run.
 using Value = ParameterValue;
 
 struct Column {

@@ -10,7 +10,7 @@
 /// Messages between the ranks of a sweep and the processes that compute for them.
 namespace clog::sweep {
 
-/// Where a task begins.
+/// The start of a task.
 struct Start {
   std::vector<std::byte> snapshot;  ///< empty: at its release
   std::int64_t attempt = 1;

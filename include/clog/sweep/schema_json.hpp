@@ -6,7 +6,7 @@
 
 namespace clog::sweep {
 
-/// What a column is called, means, is measured in, and is there for.
+/// A column's name, meaning, unit and purpose.
 nlohmann::ordered_json to_json(const Column& column);
 
 /// All keys and columns: `keys`, `columns`.

@@ -65,7 +65,7 @@ class Settings {
  public:
   Settings();
 
-  /// From the text that to_config() wrote. @throws Error as set(), or if a line is not one of a config
+  /// Reads the text that to_config() wrote. @throws Error as set(), or if a line is not one of a config
   static Settings from_config(const std::string& text);
 
   /// A preset sets the keys that have not been given themselves, before or after it. Other keys set what

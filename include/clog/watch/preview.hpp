@@ -4,7 +4,7 @@
 
 namespace clog::watch {
 
-/// What runs take if none of them ends before max-time.
+/// The duration of runs of which none ends before max-time.
 struct MostCost {
   double time = 0;  ///< [t0]
   double steps = 0;

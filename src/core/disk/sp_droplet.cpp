@@ -52,7 +52,7 @@ Eigen::Array2d SpForces::wedge_force(const Eigen::Array2d& place, const LocalFra
   return force;
 }
 
-/// What the result waits for is a root, a division and a few sums; the rest is done meanwhile.
+/// The result waits only for a root, a division and a few sums; the rest is done meanwhile.
 [[gnu::always_inline]] inline Eigen::Array2d SpForces::scaled_force(double scale, const Eigen::Array2d& place,
                                                                     const LocalFrame& frame) const {
   const double stiffness = scale * contact_stiffness(wall_stiffness_, units::droplet_diameter);

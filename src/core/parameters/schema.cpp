@@ -181,7 +181,7 @@ using enum ParameterRole;
 
 ParameterValue young_angle_of(const RunParameters& run) { return young_angle(run.dp); }
 
-/// What a droplet is.
+/// Parameters of the droplet.
 std::vector<Parameter> droplet_entries() {
   return {
       entry("model", [](auto& run) -> auto& { return run.model; },
@@ -688,7 +688,7 @@ std::vector<Parameter> verdict_entries() {
   };
 }
 
-/// In the order of the table's columns.
+/// All entries, in the order of the table's columns.
 std::vector<Parameter> make_schema() {
   std::vector<Parameter> all;
   for (const auto& entries :

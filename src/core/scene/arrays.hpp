@@ -8,16 +8,16 @@
 
 namespace clog {
 
-/// What both arrays that follow from a gap and a diameter have in common. @throws Error
+/// The common part of both arrays that follow from a gap and a diameter. @throws Error
 void check_spacing(const RunParameters& run);
 
-/// As the key `obstacle-density` has it: `0.35`, `12.5%`, `saturated`.
+/// The density as text, as in the key `obstacle-density`: `0.35`, `12.5%`, `saturated`.
 std::string density_text(const ObstacleDensity& density);
 
 /// The interface bends around obstacles.
 double smallest_diameter(const RunParameters& run);
 
-/// In the void nearest to the centre. @throws Error if there is no room for it
+/// Releases the droplet in the void nearest to the centre. @throws Error if there is no room for it
 DropletState release_in_void(const RunParameters& run, const ObstacleArray& obstacles);
 
 /// A droplet never comes to the end of a periodic array, nor through a wall.

@@ -62,7 +62,7 @@ void check_clearance(RunParameters& run) {
   if (!(channel.end > channel.start)) refuse("end", channel.end, "must lie downstream of the start) try 3");
 }
 
-/// What the interface bends around are the tips.
+/// The interface bends around the tips.
 double tip_diameter(const RunParameters& run) {
   constexpr double sharpest = 1e-3;
   return std::max(2 * run.channel.tip_radius, sharpest);

@@ -41,7 +41,7 @@ double density(const ObstacleParameters& obstacles) {
 
 ObstacleArray lattice(const RunParameters& run) { return lattice_obstacles(run.obstacles, run.seed); }
 
-/// In a lattice all voids are alike, so where in one a droplet starts is up to the seed (lattice_obstacles):
+/// All voids of a lattice are alike, so the seed decides where in one a droplet starts (lattice_obstacles):
 /// if it touches nothing at the box's centre it starts right there, as if there were no obstacles.
 DropletState release_in_lattice(const RunParameters& run, const ObstacleArray& obstacles) {
   const DropletModel& model = model_of(run);

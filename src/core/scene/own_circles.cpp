@@ -162,7 +162,7 @@ void find_gap_and_density(RunParameters& run) {
   obstacles.density = static_cast<double>(obstacles.own->circles().size()) / obstacles.period().area();
 }
 
-/// In [0, 1); the constant keeps this stream apart from others.
+/// A random number in [0, 1); the constant keeps this stream apart from others.
 Eigen::Array2d drawn_from(std::uint32_t seed) {
   std::seed_seq sequence{seed, std::uint32_t{0x0bc1c1e5}};
   std::mt19937_64 engine(sequence);
@@ -171,7 +171,7 @@ Eigen::Array2d drawn_from(std::uint32_t seed) {
   return {first, uniform(engine)};
 }
 
-/// Where on the line of the entrance a droplet starts, in the coordinates of the file.
+/// A droplet's start on the line of the entrance, in the coordinates of the file.
 Eigen::Array2d place_on_entrance(const RunParameters& run) {
   const ObstacleParameters& obstacles = run.obstacles;
   double from = obstacles.entrance_from;
@@ -185,7 +185,7 @@ Eigen::Array2d place_on_entrance(const RunParameters& run) {
   return {obstacles.entrance, from + drawn_from(run.seed)[0] * (to - from)};
 }
 
-/// From the coordinates of the file to those of the array, in whose centre a droplet is to start.
+/// Converts coordinates of the file to those of the array, in whose centre a droplet starts.
 Eigen::Array2d shift_of(const RunParameters& run) {
   const Period period = period_of(run.obstacles);
   switch (run.obstacles.release) {

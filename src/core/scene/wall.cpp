@@ -34,7 +34,7 @@ const Scene wall_scene = {
     .gap_key = nullptr,
     .check = nothing_to_check,
     .resolve = nothing_to_resolve,
-    // As among obstacles of the usual size: sags are compared with droplets in such arrays.
+    // The same as among obstacles of the usual size: sags are compared with droplets in such arrays.
     .sharpest_bend = smallest_diameter,
     .density = no_density,
     .walls = flat_wall,

@@ -108,7 +108,7 @@ ObstacleArray lattice_obstacles(const ObstacleParameters& parameters, std::uint3
   const double shift_x = centre - spacing * (start.along * cosine - start.across * sine);
   const double shift_y = centre - spacing * (start.along * sine + start.across * cosine);
 
-  // In units of box/num_points all points have integer coordinates: what lies in the box is found exactly.
+  // All points have integer coordinates in units of box/num_points, so those in the box are found exactly.
   const double unit = parameters.box / static_cast<double>(num_points);
   std::vector<Obstacle> obstacles;
   obstacles.reserve(num_points);

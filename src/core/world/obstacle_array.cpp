@@ -95,7 +95,7 @@ std::vector<std::uint32_t> ObstacleArray::bin(std::vector<Obstacle>& obstacles) 
   std::partial_sum(cell_start.begin(), cell_start.end(), cell_start.begin());
   std::vector<std::uint32_t> next(cell_start.begin(), cell_start.end() - 1);
   for (std::uint32_t& place : target) place = next[place]++;
-  // In place: a second copy would be most of the memory that it takes to build an array.
+  // Sorts in place: a second copy would be most of the memory that it takes to build an array.
   for (std::size_t i = 0; i < target.size(); ++i)
     while (target[i] != i) {
       const std::uint32_t place = target[i];

@@ -104,7 +104,7 @@ struct Surroundings {
   void visit_points(float place_x, float place_y, Visit visit) const {
     const int first_column = -1 - static_cast<int>(place_x < cell_size / 2);
     const int first_row = -1 - static_cast<int>(place_y < cell_size / 2);
-    // In the order that a vector instruction gives.
+    // Points are visited in the order of a vector instruction.
     const Floats columns = Floats{0, 1, 0, 1, 2, 3, 2, 3} + static_cast<float>(first_column);
     const Floats rows = Floats{0, 0, 1, 1, 0, 0, 1, 1} + static_cast<float>(first_row);
     const Point* points = cell + first_row * row_length + first_column;
@@ -212,7 +212,7 @@ class SequentialAddition {
   class Squares {
    public:
     void assign(std::span<const Square> squares, bool have_excess) {
-      // In the same memory: there are fewer and fewer of them.
+      // Reuses the same memory: their number falls.
       places_.clear();
       places_.reserve(squares.size());
       for (const Square& square : squares) places_.push_back({square.x, square.y, square.cell});

@@ -22,7 +22,7 @@ using ParameterValue = std::variant<std::monostate, double, std::int64_t, std::s
 /// name of a file, the parameter what stands in it.
 enum class ValueKind { number, number_or_share, integer, word, file };
 
-/// What a parameter is there for.
+/// The purpose of a parameter.
 enum class ParameterRole {
   physics,   ///< of what is modelled
   numerics,  ///< of how it is computed or looked at; results should hardly depend on it
@@ -66,7 +66,7 @@ struct Parameter {
   ParameterRange range;                ///< of numbers
   bool has_own_column;                 ///< otherwise the column tells of others as well
   bool shapes_array;                   ///< do two values of it make two obstacle arrays?
-  /// What the column holds where the parameter means nothing; mostly nothing.
+  /// The column's value where the parameter has no meaning; mostly nothing.
   ParameterValue elsewhere;
   /// The value of all runs in files older than the parameter. Nothing: it is not known.
   ParameterValue before;

@@ -41,7 +41,7 @@ class ContactRecord {
   void restore(ByteReader& bytes);
 
  private:
-  /// Where an obstacle's centre is, from the droplet's place of release [sigma].
+  /// Place of an obstacle's centre, from the droplet's place of release [sigma].
   struct Place {
     double x, y;
   };

@@ -49,7 +49,7 @@ struct ThinnestNeck {
   double distance = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// What one run found out.
+/// The results of one run.
 struct RunResult {
   RunStatus status = RunStatus::running;
   std::optional<ClogDetection> clogged_by;  ///< how a clog was found; empty unless clogged
@@ -121,7 +121,7 @@ class DropletRun {
   double kinetic_energy_ratio() const;
   /// The gravity term is measured from the place of release.
   PotentialEnergy potential_energy() const;
-  /// From now on the energy lost to drag is added up, see Droplet::work().
+  /// Starts to add up the energy lost to drag, see Droplet::work().
   void measure_dissipation() { droplet_->measure_dissipation(); }
   const Droplet& droplet() const { return *droplet_; }
   const ObstacleArray& obstacles() const { return *obstacles_; }

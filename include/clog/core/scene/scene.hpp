@@ -9,7 +9,7 @@ namespace clog {
 /// The result that runs in a scene are made for.
 enum class Finding { clogging_length, passage, sag };
 
-/// What walls follow from.
+/// The source of the walls.
 enum class WallsFrom {
   parameters,  ///< of the obstacles alone; they may take long to sample
   circles,     ///< that a user gave

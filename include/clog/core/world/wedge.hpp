@@ -30,7 +30,7 @@ struct Wedge {
   bool is_flat() const { return half_angle.radians >= std::numbers::pi / 2; }
 };
 
-/// Where a wedge's surface is, seen from a point.
+/// Distance and direction of a wedge's surface from a point.
 struct WedgeDistance {
   double distance;        ///< to the nearest surface point, negative inside [sigma]
   Eigen::Array2d normal;  ///< unit vector from the wall to the point
