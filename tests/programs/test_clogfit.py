@@ -360,17 +360,18 @@ class Fit(ProgramTest):
         self.sweep("max-time=60", "line-tension=2", "seeds=1..3")
         before, = self.fit()["groups"]
         self.assertGreater(before["contacts_per_length"], 0)
-        stored_rows.make_older(self.folder / "sweep.h5", "8", ["contacts", "first_contact_at"])
+        stored_rows.make_older(self.folder / "sweep.h5", "8", ["contacts", "first_contact_at", "inertia"])
         group, = self.fit()["groups"]
         self.assertEqual((group["contacts_per_length"], group["clogging_length_met"], group["met_none"]), (None, None, 0))
         self.assertEqual((group["clogging_length"], group["doubts"]), (before["clogging_length"], before["doubts"]))
+        self.assertEqual(group["inertia"], 1)
         self.succeed("clogsweep", "verify", "sweep.h5")
 
     def test_files_of_format_version_7_can_be_read(self):
         self.sweep("max-time=60", "line-tension=2", "seeds=1..3")
         before, = self.fit()["groups"]
         new = ["mesh_hold", "break_up_neck", "thinnest_neck", "thinnest_neck_at", "receding_angle", "advancing_angle", "friction", "yield_traction",
-               "contacts", "first_contact_at"]
+               "contacts", "first_contact_at", "inertia"]
         stored_rows.make_older(self.folder / "sweep.h5", "7", new)
         group, = self.fit()["groups"]
         self.assertEqual((group["break_up_neck"], group["clogging_length"], group["receding_angle"]), (0, before["clogging_length"], 180))

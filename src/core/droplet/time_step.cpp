@@ -10,13 +10,17 @@
 
 namespace clog {
 
-double drag_time_step(const RunParameters& run) { return 0.1 * run.drag.terminal_speed / units::gravity; }
+double relaxation_time(const RunParameters& run) {
+  return run.dp.inertia * run.drag.terminal_speed / units::gravity;
+}
+
+double drag_time_step(const RunParameters& run) { return 0.1 * relaxation_time(run); }
 
 void choose_time_step(RunParameters& run, double time_step, std::vector<Rate> rates) {
   run.time_step = time_step;
   if (time_step >= parameter("time-step").range.lower->value) return;
-  const double speed = run.drag.terminal_speed;
-  rates.insert(rates.begin(), {"terminal-speed", speed, 100 / (speed * speed)});
+  const double time = relaxation_time(run);
+  rates.insert(rates.begin(), {"terminal-speed", run.drag.terminal_speed, 100 / (time * time)});
   const Rate& fastest = *std::max_element(rates.begin(), rates.end(),
                                           [](const Rate& a, const Rate& b) { return a.squared < b.squared; });
   refuse(fastest.key, fastest.value,
@@ -29,9 +33,10 @@ void check_time_step(const RunParameters& run) {
           [&] { return fmt::format("shorter than one time-step) use at least {:.3g}", time_step); });
   require(run.max_time / time_step <= 1e15, "max-time", run.max_time,
           [&] { return fmt::format("more than 1e15 steps) use at most {:.3g}", 1e15 * time_step); });
-  require(time_step <= run.drag.terminal_speed, "time-step", time_step, [&] {
-    return fmt::format("does not resolve the drag's relaxation time, terminal-speed={:.3g}) try {:.3g}",
-                       run.drag.terminal_speed, 0.1 * run.drag.terminal_speed);
+  require(time_step <= relaxation_time(run), "time-step", time_step, [&] {
+    return fmt::format("does not resolve the drag's relaxation time, {}={:.3g}) try {:.3g}",
+                       run.dp.inertia == 1 ? "terminal-speed" : "inertia*terminal-speed",
+                       relaxation_time(run), drag_time_step(run));
   });
 }
 

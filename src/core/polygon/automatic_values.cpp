@@ -46,7 +46,7 @@ std::vector<Rate> polygon_rates(const RunParameters& run) {
 double automatic_time_step(const RunParameters& run, double sharpest_bend) {
   const double drag = drag_time_step(run);
   constexpr double depth = 0.02;  // of an obstacle in the contact range, over the vertex diameter
-  const double vertex_mass = units::droplet_mass / *run.dp.vertices;
+  const double vertex_mass = run.dp.inertia * units::droplet_mass / *run.dp.vertices;
   if (run.wall_stiffness)
     return rounded_down(
         std::min(drag, std::sqrt(auto_step_margin) *
@@ -161,7 +161,7 @@ void resolve_polygon(RunParameters& run, double sharpest_bend) {
         "tangential force) use preset=elastic",
         dp.friction > 0 ? "friction" : "yield-traction"));
 
-  const double vertex_mass = units::droplet_mass / *dp.vertices;
+  const double vertex_mass = dp.inertia * units::droplet_mass / *dp.vertices;
   const double vertex_diameter = units::regular_edge_length(*dp.vertices);
   const bool automatic = !run.wall_stiffness;
   if (!run.time_step) choose_time_step(run, automatic_time_step(run, sharpest_bend), polygon_rates(run));

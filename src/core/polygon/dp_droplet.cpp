@@ -23,7 +23,7 @@ int steps_between_checks(double time_step) {
 DpDroplet::DpDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial)
     : run_(run),
       forces_(run, obstacles),
-      vertex_mass_(units::droplet_mass / *run.dp.vertices),
+      vertex_mass_(run.dp.inertia * units::droplet_mass / *run.dp.vertices),
       steps_per_check_(steps_between_checks(run.time_step.value())),
       stepper_(std::make_unique<DpStepper>(run, obstacles, forces_)) {
   state_ = std::move(initial);

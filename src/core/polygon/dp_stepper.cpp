@@ -4,14 +4,18 @@
 #include <utility>
 #include <vector>
 
+#include "clog/core/droplet/time_step.hpp"
 #include "clog/core/tools/units.hpp"
 
 namespace clog {
 
 namespace {
 
+/// Of the drag far from walls [1/t0].
+double far_rate_of(const RunParameters& run) { return 1 / relaxation_time(run); }
+
 kernel::KickTerms terms_of(const RunParameters& run) {
-  const double far_rate = units::gravity / run.drag.terminal_speed;
+  const double far_rate = far_rate_of(run);
   const bool on_area = run.dp.gravity == Gravity::area;
   return {.elastic = run.dp.perimeter_spring != PerimeterSpring::along,
           .on_area = on_area,
@@ -136,7 +140,7 @@ void DpStepper::finish(DropletState& state, Droplet::Work* work) {
 /// the first half kick.
 void DpStepper::kick_and_drift(DropletState& droplet, const kernel::KickCoefficients& coefficients,
                                double drift_time, Droplet::Work* work) {
-  const double impulse = coefficients.half_step / (units::droplet_mass / n_);
+  const double impulse = coefficients.half_step / vertex_mass();
   push_off_everything(droplet, coefficients, impulse, work);
   const kernel::Interface at_rest = forces_->interface(sums_.area, sums_.perimeter);
   const kernel::InterfaceKick interface {
@@ -210,7 +214,7 @@ void DpStepper::push_off_everything(DropletState& droplet, const kernel::KickCoe
                            .relative = run_.drag.relative,
                            .near_wall = run_.drag.near_wall,
                            .exponent = run_.drag.near_wall_exponent,
-                           .far_rate = units::gravity / run_.drag.terminal_speed},
+                           .far_rate = far_rate_of(run_)},
                           coefficients, arrays_);
 }
 
@@ -233,18 +237,19 @@ void DpStepper::hold_by_friction(DropletState& droplet, double impulse, Droplet:
   }
 }
 
+double DpStepper::vertex_mass() const { return run_.dp.inertia * units::droplet_mass / n_; }
+
 /// What drag takes and the springs along the interface give per time, where a time step ends.
 Droplet::Work DpStepper::power(const kernel::InterfaceKick& interface,
                                const kernel::KickCoefficients& coefficients,
                                const kernel::Coupling& coupling) const {
   const kernel::Power vertices = kernel_.power(n_, terms_, interface, coefficients, coupling, arrays_);
-  const double vertex_mass = units::droplet_mass / n_;
   const double mean2 = coupling.mean_x * coupling.mean_x + coupling.mean_y * coupling.mean_y;
   const double area2 = coupling.area_x * coupling.area_x + coupling.area_y * coupling.area_y;
   const double reaction = vertices.spread_x * coupling.area_x + vertices.spread_y * coupling.area_y;
-  return {.dissipated =
-              vertex_mass * (vertices.drag + n_ * (terms_.area_rate * area2 - terms_.relative_rate * mean2)),
-          .spreading = vertex_mass / coefficients.half_step * (vertices.spreading - reaction)};
+  return {.dissipated = vertex_mass() *
+                        (vertices.drag + n_ * (terms_.area_rate * area2 - terms_.relative_rate * mean2)),
+          .spreading = vertex_mass() / coefficients.half_step * (vertices.spreading - reaction)};
 }
 
 }  // namespace clog

@@ -66,6 +66,7 @@ class DpStepper {
                            double impulse, Droplet::Work* work);
   void let_walls_yield(DropletState& droplet, Droplet::Work* work);
   void hold_by_friction(DropletState& droplet, double impulse, Droplet::Work* work);
+  double vertex_mass() const;  // that resists a change of speed
   Droplet::Work power(const kernel::InterfaceKick& interface, const kernel::KickCoefficients& coefficients,
                       const kernel::Coupling& coupling) const;
 };

@@ -52,6 +52,7 @@ Seed seed_polygon(const RunParameters& run, const ObstacleArray& obstacles) {
 /// under a large tension they must not be, since contact then pulls vertices together at the corners of a
 /// squeezed droplet.
 RunParameters with_growing_interface(RunParameters run) {
+  run.dp.inertia = 1;  // it starts at rest, whatever that is
   run.dp.perimeter_spring = PerimeterSpring::along;
   run.dp.perimeter_stiffness = 0.01 + 0.03 * run.dp.line_tension;
   run.dp.wall_contact = WallContact::edge;
@@ -122,6 +123,7 @@ DropletState release_polygon(const RunParameters& run, const ObstacleArray& obst
   bool rests = comes_to_rest(growing, obstacles, forces, options, longer, state);
   // Then with its own interface; only springs with a tension of their own begin to act with the run.
   RunParameters own = run;
+  own.dp.inertia = growing.dp.inertia;
   own.dp.receding_angle = growing.dp.receding_angle;
   own.dp.advancing_angle = growing.dp.advancing_angle;
   if (own.dp.perimeter_spring != PerimeterSpring::along) {

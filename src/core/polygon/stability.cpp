@@ -12,7 +12,8 @@ namespace clog {
 StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double perimeter,
                        double shortest_edge) {
   const double num_vertices = *dp.vertices;
-  const double vertex_mass = units::droplet_mass / num_vertices;
+  const double mass = dp.inertia * units::droplet_mass;
+  const double vertex_mass = mass / num_vertices;
   const double vertex_diameter = units::regular_edge_length(*dp.vertices);
   const int edges_per_vertex = dp.wall_contact == WallContact::edge ? 2 : 1;
   const double mean_edge = perimeter / num_vertices;
@@ -23,7 +24,7 @@ StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double per
       .self_contact = dp.self_contact == SelfContact::on
                           ? 8 * contact_stiffness(wall_stiffness, vertex_diameter) / vertex_mass
                           : 0,
-      .area = dp.area_stiffness.value() * perimeter * perimeter / units::droplet_mass,
+      .area = dp.area_stiffness.value() * perimeter * perimeter / mass,
       .tension = 4 * dp.line_tension / (edge * vertex_mass),
       .spring = 4 * dp.perimeter_stiffness.value() * num_vertices / vertex_mass,
       .wetting = 6 * dp.line_tension * std::abs(dp.wall_tension - 1) * mean_edge /

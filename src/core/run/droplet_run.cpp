@@ -8,6 +8,7 @@
 
 #include "clog/core/droplet/equilibrium.hpp"
 #include "clog/core/droplet/shape.hpp"
+#include "clog/core/droplet/time_step.hpp"
 #include "clog/core/model/model.hpp"
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
@@ -20,10 +21,10 @@ namespace {
 constexpr double relaxation_times_before_a_clog = 10;
 
 /// E_k/E_t below which an equilibrium is looked for. The droplet must also be slow enough not to coast, for
-/// V_t/g at its speed, farther than it may be from it.
-double first_search(double terminal_speed) {
+/// the relaxation time at its speed, farther than it may be from it.
+double first_search(const RunParameters& run) {
   constexpr double slow = 1e-4;
-  const double coasting = farthest_rest * units::gravity / (terminal_speed * terminal_speed);  // over V_t
+  const double coasting = farthest_rest / (relaxation_time(run) * run.drag.terminal_speed);  // over V_t
   return std::min(slow, coasting * coasting);
 }
 /// After a search in vain the next one waits until E_k/E_t has fallen by so much again,
@@ -83,8 +84,8 @@ DropletRun::DropletRun(RunParameters run, std::shared_ptr<const ObstacleArray> o
       start_(droplet_->centre()),
       end_(way),
       max_steps_(std::max<std::int64_t>(1, std::llround(run_.max_time / run_.time_step.value()))),
-      first_quiet_time_(relaxation_times_before_a_clog * run_.drag.terminal_speed / units::gravity),
-      next_search_(first_search(run_.drag.terminal_speed)),
+      first_quiet_time_(relaxation_times_before_a_clog * relaxation_time(run_)),
+      next_search_(first_search(run_)),
       dwells_(run_.dwell_length, run_.drag.terminal_speed),
       contacts_(model_of(run_).contact_reach(run_)) {}
 
@@ -96,7 +97,8 @@ PotentialEnergy DropletRun::potential_energy() const {
 }
 
 double DropletRun::kinetic_energy_ratio() const {
-  const double terminal = 0.5 * units::droplet_mass * run_.drag.terminal_speed * run_.drag.terminal_speed;
+  const double terminal =
+      0.5 * run_.dp.inertia * units::droplet_mass * run_.drag.terminal_speed * run_.drag.terminal_speed;
   return droplet_->kinetic_energy() / terminal;
 }
 
@@ -225,7 +227,7 @@ bool DropletRun::is_quiet(double energy_ratio) {
 }
 
 bool DropletRun::finds_rest(double energy_ratio) {
-  const double first = first_search(run_.drag.terminal_speed);
+  const double first = first_search(run_);
   if (energy_ratio > rise_of_a_moving_droplet * first) next_search_ = first;
   if (energy_ratio > next_search_ || time() < first_quiet_time_) return false;
   next_search_ = fall_between_searches * energy_ratio;

@@ -223,6 +223,19 @@ TEST(Resolve, FillsInTheLargestStepThatHolds) {
       }
 }
 
+TEST(Resolve, TakesStepsAsLongAsTheRootOfTheInertia) {
+  // And contact, area and springs are as stiff as before.
+  RunParameters run;
+  run.dp.line_tension = 0.3;
+  const RunParameters usual = resolve(run);
+  run.dp.inertia = 4;
+  const RunParameters heavy = resolve(run);
+  EXPECT_NEAR(*heavy.time_step / *usual.time_step, 2, 0.1);  // two digits are kept
+  EXPECT_NEAR(*heavy.wall_stiffness / *usual.wall_stiffness, 1, 0.1);
+  EXPECT_EQ(heavy.dp.area_stiffness, usual.dp.area_stiffness);
+  EXPECT_EQ(heavy.dp.perimeter_stiffness, usual.dp.perimeter_stiffness);
+}
+
 TEST(Resolve, FillsInTheSoftestAreaThatKeepsItsSize) {
   RunParameters run;
   run.dp.line_tension = 0.3;

@@ -13,6 +13,9 @@ struct Rate {
   double squared;
 };
 
+/// In which the speed of a droplet far from walls follows the forces, S V_t/g [t0].
+double relaxation_time(const RunParameters& run);
+
 /// Resolves the drag's relaxation time ten times [t0].
 double drag_time_step(const RunParameters& run);
 

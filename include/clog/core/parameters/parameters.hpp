@@ -113,6 +113,9 @@ struct DpParameters {
   double self_contact_range = published_vertex_diameter;
   Gravity gravity = Gravity::area;
   std::optional<int> vertices;  ///< N_v; empty: automatic
+  /// S, inertial mass over the droplet's mass. Weight and drag remain what they are, so that it only matters
+  /// how soon the droplet's speed follows the forces; steps may be sqrt(S) times as long.
+  double inertia = 1;
   /// A droplet with a thinner neck has broken up [sigma]; 0: none does.
   double break_up_neck = 0;
 };
