@@ -42,15 +42,20 @@ void DpDroplet::advance(int num_steps) {
   stepper_->load(state_);
   Work* const work = measures_dissipation_ ? &work_ : nullptr;
   for (int done = 0; done < num_steps; done += steps_per_check_) {
-    const DpStepper::Edges edges = stepper_->edges();
+    const kernel::Survey now = stepper_->survey();
     // Its contact lists would take all memory. The run sees it at its next check.
-    if (!(edges.perimeter < burst_perimeter)) break;
+    if (!(now.perimeter < burst_perimeter)) break;
     const int steps = std::min(steps_per_check_, num_steps - done);
-    const Travel travel = state_.possible_travel(steps * run_.time_step.value());
-    forces_.update_contacts(state_, travel);
+    const double time = steps * run_.time_step.value();
+    const Travel travel{.absolute = possible_way(now.speed, time),
+                        .relative = possible_way(now.relative_speed, time)};
+    if (!forces_.contacts_hold(now.moved, now.moved_relative, travel)) {
+      stepper_->store(state_);
+      forces_.update_contacts(state_, travel);
+    }
     stepper_->look(travel);
-    const int substeps = num_substeps(
-        stiff_modes(run_.dp, *run_.wall_stiffness, edges.perimeter, edges.shortest), run_.time_step.value());
+    const int substeps = num_substeps(stiff_modes(run_.dp, *run_.wall_stiffness, now.perimeter, now.shortest),
+                                      run_.time_step.value());
     stepper_->advance(state_, steps * substeps, run_.time_step.value() / substeps, work);
     num_integrated_steps_ += static_cast<std::int64_t>(steps) * substeps;
   }

@@ -1,6 +1,7 @@
 #include "clog/core/polygon/dp_forces.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -71,6 +72,12 @@ void DpForces::update_contacts(const DropletState& state, const Travel& travel) 
   if (dp_.self_contact == SelfContact::on) self_.update(state, travel);
 }
 
+bool DpForces::contacts_hold(double moved, double moved_relative, const Travel& travel) const {
+  if (wall_distance_.size() > 0 || wets()) return false;
+  return walls_.hold(moved, travel) &&
+         (dp_.self_contact == SelfContact::off || self_.hold(moved_relative, travel));
+}
+
 void DpForces::forget_contacts() {
   walls_.invalidate();
   nearest_walls_.invalidate();
@@ -136,14 +143,18 @@ void DpForces::add_walls(const DropletState& state, Eigen::ArrayXd& force) {
   const bool meets_edges = dp_.wall_contact == WallContact::edge;
   const kernel::RefinedEdges edges = kernel::refined_edges(n, refined_edges_.data());
   if (meets_edges) kernel::refine_edges(n, x, y, edges);
-  for (int s = 0; s < walls_.num_slots(); ++s) {
-    const kernel::WallSlot slot{walls_.slot_x(s), walls_.slot_y(s), walls_.slot_radius(s)};
-    if (meets_edges)
-      kernel::push_off_walls(n, x, y, edges, slot, walls_.range(), contact_stiffness_);
-    else
-      kernel::add_vertex_wall_forces(n, x, y, slot, walls_.range(), contact_stiffness_, fx, fy);
+  if (meets_edges) {
+    for (const WallContacts::Item& item : walls_.items()) {
+      const int first = item.group * WallContacts::edges_per_group;
+      kernel::push_off_circle(n, x, y, edges,
+                              {item.x, item.y, item.reach, first, first + WallContacts::edges_per_group},
+                              contact_stiffness_);
+    }
+    kernel::hand_out_pushes(n, edges, fx, fy);
   }
-  if (meets_edges) kernel::hand_out_pushes(n, edges, fx, fy);
+  for (int s = 0; s < walls_.num_slots(); ++s)
+    kernel::add_vertex_wall_forces(n, x, y, {walls_.slot_x(s), walls_.slot_y(s), walls_.slot_radius(s)},
+                                   walls_.range(), contact_stiffness_, fx, fy);
   for (const Wedge& wedge : obstacles_->wedges())
     kernel::add_wedge_forces(n, x, y, kernel::place_in(state.frame, wedge), walls_.range(),
                              contact_stiffness_, fx, fy);
@@ -265,16 +276,16 @@ void DpForces::visit_overlaps(const DropletState& state, Visit visit) const {
   const auto vertex = [&](int i) { return Eigen::Array2d(state.position[i], state.position[n + i]); };
   const Eigen::ArrayXd fine = refined(state.position);
   const auto point = [&](int i) { return Eigen::Array2d(fine[i % (2 * n)], fine[2 * n + i % (2 * n)]); };
-  for (int s = 0; s < walls_.num_slots(); ++s)
-    for (int i = 0; i < n; ++i) {
-      const Eigen::Array2d centre{walls_.slot_x(s)[i], walls_.slot_y(s)[i]};
-      const double reach = walls_.range() + walls_.slot_radius(s)[i];
+  for (const WallContacts::Item& item : walls_.items())
+    for (unsigned bits = item.edges; bits != 0; bits &= bits - 1) {
+      const int i = item.group * WallContacts::edges_per_group + std::countr_zero(bits);
+      const Eigen::Array2d centre{item.x, item.y};
       if (dp_.wall_contact == WallContact::vertex) {
-        visit(reach - (vertex(i) - centre).matrix().norm());
+        visit(item.reach - (vertex(i) - centre).matrix().norm());
         continue;
       }
-      visit(reach - distance_to_segment(centre, point(2 * i), point(2 * i + 1)));
-      visit(reach - distance_to_segment(centre, point(2 * i + 1), point(2 * i + 2)));
+      visit(item.reach - distance_to_segment(centre, point(2 * i), point(2 * i + 1)));
+      visit(item.reach - distance_to_segment(centre, point(2 * i + 1), point(2 * i + 2)));
     }
   for (const Wedge& wedge : obstacles_->wedges()) {
     const kernel::WedgePlace place = kernel::place_in(state.frame, wedge);

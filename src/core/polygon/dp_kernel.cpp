@@ -99,10 +99,11 @@ void interface_forces(int n, const Interface& interface, EdgeArrays edges, doubl
   // The area's gradient at vertex i is half the chord between its neighbours, turned outwards. Spreading
   // pulls along that chord, so it does no work on the area.
   const auto vertex = [&](int i, int before) {
-    const double cosine =
-        std::max(0.0, ex[i] * ex[before] + ey[i] * ey[before]) / (length[i] * length[before]);
-    const double spread =
-        spreading * cosine * cosine * (length[i] - length[before]) / (length[i] + length[before]);
+    // spreading cos^2 (l - l')/(l + l'), cos the cosine between both edges, with a single division.
+    const double dot = std::max(0.0, ex[i] * ex[before] + ey[i] * ey[before]);
+    const double product = length[i] * length[before];
+    const double spread = spreading * dot * dot * (length[i] - length[before]) /
+                          (product * product * (length[i] + length[before]));
     const double chord_x = ex[i] + ex[before];
     const double chord_y = ey[i] + ey[before];
     fx[i] = pull[i] * ex[i] - pull[before] * ex[before] + half_pressure * chord_y + spread * chord_x + weight;
@@ -157,8 +158,8 @@ inline HalfPush push_half(double begin_x, double begin_y, double end_x, double e
 
 }  // namespace
 
-void push_off_walls(int n, const double* __restrict x, const double* __restrict y, RefinedEdges edges,
-                    WallSlot slot, double range, double stiffness) {
+void push_off_circle(int n, const double* __restrict x, const double* __restrict y, RefinedEdges edges,
+                     const CircleAtEdges& circle, double stiffness) {
   const double* __restrict middle_x = edges.middle_x;
   const double* __restrict middle_y = edges.middle_y;
   double* __restrict begin_push_x = edges.begin_push_x;
@@ -167,12 +168,12 @@ void push_off_walls(int n, const double* __restrict x, const double* __restrict 
   double* __restrict middle_push_y = edges.middle_push_y;
   double* __restrict end_push_x = edges.end_push_x;
   double* __restrict end_push_y = edges.end_push_y;
+  const double circle_x = circle.x, circle_y = circle.y, reach = circle.reach;
   const auto edge = [&](int i, int next) {
-    const double reach = range + slot.radius[i];
     const HalfPush first =
-        push_half(x[i], y[i], middle_x[i], middle_y[i], slot.x[i], slot.y[i], reach, stiffness);
+        push_half(x[i], y[i], middle_x[i], middle_y[i], circle_x, circle_y, reach, stiffness);
     const HalfPush second =
-        push_half(middle_x[i], middle_y[i], x[next], y[next], slot.x[i], slot.y[i], reach, stiffness);
+        push_half(middle_x[i], middle_y[i], x[next], y[next], circle_x, circle_y, reach, stiffness);
     begin_push_x[i] += (1 - first.fraction) * first.x;
     begin_push_y[i] += (1 - first.fraction) * first.y;
     middle_push_x[i] += first.fraction * first.x + (1 - second.fraction) * second.x;
@@ -180,9 +181,10 @@ void push_off_walls(int n, const double* __restrict x, const double* __restrict 
     end_push_x[i] += second.fraction * second.x;
     end_push_y[i] += second.fraction * second.y;
   };
+  const int end = std::min(circle.end, n - 1);
 #pragma omp simd
-  for (int i = 0; i < n - 1; ++i) edge(i, i + 1);
-  edge(n - 1, 0);
+  for (int i = circle.first; i < end; ++i) edge(i, i + 1);
+  if (circle.end >= n) edge(n - 1, 0);
 }
 
 void hand_out_pushes(int n, RefinedEdges edges, double* __restrict fx, double* __restrict fy) {
@@ -302,10 +304,10 @@ void refine_edges(int n, const double* x, const double* y, RefinedEdges edges) {
   HWY_DYNAMIC_DISPATCH(refine_edges)(n, x, y, edges);
 }
 
-HWY_EXPORT(push_off_walls);
-void push_off_walls(int n, const double* x, const double* y, RefinedEdges edges, WallSlot slot, double range,
-                    double stiffness) {
-  HWY_DYNAMIC_DISPATCH(push_off_walls)(n, x, y, edges, slot, range, stiffness);
+HWY_EXPORT(push_off_circle);
+void push_off_circle(int n, const double* x, const double* y, RefinedEdges edges, const CircleAtEdges& circle,
+                     double stiffness) {
+  HWY_DYNAMIC_DISPATCH(push_off_circle)(n, x, y, edges, circle, stiffness);
 }
 
 HWY_EXPORT(hand_out_pushes);

@@ -75,10 +75,16 @@ inline RefinedEdges refined_edges(std::ptrdiff_t n, double* eight_arrays) {
 }
 /// Finds the middles, and clears the pushes.
 void refine_edges(int n, const double* x, const double* y, RefinedEdges edges);
-/// Adds k_c (range - d) away from the wall where d < range, d the distance of the nearest point of half an
-/// edge to the slot's circle; the half's two ends share the push as the point divides it.
-void push_off_walls(int n, const double* x, const double* y, RefinedEdges edges, WallSlot slot, double range,
-                    double stiffness);
+/// A circle and consecutive edges.
+struct CircleAtEdges {
+  double x, y;
+  double reach;    ///< radius + range [sigma]
+  int first, end;  ///< of the edges; those behind the last one are none
+};
+/// Adds k_c (reach - d) away from the circle where d < reach, d the distance of the nearest point of half an
+/// edge to its centre; the half's two ends share the push as the point divides it.
+void push_off_circle(int n, const double* x, const double* y, RefinedEdges edges, const CircleAtEdges& circle,
+                     double stiffness);
 /// Adds the pushes to the forces on the vertices: a middle's goes to the four vertices that decide where it
 /// is.
 void hand_out_pushes(int n, RefinedEdges edges, double* fx, double* fy);

@@ -13,42 +13,17 @@
 #include <cmath>
 #include <utility>
 
-#include "clog/core/droplet/shape.hpp"
+#include "core/polygon/dp_step_circles-inl.hpp"
 #include "core/polygon/dp_step_vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 // NOLINTBEGIN(misc-definitions-in-headers): part of one source, compiled for each instruction set
 namespace clog::kernel::HWY_NAMESPACE {
 
-void clear_group(int group, const StepArrays& a) {
-  const std::ptrdiff_t first = std::ptrdiff_t{group} * edges_per_group;
-  for (int lane = 0; lane < edges_per_group; lane += lanes) {
-    store(all(0), a.push_x + first + lane);
-    store(all(0), a.push_y + first + lane);
-  }
-}
-
-void clear_pushes(int n, const StepArrays& a) {
-  for (int group = 0; group * edges_per_group <= n; ++group) clear_group(group, a);
-}
-
 /// Every lane to the next one; 0 to the first.
 HWY_INLINE V to_next_lane(V v) {
   alignas(64) constexpr std::int64_t before[8] = {0, 0, 1, 2, 3, 4, 5, 6};
   return hn::IfThenZeroElse(hn::FirstN(D(), 1), hn::TableLookupLanes(v, hn::SetTableIndices(D(), before)));
-}
-
-/// Every lane to the one before; 0 to the last.
-HWY_INLINE V to_previous_lane(V v) {
-  alignas(64) constexpr std::int64_t after[8] = {
-      lanes > 1 ? 1 : 0, lanes > 2 ? 2 : 1, 3, lanes > 4 ? 4 : 3, 5, 6, 7, 7};
-  return hn::IfThenElseZero(hn::FirstN(D(), lanes - 1),
-                            hn::TableLookupLanes(v, hn::SetTableIndices(D(), after)));
-}
-
-HWY_INLINE M lanes_of(int bits, int first) {
-  const std::uint8_t shifted[8] = {static_cast<std::uint8_t>(bits >> first)};
-  return hn::LoadMaskBits(D(), shifted);
 }
 
 /// `lanes` consecutive edges.
@@ -78,9 +53,6 @@ struct NearestPoints {
   HWY_INLINE M are_nearer_than(V reach) const { return hn::Lt(distance2, hn::Mul(reach, reach)); }
 };
 
-struct Push {
-  V x, y;
-};
 /// Pushes on edges, until they are handed to the vertices.
 class EdgePushes {
  public:
@@ -114,97 +86,6 @@ class EdgePushes {
     p[lanes] += hn::ExtractLane(end, lanes - 1);
   }
 };
-
-/// `lanes` consecutive edges of the refined contour (see refined()), two halves for each.
-struct RefinedEdgeVectors {
-  V x, y, middle_x, middle_y, next_x, next_y;
-  HWY_INLINE RefinedEdgeVectors(int i, const StepArrays& a)
-      : x(load(a.x + i)), y(load(a.y + i)), next_x(load_at(a.x + i + 1)), next_y(load_at(a.y + i + 1)) {
-    middle_x = middle(x, next_x, load_at(a.x + i - 1), load_at(a.x + i + 2));
-    middle_y = middle(y, next_y, load_at(a.y + i - 1), load_at(a.y + i + 2));
-  }
-
- private:
-  static HWY_INLINE V middle(V begin, V end, V before, V after) {
-    return hn::MulAdd(all(refined_near), hn::Add(begin, end),
-                      hn::Mul(all(refined_far), hn::Add(before, after)));
-  }
-};
-
-/// The points of half edges that are nearest to a circle's centre.
-struct NearestOnHalves {
-  V fraction;  ///< of the half edge
-  V dx, dy;    ///< from the centre
-  V distance2;
-
-  /// @param span  1: the half edge counts, 0: its beginning alone
-  HWY_INLINE NearestOnHalves(V begin_x, V begin_y, V end_x, V end_y, V centre_x, V centre_y, V span) {
-    const V ex = hn::Sub(end_x, begin_x), ey = hn::Sub(end_y, begin_y);
-    const V to_x = hn::Sub(centre_x, begin_x), to_y = hn::Sub(centre_y, begin_y);
-    const V length2 = hn::Max(hn::MulAdd(ex, ex, hn::Mul(ey, ey)), all(1e-200));
-    const V along = hn::Mul(hn::MulAdd(to_x, ex, hn::Mul(to_y, ey)), reciprocal(length2));
-    fraction = hn::Min(hn::Max(along, all(0)), span);
-    dx = hn::MulSub(fraction, ex, to_x);
-    dy = hn::MulSub(fraction, ey, to_y);
-    distance2 = hn::MulAdd(dx, dx, hn::Mul(dy, dy));
-  }
-  HWY_INLINE M are_nearer_than(V reach) const { return hn::Lt(distance2, hn::Mul(reach, reach)); }
-  /// stiffness (reach - distance), where they touch.
-  HWY_INLINE Push push(M touch, V reach, V stiffness) const {
-    // A point on the very centre gets no direction, but no NaN.
-    const V inverse_distance = square_root(hn::Max(distance2, all(1e-300))).inverse;
-    const V size = hn::IfThenElseZero(touch, hn::Mul(stiffness, hn::MulSub(reach, inverse_distance, all(1))));
-    return {hn::Mul(size, dx), hn::Mul(size, dy)};
-  }
-};
-
-/// Both halves of edges and a circle.
-struct HalvesAtCircle {
-  NearestOnHalves first, second;
-  HWY_INLINE HalvesAtCircle(const RefinedEdgeVectors& e, V x, V y, V span)
-      : first(e.x, e.y, e.middle_x, e.middle_y, x, y, span),
-        second(e.middle_x, e.middle_y, e.next_x, e.next_y, x, y, span) {}
-};
-
-/// Adds one coordinate of pushes on edges' beginnings, middles and ends to the vertices from p on: a middle's
-/// push goes to the four vertices that decide where it is.
-HWY_INLINE void hand_out(V begin, V middle, V end, double* p) {
-  const V near = hn::Mul(all(refined_near), middle), far = hn::Mul(all(refined_far), middle);
-  const V to_end = hn::Add(end, near);
-  // Added in one go: what was just stored elsewhere could not be loaded at once.
-  const V own = hn::Add(hn::Add(begin, near), to_previous_lane(far));
-  store(hn::Add(load(p), hn::Add(own, to_next_lane(hn::Add(to_end, to_next_lane(far))))), p);
-  p[-1] += hn::GetLane(far);
-  p[lanes] += hn::ExtractLane(to_end, lanes - 1);
-  if constexpr (lanes > 1) p[lanes] += hn::ExtractLane(far, lanes - 2);
-  p[lanes + 1] += hn::ExtractLane(far, lanes - 1);
-}
-
-void push_off_circles(const WallContacts::Item* items, std::size_t num_items, const Contact& contact,
-                      const StepArrays& a) {
-  const V span = all(contact.span), stiffness = all(contact.stiffness);
-  for (const WallContacts::Item* item = items; item != items + num_items; ++item) {
-    const V reach = all(item->reach), reach_of_second = all(contact.span * item->reach);
-    for (int lane = 0; lane < edges_per_group; lane += lanes) {
-      const int i = item->group * edges_per_group + lane;
-      const HalvesAtCircle halves(RefinedEdgeVectors(i, a), all(item->x), all(item->y), span);
-      const M listed = lanes_of(item->edges, lane);
-      const M first_touches = hn::And(halves.first.are_nearer_than(reach), listed);
-      const M second_touches = hn::And(halves.second.are_nearer_than(reach_of_second), listed);
-      if (hn::AllFalse(D(), hn::Or(first_touches, second_touches))) continue;
-      const Push first = halves.first.push(first_touches, reach, stiffness);
-      const Push second = halves.second.push(second_touches, reach, stiffness);
-      const V first_end = halves.first.fraction, second_end = halves.second.fraction;
-      const auto share = [&](V of_first, V of_second, double* p) CLOG_INLINE {
-        const V end_of_first = hn::Mul(first_end, of_first), end_of_second = hn::Mul(second_end, of_second);
-        hand_out(hn::Sub(of_first, end_of_first), hn::Add(end_of_first, hn::Sub(of_second, end_of_second)),
-                 end_of_second, p);
-      };
-      share(first.x, second.x, a.push_x + i);
-      share(first.y, second.y, a.push_y + i);
-    }
-  }
-}
 
 /// The lanes from the first to the last, twice, and the other way round.
 constexpr auto orders = [] {
@@ -279,27 +160,10 @@ HWY_INLINE double smallest(V distance2, M listed) {
   return std::sqrt(hn::GetLane(hn::MinOfLanes(D(), hn::IfThenElse(listed, distance2, all(1e300)))));
 }
 
-void circle_gaps(const WallContacts::Item* items, std::size_t num_items, const Contact& contact,
+double pair_gaps(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
                  const StepArrays& arrays, double* gaps) {
   const StepArrays a = arrays;
-  const V span = all(contact.span);
-  for (std::size_t k = 0; k < num_items; ++k) {
-    const WallContacts::Item item = items[k];
-    double distance = 1e150;
-    for (int lane = 0; lane < edges_per_group; lane += lanes) {
-      const RefinedEdgeVectors edges(item.group * edges_per_group + lane, a);
-      const HalvesAtCircle halves(edges, all(item.x), all(item.y), span);
-      const V nearest = contact.span > 0 ? hn::Min(halves.first.distance2, halves.second.distance2)
-                                         : halves.first.distance2;
-      distance = std::min(distance, smallest(nearest, lanes_of(item.edges, lane)));
-    }
-    gaps[k] = distance - item.reach;
-  }
-}
-
-void pair_gaps(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
-               const StepArrays& arrays, double* gaps) {
-  const StepArrays a = arrays;
+  double least = 0;
   for (std::size_t k = 0; k < num_items; ++k) {
     const SelfContacts::Item item = items[k];
     double distance = 1e150;
@@ -309,28 +173,19 @@ void pair_gaps(const SelfContacts::Item* items, std::size_t num_items, const Con
       distance = std::min(distance, smallest(nearest.distance2, lanes_of(item.pairs, lane)));
     }
     gaps[k] = distance - contact.self_range;
+    least = std::min(least, gaps[k]);
   }
+  return least;
 }
 
-void push(int n, const WallContacts::Item* walls, std::size_t num_walls, const SelfContacts::Item* self,
-          std::size_t num_self, const Contact& contact, const StepArrays& arrays) {
+void push(int n, const WallWindows& walls, const SelfContacts::Item* self, std::size_t num_self,
+          const Contact& contact, const StepArrays& arrays) {
   const StepArrays a = arrays;
-  if (num_self > 0) {
-    clear_pushes(n + edges_per_group - 1, a);
-  } else {
-    // An edge pushes the vertex before it and the two behind it as well, which may belong to other groups, or
-    // to the other end of the contour.
-    for (const WallContacts::Item* item = walls; item != walls + num_walls; ++item) {
-      if (item->group > 0) clear_group(item->group - 1, a);
-      clear_group(item->group, a);
-      clear_group(item->group + 1, a);
-    }
-    clear_group(0, a);
-    clear_group((n - 1) / edges_per_group, a);
-    for (double* p : {a.push_x, a.push_y}) p[-1] = p[n] = p[n + 1] = 0;
-  }
-  push_off_circles(walls, num_walls, contact, a);
+  if (num_self > 0) clear_pushes(n + edges_per_group - 1, a);
+  push_off_circles(walls, contact, a);
   push_off_each_other(self, num_self, contact, a);
+  // An edge pushes the vertex before it and the two behind it as well, which may belong to the other end of
+  // the contour.
   const int beyond = num_self > 0 ? edges_per_group : 2;
   for (double* p : {a.push_x, a.push_y}) {
     p[n - 1] += std::exchange(p[-1], 0);

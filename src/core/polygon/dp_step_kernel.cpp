@@ -8,13 +8,24 @@
 // The targets' code follows.
 #include "core/polygon/dp_step_contacts-inl.hpp"
 #include "core/polygon/dp_step_motion-inl.hpp"
+#include "core/polygon/dp_step_survey-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clog::kernel::HWY_NAMESPACE {
 
 StepKernel make_kernel(const KickTerms& terms) {
-  return {measure,         circle_gaps,     pair_gaps,           clear_pushes, push,
-          push_off_wedges, near_wall_rates, kick_version(terms), power,        drift_version(terms)};
+  return {.measure = measure,
+          .survey = survey,
+          .circle_gaps = circle_gaps,
+          .edges_within = edges_within,
+          .pair_gaps = pair_gaps,
+          .clear_pushes = clear_pushes,
+          .push = push,
+          .push_off_wedges = push_off_wedges,
+          .near_wall_rates = near_wall_rates,
+          .kick = kick_version(terms),
+          .power = power,
+          .drift = drift_version(terms)};
 }
 
 }  // namespace clog::kernel::HWY_NAMESPACE

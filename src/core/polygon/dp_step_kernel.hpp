@@ -78,6 +78,24 @@ struct Power {
   double spreading;           ///< sum F_i v_i of what spreads vertices along the interface, F_i the kick
   double spread_x, spread_y;  ///< sum F_i
 };
+/// A circle and the edges_per_group edges from `first` on, those that may touch it as bits.
+struct WallWindow {
+  double x, y;   ///< of the circle's centre [sigma]
+  double reach;  ///< radius + range [sigma]
+  int first;
+  std::uint8_t edges;
+};
+/// How circles push the contour off; see WallPlan.
+struct WallWindows {
+  const WallWindow* all;
+  int num_own;  ///< the first of them share no edge with each other
+  int num_all;
+  const int*
+      groups;  ///< of vertices that windows may push; -1 and the one behind the last are the other end's
+  int num_groups;
+  double* pushes;  ///< six arrays: x, then y, of what edges give their vertices; 0 where no window is
+  std::ptrdiff_t stride;
+};
 struct Contact {
   double stiffness;   ///< k_c as a kick
   double span;        ///< of walls; 1: edges, 0: their first vertices alone
@@ -99,19 +117,33 @@ struct NearWallDrag {
   double far_rate;  ///< [1/t0]
 };
 
+/// What is looked after now and then.
+struct Survey {
+  double perimeter, shortest;    ///< of the edges [sigma]
+  double speed, relative_speed;  ///< of the fastest vertex, and relative to their mean [sqrt(sigma g)]
+  double moved, moved_relative;  ///< farthest from where vertices were, see StepKernel::survey [sigma]
+};
+
 /// One instruction set's versions of the passes.
 struct StepKernel {
   /// Edges and sums over them.
   Sums (*measure)(int n, const StepArrays& arrays);
-  /// How far every item's nearest edge is from contact; negative where it is in contact [sigma].
-  void (*circle_gaps)(const WallContacts::Item* items, std::size_t num_items, const Contact& contact,
+  /// @param walls, self  where vertices were, all x then all y, the latter relative to their mean; may be
+  /// null
+  Survey (*survey)(int n, const double* walls, const double* self, const StepArrays& arrays);
+  /// How far every edge of every item is from contact, edges_per_group for each; negative where it is in
+  /// contact [sigma]. Returns the least, at most 0.
+  double (*circle_gaps)(const WallContacts::Item* items, std::size_t num_items, const Contact& contact,
+                        const StepArrays& arrays, double* gaps);
+  /// Of one item the edges with a gap of at most `way`, as bits.
+  std::uint8_t (*edges_within)(const double* gaps, double way);
+  /// How far every item's nearest pair is from contact.
+  double (*pair_gaps)(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
                       const StepArrays& arrays, double* gaps);
-  void (*pair_gaps)(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
-                    const StepArrays& arrays, double* gaps);
   /// Then contacts, on the groups that the lists name. `clear` empties all groups.
   void (*clear_pushes)(int n, const StepArrays& arrays);
-  void (*push)(int n, const WallContacts::Item* walls, std::size_t num_walls, const SelfContacts::Item* self,
-               std::size_t num_self, const Contact& contact, const StepArrays& arrays);
+  void (*push)(int n, const WallWindows& walls, const SelfContacts::Item* self, std::size_t num_self,
+               const Contact& contact, const StepArrays& arrays);
   /// Adds the vertices' contact with wedges' surfaces up to `range` [sigma]; see add_wedge_forces().
   void (*push_off_wedges)(int n, const WedgePlace* wedges, std::size_t num_wedges, double range,
                           double stiffness, const StepArrays& arrays);

@@ -26,14 +26,6 @@ kernel::KickTerms terms_of(const RunParameters& run) {
           .area_rate = on_area ? far_rate : 0};
 }
 
-template <class Item>
-void keep_near(const std::vector<Item>& items, const std::vector<double>& gaps, double way,
-               std::vector<Item>& near) {
-  near.clear();
-  for (std::size_t k = 0; k < items.size(); ++k)
-    if (gaps[k] <= way) near.push_back(items[k]);
-}
-
 }  // namespace
 
 DpStepper::DpStepper(const RunParameters& run, const ObstacleArray& obstacles, const DpForces& forces)
@@ -42,6 +34,7 @@ DpStepper::DpStepper(const RunParameters& run, const ObstacleArray& obstacles, c
       terms_(terms_of(run)),
       kernel_(kernel::step_kernel(terms_)),
       n_(*run.dp.vertices),
+      plan_(n_),
       touches_(run, obstacles),
       friction_(Eigen::ArrayXd::Zero(Eigen::Index{2} * n_)) {
   // Every array on a cache line, with room for an entry before and a group behind it.
@@ -78,28 +71,37 @@ void DpStepper::load(const DropletState& state) {
   open_step_ = 0;
 }
 
-DpStepper::Edges DpStepper::edges() const {
-  const Eigen::Map<const Eigen::ArrayXd> lengths(arrays_.length, n_);
-  return {.perimeter = lengths.sum(), .shortest = lengths.minCoeff()};
+kernel::Survey DpStepper::survey() const {
+  return kernel_.survey(n_, forces_->walls().reference(), forces_->self_contacts().reference(), arrays_);
 }
 
 void DpStepper::look(const Travel& travel) {
   kernel_.clear_pushes(n_, arrays_);  // the lists may name other groups than before
   const auto& walls = forces_->walls().items();
   const auto& self = forces_->self_contacts().items();
-  wall_gaps_.resize(walls.size());
+  constexpr std::size_t size = kernel::edges_per_group;
+  wall_gaps_.resize(walls.size() * size);
   self_gaps_.resize(self.size());
-  kernel_.circle_gaps(walls.data(), walls.size(), contact(0), arrays_, wall_gaps_.data());
-  kernel_.pair_gaps(self.data(), self.size(), contact(0), arrays_, self_gaps_.data());
   // A contact speeds what is in it up by at most half its depth per step, and for a few steps: `travel` knows
   // nothing of that.
-  double deepest = 0;
-  for (const double gap : wall_gaps_) deepest = std::max(deepest, -gap);
-  for (const double gap : self_gaps_) deepest = std::max(deepest, -gap);
+  const double deepest =
+      -std::min(kernel_.circle_gaps(walls.data(), walls.size(), contact(0), arrays_, wall_gaps_.data()),
+                kernel_.pair_gaps(self.data(), self.size(), contact(0), arrays_, self_gaps_.data()));
   constexpr double thrown = 4;
   const double unforeseen = 0.1 * forces_->vertex_diameter() + thrown * deepest;
-  keep_near(walls, wall_gaps_, refined_sway * (travel.absolute + unforeseen), near_walls_);
-  keep_near(self, self_gaps_, 2 * (travel.relative + unforeseen), near_self_);
+  const double wall_way = refined_sway * (travel.absolute + unforeseen);
+  near_walls_.clear();
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const std::uint8_t edges = kernel_.edges_within(&wall_gaps_[k * size], wall_way);
+    if (edges == 0) continue;
+    near_walls_.push_back(walls[k]);
+    near_walls_.back().edges = edges;
+  }
+  plan_.make(near_walls_);
+  const double self_way = 2 * (travel.relative + unforeseen);
+  near_self_.clear();
+  for (std::size_t k = 0; k < self.size(); ++k)
+    if (self_gaps_[k] <= self_way) near_self_.push_back(self[k]);
 }
 
 void DpStepper::store(DropletState& state) const {
@@ -124,15 +126,15 @@ void DpStepper::advance(DropletState& state, int steps, double time_step, Drople
                     .keeps_kicked = work != nullptr},
                    time_step, work);
   }
-  store(state);
 }
 
 void DpStepper::finish(DropletState& state, Droplet::Work* work) {
-  if (open_step_ == 0) return;
-  const double h = 0.5 * open_step_;
-  kick_and_drift(state, {.kicks = 1, .h1 = h, .h2 = h, .weight = 1, .half_step = h, .keeps_kicked = true}, 0,
-                 work);
-  open_step_ = 0;
+  if (open_step_ != 0) {
+    const double h = 0.5 * open_step_;
+    kick_and_drift(state, {.kicks = 1, .h1 = h, .h2 = h, .weight = 1, .half_step = h, .keeps_kicked = true},
+                   0, work);
+    open_step_ = 0;
+  }
   store(state);
 }
 
@@ -183,8 +185,7 @@ void DpStepper::push_off_everything(DropletState& droplet, const kernel::KickCoe
   // Whatever these add, to vertices beyond the listed groups too, is gone before the next step.
   if (!wedges_.empty() || forces_->wets() || slides || are_pushes_spread_) kernel_.clear_pushes(n_, arrays_);
   are_pushes_spread_ = slides;
-  kernel_.push(n_, near_walls_.data(), near_walls_.size(), near_self_.data(), near_self_.size(),
-               contact(stiffness), arrays_);
+  kernel_.push(n_, plan_.windows(), near_self_.data(), near_self_.size(), contact(stiffness), arrays_);
   if (!wedges_.empty())
     kernel_.push_off_wedges(n_, wedges_.data(), wedges_.size(), forces_->walls().range(), stiffness, arrays_);
   if (forces_->wets()) {

@@ -8,6 +8,7 @@
 #include "clog/core/polygon/dp_forces.hpp"
 #include "clog/core/polygon/wall_touches.hpp"
 #include "dp_step_kernel.hpp"
+#include "wall_plan.hpp"
 
 namespace clog {
 
@@ -22,19 +23,19 @@ class DpStepper {
 
   /// Takes over a droplet.
   void load(const DropletState& state);
-  struct Edges {
-    double perimeter, shortest;  ///< [sigma]
-  };
-  /// Of the droplet as it is now.
-  Edges edges() const;
+  /// And hands it over as it is now.
+  void store(DropletState& state) const;
+  /// Of the droplet as it is now, compared with where it was when contact lists were made.
+  kernel::Survey survey() const;
   /// Takes over what may touch on the way to the next look() from the contact lists, which must hold for it.
   void look(const Travel& travel);
   /// `steps` steps of `time_step`. The last half kick is left open: positions are those of the steps' end,
   /// velocities those of half a step before.
-  /// @param state  the droplet that was loaded
+  /// @param state  the droplet that was loaded, of which walls' anchors are kept; positions and velocities
+  /// may be old
   /// @param work  if not null, what drag and springs did since the last call is added to it
   void advance(DropletState& state, int steps, double time_step, Droplet::Work* work);
-  /// The last half kick.
+  /// The last half kick; stores.
   void finish(DropletState& state, Droplet::Work* work);
 
  private:
@@ -48,6 +49,7 @@ class DpStepper {
   // What may touch before the next look, and wedges in the droplet's frame.
   std::vector<WallContacts::Item> near_walls_;
   std::vector<SelfContacts::Item> near_self_;
+  WallPlan plan_;
   std::vector<double> wall_gaps_, self_gaps_;  // of the lists' items at the last look
   std::vector<kernel::WedgePlace> wedges_;
   WallTouches touches_;
@@ -58,7 +60,6 @@ class DpStepper {
   double open_step_ = 0;      // length of the step whose last half kick is to come; 0: none is
   Droplet::Work open_power_;  // at its beginning
 
-  void store(DropletState& state) const;
   kernel::Contact contact(double stiffness) const;
   void kick_and_drift(DropletState& droplet, const kernel::KickCoefficients& coefficients, double drift_time,
                       Droplet::Work* work);

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <utility>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "close_vertices.hpp"
 
 namespace clog {
 namespace {
@@ -29,13 +32,21 @@ bool SelfContacts::are_neighbours(int a, int b) const {
 
 void SelfContacts::update(const DropletState& state, const Travel& travel) {
   const Eigen::Index n = state.size();
-  if (reference_.size() == 2 * n) {
+  if (reference_.size() == 2 * n + WallContacts::edges_per_group) {
     const Eigen::Array2d centre = state.centre();
     const double farthest2 = ((state.x() - centre[0] - reference_.head(n)).square() +
-                              (state.y() - centre[1] - reference_.tail(n)).square())
+                              (state.y() - centre[1] - reference_.segment(n, n)).square())
                                  .maxCoeff();
-    if (std::sqrt(farthest2) + travel.relative < skin_) return;
+    if (hold(std::sqrt(farthest2), travel)) return;
   }
+  renew(state, travel);
+}
+
+bool SelfContacts::hold(double moved, const Travel& travel) const {
+  return reference_.size() > 0 && moved + travel.relative < skin_;
+}
+
+void SelfContacts::renew(const DropletState& state, const Travel& travel) {
   // Thin enough that neighbours along a straight contour at rest stay out of reach, unless the droplet moves
   // very fast.
   const double usual_skin = (exclusion_ * rest_edge_ - range_) / 4;
@@ -54,22 +65,30 @@ double SelfContacts::measure_edges(const double* x, const double* y, int n) {
   return longest;
 }
 
-SelfContacts::Cells SelfContacts::sort_into_cells(const DropletState& state, double size) {
-  const double left = state.x().minCoeff();
-  const double bottom = state.y().minCoeff();
-  // One empty cell all around spares the border checks.
-  const int columns = static_cast<int>((state.x().maxCoeff() - left) / size) + 3;
-  const int rows = static_cast<int>((state.y().maxCoeff() - bottom) / size) + 3;
-  const Cells cells{left, bottom, size, columns};
-  const int n = static_cast<int>(state.size());
-  head_.assign(static_cast<std::size_t>(rows) * columns, -1);
-  next_.resize(n);
-  for (int i = 0; i < n; ++i) {
-    int& head = head_[cells.cell_of(state.x()[i], state.y()[i])];
-    next_[i] = head;
-    head = i;
+/// Fills close_ with pairs of vertices.
+void SelfContacts::find_close(const double* x, const double* y, double longest_edge, double reach) {
+  constexpr double rounding = 1e-12;
+  const int n = static_cast<int>(along_.size()) - 1;
+  const int stride = n + kernel::close_vertices_beyond;
+  contour_.resize(std::size_t{3} * stride);
+  double *to_x = contour_.data(), *to_y = to_x + stride, *to_along = to_y + stride;
+  std::copy_n(x, n, to_x);
+  std::copy_n(y, n, to_y);
+  std::copy_n(along_.data(), n, to_along);
+  for (int i = n; i < stride; ++i) {
+    to_x[i] = to_x[i - n];
+    to_y[i] = to_y[i - n];
+    to_along[i] = to_along[i - n] + along_[n];
   }
-  return cells;
+  kernel::find_close_vertices({.n = n,
+                               .x = to_x,
+                               .y = to_y,
+                               .along = to_along,
+                               .longest_edge = longest_edge,
+                               .reach = reach * (1 + rounding),
+                               .exclusion = exclusion_,
+                               .arc = contour_exclusion * range_ * (1 - rounding)},
+                              groups_, close_);
 }
 
 void SelfContacts::rebuild(const DropletState& state, double skin) {
@@ -78,17 +97,19 @@ void SelfContacts::rebuild(const DropletState& state, double skin) {
   const double* x = state.position.data();
   const double* y = x + n;
   const Eigen::Array2d centre = state.centre();
-  reference_ = state.position;
-  reference_.head(n) -= centre[0];
-  reference_.tail(n) -= centre[1];
+  reference_.resize(2 * n + WallContacts::edges_per_group);
+  reference_.head(n) = state.x() - centre[0];
+  reference_.segment(n, n) = state.y() - centre[1];
+  reference_.tail(WallContacts::edges_per_group).setZero();
   pairs_.clear();
   items_.clear();
   if (!reference_.allFinite()) return;  // a droplet that has diverged; the run will see it at its next check
 
   // The nearest point of an edge within reach lies within half an edge of one of its ends.
   const double reach = range_ + 2 * skin_;
-  const double end_reach = reach + 0.5 * measure_edges(x, y, n);
-  const Cells cells = sort_into_cells(state, end_reach);
+  const double longest_edge = measure_edges(x, y, n);
+  const double end_reach = reach + 0.5 * longest_edge;
+  find_close(x, y, longest_edge, end_reach);
   const auto is_near = [&](int a, int b) {
     return (x[a] - x[b]) * (x[a] - x[b]) + (y[a] - y[b]) * (y[a] - y[b]) <= end_reach * end_reach;
   };
@@ -98,19 +119,33 @@ void SelfContacts::rebuild(const DropletState& state, double skin) {
         nearest_point(pair, x, y, n).distance <= reach)
       pairs_.push_back(pair);
   };
-  for (int vertex = 0; vertex < n; ++vertex) {
-    const int cell = cells.cell_of(x[vertex], y[vertex]);
-    for (int row = -1; row <= 1; ++row)
-      for (int column = -1; column <= 1; ++column)
-        for (int other = head_[cell + row * cells.columns + column]; other >= 0; other = next_[other]) {
-          if (are_neighbours(vertex, other) || !is_near(vertex, other)) continue;
-          add_if_near({vertex, other});
-          // The edge that ends here is found from its beginning, if that is near.
-          const int before = other > 0 ? other - 1 : n - 1;
-          if (!is_near(vertex, before)) add_if_near({vertex, before});
-        }
+  const auto add_edges_of = [&](int vertex, int other) {
+    add_if_near({vertex, other});
+    // The edge that ends here is found from its beginning, if that is near.
+    const int before = other > 0 ? other - 1 : n - 1;
+    if (!is_near(vertex, before)) add_if_near({vertex, before});
+  };
+  for (const auto& [one, other] : close_) {
+    if (are_neighbours(one, other) || !is_near(one, other)) continue;
+    add_edges_of(one, other);
+    add_edges_of(other, one);
   }
-  fill_items(state);
+  if (!pairs_.empty()) fill_items(state);
+}
+
+/// By groups of edges, then by vertices, then by edges.
+void SelfContacts::sort_pairs(int n) {
+  constexpr int group_size = WallContacts::edges_per_group;
+  order_.clear();
+  for (const Pair& pair : pairs_)
+    order_.push_back((std::int64_t{pair.edge / group_size} * n + pair.vertex) * group_size +
+                     pair.edge % group_size);
+  std::sort(order_.begin(), order_.end());
+  for (std::size_t k = 0; k < order_.size(); ++k) {
+    const std::int64_t group_and_vertex = order_[k] / group_size;
+    pairs_[k] = {static_cast<int>(group_and_vertex % n),
+                 static_cast<int>(group_and_vertex / n * group_size + order_[k] % group_size)};
+  }
 }
 
 void SelfContacts::fill_items(const DropletState& state) {
@@ -119,9 +154,7 @@ void SelfContacts::fill_items(const DropletState& state) {
   const double* x = state.position.data();
   const double* y = x + n;
   items_.clear();
-  std::sort(pairs_.begin(), pairs_.end(), [](const Pair& a, const Pair& b) {
-    return std::pair(a.edge / group_size, a.vertex) < std::pair(b.edge / group_size, b.vertex);
-  });
+  sort_pairs(n);
   item_of_.assign(2 * static_cast<std::size_t>(n), -1);  // the latest
   for (const Pair& pair : pairs_) {
     const int before = pair.vertex > 0 ? pair.vertex - 1 : n - 1, after = (pair.vertex + 1) % n;

@@ -192,6 +192,37 @@ TEST_P(Step, MeetsContactsThatBeginBetweenTwoLooks) {
   }
 }
 
+TEST_P(Step, MeetsCirclesThatShareEdges) {
+  // Circles all around, so close that most edges touch two of them, those at the contour's ends, too; and few
+  // vertices.
+  for (const int vertices : {16, 30, 64, 101}) {
+    RunParameters run = parameters(64);
+    run.dp.vertices = vertices;
+    run.wall_stiffness = wall_stiffness(200, units::regular_edge_length(vertices));
+    const double edge = units::regular_edge_length(vertices), radius = 0.5 * edge;
+    const DropletState initial = state_of(shaken(regular_polygon(vertices, units::rest_area), 0.01 * edge));
+    std::vector<Obstacle> circles;
+    for (double angle = 0; angle < 6; angle += 1.1 * edge) {
+      const double far = 0.5 + radius + *run.dp.contact_range - 0.12 * edge;
+      circles.push_back({far * std::cos(angle), far * std::sin(angle), radius});
+    }
+    const ObstacleArray walls(20, std::move(circles));
+    ReadableDroplet readable(run, walls, initial);
+    for (int step = 0; step < 3; ++step) readable.step();
+    for (const std::string& set : instruction_sets()) {
+      use_instruction_set(set);
+      DpDroplet droplet(run, walls, initial);
+      if (run.dp.wall_contact == WallContact::edge) {
+        ASSERT_GT(droplet.potential_energy().wall, 0);
+      }
+      droplet.advance(3);
+      if (droplet.num_integrated_steps() != 3) continue;  // the reference has no sub-steps
+      EXPECT_LT((droplet.state().position - readable.state().position).abs().maxCoeff(), 1e-14)
+          << set << ", " << vertices;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Interfaces, Step,
     testing::Values(StepCase{"robust", [](RunParameters&) {}},

@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
+#include <string>
+#include <utility>
 
+#include "clog/core/tools/instruction_set.hpp"
 #include "support.hpp"
 
 namespace clog {
@@ -60,6 +64,43 @@ TEST(SelfContacts, ListsEveryVertexAndEdgeThatTouchWhileTheShapeMoves) {
       }
   }
   EXPECT_GT(num_touching, 100);
+}
+
+/// Two strands that nearly touch, uneven along and across them.
+Eigen::ArrayXd flattened(int n, double thickness, double shaking, unsigned seed) {
+  Eigen::ArrayXd position = regular_polygon(n, units::rest_area);
+  position.tail(n) *= thickness;
+  return test::shaken(position, shaking, seed);
+}
+
+TEST(SelfContacts, AreThoseOfAllVerticesAndEdgesWithEveryInstructionSet) {
+  // Fewer vertices than two groups, groups that are not full, contours on which pairs along the contour and
+  // across it are the same, fine ones of which many vertices are excluded; stretched ones of which the length
+  // decides.
+  for (const std::string& set : instruction_sets())
+    for (const int n : {16, 17, 24, 25, 30, 31, 32, 33, 64, 101, 256, 700})
+      for (const double stretch : {0.7, 1.0, 2.5}) {
+        use_instruction_set(set);
+        const double edge = units::regular_edge_length(n),
+                     range = std::min(0.6 * edge, published_vertex_diameter);
+        SelfContacts contacts(range, edge);
+        const DropletState state =
+            test::state_of(stretch * flattened(n, 1.5 * range, 0.3 * range, static_cast<unsigned>(n)));
+        contacts.update(state, {.absolute = 0, .relative = range});
+        const double* x = state.position.data();
+        std::set<std::pair<int, int>> listed, touching;
+        for (const auto& [vertex, other] : contacts.pairs()) listed.insert({vertex, other});
+        EXPECT_EQ(listed.size(), contacts.pairs().size()) << "no pair is listed twice; " << n << ", " << set;
+        for (int vertex = 0; vertex < n; ++vertex)
+          for (int other = 0; other < n; ++other)
+            if (!contacts.are_neighbours(vertex, other) &&
+                !contacts.are_neighbours(vertex, (other + 1) % n) &&
+                nearest_point({vertex, other}, x, x + n, n).distance < 2 * range)
+              touching.insert({vertex, other});
+        EXPECT_GT(touching.size(), 0U) << n;
+        EXPECT_TRUE(std::ranges::includes(listed, touching)) << n << ", " << stretch << ", " << set;
+      }
+  use_instruction_set("auto");
 }
 
 /// How many vertices on one side of a circle's first count as its neighbours.

@@ -54,6 +54,8 @@ struct Travel {
   double absolute = 0;
   double relative = 0;  ///< to the mean of the points
 };
+/// Bound on the way in a time [t0]: twice that at the fastest point's present speed plus free fall.
+inline double possible_way(double speed, double time) { return 2 * time * (speed + units::gravity * time); }
 /// Contact lists look no farther ahead than this [sigma]: what moves as fast has diverged.
 inline constexpr double widest_skin = 4;
 
@@ -76,14 +78,14 @@ struct DropletState {
     return {velocity.head(size()).mean(), velocity.tail(size()).mean()};
   }
 
-  /// Bound on the way in a time [t0]: twice that at the fastest point's present speed plus free fall.
+  /// See possible_way().
   Travel possible_travel(double time) const {
-    const auto way = [time](double speed) { return 2 * time * (speed + units::gravity * time); };
     const Eigen::Array2d drift = mean_velocity();
     const auto vx = velocity.head(size());
     const auto vy = velocity.tail(size());
-    return {.absolute = way(std::sqrt((vx.square() + vy.square()).maxCoeff())),
-            .relative = way(std::sqrt(((vx - drift[0]).square() + (vy - drift[1]).square()).maxCoeff()))};
+    return {.absolute = possible_way(std::sqrt((vx.square() + vy.square()).maxCoeff()), time),
+            .relative = possible_way(
+                std::sqrt(((vx - drift[0]).square() + (vy - drift[1]).square()).maxCoeff()), time)};
   }
 
   void save(ByteWriter& bytes) const {

@@ -2,11 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <numbers>
 
 #include "clog/core/droplet/droplet_state.hpp"
 
 namespace clog {
+
+/// What both minimisers do to all coordinates, compiled for several instruction sets.
+namespace kernel {
+struct ForceSums {
+  double largest;                ///< |f_i|
+  double power, speed2, force2;  ///< sum f v, sum v^2, sum f^2
+};
+ForceSums sum_forces(std::ptrdiff_t n, const double* force, const double* velocity);
+/// v = kept v + gain f, but no faster than `fastest` either way; then x += time v.
+struct PointMove {
+  double kept, gain, fastest, time;
+};
+void move_points(std::ptrdiff_t n, const PointMove& move, const double* force, double* velocity,
+                 double* position);
+}  // namespace kernel
 
 struct FireOptions {
   double mass = 1;             ///< of each point
@@ -43,28 +60,27 @@ FireResult minimize_fire(Forces& forces, DropletState& state, const FireOptions&
   for (; result.iterations < options.max_iterations; ++result.iterations) {
     if (result.iterations % iterations_per_check == 0) forces.update_contacts(state, travel);
     forces.evaluate(state, force);
-    result.largest_force = force.abs().maxCoeff();
+    const kernel::ForceSums sums = kernel::sum_forces(force.size(), force.data(), state.velocity.data());
+    const bool is_finite = std::isfinite(sums.force2);
+    result.largest_force = is_finite ? sums.largest : std::numeric_limits<double>::infinity();
     result.converged = result.largest_force <= options.force_tolerance;
-    if (result.converged || !std::isfinite(result.largest_force)) break;
+    if (result.converged || !is_finite) break;
 
-    const double power = (force * state.velocity).sum();
-    if (power > 0) {
-      const double speed = state.velocity.matrix().norm();
-      state.velocity = (1 - mixing) * state.velocity + mixing * speed / force.matrix().norm() * force;
+    double kept = 0, gain = 0;
+    if (sums.power > 0) {
+      kept = 1 - mixing;
+      gain = mixing * std::sqrt(sums.speed2 / sums.force2);
       if (++downhill > min_downhill) {
         dt = std::min(dt * grow, options.largest_step);
         mixing *= less_mixing;
       }
     } else {
-      state.velocity.setZero();
       downhill = 0;
       dt *= shrink;
       mixing = start_mixing;
     }
-    state.velocity += dt / options.mass * force;
-    const double fastest = options.max_move / dt;
-    state.velocity = state.velocity.max(-fastest).min(fastest);
-    state.position += dt * state.velocity;
+    kernel::move_points(force.size(), {kept, gain + dt / options.mass, options.max_move / dt, dt},
+                        force.data(), state.velocity.data(), state.position.data());
   }
   state.velocity.setZero();
   return result;
@@ -82,12 +98,13 @@ FireResult settle(Forces& forces, DropletState& state, const FireOptions& option
   for (; result.iterations < options.max_iterations; ++result.iterations) {
     forces.update_contacts(state, state.possible_travel(dt));
     forces.evaluate(state, force);
-    result.largest_force = force.abs().maxCoeff();
+    const kernel::ForceSums sums = kernel::sum_forces(force.size(), force.data(), state.velocity.data());
+    const bool is_finite = std::isfinite(sums.force2);
+    result.largest_force = is_finite ? sums.largest : std::numeric_limits<double>::infinity();
     result.converged = result.largest_force <= options.force_tolerance;
-    if (result.converged || !std::isfinite(result.largest_force)) break;
-    const double fastest = options.max_move / dt;
-    state.velocity = ((state.velocity + dt / options.mass * force) * shrink).max(-fastest).min(fastest);
-    state.position += dt * state.velocity;
+    if (result.converged || !is_finite) break;
+    kernel::move_points(force.size(), {shrink, shrink * dt / options.mass, options.max_move / dt, dt},
+                        force.data(), state.velocity.data(), state.position.data());
   }
   state.velocity.setZero();
   return result;

@@ -28,6 +28,10 @@ class DpForces {
 
   /// @param travel  bound on the way until the next call
   void update_contacts(const DropletState& state, const Travel& travel);
+  /// Does update_contacts() leave the lists as they are? False as well where only the state can tell.
+  /// @param moved           a vertex at most, since walls() were renewed [sigma]
+  /// @param moved_relative  to the vertices' mean, since self_contacts() were renewed [sigma]
+  bool contacts_hold(double moved, double moved_relative, const Travel& travel) const;
   /// To be called when local coordinates have moved by a shift of the frame.
   void forget_contacts();
   /// Those with itself, too, which a shift does not change.

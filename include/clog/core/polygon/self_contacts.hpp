@@ -10,6 +10,11 @@
 #include "clog/core/polygon/wall_contacts.hpp"
 
 namespace clog {
+namespace kernel {
+struct VertexPair {
+  int first, second;
+};
+}  // namespace kernel
 
 /// Pairs of a vertex and an edge of the same droplet that may touch.
 ///
@@ -38,6 +43,13 @@ class SelfContacts {
   /// Renews the pairs when the shape may change too much on the way to the next update.
   void update(const DropletState& state, const Travel& travel);
   void invalidate() { reference_.resize(0); }
+  /// The same as update(), where it is known how far a vertex is at most from where it was at renew(),
+  /// relative to their mean.
+  bool hold(double moved, const Travel& travel) const;
+  void renew(const DropletState& state, const Travel& travel);
+  /// Where the vertices were then, relative to their mean, all x then all y, and behind them room for a whole
+  /// vector; null: there are no pairs.
+  const double* reference() const { return reference_.size() > 0 ? reference_.data() : nullptr; }
   const std::vector<Pair>& pairs() const { return pairs_; }
   double range() const { return range_; }
   /// How many vertices make up three ranges at rest.
@@ -63,25 +75,20 @@ class SelfContacts {
   Eigen::ArrayXd reference_;  // positions relative to their mean when the pairs were made
   std::vector<Pair> pairs_;
   std::vector<Item> items_;
-  std::vector<double> along_;     // the contour, from vertex 0; behind the last its whole length
-  std::vector<int> head_, next_;  // vertices by cell
-  std::vector<int> item_of_;      // by direction and first vertex
+  std::vector<double> along_;    // the contour, from vertex 0; behind the last its whole length
+  std::vector<double> contour_;  // x, y and along_, with the beginning repeated; see kernel::CloseSearch
+  std::vector<double> groups_;   // memory of the search
+  std::vector<kernel::VertexPair> close_;
+  std::vector<std::int64_t> order_;  // of the pairs
+  std::vector<int> item_of_;         // by direction and first vertex
 
   double skin_ = 0;  // of the present pairs
 
-  /// Square cells over the droplet.
-  struct Cells {
-    double left, bottom, size;
-    int columns;
-
-    int cell_of(double x, double y) const {
-      return (static_cast<int>((y - bottom) / size) + 1) * columns + static_cast<int>((x - left) / size) + 1;
-    }
-  };
   /// Fills along_. Returns the length of the longest edge.
   double measure_edges(const double* x, const double* y, int n);
-  Cells sort_into_cells(const DropletState& state, double size);
+  void find_close(const double* x, const double* y, double longest_edge, double reach);
   void rebuild(const DropletState& state, double skin);
+  void sort_pairs(int n);
   void fill_items(const DropletState& state);
 };
 

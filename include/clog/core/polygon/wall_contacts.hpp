@@ -14,8 +14,8 @@ namespace clog {
 /// `touched_by_edge`: edge i (from vertex i to the next) lists every obstacle whose surface was within
 /// `range` + skin of it; `touched_by_vertex`: the same for vertex i. `nearest_to_vertex`: vertex i lists
 /// every obstacle that could become its nearest. Lists hold while no vertex has moved by more than the skin.
-/// They are kept as `slots`: slot s of edge or vertex i is one circle; unused slots hold a circle out of
-/// reach, so that the force loop has no branch.
+/// Those of vertices are kept as `slots` as well: slot s of vertex i is one circle; unused slots hold a
+/// circle out of reach, so that the force loop has no branch.
 class WallContacts {
  public:
   enum class Keep { touched_by_edge, touched_by_vertex, nearest_to_vertex };
@@ -27,9 +27,15 @@ class WallContacts {
   void update(const DropletState& state, const Travel& travel);
   /// Forgets the lists: positions changed by more than a move (a new frame origin, a rescaled polygon).
   void invalidate() { reference_.resize(0); }
+  /// The same as update(), where it is known how far a vertex is at most from where it was at renew().
+  bool hold(double moved, const Travel& travel) const;
+  void renew(const DropletState& state, const Travel& travel);
+  /// Where the vertices were then, all x then all y, and behind them room for a whole vector; null: there are
+  /// no lists.
+  const double* reference() const { return reference_.size() > 0 ? reference_.data() : nullptr; }
 
   int num_slots() const { return num_slots_; }
-  /// Centres and radii of slot `s`, one per edge or vertex, relative to the state's frame [sigma].
+  /// Centres and radii of slot `s`, one per vertex, relative to the state's frame [sigma].
   const double* slot_x(int s) const { return slots_.data() + (3 * s + 0) * num_points_; }
   const double* slot_y(int s) const { return slots_.data() + (3 * s + 1) * num_points_; }
   const double* slot_radius(int s) const { return slots_.data() + (3 * s + 2) * num_points_; }
@@ -38,8 +44,9 @@ class WallContacts {
   bool radii_are_equal() const { return smallest_radius_ == largest_radius_; }
   double largest_radius() const { return largest_radius_; }
 
-  /// The same lists by obstacle: circles that some edge (vertex) of a group of `edges_per_group` lists, in
-  /// the groups' order.
+  /// The same lists by obstacle: circles that some edge (vertex) of a group of `edges_per_group` lists.
+  /// Circles that edges list follow each other, each with its groups in their order; those that vertices list
+  /// come in the groups' order.
   struct Item {
     double x, y;   ///< centre, relative to the state's frame [sigma]
     double reach;  ///< radius + range [sigma]
@@ -60,11 +67,21 @@ class WallContacts {
   Eigen::ArrayXd slots_;
   std::vector<Obstacle> nearby_;
   std::vector<std::vector<int>> candidates_;
+  struct Bounds {
+    Eigen::Array2d least, most;
+  };
+  std::vector<Bounds> bounds_;        // of the groups of edges
+  Eigen::ArrayXXd distances_;         // of the vertices from the circles nearby, a column for each
+  Eigen::ArrayXd nearest_;            // of the vertices from the nearest
+  std::vector<std::size_t> item_of_;  // the latest of each circle
   std::vector<Item> items_;
   double smallest_radius_ = 0, largest_radius_ = 0;
 
   void rebuild(const DropletState& state, double skin);
   void gather_nearby(const DropletState& state);
+  void list_by_edge(const Eigen::ArrayXd& fine);
+  void measure_distances(const DropletState& state);
+  void list_by_vertex(const DropletState& state);
   void fill_slots();
   void fill_items();
 };

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <hwy/aligned_allocator.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "clog/core/polygon/wall_contacts.hpp"
+#include "dp_step_kernel.hpp"
+
+namespace clog {
+
+/// How circles push a contour off until somebody looks again. A window is a circle and a vector of edges, the
+/// first of which may touch it: wherever a contact begins, a whole vector of edges is at work. Windows store
+/// what edges give their vertices, and the vertices' pushes are then put together in one go; an edge between
+/// two circles is in two windows, of which the second adds to what the first has stored.
+class WallPlan {
+ public:
+  explicit WallPlan(int num_vertices);
+  /// @param near  circles and edges that may touch, one circle after another, each with its groups in their
+  /// order
+  void make(const std::vector<WallContacts::Item>& near);
+  /// Valid until the next make().
+  const kernel::WallWindows& windows() const { return windows_; }
+
+ private:
+  int num_groups_;  // of edges
+  hwy::AlignedFreeUniquePtr<double[]> memory_;
+  std::vector<kernel::WallWindow> all_, sharing_;
+  std::vector<std::uint8_t> is_taken_;   // edges, by a window
+  std::vector<std::uint8_t> is_pushed_;  // groups of vertices, the first is the one before the contour
+  std::vector<int> groups_;
+  kernel::WallWindows windows_{};
+
+  void clear_pushes();
+  void add(const kernel::WallWindow& window);
+  void find_groups();
+};
+
+}  // namespace clog
