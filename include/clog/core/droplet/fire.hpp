@@ -10,7 +10,7 @@
 
 namespace clog {
 
-/// What both minimisers do to all coordinates, compiled for several instruction sets.
+/// What both ways to a minimum do to all coordinates, compiled for several instruction sets.
 namespace kernel {
 struct ForceSums {
   double largest;                ///< |f_i|
