@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "clog/core/tools/error.hpp"
+#include "clog/sweep/row_check.hpp"
 
 namespace clog::sweep {
 namespace {
@@ -14,11 +15,24 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds slice{5};
 constexpr int checks_per_look_at_the_clock = 8;
 
-DropletRun start(const RunParameters& run, std::span<const std::byte> snapshot, ObstacleArrays& arrays) {
+/// Fills in the results of a run that goes on.
+void record_interrupted(const DropletRun& run, RunRow& row) {
+  RunResult result = run.result();
+  result.status = RunStatus::interrupted;
+  record(result, row);
+}
+
+/// From the snapshot, if there is one and a run of these parameters can have come there. Otherwise (it may be of
+/// another version) the run begins anew, and is the same.
+/// @param row  of the run, without results
+DropletRun start(const RunParameters& run, RunRow row, std::span<const std::byte> snapshot,
+                 ObstacleArrays& arrays) {
   const std::shared_ptr<const ObstacleArray> obstacles = arrays.get(run);
   if (!snapshot.empty()) try {
-      return DropletRun::resume(run, obstacles, snapshot);
-    } catch (const Error&) {  // of another version: the run is the same from its beginning
+      DropletRun resumed = DropletRun::resume(run, obstacles, snapshot);
+      record_interrupted(resumed, row);
+      if (fault_of(row).empty()) return resumed;
+    } catch (const Error&) {
     }
   return {run, obstacles};
 }
@@ -37,7 +51,7 @@ RunJob::RunJob(RunParameters run, std::int64_t task, std::span<const std::byte> 
 bool RunJob::advance() {
   const Clock::time_point begin = Clock::now();
   try {
-    if (!run_) run_ = std::make_unique<DropletRun>(start(run_parameters_, snapshot_, *arrays_));
+    if (!run_) run_ = std::make_unique<DropletRun>(start(run_parameters_, row_, snapshot_, *arrays_));
     while (!over_ && Clock::now() - begin < slice) over_ = run_->advance(checks_per_look_at_the_clock);
   } catch (const std::exception& error) {
     over_ = true;

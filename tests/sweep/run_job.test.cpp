@@ -2,8 +2,25 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstring>
+#include <iterator>
+#include <stdexcept>
+#include <vector>
+
+#include "clog/core/run/dwell_record.hpp"
+#include "clog/sweep/row_check.hpp"
+
 namespace clog::sweep {
 namespace {
+
+std::vector<std::byte> packed(const RunRow& row) {
+  std::vector<std::byte> bytes(packed_size());
+  pack(row, bytes);
+  return bytes;
+}
 
 Plan small_plan(const char* seeds) {
   Settings settings;
@@ -59,6 +76,61 @@ TEST(RunJob, TurnsAnImpossibleReleaseIntoAFailedRow) {
     EXPECT_TRUE(job.advance()) << "a failed job is over";
   }
   EXPECT_GT(num_failed, 0);
+}
+
+/// A snapshot of the task, in which `change` has changed the dwells' numbers: eight times a length, a distance
+/// and a beginning, then the time from which they are known.
+template <class Change>
+std::vector<std::byte> changed_snapshot(const RunParameters& run, Change change) {
+  RunJob job(run, 0);
+  while (job.snapshot().empty() && !job.advance()) {
+  }
+  std::vector<std::byte> snapshot = job.snapshot();
+  const double known_from = DwellRecord::shortest * run.dwell_length / run.drag.terminal_speed;
+  std::byte bytes[sizeof(double)];
+  std::memcpy(bytes, &known_from, sizeof(bytes));
+  const auto found = std::search(snapshot.begin(), snapshot.end(), std::begin(bytes), std::end(bytes));
+  if (found == snapshot.end()) throw std::runtime_error("no snapshot, or one without dwells");
+  constexpr std::ptrdiff_t num_before = 3 * std::ptrdiff_t{Dwells::most};
+  std::array<double, num_before + 1> dwells{};
+  std::byte* const place = &*found - num_before * std::ptrdiff_t{sizeof(double)};
+  std::memcpy(dwells.data(), place, sizeof(dwells));
+  change(dwells);
+  std::memcpy(place, dwells.data(), sizeof(dwells));
+  return snapshot;
+}
+
+RunRow finished(RunJob job) {
+  while (!job.advance()) {
+  }
+  return job.row();
+}
+
+RunParameters long_run() {
+  Settings settings;
+  settings.set("vertices", "64");
+  settings.set("box", "20");
+  settings.set("line-tension", "0.1");
+  settings.set("max-time", "2000");
+  settings.set("seeds", "5");
+  return Plan(settings).task(0);
+}
+
+TEST(RunJob, ResumesFromASnapshot) {
+  const RunParameters run = long_run();
+  const double known_from = DwellRecord::shortest * run.dwell_length / run.drag.terminal_speed / 2;
+  const auto snapshot = changed_snapshot(run, [=](auto& dwells) { dwells.back() = known_from; });
+  EXPECT_EQ(finished(RunJob(run, 0, snapshot)).dwells.known_from, known_from);
+}
+
+TEST(RunJob, BeginsAnewIfNoRunCanHaveComeToItsSnapshot) {
+  const RunParameters run = long_run();
+  const auto snapshot =
+      changed_snapshot(run, [](auto& dwells) { dwells[0] = dwells[1] = dwells[2] = 0; });
+  RunRow row = finished(RunJob(run, 0, snapshot)), undisturbed = finished(RunJob(run, 0));
+  EXPECT_EQ(fault_of(row), "");
+  row.wall_seconds = undisturbed.wall_seconds;
+  EXPECT_EQ(packed(row), packed(undisturbed));
 }
 
 }  // namespace

@@ -120,6 +120,7 @@ struct WindowPushes {
 };
 
 /// Into the arrays of the windows: in place of what is there, or on top of it.
+/// @param p  entry of the first edge in the first array
 template <bool adds>
 HWY_INLINE void keep_pushes(const WindowPushes& push, M listed, double* p, std::ptrdiff_t stride) {
   for (const V v : {push.begin.x, push.end.x, push.far.x, push.begin.y, push.end.y, push.far.y}) {
@@ -129,7 +130,7 @@ HWY_INLINE void keep_pushes(const WindowPushes& push, M listed, double* p, std::
 }
 
 template <bool adds>
-HWY_INLINE void push_window(const WallWindow& window, V span, V stiffness, const WallWindows& windows,
+HWY_INLINE void push_window(const WallWindow& window, V span, V stiffness, const WindowPushArrays& pushes,
                             const StepArrays& a) {
   const V reach = all(window.reach), reach_of_second = hn::Mul(span, reach);
   for (int lane = 0; lane < edges_per_group; lane += lanes) {
@@ -139,7 +140,7 @@ HWY_INLINE void push_window(const WallWindow& window, V span, V stiffness, const
     const HalvesAtCircle halves(RefinedEdgeVectors(i, a), all(window.x), all(window.y), span);
     const Push first = halves.first.push(halves.first.are_nearer_than(reach), reach, stiffness);
     const Push second = halves.second.push(halves.second.are_nearer_than(reach_of_second), reach, stiffness);
-    keep_pushes<adds>(WindowPushes(halves, first, second), listed, windows.pushes + i, windows.stride);
+    keep_pushes<adds>(WindowPushes(halves, first, second), listed, pushes.first + i, pushes.stride);
   }
 }
 
@@ -167,21 +168,27 @@ HWY_INLINE V push_on_vertices(const double* p, std::ptrdiff_t stride) {
   return hn::Add(own, others);
 }
 
+/// Puts together what windows push the vertices of a group.
+HWY_INLINE void gather_pushes(int group, const WindowPushArrays& pushes, double* push_x, double* push_y) {
+  for (int lane = 0; lane < edges_per_group; lane += lanes) {
+    const std::ptrdiff_t i = std::ptrdiff_t{group} * edges_per_group + lane;
+    store(push_on_vertices(pushes.first + i, pushes.stride), push_x + i);
+    store(push_on_vertices(pushes.first + 3 * pushes.stride + i, pushes.stride), push_y + i);
+  }
+}
+
 /// Overwrites the pushes of the vertices that windows may push.
 void push_off_circles(const WallWindows& given, const Contact& contact, const StepArrays& arrays) {
   // Copies: what is stored might change the originals.
   const WallWindows windows = given;
   const StepArrays a = arrays;
   const V span = all(contact.span), stiffness = all(contact.stiffness);
-  for (int k = 0; k < windows.num_own; ++k) push_window<false>(windows.all[k], span, stiffness, windows, a);
+  for (int k = 0; k < windows.num_own; ++k)
+    push_window<false>(windows.all[k], span, stiffness, windows.pushes, a);
   for (int k = windows.num_own; k < windows.num_all; ++k)
-    push_window<true>(windows.all[k], span, stiffness, windows, a);
+    push_window<true>(windows.all[k], span, stiffness, windows.pushes, a);
   for (int k = 0; k < windows.num_groups; ++k)
-    for (int lane = 0; lane < edges_per_group; lane += lanes) {
-      const std::ptrdiff_t i = std::ptrdiff_t{windows.groups[k]} * edges_per_group + lane;
-      store(push_on_vertices(windows.pushes + i, windows.stride), a.push_x + i);
-      store(push_on_vertices(windows.pushes + 3 * windows.stride + i, windows.stride), a.push_y + i);
-    }
+    gather_pushes(windows.groups[k], windows.pushes, a.push_x, a.push_y);
 }
 
 double circle_gaps(const WallContacts::Item* items, std::size_t num_items, const Contact& contact,

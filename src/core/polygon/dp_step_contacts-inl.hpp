@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "core/polygon/dp_step_circles-inl.hpp"
+#include "core/polygon/dp_step_holds-inl.hpp"
 #include "core/polygon/dp_step_vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -178,19 +179,33 @@ double pair_gaps(const SelfContacts::Item* items, std::size_t num_items, const C
   return least;
 }
 
+/// An edge pushes the vertex before it and the two behind it as well, which may belong to the other end of the
+/// contour.
+HWY_INLINE void add_pushes_beyond_ends(int n, int beyond, const StepArrays& a) {
+  for (double* p : {a.push_x, a.push_y}) {
+    p[n - 1] += std::exchange(p[-1], 0);
+    for (int i = 0; i < beyond; ++i) p[i] += std::exchange(p[n + i], 0);
+  }
+}
+
 void push(int n, const WallWindows& walls, const SelfContacts::Item* self, std::size_t num_self,
           const Contact& contact, const StepArrays& arrays) {
   const StepArrays a = arrays;
   if (num_self > 0) clear_pushes(n + edges_per_group - 1, a);
   push_off_circles(walls, contact, a);
   push_off_each_other(self, num_self, contact, a);
-  // An edge pushes the vertex before it and the two behind it as well, which may belong to the other end of
-  // the contour.
-  const int beyond = num_self > 0 ? edges_per_group : 2;
-  for (double* p : {a.push_x, a.push_y}) {
-    p[n - 1] += std::exchange(p[-1], 0);
-    for (int i = 0; i < beyond; ++i) p[i] += std::exchange(p[n + i], 0);
-  }
+  add_pushes_beyond_ends(n, num_self > 0 ? edges_per_group : 2, a);
+}
+
+double push_and_hold(int n, const HoldingCircles& walls, const WallGrip& grip, const SelfContacts::Item* self,
+                     std::size_t num_self, const Contact& contact, const StepArrays& arrays) {
+  const StepArrays a = arrays;
+  clear_pushes(n + edges_per_group - 1, a);
+  const double taken = grip.traction > 0 ? push_off_and_hold<true>(n, walls, grip, contact, a)
+                                         : push_off_and_hold<false>(n, walls, grip, contact, a);
+  push_off_each_other(self, num_self, contact, a);
+  if (num_self > 0) add_pushes_beyond_ends(n, edges_per_group, a);
+  return taken;
 }
 
 /// A wedge and vertices near it: away_from() of dp_kernel.cpp, for a vector of them.

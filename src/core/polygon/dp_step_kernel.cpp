@@ -21,6 +21,7 @@ StepKernel make_kernel(const KickTerms& terms) {
           .pair_gaps = pair_gaps,
           .clear_pushes = clear_pushes,
           .push = push,
+          .push_and_hold = push_and_hold,
           .push_off_wedges = push_off_wedges,
           .near_wall_rates = near_wall_rates,
           .kick = kick_version(terms),

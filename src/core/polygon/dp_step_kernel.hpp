@@ -85,16 +85,49 @@ struct WallWindow {
   int first;
   std::uint8_t edges;
 };
+/// What edges give their vertices, as windows store it: six arrays, of x and then of y what edges give their
+/// first vertex, their second one, and each of the two beyond them. Zero where no window is.
+struct WindowPushArrays {
+  double* first;  ///< entry of edge 0; readable from two groups before to two groups behind the windows
+  std::ptrdiff_t stride;
+};
+inline constexpr int num_window_push_arrays = 6;
 /// How circles push the contour off; see WallPlan.
 struct WallWindows {
   const WallWindow* all;
   int num_own;  ///< the first of them share no edge with each other
   int num_all;
-  const int*
-      groups;  ///< of vertices that windows may push; -1 and the one behind the last are the other end's
+  const int* groups;  ///< of vertices that windows may push; -1 and the one behind the last are the other
+                      ///< end's
   int num_groups;
-  double* pushes;  ///< six arrays: x, then y, of what edges give their vertices; 0 where no window is
-  std::ptrdiff_t stride;
+  WindowPushArrays pushes;
+};
+/// A circle that pushes vertices and holds them by friction.
+struct HoldingCircle {
+  double x, y, radius;  ///< [sigma]
+  int first_window, end_window;
+  int first_group, end_group;  ///< of vertices that it may push
+  bool wraps;                  ///< does it push vertices -1, n or n + 1, which are the other end's?
+  WindowPushArrays pushes;     ///< of its own
+};
+/// How circles push the contour off and hold it; see WallHold. Every group of vertices that a circle may push
+/// has edges_per_group entries of anchor_x, anchor_y, slip, and one of holds.
+struct HoldingCircles {
+  const HoldingCircle* all;
+  std::size_t num;
+  const WallWindow* windows;
+  const int* groups;
+  double *anchor_x, *anchor_y;  ///< from the circle's centre [sigma]
+  double* slip;                 ///< way along the wall from the anchor to what it holds [sigma]
+  std::uint8_t* holds;          ///< vertices that have an anchor, as bits
+  double *push_x, *push_y;      ///< on the vertices, by one circle; memory
+  double* wetted;               ///< length of the interface on one circle [sigma]; memory
+};
+/// What walls bear, as kicks.
+struct WallGrip {
+  double coefficient;  ///< of friction
+  double traction;     ///< for each sigma of wetted length
+  double stiffness;    ///< k_t of the springs between interface and wall
 };
 struct Contact {
   double stiffness;   ///< k_c as a kick
@@ -144,6 +177,10 @@ struct StepKernel {
   void (*clear_pushes)(int n, const StepArrays& arrays);
   void (*push)(int n, const WallWindows& walls, const SelfContacts::Item* self, std::size_t num_self,
                const Contact& contact, const StepArrays& arrays);
+  /// The same on all groups, where circles hold what they push. Returns what walls took, over k_t [sigma^2].
+  double (*push_and_hold)(int n, const HoldingCircles& walls, const WallGrip& grip,
+                          const SelfContacts::Item* self, std::size_t num_self, const Contact& contact,
+                          const StepArrays& arrays);
   /// Adds the vertices' contact with wedges' surfaces up to `range` [sigma]; see add_wedge_forces().
   void (*push_off_wedges)(int n, const WedgePlace* wedges, std::size_t num_wedges, double range,
                           double stiffness, const StepArrays& arrays);

@@ -34,7 +34,10 @@ DpStepper::DpStepper(const RunParameters& run, const ObstacleArray& obstacles, c
       terms_(terms_of(run)),
       kernel_(kernel::step_kernel(terms_)),
       n_(*run.dp.vertices),
+      holds_circles_(forces.friction().is_on() && run.dp.wall_contact == WallContact::edge &&
+                     obstacles.wedges().empty()),
       plan_(n_),
+      hold_(n_, forces.walls().range()),
       touches_(run, obstacles),
       friction_(Eigen::ArrayXd::Zero(Eigen::Index{2} * n_)) {
   // Every array on a cache line, with room for an entry before and a group behind it.
@@ -68,6 +71,7 @@ void DpStepper::load(const DropletState& state) {
   wedges_.clear();
   for (const Wedge& wedge : forces_->wedges()) wedges_.push_back(kernel::place_in(state.frame, wedge));
   sums_ = kernel_.measure(n_, arrays_);
+  hold_.forget();
   open_step_ = 0;
 }
 
@@ -75,7 +79,7 @@ kernel::Survey DpStepper::survey() const {
   return kernel_.survey(n_, forces_->walls().reference(), forces_->self_contacts().reference(), arrays_);
 }
 
-void DpStepper::look(const Travel& travel) {
+void DpStepper::look(DropletState& state, const Travel& travel, Droplet::Work* work) {
   kernel_.clear_pushes(n_, arrays_);  // the lists may name other groups than before
   const auto& walls = forces_->walls().items();
   const auto& self = forces_->self_contacts().items();
@@ -97,7 +101,12 @@ void DpStepper::look(const Travel& travel) {
     near_walls_.push_back(walls[k]);
     near_walls_.back().edges = edges;
   }
-  plan_.make(near_walls_);
+  if (holds_circles_) {
+    const double lost = forces_->friction().stiffness() * hold_.make(near_walls_, state);
+    if (work != nullptr) work->dissipated += lost;
+  } else {
+    plan_.make(near_walls_);
+  }
   const double self_way = 2 * (travel.relative + unforeseen);
   near_self_.clear();
   for (std::size_t k = 0; k < self.size(); ++k)
@@ -136,6 +145,7 @@ void DpStepper::finish(DropletState& state, Droplet::Work* work) {
     open_step_ = 0;
   }
   store(state);
+  hold_.hand_back(state);
 }
 
 /// One force evaluation, the half kicks on its two sides, and the drift to the next one; without a drift only
@@ -177,20 +187,35 @@ kernel::Contact DpStepper::contact(double stiffness) const {
           .self_range = forces_->self_contacts().range()};
 }
 
+void DpStepper::push_off_circles(double impulse, Droplet::Work* work) {
+  const kernel::Contact touching = contact(impulse * forces_->contact_stiffness());
+  if (!holds_circles_) {
+    kernel_.push(n_, plan_.windows(), near_self_.data(), near_self_.size(), touching, arrays_);
+    return;
+  }
+  const WallFriction& friction = forces_->friction();
+  const double taken = kernel_.push_and_hold(n_, hold_.circles(),
+                                             {.coefficient = friction.coefficient(),
+                                              .traction = impulse * friction.yield_traction(),
+                                              .stiffness = impulse * friction.stiffness()},
+                                             near_self_.data(), near_self_.size(), touching, arrays_);
+  if (work != nullptr) work->dissipated += friction.stiffness() * taken;
+}
+
 void DpStepper::push_off_everything(DropletState& droplet, const kernel::KickCoefficients& coefficients,
                                     double impulse, Droplet::Work* work) {
   const double stiffness = impulse * forces_->contact_stiffness();
   const bool touches = !near_walls_.empty() || !wedges_.empty() || !droplet.anchors.empty();
-  const bool slides = forces_->friction().is_on() && touches;
+  const bool slides = forces_->friction().is_on() && !holds_circles_ && touches;
   // Whatever these add, to vertices beyond the listed groups too, is gone before the next step.
   if (!wedges_.empty() || forces_->wets() || slides || are_pushes_spread_) kernel_.clear_pushes(n_, arrays_);
   are_pushes_spread_ = slides;
-  kernel_.push(n_, plan_.windows(), near_self_.data(), near_self_.size(), contact(stiffness), arrays_);
+  push_off_circles(impulse, work);
   if (!wedges_.empty())
     kernel_.push_off_wedges(n_, wedges_.data(), wedges_.size(), forces_->walls().range(), stiffness, arrays_);
   if (forces_->wets()) {
     store(droplet);
-    if (!slides && forces_->has_anchors()) let_walls_yield(droplet, work);
+    if (!forces_->friction().is_on() && forces_->has_anchors()) let_walls_yield(droplet, work);
     const DpForces::WettingForces wetting = forces_->wetting_forces(droplet);
     wetting_spread_ = wetting.net_spreading();
     for (int i = 0; i < n_; ++i) {

@@ -8,6 +8,7 @@
 #include "clog/core/polygon/dp_forces.hpp"
 #include "clog/core/polygon/wall_touches.hpp"
 #include "dp_step_kernel.hpp"
+#include "wall_hold.hpp"
 #include "wall_plan.hpp"
 
 namespace clog {
@@ -28,7 +29,8 @@ class DpStepper {
   /// Of the droplet as it is now, compared with where it was when contact lists were made.
   kernel::Survey survey() const;
   /// Takes over what may touch on the way to the next look() from the contact lists, which must hold for it.
-  void look(const Travel& travel);
+  /// @param state, work  as for advance()
+  void look(DropletState& state, const Travel& travel, Droplet::Work* work);
   /// `steps` steps of `time_step`. The last half kick is left open: positions are those of the steps' end,
   /// velocities those of half a step before.
   /// @param state  the droplet that was loaded, of which walls' anchors are kept; positions and velocities
@@ -49,7 +51,9 @@ class DpStepper {
   // What may touch before the next look, and wedges in the droplet's frame.
   std::vector<WallContacts::Item> near_walls_;
   std::vector<SelfContacts::Item> near_self_;
-  WallPlan plan_;
+  bool holds_circles_;  // does friction act, and only at edges that meet circles?
+  WallPlan plan_;       // otherwise
+  WallHold hold_;
   std::vector<double> wall_gaps_, self_gaps_;  // of the lists' items at the last look
   std::vector<kernel::WedgePlace> wedges_;
   WallTouches touches_;
@@ -61,6 +65,7 @@ class DpStepper {
   Droplet::Work open_power_;  // at its beginning
 
   kernel::Contact contact(double stiffness) const;
+  void push_off_circles(double impulse, Droplet::Work* work);
   void kick_and_drift(DropletState& droplet, const kernel::KickCoefficients& coefficients, double drift_time,
                       Droplet::Work* work);
   void push_off_everything(DropletState& droplet, const kernel::KickCoefficients& coefficients,

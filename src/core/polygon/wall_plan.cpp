@@ -4,26 +4,24 @@
 #include <bit>
 #include <cstddef>
 
+#include "wall_windows.hpp"
+
 namespace clog {
 namespace {
 
 constexpr int size = kernel::edges_per_group;
-constexpr int num_arrays = 6;  // of kernel::WallWindows
-
-bool is_same_circle(const kernel::WallWindow& window, const WallContacts::Item& item) {
-  return window.x == item.x && window.y == item.y && window.reach == item.reach;
-}
+constexpr int num_arrays = kernel::num_window_push_arrays;
 
 }  // namespace
 
 WallPlan::WallPlan(int num_vertices) : num_groups_((num_vertices + size - 1) / size) {
   // Groups before and behind the contour, and those next to them, are read.
   constexpr int before = 2, behind = 2;
-  windows_.stride = std::ptrdiff_t{before + num_groups_ + behind} * size;
-  const std::size_t total = num_arrays * static_cast<std::size_t>(windows_.stride);
+  windows_.pushes.stride = std::ptrdiff_t{before + num_groups_ + behind} * size;
+  const std::size_t total = num_arrays * static_cast<std::size_t>(windows_.pushes.stride);
   memory_ = hwy::AllocateAligned<double>(total);
   std::fill_n(memory_.get(), total, 0.0);
-  windows_.pushes = memory_.get() + std::ptrdiff_t{before} * size;
+  windows_.pushes.first = memory_.get() + std::ptrdiff_t{before} * size;
 }
 
 void WallPlan::make(const std::vector<WallContacts::Item>& near) {
@@ -31,23 +29,8 @@ void WallPlan::make(const std::vector<WallContacts::Item>& near) {
   all_.clear();
   sharing_.clear();
   is_taken_.assign(static_cast<std::size_t>(num_groups_) * size, 0);
-  kernel::WallWindow window{};
-  for (const WallContacts::Item& item : near) {
-    const int begin = item.group * size;
-    for (unsigned edges = item.edges; edges != 0;) {
-      const int edge = begin + std::countr_zero(edges);
-      if (!is_same_circle(window, item) || edge - window.first >= size) {
-        add(window);
-        // Nothing can be read behind the last group.
-        window = {item.x, item.y, item.reach, std::min(edge, (num_groups_ - 1) * size), 0};
-      }
-      const int ahead = begin - window.first;
-      const unsigned inside = (ahead >= 0 ? edges << ahead : edges >> -ahead) & 0xffU;
-      window.edges |= static_cast<std::uint8_t>(inside);
-      edges &= ~(ahead >= 0 ? inside >> ahead : inside << -ahead);
-    }
-  }
-  add(window);
+  list_windows(near, num_groups_, listed_);
+  for (const kernel::WallWindow& window : listed_) add(window);
   windows_.num_own = static_cast<int>(all_.size());
   all_.insert(all_.end(), sharing_.begin(), sharing_.end());
   windows_.all = all_.data();
@@ -58,7 +41,7 @@ void WallPlan::make(const std::vector<WallContacts::Item>& near) {
 void WallPlan::clear_pushes() {
   for (const kernel::WallWindow& window : all_)
     for (int array = 0; array < num_arrays; ++array)
-      std::fill_n(windows_.pushes + array * windows_.stride + window.first, size, 0.0);
+      std::fill_n(windows_.pushes.first + array * windows_.pushes.stride + window.first, size, 0.0);
 }
 
 void WallPlan::add(const kernel::WallWindow& window) {
@@ -78,13 +61,9 @@ void WallPlan::add(const kernel::WallWindow& window) {
   add_edges(shared, sharing_);
 }
 
-/// An edge pushes the vertex before it and the two behind it as well.
 void WallPlan::find_groups() {
   is_pushed_.assign(static_cast<std::size_t>(num_groups_) + 2, 0);
-  for (const kernel::WallWindow& window : all_) {
-    const auto first = is_pushed_.begin() + (window.first - 1 + size) / size;
-    std::fill(first, is_pushed_.begin() + (window.first + size + 1) / size + 2, 1);
-  }
+  for (const kernel::WallWindow& window : all_) mark_pushed_groups(window, is_pushed_);
   // Of both ends what they push of the other one is added to that.
   const bool wraps = is_pushed_.front() != 0 || is_pushed_.back() != 0 || is_pushed_[num_groups_] != 0;
   if (wraps) is_pushed_[1] = is_pushed_[num_groups_] = 1;

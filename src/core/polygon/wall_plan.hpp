@@ -26,7 +26,7 @@ class WallPlan {
  private:
   int num_groups_;  // of edges
   hwy::AlignedFreeUniquePtr<double[]> memory_;
-  std::vector<kernel::WallWindow> all_, sharing_;
+  std::vector<kernel::WallWindow> listed_, all_, sharing_;
   std::vector<std::uint8_t> is_taken_;   // edges, by a window
   std::vector<std::uint8_t> is_pushed_;  // groups of vertices, the first is the one before the contour
   std::vector<int> groups_;

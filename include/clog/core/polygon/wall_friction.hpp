@@ -25,6 +25,9 @@ class WallFriction {
       : coefficient_(coefficient), traction_(yield_traction), stiffness_(stiffness), wedges_(wedges) {}
 
   bool is_on() const { return coefficient_ > 0 || traction_ > 0; }
+  double coefficient() const { return coefficient_; }
+  double yield_traction() const { return traction_; }  ///< [g rho sigma]
+  double stiffness() const { return stiffness_; }      ///< k_t [g rho sigma]
 
   /// Of the springs as they are anchored: all x, then all y [g rho sigma^2].
   void add_forces(const DropletState& state, Eigen::Ref<Eigen::ArrayXd> force) const;

@@ -1,0 +1,133 @@
+/// Circles that push the contour off and hold it by friction; part of dp_step_kernel.cpp.
+
+#if defined(CLOG_DP_STEP_HOLDS) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLOG_DP_STEP_HOLDS
+#undef CLOG_DP_STEP_HOLDS
+#else
+#define CLOG_DP_STEP_HOLDS
+#endif
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "core/polygon/dp_step_circles-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+// NOLINTBEGIN(misc-definitions-in-headers): part of one source, compiled for each instruction set
+namespace clog::kernel::HWY_NAMESPACE {
+
+/// Adds up vertices' lengths on a circle. A half edge is as long on the wall as it is; the middle belongs to
+/// both vertices.
+void add_wetted(const WallWindow& window, V span, const StepArrays& a, double* wetted) {
+  const V reach = all(window.reach), zero = all(0);
+  for (int lane = 0; lane < edges_per_group; lane += lanes) {
+    const int i = window.first + lane;
+    const M listed = lanes_of(window.edges, lane);
+    const RefinedEdgeVectors e(i, a);
+    const HalvesAtCircle halves(e, all(window.x), all(window.y), span);
+    const auto length = [&](const NearestOnHalves& half, V dx, V dy) {
+      const M touches = hn::And(listed, half.are_nearer_than(reach));
+      const V squared = hn::Max(hn::MulAdd(dx, dx, hn::Mul(dy, dy)), all(1e-300));
+      return hn::IfThenElse(touches, square_root(squared).root, zero);
+    };
+    const V first = length(halves.first, hn::Sub(e.middle_x, e.x), hn::Sub(e.middle_y, e.y));
+    const V second = length(halves.second, hn::Sub(e.next_x, e.middle_x), hn::Sub(e.next_y, e.middle_y));
+    const V own = hn::MulAdd(all(0.75), first, hn::Mul(all(0.25), second));
+    const V of_next = hn::MulAdd(all(0.25), first, hn::Mul(all(0.75), second));
+    hn::StoreU(hn::Add(load_at(wetted + i), own), D(), wetted + i);
+    hn::StoreU(hn::Add(load_at(wetted + i + 1), of_next), D(), wetted + i + 1);
+  }
+}
+
+/// Vertices -1, n and n + 1 are the other end's.
+HWY_INLINE void fold_ends(double* p, int n) {
+  p[n - 1] += std::exchange(p[-1], 0);
+  for (int i = 0; i < 2; ++i) p[i] += std::exchange(p[n + i], 0);
+}
+
+/// Adds to the pushes of a group what one circle pushes and holds there. Returns what the wall took.
+template <bool wets>
+HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCircles& walls,
+                        const WallGrip& grip, const StepArrays& a) {
+  const V radius = all(circle.radius), stiffness = all(grip.stiffness);
+  V taken = all(0);
+  const unsigned held_before = walls.holds[entry];
+  unsigned holds = 0;
+  for (int lane = 0; lane < edges_per_group; lane += lanes) {
+    const std::ptrdiff_t i = std::ptrdiff_t{walls.groups[entry]} * edges_per_group + lane;
+    const std::ptrdiff_t k = std::ptrdiff_t{entry} * edges_per_group + lane;
+    const V dx = hn::Sub(load(a.x + i), all(circle.x)), dy = hn::Sub(load(a.y + i), all(circle.y));
+    const V inverse = square_root(hn::Max(hn::MulAdd(dx, dx, hn::Mul(dy, dy)), all(1e-300))).inverse;
+    const V normal_x = hn::Mul(dx, inverse), normal_y = hn::Mul(dy, inverse);
+    const V push_x = load(walls.push_x + i), push_y = load(walls.push_y + i);
+    // The middle next to the end of a contact pulls the vertex behind it a little towards the wall.
+    const V push = hn::Max(hn::MulAdd(push_x, normal_x, hn::Mul(push_y, normal_y)), all(0));
+    V bears = hn::Mul(all(grip.coefficient), push);
+    if constexpr (wets) bears = hn::MulAdd(all(grip.traction), load(walls.wetted + i), bears);
+    const M touches = hn::Gt(bears, all(0));
+
+    // With the wall's point next to the vertex, radius normal, and with (-normal_y, normal_x) along it.
+    const M is_known = lanes_of(static_cast<int>(held_before), lane);
+    const V anchor_x = load(walls.anchor_x + k), anchor_y = load(walls.anchor_y + k);
+    const V slip = hn::IfThenElseZero(is_known, hn::MulSub(normal_y, anchor_x, hn::Mul(normal_x, anchor_y)));
+    const V spring = hn::Mul(stiffness, hn::Mul(radius, inverse));
+    const V most = hn::Mul(bears, reciprocal(spring));
+    const V held = hn::Min(hn::Max(slip, hn::Neg(most)), most);
+    const M rests = hn::And(is_known, hn::Eq(held, slip));
+    store(hn::IfThenElse(rests, anchor_x, hn::MulAdd(radius, normal_x, hn::Mul(held, normal_y))),
+          walls.anchor_x + k);
+    store(hn::IfThenElse(rests, anchor_y, hn::MulSub(radius, normal_y, hn::Mul(held, normal_x))),
+          walls.anchor_y + k);
+    // By the trapezoidal rule, as the integrator: the force of before acts on half of the way. A spring that
+    // its wall lost gives up its energy.
+    const V before = load(walls.slip + k);
+    const V lost = hn::IfThenElse(touches, hn::Mul(hn::Add(before, held), hn::Sub(slip, held)),
+                                  hn::Mul(before, before));
+    taken = hn::MulAdd(all(0.5), hn::IfThenElseZero(is_known, lost), taken);
+    store(hn::IfThenElseZero(touches, held), walls.slip + k);
+    holds |= bits_of(touches) << lane;
+
+    const V pull = hn::Mul(spring, held);
+    store(hn::Add(load(a.push_x + i), hn::MulAdd(pull, normal_y, push_x)), a.push_x + i);
+    store(hn::Add(load(a.push_y + i), hn::NegMulAdd(pull, normal_x, push_y)), a.push_y + i);
+  }
+  walls.holds[entry] = static_cast<std::uint8_t>(holds);
+  return taken;
+}
+
+template <bool wets>
+double push_off_and_hold(int n, const HoldingCircles& given, const WallGrip& grip, const Contact& contact,
+                         const StepArrays& a) {
+  const HoldingCircles walls = given;
+  const V span = all(contact.span), stiffness = all(contact.stiffness);
+  const int num_groups = (n + edges_per_group - 1) / edges_per_group;
+  V taken = all(0);
+  for (const HoldingCircle* circle = walls.all; circle != walls.all + walls.num; ++circle) {
+    for (int k = circle->first_window; k < circle->end_window; ++k)
+      push_window<false>(walls.windows[k], span, stiffness, circle->pushes, a);
+    for (int k = circle->first_group; k < circle->end_group; ++k)
+      gather_pushes(walls.groups[k], circle->pushes, walls.push_x, walls.push_y);
+    if constexpr (wets) {
+      for (int k = circle->first_group; k < circle->end_group; ++k)
+        for (int lane = 0; lane < edges_per_group; lane += lanes)
+          store(all(0), walls.wetted + std::ptrdiff_t{walls.groups[k]} * edges_per_group + lane);
+      for (int k = circle->first_window; k < circle->end_window; ++k)
+        add_wetted(walls.windows[k], span, a, walls.wetted);
+    }
+    if (circle->wraps) {
+      fold_ends(walls.push_x, n);
+      fold_ends(walls.push_y, n);
+      if constexpr (wets) fold_ends(walls.wetted, n);
+    }
+    for (int k = circle->first_group; k < circle->end_group; ++k)
+      if (walls.groups[k] >= 0 && walls.groups[k] < num_groups)
+        taken = hn::Add(taken, hold_group<wets>(*circle, k, walls, grip, a));
+  }
+  return sum(taken);
+}
+
+}  // namespace clog::kernel::HWY_NAMESPACE
+// NOLINTEND(misc-definitions-in-headers)
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,130 @@
+#include "wall_hold.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "wall_windows.hpp"
+
+namespace clog {
+namespace {
+
+constexpr int size = kernel::edges_per_group;
+// Groups before and behind the contour, and those next to them, are read.
+constexpr int before = 2, behind = 2;
+
+}  // namespace
+
+WallHold::WallHold(int num_vertices, double range)
+    : num_groups_((num_vertices + size - 1) / size), range_(range) {}
+
+double WallHold::make(const std::vector<WallContacts::Item>& near, DropletState& droplet) {
+  hand_back(droplet);
+  list_windows(near, num_groups_, windows_);
+  find_circles(static_cast<int>(droplet.size()));
+  arrange_memory();
+  double lost = 0;
+  for (const WallAnchor& anchor : droplet.anchors)
+    if (!take(anchor)) lost += anchor.slip * anchor.slip / 2;
+  droplet.anchors.clear();
+  has_anchors_ = true;
+  return lost;
+}
+
+void WallHold::find_circles(int num_vertices) {
+  all_.clear();
+  groups_.clear();
+  for (int k = 0; k < static_cast<int>(windows_.size()); ++k) {
+    const kernel::WallWindow& window = windows_[static_cast<std::size_t>(k)];
+    const double radius = window.reach - range_;
+    if (all_.empty() || all_.back().x != window.x || all_.back().y != window.y || all_.back().radius != radius)
+      all_.push_back({window.x, window.y, radius, k, k, 0, 0, false, {}});
+    all_.back().end_window = k + 1;
+  }
+  for (kernel::HoldingCircle& circle : all_) add_groups(circle, num_vertices);
+}
+
+void WallHold::add_groups(kernel::HoldingCircle& circle, int num_vertices) {
+  is_pushed_.assign(static_cast<std::size_t>(num_groups_) + 2, 0);
+  circle.wraps = false;
+  for (int k = circle.first_window; k < circle.end_window; ++k) {
+    const kernel::WallWindow& window = windows_[static_cast<std::size_t>(k)];
+    mark_pushed_groups(window, is_pushed_);
+    const int last = window.first + std::bit_width(unsigned{window.edges}) - 1;
+    circle.wraps |= (window.first == 0 && (window.edges & 1) != 0) || last + 2 >= num_vertices;
+  }
+  // What is pushed beyond the ends is the other end's.
+  if (circle.wraps)
+    is_pushed_.front() = is_pushed_[1] = is_pushed_[static_cast<std::size_t>(num_groups_)] = is_pushed_.back() =
+        1;
+  circle.first_group = static_cast<int>(groups_.size());
+  for (int group = -1; group <= num_groups_; ++group)
+    if (is_pushed_[static_cast<std::size_t>(group + 1)] != 0) groups_.push_back(group);
+  circle.end_group = static_cast<int>(groups_.size());
+}
+
+void WallHold::arrange_memory() {
+  const std::size_t stride = static_cast<std::size_t>(before + num_groups_ + behind) * size;
+  const std::size_t num_entries = groups_.size() * size;
+  const std::size_t needed = (all_.size() * kernel::num_window_push_arrays + 3) * stride + 3 * num_entries;
+  if (memory_size_ < needed) {
+    memory_ = hwy::AllocateAligned<double>(2 * needed);
+    memory_size_ = 2 * needed;
+  }
+  std::fill_n(memory_.get(), needed, 0.0);
+  double* next = memory_.get() + std::ptrdiff_t{before} * size;
+  for (kernel::HoldingCircle& circle : all_) {
+    circle.pushes = {.first = next, .stride = static_cast<std::ptrdiff_t>(stride)};
+    next += kernel::num_window_push_arrays * stride;
+  }
+  for (double** array : {&circles_.push_x, &circles_.push_y, &circles_.wetted}) {
+    *array = next;
+    next += stride;
+  }
+  next -= std::ptrdiff_t{before} * size;
+  for (double** array : {&circles_.anchor_x, &circles_.anchor_y, &circles_.slip}) {
+    *array = next;
+    next += num_entries;
+  }
+  holds_.assign(groups_.size(), 0);
+  circles_.all = all_.data();
+  circles_.num = all_.size();
+  circles_.windows = windows_.data();
+  circles_.groups = groups_.data();
+  circles_.holds = holds_.data();
+}
+
+/// Returns whether one of the circles can hold it.
+bool WallHold::take(const WallAnchor& anchor) {
+  const auto vertex = static_cast<int>(anchor.holder);
+  for (const kernel::HoldingCircle& circle : all_) {
+    if (!anchor.wall.is({.x = circle.x, .y = circle.y})) continue;
+    for (int k = circle.first_group; k < circle.end_group; ++k) {
+      if (groups_[static_cast<std::size_t>(k)] != vertex / size) continue;
+      const std::ptrdiff_t entry = std::ptrdiff_t{k} * size + vertex % size;
+      circles_.anchor_x[entry] = anchor.x;
+      circles_.anchor_y[entry] = anchor.y;
+      circles_.slip[entry] = anchor.slip;
+      circles_.holds[k] |= static_cast<std::uint8_t>(1U << vertex % size);
+      return true;
+    }
+  }
+  return false;
+}
+
+void WallHold::hand_back(DropletState& droplet) const {
+  if (!has_anchors_) return;
+  droplet.anchors.clear();
+  for (const kernel::HoldingCircle& circle : all_)
+    for (int k = circle.first_group; k < circle.end_group; ++k)
+      for (unsigned held = circles_.holds[k]; held != 0; held &= held - 1) {
+        const int lane = std::countr_zero(held);
+        const std::ptrdiff_t entry = std::ptrdiff_t{k} * size + lane;
+        droplet.anchors.push_back({.holder = Eigen::Index{groups_[static_cast<std::size_t>(k)]} * size + lane,
+                                   .wall = {.x = circle.x, .y = circle.y, .radius = circle.radius},
+                                   .x = circles_.anchor_x[entry],
+                                   .y = circles_.anchor_y[entry],
+                                   .slip = circles_.slip[entry]});
+      }
+}
+
+}  // namespace clog

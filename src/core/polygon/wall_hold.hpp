@@ -1,0 +1,51 @@
+#pragma once
+
+#include <hwy/aligned_allocator.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "clog/core/droplet/droplet_state.hpp"
+#include "clog/core/polygon/wall_contacts.hpp"
+#include "dp_step_kernel.hpp"
+
+namespace clog {
+
+/// How circles push a contour off and hold it by friction until the next make(): the anchors of a droplet (see
+/// WallFriction), arranged by circle and by groups of vertices. From make() on the anchors are here;
+/// hand_back() copies them into the droplet.
+class WallHold {
+ public:
+  /// @param range  distance from a circle's surface at which contact begins [sigma]
+  WallHold(int num_vertices, double range);
+
+  /// Takes the anchors over. @param near  see list_windows()
+  /// Returns half the sum of squares of the slips of anchors that no circle of these holds any more [sigma^2].
+  double make(const std::vector<WallContacts::Item>& near, DropletState& droplet);
+  /// Copies the anchors into the droplet, if make() was called since forget().
+  void hand_back(DropletState& droplet) const;
+  /// For a droplet that has its anchors itself.
+  void forget() { has_anchors_ = false; }
+  /// Valid until the next make(), and to be changed by a step.
+  const kernel::HoldingCircles& circles() const { return circles_; }
+
+ private:
+  int num_groups_;  // of edges
+  double range_;
+  bool has_anchors_ = false;
+  hwy::AlignedFreeUniquePtr<double[]> memory_;
+  std::size_t memory_size_ = 0;
+  std::vector<kernel::WallWindow> windows_;
+  std::vector<kernel::HoldingCircle> all_;
+  std::vector<int> groups_;  // of vertices, circle after circle
+  std::vector<std::uint8_t> holds_, is_pushed_;
+  kernel::HoldingCircles circles_{};
+
+  void find_circles(int num_vertices);
+  void add_groups(kernel::HoldingCircle& circle, int num_vertices);
+  void arrange_memory();
+  bool take(const WallAnchor& anchor);
+};
+
+}  // namespace clog
