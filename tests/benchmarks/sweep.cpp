@@ -2,8 +2,6 @@
 /// two passes of a step cost on the same core when nothing touches, the limit of any step; slices of both
 /// take turns.
 
-#include <hwy/aligned_allocator.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -11,11 +9,13 @@
 #include <cstdlib>
 #include <ctime>
 #include <numbers>
+#include <string_view>
 #include <vector>
 
 #include "clog/core/run/droplet_run.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "core/polygon/dp_step_kernel.hpp"
+#include "core/polygon/step_memory.hpp"
 
 namespace {
 
@@ -41,22 +41,10 @@ class BareStep {
                .rate = elastic ? drag_rate : 0,
                .relative_rate = elastic ? 0 : drag_rate,
                .area_rate = elastic ? 0 : drag_rate},
-        kernel_(kernel::step_kernel(terms_)) {
-    constexpr int line = 8;
-    const int stride = (n_ + line - 1) / line * line + 3 * line;
-    const auto size = static_cast<std::size_t>(kernel::num_step_arrays) * static_cast<std::size_t>(stride);
-    memory_ = hwy::AllocateAligned<double>(size);
-    std::fill_n(memory_.get(), size, 0.0);
-    double* next = memory_.get() + line;
-    for (double** array :
-         {&a_.x,       &a_.y,      &a_.vx,        &a_.vy,        &a_.tangent_x, &a_.tangent_y, &a_.length,
-          &a_.push_x,  &a_.push_y, &a_.wetting_x, &a_.wetting_y, &a_.grad_xx,   &a_.grad_xy,   &a_.grad_yx,
-          &a_.grad_yy, &a_.rate,   &a_.damping,   &a_.kept,      &a_.kicked_x,  &a_.kicked_y}) {
-      *array = next;
-      next += stride;
-    }
-    std::fill_n(a_.length, stride - line, 1.0);
-    for (int i = -1; i < n_ + line; ++i) {
+        kernel_(kernel::step_kernel(terms_)),
+        memory_(n_),
+        a_(memory_.arrays()) {
+    for (int i = -1; i < n_ + kernel::edges_per_group; ++i) {
       const double angle = 2 * std::numbers::pi * i / n_;
       a_.x[i] = std::cos(angle) / 2;
       a_.y[i] = std::sin(angle) / 2;
@@ -91,8 +79,8 @@ class BareStep {
   int n_;
   kernel::KickTerms terms_;
   kernel::StepKernel kernel_;
-  hwy::AlignedFreeUniquePtr<double[]> memory_;
-  kernel::StepArrays a_{};
+  StepMemory memory_;
+  kernel::StepArrays a_;
   kernel::Sums sums_{};
 };
 
@@ -199,13 +187,17 @@ void print(const char* name, const std::vector<Measured>& rounds) {
 
 }  // namespace
 
-/// bench_sweep [ROUNDS]
+/// bench_sweep [ROUNDS [WORD]]: with a word, only the tasks in whose names it is.
 int main(int argc, char** argv) {
   const int num_rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 3;
-  std::vector<std::vector<Measured>> measured(std::size(tasks));
+  const std::string_view word = argc > 2 ? argv[2] : "";
+  std::vector<const Task*> wanted;
+  for (const Task& task : tasks)
+    if (std::string_view(task.name).find(word) != std::string_view::npos) wanted.push_back(&task);
+  std::vector<std::vector<Measured>> measured(wanted.size());
   for (int round = 0; round < num_rounds; ++round)
-    for (std::size_t task = 0; task < std::size(tasks); ++task)
-      measured[task].push_back(measure(tasks[task]));
+    for (std::size_t task = 0; task < wanted.size(); ++task)
+      measured[task].push_back(measure(*wanted[task]));
   std::printf("%-50s %8s %8s %8s %8s\n", "medians of CPU time", "ns", "s a run", "limit", "ratio");
-  for (std::size_t task = 0; task < std::size(tasks); ++task) print(tasks[task].name, measured[task]);
+  for (std::size_t task = 0; task < wanted.size(); ++task) print(wanted[task]->name, measured[task]);
 }

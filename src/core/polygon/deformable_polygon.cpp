@@ -13,6 +13,7 @@
 #include "clog/core/polygon/neck.hpp"
 #include "clog/core/tools/units.hpp"
 #include "core/polygon/polygon_release.hpp"
+#include "core/polygon/rest_forces.hpp"
 
 namespace clog {
 namespace {
@@ -94,9 +95,10 @@ Axes axes_of_interface(const DpParameters& dp, const DropletState& state) {
 std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, const ObstacleArray& obstacles,
                                                    const DropletState& state) {
   DpForces forces(run, obstacles);
+  RestForces rest_forces(run, forces);
   const auto axes = [&](const DropletState& at) { return axes_of_interface(run.dp, at); };
   const bool have_energy = run.dp.perimeter_spring != PerimeterSpring::along;
-  const EquilibriumForces asked = EquilibriumForces::of(forces, axes, have_energy);
+  const EquilibriumForces asked = EquilibriumForces::of(rest_forces, axes, have_energy);
   std::optional<DropletState> rest = find_equilibrium(asked, state);
   if (!forces.has_anchors()) return rest;
   // Walls hold the droplet by springs, whose anchors rest while it is searched. Where a wall does not bear

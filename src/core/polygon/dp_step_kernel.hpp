@@ -39,6 +39,14 @@ struct InterfaceKick {
   double half_pressure;
   double vertex_weight;  ///< along +x
 };
+/// The kick in a time that gives a vertex `impulse` for a unit force.
+inline InterfaceKick kick_of(const Interface& interface, double impulse) {
+  return {.line_tension = impulse * (interface.line_tension - interface.spring * interface.spring_length),
+          .spring = impulse * interface.spring,
+          .spreading = impulse * interface.spreading,
+          .half_pressure = 0.5 * impulse * interface.pressure,
+          .vertex_weight = impulse * interface.vertex_weight};
+}
 /// A force on the area, spread over the vertices by the gradient of the area's centroid.
 struct AreaForce {
   double area;                ///< [sigma^2]

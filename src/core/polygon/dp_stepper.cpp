@@ -34,40 +34,20 @@ DpStepper::DpStepper(const RunParameters& run, const ObstacleArray& obstacles, c
       terms_(terms_of(run)),
       kernel_(kernel::step_kernel(terms_)),
       n_(*run.dp.vertices),
+      memory_(n_),
+      arrays_(memory_.arrays()),
       holds_circles_(forces.friction().is_on() && run.dp.wall_contact == WallContact::edge &&
                      obstacles.wedges().empty()),
       plan_(n_),
       hold_(n_, forces.walls().range()),
       touches_(run, obstacles),
-      friction_(Eigen::ArrayXd::Zero(Eigen::Index{2} * n_)) {
-  // Every array on a cache line, with room for an entry before and a group behind it.
-  constexpr int line = 8;
-  const int stride = (n_ + line - 1) / line * line + 3 * line;
-  memory_ = hwy::AllocateAligned<double>(static_cast<std::size_t>(kernel::num_step_arrays) * stride);
-  std::fill_n(memory_.get(), static_cast<std::size_t>(kernel::num_step_arrays) * stride, 0.0);
-  double* next = memory_.get() + line;
-  for (double** array :
-       {&arrays_.x,         &arrays_.y,       &arrays_.vx,      &arrays_.vy,       &arrays_.tangent_x,
-        &arrays_.tangent_y, &arrays_.length,  &arrays_.push_x,  &arrays_.push_y,   &arrays_.wetting_x,
-        &arrays_.wetting_y, &arrays_.grad_xx, &arrays_.grad_xy, &arrays_.grad_yx,  &arrays_.grad_yy,
-        &arrays_.rate,      &arrays_.damping, &arrays_.kept,    &arrays_.kicked_x, &arrays_.kicked_y}) {
-    *array = next;
-    next += stride;
-  }
-  // Edges of the last group that do not exist are divided by as well.
-  std::fill_n(arrays_.length, stride - line, 1.0);
-}
+      friction_(Eigen::ArrayXd::Zero(Eigen::Index{2} * n_)) {}
 
 void DpStepper::load(const DropletState& state) {
-  const auto copy = [this](const double* from, double* to) {
-    std::copy_n(from, n_, to);
-    to[-1] = to[n_ - 1];
-    std::copy_n(to, kernel::edges_per_group, to + n_);
-  };
-  copy(state.position.data(), arrays_.x);
-  copy(state.position.data() + n_, arrays_.y);
-  copy(state.velocity.data(), arrays_.vx);
-  copy(state.velocity.data() + n_, arrays_.vy);
+  memory_.load(state.position.data(), arrays_.x);
+  memory_.load(state.position.data() + n_, arrays_.y);
+  memory_.load(state.velocity.data(), arrays_.vx);
+  memory_.load(state.velocity.data() + n_, arrays_.vy);
   wedges_.clear();
   for (const Wedge& wedge : forces_->wedges()) wedges_.push_back(kernel::place_in(state.frame, wedge));
   sums_ = kernel_.measure(n_, arrays_);
@@ -154,12 +134,8 @@ void DpStepper::kick_and_drift(DropletState& droplet, const kernel::KickCoeffici
                                double drift_time, Droplet::Work* work) {
   const double impulse = coefficients.half_step / vertex_mass();
   push_off_everything(droplet, coefficients, impulse, work);
-  const kernel::Interface at_rest = forces_->interface(sums_.area, sums_.perimeter);
-  const kernel::InterfaceKick interface {
-    .line_tension = impulse * (at_rest.line_tension - at_rest.spring * at_rest.spring_length),
-    .spring = impulse * at_rest.spring, .spreading = impulse * at_rest.spreading,
-    .half_pressure = 0.5 * impulse * at_rest.pressure, .vertex_weight = impulse * at_rest.vertex_weight
-  };
+  const kernel::InterfaceKick interface =
+      kernel::kick_of(forces_->interface(sums_.area, sums_.perimeter), impulse);
   const kernel::AreaForce force{.area = sums_.area,
                                 .centre_x = sums_.moment_x / sums_.area,
                                 .centre_y = sums_.moment_y / sums_.area,

@@ -1,13 +1,12 @@
 #pragma once
 
-#include <hwy/aligned_allocator.h>
-
 #include <vector>
 
 #include "clog/core/droplet/droplet.hpp"
 #include "clog/core/polygon/dp_forces.hpp"
 #include "clog/core/polygon/wall_touches.hpp"
 #include "dp_step_kernel.hpp"
+#include "step_memory.hpp"
 #include "wall_hold.hpp"
 #include "wall_plan.hpp"
 
@@ -46,7 +45,7 @@ class DpStepper {
   kernel::KickTerms terms_;
   kernel::StepKernel kernel_;
   int n_;
-  hwy::AlignedFreeUniquePtr<double[]> memory_;
+  StepMemory memory_;
   kernel::StepArrays arrays_;
   // What may touch before the next look, and wedges in the droplet's frame.
   std::vector<WallContacts::Item> near_walls_;

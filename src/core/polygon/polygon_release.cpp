@@ -10,6 +10,7 @@
 #include "clog/core/polygon/dp_forces.hpp"
 #include "clog/core/polygon/stability.hpp"
 #include "clog/core/tools/units.hpp"
+#include "core/polygon/rest_forces.hpp"
 
 namespace clog {
 namespace {
@@ -77,13 +78,14 @@ DpForces weightless_forces(const RunParameters& run, const ObstacleArray& obstac
 /// @param area  that it has
 void grow(const RunParameters& growing, double area, DpForces& forces, DropletState& state) {
   constexpr double growth = 1.02;  // of the area, per stage
+  RestForces rest_forces(growing, forces);
   while (area < units::rest_area) {
     area = std::min(units::rest_area, area * growth);
     forces.set_rest_area(area);
     FireOptions stage = fire_options(growing, polygon_shape(state.position).perimeter);
     stage.force_tolerance = vertex_weight(growing);
     stage.max_iterations = 400;
-    minimize_fire(forces, state, stage);
+    minimize_fire(rest_forces, state, stage);
     if (state.recentre().any()) forces.forget_contacts();
   }
 }
@@ -93,8 +95,9 @@ constexpr double damping_rate = 3;  // near that of the softest modes [1/t0]
 /// Returns whether it does.
 bool comes_to_rest(RunParameters& growing, const ObstacleArray& obstacles, DpForces& forces,
                    const FireOptions& options, const FireOptions& longer, DropletState& state) {
-  bool rests = minimize_fire(forces, state, options).converged ||
-               settle(forces, state, longer, damping_rate).converged;
+  RestForces rest_forces(growing, forces);
+  bool rests = minimize_fire(rest_forces, state, options).converged ||
+               settle(rest_forces, state, longer, damping_rate).converged;
   // As the springs along the interface have no energy, what is left of its sliding may go round a small cycle
   // for ever. Weaker springs drive it less.
   constexpr double weaker = 0.3;
@@ -102,7 +105,8 @@ bool comes_to_rest(RunParameters& growing, const ObstacleArray& obstacles, DpFor
   for (int i = 0; i < most_weakenings && !rests; ++i) {
     *growing.dp.perimeter_stiffness *= weaker;
     DpForces weaker_forces = weightless_forces(growing, obstacles);
-    rests = settle(weaker_forces, state, longer, damping_rate).converged;
+    RestForces weaker_rest_forces(growing, weaker_forces);
+    rests = settle(weaker_rest_forces, state, longer, damping_rate).converged;
   }
   return rests;
 }
@@ -131,8 +135,9 @@ DropletState release_polygon(const RunParameters& run, const ObstacleArray& obst
     own.dp.perimeter_stiffness = growing.dp.perimeter_stiffness;
   }
   DpForces own_forces = weightless_forces(own, obstacles);
+  RestForces own_rest_forces(own, own_forces);
   if (rests)
-    rests = settle(own_forces, state, longer, damping_rate).largest_force <=
+    rests = settle(own_rest_forces, state, longer, damping_rate).largest_force <=
             release_sliding_tolerance * vertex_weight(run);
   if (!rests)
     refuse_release(

@@ -38,6 +38,8 @@ WallYield WallFriction::follow(DropletState& state, std::span<const WallTouch> t
   for (const WallTouch& touch : touches) {
     const WallFoot& at = touch.foot;
     if (!(at.gradient > 0)) continue;  // a sharp tip: there is nothing to slip along
+    const double bears = coefficient_ * touch.push + traction_ * touch.wetted;
+    if (!(bears > 0)) continue;
     WallAnchor* const before = known.find(touch.vertex, touch.wall);
     if (before == nullptr) {
       state.anchors.push_back({touch.vertex, touch.wall, at.point[0], at.point[1]});  // it pulls nowhere yet
@@ -46,7 +48,7 @@ WallYield WallFriction::follow(DropletState& state, std::span<const WallTouch> t
     WallAnchor anchor = *before;
     before->holder = -1;  // it is not lost
     const double slip = (at.along * (at.point - Eigen::Array2d(anchor.x, anchor.y))).sum();
-    const double most = (coefficient_ * touch.push + traction_ * touch.wetted) / (stiffness_ * at.gradient);
+    const double most = bears / (stiffness_ * at.gradient);
     const double held = yield.hold(anchor, slip, -most, most, stiffness_, purpose);
     if (held != slip) {
       const Eigen::Array2d moved = at.point - held * at.along;

@@ -22,9 +22,14 @@ using namespace test;
 class ReadableDroplet {
  public:
   ReadableDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial)
-      : run_(run), n_(*run.dp.vertices), forces_(run, obstacles), state_(std::move(initial)), force_(2 * n_) {
+      : run_(run),
+        n_(*run.dp.vertices),
+        forces_(run, obstacles),
+        touches_(run, obstacles),
+        state_(std::move(initial)),
+        force_(2 * n_) {
     forces_.update_contacts(state_, {.absolute = 0.05, .relative = 0.05});
-    forces_.evaluate(state_, force_);
+    find_forces();
   }
   const DropletState& state() const { return state_; }
 
@@ -33,7 +38,7 @@ class ReadableDroplet {
     const double h_over_m = h * n_ / units::droplet_mass;
     state_.velocity += h_over_m * force_ + h * drag(state_.velocity);
     state_.position += *run_.time_step * state_.velocity;
-    forces_.evaluate(state_, force_);
+    find_forces();
     // The drag of the second half kick is that of its end: by iteration.
     const Eigen::ArrayXd kicked = state_.velocity + h_over_m * force_;
     // Averaging keeps the iteration stable next to a wall.
@@ -45,9 +50,16 @@ class ReadableDroplet {
   RunParameters run_;
   int n_;
   DpForces forces_;
+  WallTouches touches_;
   DropletState state_;
   Eigen::ArrayXd force_;
 
+  /// Walls that hold the droplet yield first.
+  void find_forces() {
+    if (forces_.has_anchors())
+      forces_.let_walls_yield(state_, touches_, forces_.walls().items(), Purpose::motion);
+    forces_.evaluate(state_, force_);
+  }
   /// Deceleration by drag of vertices with these velocities.
   Eigen::ArrayXd drag(const Eigen::ArrayXd& v) {
     const double far = units::gravity / run_.drag.terminal_speed;
@@ -77,6 +89,20 @@ double distance_from(const Wedge& wedge, const DropletState& state) {
     nearest = std::min(
         nearest, distance_to(wedge, Eigen::Array2d(state.x()[i], state.y()[i]) - wedge.centre()).distance);
   return nearest;
+}
+
+/// In whichever order.
+void expect_same_anchors(const DropletState& state, const DropletState& expected) {
+  ASSERT_EQ(state.anchors.size(), expected.anchors.size());
+  for (const WallAnchor& one : expected.anchors) {
+    const auto found = std::ranges::find_if(state.anchors, [&](const WallAnchor& anchor) {
+      return anchor.holder == one.holder && anchor.wall.is(one.wall);
+    });
+    ASSERT_NE(found, state.anchors.end()) << one.holder;
+    EXPECT_NEAR(found->x, one.x, 1e-13);
+    EXPECT_NEAR(found->y, one.y, 1e-13);
+    EXPECT_NEAR(found->slip, one.slip, 1e-13);
+  }
 }
 
 struct StepCase {
@@ -200,7 +226,8 @@ TEST_P(Step, MeetsCirclesThatShareEdges) {
     run.dp.vertices = vertices;
     run.wall_stiffness = wall_stiffness(200, units::regular_edge_length(vertices));
     const double edge = units::regular_edge_length(vertices), radius = 0.5 * edge;
-    const DropletState initial = state_of(shaken(regular_polygon(vertices, units::rest_area), 0.01 * edge));
+    DropletState initial = state_of(shaken(regular_polygon(vertices, units::rest_area), 0.01 * edge));
+    initial.velocity.head(vertices) = 0.05;
     std::vector<Obstacle> circles;
     for (double angle = 0; angle < 6; angle += 1.1 * edge) {
       const double far = 0.5 + radius + *run.dp.contact_range - 0.12 * edge;
@@ -208,15 +235,17 @@ TEST_P(Step, MeetsCirclesThatShareEdges) {
     }
     const ObstacleArray walls(20, std::move(circles));
     ReadableDroplet readable(run, walls, initial);
-    for (int step = 0; step < 3; ++step) readable.step();
+    constexpr int num_steps = 10;
+    for (int step = 0; step < num_steps; ++step) readable.step();
     for (const std::string& set : instruction_sets()) {
       use_instruction_set(set);
       DpDroplet droplet(run, walls, initial);
       if (run.dp.wall_contact == WallContact::edge) {
         ASSERT_GT(droplet.potential_energy().wall, 0);
       }
-      droplet.advance(3);
-      if (droplet.num_integrated_steps() != 3) continue;  // the reference has no sub-steps
+      droplet.advance(num_steps);
+      if (droplet.num_integrated_steps() != num_steps) continue;  // the reference has no sub-steps
+      expect_same_anchors(droplet.state(), readable.state());
       EXPECT_LT((droplet.state().position - readable.state().position).abs().maxCoeff(), 1e-14)
           << set << ", " << vertices;
     }
@@ -247,7 +276,26 @@ INSTANTIATE_TEST_SUITE_P(
                              }},
                     StepCase{"vertex_contact",
                              [](RunParameters& r) { r.dp.wall_contact = WallContact::vertex; }},
-                    StepCase{"wetted", [](RunParameters& r) { r.dp.wall_tension = 0.5; }}),
+                    StepCase{"wetted", [](RunParameters& r) { r.dp.wall_tension = 0.5; }},
+                    StepCase{"hysteresis",
+                             [](RunParameters& r) {
+                               r.dp.wall_tension = 0.5;
+                               r.dp.receding_angle = 100;
+                               r.dp.advancing_angle = 140;
+                             }},
+                    StepCase{"friction",
+                             [](RunParameters& r) {
+                               r.dp.perimeter_spring = PerimeterSpring::rest;
+                               r.dp.gravity = Gravity::vertex;
+                               r.dp.friction = 0.1;
+                             }},
+                    StepCase{"friction_and_traction",
+                             [](RunParameters& r) {
+                               r.dp.perimeter_spring = PerimeterSpring::rest;
+                               r.dp.gravity = Gravity::vertex;
+                               r.dp.friction = 0.05;
+                               r.dp.yield_traction = 0.1;
+                             }}),
     [](const auto& tested) { return tested.param.name; });
 
 TEST(InstructionSet, DecidesTheReadableFormToo) {

@@ -46,7 +46,7 @@ TEST(WallFriction, ForceIsTheGradientOfTheEnergyWhileTheAnchorsRest) {
   DpForces forces(run, walls);
   forces.update_contacts(state, {.absolute = 0.01, .relative = 0.01});
   anchor(run, walls, forces, state);
-  ASSERT_GT(state.anchors.size(), 5);
+  ASSERT_GE(state.anchors.size(), 5);
   EXPECT_TRUE(std::ranges::any_of(state.anchors, [](const WallAnchor& one) { return one.wall.wedge == 0; }));
   state.position = shaken(state.position, 0.003);
   EXPECT_GT(forces.energy(state).anchors, 1e-4);

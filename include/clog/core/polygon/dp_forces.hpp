@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 
 #include "clog/core/droplet/droplet_state.hpp"
 #include "clog/core/droplet/energy.hpp"
@@ -32,6 +33,8 @@ class DpForces {
   /// @param moved           a vertex at most, since walls() were renewed [sigma]
   /// @param moved_relative  to the vertices' mean, since self_contacts() were renewed [sigma]
   bool contacts_hold(double moved, double moved_relative, const Travel& travel) const;
+  /// How often lists of walls() and self_contacts() were made anew.
+  std::int64_t num_renewals() const { return walls_.num_renewals() + self_.num_renewals(); }
   /// To be called when local coordinates have moved by a shift of the frame.
   void forget_contacts();
   /// Those with itself, too, which a shift does not change.
@@ -87,6 +90,7 @@ class DpForces {
   /// For the release, where the droplet grows without weight.
   void set_rest_area(double area);
   void set_weight(double weight) { weight_ = weight; }
+  double weight() const { return weight_; }
   /// d(X, Y)/d(x_i, y_i), X, Y the area's centroid, at the last evaluate(): dX/dx, dX/dy, dY/dx, dY/dy, each
   /// of length N_v. Zero with the weight on the vertices.
   Eigen::ArrayXd& centroid_gradient() { return centroid_gradient_; }

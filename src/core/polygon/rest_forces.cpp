@@ -1,0 +1,84 @@
+#include "rest_forces.hpp"
+
+#include <algorithm>
+
+namespace clog {
+namespace {
+
+kernel::KickTerms terms_without_drag(const DpParameters& dp) {
+  const bool on_area = dp.gravity == Gravity::area;
+  return {.elastic = dp.perimeter_spring != PerimeterSpring::along,
+          .on_area = on_area,
+          .varying_rate = false,
+          .coupled = on_area,
+          .rate = 0,
+          .relative_rate = 0,
+          .area_rate = 0};
+}
+
+}  // namespace
+
+RestForces::RestForces(const RunParameters& run, DpForces& forces)
+    : forces_(&forces),
+      n_(*run.dp.vertices),
+      terms_(terms_without_drag(run.dp)),
+      kernel_(kernel::step_kernel(terms_)),
+      contact_{.stiffness = forces.contact_stiffness(),
+               .span = run.dp.wall_contact == WallContact::edge ? 1.0 : 0.0,
+               .self_range = forces.self_contacts().range()},
+      memory_(n_),
+      plan_(n_) {}
+
+void RestForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
+  const kernel::StepArrays& a = memory_.arrays();
+  memory_.load(state.position.data(), a.x);
+  memory_.load(state.position.data() + n_, a.y);
+  const kernel::Sums sums = kernel_.measure(n_, a);
+  push_off(state);
+  Eigen::Array2d net_spreading{0, 0};
+  force.setZero();
+  if (forces_->wets()) {
+    const DpForces::WettingForces wetting = forces_->wetting_forces(state);
+    net_spreading = wetting.net_spreading();
+    force = wetting.gradient + wetting.spreading;
+  }
+  if (forces_->friction().is_on()) forces_->friction().add_forces(state, force);
+
+  // A kick of a droplet at rest, without drag, for as long that it is the force.
+  std::fill_n(a.vx, n_, 0.0);
+  std::fill_n(a.vy, n_, 0.0);
+  const kernel::Coupling coupling =
+      kernel_.kick(n_, terms_, kernel::kick_of(forces_->interface(sums.area, sums.perimeter), 1),
+                   {.area = sums.area,
+                    .centre_x = sums.moment_x / sums.area,
+                    .centre_y = sums.moment_y / sums.area,
+                    .x = forces_->weight() - net_spreading[0],
+                    .y = -net_spreading[1]},
+                   {.kicks = 0, .h1 = 0, .h2 = 0, .weight = 1, .half_step = 0, .keeps_kicked = false}, a);
+  const auto array = [this](const double* p) { return Eigen::Map<const Eigen::ArrayXd>(p, n_); };
+  force.head(n_) += array(a.vx);
+  force.tail(n_) += array(a.vy);
+  if (!terms_.on_area) return;
+  force.head(n_) -= coupling.a_x * array(a.grad_xx) + coupling.a_y * array(a.grad_yx);
+  force.tail(n_) -= coupling.a_x * array(a.grad_xy) + coupling.a_y * array(a.grad_yy);
+}
+
+/// By all contacts of the lists.
+void RestForces::push_off(const DropletState& state) {
+  const kernel::StepArrays& a = memory_.arrays();
+  if (num_renewals_ != forces_->num_renewals()) {
+    num_renewals_ = forces_->num_renewals();
+    plan_.make(forces_->walls().items());
+    kernel_.clear_pushes(n_, a);  // the plan may name other groups than before
+    wedges_.clear();
+    for (const Wedge& wedge : forces_->wedges()) wedges_.push_back(kernel::place_in(state.frame, wedge));
+  }
+  if (!wedges_.empty()) kernel_.clear_pushes(n_, a);
+  const auto& self = forces_->self_contacts().items();
+  kernel_.push(n_, plan_.windows(), self.data(), self.size(), contact_, a);
+  if (!wedges_.empty())
+    kernel_.push_off_wedges(n_, wedges_.data(), wedges_.size(), forces_->walls().range(), contact_.stiffness,
+                            a);
+}
+
+}  // namespace clog
