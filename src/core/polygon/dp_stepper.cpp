@@ -61,36 +61,19 @@ kernel::Survey DpStepper::survey() const {
 
 void DpStepper::look(DropletState& state, const Travel& travel, Droplet::Work* work) {
   kernel_.clear_pushes(n_, arrays_);  // the lists may name other groups than before
-  const auto& walls = forces_->walls().items();
-  const auto& self = forces_->self_contacts().items();
-  constexpr std::size_t size = kernel::edges_per_group;
-  wall_gaps_.resize(walls.size() * size);
-  self_gaps_.resize(self.size());
   // A contact speeds what is in it up by at most half its depth per step, and for a few steps: `travel` knows
   // nothing of that.
-  const double deepest =
-      -std::min(kernel_.circle_gaps(walls.data(), walls.size(), contact(0), arrays_, wall_gaps_.data()),
-                kernel_.pair_gaps(self.data(), self.size(), contact(0), arrays_, self_gaps_.data()));
   constexpr double thrown = 4;
-  const double unforeseen = 0.1 * forces_->vertex_diameter() + thrown * deepest;
-  const double wall_way = refined_sway * (travel.absolute + unforeseen);
-  near_walls_.clear();
-  for (std::size_t k = 0; k < walls.size(); ++k) {
-    const std::uint8_t edges = kernel_.edges_within(&wall_gaps_[k * size], wall_way);
-    if (edges == 0) continue;
-    near_walls_.push_back(walls[k]);
-    near_walls_.back().edges = edges;
-  }
+  const double unforeseen = 0.1 * forces_->vertex_diameter() +
+                            thrown * near_.measure(kernel_, contact(0), *forces_, arrays_);
+  near_.keep(kernel_, *forces_, refined_sway * (travel.absolute + unforeseen),
+             2 * (travel.relative + unforeseen));
   if (holds_circles_) {
-    const double lost = forces_->friction().stiffness() * hold_.make(near_walls_, state);
+    const double lost = forces_->friction().stiffness() * hold_.make(near_.walls(), state);
     if (work != nullptr) work->dissipated += lost;
   } else {
-    plan_.make(near_walls_);
+    plan_.make(near_.walls());
   }
-  const double self_way = 2 * (travel.relative + unforeseen);
-  near_self_.clear();
-  for (std::size_t k = 0; k < self.size(); ++k)
-    if (self_gaps_[k] <= self_way) near_self_.push_back(self[k]);
 }
 
 void DpStepper::store(DropletState& state) const {
@@ -166,7 +149,7 @@ kernel::Contact DpStepper::contact(double stiffness) const {
 void DpStepper::push_off_circles(double impulse, Droplet::Work* work) {
   const kernel::Contact touching = contact(impulse * forces_->contact_stiffness());
   if (!holds_circles_) {
-    kernel_.push(n_, plan_.windows(), near_self_.data(), near_self_.size(), touching, arrays_);
+    kernel_.push(n_, plan_.windows(), near_.self().data(), near_.self().size(), touching, arrays_);
     return;
   }
   const WallFriction& friction = forces_->friction();
@@ -174,14 +157,14 @@ void DpStepper::push_off_circles(double impulse, Droplet::Work* work) {
                                              {.coefficient = friction.coefficient(),
                                               .traction = impulse * friction.yield_traction(),
                                               .stiffness = impulse * friction.stiffness()},
-                                             near_self_.data(), near_self_.size(), touching, arrays_);
+                                             near_.self().data(), near_.self().size(), touching, arrays_);
   if (work != nullptr) work->dissipated += friction.stiffness() * taken;
 }
 
 void DpStepper::push_off_everything(DropletState& droplet, const kernel::KickCoefficients& coefficients,
                                     double impulse, Droplet::Work* work) {
   const double stiffness = impulse * forces_->contact_stiffness();
-  const bool touches = !near_walls_.empty() || !wedges_.empty() || !droplet.anchors.empty();
+  const bool touches = !near_.walls().empty() || !wedges_.empty() || !droplet.anchors.empty();
   const bool slides = forces_->friction().is_on() && !holds_circles_ && touches;
   // Whatever these add, to vertices beyond the listed groups too, is gone before the next step.
   if (!wedges_.empty() || forces_->wets() || slides || are_pushes_spread_) kernel_.clear_pushes(n_, arrays_);
@@ -221,14 +204,14 @@ void DpStepper::push_off_everything(DropletState& droplet, const kernel::KickCoe
 }
 
 void DpStepper::let_walls_yield(DropletState& droplet, Droplet::Work* work) {
-  const WallYield yield = forces_->let_walls_yield(droplet, touches_, near_walls_, Purpose::motion);
+  const WallYield yield = forces_->let_walls_yield(droplet, touches_, near_.walls(), Purpose::motion);
   if (work != nullptr) work->dissipated += yield.dissipated;
 }
 
 /// Walls yield where they have to, and hold the vertices by what they bear.
 void DpStepper::hold_by_friction(DropletState& droplet, double impulse, Droplet::Work* work) {
   const std::vector<WallTouch>& touches =
-      touches_.find({n_, arrays_.x, arrays_.y}, droplet.frame, near_walls_);
+      touches_.find({n_, arrays_.x, arrays_.y}, droplet.frame, near_.walls());
   const WallYield yield =
       forces_->friction().follow(droplet, touches, Purpose::motion, touches_.known_anchors(), &friction_);
   if (work != nullptr) work->dissipated += yield.dissipated;

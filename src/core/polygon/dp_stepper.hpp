@@ -6,6 +6,7 @@
 #include "clog/core/polygon/dp_forces.hpp"
 #include "clog/core/polygon/wall_touches.hpp"
 #include "dp_step_kernel.hpp"
+#include "near_contacts.hpp"
 #include "step_memory.hpp"
 #include "wall_hold.hpp"
 #include "wall_plan.hpp"
@@ -48,12 +49,10 @@ class DpStepper {
   StepMemory memory_;
   kernel::StepArrays arrays_;
   // What may touch before the next look, and wedges in the droplet's frame.
-  std::vector<WallContacts::Item> near_walls_;
-  std::vector<SelfContacts::Item> near_self_;
+  NearContacts near_;
   bool holds_circles_;  // does friction act, and only at edges that meet circles?
   WallPlan plan_;       // otherwise
   WallHold hold_;
-  std::vector<double> wall_gaps_, self_gaps_;  // of the lists' items at the last look
   std::vector<kernel::WedgePlace> wedges_;
   WallTouches touches_;
   Eigen::ArrayXd friction_;              // on vertices, all x then all y; zero between steps

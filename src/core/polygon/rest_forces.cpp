@@ -29,12 +29,41 @@ RestForces::RestForces(const RunParameters& run, DpForces& forces)
       memory_(n_),
       plan_(n_) {}
 
+void RestForces::load(const DropletState& state) {
+  memory_.load(state.position.data(), memory_.arrays().x);
+  memory_.load(state.position.data() + n_, memory_.arrays().y);
+}
+
+void RestForces::update_contacts(const DropletState& state, const Travel& travel) {
+  load(state);
+  if (!contacts_hold(travel)) look(state, travel);
+}
+
+bool RestForces::contacts_hold(const Travel& travel) const {
+  return looked_at_.size() > 0 && forces_->has_contact_lists() &&
+         kernel_.survey(n_, looked_at_.data(), nullptr, memory_.arrays()).moved + travel.absolute <= way_;
+}
+
+void RestForces::look(const DropletState& state, const Travel& travel) {
+  way_ = std::max(2 * travel.absolute, 0.3 * forces_->vertex_diameter());
+  forces_->update_contacts(state, {.absolute = way_, .relative = 2 * way_});
+  looked_at_.setZero(2 * n_ + kernel::edges_per_group);
+  looked_at_.head(2 * n_) = state.position;
+  const kernel::StepArrays& a = memory_.arrays();
+  kernel_.measure(n_, a);
+  near_.measure(kernel_, contact_, *forces_, a);
+  near_.keep(kernel_, *forces_, refined_sway * way_, 2 * way_);
+  plan_.make(near_.walls());
+  kernel_.clear_pushes(n_, a);  // the plan may name other groups than before
+  wedges_.clear();
+  for (const Wedge& wedge : forces_->wedges()) wedges_.push_back(kernel::place_in(state.frame, wedge));
+}
+
 void RestForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   const kernel::StepArrays& a = memory_.arrays();
-  memory_.load(state.position.data(), a.x);
-  memory_.load(state.position.data() + n_, a.y);
+  load(state);
   const kernel::Sums sums = kernel_.measure(n_, a);
-  push_off(state);
+  push_off();
   Eigen::Array2d net_spreading{0, 0};
   force.setZero();
   if (forces_->wets()) {
@@ -63,19 +92,10 @@ void RestForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   force.tail(n_) -= coupling.a_x * array(a.grad_xy) + coupling.a_y * array(a.grad_yy);
 }
 
-/// By all contacts of the lists.
-void RestForces::push_off(const DropletState& state) {
+void RestForces::push_off() {
   const kernel::StepArrays& a = memory_.arrays();
-  if (num_renewals_ != forces_->num_renewals()) {
-    num_renewals_ = forces_->num_renewals();
-    plan_.make(forces_->walls().items());
-    kernel_.clear_pushes(n_, a);  // the plan may name other groups than before
-    wedges_.clear();
-    for (const Wedge& wedge : forces_->wedges()) wedges_.push_back(kernel::place_in(state.frame, wedge));
-  }
   if (!wedges_.empty()) kernel_.clear_pushes(n_, a);
-  const auto& self = forces_->self_contacts().items();
-  kernel_.push(n_, plan_.windows(), self.data(), self.size(), contact_, a);
+  kernel_.push(n_, plan_.windows(), near_.self().data(), near_.self().size(), contact_, a);
   if (!wedges_.empty())
     kernel_.push_off_wedges(n_, wedges_.data(), wedges_.size(), forces_->walls().range(), contact_.stiffness,
                             a);

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "clog/core/polygon/dp_forces.hpp"
 #include "dp_step_kernel.hpp"
+#include "near_contacts.hpp"
 #include "step_memory.hpp"
 #include "wall_plan.hpp"
 
@@ -19,9 +19,7 @@ class RestForces {
   RestForces(const RunParameters& run, DpForces& forces);
 
   /// See DpForces.
-  void update_contacts(const DropletState& state, const Travel& travel) {
-    forces_->update_contacts(state, travel);
-  }
+  void update_contacts(const DropletState& state, const Travel& travel);
   /// force = -grad U, all x then all y [g rho sigma^2], to round-off that of DpForces::evaluate().
   void evaluate(const DropletState& state, Eigen::ArrayXd& force);
 
@@ -34,9 +32,14 @@ class RestForces {
   StepMemory memory_;
   WallPlan plan_;
   std::vector<kernel::WedgePlace> wedges_;
-  std::int64_t num_renewals_ = -1;  // of the lists that the plan was made of
+  NearContacts near_;
+  double way_ = 0;           // for which they hold [sigma]
+  Eigen::ArrayXd looked_at_;  // where vertices were then, all x then all y, and room for a whole vector
 
-  void push_off(const DropletState& state);
+  void load(const DropletState& state);
+  bool contacts_hold(const Travel& travel) const;
+  void look(const DropletState& state, const Travel& travel);
+  void push_off();
 };
 
 }  // namespace clog

@@ -93,7 +93,6 @@ void SelfContacts::find_close(const double* x, const double* y, double longest_e
 
 void SelfContacts::rebuild(const DropletState& state, double skin) {
   skin_ = skin;
-  ++num_renewals_;
   const int n = static_cast<int>(state.size());
   const double* x = state.position.data();
   const double* y = x + n;

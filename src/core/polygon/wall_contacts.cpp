@@ -79,7 +79,6 @@ void WallContacts::gather_nearby(const DropletState& state) {
 
 void WallContacts::rebuild(const DropletState& state, double skin) {
   skin_ = skin;
-  ++num_renewals_;
   num_points_ = state.size();
   reference_.resize(2 * num_points_ + edges_per_group);
   reference_.head(2 * num_points_) = state.position;

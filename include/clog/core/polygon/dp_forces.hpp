@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 
 #include "clog/core/droplet/droplet_state.hpp"
 #include "clog/core/droplet/energy.hpp"
@@ -33,8 +32,11 @@ class DpForces {
   /// @param moved           a vertex at most, since walls() were renewed [sigma]
   /// @param moved_relative  to the vertices' mean, since self_contacts() were renewed [sigma]
   bool contacts_hold(double moved, double moved_relative, const Travel& travel) const;
-  /// How often lists of walls() and self_contacts() were made anew.
-  std::int64_t num_renewals() const { return walls_.num_renewals() + self_.num_renewals(); }
+  /// Are there contact lists that nobody has invalidated?
+  bool has_contact_lists() const {
+    return walls_.reference() != nullptr &&
+           (dp_.self_contact == SelfContact::off || self_.reference() != nullptr);
+  }
   /// To be called when local coordinates have moved by a shift of the frame.
   void forget_contacts();
   /// Those with itself, too, which a shift does not change.

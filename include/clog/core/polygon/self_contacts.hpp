@@ -47,8 +47,6 @@ class SelfContacts {
   /// relative to their mean.
   bool hold(double moved, const Travel& travel) const;
   void renew(const DropletState& state, const Travel& travel);
-  /// How often the pairs were made anew.
-  std::int64_t num_renewals() const { return num_renewals_; }
   /// Where the vertices were then, relative to their mean, all x then all y, and behind them room for a whole
   /// vector; null: there are no pairs.
   const double* reference() const { return reference_.size() > 0 ? reference_.data() : nullptr; }
@@ -85,7 +83,6 @@ class SelfContacts {
   std::vector<int> item_of_;         // by direction and first vertex
 
   double skin_ = 0;  // of the present pairs
-  std::int64_t num_renewals_ = 0;
 
   /// Fills along_. Returns the length of the longest edge.
   double measure_edges(const double* x, const double* y, int n);

@@ -30,8 +30,6 @@ class WallContacts {
   /// The same as update(), where it is known how far a vertex is at most from where it was at renew().
   bool hold(double moved, const Travel& travel) const;
   void renew(const DropletState& state, const Travel& travel);
-  /// How often the lists were made anew.
-  std::int64_t num_renewals() const { return num_renewals_; }
   /// Where the vertices were then, all x then all y, and behind them room for a whole vector; null: there are
   /// no lists.
   const double* reference() const { return reference_.size() > 0 ? reference_.data() : nullptr; }
@@ -63,7 +61,6 @@ class WallContacts {
   double range_;
   Keep keep_;
   double skin_ = 0;  // of the present lists
-  std::int64_t num_renewals_ = 0;
   int num_slots_ = 0;
   Eigen::Index num_points_ = 0;
   Eigen::ArrayXd reference_;
