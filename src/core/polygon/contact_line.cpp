@@ -1,9 +1,10 @@
 #include "clog/core/polygon/contact_line.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
-#include <tuple>
+#include <utility>
 
 #include "clog/core/tools/portable_math.hpp"
 #include "clog/core/tools/units.hpp"
@@ -17,42 +18,17 @@ using std::numbers::pi;
 
 double cosine(double degrees) { return portable::cos(degrees * pi / 180); }
 
-/// Where a vertex is, seen from a wall.
-struct Beside {
-  double distance;         // [sigma]
-  Eigen::Array2d normal;   // away from the wall
-  double place;            // u, against the sense of the contour [sigma]
-  Eigen::Array2d forward;  // its gradient
-};
-
-Beside beside_circle(const WallPlace& wall, const Eigen::Array2d& from_centre) {
-  const double r = from_centre.matrix().norm();
-  const Eigen::Array2d normal = from_centre / r;
-  return {.distance = r - wall.radius,
-          .normal = normal,
-          .place = wall.radius * portable::atan2(normal[1], normal[0]),
-          .forward = wall.radius / r * Eigen::Array2d(-normal[1], normal[0])};
-}
-
-/// u is 0 on the axis; from the tip's circle it goes on along the flanks.
-Beside beside_wedge(const Wedge& wedge, const Eigen::Array2d& from_centre) {
-  const auto [distance, normal] = distance_to(wedge, from_centre);
-  const Eigen::Array2d across_axis{-wedge.axis[1], wedge.axis[0]};
-  const double across = (from_centre * across_axis).sum();
-  const double along = (from_centre * wedge.axis).sum();
-  const double c = wedge.half_angle.cos;
-  const double s = wedge.half_angle.sin;
-  Beside beside{.distance = distance, .normal = normal, .place = 0, .forward = {-normal[1], normal[0]}};
-  if (along * c + std::abs(across) * s < 0) {
-    // The angle from minus the axis, counter-clockwise around the centre.
-    beside.place = wedge.radius * portable::atan2(-across, -along);
-    beside.forward *= wedge.radius / (distance + wedge.radius);
-  } else {
-    const double on_tip = wedge.radius * (pi / 2 - wedge.half_angle.radians);
-    const double on_flank = along * c + std::abs(across) * s;
-    beside.place = (across < 0 ? 1 : -1) * (on_tip + on_flank);
-  }
-  return beside;
+/// The angle from one direction to another, by their cross and dot products.
+double turn_between(double cross, double dot) {
+  // Vertices next to each other see a wall under small angles: terms of the arc tangent's series up to
+  // 0.3^29/29 = 2e-17, for a tenth of the time.
+  constexpr double small = 0.3;
+  constexpr int last_power = 27;
+  if (!(std::abs(cross) < small * dot)) return portable::atan2(cross, dot);
+  const double t = cross / dot, square = t * t;
+  double series = 0;
+  for (int power = last_power; power >= 1; power -= 2) series = 1.0 / power - square * series;
+  return t * series;
 }
 
 /// From one place along a wall to another: around a circle the shorter way.
@@ -72,22 +48,50 @@ bool has_hysteresis(const DpParameters& dp) {
   return dp.receding_angle.value_or(young) < young || dp.advancing_angle.value_or(young) > young;
 }
 
-/// A wall near the interface, and the vertices near it in the order of their numbers.
-struct ContactLine::Zone {
-  WallPlace wall;
-  struct Vertex {
-    Index vertex;
-    double share, slope;
-    Eigen::Array2d normal;
-  };
-  std::vector<Vertex> vertices;
-
-  Beside beside(std::span<const Wedge> wedges, const DropletState& state, Index vertex) const {
-    const Eigen::Array2d from_centre{state.x()[vertex] - wall.x, state.y()[vertex] - wall.y};
-    return wall.wedge < 0 ? beside_circle(wall, from_centre)
-                          : beside_wedge(wedges[static_cast<std::size_t>(wall.wedge)], from_centre);
-  }
+/// Where a vertex is, seen from a wall.
+struct ContactLine::Beside {
+  Eigen::Array2d normal;   // away from the wall
+  Eigen::Array2d forward;  // the gradient of the place u, which goes against the sense of the contour
+  double on_wedge;         // u [sigma]; it is 0 on the axis, and goes on from the tip's circle along the flanks
 };
+
+namespace {
+
+/// u of a wedge.
+double place_on(const Wedge& wedge, const Eigen::Array2d& from_centre) {
+  const Eigen::Array2d across_axis{-wedge.axis[1], wedge.axis[0]};
+  const double across = (from_centre * across_axis).sum();
+  const double along = (from_centre * wedge.axis).sum();
+  const double c = wedge.half_angle.cos, s = wedge.half_angle.sin;
+  // The angle from minus the axis, counter-clockwise around the centre.
+  if (along * c + std::abs(across) * s < 0) return wedge.radius * portable::atan2(-across, -along);
+  const double on_tip = wedge.radius * (pi / 2 - wedge.half_angle.radians);
+  return (across < 0 ? 1 : -1) * (on_tip + along * c + std::abs(across) * s);
+}
+
+}  // namespace
+
+ContactLine::Beside ContactLine::beside(const WallPlace& wall, const VertexPlaces& vertices,
+                                        Eigen::Index vertex) const {
+  const Eigen::Array2d from_centre{vertices.x[vertex] - wall.x, vertices.y[vertex] - wall.y};
+  const auto [distance, normal] = distance_to(wall, wedges_, from_centre);
+  const Eigen::Array2d along{-normal[1], normal[0]};
+  const double on_circle = wall.radius / (distance + wall.radius);
+  if (wall.wedge < 0) return {normal, on_circle * along, 0};
+  const Wedge& wedge = wedges_[static_cast<std::size_t>(wall.wedge)];
+  const double on_axis = (from_centre * wedge.axis).sum();
+  const double across = std::abs(from_centre[1] * wedge.axis[0] - from_centre[0] * wedge.axis[1]);
+  const bool is_at_tip = on_axis * wedge.half_angle.cos + across * wedge.half_angle.sin < 0;
+  return {normal, (is_at_tip ? on_circle : 1) * along, place_on(wedge, from_centre)};
+}
+
+ContactLine::Zone& ContactLine::Ends::add_zone(const WallPlace& wall) {
+  if (num_zones_ == zones_.size()) zones_.emplace_back();
+  Zone& zone = zones_[num_zones_++];
+  zone.wall = wall;
+  zone.vertices.clear();
+  return zone;
+}
 
 ContactLine::ContactLine(const RunParameters& run, std::span<const Wedge> wedges)
     : is_on_(has_hysteresis(run.dp)),
@@ -100,44 +104,49 @@ ContactLine::ContactLine(const RunParameters& run, std::span<const Wedge> wedges
   most_inwards_ = run.dp.line_tension * (cosine(young) - cosine(run.dp.advancing_angle.value_or(young)));
 }
 
-void ContactLine::add_to(Zone& zone, const DropletState& state, Index vertex) const {
-  const Eigen::Array2d from_centre{state.x()[vertex] - zone.wall.x, state.y()[vertex] - zone.wall.y};
+void ContactLine::add_to(Zone& zone, const VertexPlaces& vertices, Index vertex) const {
+  const Eigen::Array2d from_centre{vertices.x[vertex] - zone.wall.x, vertices.y[vertex] - zone.wall.y};
   const WedgeDistance at = distance_to(zone.wall, wedges_, from_centre);
   const double on_wall = width_ * hovering / wetting_width;
   const WettedShare share = wetted_share(at.distance, contact_range_ + on_wall, width_ - on_wall);
   if (share.share > 0) zone.vertices.push_back({vertex, share.share, share.slope, at.normal});
 }
 
-std::vector<ContactLine::End> ContactLine::ends(const DropletState& state,
-                                                std::span<const WallContacts::Item> circles) const {
-  std::vector<Zone> zones;
+void ContactLine::find_ends(const VertexPlaces& vertices, const LocalFrame& frame,
+                            std::span<const WallContacts::Item> circles, Ends& ends) const {
+  ends.num_zones_ = 0;
   for (const WallContacts::Item& item : circles) {
     const WallPlace circle{item.x, item.y, item.reach - contact_range_ - width_};
-    auto zone = std::find_if(zones.begin(), zones.end(), [&](const Zone& one) {
+    const auto end = ends.zones_.begin() + static_cast<std::ptrdiff_t>(ends.num_zones_);
+    const auto known = std::find_if(ends.zones_.begin(), end, [&](const Zone& one) {
       return one.wall.x == circle.x && one.wall.y == circle.y;
     });
-    if (zone == zones.end()) zone = zones.insert(zones.end(), Zone{circle, {}});
-    for (int bit = 0; bit < WallContacts::edges_per_group; ++bit)
-      if ((item.edges >> bit & 1) != 0)
-        add_to(*zone, state, Index{item.group} * WallContacts::edges_per_group + bit);
+    Zone& zone = known == end ? ends.add_zone(circle) : *known;
+    for (unsigned bits = item.edges; bits != 0; bits &= bits - 1)
+      add_to(zone, vertices, Index{item.group} * WallContacts::edges_per_group + std::countr_zero(bits));
   }
   for (std::size_t k = 0; k < wedges_.size(); ++k) {
-    const kernel::WedgePlace place = kernel::place_in(state.frame, wedges_[k]);
-    Zone& zone = zones.emplace_back(Zone{{place.x, place.y, place.radius, static_cast<Index>(k)}, {}});
-    for (Index i = 0; i < state.size(); ++i) add_to(zone, state, i);
+    const kernel::WedgePlace place = kernel::place_in(frame, wedges_[k]);
+    Zone& zone = ends.add_zone({place.x, place.y, place.radius, static_cast<Index>(k)});
+    for (Index i = 0; i < vertices.size; ++i) add_to(zone, vertices, i);
   }
-  std::vector<End> ends;
-  for (const Zone& zone : zones) add_ends(zone, state, ends);
-  return ends;
+  ends.all_.clear();
+  ends.gradients_.clear();
+  for (std::size_t k = 0; k < ends.num_zones_; ++k) add_ends(ends.zones_[k], vertices, ends);
 }
 
-void ContactLine::add_ends(const Zone& zone, const DropletState& state, std::vector<End>& ends) const {
-  const Index n = state.size();
+void ContactLine::add_ends(const Zone& zone, const VertexPlaces& vertices, Ends& ends) const {
+  const Index n = vertices.size;
   const auto num = static_cast<Index>(zone.vertices.size());
   const auto vertex = [&](Index k) -> const Zone::Vertex& {
     return zone.vertices[static_cast<std::size_t>((k % num + num) % num)];
   };
   const auto follows = [&](Index k) { return (vertex(k).vertex + 1) % n == vertex(k + 1).vertex; };
+  const auto further_on_wall = [&](const Beside& from, const Beside& to) {
+    if (zone.wall.wedge >= 0) return to.on_wedge - from.on_wedge;
+    return zone.wall.radius * turn_between(from.normal[0] * to.normal[1] - from.normal[1] * to.normal[0],
+                                           (from.normal * to.normal).sum());
+  };
   // One end for each wetted vertex from which a sum outwards meets no other.
   for (Index k = 0; k < num; ++k) {
     if (vertex(k).share < 1) continue;
@@ -150,101 +159,105 @@ void ContactLine::add_ends(const Zone& zone, const DropletState& state, std::vec
 
       // u falls along the contour: outwards is -u at the last end.
       const double outwards = side == 1 ? -1 : 1;
-      End end{zone.wall, side, 0, {}};
-      Beside here = zone.beside(wedges_, state, vertex(k).vertex);
-      double sum = here.place;
+      End end{zone.wall, side, 0, ends.gradients_.size(), 0};
+      Beside here = beside(zone.wall, vertices, vertex(k).vertex);
+      double sum = zone.wall.wedge >= 0
+                       ? here.on_wedge
+                       : zone.wall.radius * portable::atan2(here.normal[1], here.normal[0]);
       double way_before = 0;
       Eigen::Array2d carried = here.forward;  // what u of the present vertex weighs so far
       for (Index j = k;; j += step) {
         const bool is_last = j == last;
         const Index next = (vertex(j).vertex + step + n) % n;
-        const Beside there = zone.beside(wedges_, state, next);
+        const Beside there = beside(zone.wall, vertices, next);
         const double share = (vertex(j).share + (is_last ? 0 : vertex(j + step).share)) / 2;
-        const double further = way(zone.wall, here.place, there.place);
+        const double further = further_on_wall(here, there);
         sum += share * further;
-        end.gradient.emplace_back(
-            vertex(j).vertex, outwards * (carried - share * here.forward +
-                                          vertex(j).slope * (way_before + further) / 2 * vertex(j).normal));
+        ends.gradients_.push_back(
+            {vertex(j).vertex, outwards * (carried - share * here.forward +
+                                           vertex(j).slope * (way_before + further) / 2 * vertex(j).normal)});
         carried = share * there.forward;
         way_before = further;
         here = there;
         if (!is_last) continue;
-        end.gradient.emplace_back(next, outwards * carried);
+        ends.gradients_.push_back({next, outwards * carried});
         break;
       }
       end.place = outwards * sum;
-      ends.push_back(std::move(end));
+      end.num_gradients = ends.gradients_.size() - end.first_gradient;
+      ends.all_.push_back(end);
     }
   }
 }
 
-std::vector<Index> ContactLine::matched(const DropletState& state, std::span<const End> ends) {
-  std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;  // by the way between them
-  for (std::size_t e = 0; e < ends.size(); ++e)
-    for (std::size_t a = 0; a < state.anchors.size(); ++a) {
-      const WallAnchor& anchor = state.anchors[a];
-      if (anchor.holder == ends[e].side && anchor.wall.is(ends[e].wall))
-        pairs.emplace_back(std::abs(way(ends[e].wall, anchor.x, ends[e].place)), e, a);
+const std::vector<Index>& ContactLine::matched(std::span<const WallAnchor> anchors, const Ends& ends) {
+  auto& matches = ends.matches_;
+  matches.clear();
+  for (std::size_t e = 0; e < ends.all_.size(); ++e)
+    for (std::size_t a = 0; a < anchors.size(); ++a) {
+      const WallAnchor& anchor = anchors[a];
+      const End& end = ends.all_[e];
+      if (anchor.holder == end.side && anchor.wall.is(end.wall))
+        matches.push_back({std::abs(way(end.wall, anchor.x, end.place)), e, a});
     }
-  std::sort(pairs.begin(), pairs.end());
-  std::vector<Index> anchor_of(ends.size(), -1);
-  std::vector<char> is_taken(state.anchors.size(), 0);
-  for (const auto& [distance, e, a] : pairs) {
-    if (anchor_of[e] >= 0 || is_taken[a] != 0) continue;
-    anchor_of[e] = static_cast<Index>(a);
-    is_taken[a] = 1;
+  std::ranges::sort(matches);
+  ends.anchor_of_.assign(ends.all_.size(), -1);
+  ends.is_taken_.assign(anchors.size(), 0);
+  for (const auto& [distance, e, a] : matches) {
+    if (ends.anchor_of_[e] >= 0 || ends.is_taken_[a] != 0) continue;
+    ends.anchor_of_[e] = static_cast<Index>(a);
+    ends.is_taken_[a] = 1;
   }
-  return anchor_of;
+  return ends.anchor_of_;
 }
 
-void ContactLine::add_forces(const DropletState& state, std::span<const End> ends,
-                             Eigen::ArrayXd& force) const {
-  const std::vector<Index> anchor_of = matched(state, ends);
-  for (std::size_t e = 0; e < ends.size(); ++e) {
+void ContactLine::add_forces(std::span<const WallAnchor> anchors, const Ends& ends,
+                             Eigen::Ref<Eigen::ArrayXd> force) const {
+  const std::vector<Index>& anchor_of = matched(anchors, ends);
+  for (std::size_t e = 0; e < ends.all_.size(); ++e) {
     if (anchor_of[e] < 0) continue;
-    const WallAnchor& anchor = state.anchors[static_cast<std::size_t>(anchor_of[e])];
-    const double pull = -stiffness_ * anchor.slip_of_force(way(ends[e].wall, anchor.x, ends[e].place));
-    for (const auto& [vertex, gradient] : ends[e].gradient) {
+    const End& end = ends.all_[e];
+    const WallAnchor& anchor = anchors[static_cast<std::size_t>(anchor_of[e])];
+    const double pull = -stiffness_ * anchor.slip_of_force(way(end.wall, anchor.x, end.place));
+    for (const auto& [vertex, gradient] : ends.gradients(end)) {
       force[vertex] += pull * gradient[0];
-      force[state.size() + vertex] += pull * gradient[1];
+      force[force.size() / 2 + vertex] += pull * gradient[1];
     }
   }
 }
 
-double ContactLine::energy(const DropletState& state, std::span<const End> ends) const {
-  const std::vector<Index> anchor_of = matched(state, ends);
+double ContactLine::energy(std::span<const WallAnchor> anchors, const Ends& ends) const {
+  const std::vector<Index>& anchor_of = matched(anchors, ends);
   double energy = 0;
-  for (std::size_t e = 0; e < ends.size(); ++e) {
+  for (std::size_t e = 0; e < ends.all_.size(); ++e) {
     if (anchor_of[e] < 0) continue;
-    const double slip =
-        way(ends[e].wall, state.anchors[static_cast<std::size_t>(anchor_of[e])].x, ends[e].place);
+    const End& end = ends.all_[e];
+    const double slip = way(end.wall, anchors[static_cast<std::size_t>(anchor_of[e])].x, end.place);
     energy += 0.5 * stiffness_ * slip * slip;
   }
   return energy;
 }
 
-WallYield ContactLine::follow(DropletState& state, std::span<const End> ends, Purpose purpose) const {
-  const std::vector<Index> anchor_of = matched(state, ends);
+WallYield ContactLine::follow(std::vector<WallAnchor>& anchors, const Ends& ends, Purpose purpose) const {
+  const std::vector<Index>& anchor_of = matched(anchors, ends);
   WallYield yield;
-  std::vector<WallAnchor> after;
-  std::vector<char> is_kept(state.anchors.size(), 0);
-  for (std::size_t e = 0; e < ends.size(); ++e) {
-    const End& end = ends[e];
+  ends.after_.clear();
+  for (std::size_t e = 0; e < ends.all_.size(); ++e) {
+    const End& end = ends.all_[e];
     if (anchor_of[e] < 0) {
-      after.push_back({end.side, end.wall, end.place, 0});
+      ends.after_.push_back({end.side, end.wall, end.place, 0});
       continue;
     }
-    is_kept[static_cast<std::size_t>(anchor_of[e])] = 1;
-    WallAnchor anchor = state.anchors[static_cast<std::size_t>(anchor_of[e])];
+    WallAnchor anchor = anchors[static_cast<std::size_t>(anchor_of[e])];
     const double slip = way(end.wall, anchor.x, end.place);
     const double held = yield.hold(anchor, slip, -most_outwards_ / stiffness_, most_inwards_ / stiffness_,
                                    stiffness_, purpose);
     if (held != slip) anchor.x = end.place - held;
-    after.push_back(anchor);
+    ends.after_.push_back(anchor);
   }
-  for (std::size_t a = 0; a < state.anchors.size(); ++a)
-    if (is_kept[a] == 0) yield.forget(state.anchors[a], stiffness_);
-  state.anchors = std::move(after);
+  for (std::size_t a = 0; a < anchors.size(); ++a)
+    if (ends.is_taken_[a] == 0) yield.forget(anchors[a], stiffness_);
+  std::swap(anchors, ends.after_);
   return yield;
 }
 

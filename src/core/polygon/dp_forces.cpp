@@ -10,17 +10,6 @@
 
 namespace clog {
 
-namespace {
-
-/// From vertex i to the next.
-Eigen::Array2d edge_of(const DropletState& state, int i) {
-  const auto n = static_cast<int>(state.size());
-  const int end = i + 1 < n ? i + 1 : 0;
-  return {state.position[end] - state.position[i], state.position[n + end] - state.position[n + i]};
-}
-
-}  // namespace
-
 kernel::WedgePlace kernel::place_in(const LocalFrame& frame, const Wedge& wedge) {
   const Eigen::Array2d centre = wedge.centre() - frame.origin - frame.image.cast<double>() * frame.period;
   return {.x = centre[0],
@@ -43,12 +32,11 @@ DpForces::DpForces(const RunParameters& run, const ObstacleArray& obstacles)
              dp_.wall_contact == WallContact::edge ? WallContacts::Keep::touched_by_edge
                                                    : WallContacts::Keep::touched_by_vertex),
       nearest_walls_(obstacles, dp_.contact_range.value(), WallContacts::Keep::nearest_to_vertex),
-      adhesive_walls_(obstacles, dp_.contact_range.value() + wetting_width * vertex_diameter_,
-                      WallContacts::Keep::touched_by_vertex),
+      wetted_walls_(run, obstacles),
       self_(dp_.self_contact_range, vertex_diameter_),
       friction_(dp_.friction, dp_.yield_traction, friction_stiffness_ratio * contact_stiffness_,
                 obstacles.wedges()),
-      contact_line_(run, obstacles.wedges()),
+      wetting_(*dp_.vertices),
       edge_x_(*dp_.vertices),
       edge_y_(*dp_.vertices),
       edge_length_(*dp_.vertices),
@@ -68,12 +56,12 @@ void DpForces::set_rest_area(double area) {
 void DpForces::update_contacts(const DropletState& state, const Travel& travel) {
   walls_.update(state, travel);
   if (wall_distance_.size() > 0) nearest_walls_.update(state, travel);
-  if (wets()) adhesive_walls_.update(state, travel);
+  if (wetted_walls_.is_on()) wetted_walls_.lists().update(state, travel);
   if (dp_.self_contact == SelfContact::on) self_.update(state, travel);
 }
 
 bool DpForces::contacts_hold(double moved, double moved_relative, const Travel& travel) const {
-  if (wall_distance_.size() > 0 || wets()) return false;
+  if (wall_distance_.size() > 0 || wetted_walls_.is_on()) return false;
   return walls_.hold(moved, travel) &&
          (dp_.self_contact == SelfContact::off || self_.hold(moved_relative, travel));
 }
@@ -81,7 +69,7 @@ bool DpForces::contacts_hold(double moved, double moved_relative, const Travel& 
 void DpForces::forget_contacts() {
   walls_.invalidate();
   nearest_walls_.invalidate();
-  adhesive_walls_.invalidate();
+  wetted_walls_.lists().invalidate();
 }
 
 void DpForces::forget_all_contacts() {
@@ -115,10 +103,10 @@ void DpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   shape_ = {sums.area, sums.perimeter};
   kernel::interface_forces(n, interface(shape_.area, shape_.perimeter), edges, pull_.data(), fx, fy);
   Eigen::Array2d spread{force.head(n).sum(), force.tail(n).sum()};
-  if (wets()) {
-    const WettingForces wetting = wetting_forces(state);
-    force += wetting.gradient + wetting.spreading;
-    spread += wetting.net_spreading();
+  if (wetted_walls_.is_on()) {
+    wetted_walls_.find_forces(VertexPlaces(state), state.frame, state.anchors, wetting_);
+    force += wetting_.gradient + wetting_.spreading;
+    spread += wetting_.net_spreading();
   }
   if (dp_.gravity == Gravity::area) {
     // Tension and pressure add up to nothing; springs along the interface have no reaction on their
@@ -175,77 +163,11 @@ void DpForces::measure_wall_distance(const DropletState& state) {
   wall_distance_ = wall_distance_.max(near_wall_cutoff_);
 }
 
-/// The tension changes from Gamma, far from a wall, to that of the wetted wall where contact begins: a smooth
-/// step, so that the energy and the force are continuous, and wide enough for the edges to follow its bend.
-DpForces::Wetted DpForces::wetted(const DropletState& state, int vertex) const {
-  const int n = *dp_.vertices;
-  const Eigen::Array2d place{state.position[vertex], state.position[n + vertex]};
-  double nearest = std::numeric_limits<double>::infinity();
-  Eigen::Array2d away_from_it{0, 0};
-  for (int s = 0; s < adhesive_walls_.num_slots(); ++s) {
-    const Eigen::Array2d away =
-        place - Eigen::Array2d(adhesive_walls_.slot_x(s)[vertex], adhesive_walls_.slot_y(s)[vertex]);
-    const double r = away.matrix().norm();
-    if (r - adhesive_walls_.slot_radius(s)[vertex] >= nearest) continue;
-    nearest = r - adhesive_walls_.slot_radius(s)[vertex];
-    away_from_it = away / r;
-  }
-  for (const Wedge& wedge : obstacles_->wedges()) {
-    const kernel::WedgePlace in_frame = kernel::place_in(state.frame, wedge);
-    const auto [distance, normal] = distance_to(wedge, place - Eigen::Array2d(in_frame.x, in_frame.y));
-    if (distance >= nearest) continue;
-    nearest = distance;
-    away_from_it = normal;
-  }
-  return {wetted_share(nearest, walls_.range(), wetting_width * vertex_diameter_), away_from_it};
-}
-
-/// U_gamma = sum gamma_e l_e, gamma_e = Gamma + (Gamma_wall - Gamma) times the mean share of its two
-/// vertices: the three-tension energy, Cheng et al. Eq. 2, with the tensions of a wetted wall's two sides
-/// taken together. On a smooth interface its gradient has no part along the interface, -d(gamma)/ds from the
-/// edges cancels the pull towards the wall; what a polygon leaves of it is an error of its finite edges.
-void DpForces::add_wetted_tension(const DropletState& state, Eigen::ArrayXd& gradient) const {
-  const int n = *dp_.vertices;
-  Wetted before = wetted(state, n - 1);
-  for (int i = 0; i < n; ++i) {
-    const int previous = i > 0 ? i - 1 : n - 1;
-    const Wetted here = wetted(state, i);
-    const Eigen::Array2d along = edge_of(state, previous);
-    const double length = along.matrix().norm();
-    const double pull = extra_tension() * (before.share + here.share) / 2 / length;
-    const double push = -extra_tension() * here.slope * (length + edge_of(state, i).matrix().norm()) / 2;
-    gradient[previous] += pull * along[0];
-    gradient[n + previous] += pull * along[1];
-    gradient[i] += push * here.normal[0] - pull * along[0];
-    gradient[n + i] += push * here.normal[1] - pull * along[1];
-    before = here;
-  }
-}
-
-DpForces::WettingForces DpForces::wetting_forces(const DropletState& state) const {
-  const int n = *dp_.vertices;
-  const Eigen::ArrayXd none = Eigen::ArrayXd::Zero(Eigen::Index{2} * n);
-  WettingForces forces{none, none};
-  Eigen::ArrayXd& gradient = forces.gradient;
-  if (extra_tension() != 0) add_wetted_tension(state, gradient);
-  if (contact_line_.is_on())
-    contact_line_.add_forces(state, contact_line_.ends(state, adhesive_walls_.items()), gradient);
-  if (dp_.perimeter_spring != PerimeterSpring::along) return forces;
-  for (int i = 0; i < n; ++i) {
-    const Eigen::Array2d chord = edge_of(state, i) + edge_of(state, i > 0 ? i - 1 : n - 1);
-    const Eigen::Array2d here{gradient[i], gradient[n + i]};
-    const Eigen::Array2d along = (here * chord).sum() / chord.square().sum() * chord;
-    forces.spreading[i] = -along[0];
-    forces.spreading[n + i] = -along[1];
-  }
-  return forces;
-}
-
 WallYield DpForces::let_walls_yield(DropletState& state, WallTouches& touches,
                                     std::span<const WallContacts::Item> circles, Purpose purpose) const {
   if (friction_.is_on())
     return friction_.follow(state, touches.find(state, circles), purpose, touches.known_anchors());
-  return contact_line_.follow(state, contact_line_.ends(state, adhesive_walls_.items()), purpose);
+  return wetted_walls_.follow(state, purpose);
 }
 
 void DpForces::add_self_contact(const DropletState& state, Eigen::ArrayXd& force) const {
@@ -316,9 +238,6 @@ PotentialEnergy DpForces::energy(const DropletState& state) const {
     const double stretch = std::hypot(x[i] - x[j], y[i] - y[j]) - reference;
     if (dp_.perimeter_spring != PerimeterSpring::along)
       energy.spring += 0.5 * *dp_.perimeter_stiffness * n * stretch * stretch;
-    if (extra_tension() != 0)
-      energy.line_tension += extra_tension() * (wetted(state, i).share + wetted(state, j).share) / 2 *
-                             std::hypot(x[i] - x[j], y[i] - y[j]);
   }
   visit_overlaps(state, [&](double overlap) {
     if (overlap > 0) energy.wall += 0.5 * contact_stiffness_ * overlap * overlap;
@@ -328,9 +247,8 @@ PotentialEnergy DpForces::energy(const DropletState& state) const {
       const double overlap = std::max(0.0, self_.range() - nearest_point(pair, x, y, n).distance);
       energy.self_contact += 0.5 * contact_stiffness_ * overlap * overlap;
     }
-  if (friction_.is_on()) energy.anchors = friction_.energy(state);
-  if (contact_line_.is_on())
-    energy.anchors = contact_line_.energy(state, contact_line_.ends(state, adhesive_walls_.items()));
+  energy.line_tension += wetted_walls_.tension_energy(state);
+  energy.anchors = friction_.is_on() ? friction_.energy(state) : wetted_walls_.spring_energy(state);
   return energy;
 }
 

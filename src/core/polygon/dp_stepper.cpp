@@ -41,6 +41,7 @@ DpStepper::DpStepper(const RunParameters& run, const ObstacleArray& obstacles, c
       plan_(n_),
       hold_(n_, forces.walls().range()),
       touches_(run, obstacles),
+      wetting_(n_),
       friction_(Eigen::ArrayXd::Zero(Eigen::Index{2} * n_)) {}
 
 void DpStepper::load(const DropletState& state) {
@@ -167,23 +168,12 @@ void DpStepper::push_off_everything(DropletState& droplet, const kernel::KickCoe
   const bool touches = !near_.walls().empty() || !wedges_.empty() || !droplet.anchors.empty();
   const bool slides = forces_->friction().is_on() && !holds_circles_ && touches;
   // Whatever these add, to vertices beyond the listed groups too, is gone before the next step.
-  if (!wedges_.empty() || forces_->wets() || slides || are_pushes_spread_) kernel_.clear_pushes(n_, arrays_);
+  if (!wedges_.empty() || forces_->wetted_walls().is_on() || slides || are_pushes_spread_) kernel_.clear_pushes(n_, arrays_);
   are_pushes_spread_ = slides;
   push_off_circles(impulse, work);
   if (!wedges_.empty())
     kernel_.push_off_wedges(n_, wedges_.data(), wedges_.size(), forces_->walls().range(), stiffness, arrays_);
-  if (forces_->wets()) {
-    store(droplet);
-    if (!forces_->friction().is_on() && forces_->has_anchors()) let_walls_yield(droplet, work);
-    const DpForces::WettingForces wetting = forces_->wetting_forces(droplet);
-    wetting_spread_ = wetting.net_spreading();
-    for (int i = 0; i < n_; ++i) {
-      arrays_.wetting_x[i] = impulse * wetting.spreading[i];
-      arrays_.wetting_y[i] = impulse * wetting.spreading[n_ + i];
-      arrays_.push_x[i] += impulse * wetting.gradient[i] + arrays_.wetting_x[i];
-      arrays_.push_y[i] += impulse * wetting.gradient[n_ + i] + arrays_.wetting_y[i];
-    }
-  }
+  if (forces_->wetted_walls().is_on()) add_wetting(droplet, impulse, work);
   if (slides) hold_by_friction(droplet, impulse, work);
   if (!terms_.varying_rate) return;
   const WallContacts& nearest = forces_->nearest_walls();
@@ -203,9 +193,18 @@ void DpStepper::push_off_everything(DropletState& droplet, const kernel::KickCoe
                           coefficients, arrays_);
 }
 
-void DpStepper::let_walls_yield(DropletState& droplet, Droplet::Work* work) {
-  const WallYield yield = forces_->let_walls_yield(droplet, touches_, near_.walls(), Purpose::motion);
+void DpStepper::add_wetting(DropletState& droplet, double impulse, Droplet::Work* work) {
+  for (const int i : wetting_.vertices) arrays_.wetting_x[i] = arrays_.wetting_y[i] = 0;
+  const WallYield yield = forces_->wetted_walls().follow_and_find_forces(
+      {n_, arrays_.x, arrays_.y}, droplet.frame, droplet.anchors, wetting_);
   if (work != nullptr) work->dissipated += yield.dissipated;
+  wetting_spread_ = wetting_.net_spreading();
+  for (const int i : wetting_.vertices) {
+    arrays_.wetting_x[i] = impulse * wetting_.spreading[i];
+    arrays_.wetting_y[i] = impulse * wetting_.spreading[n_ + i];
+    arrays_.push_x[i] += impulse * wetting_.gradient[i] + arrays_.wetting_x[i];
+    arrays_.push_y[i] += impulse * wetting_.gradient[n_ + i] + arrays_.wetting_y[i];
+  }
 }
 
 /// Walls yield where they have to, and hold the vertices by what they bear.

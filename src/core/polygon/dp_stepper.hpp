@@ -55,9 +55,10 @@ class DpStepper {
   WallHold hold_;
   std::vector<kernel::WedgePlace> wedges_;
   WallTouches touches_;
+  WettedWalls::Forces wetting_;
   Eigen::ArrayXd friction_;              // on vertices, all x then all y; zero between steps
   bool are_pushes_spread_ = false;       // did friction push vertices in the last step?
-  Eigen::Array2d wetting_spread_{0, 0};  // of wetting, see DpForces::wetting_forces()
+  Eigen::Array2d wetting_spread_{0, 0};  // see WettedWalls::Forces::net_spreading()
   kernel::Sums sums_{};
   double open_step_ = 0;      // length of the step whose last half kick is to come; 0: none is
   Droplet::Work open_power_;  // at its beginning
@@ -68,7 +69,7 @@ class DpStepper {
                       Droplet::Work* work);
   void push_off_everything(DropletState& droplet, const kernel::KickCoefficients& coefficients,
                            double impulse, Droplet::Work* work);
-  void let_walls_yield(DropletState& droplet, Droplet::Work* work);
+  void add_wetting(DropletState& droplet, double impulse, Droplet::Work* work);
   void hold_by_friction(DropletState& droplet, double impulse, Droplet::Work* work);
   double vertex_mass() const;  // that resists a change of speed
   Droplet::Work power(const kernel::InterfaceKick& interface, const kernel::KickCoefficients& coefficients,

@@ -27,7 +27,8 @@ RestForces::RestForces(const RunParameters& run, DpForces& forces)
                .span = run.dp.wall_contact == WallContact::edge ? 1.0 : 0.0,
                .self_range = forces.self_contacts().range()},
       memory_(n_),
-      plan_(n_) {}
+      plan_(n_),
+      wetting_(n_) {}
 
 void RestForces::load(const DropletState& state) {
   memory_.load(state.position.data(), memory_.arrays().x);
@@ -66,10 +67,10 @@ void RestForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   push_off();
   Eigen::Array2d net_spreading{0, 0};
   force.setZero();
-  if (forces_->wets()) {
-    const DpForces::WettingForces wetting = forces_->wetting_forces(state);
-    net_spreading = wetting.net_spreading();
-    force = wetting.gradient + wetting.spreading;
+  if (const WettedWalls& walls = forces_->wetted_walls(); walls.is_on()) {
+    walls.find_forces(VertexPlaces(state), state.frame, state.anchors, wetting_);
+    net_spreading = wetting_.net_spreading();
+    force = wetting_.gradient + wetting_.spreading;
   }
   if (forces_->friction().is_on()) forces_->friction().add_forces(state, force);
 

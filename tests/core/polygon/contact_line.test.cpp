@@ -58,9 +58,11 @@ TEST(ContactLine, AnEndsGradientIsBounded) {
     WallContacts near(walls, *run.dp.contact_range + wetting_width * units::regular_edge_length(64),
                       WallContacts::Keep::touched_by_vertex);
     near.update(state, {});
-    for (const ContactLine::End& end : ContactLine(run, {}).ends(state, near.items())) {
+    ContactLine::Ends ends;
+    ContactLine(run, {}).find_ends(VertexPlaces(state), state.frame, near.items(), ends);
+    for (const ContactLine::End& end : ends.all()) {
       double square = 0;
-      for (const auto& [vertex, gradient] : end.gradient) square += gradient.square().sum();
+      for (const auto& [vertex, gradient] : ends.gradients(end)) square += gradient.square().sum();
       EXPECT_LT(square, pinning_gradient2);
     }
   }

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <compare>
+#include <cstddef>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "clog/core/droplet/droplet_state.hpp"
@@ -33,6 +34,16 @@ inline constexpr double pinning_stiffness = 2;
 /// Bound on the sum of squares of an end's gradient: shares of the last vertices, and their distances.
 inline constexpr double pinning_gradient2 = 1.5;
 
+/// The vertices of a droplet.
+struct VertexPlaces {
+  Eigen::Index size;
+  const double *x, *y;  ///< [sigma]
+  explicit VertexPlaces(const DropletState& state)
+      : VertexPlaces(state.size(), state.position.data(), state.position.data() + state.size()) {}
+  VertexPlaces(Eigen::Index num_vertices, const double* all_x, const double* all_y)
+      : size(num_vertices), x(all_x), y(all_y) {}
+};
+
 /// Contact-angle hysteresis. The end of a wetted arc is at
 ///   q = u_m + sum share_e (u_e' - u_e)
 /// along the wall, u the wall's own coordinate, summed over the edges e from a wetted vertex m outwards,
@@ -53,30 +64,79 @@ class ContactLine {
     WallPlace wall;
     Eigen::Index side;  ///< 0: the arc's first, 1: its last along the contour
     double place;       ///< q, counted outwards [sigma]
-    std::vector<std::pair<Eigen::Index, Eigen::Array2d>> gradient;  ///< of q by the vertices
+    std::size_t first_gradient, num_gradients;  ///< of q by vertices, in Ends::gradients
   };
+  struct Gradient {
+    Eigen::Index vertex;
+    Eigen::Array2d by_place;
+  };
+  class Ends;
   /// @param circles  all that may be wetted, by vertex
-  std::vector<End> ends(const DropletState& state, std::span<const WallContacts::Item> circles) const;
+  /// @param ends     what is found; its memory is used again
+  void find_ends(const VertexPlaces& vertices, const LocalFrame& frame,
+                 std::span<const WallContacts::Item> circles, Ends& ends) const;
 
   /// Of the springs as they are anchored: all x, then all y [g rho sigma^2].
-  void add_forces(const DropletState& state, std::span<const End> ends, Eigen::ArrayXd& force) const;
+  void add_forces(std::span<const WallAnchor> anchors, const Ends& ends,
+                  Eigen::Ref<Eigen::ArrayXd> force) const;
   /// [g rho sigma^3]
-  double energy(const DropletState& state, std::span<const End> ends) const;
+  double energy(std::span<const WallAnchor> anchors, const Ends& ends) const;
   /// Lets walls yield: anchors follow. An end keeps the nearest anchor of its wall and side; new ends get one
-  /// of their own, and the anchors of ends that are no more are forgotten.
-  WallYield follow(DropletState& state, std::span<const End> ends, Purpose purpose) const;
+  /// of their own, and the anchors of ends that are no more are forgotten. Afterwards there is one anchor for
+  /// each end, in their order.
+  WallYield follow(std::vector<WallAnchor>& anchors, const Ends& ends, Purpose purpose) const;
 
  private:
   struct Zone;
+  struct Beside;
   bool is_on_;
   double stiffness_, most_outwards_, most_inwards_;  // k_p, and limits of the force
   double contact_range_, width_;                     // of the contact and of the share's fall [sigma]
   std::span<const Wedge> wedges_;
 
-  void add_to(Zone& zone, const DropletState& state, Eigen::Index vertex) const;
-  void add_ends(const Zone& zone, const DropletState& state, std::vector<End>& ends) const;
-  /// Of each end the number of its anchor, -1: none.
-  static std::vector<Eigen::Index> matched(const DropletState& state, std::span<const End> ends);
+  Beside beside(const WallPlace& wall, const VertexPlaces& vertices, Eigen::Index vertex) const;
+  void add_to(Zone& zone, const VertexPlaces& vertices, Eigen::Index vertex) const;
+  void add_ends(const Zone& zone, const VertexPlaces& vertices, Ends& ends) const;
+  /// Of each end the number of its anchor, -1: none. Valid until the next call.
+  static const std::vector<Eigen::Index>& matched(std::span<const WallAnchor> anchors, const Ends& ends);
+};
+
+/// A wall near the interface, and the vertices near it in the order of their numbers.
+struct ContactLine::Zone {
+  WallPlace wall;
+  struct Vertex {
+    Eigen::Index vertex;
+    double share, slope;
+    Eigen::Array2d normal;
+  };
+  std::vector<Vertex> vertices;
+};
+
+/// The ends of wetted arcs, with memory that finding and matching them needs.
+class ContactLine::Ends {
+ public:
+  const std::vector<End>& all() const { return all_; }
+  std::span<const Gradient> gradients(const End& end) const {
+    return std::span(gradients_).subspan(end.first_gradient, end.num_gradients);
+  }
+
+ private:
+  friend class ContactLine;
+  std::vector<End> all_;
+  std::vector<Gradient> gradients_;
+  std::vector<Zone> zones_;  // of which the first are used
+  std::size_t num_zones_ = 0;
+  struct Match {
+    double way;
+    std::size_t end, anchor;
+    auto operator<=>(const Match&) const = default;
+  };
+  mutable std::vector<Match> matches_;
+  mutable std::vector<Eigen::Index> anchor_of_;
+  mutable std::vector<char> is_taken_;
+  mutable std::vector<WallAnchor> after_;
+
+  Zone& add_zone(const WallPlace& wall);
 };
 
 }  // namespace clog

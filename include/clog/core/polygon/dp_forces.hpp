@@ -6,11 +6,11 @@
 #include "clog/core/droplet/energy.hpp"
 #include "clog/core/droplet/shape.hpp"
 #include "clog/core/parameters/parameters.hpp"
-#include "clog/core/polygon/contact_line.hpp"
 #include "clog/core/polygon/self_contacts.hpp"
 #include "clog/core/polygon/wall_contacts.hpp"
 #include "clog/core/polygon/wall_friction.hpp"
 #include "clog/core/polygon/wall_touches.hpp"
+#include "clog/core/polygon/wetted_walls.hpp"
 #include "clog/core/world/obstacle_array.hpp"
 
 namespace clog {
@@ -72,22 +72,8 @@ class DpForces {
   /// @param circles  all that may touch
   WallYield let_walls_yield(DropletState& state, WallTouches& touches,
                             std::span<const WallContacts::Item> circles, Purpose purpose) const;
-  bool has_anchors() const { return friction_.is_on() || contact_line_.is_on(); }
-  /// Are walls wetted, so that the tension on them differs, or do they hold the ends of wetted arcs?
-  bool wets() const { return extra_tension() != 0 || contact_line_.is_on(); }
-  /// Forces of wetted walls on the vertices, which add up: all x then all y [g rho sigma^2]. `gradient` is
-  /// minus the energy's. `spreading` is minus its part along the interface, where springs carry no tension
-  /// (`along`), otherwise 0; it has no energy.
-  struct WettingForces {
-    Eigen::ArrayXd gradient;
-    Eigen::ArrayXd spreading;
-    /// The net force of `spreading`. The liquid takes it: weight on the area is reduced by it.
-    Eigen::Array2d net_spreading() const {
-      const Eigen::Index n = spreading.size() / 2;
-      return {spreading.head(n).sum(), spreading.tail(n).sum()};
-    }
-  };
-  WettingForces wetting_forces(const DropletState& state) const;
+  bool has_anchors() const { return friction_.is_on() || wetted_walls_.hold_ends(); }
+  const WettedWalls& wetted_walls() const { return wetted_walls_; }
 
   /// For the release, where the droplet grows without weight.
   void set_rest_area(double area);
@@ -107,22 +93,15 @@ class DpForces {
   double weight_;
   double near_wall_cutoff_;
   WallContacts walls_;
-  WallContacts nearest_walls_;   // kept only with near-wall drag
-  WallContacts adhesive_walls_;  // kept only where walls are wetted
+  WallContacts nearest_walls_;  // kept only with near-wall drag
+  WettedWalls wetted_walls_;
   SelfContacts self_;
   WallFriction friction_;
-  ContactLine contact_line_;
+  WettedWalls::Forces wetting_;  // memory of evaluate()
   PolygonShape shape_;
   Eigen::ArrayXd edge_x_, edge_y_, edge_length_, pull_, centroid_gradient_, refined_edges_;
   Eigen::ArrayXd wall_distance_;
 
-  /// The wall next to a vertex, for wetting, and the direction away from it.
-  struct Wetted : WettedShare {
-    Eigen::Array2d normal;
-  };
-  Wetted wetted(const DropletState& state, int vertex) const;
-  double extra_tension() const { return (dp_.wall_tension - 1) * dp_.line_tension; }
-  void add_wetted_tension(const DropletState& state, Eigen::ArrayXd& gradient) const;
   void add_walls(const DropletState& state, Eigen::ArrayXd& force);
   void measure_wall_distance(const DropletState& state);
   /// Calls visit(overlap) for every half edge (vertex) and slot or wedge [sigma]; negative where they do not
