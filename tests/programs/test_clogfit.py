@@ -390,8 +390,8 @@ class Fit(ProgramTest):
 
     def test_runs_of_different_model_versions_are_fitted_apart(self):
         self.sweep("max-time=60", "line-tension=2", "seeds=1..4")
-        self.change(model_version=[3, 3, 4, 4])
-        self.assertEqual([(group["model_version"], group["runs"]) for group in self.fit()["groups"]], [(3, 2), (4, 2)])
+        self.change(model_version=[3, 3, 5, 5])
+        self.assertEqual([(group["model_version"], group["runs"]) for group in self.fit()["groups"]], [(3, 2), (5, 2)])
         self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, r"model_version +runs")
 
     def test_files_of_format_version_2_can_be_read(self):
