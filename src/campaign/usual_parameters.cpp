@@ -44,6 +44,12 @@ RunParameters resolved_in_any_layout(RunParameters run) {
   return run;
 }
 
+/// A key of user-supplied circles alone, which a row of the default layout says nothing about.
+bool is_of_own_circles(const sweep::Column& column, const RunParameters& run) {
+  return scene_of(run).walls_from == WallsFrom::circles && column.parameter &&
+         column.parameter->applies_to(run) && !column.parameter->applies_to(RunParameters());
+}
+
 }  // namespace
 
 std::vector<Field> usual_parameters(const sweep::RunRow& row) try {
@@ -66,6 +72,7 @@ std::vector<Field> usual_parameters(const sweep::RunRow& row) try {
     const sweep::Column& column = *group_columns()[i];
     if (column.name == "obstacle_density")
       usual[i] = (run.obstacles.density.per_area ? with_usual_density : with_own_step)[i];
+    if (is_of_own_circles(column, run)) usual[i].second = column.parameter->get(RunParameters());
     if (!column.may_be_automatic(run)) continue;
     usual[i] = (column.name == "vertices"    ? with_usual_vertices
                 : column.name == "time_step" ? with_usual_step

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <iostream>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include "clog/campaign/ledger.hpp"
 #include "clog/campaign/preview.hpp"
+#include "clog/campaign/round_rule.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/conduct/assignment.hpp"
@@ -91,7 +93,7 @@ std::optional<int> prepare(const cli::CommandLine& line) {
   assignment(line, line.settings());
   const std::optional<campaign::GrowingSweep> growing = growing_sweep(line);
   std::optional<RefinedSweep> refined;
-  if (std::optional<campaign::Refiner> rule = refiner(line)) refined.emplace(std::move(*rule), "");
+  if (std::unique_ptr<campaign::RoundRule> rule = refiner(line)) refined.emplace(std::move(rule), "");
   const sweep::Plan plan(refined ? refined->settings() : line.settings());
   if (line.has("print-config")) campaign::print_config(refined ? refined->settings() : line.settings(), plan);
   if (line.has("dry-run")) {

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "clog/campaign/angle_search.hpp"
+#include "clog/campaign/refiner.hpp"
 #include "clog/campaign/stored_sweep.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/split.hpp"
@@ -41,7 +44,10 @@ double share(std::string text) {
 
 RefinementGoal goal_of(const std::string& text) {
   const auto refuse = [&](const std::string& why) {
-    throw Error(fmt::format("invalid --until={} ({}) try curve=20%, peak=10% or crossing=10:5%", text, why));
+    throw Error(
+        fmt::format("invalid --until={} ({}) try curve=20%, peak=10% or crossing=10:5%, of a lattice "
+                    "critical-angle=0.5",
+                    text, why));
   };
   const std::size_t equals = std::min(text.find('='), text.size());
   const std::string kind = text.substr(0, equals);
@@ -66,6 +72,18 @@ RefinementGoal goal_of(const std::string& text) {
   return goal;
 }
 
+/// `critical-angle=0.5`: the width of the bracket [degrees].
+double bracket_of(const std::string& text) {
+  constexpr double narrowest = 1e-3;
+  constexpr double widest = 20;
+  const double width = number_of(text.substr(std::min(text.find('=') + 1, text.size())));
+  if (width >= narrowest && width <= widest) return width;
+  throw Error(
+      fmt::format("invalid --until={} (the width of the bracket must lie between {} and {} degrees) try "
+                  "critical-angle=0.5",
+                  text, narrowest, widest));
+}
+
 /// The budget in seconds.
 double budget_of(std::string text) {
   const std::string given = text;
@@ -83,6 +101,25 @@ std::int64_t most_seeds_of(const cli::CommandLine& line, std::int64_t block) {
   throw Error(
       fmt::format("invalid --most-seeds={} (must be a whole number from {}, the number of `seeds`, to 1e5)",
                   line.get("most-seeds"), block));
+}
+
+bool asks_for_angle(const std::string& goal) { return goal.starts_with("critical-angle="); }
+
+/// A search for the critical angle of a lattice, which is all that its angle is refined for.
+std::unique_ptr<campaign::RoundRule> angle_search(const cli::CommandLine& line) {
+  const std::string goal = line.has("until") ? line.get("until") : "critical-angle=";
+  if (!asks_for_angle(goal) || line.get("refine").find(',') != std::string::npos)
+    throw Error(
+        fmt::format("invalid --until={} (of a lattice's angle alone, the critical one is found) try --refine "
+                    "lattice-angle --until critical-angle=0.5",
+                    goal));
+  for (const char* option : {"same-seeds", "most-seeds"})
+    if (line.has(option))
+      throw Error(fmt::format("invalid --{} (each angle gets the seeds of `seeds`) leave it out", option));
+  campaign::AngleSearch::Options options;
+  if (line.has("until")) options.width = bracket_of(goal);
+  if (line.has("budget")) options.budget = budget_of(line.get("budget"));
+  return std::make_unique<campaign::AngleSearch>(line.settings(), options);
 }
 
 /// Do both describe the same curve? Then its rounds are those of the other.
@@ -114,16 +151,18 @@ void add_refine_options(cli::CommandLine& line) {
                      "them, between the "
                      "outermost values of the key's list")(
       "until", text(),
-      "with --refine: what is to be known, curve=20%, peak=10% or crossing=10:5% (where lambda is 10 sigma)")(
-      "budget", text(), "with --refine: core-hours that all runs may take, e.g. 10h")(
+      "with --refine: what is to be known, curve=20%, peak=10% or crossing=10:5% (where lambda is 10 sigma); "
+      "with "
+      "--refine lattice-angle: critical-angle=0.5, where droplets leave the rows, in a bracket of 0.5 "
+      "degrees")("budget", text(), "with --refine: core-hours that all runs may take, e.g. 10h")(
       "same-seeds", "with --refine: all values have the same seeds, not seeds of their own");
 }
 
-std::optional<campaign::Refiner> refiner(const cli::CommandLine& line) {
+std::unique_ptr<campaign::RoundRule> refiner(const cli::CommandLine& line) {
   if (!line.has("refine")) {
     for (const char* option : {"until", "budget", "same-seeds"})
       if (line.has(option)) throw Error(fmt::format("--{} needs --refine", option));
-    return std::nullopt;
+    return nullptr;
   }
   for (const char* option : {"until-precision", "points", "shard"})
     if (line.has(option)) throw Error(fmt::format("--refine and --{} exclude each other; give one", option));
@@ -132,21 +171,26 @@ std::optional<campaign::Refiner> refiner(const cli::CommandLine& line) {
   RefinementOptions options;
   options.keys = split_at_commas(line.get("refine"));
   for (std::string& key : options.keys) std::ranges::replace(key, '_', '-');
+  if (std::ranges::find(options.keys, "lattice-angle") != options.keys.end()) return angle_search(line);
+  if (line.has("until") && asks_for_angle(line.get("until")))
+    throw Error(
+        fmt::format("invalid --until={} (is found over the angle of a lattice) try --refine lattice-angle",
+                    line.get("until")));
   if (line.has("until")) options.goal = goal_of(line.get("until"));
   if (line.has("budget")) options.budget = budget_of(line.get("budget"));
   if (line.has("same-seeds")) options.seeds = RefinementOptions::Seeds::same;
   options.most_seeds = most_seeds_of(line, static_cast<std::int64_t>(line.settings().values("seeds").size()));
-  return campaign::Refiner(line.settings(), options);
+  return std::make_unique<campaign::Refiner>(line.settings(), options);
 }
 
 std::optional<RefinedSweep> refined_sweep(const cli::CommandLine& line) {
-  std::optional<campaign::Refiner> rule = refiner(line);
+  std::unique_ptr<campaign::RoundRule> rule = refiner(line);
   if (!rule) return std::nullopt;
-  return std::optional<RefinedSweep>(std::in_place, std::move(*rule), line.get("output"));
+  return std::optional<RefinedSweep>(std::in_place, std::move(rule), line.get("output"));
 }
 
-RefinedSweep::RefinedSweep(campaign::Refiner refiner, const std::string& output)
-    : refiner_(std::move(refiner)), settings_(continued(refiner_.first(), output)) {
+RefinedSweep::RefinedSweep(std::unique_ptr<campaign::RoundRule> refiner, const std::string& output)
+    : refiner_(std::move(refiner)), settings_(continued(refiner_->first(), output)) {
   plans_.emplace_back(settings_);
 }
 

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <deque>
+#include <memory>
 #include <optional>
 #include <string>
 
-#include "clog/campaign/refiner.hpp"
+#include "clog/campaign/round_rule.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/conduct/lead.hpp"
 #include "clog/sweep/plan.hpp"
@@ -14,8 +15,8 @@ namespace clog::programs {
 
 /// Declares --refine, --until, --budget, --same-seeds.
 void add_refine_options(cli::CommandLine& line);
-/// The refiner that these options ask for; nothing without --refine. @throws Error if they are invalid
-std::optional<campaign::Refiner> refiner(const cli::CommandLine& line);
+/// The rule that these options ask for; nothing without --refine. @throws Error if they are invalid
+std::unique_ptr<campaign::RoundRule> refiner(const cli::CommandLine& line);
 
 class RefinedSweep;
 /// The refined sweep of a command, with the rounds in its output file; nothing without --refine.
@@ -27,18 +28,18 @@ class RefinedSweep {
  public:
   /// Continues with the rounds that the output file has if its points are the same (other keys are not
   /// compared). @throws Error if it cannot be read
-  RefinedSweep(campaign::Refiner refiner, const std::string& output);
+  RefinedSweep(std::unique_ptr<campaign::RoundRule> refiner, const std::string& output);
   RefinedSweep(const RefinedSweep&) = delete;
 
-  campaign::Refiner& refiner() { return refiner_; }
-  const campaign::Refiner& refiner() const { return refiner_; }
+  campaign::RoundRule& refiner() { return *refiner_; }
+  const campaign::RoundRule& refiner() const { return *refiner_; }
   const sweep::Settings& settings() const { return settings_; }
   const sweep::Plan& plan() const { return plans_.back(); }
   /// One more round. Earlier plans stay.
   void grow(const sweep::Points& round);
 
  private:
-  campaign::Refiner refiner_;
+  std::unique_ptr<campaign::RoundRule> refiner_;
   sweep::Settings settings_;
   std::deque<sweep::Plan> plans_;
 };

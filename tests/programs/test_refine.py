@@ -1,6 +1,7 @@
 """--refine: values and seeds are put where the fitted curve needs them, the same ones however the sweep goes."""
 
 import json
+import math
 import os
 import re
 import subprocess
@@ -102,6 +103,79 @@ class Refine(ProgramTest):
                 self.refuse("clogsweep", *kept, *settings, "--output", "no.h5", words=words)
                 self.assertFalse((self.folder / "no.h5").exists())
         self.refuse("clogsweep", *QUICK, "line-tension=0.3,3", GOAL, "--output", "no.h5", words=["--until needs --refine"])
+
+
+# Three seconds of a core: droplets follow the rows up to about 19 degrees.
+LATTICE = ["obstacle-layout=lattice", "obstacle-gap=2", "obstacle-diameter=1", "vertices=64", "terminal-speed=0.1", "max-time=1000", "box=100", "seeds=1",
+           "lattice-angle=10.01,40", "--refine=lattice-angle"]
+ANGLE = "--until=critical-angle=2"
+
+
+class CriticalAngle(ProgramTest):
+    def test_it_is_bracketed_by_rows_that_droplets_follow_and_rows_that_they_leave(self):
+        done = self.succeed("clogsweep", *LATTICE, ANGLE, "--output", "s.h5", ranks=2)
+        last = done.stderr.strip().splitlines()[-1]
+        found = re.search(r"the critical angle is ([0-9.]+) degrees \(([0-9.]+) to ([0-9.]+)\)", last)
+        self.assertTrue(found, last)
+        middle, lower, upper = map(float, found.groups())
+        self.assertLess(lower, middle)
+        self.assertLess(middle, upper)
+        self.assertLessEqual(upper - lower, 2)
+        rows = table(self.folder / "s.h5")
+        self.assertLess(len(rows), 15)
+        for row in rows.itertuples():
+            # Along the rows the slope is their tangent; a droplet that leaves them goes to the other side.
+            if row.lattice_angle <= lower + 0.01:
+                self.assertLess(math.tan(math.radians(row.lattice_angle)) - row.lateral_displacement / row.distance, 0.05)
+            else:
+                self.assertLess(row.lateral_displacement, 0)
+        with h5py.File(self.folder / "s.h5") as file:
+            self.assertIn("until critical-angle=2", file.attrs["stopping_rule"].decode())
+        self.succeed("clogsweep", "verify", "s.h5")
+        again = self.succeed("clogsweep", *LATTICE, ANGLE, "--output", "s.h5")
+        self.assertEqual(again.stderr.strip().splitlines()[-1], last)
+        finer = self.succeed("clogsweep", *LATTICE, "--until=critical-angle=0.5", "--output", "s.h5")
+        self.assertIn("critical-angle=0.5 is reached", finer.stderr)
+        self.assertGreater(len(table(self.folder / "s.h5")), len(rows))
+
+    def test_the_rows_depend_neither_on_ranks_nor_on_interruptions(self):
+        self.succeed("clogsweep", *LATTICE, ANGLE, "--output", "one.h5")
+        stopped, hours = 0, 0.0001
+        while self.run_program("clogsweep", *LATTICE, ANGLE, "--output", "stopped.h5", f"--max-hours={hours}", ranks=3).returncode == 75:
+            stopped += 1
+            hours *= 1.1
+            self.assertLess(stopped, 200)
+        rows, others = (table(self.folder / name).drop(columns=TIMING) for name in ("one.h5", "stopped.h5"))
+        pandas.testing.assert_frame_equal(rows, others, check_exact=True)
+
+    def test_what_does_not_bracket_it_is_said(self):
+        def known(angles, max_time=1000):
+            keys = [key for key in LATTICE if not key.startswith(("max-time", "lattice-angle"))]
+            return self.succeed("clogsweep", *keys, f"lattice-angle={angles}", f"max-time={max_time}", ANGLE, "--output", "s.h5").stderr.splitlines()[-1]
+
+        self.assertIn("at 32.47 degrees droplets leave the rows; try smaller angles", known("32.5,35,40"))
+        (self.folder / "s.h5").unlink()
+        self.assertIn("droplets follow the rows; try larger angles", known("9.46,10.01,11.31"))
+        (self.folder / "s.h5").unlink()
+        self.assertIn("no droplet went far enough", known("10.01,40", max_time=20))
+
+    def test_a_dry_run_tells_what_the_rounds_may_cost(self):
+        told = self.succeed("clogsweep", *LATTICE, "--until=critical-angle=0.5", "--dry-run").stdout
+        for words in ("5 tasks: 5 parameter sets, 1 seed each", "this is the first round", "takes about 2 more rounds, 6 runs"):
+            self.assertIn(words, told)
+
+    def test_mistakes_get_one_line_and_exit_code_2(self):
+        for settings, words in [
+            (["--until=curve=20%"], ["--until=curve=20%", "critical-angle=0.5"]), (["--until=critical-angle=0"], ["critical-angle=0"]),
+            (["--until=critical-angle=1 degree"], ["degree"]), ([ANGLE, "--same-seeds"], ["--same-seeds"]), ([ANGLE, "--most-seeds=10"], ["--most-seeds"]),
+            ([], ["--refine needs an end"]),
+        ]:
+            with self.subTest(settings=settings):
+                self.refuse("clogsweep", *LATTICE, *settings, "--output", "no.h5", words=words)
+        for angles, words in [("20", ["lattice-angle=20", "bounds"]), ("0,40", ["above 0"]), ("40,10", ["lower bound"])]:
+            with self.subTest(angles=angles):
+                self.refuse("clogsweep", *LATTICE[:-2], "--refine=lattice-angle", f"lattice-angle={angles}", ANGLE, "--output", "no.h5", words=words)
+        self.refuse("clogsweep", *QUICK, "line-tension=0.3,3", "--refine=line-tension", ANGLE, "--output", "no.h5", words=["--refine lattice-angle"])
 
 
 class Optimiser(ProgramTest):

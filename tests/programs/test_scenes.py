@@ -6,10 +6,11 @@ import unittest
 
 import h5py
 import numpy as np
+import pandas
 
 import stored_rows
 from drawing import Analysis
-from support import BIN, ProgramTest, table
+from support import BIN, TIMING, ProgramTest, table
 
 from clogsweep import labels, style
 from clogsweep.drawing import passages
@@ -338,6 +339,31 @@ class OwnCircles(ProgramTest):
         self.assertAlmostEqual(group["contacts_per_length"], sum(row.contacts for row in met) / sum(row.distance for row in rows), places=9)
         self.assertRegex(self.succeed("clogfit", "s.h5").stdout, r"met none +lambda_met")
         self.succeed("clogsweep", "verify", "s.h5")
+
+    def test_the_length_between_two_walls_is_that_of_the_droplets_that_met_them_in_any_unit(self):
+        # 60 posts in two walls at y = 1 and 7, with a lane of 1.7 behind them, and a few columns of posts in between.
+        walls = [(round((i + 0.5) * 16 / 30, 4), y) for i in range(30) for y in (1, 7)]
+        walls += [(1 + 4 * i, 1.75 + 0.75 * j + 0.3 * (i % 2)) for i in range(4) for j in range(7)]
+        keys = ["box=8", "boxes=2", "release=anywhere", "vertices=64", "line-tension=3", "terminal-speed=0.1", "max-time=150", "seeds=1..20"]
+        for name, head, scale in (("walls.csv", "x,y,diameter\n", 1), ("um.csv", "# units=um droplet=200um\nx,y,diameter\n", 200)):
+            (self.folder / name).write_text(head + "".join(f"{scale * x:.8g},{scale * y:.8g},{scale * 0.3:g}\n" for x, y in walls))
+            told = self.succeed("clogsweep", f"obstacles={name}", *keys, "--output", name + ".h5").stderr
+            self.assertIn("bare, wider than a droplet", told)
+        rows, others = (table(self.folder / name) for name in ("walls.csv.h5", "um.csv.h5"))
+        pandas.testing.assert_frame_equal(rows.drop(columns=TIMING), others.drop(columns=TIMING), check_exact=True)
+        group, = json.loads(self.succeed("clogfit", "walls.csv.h5", "--format", "json").stdout)["groups"]
+        met = rows[rows.contacts > 0]
+        self.assertTrue(0 < len(met) < len(rows))
+        self.assertEqual((group["met_none"], "met_none" in group["doubts"].split()), (len(rows) - len(met), True))
+        clogs = (met.status == "clogged").sum()
+        self.assertGreater(clogs, 0)
+        self.assertAlmostEqual(group["clogging_length_met"], (met.distance - met.first_contact_at).sum() / clogs, places=9)
+        self.assertLess(group["clogging_length_met"], group["clogging_length"] / 2)
+        # What the keys of devices have by default needs no word.
+        text = self.succeed("clogfit", "walls.csv.h5").stdout
+        for word in ("side_walls", "entrance", "exit=", " length="):
+            self.assertNotIn(word, text)
+        self.assertIn("release=anywhere", text)
 
     def test_two_arrays_are_one_sweep(self):
         (self.folder / "few.csv").write_text("x,y,diameter\n5,7,1\n")

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "clog/campaign/refiner.hpp"
+#include "clog/campaign/round_rule.hpp"
 #include "clog/campaign/seed_rule.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/settings.hpp"
@@ -12,7 +12,7 @@ namespace clog::campaign {
 /// The rule for rounds after the first: one of these, or nothing.
 struct RoundsToCome {
   const SeedRule* rule = nullptr;
-  const Refiner* refiner = nullptr;
+  const RoundRule* refiner = nullptr;
 };
 
 /// Prints on the standard output what a sweep would do.

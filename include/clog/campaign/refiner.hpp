@@ -9,6 +9,7 @@
 
 #include "clog/campaign/curves.hpp"
 #include "clog/campaign/refinement.hpp"
+#include "clog/campaign/round_rule.hpp"
 #include "clog/sweep/points.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/settings.hpp"
@@ -30,7 +31,7 @@ struct RefinementOptions {
 /// is decided when the one before it is over, by clogs, distances and steps alone (and, with a budget, by the
 /// time they took), and is stored before it begins. So a round that has begun does not change, on whatever
 /// ranks it goes on.
-class Refiner {
+class Refiner final : public RoundRule {
  public:
   /// @param settings  of the command: one value of every other key. Its seeds are a block: the next ones
   /// follow the last of them
@@ -39,21 +40,15 @@ class Refiner {
 
   /// Its first round: the values that the lists give, or, if these are bounds only, seven values between them
   /// (four of each of two keys).
-  const sweep::Settings& first() const { return first_; }
-  /// The next round; nothing if what was asked is known, the budget is used up, or no value may get more
-  /// seeds.
-  /// @param rows  all runs of the file
-  std::optional<sweep::Points> next_round(std::span<const sweep::RunRow> rows);
+  const sweep::Settings& first() const override { return first_; }
+  std::optional<sweep::Points> next_round(std::span<const sweep::RunRow> rows) override;
 
   /// Values that rounds may take: preferred numbers of three figures (IEC 60063), so that files of two people
   /// meet. By key.
   const std::vector<std::vector<std::string>>& candidates() const { return values_; }
-  /// The rule in words, as it is stored with the result.
-  std::string text() const;
-  /// Estimates the rounds after the first. @param seconds_per_run  mean of the first round's runs
-  std::vector<std::string> rounds_in_words(double seconds_per_run) const;
-  /// Describes in words what is known after the last look.
-  std::string known(std::span<const sweep::RunRow> rows) const;
+  std::string text() const override;
+  std::vector<std::string> rounds_in_words(double seconds_per_run) const override;
+  std::string known(std::span<const sweep::RunRow> rows) const override;
 
  private:
   struct Look;

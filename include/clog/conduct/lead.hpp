@@ -7,7 +7,7 @@
 #include <string>
 
 #include "clog/campaign/ledger.hpp"
-#include "clog/campaign/refiner.hpp"
+#include "clog/campaign/round_rule.hpp"
 #include "clog/campaign/seed_rule.hpp"
 #include "clog/conduct/log.hpp"
 #include "clog/parallel/communicator.hpp"
@@ -40,7 +40,7 @@ struct GrownSweep {
 /// refiner, for whose rounds the plan itself grows; or nothing.
 struct Growth {
   campaign::SeedRule* rule = nullptr;
-  campaign::Refiner* refiner = nullptr;
+  campaign::RoundRule* refiner = nullptr;
   /// Makes the sweep grow by a round of the refiner. What it returns lasts as long as the sweep.
   std::function<GrownSweep(const sweep::Points& round)> grow;
 

@@ -79,10 +79,14 @@ std::optional<CommensurateLattice> nearest_lattice(double spacing, double angle,
   return nearest;
 }
 
-std::optional<CommensurateLattice> fitting_lattice(const ObstacleParameters& obstacles) {
+std::optional<CommensurateLattice> nearest_lattice(const ObstacleParameters& obstacles) {
   const double spacing = obstacles.diameter + obstacles.gap;
   const double narrowest = std::max(parameter("box").range.lower->value, 2 * spacing);
-  const auto nearest = nearest_lattice(spacing, obstacles.lattice_angle, narrowest, obstacles.box);
+  return nearest_lattice(spacing, obstacles.lattice_angle, narrowest, obstacles.box);
+}
+
+std::optional<CommensurateLattice> fitting_lattice(const ObstacleParameters& obstacles) {
+  const auto nearest = nearest_lattice(obstacles);
   const bool is_near = nearest && std::abs(nearest->angle - obstacles.lattice_angle) <= largest_angle_error;
   return is_near ? nearest : std::nullopt;
 }

@@ -28,6 +28,8 @@ inline constexpr double largest_angle_error = 0.1;
 std::optional<CommensurateLattice> nearest_lattice(double spacing, double angle, double smallest_box,
                                                    double largest_box);
 
+/// The same for the spacing, the angle and the box of an array, whose period is at least two spacings.
+std::optional<CommensurateLattice> nearest_lattice(const ObstacleParameters& obstacles);
 /// The nearest one of spacing diameter + gap whose box is no larger than `box`; empty if its tilt is too far
 /// from lattice_angle.
 std::optional<CommensurateLattice> fitting_lattice(const ObstacleParameters& obstacles);
