@@ -1,5 +1,7 @@
 #include "clog/laboratory/scales.hpp"
 
+#include <fmt/core.h>
+
 #include <Eigen/Core>
 #include <algorithm>
 #include <boost/math/tools/roots.hpp>
@@ -7,6 +9,8 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "clog/core/tools/units.hpp"
 
@@ -96,6 +100,17 @@ Scales scales_of(const Laboratory& lab) {
   scales.sag = std::isnan(scales.line_tension) ? unknown : sag_on_wall(scales.line_tension);
   scales.wall_stiffness = wall_stiffness_of_sag(scales.sag);
   return scales;
+}
+
+void set_droplet(const Laboratory& lab, sweep::Settings& settings) {
+  const Scales scales = scales_of(lab);
+  const auto set = [&](const char* key, double value) {
+    if (std::isfinite(value) && !settings.is_given(key)) settings.set(key, fmt::format("{:.4g}", value));
+  };
+  set("terminal-speed", scales.terminal_speed);
+  const std::vector<std::string>& models = settings.values("model");
+  if (models == std::vector<std::string>{"dp"}) set("line-tension", scales.line_tension);
+  if (models == std::vector<std::string>{"sp"}) set("wall-stiffness", scales.wall_stiffness);
 }
 
 double tilt_of(double line_tension, const Laboratory& lab) {

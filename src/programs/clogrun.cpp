@@ -16,6 +16,8 @@
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/laboratory/lab_file.hpp"
+#include "clog/laboratory/scales.hpp"
 #include "clogrun_commands.hpp"
 
 namespace {
@@ -47,8 +49,12 @@ cli::CommandLine parse(int argc, char** argv) {
   line.add_options()("system", text(), "array, channel (two wedges), sag (flat wall) or replay")(
       "file", text(), "replay: file of clogsweep")("task", text(), "replay: the row's number, column `task`")(
       "to-rest", "replay: until the droplet rests, not only until it is proved that it will")(
-      "output", text(), "HDF5 file to create")("seed", text(), "short for seeds=N")(
-      "sample-interval", text()->default_value("1"), "time between samples [t0]")(
+      "output", text(), "HDF5 file to create")(
+      "lab", text(),
+      "file that describes the laboratory, see clogfit units: gives terminal-speed and line-tension or\n"
+      "wall-stiffness unless they are set, and what the run came to in mm and s")(
+      "seed", text(), "short for seeds=N")("sample-interval", text()->default_value("1"),
+                                           "time between samples [t0]")(
       "polygon-interval", text(), "also write the polygon this often [t0]")(
       "frames", text(), "also make a film of the polygons with this name, which may end in .mp4 or .gif")(
       "most-frames", text(),
@@ -66,6 +72,7 @@ cli::CommandLine parse(int argc, char** argv) {
   if (line.has("seed") && line.has("seeds"))
     throw Error("--seed and --seeds contradict each other; give one of them");
   if (line.has("seed")) line.settings().set("seeds", line.get("seed"));
+  if (line.has("lab")) laboratory::set_droplet(laboratory::read_laboratory(line.get("lab")), line.settings());
   return line;
 }
 

@@ -30,8 +30,8 @@ int clogrun_array(cli::CommandLine& line) {
   console::catch_stop_signals();
   watched.follow();
 
-  store::write_trajectory(output, watched.trajectory(sweep::describe(parameters), cli::origin(line)));
-  return watched.report();
+  store::write_trajectory(output, watched.trajectory(sweep::describe(parameters), provenance(line)));
+  return report(line, watched);
 }
 
 }  // namespace clog::programs

@@ -34,8 +34,8 @@ int clogrun_channel(cli::CommandLine& line) {
   say_what_is_coarse(parameters);
   console::catch_stop_signals();
   watched.follow();
-  store::write_trajectory(output, watched.trajectory(sweep::describe(parameters), cli::origin(line)));
-  return watched.report();
+  store::write_trajectory(output, watched.trajectory(sweep::describe(parameters), provenance(line)));
+  return report(line, watched);
 }
 
 }  // namespace clog::programs

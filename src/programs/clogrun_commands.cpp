@@ -1,11 +1,17 @@
 #include "clogrun_commands.hpp"
 
-#include <fmt/core.h>
+#include <fmt/ostream.h>
 
+#include <cmath>
+#include <iostream>
 #include <optional>
 
+#include "clog/cli/program.hpp"
+#include "clog/console/rounded.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/laboratory/lab_file.hpp"
+#include "clog/laboratory/scales.hpp"
 #include "clog/sweep/row_limits.hpp"
 
 namespace clog::programs {
@@ -21,6 +27,28 @@ watch::WatchedRun::Intervals intervals(const cli::CommandLine& line, double time
   std::optional<double> polygons;
   if (line.has("polygon-interval")) polygons = line.get_positive("polygon-interval");
   return watch::WatchedRun::every(line.get_positive("sample-interval"), polygons, time_step);
+}
+
+store::Provenance provenance(const cli::CommandLine& line) {
+  store::Provenance all = cli::origin(line);
+  if (line.has("lab")) all.emplace_back("laboratory", laboratory::read_laboratory(line.get("lab")).text);
+  return all;
+}
+
+int report(const cli::CommandLine& line, const watch::WatchedRun& watched) {
+  const int exit_code = watched.report();
+  if (!line.has("lab")) return exit_code;
+  const laboratory::Scales scales = laboratory::scales_of(laboratory::read_laboratory(line.get("lab")));
+  constexpr double milli = 1e-3;
+  const RunResult result = watched.result();
+  // Overdamped: times scale with the terminal speeds of both.
+  const double model_speed = watched.run().parameters().drag.terminal_speed;
+  const double seconds = std::isfinite(scales.speed)
+                             ? result.time * model_speed * scales.length / scales.speed
+                             : result.time * scales.time;
+  fmt::print(std::cout, "in the laboratory: r = {:.4g} mm, t = {:.4g} s\n",
+             result.distance * scales.length / milli, seconds);
+  return exit_code;
 }
 
 void say_what_is_unproven(const sweep::Plan& plan) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "clog/cli/command_line.hpp"
+#include "clog/store/run_table.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/watch/watched_run.hpp"
 
@@ -24,6 +25,10 @@ void refuse_options(const cli::CommandLine& line, const std::string& system,
 
 /// Reads --sample-interval and --polygon-interval. @throws Error
 watch::WatchedRun::Intervals intervals(const cli::CommandLine& line, double time_step);
+/// Of the command, with the laboratory of --lab.
+store::Provenance provenance(const cli::CommandLine& line);
+/// Prints what a run came to, with --lab in mm and s, too. Returns the exit code.
+int report(const cli::CommandLine& line, const watch::WatchedRun& watched);
 /// On the standard error, what of the runs was not proved sound; nothing if all of it was.
 void say_what_is_unproven(const sweep::Plan& plan);
 

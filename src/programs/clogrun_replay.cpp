@@ -38,8 +38,8 @@ int clogrun_replay(cli::CommandLine& line) {
   if (line.has("dry-run")) return watch::print_preview("", watched.measure_cost());
   console::catch_stop_signals();
   watched.follow();
-  store::write_trajectory(output, watched.trajectory(sweep::describe(row.parameters), cli::origin(line)));
-  return watched.report();
+  store::write_trajectory(output, watched.trajectory(sweep::describe(row.parameters), provenance(line)));
+  return report(line, watched);
 }
 
 }  // namespace clog::programs

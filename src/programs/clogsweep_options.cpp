@@ -108,18 +108,6 @@ std::int64_t most_seeds(const cli::CommandLine& line, std::int64_t first_seeds) 
   return static_cast<std::int64_t>(number);
 }
 
-/// Sets the keys that follow from the laboratory, unless the user has set them.
-void set_by(const laboratory::Laboratory& lab, sweep::Settings& settings) {
-  const laboratory::Scales scales = laboratory::scales_of(lab);
-  const auto set = [&](const char* key, double value) {
-    if (std::isfinite(value) && !settings.is_given(key)) settings.set(key, fmt::format("{:.4g}", value));
-  };
-  set("terminal-speed", scales.terminal_speed);
-  const std::vector<std::string>& models = settings.values("model");
-  if (models == std::vector<std::string>{"dp"}) set("line-tension", scales.line_tension);
-  if (models == std::vector<std::string>{"sp"}) set("wall-stiffness", scales.wall_stiffness);
-}
-
 /// A table is HDF5, whatever its name; a name that says something else is a mistake.
 void refuse_other_format(const cli::CommandLine& line) {
   if (!line.has("output")) return;
@@ -170,7 +158,7 @@ void parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
       "--output names the file of a sweep, and clogsweep status FILE tells how far it is");
   line.parse(argc, argv);
   refuse_other_format(line);
-  if (line.has("lab")) set_by(laboratory::read_laboratory(line.get("lab")), line.settings());
+  if (line.has("lab")) laboratory::set_droplet(laboratory::read_laboratory(line.get("lab")), line.settings());
   add_plan_options(line);
 }
 

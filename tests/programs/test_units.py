@@ -1,6 +1,7 @@
 """clogfit units, and sweeps, fits and figures that know their laboratory."""
 
 import json
+import re
 import subprocess
 import sys
 import unittest
@@ -83,6 +84,20 @@ class Units(ProgramTest):
         self.succeed("clogsweep", *QUICK, "line-tension=1", "seeds=1..4", "--output", "plain.h5")
         self.assertNotIn("lambda/mm", self.succeed("clogfit", "plain.h5").stdout)
         self.assertIn("lambda/mm", self.succeed("clogfit", "plain.h5", "--lab", lab).stdout)
+
+    def test_a_run_of_a_laboratory_is_told_in_its_units(self):
+        lab = self.lab()
+        known = self.units(lab)
+        told = self.succeed("clogrun", "array", "--lab", lab, *QUICK, "seeds=1", "--output", "r.h5").stdout
+        distance, time = map(float, re.search(r"after r = ([-0-9.e]+) sigma, t = ([-0-9.e]+) t0", told).groups())
+        far, long = map(float, re.search(r"in the laboratory: r = ([-0-9.e]+) mm, t = ([-0-9.e]+) s", told).groups())
+        self.assertAlmostEqual(far, 3.5 * distance, places=2)
+        self.assertAlmostEqual(long / (time * known["time_s"]), 1, places=3)
+        with h5py.File(self.folder / "r.h5") as file:
+            self.assertIn("tension = 9.6 mN/m", file.attrs["laboratory"].decode())
+            self.assertAlmostEqual(float(re.search(r"line-tension = (.*)", file.attrs["config"].decode())[1]) / known["line_tension"], 1, places=3)
+        given = self.succeed("clogrun", "array", "--lab", lab, *QUICK, "seeds=1", "line-tension=1", "--dry-run", "--output", "x.h5").stdout
+        self.assertIn("line-tension = 1\n", given)
 
     def test_mistakes_in_a_lab_file_get_one_line(self):
         mistakes = [

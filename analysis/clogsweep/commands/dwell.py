@@ -13,16 +13,17 @@ from ..labels.groups import Groups
 from ..reading import fits, programs, stored
 from ..results.fit import Fit
 from ..style import Picture
-from .command_line import sweep_to_draw
+from . import command_line
 
 
 def body() -> int:
-    arguments = sweep_to_draw(__doc__, "dwell")
+    arguments = command_line.sweep_to_draw(__doc__, "dwell", more=command_line.add_lab)
     with stored.opened(arguments.sweep, stored.SWEEP, arguments.programs):
         pass
     clogfit = programs.programs_in(arguments.programs) / "clogfit"
-    fit = Fit(*fits.fitted(clogfit, arguments.sweep))
+    lab = command_line.lab_options(arguments)
+    fit = Fit(*fits.fitted(clogfit, arguments.sweep, *lab))
     times = dwell.times_of(fit.known.with_lengths(arguments.sweep))
-    known = [Groups(*fits.fitted(clogfit, arguments.sweep, "--dwell", repr(time))).with_lengths(arguments.sweep) for time in times]
+    known = [Groups(*fits.fitted(clogfit, arguments.sweep, "--dwell", repr(time), *lab)).with_lengths(arguments.sweep) for time in times]
     print(f"{Picture(dwell.draw(times, known), fit.source).save(arguments.output)} (and .pdf)")
     return 0

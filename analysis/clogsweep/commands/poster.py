@@ -8,10 +8,10 @@ temporary folder. Of droplets in a channel or on a wall it shows the passage or 
 """
 
 from ..results.sweep import Sweep
-from .command_line import sweep_to_draw
+from . import command_line
 
 
 def body() -> int:
-    arguments = sweep_to_draw(__doc__, "poster")
-    print(f"{Sweep(arguments.sweep, arguments.programs).poster().save(arguments.output)} (and .pdf)")
+    arguments = command_line.sweep_to_draw(__doc__, "poster", more=command_line.add_lab)
+    print(f"{Sweep(arguments.sweep, arguments.programs).poster(lab=arguments.lab).save(arguments.output)} (and .pdf)")
     return 0

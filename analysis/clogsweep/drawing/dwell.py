@@ -3,13 +3,15 @@
 from collections.abc import Sequence
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .. import style
+from ..labels import LABORATORY
 from ..labels.groups import Groups
 from ..tools.errors import UserError
 from ..tools.hints import Group
-from .lengths import draw_lengths, finish_lengths
+from .lengths import add_scale, draw_lengths, finish_lengths
 
 NUM_TIMES = 12
 
@@ -46,4 +48,16 @@ def draw(times: Sequence[float], fits: Sequence[Groups]) -> Figure:
     axes.set_xlabel(f"time without having moved by ${moved}$ that counts as clogged $/t_0$")
     everyone = [group for groups in fits for group in groups.members]
     finish_lengths(axes, fits[-1], everyone, "most went on later, or other clogs")
+    add_laboratory(axes, fits[-1])
     return figure
+
+
+def add_laboratory(axes: Axes, groups: Groups) -> None:
+    """Second scales in millimetres and seconds, where the sweep or clogfit was given a laboratory."""
+    lab = groups.laboratory
+    if length := lab.get("length_mm"):
+        add_scale(axes, "right", length, LABORATORY["length"])
+    speeds = groups.values("terminal_speed")
+    if length and (speed := lab.get("speed_mm_per_s")) and len(speeds) == 1:
+        # Overdamped: times scale with the terminal speeds of both.
+        add_scale(axes, "top", speeds.pop() * length / speed, LABORATORY["time"])

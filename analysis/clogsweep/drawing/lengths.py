@@ -122,22 +122,21 @@ def speed_notes(groups: Collection[Group]) -> list[str]:
 
 def add_laboratory(axes: Axes, groups: Groups, ordinate: str) -> None:
     """A second scale in the units of the laboratory, where the sweep or clogfit was given one. @param ordinate  "length" or "speed" """
-    def scaled(factor: float) -> tuple[Callable[[float], float], Callable[[float], float]]:
-        return lambda value: value * factor, lambda value: value / factor
-
-    # Their parents have their scales by now: a change would undo what ticks are like.
-    upright = groups.laboratory.get({"length": "length_mm", "speed": "speed_mm_per_s"}[ordinate])
-    if upright:
-        right = axes.secondary_yaxis("right", functions=scaled(upright))
-        right.set_ylabel(LABORATORY[ordinate])
-        if axes.get_yscale() == "log":
-            style.plain_logarithmic(right.yaxis)
+    if upright := groups.laboratory.get({"length": "length_mm", "speed": "speed_mm_per_s"}[ordinate]):
+        add_scale(axes, "right", upright, LABORATORY[ordinate])
     tension = groups.laboratory.get("tension_mN_per_m")
     if tension and groups.abscissa == "line_tension":
-        top = axes.secondary_xaxis("top", functions=scaled(tension))
-        top.set_xlabel(LABORATORY["line_tension"])
-        if axes.get_xscale() == "log":
-            style.plain_logarithmic(top.xaxis)
+        add_scale(axes, "top", tension, LABORATORY["line_tension"])
+
+
+def add_scale(axes: Axes, side: str, factor: float, label: str) -> None:
+    """A second one at this side, "top" or "right", with other units. The first must be done: a change would undo what ticks are like."""
+    upright = side == "right"
+    second = (axes.secondary_yaxis if upright else axes.secondary_xaxis)(side, functions=(lambda value: value * factor, lambda value: value / factor))
+    axis = second.yaxis if upright else second.xaxis
+    axis.set_label_text(label)
+    if (axes.get_yscale() if upright else axes.get_xscale()) == "log":
+        style.plain_logarithmic(axis)
 
 
 def draw_curves(axes: Axes, groups: Groups, draw_curve: Callable[..., None]) -> None:

@@ -25,6 +25,7 @@ LABORATORY = {
     "line_tension": "interfacial tension [mN/m]",
     "length": r"$\lambda$ [mm]",
     "speed": r"$v_g$ [mm/s]",
+    "time": "time [s]",
 }
 
 

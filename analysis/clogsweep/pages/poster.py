@@ -119,9 +119,18 @@ def of_passages(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path) -> l
     return [*rows, (1.2, [outline_drawing(run) for run in runs])] if runs else rows
 
 
-def draw(sweep: pathlib.Path, folder: pathlib.Path) -> Figure:
-    """@param folder  of the programs. @throws UserError, ProgramFailed"""
-    groups = Groups(*fits.fitted(folder / "clogfit", sweep)).finished(sweep).fit_curves(folder / "clogfit", sweep)
+def of_laboratory(groups: Groups) -> str:
+    """A line that says what the model's units are there; nothing without one."""
+    lab = groups.laboratory
+    if not lab:
+        return ""
+    speed = f", $v_t$ = {rounded.plain(lab['speed_mm_per_s'])} mm/s" if lab["speed_mm_per_s"] else ""
+    return rf"in the laboratory $\sigma$ = {rounded.plain(lab['length_mm'])} mm{speed}" + "\n"
+
+
+def draw(sweep: pathlib.Path, folder: pathlib.Path, *options: object) -> Figure:
+    """@param folder  of the programs; @param options  for clogfit. @throws UserError, ProgramFailed"""
+    groups = Groups(*fits.fitted(folder / "clogfit", sweep, *options)).finished(sweep).fit_curves(folder / "clogfit", sweep)
     with stored.opened(sweep, folder=folder) as file:
         about = stored.attributes(file)
     abscissa = groups.abscissa.replace("_", " ")
@@ -132,6 +141,6 @@ def draw(sweep: pathlib.Path, folder: pathlib.Path) -> Figure:
     else:
         title, words = f"Clogging length vs {abscissa}", {"flowing": "still going"}
         rows = of_lengths(groups, sweep, folder / "clogrun")
-    head = f"{groups.caption()}\n{counted(stored.read_table(sweep, folder), words)}"
+    head = f"{groups.caption()}\n{of_laboratory(groups)}{counted(stored.read_table(sweep, folder), words)}"
     groups.tells_what_all_share = False  # the head does, panels need not
     return page(title, head, rows, cut(stored.source(about)))

@@ -136,12 +136,13 @@ class Sweep:
         return report.write(self.path, pathlib.Path(output), examples, programs.programs_in(self._programs),
                             *(["--lab", lab] if lab is not None else []))
 
-    def poster(self) -> Picture:
-        """One page of the sweep to be printed, A3: its curves and some of its droplets. @throws UserError"""
+    def poster(self, *, lab: str | os.PathLike[str] | None = None) -> Picture:
+        """One page of the sweep to be printed, A3: its curves and some of its droplets. @param lab  file that describes the laboratory, for its
+        units, too. @throws UserError"""
         from ..pages import poster
         from ..style import Picture
 
-        return Picture(poster.draw(self.path, programs.programs_in(self._programs)), stored.source(self.attributes))
+        return Picture(poster.draw(self.path, programs.programs_in(self._programs), *(["--lab", lab] if lab is not None else [])), stored.source(self.attributes))
 
     def __repr__(self) -> str:
         """Names all files, if the sweep has several."""

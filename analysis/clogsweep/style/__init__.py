@@ -167,7 +167,7 @@ def logarithmic_ordinate(axes: Axes) -> None:
 def plain_logarithmic(axis: Axis) -> None:
     """Numbers at 1, 2 and 5 of each decade."""
     axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
-    axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:.3g}"))
+    axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
 
 

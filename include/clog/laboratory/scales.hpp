@@ -1,6 +1,7 @@
 #pragma once
 
 #include "clog/laboratory/lab_file.hpp"
+#include "clog/sweep/settings.hpp"
 
 namespace clog::laboratory {
 
@@ -21,6 +22,9 @@ struct Scales {
   double line_tension_of_cell = 0;     ///< interfacial tension times thickness [N]
 };
 Scales scales_of(const Laboratory& lab);
+/// Gives terminal speed and line tension (of soft disks wall stiffness) the values of the laboratory's
+/// droplet, unless the user has set them.
+void set_droplet(const Laboratory& lab, sweep::Settings& settings);
 
 /// How far the centroid of a droplet sinks that its weight presses on a flat wall, which it does not wet: the
 /// two-dimensional equation of Young and Laplace [sigma]. NaN for Gamma below 1e-3 and above 1e4.
