@@ -67,12 +67,27 @@ class Devices(Analysis):
         self.succeed("clogsweep", "verify", "s.h5")
         self.succeed("clogsweep", "replay", "s.h5", 1)
 
-        self.draw("device", "s.h5", "--ways", 1, "--programs", BIN)
+        self.draw("device", "s.h5", "--ways", 1, "--map", 2, "--programs", BIN)
         self.assert_picture("s-device")
         place = drawn.the_place(self.folder / "s.h5")
         self.assertEqual((place.name, place.length, place.width, place.has_walls, len(place.circles)), ("posts.csv", 18, 6, True, 12))
-        self.draw("report", "s.h5", "--examples", 0, "--programs", BIN)
+        self.draw("report", "s.h5", "--examples", 1, "--programs", BIN)
         self.assertIn("posts.csv", (self.folder / "s-report.html").read_text())
+
+    def test_the_map_is_the_share_of_droplets_that_passed_over_a_place(self):
+        def place(**others):
+            return drawn.Place(name="none", circles=np.empty((0, 3)), length=10.0, width=4.0, rows=np.empty(3), **others)
+
+        ways = [np.array([(1.0, 2.0), (9.0, 2.0)]), np.array([(1.0, 0.2), (3.0, 0.2)])]
+        shares = drawn.passages(place(has_walls=True, exit=9.0), ways)
+        self.assertEqual(shares.shape, (40, 100))
+        middle = shares[:, 50]
+        np.testing.assert_array_equal(middle[[16, 20, 23]], 0.5)
+        np.testing.assert_array_equal(middle[[0, 5, 13, 27, 39]], 0)
+        np.testing.assert_array_equal(shares[[0, 39], 20], [0.5, 0])
+        self.assertEqual(drawn.passages(place(has_walls=False, exit=0.0), ways)[39, 20], 0.5, "it repeats across the flow")
+        twice = drawn.passages(place(has_walls=False, exit=0.0), [np.array([(1.0, 2.0), (25.0, 2.0)])])
+        np.testing.assert_array_equal(twice[20], 1)
 
     def test_what_is_no_device_is_refused(self):
         self.refuse("clogsweep", "length=20", "--output", "x.h5", words=["length=20", "obstacles=FILE.csv"])

@@ -3,8 +3,9 @@
     clogsweep obstacles=posts.csv box=8 length=20 side-walls=on release=entrance exit=20 seeds=1..20 --output sweep.h5
     python3 -m clogsweep device sweep.h5                 # sweep-device.png, sweep-device.pdf
 
-The ways are those of runs from the shortest way to the longest, which are run once more (clogrun). The strip below counts
-the droplets that came past each place along the flow. All lengths are in droplet diameters, places are those of the file.
+The ways are those of runs from the shortest way to the longest, which are run once more (clogrun). The colour of a place is
+the share of such runs whose droplet passed over it. The strip below counts the droplets that came past each place along the
+flow. All lengths are in droplet diameters, places are those of the file.
 """
 
 import argparse
@@ -14,12 +15,13 @@ from .command_line import sweep_to_draw, whole
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--ways", type=whole(0), default=6, help="of so many runs (%(default)s)")
+    parser.add_argument("--ways", type=whole(0), default=6, help="lines, of so many runs (%(default)s)")
+    parser.add_argument("--map", type=whole(0), default=40, help="colours, of so many runs (%(default)s)")
     parser.add_argument("--jobs", type=whole(1), default=2, help="runs at a time (%(default)s)")
 
 
 def body() -> int:
     arguments = sweep_to_draw(__doc__, "device", more=add_options)
-    found = Sweep(arguments.sweep, arguments.programs).device(ways=arguments.ways, jobs=arguments.jobs)
+    found = Sweep(arguments.sweep, arguments.programs).device(ways=arguments.ways, map=arguments.map, jobs=arguments.jobs)
     print(f"{found.save(arguments.output)} (and .pdf)")
     return 0

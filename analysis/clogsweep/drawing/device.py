@@ -6,6 +6,7 @@ import dataclasses
 import pathlib
 import tempfile
 from collections.abc import Sequence
+from typing import TypeVar
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -23,7 +24,9 @@ from . import surroundings
 
 WIDEST, NARROWEST = 14.0, 5.0  # figures [inches]
 RED = "#D00000"
+T = TypeVar("T")
 STEP = 0.1  # between two points of a way, of a free droplet [sigma]
+CELL = 0.1  # of the map of passages [sigma]
 
 
 def axes_for(length: float, width: float, rows: int = 1) -> tuple[Figure, Numbers]:
@@ -128,9 +131,14 @@ def the_place(path: AnyPath, folder: AnyPath | None = None) -> Place:
 def chosen(rows: Records, number: int) -> list[np.void]:
     """Runs whose ways are to be shown, evenly among all that are over, from the shortest way to the longest."""
     over = np.sort(rows[np.isin(rows["status"], [b"clogged", b"flowing", b"passed", b"broken"])], order=["distance", "task"])
-    if number == 0 or len(over) == 0:
+    return evenly(list(over), number)
+
+
+def evenly(members: list[T], number: int) -> list[T]:
+    """So many of them at most, the first and the last among them."""
+    if number == 0 or not members:
         return []
-    return list(over[np.unique(np.linspace(0, len(over) - 1, min(number, len(over))).round().astype(int))])
+    return [members[i] for i in np.unique(np.linspace(0, len(members) - 1, min(number, len(members))).round().astype(int))]
 
 
 def ways_of(place: Place, sweep: pathlib.Path, clogrun: pathlib.Path, number: int, jobs: int) -> list[Numbers]:
@@ -143,6 +151,12 @@ def ways_of(place: Place, sweep: pathlib.Path, clogrun: pathlib.Path, number: in
         runs = replays.follow_all(clogrun, sweep, rows, folder, jobs, samples)
     return [np.array([row["release_x"], row["release_y"]]) + np.column_stack([run.table["distance"], run.table["lateral_displacement"]])
             for row, run in zip(rows, runs)]
+
+
+def shown_ways(place: Place, sweep: pathlib.Path, clogrun: pathlib.Path, num_lines: int, num_mapped: int, jobs: int) -> tuple[list[Numbers], list[Numbers]]:
+    """Those to be lines, and those for the map."""
+    ways = ways_of(place, sweep, clogrun, max(num_lines, num_mapped), jobs)
+    return evenly(ways, num_lines), evenly(ways, num_mapped)
 
 
 def unbroken(points: Numbers, place: Place) -> Numbers:
@@ -186,15 +200,52 @@ def draw_passages(axes: Axes, place: Place) -> None:
     style.grid(axes)
 
 
-def draw(place: Place, ways: Sequence[Numbers] = ()) -> Figure:
-    """@param ways  of ways_of()"""
+def passages(place: Place, ways: Sequence[Numbers]) -> Numbers:
+    """Share of the droplets that passed over each cell (y, x) of the device, each taken as a disk of its diameter around its centre."""
+    rows, columns = (max(1, round(size / CELL)) for size in (place.width, place.length))
+    reach = np.arange(-int(0.5 / CELL), int(0.5 / CELL) + 1)
+    disk = np.array([(i, j) for i in reach for j in reach if np.hypot(i, j) * CELL < 0.5])
+    counts = np.zeros((rows, columns))
+    for way in ways:
+        points = place.wrapped(along(way))
+        cells = np.unique((points / (place.length, place.width) * (columns, rows)).astype(int), axis=0)[:, ::-1]
+        covered = (cells[:, None, :] + disk[None, :, :]).reshape(-1, 2)
+        # Beyond a wall or an exit there is nothing; elsewhere the device repeats.
+        inside = ((not place.has_walls) | (covered[:, 0] >= 0) & (covered[:, 0] < rows)) & ((place.exit == 0) | (covered[:, 1] >= 0) & (covered[:, 1] < columns))
+        covered = covered[inside] % (rows, columns)
+        over = np.zeros_like(counts, dtype=bool)
+        over[covered[:, 0], covered[:, 1]] = True
+        counts += over
+    return counts / max(1, len(ways))
+
+
+def along(way: Numbers) -> Numbers:
+    """With further points where two are farther apart than a cell."""
+    ways = np.concatenate([[0], np.cumsum(np.hypot(*np.diff(way, axis=0).T))])
+    wanted = np.linspace(0, ways[-1], int(ways[-1] / CELL) + 2)
+    return np.column_stack([np.interp(wanted, ways, way[:, axis]) for axis in (0, 1)])
+
+
+def draw_map(figure: Figure, panels: Sequence[Axes], place: Place, ways: Sequence[Numbers]) -> None:
+    """Where droplets went, on the first of the panels. The scale is beside all."""
+    shares = passages(place, ways)
+    drawn = panels[0].imshow(np.where(shares > 0, shares, np.nan), extent=(0, place.length, 0, place.width), origin="lower", cmap=style.PASSAGES, vmin=0,
+                             interpolation="nearest", aspect="equal", zorder=0)
+    scale = figure.colorbar(drawn, ax=list(panels), pad=0.01, fraction=0.05)
+    scale.set_label(f"share of {len(ways)} of {rounded.counted(len(place.rows), 'droplet')}\nthat passed over it", fontsize=8)
+
+
+def draw(place: Place, lines: Sequence[Numbers] = (), mapped: Sequence[Numbers] = ()) -> Figure:
+    """@param lines, mapped  ways of shown_ways(), for lines and for the map"""
     figure, (axes, below) = axes_for(place.length, place.width, rows=2)
+    if mapped:
+        draw_map(figure, [axes, below], place, mapped)
     draw_posts(axes, place.circles)
     frame(axes, place.length, place.width, "-" if place.has_walls else ":")
     if place.exit > 0:
         axes.axvline(place.exit, color="0.3", linestyle="--", linewidth=0.8)
-    for number, way in enumerate(ways):
-        axes.plot(*unbroken(way, place).T, color=style.VIRIDIS(0.85 * number / max(1, len(ways) - 1)), linewidth=1.0, zorder=3)
+    for number, way in enumerate(lines):
+        axes.plot(*unbroken(way, place).T, color=style.VIRIDIS(0.85 * number / max(1, len(lines) - 1)), linewidth=1.0, zorder=3)
     axes.plot(*place.wrapped(place.releases).T, "|", color="#009E73", markersize=7, label=f"released: {len(place.rows)}", zorder=4)
     draw_ends(axes, place)
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=4, fontsize=8, frameon=False)

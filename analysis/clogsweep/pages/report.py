@@ -20,7 +20,7 @@ from ..labels.groups import Groups
 from ..reading import fits, programs, stored
 from ..tools import outputs, rounded
 from ..tools.errors import UserError
-from ..tools.hints import Group
+from ..tools.hints import Group, Numbers
 from .chart import Charts
 
 if TYPE_CHECKING:
@@ -261,12 +261,20 @@ def valued(groups: Groups, group: Group) -> str:
     return ", ".join(f"{name.replace('_', ' ')} {cell(groups, group, name)}" for name in parameters(groups))
 
 
-def devices(groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
-    """Circles of one's own, each with its releases and clogs. Older files do not say where droplets were released."""
+MAPPED = 20  # runs whose ways make the map of a device
+
+
+def devices(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
+    """Circles of one's own, each with its releases and clogs. Older files do not say where droplets were released.
+    @param count  ways to draw; with 0 nothing is run"""
     if groups.values("obstacle_filling") != {"file"} or "release_x" not in stored.columns_of(stored.read_rows(sweep, clogrun.parent)):
         return {}
-    caption = "releases, clogs, and how many droplets came past each place"
-    return {"Devices": "".join(framed(charts.draw(device.draw(place), caption), f"{place.name}: {caption}", "wide")
+    caption = "releases, clogs, where droplets went, and how many came past each place"
+
+    def ways(place: device.Place) -> tuple[list[Numbers], list[Numbers]]:
+        return device.shown_ways(place, sweep, clogrun, count, MAPPED if count else 0, 2)
+
+    return {"Devices": "".join(framed(charts.draw(device.draw(place, *ways(place)), caption), f"{place.name}: {caption}", "wide")
                                for place in device.places(sweep, clogrun.parent))}
 
 
@@ -286,7 +294,7 @@ def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib
     ends = [chart(style.figure_of(draw_causes, groups, label, members), "ends by cause, shares") for label, members in groups.curves()]
     shown = examples(clogs.of_polygons(stored.read_rows(sweep, clogrun.parent), sweep), count)
     return {"Curves": side_by_side(curves), "How far droplets get": side_by_side(survivals), "What becomes of them": side_by_side(ends),
-            **devices(groups, sweep, clogrun, charts), "Example clogs": example_pictures(shown, sweep, clogrun, charts)}
+            **devices(groups, sweep, count, clogrun, charts), "Example clogs": example_pictures(shown, sweep, clogrun, charts)}
 
 
 def label_of_passage(groups: Groups, group: Group) -> str:

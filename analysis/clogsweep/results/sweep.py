@@ -101,19 +101,21 @@ class Sweep:
         rows = clogs.chosen(clogs.of_polygons(self._records, self.path), self.path, mechanism=mechanism, tasks=tasks, most=most)
         return clogs.run_all(self._program("clogrun"), self.path, rows, jobs)
 
-    def device(self, *, ways: int = 6, jobs: int = 2) -> Picture:
-        """User-supplied circles, with the places where droplets were released, passed and clogged.
+    def device(self, *, ways: int = 6, map: int = 40, jobs: int = 2) -> Picture:
+        """User-supplied circles, with the places where droplets were released, passed and clogged, and where they went.
 
-        @param ways  of so many runs, which are replayed; @param jobs  runs at a time
+        @param ways  of so many runs a line; @param map  of so many runs the share that passed over each place; they are run once more
+        @param jobs  runs at a time
         @throws UserError  if the sweep has no user-supplied circles, or those of several devices
         """
         from ..drawing import device
         from ..style import Picture
 
         checked.whole("ways", ways, 0)
+        checked.whole("map", map, 0)
         checked.whole("jobs", jobs, 1)
         place = device.the_place(self.path, self._programs)
-        return Picture(device.draw(place, device.ways_of(place, self.path, self._program("clogrun"), ways, jobs)), stored.source(self.attributes))
+        return Picture(device.draw(place, *device.shown_ways(place, self.path, self._program("clogrun"), ways, map, jobs)), stored.source(self.attributes))
 
     def replay(self, task: int, output: str | os.PathLike[str] | None = None, *, interval: float = 1.0) -> Run:
         """Replays a run, with outlines. @param output  file to keep it in; @param interval  between outlines [t0]. @throws UserError"""

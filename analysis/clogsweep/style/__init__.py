@@ -30,6 +30,7 @@ MECHANISM_COLOURS = {"wrapped": COLOURS[0], "squeezed": COLOURS[1], "hybrid": CO
 CAUSE_COLOURS = {**MECHANISM_COLOURS, "broken": COLOURS[4]}
 MECHANISM_MARKERS = {"wrapped": "o", "squeezed": "s", "hybrid": "D", "other": "X"}
 VIRIDIS = matplotlib.colormaps["viridis"]
+PASSAGES = matplotlib.colormaps["YlOrBr"]  # light where few went; lines and markers stay visible on it
 OBSTACLE = "0.72"
 NOTE_SIZE = 8
 NOTES = "notes"  # the name (`gid`) of what explains marks
