@@ -16,7 +16,7 @@ packages=(
   libgtest-dev libbenchmark-dev                      # tests and benchmarks
   procps iproute2                                    # tests that kill ranks, and join two hosts
   python3-sphinx python3-myst-parser python3-sphinx-copybutton furo      # man pages, from the handbook
-  python3-ezdxf python3-gdspy python3-svgelements python3-skimage        # drawings and pictures of devices
+  python3-ezdxf python3-gdspy python3-svgelements python3-skimage python3-shapely  # drawings and pictures of devices
   python3-nbsphinx pandoc libjs-mathjax              # the handbook as a site, which the Debian package holds
   python3 python3-h5py python3-pandas python3-tables python3-matplotlib  # the Python module, and readers for the tests
   python3-nbclient python3-ipykernel                 # a test that runs the notebook of the gallery

@@ -3,6 +3,7 @@
 import json
 import unittest
 
+import h5py
 import numpy as np
 from PIL import Image, ImageDraw
 
@@ -89,6 +90,23 @@ class Devices(Analysis):
         twice = drawn.passages(place(has_walls=False, exit=0.0), [np.array([(1.0, 2.0), (25.0, 2.0)])])
         np.testing.assert_array_equal(twice[20], 1)
 
+    def test_droplets_slide_along_a_row_of_circles_as_along_a_flat_wall(self):
+        # Along a wall without friction, at an angle to the flow, a droplet has its terminal speed times the cosine: along the flow, the square.
+        for angle, tolerance in ((45, 0.001), (75, 0.004)):
+            tangent = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+            for radius, spacing, vertices in ((0.05, 0.0167, 128), (0.1, 0.0333, 64)):
+                normal = np.array([-tangent[1], tangent[0]])
+                centres = np.array([12, 14]) - radius * normal + np.arange(0, 14, spacing)[:, None] * tangent
+                self.write("wall.csv", "".join(f"{x:.6f},{y:.6f},{2 * radius}\n" for x, y in centres))
+                start = 14.6 + 1.2 * tangent[1]
+                self.succeed("clogrun", "array", "obstacles=wall.csv", "box=30", "release=entrance", "entrance=9", f"entrance-from={start}", f"entrance-to={start}",
+                             "line-tension=1", "terminal-speed=0.1", f"vertices={vertices}", f"max-time={30 + 30 / tangent[0] ** 2:.0f}", "--output", f"{angle}-{vertices}.h5")
+                with h5py.File(self.folder / f"{angle}-{vertices}.h5") as file:
+                    run = file["trajectory"][:]
+                end = run["time"] > run["time"][-1] - 20 / tangent[0] ** 2
+                speed = np.polyfit(run["time"][end], run["distance"][end], 1)[0] / 0.1
+                self.assertAlmostEqual(speed / tangent[0] ** 2, 1, delta=tolerance)
+
     def test_what_is_no_device_is_refused(self):
         self.refuse("clogsweep", "length=20", "--output", "x.h5", words=["length=20", "obstacles=FILE.csv"])
         self.write("posts.csv", csv())
@@ -159,6 +177,24 @@ class Drawings(Analysis):
         self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts", words=["1 post of 2 not round", "--as-circles"])
         self.assertFalse((self.folder / "posts.csv").exists())
         self.assert_picture("posts")
+        rows = self.circles("device.svg", "--as-rows")
+        posts = np.unique(rows[:, 2].round(6))
+        self.assertAlmostEqual(posts[-1], 0.5, places=3)
+        triangle = rows[rows[:, 2] < 0.3]
+        self.assertGreater(len(triangle), 20)
+        self.assertLess(np.ptp(triangle[:, 2]), 1e-4)
+        # Within the outline, touching each side.
+        radius = triangle[0, 2] / 2
+        corners = np.array([(10.0, 3.5), (10.5, 3.5), (10.25, 3.0)])  # y upwards
+        for (x, y), (end_x, end_y) in zip(corners, np.roll(corners, -1, axis=0)):
+            along = np.array([end_x - x, end_y - y])
+            off = np.abs(along[0] * (triangle[:, 1] - y) - along[1] * (triangle[:, 0] - x)) / np.hypot(*along)
+            self.assertAlmostEqual(off.min(), radius, delta=1e-4)
+        told = self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=18", "side-walls=on", "release=entrance", "entrance=8", "exit=13", "line-tension=1",
+                            "max-time=300", "seeds=1..4", "--output", "s.h5")
+        self.assertEqual(set(table(self.folder / "s.h5")["status"]), {"passed"}, told.stderr)
+        for name in ("posts.csv", "posts.png", "posts.pdf"):
+            (self.folder / name).unlink()
         rows = self.circles("device.svg", "--as-circles")
         np.testing.assert_allclose(rows[:, 2].min(), 2 * np.sqrt(5000 / np.pi) / 200, rtol=0.02)
 

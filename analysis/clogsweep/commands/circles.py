@@ -5,9 +5,9 @@
     clogsweep obstacles=posts.csv box=... length=...      # as the command prints it
 
 posts.csv has the posts in micrometres, and the droplet's diameter. posts.png shows what was understood: look at it before
-you run anything. An outline that holds everything else is the edge of the device; of a picture it is its own edge. Posts
-have to be round. Others, such as triangles, are red in the picture, and nothing is written unless --as-circles replaces
-them by circles of the same area.
+you run anything. An outline that holds everything else is the edge of the device; of a picture it is its own edge. Round
+posts are circles. Others, such as triangles, are red in the picture, and nothing is written unless --as-rows replaces each by rows
+of overlapping circles along its outline, or --as-circles by a circle of the same area.
 """
 
 import argparse
@@ -15,7 +15,7 @@ import pathlib
 
 import numpy as np
 
-from ..device import readers, shapes
+from ..device import readers, rows, shapes
 from ..drawing import device as drawn
 from ..style import Picture
 from ..tools import outputs, rounded
@@ -36,6 +36,17 @@ def tolerance(word: str) -> float:
     return value
 
 
+def corner(word: str) -> float:
+    """Type of an option: a radius in droplet diameters."""
+    try:
+        value = float(word)
+    except ValueError:
+        value = -1.0
+    if not 0.01 <= value <= 1:
+        raise argparse.ArgumentTypeError(f"invalid value: {word} (must be a radius in droplet diameters, 0.01 to 1)")
+    return value
+
+
 def options() -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
     parser.add_argument("drawing", type=pathlib.Path, help=".dxf, .gds, .svg, .png, .tif, .bmp or .jpg")
@@ -48,7 +59,10 @@ def options() -> argparse.Namespace:
     parser.add_argument("--posts", choices=("dark", "bright"), default="dark", help="of a picture (dark)")
     parser.add_argument("--flow", choices=TURNS, default="right", help="where it goes in the drawing (right)")
     parser.add_argument("--tolerance", type=tolerance, default=0.04, help="so much of its radius may a post be off a circle (0.04)")
-    parser.add_argument("--as-circles", action="store_true", help="replace other posts by circles of the same area")
+    others = parser.add_mutually_exclusive_group()
+    others.add_argument("--as-rows", action="store_true", help="replace other posts by rows of circles along their outlines")
+    others.add_argument("--as-circles", action="store_true", help="replace other posts by circles of the same area")
+    parser.add_argument("--corner", type=corner, default=0.05, help="with --as-rows: radius of rounded corners, in droplet diameters (0.05)")
     return parser.parse_args()
 
 
@@ -73,13 +87,22 @@ def call_of(device: shapes.Device, output: pathlib.Path) -> str:
 def told(device: shapes.Device, drawing: shapes.Drawing) -> list[str]:
     """Describes in words what was read from the drawing."""
     edge = "its own edge" if device.has_frame else "no edge is drawn: that of what surrounds the posts"
-    lines = [f"{rounded.counted(len(device.circles), 'post')}, device {device.length:.4g} x {device.width:.4g} droplet diameters ({edge})"]
+    lines = [f"{rounded.counted(device.num_posts(), 'post')}, device {device.length:.4g} x {device.width:.4g} droplet diameters ({edge})"]
     if len(device.circles):
         diameters = device.circles[:, 2]
         lines.append(f"diameters {diameters.min():.4g} to {diameters.max():.4g}, smallest gap {device.smallest_gap():.4g}, in droplet diameters")
     if drawing.skipped:
         lines.append("skipped: " + ", ".join(f"{count} {kind}" for kind, count in sorted(drawing.skipped.items())))
     return lines
+
+
+def in_rows(device: shapes.Device, radius: float) -> tuple[shapes.Device, list[str]]:
+    """@return the device with rows of circles, and how near they come to the outlines, in words"""
+    number = len(device.others)
+    found = rows.as_rows(device, radius)
+    micrometres = device.droplet_metres / shapes.METRES["um"]
+    return found.device, [f"{rounded.counted(number, 'post')} not round (red lines) as {rounded.counted(len(found.device.circles) - len(device.circles), 'circle')} in rows: "
+                          f"corners lose {found.farthest:.2g} at most ({found.farthest * micrometres:.2g} um), walls are rough by {found.roughness:.2g}, in droplet diameters"]
 
 
 def body() -> int:
@@ -90,14 +113,17 @@ def body() -> int:
     outputs.refuse_unwritable(table, "csv", arguments.drawing)
     drawing = readers.read(arguments.drawing, arguments.layer, arguments.posts)
     device = shapes.understood(drawing, metres_of(arguments, drawing), droplet, arguments.tolerance, TURNS[arguments.flow])
+    made = []
+    if arguments.as_rows and device.others:
+        device, made = in_rows(device, arguments.corner)
     if arguments.as_circles:
         device = shapes.as_circles(device)
     picture = Picture(drawn.understood(device, arguments.drawing.name), f"python3 -m clogsweep circles {arguments.drawing}")
     print(f"{picture.save(arguments.output)} (and .pdf)")
-    print("\n".join(told(device, drawing)))
+    print("\n".join(told(device, drawing) + made))
     if device.others:
         raise UserError(f"{rounded.counted(len(device.others), 'post')} of {len(device.others) + len(device.circles)} not round, red in the picture; no {table} "
-                        "was written. Use --as-circles for circles of the same area, or a larger --tolerance")
+                        "was written. Use --as-rows for rows of circles along their outlines, --as-circles for circles of the same area, or a larger --tolerance")
     if touching := device.overlaps():
         x, y, _ = device.circles[touching[0][0]]
         raise UserError(f"{rounded.counted(len(touching), 'pair')} of posts touch, the first at x={x:.4g}, y={y:.4g} in droplet diameters; no {table} was written. "

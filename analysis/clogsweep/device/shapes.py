@@ -34,6 +34,8 @@ class Device:
     width: float
     has_frame: bool
     droplet_metres: float
+    post_of: Numbers | None = None  # number of the post of each circle; None: each is one
+    replaced: list[Numbers] = dataclasses.field(default_factory=list)  # outlines for which there are circles
 
     def overlaps(self) -> list[tuple[int, int]]:
         """Pairs of posts that touch, which clogsweep refuses."""
@@ -46,12 +48,17 @@ class Device:
     def _gaps(self) -> list[tuple[int, int, float]]:
         """Of each post, the nearest among those after it."""
         found = []
+        posts = np.arange(len(self.circles)) if self.post_of is None else self.post_of
         for i, (x, y, diameter) in enumerate(self.circles[:-1]):
             others = self.circles[i + 1:]
             gaps = np.hypot(others[:, 0] - x, others[:, 1] - y) - (others[:, 2] + diameter) / 2
+            gaps[posts[i + 1:] == posts[i]] = np.inf
             nearest = int(np.argmin(gaps))
             found.append((i, i + 1 + nearest, float(gaps[nearest])))
         return found
+
+    def num_posts(self) -> int:
+        return len(self.circles) if self.post_of is None else len(np.unique(self.post_of))
 
 
 def length_in_metres(text: str, option: str) -> float:

@@ -58,13 +58,15 @@ def understood(device: Device, source: str) -> Figure:
     draw_posts(axes, device.circles)
     for outline in device.others:
         axes.add_patch(Polygon(outline, facecolor=RED, edgecolor="black", linewidth=0.5))
+    for outline in device.replaced:
+        axes.add_patch(Polygon(outline, fill=False, edgecolor=RED, linewidth=0.5))
     for pair in device.overlaps():
         draw_posts(axes, device.circles[list(pair)], RED)
     frame(axes, device.length, device.width, "--" if device.has_frame else ":")
     axes.set_xlabel(r"$x/\sigma$, along the flow")
     micrometres = device.droplet_metres / METRES["um"]
     red = f", {len(device.others)} not round (red)" if device.others else ""
-    style.caption(axes, rf"{source}: {rounded.counted(len(device.circles), 'post')}{red}, "
+    style.caption(axes, rf"{source}: {rounded.counted(device.num_posts(), 'post')}{red}, "
                         rf"$\sigma$ = {micrometres:.4g} µm, device {device.length * micrometres:.5g} µm x {device.width * micrometres:.5g} µm")
     return figure
 

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <boost/random/uniform_01.hpp>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <mutex>
 #include <random>
+#include <set>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -66,37 +69,68 @@ void check_place(const Obstacle& circle, const ObstacleParameters& obstacles) {
                     shortest(period.box)));
 }
 
-/// The closest two of all circles of one period; kept, because most tasks of a plan have the same circles.
-ObstacleArray::Pair closest_pair(const ObstacleParameters& obstacles) {
+/// The smallest gap between a wall and a post that does not touch it.
+struct GapAtWall {
+  Obstacle circle;
+  double gap = std::numeric_limits<double>::infinity();  ///< [sigma]
+};
+
+GapAtWall smallest_gap_at_wall(const ObstacleArray& array, double box) {
+  GapAtWall smallest;
+  const std::vector<std::uint32_t> posts = array.posts();
+  const std::span<const Obstacle> circles = array.obstacles();
+  for (const bool is_upper : {false, true}) {
+    const auto gap_of = [&](const Obstacle& circle) {
+      return (is_upper ? box - circle.y : circle.y) - circle.radius;
+    };
+    std::vector<bool> touches(circles.size(), false);
+    for (std::size_t i = 0; i < circles.size(); ++i)
+      if (gap_of(circles[i]) <= 0) touches[posts[i]] = true;
+    for (std::size_t i = 0; i < circles.size(); ++i)
+      if (!touches[posts[i]] && gap_of(circles[i]) < smallest.gap)
+        smallest = {circles[i], gap_of(circles[i])};
+  }
+  return smallest;
+}
+
+/// What is known of all circles of one period; kept, because most tasks of a plan have the same circles.
+struct Examined {
+  ObstacleArray::Pair pair;
+  GapAtWall at_wall;
+  std::size_t num_posts = 0;
+};
+Examined examined(const ObstacleParameters& obstacles) {
   using Key = std::tuple<std::string, double, double, double, double>;
   static std::mutex mutex;
   static Key last;
-  static ObstacleArray::Pair found;
+  static Examined found;
   const Period period = period_of(obstacles);
   const Key key{obstacles.own->check_sum(), period.box, period.along(), period.beside, obstacles.diameter};
   const std::scoped_lock lock(mutex);
   if (key != last) {
     const std::vector<Obstacle> circles = circles_of(obstacles);
     for (const Obstacle& circle : circles) check_place(circle, obstacles);
-    found = ObstacleArray(period, circles).closest_pair();
+    const ObstacleArray array(period, circles);
+    const std::vector<std::uint32_t> posts = array.posts();
+    found = {.pair = array.closest_pair(),
+             .at_wall = smallest_gap_at_wall(array, period.box),
+             .num_posts = std::set(posts.begin(), posts.end()).size()};
     last = key;
   }
   return found;
 }
 
-/// A circle may grow out of a wall. Where it does not, the gap between both must be resolved.
+/// A post may grow out of a wall. Where it does not, the gap between both must be resolved.
 void check_gaps_at_walls(const RunParameters& run) {
   const ObstacleParameters& obstacles = run.obstacles;
   if (obstacles.side_walls == SideWalls::off) return;
   const double edge = model_of(run).narrowest(run);
-  for (const Obstacle& circle : circles_of(obstacles)) {
-    const double gap = std::min(circle.y, obstacles.box - circle.y) - circle.radius;
-    if (gap > 0 && gap <= edge)
-      refuse_circles(*obstacles.own,
-                     fmt::format("the one at {} leaves a gap of {:.3g} sigma at the wall, not wider than an "
-                                 "edge, {:.3g} sigma) let it touch the wall, or move it away",
-                                 place_of(circle), gap, edge));
-  }
+  const auto [circle, gap] = examined(obstacles).at_wall;
+  if (gap <= edge)
+    refuse_circles(*obstacles.own,
+                   fmt::format("the one at {} leaves a gap of {:.3g} sigma at the wall, not wider than an "
+                               "edge, {:.3g} sigma) let it touch the wall, or move it away",
+                               place_of(circle), gap, edge));
 }
 
 void check_ways(const ObstacleParameters& obstacles) {
@@ -137,12 +171,12 @@ void check_circles(const RunParameters& run) {
   require(obstacles.diameter_spread == 0, "obstacle-diameter-spread", obstacles.diameter_spread,
           "user-supplied circles have their own diameters) leave it out");
   check_ways(obstacles);
-  const ObstacleArray::Pair pair = closest_pair(obstacles);
+  const ObstacleArray::Pair pair = examined(obstacles).pair;
   const std::string both = fmt::format("those at {} and {}", place_of(pair.first), place_of(pair.second));
   if (pair.gap <= 0)
     refuse_circles(*obstacles.own,
                    fmt::format("{} touch or overlap, by {:.3g} sigma, across the border of the box too) move "
-                               "them apart or make them smaller",
+                               "them apart or make them smaller; of one post each has its centre in another",
                                both, -pair.gap));
   const double edge = model_of(run).narrowest(run);
   if (pair.gap <= edge)
@@ -158,8 +192,8 @@ void find_gap_and_density(RunParameters& run) {
   ObstacleParameters& obstacles = run.obstacles;
   // The gap between a few circles may be wider than an array of this box can have.
   const double widest = obstacles.box / 2 - obstacles.diameter;
-  obstacles.gap = std::min(closest_pair(obstacles).gap, widest);
-  obstacles.density = static_cast<double>(obstacles.own->circles().size()) / obstacles.period().area();
+  obstacles.gap = std::min(examined(obstacles).pair.gap, widest);
+  obstacles.density = static_cast<double>(examined(obstacles).num_posts) / obstacles.period().area();
 }
 
 /// A random number in [0, 1); the constant keeps this stream apart from others.

@@ -143,8 +143,30 @@ void ObstacleArray::gather(const Window& window, std::vector<Obstacle>& out) con
   });
 }
 
+std::vector<std::uint32_t> ObstacleArray::posts() const {
+  // A forest: each circle points to another of its post, the root to itself.
+  std::vector<std::uint32_t> post(binned_.obstacles.size());
+  std::iota(post.begin(), post.end(), 0u);
+  const auto root_of = [&](std::uint32_t circle) {
+    while (post[circle] != circle) circle = post[circle] = post[post[circle]];
+    return circle;
+  };
+  for (std::uint32_t first = 0; first < post.size(); ++first) {
+    const auto& [origin_x, origin_y, radius] = binned_.obstacles[first];
+    visit_window({origin_x, origin_y, 0, 0, 0, 0, radius},
+                 [&, r = radius](std::uint32_t second, double x, double y) {
+                   const double apart = std::hypot(x, y);
+                   if (apart > 0 && apart < std::max(r, binned_.obstacles[second].radius))
+                     post[root_of(first)] = root_of(second);
+                 });
+  }
+  for (std::uint32_t circle = 0; circle < post.size(); ++circle) post[circle] = root_of(circle);
+  return post;
+}
+
 ObstacleArray::Pair ObstacleArray::closest_pair() const {
   Pair closest{{}, {}, std::numeric_limits<double>::infinity()};
+  const std::vector<std::uint32_t> post = posts();
   const double nearest_image = std::min(period().along(), period().across());
   // Pairs nearer than the margin are all seen; widen it until the smallest one found is certain.
   double margin = 0.125 * units::droplet_diameter;
@@ -155,8 +177,9 @@ ObstacleArray::Pair ObstacleArray::closest_pair() const {
       visit_window({origin_x, origin_y, -radius, radius, -radius, radius, margin},
                    [&, r = radius](std::uint32_t second, double x, double y) {
                      const double gap = std::hypot(x, y) - r - binned_.obstacles[second].radius;
-                     const bool is_itself = second == first && std::hypot(x, y) < nearest_image / 2;
-                     if (!is_itself && gap < closest.gap)
+                     const bool is_one_post =
+                         post[second] == post[first] && std::hypot(x, y) < nearest_image / 2;
+                     if (!is_one_post && gap < closest.gap)
                        closest = {binned_.obstacles[first], binned_.obstacles[second], gap};
                    });
     }

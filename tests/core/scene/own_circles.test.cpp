@@ -75,6 +75,26 @@ TEST(OwnCircles, AreRefusedWithTheirPlaces) {
   EXPECT_NE(refusal(none).find("obstacles=FILE.csv"), std::string::npos);
 }
 
+RunParameters between_walls(std::vector<Obstacle> circles) {
+  RunParameters run = among(std::move(circles));
+  run.obstacles.length = 23.5;
+  run.obstacles.side_walls = SideWalls::on;
+  run.obstacles.release = Release::entrance;
+  run.obstacles.entrance = 2;
+  run.obstacles.exit = 20;
+  return run;
+}
+
+TEST(OwnCircles, InARowAreOnePostThatMayGrowOutOfAWall) {
+  std::vector<Obstacle> row = {{9, 3, 0.3}};
+  for (int i = 0; i < 20; ++i) row.push_back({12, 0.05 + 0.1 * i, 0.2});
+  const RunParameters run = resolve(between_walls(row));
+  EXPECT_NEAR(run.obstacles.gap, std::hypot(3, 3 - 1.95) - 0.5, 1e-12);
+  EXPECT_DOUBLE_EQ(run.obstacles.density.per_area.value(), 2 / 235.0) << "two posts";
+  for (Obstacle& circle : row) circle.y += 0.155;  // the first one's gap at the wall is 0.005
+  EXPECT_NE(refusal(between_walls(row)).find("at the wall"), std::string::npos);
+}
+
 TEST(OwnCircles, AreShiftedSoThatTheDropletStartsAnywhere) {
   // Uniform: of many places the mean of cos(2 pi x/L) is 0 within its standard error of 1/sqrt(2 n).
   RunParameters run = resolve(among({{5, 5, 0.3}}));
@@ -91,16 +111,6 @@ TEST(OwnCircles, AreShiftedSoThatTheDropletStartsAnywhere) {
   const double error = 1 / std::sqrt(2.0 * number);
   EXPECT_LT(std::abs(sum_x / number), 4 * error);
   EXPECT_LT(std::abs(sum_y / number), 4 * error);
-}
-
-RunParameters between_walls(std::vector<Obstacle> circles) {
-  RunParameters run = among(std::move(circles));
-  run.obstacles.length = 23.5;
-  run.obstacles.side_walls = SideWalls::on;
-  run.obstacles.release = Release::entrance;
-  run.obstacles.entrance = 2;
-  run.obstacles.exit = 20;
-  return run;
 }
 
 TEST(OwnCircles, MayBeAnyLengthAndFindEachOtherOverItsBorder) {

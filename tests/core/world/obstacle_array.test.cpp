@@ -8,8 +8,10 @@
 #include <cstdint>
 #include <numbers>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/instruction_set.hpp"
@@ -345,6 +347,28 @@ TEST(ObstacleArray, SeesOverlapsOfMixedSizes) {
   EXPECT_NEAR(ObstacleArray(20, {{1, 1, 0.5}, {1.2, 1, 0.4}}).smallest_gap(), -0.7, 1e-12);
   EXPECT_NEAR(ObstacleArray(20, {{1, 1, 0.5}}).smallest_gap(), 19, 1e-12) << "to its own periodic image";
   EXPECT_TRUE(std::isinf(ObstacleArray(20, {}).smallest_gap()));
+}
+
+TEST(ObstacleArray, CirclesWithACentreInEachOtherAreOnePost) {
+  // A row over the border of the period, a circle that only overlaps its end, and a copy.
+  const ObstacleArray array(
+      10, {{9.8, 5, 0.3}, {0, 5, 0.3}, {0.2, 5, 0.3}, {0.6, 5, 0.3}, {5, 5, 0.3}, {5, 5, 0.3}});
+  const std::vector<std::uint32_t> posts = array.posts();
+  const auto post_at = [&](double x, int copy = 0) {
+    for (std::size_t i = 0; i < posts.size(); ++i)
+      if (array.obstacles()[i].x == x && copy-- == 0) return posts[i];
+    throw std::out_of_range("no such circle");
+  };
+  EXPECT_EQ(post_at(9.8), post_at(0));
+  EXPECT_EQ(post_at(0), post_at(0.2));
+  EXPECT_NE(post_at(0.2), post_at(0.6));
+  EXPECT_NE(post_at(5), post_at(5, 1));
+  EXPECT_NEAR(array.smallest_gap(), -0.6, 1e-12) << "of the two copies";
+  // Circles of one post do not count, however near; a long post meets its own image.
+  EXPECT_NEAR(ObstacleArray(10, {{1, 5, 0.3}, {1.2, 5, 0.3}, {1.4, 5, 0.3}, {1.65, 5, 0.3}, {4, 5, 0.3}})
+                  .smallest_gap(),
+              1.75, 1e-12);
+  EXPECT_NEAR(ObstacleArray(2, {{0.4, 1, 0.3}, {0.6, 1, 0.3}, {0.8, 1, 0.3}}).smallest_gap(), 1, 1e-12);
 }
 
 TEST(ObstacleArray, NamesItsClosestPair) {

@@ -1,0 +1,100 @@
+"""Posts that are not round, as rows of circles along their outline, which overlap and so make a wall without gaps."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+from ..tools.errors import UserError
+from ..tools.hints import Numbers
+from .readers import library
+from .shapes import Device
+
+SPACING = 1 / 3  # of a row's circles, over their radius: the wall is rough by 1.4 % of the radius
+SMALLEST_VOID = 0.35  # radius of what may be left empty inside a post, where no droplet fits [sigma]
+MOST_FILLERS = 100
+
+
+@dataclasses.dataclass
+class Rows:
+    """What came of the posts, in droplet diameters."""
+
+    device: Device
+    corner: float  # the largest radius of circles in a row
+    farthest: float  # of a drawn outline from the posts: what corners lose
+    roughness: float
+
+
+def as_rows(device: Device, corner: float) -> Rows:
+    """With rows of circles in place of each outline that is not round. @param corner  radius to which corners are rounded; of
+    a thinner post, nearly half of its width. @throws UserError  if an outline crosses itself"""
+    geometry = library("shapely.geometry", "python3-shapely")
+    frame = geometry.box(0, 0, device.length, device.width)
+    circles, posts = [device.circles], [np.arange(len(device.circles))]
+    number, farthest = len(device.circles), 0.0
+    for outline in device.others:
+        polygon = geometry.Polygon(outline)
+        if not polygon.is_valid:
+            x, y = outline.mean(axis=0)
+            raise UserError(f"the outline around x={x:.4g}, y={y:.4g} in droplet diameters crosses itself; mend it in the drawing")
+        inside = polygon.intersection(frame) if device.has_frame else polygon
+        for part in parts(inside):
+            made = np.vstack([of_part(core, part, radius) for core, radius in cores(part, corner)])
+            circles.append(made)
+            posts.append(np.full(len(made), number))
+            number += 1
+            farthest = max(farthest, distance_left(part, made))
+    rough = corner * (1 - np.sqrt(1 - SPACING**2 / 4))
+    made_of_them = dataclasses.replace(device, circles=np.vstack(circles), others=[], post_of=np.concatenate(posts), replaced=device.others)
+    return Rows(made_of_them, corner, farthest, float(rough))
+
+
+def parts(shape: Any) -> list[Any]:
+    """The polygons of a polygon or of several."""
+    return [part for part in getattr(shape, "geoms", [shape]) if part.geom_type == "Polygon" and part.area > 0]
+
+
+def deepest(polygon: Any) -> tuple[Any, float]:
+    """The centre and radius of the largest circle that fits in."""
+    ops = library("shapely.ops", "python3-shapely")
+    centre = ops.polylabel(polygon, 1e-3 * np.sqrt(polygon.area))
+    return centre, polygon.boundary.distance(centre)
+
+
+def cores(polygon: Any, corner: float) -> list[tuple[Any, float]]:
+    """Where the centres of circles of this radius are that lie within the polygon and touch its outline. A thin polygon gets smaller ones."""
+    _, half_width = deepest(polygon)
+    radius = min(corner, 0.9 * half_width)
+    return [(core, radius) for core in parts(polygon.buffer(-radius))]
+
+
+def of_part(core: Any, polygon: Any, radius: float) -> Numbers:
+    """A row along the edge of a core, and larger circles within, where a droplet would fit."""
+    found = [(x, y, 2 * radius) for x, y in places(core.exterior.simplify(0.01 * radius), SPACING * radius)]
+    rest = core
+    for _ in range(MOST_FILLERS):
+        left = [(deepest(part), part) for part in parts(rest)]
+        (centre, room), _ = max(left, key=lambda one: one[0][1], default=((None, 0.0), None))
+        if room < SMALLEST_VOID:
+            break
+        size = polygon.exterior.distance(centre)
+        found.append((centre.x, centre.y, 2 * size))
+        rest = rest.difference(centre.buffer(size))
+    return np.array(found)
+
+
+def places(ring: Any, spacing: float) -> Numbers:
+    """Corners, and evenly between them."""
+    corners = np.asarray(ring.coords)
+    return np.vstack([begin + np.linspace(0, 1, max(1, int(np.ceil(np.hypot(*(end - begin)) / spacing))), endpoint=False)[:, None] * (end - begin)
+                      for begin, end in zip(corners, corners[1:])])
+
+
+def distance_left(polygon: Any, circles: Numbers) -> float:
+    """The largest distance of the outline from the circles."""
+    edge = np.array([polygon.exterior.interpolate(place, normalized=True).coords[0] for place in np.linspace(0, 1, 2000)])
+    corners = np.vstack([edge, np.asarray(polygon.exterior.coords)])
+    gaps = np.hypot(corners[:, None, 0] - circles[None, :, 0], corners[:, None, 1] - circles[None, :, 1]) - circles[None, :, 2] / 2
+    return float(gaps.min(axis=1).max())
