@@ -113,7 +113,7 @@ def body() -> int:
     outputs.refuse_unwritable(table, "csv", arguments.drawing)
     drawing = readers.read(arguments.drawing, arguments.layer, arguments.posts)
     device = shapes.understood(drawing, metres_of(arguments, drawing), droplet, arguments.tolerance, TURNS[arguments.flow])
-    made = []
+    made: list[str] = []
     if arguments.as_rows and device.others:
         device, made = in_rows(device, arguments.corner)
     if arguments.as_circles:

@@ -75,10 +75,10 @@ def of_part(core: Any, polygon: Any, radius: float) -> Numbers:
     found = [(x, y, 2 * radius) for x, y in places(core.exterior.simplify(0.01 * radius), SPACING * radius)]
     rest = core
     for _ in range(MOST_FILLERS):
-        left = [(deepest(part), part) for part in parts(rest)]
-        (centre, room), _ = max(left, key=lambda one: one[0][1], default=((None, 0.0), None))
-        if room < SMALLEST_VOID:
+        left = [deepest(part) for part in parts(rest)]
+        if not left or max(room for _, room in left) < SMALLEST_VOID:
             break
+        centre, _ = max(left, key=lambda one: one[1])
         size = polygon.exterior.distance(centre)
         found.append((centre.x, centre.y, 2 * size))
         rest = rest.difference(centre.buffer(size))
