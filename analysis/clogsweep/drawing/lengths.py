@@ -78,7 +78,8 @@ def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], i
     bars = [[math.nan if group["clogs"] == 0 else abs(group["clogging_length"] - group[end]) for group in groups]
             for end in ("clogging_length_lower", "clogging_length_upper")]
     colour, line = (style.curve_style(index)[name] for name in ("color", "linestyle"))
-    axes.errorbar(places, lengths, yerr=bars, color=colour, linestyle=linestyle or line, linewidth=1, elinewidth=1, capsize=2.5, label=label,
+    has_bars = any(group["clogs"] > 0 for group in groups)
+    axes.errorbar(places, lengths, yerr=bars if has_bars else None, color=colour, linestyle=linestyle or line, linewidth=1, elinewidth=1, capsize=2.5, label=label,
                   gid=style.mark("curve", groups))
     for x, y, group in zip(places, lengths, groups):
         face = "white" if reasons_for_hollow_marker(group) else colour

@@ -344,7 +344,7 @@ TEST_P(Gathering, FindsWhatBruteForceFinds) {
 
 TEST(ObstacleArray, SeesOverlapsOfMixedSizes) {
   EXPECT_NEAR(ObstacleArray(20, {{1, 1, 0.5}, {19.5, 1, 0.8}}).smallest_gap(), 0.2, 1e-12);
-  EXPECT_NEAR(ObstacleArray(20, {{1, 1, 0.5}, {1.2, 1, 0.4}}).smallest_gap(), -0.7, 1e-12);
+  EXPECT_NEAR(ObstacleArray(20, {{1, 1, 0.5}, {1.6, 1, 0.4}}).smallest_gap(), -0.3, 1e-12);
   EXPECT_NEAR(ObstacleArray(20, {{1, 1, 0.5}}).smallest_gap(), 19, 1e-12) << "to its own periodic image";
   EXPECT_TRUE(std::isinf(ObstacleArray(20, {}).smallest_gap()));
 }
