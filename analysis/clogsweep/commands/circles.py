@@ -101,8 +101,9 @@ def in_rows(device: shapes.Device, radius: float) -> tuple[shapes.Device, list[s
     number = len(device.others)
     found = rows.as_rows(device, radius)
     micrometres = device.droplet_metres / shapes.METRES["um"]
+    advice = "; thin parts are cut off, and a smaller --corner keeps more of them" if found.farthest > 2 * found.corner else ""
     return found.device, [f"{rounded.counted(number, 'post')} not round (red lines) as {rounded.counted(len(found.device.circles) - len(device.circles), 'circle')} in rows: "
-                          f"corners lose {found.farthest:.2g} at most ({found.farthest * micrometres:.2g} um), walls are rough by {found.roughness:.2g}, in droplet diameters"]
+                          f"corners lose {found.farthest:.2g} at most ({found.farthest * micrometres:.2g} um), walls are rough by {found.roughness:.2g}, in droplet diameters{advice}"]
 
 
 def body() -> int:

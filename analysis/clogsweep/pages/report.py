@@ -261,7 +261,7 @@ def valued(groups: Groups, group: Group) -> str:
     return ", ".join(f"{name.replace('_', ' ')} {cell(groups, group, name)}" for name in parameters(groups))
 
 
-MAPPED = 20  # runs whose ways make the map of a device
+MAPPED = 12  # runs whose ways make the map of a device
 
 
 def devices(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:

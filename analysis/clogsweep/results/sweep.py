@@ -101,7 +101,7 @@ class Sweep:
         rows = clogs.chosen(clogs.of_polygons(self._records, self.path), self.path, mechanism=mechanism, tasks=tasks, most=most)
         return clogs.run_all(self._program("clogrun"), self.path, rows, jobs)
 
-    def device(self, *, ways: int = 6, map: int = 40, jobs: int = 2) -> Picture:
+    def device(self, *, ways: int = 6, map: int = 20, jobs: int = 2) -> Picture:
         """User-supplied circles, with the places where droplets were released, passed and clogged, and where they went.
 
         @param ways  of so many runs a line; @param map  of so many runs the share that passed over each place; they are run once more
