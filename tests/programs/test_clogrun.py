@@ -295,7 +295,7 @@ class Run(ProgramTest):
         self.write("words.csv", "x,y\n1,2\n3,four\n")
         self.write("outside.csv", "1,25\n")
         self.write("overlap.csv", "1,1,0.5\n1.3,1,0.5\n")
-        self.write("across.csv", "0.1,1,0.5\n19.9,1,0.5\n")
+        self.write("across.csv", "0.2,1,0.5\n19.8,1,0.5\n")
         self.write("twice.csv", "x,y\n3,3\n\n1,1\n# again\n1,1\n")
         self.write("narrow.csv", "# 0.005 apart\n1,1,0.5\n5,5,0.5\n1.505,1,0.5\n")
         self.write("wide.csv", "5,5,20\n")
@@ -335,7 +335,7 @@ class Run(ProgramTest):
             (["array", "--obstacles", "words.csv", *out], ["words.csv line 3", "four"]),
             (["array", "--obstacles", "outside.csv", *out], ["outside.csv", "x=1, y=25", "outside the array"]),
             (["array", "--obstacles", "overlap.csv", *out], ["overlap.csv", "x=1, y=1 and x=1.3, y=1", "overlap, by 0.2 sigma"]),
-            (["array", "--obstacles", "across.csv", *out], ["across.csv", "x=0.1, y=1 and x=19.9, y=1", "overlap"]),
+            (["array", "--obstacles", "across.csv", *out], ["across.csv", "x=0.2, y=1 and x=19.8, y=1", "overlap"]),
             (["array", "--obstacles", "twice.csv", *out], ["twice.csv", "x=1, y=1 and x=1, y=1", "overlap, by 0.3 sigma"]),
             (["array", "--obstacles", "narrow.csv", *out], ["narrow.csv", "x=1, y=1 and x=1.505, y=1", "not wider than an edge"]),
             (["array", "--obstacles", "wide.csv", *out], ["wide.csv", "x=5, y=5", "its own periodic image"]),
