@@ -27,7 +27,7 @@ constexpr double same_angle = 1e-9;  // [degrees]: equal ones differ by rounding
 
 double spacing_of(const ObstacleParameters& obstacles) { return obstacles.diameter + obstacles.gap; }
 
-/// Of the list of the key, in increasing order. @throws Error unless there are two between 0 and 45 degrees
+/// Values of the key's list, in increasing order. @throws Error unless there are two between 0 and 45 degrees
 std::vector<double> bounds_of(const sweep::Settings& settings) {
   constexpr double largest = 45;  // a square lattice has no others, by symmetry
   const auto refuse = [&](const std::string& why) {

@@ -22,8 +22,8 @@ void record_interrupted(const DropletRun& run, RunRow& row) {
   record(result, row);
 }
 
-/// From the snapshot, if there is one and a run of these parameters can have come there. Otherwise (it may be of
-/// another version) the run begins anew, and is the same.
+/// From the snapshot, if there is one and a run of these parameters can have come there. Otherwise (it may be
+/// of another version) the run restarts from its beginning, and is the same.
 /// @param row  of the run, without results
 DropletRun start(const RunParameters& run, RunRow row, std::span<const std::byte> snapshot,
                  ObstacleArrays& arrays) {

@@ -196,8 +196,7 @@ int main(int argc, char** argv) {
     if (std::string_view(task.name).find(word) != std::string_view::npos) wanted.push_back(&task);
   std::vector<std::vector<Measured>> measured(wanted.size());
   for (int round = 0; round < num_rounds; ++round)
-    for (std::size_t task = 0; task < wanted.size(); ++task)
-      measured[task].push_back(measure(*wanted[task]));
+    for (std::size_t task = 0; task < wanted.size(); ++task) measured[task].push_back(measure(*wanted[task]));
   std::printf("%-50s %8s %8s %8s %8s\n", "medians of CPU time", "ns", "s a run", "limit", "ratio");
   for (std::size_t task = 0; task < wanted.size(); ++task) print(wanted[task]->name, measured[task]);
 }

@@ -11,7 +11,7 @@
 namespace clog::campaign {
 namespace {
 
-/// Of rows that rise by three in four: their sine is 0.6, their cosine 0.8.
+/// Rows that rise by three in four: their sine is 0.6, their cosine 0.8.
 constexpr double steep = 36.86989764584402;
 constexpr double spacing = 2;
 

@@ -2,7 +2,8 @@
 """Phrases that were retired from prose, and the words to use instead: phrases.txt lists them.
 
 Phrases under `[everywhere]` are searched in *.md, comments, docstrings and messages, those under `[documentation]` in
-*.md only. Code, `quoted` text and the dated pages (docs/notes, CHANGELOG.md) are skipped. A phrase may span two lines.
+*.md only, those under `[beginnings]` only where comments, docstrings and messages begin, in the case given. Code,
+`quoted` text and the dated pages (docs/notes, CHANGELOG.md) are skipped. A phrase may span two lines.
 """
 
 import re
@@ -14,6 +15,7 @@ import spelling
 PHRASES = known.ROOT / "tests/gates/phrases.txt"
 DATED = ("docs/notes/", "CHANGELOG.md")
 SOURCES = ("*.cpp", "*.hpp", "*.py", "*.sh", "*.cmake", "*CMakeLists.txt", "*.cfg")
+SECTIONS = ("[everywhere]", "[beginnings]", "[documentation]")
 LINE = re.compile(r"(?P<phrase>[^#\[\]:]+): (?P<instead>.+)")
 
 
@@ -22,11 +24,13 @@ def listed():
     section = None
     for number, line in enumerate(PHRASES.read_text().splitlines(), 1):
         entry = LINE.fullmatch(line)
-        if line in ("[everywhere]", "[documentation]"):
+        if line in SECTIONS:
             section = line
         elif entry and section:
             words = r"\s+".join(map(re.escape, entry["phrase"].split()))
-            yield section, re.compile(rf"\b{words}\b", re.IGNORECASE), entry["instead"]
+            begins = section == "[beginnings]"
+            pattern = re.compile(rf"\A{words}\b") if begins else re.compile(rf"\b{words}\b", re.IGNORECASE)
+            yield section, pattern, entry["instead"]
         elif line and not line.startswith("#"):
             sys.exit(f"{PHRASES.name}:{number}: neither '[section]', '# comment' nor 'phrase: words to use instead'")
 
@@ -55,7 +59,7 @@ def main():
     for name in pages + sources:
         for first, text in paragraphs(name):
             for section, pattern, instead in phrases:
-                if section == "[documentation]" and not name.endswith(".md"):
+                if section != "[everywhere]" and (section == "[documentation]") != name.endswith(".md"):
                     continue
                 for found in pattern.finditer(text):
                     number = first + text.count("\n", 0, found.start())

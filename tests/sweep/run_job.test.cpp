@@ -78,8 +78,8 @@ TEST(RunJob, TurnsAnImpossibleReleaseIntoAFailedRow) {
   EXPECT_GT(num_failed, 0);
 }
 
-/// A snapshot of the task, in which `change` has changed the dwells' numbers: eight times a length, a distance
-/// and a beginning, then the time from which they are known.
+/// A snapshot of the task, in which `change` has changed the dwells' numbers: eight times a length, a
+/// distance and a beginning, then the time from which they are known.
 template <class Change>
 std::vector<std::byte> changed_snapshot(const RunParameters& run, Change change) {
   RunJob job(run, 0);
@@ -125,8 +125,7 @@ TEST(RunJob, ResumesFromASnapshot) {
 
 TEST(RunJob, BeginsAnewIfNoRunCanHaveComeToItsSnapshot) {
   const RunParameters run = long_run();
-  const auto snapshot =
-      changed_snapshot(run, [](auto& dwells) { dwells[0] = dwells[1] = dwells[2] = 0; });
+  const auto snapshot = changed_snapshot(run, [](auto& dwells) { dwells[0] = dwells[1] = dwells[2] = 0; });
   RunRow row = finished(RunJob(run, 0, snapshot)), undisturbed = finished(RunJob(run, 0));
   EXPECT_EQ(fault_of(row), "");
   row.wall_seconds = undisturbed.wall_seconds;

@@ -3,7 +3,7 @@
     clogsweep obstacles=posts.csv box=8 length=20 side-walls=on release=entrance exit=20 seeds=1..20 --output sweep.h5
     python3 -m clogsweep device sweep.h5                 # sweep-device.png, sweep-device.pdf
 
-The ways are those of runs from the shortest way to the longest, which are run once more (clogrun). The colour of a place is
+The ways are those of runs from the shortest way to the longest, which are replayed (clogrun). The colour of a place is
 the share of such runs whose droplet passed over it. The strip below counts the droplets that came past each place along the
 flow. All lengths are in droplet diameters, places are those of the file.
 """

@@ -77,7 +77,7 @@ def read_dxf(path: pathlib.Path, layer: str | None) -> Drawing:
 
 
 def size_of(curve: Any) -> float:
-    """Of what surrounds the points that define it."""
+    """The longer edge of the box around a curve's control points; 1 if they coincide."""
     points = np.array([(point.x, point.y) for point in curve.control_vertices()])
     return float(np.ptp(points, axis=0).max()) or 1.0
 

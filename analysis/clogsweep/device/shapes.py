@@ -15,7 +15,7 @@ METRES = {"nm": 1e-9, "um": 1e-6, "µm": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0,
 
 @dataclasses.dataclass
 class Drawing:
-    """As a reader finds it. Lengths are in its own unit; y points upwards."""
+    """A drawing as a reader finds it. Lengths are in its own unit; y points upwards."""
 
     circles: list[tuple[float, float, float]]  # x, y, diameter
     outlines: list[Numbers]  # corners (n, 2); the last one is joined to the first unless the border of a picture cuts it
@@ -42,11 +42,11 @@ class Device:
         return [(i, j) for i, j, gap in self._gaps() if gap <= 0]
 
     def smallest_gap(self) -> float:
-        """Between two posts; infinite if there is one at most."""
+        """The narrowest gap between two posts; infinite if there are fewer than two."""
         return min((gap for _, _, gap in self._gaps()), default=np.inf)
 
     def _gaps(self) -> list[tuple[int, int, float]]:
-        """Of each post, the nearest among those after it."""
+        """For each post, its number, that of the nearest post after it, and the gap between them."""
         found = []
         posts = np.arange(len(self.circles)) if self.post_of is None else self.post_of
         for i, (x, y, diameter) in enumerate(self.circles[:-1]):
@@ -62,7 +62,7 @@ class Device:
 
 
 def length_in_metres(text: str, option: str) -> float:
-    """Of words such as 200um. @throws UserError"""
+    """A length in metres from text such as 200um. @throws UserError"""
     found = re.fullmatch(r"([0-9.]+(?:e[+-]?[0-9]+)?)(nm|um|µm|mm|cm|m|in)", text)
     try:
         value = float(found[1]) * METRES[found[2]] if found else 0.0

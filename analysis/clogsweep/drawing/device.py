@@ -73,7 +73,7 @@ def understood(device: Device, source: str) -> Figure:
 
 @dataclasses.dataclass
 class Place:
-    """The circles of a user's own that runs of a sweep have in common, and these runs."""
+    """The user-supplied circles that runs of a sweep share, and these runs."""
 
     name: str
     circles: Numbers  # (n, 3): x, y, diameter
@@ -144,7 +144,7 @@ def evenly(members: list[T], number: int) -> list[T]:
 
 
 def ways_of(place: Place, sweep: pathlib.Path, clogrun: pathlib.Path, number: int, jobs: int) -> list[Numbers]:
-    """Places of the centre on the way (n, 2), from runs that are run once more."""
+    """Places of the centre on the way (n, 2), from replayed runs."""
     rows = chosen(place.rows, number)
     if not rows:
         return []

@@ -104,7 +104,7 @@ class Sweep:
     def device(self, *, ways: int = 6, map: int = 20, jobs: int = 2) -> Picture:
         """User-supplied circles, with the places where droplets were released, passed and clogged, and where they went.
 
-        @param ways  of so many runs a line; @param map  of so many runs the share that passed over each place; they are run once more
+        @param ways  of so many runs a line; @param map  of so many runs the share that passed over each place; they are replayed
         @param jobs  runs at a time
         @throws UserError  if the sweep has no user-supplied circles, or those of several devices
         """

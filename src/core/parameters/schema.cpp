@@ -495,8 +495,9 @@ std::vector<Parameter> interface_entries() {
       entry("inertia", [](auto& run) -> auto& { return run.dp.inertia; },
             {.column = "inertia",
              .symbol = "S",
-             .meaning = "S, inertial mass divided by the droplet's mass; weight and drag stay as they are, and the "
-                        "automatic time-step is sqrt(S) times as long",
+             .meaning =
+                 "S, inertial mass divided by the droplet's mass; weight and drag stay as they are, and the "
+                 "automatic time-step is sqrt(S) times as long",
              .role = numerics,
              .scope = &polygons,
              .range = {from(0.01, "steps would be needlessly short", "use 0.01..16"),

@@ -78,7 +78,7 @@ void validate_compression(const DpParameters& dp, bool automatic_area) {
 /// N_v l of the longest edges l that a droplet has on an obstacle [sigma], as measured
 /// (docs/explanation/mesh.md).
 double length_over_obstacles(const RunParameters& run) {
-  // Of an even mesh, that of the whole interface.
+  // The whole interface, if the mesh is even.
   const double even = std::numbers::pi * units::droplet_diameter + 0.33 / run.dp.line_tension;
   if (run.dp.perimeter_spring != PerimeterSpring::rest) return even;
   const double stiffness = run.dp.perimeter_stiffness.value_or(automatic_perimeter_stiffness(run));

@@ -85,7 +85,7 @@ class Search {
   }
 
   void list_along() {
-    // Of the contour's other half pairs were met from the other side.
+    // Pairs with the contour's other half were met from the other side.
     const int last = std::min(last_along, c_.n / 2);
     for (int k = excluded_are_long() ? 1 : c_.exclusion; k <= last; ++k) {
       const int end = 2 * k == c_.n ? k : c_.n;
@@ -131,7 +131,7 @@ class Search {
     }
   }
 
-  /// Of two groups, the first of which comes first.
+  /// Lists pairs of two groups, the first of which comes first.
   void list_between(int first, int second) {
     const int end = std::min(second + group_size, c_.n);
     for (int i = first; i < first + group_size; i += lanes) {

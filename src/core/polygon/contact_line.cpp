@@ -52,7 +52,7 @@ bool has_hysteresis(const DpParameters& dp) {
 struct ContactLine::Beside {
   Eigen::Array2d normal;   // away from the wall
   Eigen::Array2d forward;  // the gradient of the place u, which goes against the sense of the contour
-  double on_wedge;         // u [sigma]; it is 0 on the axis, and goes on from the tip's circle along the flanks
+  double on_wedge;  // u [sigma]; it is 0 on the axis, and goes on from the tip's circle along the flanks
 };
 
 namespace {
@@ -161,9 +161,8 @@ void ContactLine::add_ends(const Zone& zone, const VertexPlaces& vertices, Ends&
       const double outwards = side == 1 ? -1 : 1;
       End end{zone.wall, side, 0, ends.gradients_.size(), 0};
       Beside here = beside(zone.wall, vertices, vertex(k).vertex);
-      double sum = zone.wall.wedge >= 0
-                       ? here.on_wedge
-                       : zone.wall.radius * portable::atan2(here.normal[1], here.normal[0]);
+      double sum = zone.wall.wedge >= 0 ? here.on_wedge
+                                        : zone.wall.radius * portable::atan2(here.normal[1], here.normal[0]);
       double way_before = 0;
       Eigen::Array2d carried = here.forward;  // what u of the present vertex weighs so far
       for (Index j = k;; j += step) {

@@ -24,7 +24,7 @@ void choose_vertices(RunParameters& run, double obstacle_diameter) {
 
 int num_vertices(const RunParameters& run) { return *run.dp.vertices; }
 
-/// As wide as an edge is long at rest.
+/// The narrowest passage is as wide as an edge is long at rest.
 double edge_length(const RunParameters& run) { return units::regular_edge_length(*run.dp.vertices); }
 
 /// The regular polygon in which area pressure balances line tension and springs, a little smaller than a_0.

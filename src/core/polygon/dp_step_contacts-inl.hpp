@@ -71,7 +71,7 @@ class EdgePushes {
     along_y_ = hn::MulAdd(nearest.along, push.y, along_y_);
     return push;
   }
-  /// To the vertices. @param i  the first edge
+  /// Adds the forces to the vertices. @param i  the first edge
   HWY_INLINE void hand_out(int i, const EdgeVectors& edges, const StepArrays& a) const {
     const V inverse_length = reciprocal(edges.length);
     hand_out(x_, hn::Mul(along_x_, inverse_length), a.push_x + i);
@@ -156,7 +156,7 @@ void push_off_each_other(const SelfContacts::Item* items, std::size_t num_items,
   }
 }
 
-/// Of the listed edges the smallest distance to their points.
+/// The smallest distance of the listed edges to their points.
 HWY_INLINE double smallest(V distance2, M listed) {
   return std::sqrt(hn::GetLane(hn::MinOfLanes(D(), hn::IfThenElse(listed, distance2, all(1e300)))));
 }
@@ -179,8 +179,8 @@ double pair_gaps(const SelfContacts::Item* items, std::size_t num_items, const C
   return least;
 }
 
-/// An edge pushes the vertex before it and the two behind it as well, which may belong to the other end of the
-/// contour.
+/// An edge pushes the vertex before it and the two behind it as well, which may belong to the other end of
+/// the contour.
 HWY_INLINE void add_pushes_beyond_ends(int n, int beyond, const StepArrays& a) {
   for (double* p : {a.push_x, a.push_y}) {
     p[n - 1] += std::exchange(p[-1], 0);
@@ -318,7 +318,7 @@ void near_wall_rates_with(int n, const NearWalls& walls, const NearWallDrag& dra
     while (end != walls.items + walls.num_items && end->group == group) ++end;
     for (int i = group * edges_per_group; i < (group + 1) * edges_per_group; i += lanes) {
       const V x = load(a.x + i), y = load(a.y + i);
-      // Of circles alike the nearest is that with the nearest centre: one root for all.
+      // Among equal circles, the nearest has the nearest centre: one root for all.
       V nearest = all(1e300);
       for (const WallContacts::Item* circle = begin; circle != end; ++circle) {
         const V dx = hn::Sub(x, all(circle->x)), dy = hn::Sub(y, all(circle->y));

@@ -82,8 +82,8 @@ HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCir
     // By the trapezoidal rule, as the integrator: the force of before acts on half of the way. A spring that
     // its wall lost gives up its energy.
     const V before = load(walls.slip + k);
-    const V lost = hn::IfThenElse(touches, hn::Mul(hn::Add(before, held), hn::Sub(slip, held)),
-                                  hn::Mul(before, before));
+    const V lost =
+        hn::IfThenElse(touches, hn::Mul(hn::Add(before, held), hn::Sub(slip, held)), hn::Mul(before, before));
     taken = hn::MulAdd(all(0.5), hn::IfThenElseZero(is_known, lost), taken);
     store(hn::IfThenElseZero(touches, held), walls.slip + k);
     holds |= bits_of(touches) << lane;

@@ -176,7 +176,7 @@ struct StepKernel {
   /// contact [sigma]. Returns the least, at most 0.
   double (*circle_gaps)(const WallContacts::Item* items, std::size_t num_items, const Contact& contact,
                         const StepArrays& arrays, double* gaps);
-  /// Of one item the edges with a gap of at most `way`, as bits.
+  /// The edges of one item with a gap of at most `way`, as bits.
   std::uint8_t (*edges_within)(const double* gaps, double way);
   /// How far every item's nearest pair is from contact.
   double (*pair_gaps)(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,

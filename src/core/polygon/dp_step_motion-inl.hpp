@@ -119,12 +119,12 @@ HWY_INLINE V spread_along_chord(V spreading, V length, V length_before, V tx, V 
   return hn::Mul(hn::Mul(spreading, hn::Mul(cosine, cosine)), unevenness);
 }
 
-/// Of some vertices, what the edges before and after them say.
+/// Lengths and tangents of the edges before and after some vertices.
 struct Corner {
   V length, tx, ty, length_before, tx_before, ty_before;
   V ex, ey, ex_before, ey_before;
 
-  /// In this order, as the compiler may join a product with a sum that follows: the last bits hang on it.
+  /// In this order, as the compiler may join a product with a sum that follows: the last bits depend on it.
   HWY_INLINE void multiply() {
     ex = hn::Mul(length, tx);
     ey = hn::Mul(length, ty);
@@ -145,7 +145,7 @@ struct InterfaceVectors {
         vertex_weight(all(interface.vertex_weight)) {}
 };
 
-/// Of vertices, a force or a velocity.
+/// A force or a velocity of vertices.
 struct PairOfVectors {
   V x, y;
 };
@@ -239,7 +239,7 @@ template <bool elastic, bool on_area, bool varying_rate, class Keep>
 HWY_INLINE PairOfVectors kick_force(const Corner& c, const PairOfVectors& chord, const PairOfVectors& push,
                                     const InterfaceVectors& along, KickVectors<varying_rate>& total,
                                     Keep keep) {
-  // What takes long comes first: the processor does not look far ahead.
+  // Slow operations come first: the processor does not look far ahead.
   V spread;
   if constexpr (!elastic)
     spread = keep(

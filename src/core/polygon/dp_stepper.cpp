@@ -11,7 +11,7 @@ namespace clog {
 
 namespace {
 
-/// Of the drag far from walls [1/t0].
+/// The rate of the drag far from walls [1/t0].
 double far_rate_of(const RunParameters& run) { return 1 / relaxation_time(run); }
 
 kernel::KickTerms terms_of(const RunParameters& run) {
@@ -65,8 +65,8 @@ void DpStepper::look(DropletState& state, const Travel& travel, Droplet::Work* w
   // A contact speeds what is in it up by at most half its depth per step, and for a few steps: `travel` knows
   // nothing of that.
   constexpr double thrown = 4;
-  const double unforeseen = 0.1 * forces_->vertex_diameter() +
-                            thrown * near_.measure(kernel_, contact(0), *forces_, arrays_);
+  const double unforeseen =
+      0.1 * forces_->vertex_diameter() + thrown * near_.measure(kernel_, contact(0), *forces_, arrays_);
   near_.keep(kernel_, *forces_, refined_sway * (travel.absolute + unforeseen),
              2 * (travel.relative + unforeseen));
   if (holds_circles_) {
@@ -168,7 +168,8 @@ void DpStepper::push_off_everything(DropletState& droplet, const kernel::KickCoe
   const bool touches = !near_.walls().empty() || !wedges_.empty() || !droplet.anchors.empty();
   const bool slides = forces_->friction().is_on() && !holds_circles_ && touches;
   // Whatever these add, to vertices beyond the listed groups too, is gone before the next step.
-  if (!wedges_.empty() || forces_->wetted_walls().is_on() || slides || are_pushes_spread_) kernel_.clear_pushes(n_, arrays_);
+  if (!wedges_.empty() || forces_->wetted_walls().is_on() || slides || are_pushes_spread_)
+    kernel_.clear_pushes(n_, arrays_);
   are_pushes_spread_ = slides;
   push_off_circles(impulse, work);
   if (!wedges_.empty())
@@ -223,7 +224,7 @@ void DpStepper::hold_by_friction(DropletState& droplet, double impulse, Droplet:
 
 double DpStepper::vertex_mass() const { return run_.dp.inertia * units::droplet_mass / n_; }
 
-/// What drag takes and the springs along the interface give per time, where a time step ends.
+/// The power of the drag and of the springs along the interface at the end of a time step.
 Droplet::Work DpStepper::power(const kernel::InterfaceKick& interface,
                                const kernel::KickCoefficients& coefficients,
                                const kernel::Coupling& coupling) const {

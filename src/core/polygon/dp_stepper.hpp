@@ -26,7 +26,7 @@ class DpStepper {
   void load(const DropletState& state);
   /// And hands it over as it is now.
   void store(DropletState& state) const;
-  /// Of the droplet as it is now, compared with where it was when contact lists were made.
+  /// Surveys the droplet as it is now, compared with where it was when contact lists were made.
   kernel::Survey survey() const;
   /// Takes over what may touch on the way to the next look() from the contact lists, which must hold for it.
   /// @param state, work  as for advance()

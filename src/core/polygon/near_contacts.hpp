@@ -7,7 +7,7 @@
 
 namespace clog {
 
-/// Of the contact lists what may touch until somebody looks again.
+/// The entries of the contact lists that may touch before the next look.
 class NearContacts {
  public:
   /// Measures how far all that is listed is from contact. Returns how deep the deepest contact is [sigma].

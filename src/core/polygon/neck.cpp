@@ -11,7 +11,7 @@ namespace {
 /// A part of the droplet is a lobe if a drop of its area is at least so many times as wide as the neck. What
 /// a chord cuts off a circle is at most half as large as a drop of the chord's width.
 constexpr double lobe_width = 2;
-/// And if it has at least this share of the droplet's area. Without it a droplet would lose no more than a
+/// A lobe also has at least this share of the droplet's area. Without it a droplet would lose no more than a
 /// bead: films end in beads of a thousandth when they draw in.
 constexpr double lobe_share = 0.02;
 
@@ -125,7 +125,7 @@ bool parts_are_lobes(const Contour& contour, Eigen::Index vertex, const Foot& fo
   return part >= least && contour.area() - part >= least;
 }
 
-/// Of a neck between parts of equal area: no other is wider.
+/// The widest possible neck: the one between parts of equal area.
 double widest_neck(const Contour& contour) {
   return std::sqrt(contour.area() / 2 / (std::numbers::pi / 4)) / lobe_width;
 }

@@ -74,7 +74,7 @@ DpForces weightless_forces(const RunParameters& run, const ObstacleArray& obstac
   return forces;
 }
 
-/// In stages, to its full area.
+/// Grows the droplet in stages to its full area.
 /// @param area  that it has
 void grow(const RunParameters& growing, double area, DpForces& forces, DropletState& state) {
   constexpr double growth = 1.02;  // of the area, per stage

@@ -34,7 +34,7 @@ class RestForces {
   std::vector<kernel::WedgePlace> wedges_;
   WettedWalls::Forces wetting_;
   NearContacts near_;
-  double way_ = 0;           // for which they hold [sigma]
+  double way_ = 0;            // for which they hold [sigma]
   Eigen::ArrayXd looked_at_;  // where vertices were then, all x then all y, and room for a whole vector
 
   void load(const DropletState& state);

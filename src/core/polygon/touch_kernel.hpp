@@ -29,13 +29,13 @@ struct TouchKernel {
   /// @param x, y  of the group's first vertex; read from one vertex before to two behind the group
   void (*touch)(const double* x, const double* y, const Circle& circle, double stiffness,
                 GroupTouches& touches);
-  /// Of `n` vectors: their directions, and `numerators` over their lengths. Arrays are read and written up to
+  /// Computes directions of `n` vectors, and `numerators` by their lengths. Arrays are read and written up to
   /// a whole number of groups.
   void (*directions)(std::size_t n, const double* x, const double* y, const double* numerators,
                      double* direction_x, double* direction_y, double* ratios);
 };
 
-/// Of the widest instruction set of this processor, or of the one that use_instruction_set() asks for.
+/// The kernel for this processor's widest instruction set, or for that of use_instruction_set().
 TouchKernel touch_kernel();
 
 }  // namespace clog::kernel

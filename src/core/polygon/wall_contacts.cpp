@@ -101,8 +101,8 @@ void WallContacts::rebuild(const DropletState& state, double skin) {
   largest_radius_ = nearby_.empty() ? 0 : largest->radius;
 }
 
-/// Of a group of edges those that a circle near the group's bounds can touch: an obstacle is in contact later
-/// only if it is within range + skin now.
+/// Lists the edges of a group that a circle near the group's bounds can touch: an obstacle is in contact
+/// later only if it is within range + skin now.
 /// @param fine  the refined contour, see refined()
 void WallContacts::list_by_edge(const Eigen::ArrayXd& fine) {
   constexpr double rounding = 1e-12;
@@ -141,7 +141,7 @@ void WallContacts::list_by_edge(const Eigen::ArrayXd& fine) {
   }
 }
 
-/// Of all vertices from all circles nearby, and from the nearest.
+/// Measures the distances of all vertices from all circles nearby, and from the nearest.
 void WallContacts::measure_distances(const DropletState& state) {
   const auto num_nearby = static_cast<Eigen::Index>(nearby_.size());
   distances_.resize(state.size(), num_nearby);

@@ -36,7 +36,8 @@ void WallHold::find_circles(int num_vertices) {
   for (int k = 0; k < static_cast<int>(windows_.size()); ++k) {
     const kernel::WallWindow& window = windows_[static_cast<std::size_t>(k)];
     const double radius = window.reach - range_;
-    if (all_.empty() || all_.back().x != window.x || all_.back().y != window.y || all_.back().radius != radius)
+    if (all_.empty() || all_.back().x != window.x || all_.back().y != window.y ||
+        all_.back().radius != radius)
       all_.push_back({window.x, window.y, radius, k, k, 0, 0, false, {}});
     all_.back().end_window = k + 1;
   }
@@ -54,8 +55,8 @@ void WallHold::add_groups(kernel::HoldingCircle& circle, int num_vertices) {
   }
   // What is pushed beyond the ends is the other end's.
   if (circle.wraps)
-    is_pushed_.front() = is_pushed_[1] = is_pushed_[static_cast<std::size_t>(num_groups_)] = is_pushed_.back() =
-        1;
+    is_pushed_.front() = is_pushed_[1] = is_pushed_[static_cast<std::size_t>(num_groups_)] =
+        is_pushed_.back() = 1;
   circle.first_group = static_cast<int>(groups_.size());
   for (int group = -1; group <= num_groups_; ++group)
     if (is_pushed_[static_cast<std::size_t>(group + 1)] != 0) groups_.push_back(group);

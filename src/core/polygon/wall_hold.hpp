@@ -12,8 +12,8 @@
 
 namespace clog {
 
-/// How circles push a contour off and hold it by friction until the next make(): the anchors of a droplet (see
-/// WallFriction), arranged by circle and by groups of vertices. From make() on the anchors are here;
+/// How circles push a contour off and hold it by friction until the next make(): the anchors of a droplet
+/// (see WallFriction), arranged by circle and by groups of vertices. From make() on the anchors are here;
 /// hand_back() copies them into the droplet.
 class WallHold {
  public:
@@ -21,7 +21,8 @@ class WallHold {
   WallHold(int num_vertices, double range);
 
   /// Takes the anchors over. @param near  see list_windows()
-  /// Returns half the sum of squares of the slips of anchors that no circle of these holds any more [sigma^2].
+  /// Returns half the sum of squares of the slips of anchors that no circle of these holds any more
+  /// [sigma^2].
   double make(const std::vector<WallContacts::Item>& near, DropletState& droplet);
   /// Copies the anchors into the droplet, if make() was called since forget().
   void hand_back(DropletState& droplet) const;

@@ -64,7 +64,7 @@ void WallPlan::add(const kernel::WallWindow& window) {
 void WallPlan::find_groups() {
   is_pushed_.assign(static_cast<std::size_t>(num_groups_) + 2, 0);
   for (const kernel::WallWindow& window : all_) mark_pushed_groups(window, is_pushed_);
-  // Of both ends what they push of the other one is added to that.
+  // What one end pushes of the other end is added there.
   const bool wraps = is_pushed_.front() != 0 || is_pushed_.back() != 0 || is_pushed_[num_groups_] != 0;
   if (wraps) is_pushed_[1] = is_pushed_[num_groups_] = 1;
   groups_.clear();

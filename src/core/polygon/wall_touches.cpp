@@ -132,7 +132,7 @@ const std::vector<WallTouch>& WallTouches::find(const Contour& contour, const Lo
   return touches_;
 }
 
-/// Of the parts those that the wall pushes, or that wet it.
+/// Keeps the parts that the wall pushes, or that wet it.
 void WallTouches::keep_pushed(const Contour& contour) {
   static const kernel::TouchKernel touch_kernel = kernel::touch_kernel();
   auto& [dx, dy, radius, normal_x, normal_y, gradient] = directions_;

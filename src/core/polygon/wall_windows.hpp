@@ -16,8 +16,8 @@ namespace clog {
 void list_windows(const std::vector<WallContacts::Item>& near, int num_groups,
                   std::vector<kernel::WallWindow>& windows);
 
-/// Marks the groups of vertices that a window may push: an edge pushes the vertex before it and the two behind
-/// it as well. @param is_pushed  the first entry is that of the group before the contour
+/// Marks the groups of vertices that a window may push: an edge pushes the vertex before it and the two
+/// behind it as well. @param is_pushed  the first entry is that of the group before the contour
 void mark_pushed_groups(const kernel::WallWindow& window, std::vector<std::uint8_t>& is_pushed);
 
 }  // namespace clog

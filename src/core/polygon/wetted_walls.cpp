@@ -41,7 +41,7 @@ Eigen::Array2d WettedWalls::Forces::net_spreading() const {
   return sum;
 }
 
-/// Of what was found before.
+/// Forgets what was found before.
 void WettedWalls::Forces::clear() {
   const Eigen::Index n = gradient.size() / 2;
   for (const int i : vertices) {
@@ -119,7 +119,8 @@ void WettedWalls::add_tension(const VertexPlaces& vertices, Forces& forces) cons
     forces.gradient[n + i] += force[1];
   };
   const auto pull_together = [&](int first, int second, const Eigen::Array2d& edge, double length) {
-    const Eigen::Array2d pull = extra_tension_ * (of(first).share.share + of(second).share.share) / 2 / length * edge;
+    const Eigen::Array2d pull =
+        extra_tension_ * (of(first).share.share + of(second).share.share) / 2 / length * edge;
     push(first, pull);
     push(second, -pull);
   };

@@ -23,7 +23,7 @@ class Droplet {
   /// restored from there moves on exactly as this one does.
   virtual void start_afresh() = 0;
   void save(ByteWriter& bytes) const;
-  /// Of a droplet with the same parameters and obstacles; starts afresh.
+  /// Restores what save() wrote for a droplet with the same parameters and obstacles; starts afresh.
   void restore(ByteReader& bytes);
 
   /// Sub-steps done so far.

@@ -14,7 +14,7 @@ namespace clog {
 
 inline constexpr double no_neck = std::numeric_limits<double>::infinity();
 
-/// What of a droplet walls push.
+/// The parts of a droplet that walls push.
 struct ContactReach {
   double range;   ///< distance from a wall's surface at which it begins [sigma]
   bool by_edges;  ///< edges as well as the points that move?
@@ -30,14 +30,14 @@ struct DropletModel {
   /// @param obstacle_diameter  of the smallest obstacle that the droplet can hang over, infinite if there is
   /// none [sigma]
   void (*choose_points)(RunParameters& run, double obstacle_diameter);
-  /// Of a passage that the droplet's points resolve: it has to be wider [sigma].
+  /// The width below which the droplet's points do not resolve a passage [sigma].
   double (*narrowest)(const RunParameters& run);
   /// Replaces automatic values by those that will be used, and refuses what cannot be once they are known.
   /// @param sharpest_bend  see Scene  @throws Error
   void (*resolve)(RunParameters& run, double sharpest_bend);
 
-  // Of resolved parameters:
-  /// Of the points that move [1].
+  // For resolved parameters:
+  /// Number of the points that move.
   int (*num_points)(const RunParameters& run);
   /// The droplet without walls and weight, around the origin: all x, then all y [sigma].
   Eigen::ArrayXd (*free_shape)(const RunParameters& run);
@@ -47,7 +47,7 @@ struct DropletModel {
   /// A droplet at rest, without weight, near the centre of the box.
   /// @throws Error if there is no room for it, or it does not relax
   DropletState (*release)(const RunParameters& run, const ObstacleArray& obstacles);
-  /// What it may have been released with, beyond what it has when it is free [g rho sigma^3].
+  /// The energy with which a droplet may be released, beyond that of a free droplet [g rho sigma^3].
   double (*most_energy_at_release)(const RunParameters& run);
   /// One that moves. The obstacles must outlive it.
   std::unique_ptr<Droplet> (*make)(const RunParameters& run, const ObstacleArray& obstacles,

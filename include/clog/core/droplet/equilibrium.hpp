@@ -31,7 +31,7 @@ struct Axes {
 struct EquilibriumForces {
   /// Brings the contact lists up to date: they are valid while no point moves farther than `travel`.
   std::function<void(const DropletState& state, const Travel& travel)> update_contacts;
-  /// Of all points, all x then all y [g rho sigma^2].
+  /// Forces on all points, all x then all y [g rho sigma^2].
   std::function<void(const DropletState& state, Eigen::ArrayXd& force)> evaluate;
   std::function<Axes(const DropletState& state)> axes;
   bool have_energy;  ///< then the stiffness is symmetric

@@ -19,7 +19,7 @@ struct Words<ClogMechanism> {
 /// How a polygon at rest lies among obstacles; docs/explanation/clogged.md has the definitions.
 /// The flow is along +x.
 struct ClogGeometry {
-  /// Of all the obstacles' upstream support, the part that comes from wrapped ones; NaN without any.
+  /// The share of the obstacles' upstream support that comes from wrapped ones; NaN without support.
   double wrapped_support = std::numeric_limits<double>::quiet_NaN();
   int num_wrapped = 0;  ///< touched obstacles that the droplet hangs over
   /// Pairs of obstacles, one at least supporting, between which the interface looks downstream.

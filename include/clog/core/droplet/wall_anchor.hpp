@@ -25,7 +25,7 @@ struct WallPlace {
   }
 };
 
-/// Of a point given from the wall's centre. @param wedges  those of the scene
+/// Distance of a point, given from the wall's centre. @param wedges  those of the scene
 inline WedgeDistance distance_to(const WallPlace& wall, std::span<const Wedge> wedges,
                                  const Eigen::Array2d& from_centre) {
   if (wall.wedge >= 0) return distance_to(wedges[static_cast<std::size_t>(wall.wedge)], from_centre);
@@ -77,7 +77,7 @@ class KnownAnchors {
 /// Why walls are asked.
 enum class Purpose { motion, equilibrium };
 
-/// What walls gave way to.
+/// The energy that walls dissipated, and the largest excess of a spring's force.
 struct WallYield {
   double dissipated = 0;  ///< [g rho sigma^3]
   double excess = 0;      ///< most by which a spring's force was not what its wall bears [g rho sigma^2]

@@ -17,7 +17,7 @@ namespace clog {
 /// @param links_per_edge  the given polygon's edges for one edge of the droplet's mesh: 2 if it is refined
 ClogGeometry clog_geometry(const Eigen::ArrayXd& position, std::span<const Obstacle> obstacles,
                            double contact_range, int links_per_edge = 1);
-/// Of a droplet in a periodic array: of the interface that walls meet.
+/// The same for a droplet in a periodic array, from the interface that walls meet.
 /// @param dp  resolved
 ClogGeometry clog_geometry(const DropletState& state, const ObstacleArray& array, const DpParameters& dp);
 

@@ -62,8 +62,8 @@ class ContactLine {
   /// One end of a wetted arc.
   struct End {
     WallPlace wall;
-    Eigen::Index side;  ///< 0: the arc's first, 1: its last along the contour
-    double place;       ///< q, counted outwards [sigma]
+    Eigen::Index side;                          ///< 0: the arc's first, 1: its last along the contour
+    double place;                               ///< q, counted outwards [sigma]
     std::size_t first_gradient, num_gradients;  ///< of q by vertices, in Ends::gradients
   };
   struct Gradient {
@@ -76,7 +76,7 @@ class ContactLine {
   void find_ends(const VertexPlaces& vertices, const LocalFrame& frame,
                  std::span<const WallContacts::Item> circles, Ends& ends) const;
 
-  /// Of the springs as they are anchored: all x, then all y [g rho sigma^2].
+  /// Adds the forces of the springs at their present anchors: all x, then all y [g rho sigma^2].
   void add_forces(std::span<const WallAnchor> anchors, const Ends& ends,
                   Eigen::Ref<Eigen::ArrayXd> force) const;
   /// [g rho sigma^3]
@@ -97,7 +97,7 @@ class ContactLine {
   Beside beside(const WallPlace& wall, const VertexPlaces& vertices, Eigen::Index vertex) const;
   void add_to(Zone& zone, const VertexPlaces& vertices, Eigen::Index vertex) const;
   void add_ends(const Zone& zone, const VertexPlaces& vertices, Ends& ends) const;
-  /// Of each end the number of its anchor, -1: none. Valid until the next call.
+  /// The number of each end's anchor; -1: none. Valid until the next call.
   static const std::vector<Eigen::Index>& matched(std::span<const WallAnchor> anchors, const Ends& ends);
 };
 

@@ -37,7 +37,7 @@ class SelfContacts {
   /// @param rest_edge  length of an edge of the droplet at rest [sigma]
   SelfContacts(double range, double rest_edge) : range_(range) { set_rest_edge(rest_edge); }
 
-  /// For a droplet that grows.
+  /// Renews the length of an edge at rest, for a droplet that grows.
   void set_rest_edge(double length);
 
   /// Renews the pairs when the shape may change too much on the way to the next update.

@@ -19,7 +19,7 @@ struct StiffModes {
   double pinning = 0;   ///< of the end of a wetted arc
   double friction = 0;  ///< springs by which walls hold a vertex along them, k_t N_v/M
 
-  /// Of a droplet that does not touch itself.
+  /// The sum for a droplet that does not touch itself.
   double sum() const { return contact + area + tension + spring + wetting + pinning + friction; }
 };
 

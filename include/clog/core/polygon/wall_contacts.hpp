@@ -40,7 +40,7 @@ class WallContacts {
   const double* slot_y(int s) const { return slots_.data() + (3 * s + 1) * num_points_; }
   const double* slot_radius(int s) const { return slots_.data() + (3 * s + 2) * num_points_; }
   double range() const { return range_; }
-  /// Of the circles that the lists are made of.
+  /// Whether the circles in the lists all have the same radius.
   bool radii_are_equal() const { return smallest_radius_ == largest_radius_; }
   double largest_radius() const { return largest_radius_; }
 

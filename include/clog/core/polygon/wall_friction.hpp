@@ -29,7 +29,7 @@ class WallFriction {
   double yield_traction() const { return traction_; }  ///< [g rho sigma]
   double stiffness() const { return stiffness_; }      ///< k_t [g rho sigma]
 
-  /// Of the springs as they are anchored: all x, then all y [g rho sigma^2].
+  /// Adds the forces of the springs at their present anchors: all x, then all y [g rho sigma^2].
   void add_forces(const DropletState& state, Eigen::Ref<Eigen::ArrayXd> force) const;
   /// [g rho sigma^3]
   double energy(const DropletState& state) const;

@@ -47,7 +47,7 @@ class WallTouches {
                                      std::span<const WallContacts::Item> circles);
   const std::vector<WallTouch>& find(const DropletState& state, std::span<const WallContacts::Item> circles);
 
-  /// Memory of whoever asks walls what they hold of what was found.
+  /// Memory for the queries of what walls hold.
   KnownAnchors& known_anchors() { return known_anchors_; }
 
  private:
@@ -67,7 +67,7 @@ class WallTouches {
   std::vector<WallPlace> wedges_;
   std::vector<WallTouch> touches_;
   std::vector<double> closed_contour_;
-  // Of the parts: from the wall, the wall's radius, normal, radius over distance.
+  // The parts' distance from the wall (x, y), its radius, normal (x, y), and radius divided by distance.
   std::array<std::vector<double>, 6> directions_;
   KnownAnchors known_anchors_;
 

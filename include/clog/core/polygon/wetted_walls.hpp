@@ -13,8 +13,8 @@
 namespace clog {
 
 /// Walls whose tension differs from that of the interface, and walls that hold the ends of wetted arcs. The
-/// tension changes from Gamma, far from a wall, to that of the wetted wall where contact begins: a smooth step,
-/// so that the energy and the force are continuous, and wide enough for the edges to follow its bend.
+/// tension changes from Gamma, far from a wall, to that of the wetted wall where contact begins: a smooth
+/// step, so that the energy and the force are continuous, and wide enough for the edges to follow its bend.
 class WettedWalls {
  public:
   /// @param run  resolved parameters  @param obstacles  must outlive this
@@ -29,9 +29,10 @@ class WettedWalls {
 
   /// Forces on the vertices, and memory that finding them needs. All x, then all y [g rho sigma^2].
   struct Forces {
-    Eigen::ArrayXd gradient;   ///< minus the energy's
-    Eigen::ArrayXd spreading;  ///< minus the former's part along the interface, where springs carry no tension
-                               ///< (`along`), otherwise 0; it has no energy
+    Eigen::ArrayXd gradient;  ///< minus the energy's
+    Eigen::ArrayXd
+        spreading;  ///< minus the former's part along the interface, where springs carry no tension
+                    ///< (`along`), otherwise 0; it has no energy
     std::vector<int> vertices;  ///< on all others they are 0
     ContactLine::Ends ends;     ///< of wetted arcs
 
@@ -42,8 +43,8 @@ class WettedWalls {
    private:
     friend class WettedWalls;
     struct Vertex {
-      double distance;         // from the nearest wall
-      Eigen::Array2d normal;   // away from it
+      double distance;        // from the nearest wall
+      Eigen::Array2d normal;  // away from it
       WettedShare share{0, 0};
       bool is_near = false, is_pushed = false;
     };
@@ -62,7 +63,7 @@ class WettedWalls {
   /// Lets walls yield, see ContactLine::follow().
   WallYield follow(DropletState& state, Purpose purpose) const;
 
-  /// Of the difference of tensions, and of the springs that hold [g rho sigma^3].
+  /// Energies of the difference of tensions, and of the springs that hold ends [g rho sigma^3].
   double tension_energy(const DropletState& state) const;
   double spring_energy(const DropletState& state) const;
 

@@ -55,7 +55,7 @@ class ObstacleArray {
     Obstacle first, second;
     double gap;
   };
-  /// Of each obstacle, the post that it belongs to: circles of which one has its centre within the other are
+  /// The post that each obstacle belongs to: circles of which one has its centre within the other are
   /// one post, whose outline they make together. A copy of a circle belongs to no post but its own.
   std::vector<std::uint32_t> posts() const;
   /// The pair of two posts with the smallest gap, which is infinite if there is no pair nearer than a box.
