@@ -232,7 +232,7 @@ std::vector<std::string> AngleSearch::rounds_in_words(double seconds_per_run) co
 std::string AngleSearch::known(std::span<const sweep::RunRow> rows) const {
   const Look now = look(rows);
   std::string text = end_.empty() ? "" : end_ + "; ";
-  const auto [lower, upper] = now.bracket;
+  const double lower = now.bracket.lower, upper = now.bracket.upper;
   const auto at_angles = [&](const auto& belongs) {
     std::string names;
     for (const TriedAngle& one : now.angles)

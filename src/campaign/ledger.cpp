@@ -354,7 +354,7 @@ void Ledger::publish() {
   if (activity_)
     set_attribute(provenance_, "activity",
                   with_session(earlier_activity_, activity_->line(session_time_, seconds_so_far())));
-  store::publish_sweep(place_, rows, provenance_, circles_);
+  if (!store::publish_sweep_over(stamp_, place_, rows, provenance_, circles_)) rescue(rows);
   stamp_ = place_.stamp();
   is_published_ = true;
   if (!has_journal)

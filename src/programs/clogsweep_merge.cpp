@@ -23,7 +23,7 @@ constexpr const char* usage = R"(clogsweep merge makes one sweep file of several
 
 A run that several files have is in the new one once. Two rows of the same run with different results are an error: then
 nothing is written. The new file names its parts: their sessions, versions and hosts. It holds a sweep of all their
-runs, which goes on, and grows, as any other.
+runs, which you can resume and enlarge like any other.
 )";
 
 void print(const std::string& output, const std::vector<std::string>& paths,

@@ -45,7 +45,7 @@ double share(std::string text) {
 RefinementGoal goal_of(const std::string& text) {
   const auto refuse = [&](const std::string& why) {
     throw Error(
-        fmt::format("invalid --until={} ({}) try curve=20%, peak=10% or crossing=10:5%, of a lattice "
+        fmt::format("invalid --until={} ({}) try curve=20%, peak=10%, crossing=10:5% or, for a lattice, "
                     "critical-angle=0.5",
                     text, why));
   };
@@ -64,7 +64,7 @@ RefinementGoal goal_of(const std::string& text) {
     rest = colon < rest.size() ? rest.substr(colon + 1) : "";
     if (!(goal.length > 0)) refuse("a crossing has a length and a precision");
   } else {
-    refuse("is not one of curve, peak, crossing");
+    refuse("is not one of curve, peak, crossing, critical-angle");
   }
   goal.precision = share(rest);
   if (!(goal.precision >= 0.001 && goal.precision < 1))
@@ -110,9 +110,9 @@ std::unique_ptr<campaign::RoundRule> angle_search(const cli::CommandLine& line) 
   const std::string goal = line.has("until") ? line.get("until") : "critical-angle=";
   if (!asks_for_angle(goal) || line.get("refine").find(',') != std::string::npos)
     throw Error(
-        fmt::format("invalid --until={} (of a lattice's angle alone, the critical one is found) try --refine "
-                    "lattice-angle --until critical-angle=0.5",
-                    goal));
+        fmt::format("invalid --refine={} (lattice-angle is refined alone, for the critical angle) try "
+                    "--refine lattice-angle --until critical-angle=0.5",
+                    line.get("refine")));
   for (const char* option : {"same-seeds", "most-seeds"})
     if (line.has(option))
       throw Error(fmt::format("invalid --{} (each angle gets the seeds of `seeds`) leave it out", option));

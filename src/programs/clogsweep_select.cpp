@@ -23,7 +23,7 @@ int clogsweep_select(int argc, const char* const* argv) {
   clogsweep select sweep.h5 'line_tension>=0.5' --output stiff.h5
   clogsweep select sweep.h5 preset=robust,elastic 'seed<=10' --output some.h5
 
-A condition is a column, one of = != < <= > >=, and a value; = and != take a list. Rows must hold to all conditions. The
+A condition is a column, one of = != < <= > >=, and a value; = and != take a list. Rows must meet all conditions. The
 new file holds a sweep of just these runs. Select by parameters if you mean to fit: a selection by results is no fair
 sample.
 )");

@@ -43,7 +43,7 @@ int follow(const std::string& path) {
   std::string stamp;
   for (bool is_first = true;; is_first = false) {
     const bool is_alive =
-        store::Journal::is_open(store::journal_path(path));  // before what it wrote last is read
+        store::Journal::is_open(store::journal_path(path));  // asked before reading: no event is missed
     const auto begin = std::chrono::steady_clock::now();
     const std::string now = store::Place(path).stamp();
     if (now != stamp || is_first || !is_alive) {
@@ -80,7 +80,7 @@ would give too short ones, since runs that clog early finish first.
       "with --format json: a line for every start, end, new attempt and round, until the sweep ends")(
       "format", po::value<std::string>()->default_value("text"), "text or json")(
       "confidence", po::value<std::string>()->default_value("0.95"), "of the intervals")(
-      "all-parameters", "name in the text also what all runs have as by default");
+      "all-parameters", "in the text, also name parameters that have their default values in all runs");
   if (!parse_file_command(line, argc, argv)) return console::exit_success;
   const std::string format = line.get_word("format", {"text", "json"});
   const double confidence = line.get_share("confidence");

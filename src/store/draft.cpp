@@ -78,6 +78,16 @@ void Draft::publish() {
   check(place_.sync_folder(), "write", place_.path());
 }
 
+bool Draft::publish_over(const std::string& stamp) {
+  place_.lend_access_to(descriptor_);
+  check(sync(descriptor_), "write", place_.path());
+  is_published_ = place_.replace(stamp, draft_);
+  if (!is_published_ && errno == EEXIST) return false;
+  check(is_published_, "write", place_.path());
+  check(place_.sync_folder(), "write", place_.path());
+  return true;
+}
+
 void Draft::publish_new() {
   check(sync(descriptor_), "write", place_.path());
   const bool is_renamed = place_.take_as_new_from(draft_);

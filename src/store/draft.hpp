@@ -38,6 +38,9 @@ class Draft {
   /// Gives it the place's name, and the disk both; a file that is there is replaced, and hands on its mode,
   /// owner, group and access list. @throws Error
   void publish();
+  /// The same, but only in place of the file with this Place::stamp(), or of none. Returns whether it did.
+  /// @throws Error
+  bool publish_over(const std::string& stamp);
   /// The same, but never onto a file that somebody else has made. @throws Error
   void publish_new();
   /// The open file, which is the caller's from now on.

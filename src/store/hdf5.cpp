@@ -107,6 +107,13 @@ void replace_whole(const Place& place, const std::function<void(hid_t file)>& fi
   draft.publish();
 }
 
+bool replace_whole(const Place& place, const std::string& stamp,
+                   const std::function<void(hid_t file)>& fill) {
+  Draft draft(place, hdf5_mark);
+  write_draft(draft, place.path(), fill);
+  return draft.publish_over(stamp);
+}
+
 std::vector<std::byte> read_file(const std::string& path) {
   const int descriptor = open(require_regular(path).c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0 && errno == ENOENT)

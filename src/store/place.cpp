@@ -137,6 +137,29 @@ bool Place::take_as_new_from(const Place& other) const {
   return take_from(other);
 }
 
+bool Place::exchange_with(const Place& other) const {
+  return renameat2(other.folder_->descriptor(), other.name_.c_str(), folder_->descriptor(), name_.c_str(),
+                   RENAME_EXCHANGE) == 0;
+}
+
+bool Place::replace(const std::string& stamp, const Place& other) const {
+  if (!exists()) return take_as_new_from(other);
+  if (exchange_with(other)) {
+    if (other.stamp() == stamp) {
+      other.remove();
+      return true;
+    }
+    exchange_with(other);
+    errno = EEXIST;
+    return false;
+  }
+  if (errno == ENOENT) return take_as_new_from(other);   // it was removed in this moment
+  if (errno != EINVAL && errno != ENOSYS) return false;  // a file system that cannot exchange names
+  if (this->stamp() == stamp) return take_from(other);
+  errno = EEXIST;
+  return false;
+}
+
 bool Place::sync_folder() const {
   const int descriptor = openat(folder_->descriptor(), ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return errno == EACCES;                  // a folder that is writable but not readable

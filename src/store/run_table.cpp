@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <sstream>
@@ -152,14 +153,27 @@ std::string library_version() {
   return fmt::format("{}.{}.{}", major, minor, release);
 }
 
-void publish_sweep(const Place& place, std::span<const RunRow> rows, const Provenance& provenance,
-                   std::span<const CircleFile> circles) {
-  const std::string& path = place.path();
-  require_memory_of_file("write " + path, rows.size() * RowLayout::present().size());
-  replace_whole(place, [&](hid_t file) {
+namespace {
+
+std::function<void(hid_t file)> writer(const Place& place, std::span<const RunRow> rows,
+                                       const Provenance& provenance, std::span<const CircleFile> circles) {
+  require_memory_of_file("write " + place.path(), rows.size() * RowLayout::present().size());
+  return [=, &provenance, path = place.path()](hid_t file) {
     write_runs(file, file_kind, rows, provenance, path);
     write_circles(file, circles, path);
-  });
+  };
+}
+
+}  // namespace
+
+void publish_sweep(const Place& place, std::span<const RunRow> rows, const Provenance& provenance,
+                   std::span<const CircleFile> circles) {
+  replace_whole(place, writer(place, rows, provenance, circles));
+}
+
+bool publish_sweep_over(const std::string& stamp, const Place& place, std::span<const RunRow> rows,
+                        const Provenance& provenance, std::span<const CircleFile> circles) {
+  return replace_whole(place, stamp, writer(place, rows, provenance, circles));
 }
 
 namespace {

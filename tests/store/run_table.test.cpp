@@ -100,6 +100,23 @@ TEST_F(RunTableTest, LeavesNothingBehindWhereItCannotWrite) {
   EXPECT_EQ(num_files(), 0);
 }
 
+TEST_F(RunTableTest, IsPublishedOnlyInPlaceOfTheFileThatIsKnown) {
+  publish_sweep(path(), some_rows(1), {});
+  const std::string stamp = Place(path()).stamp();
+  EXPECT_TRUE(publish_sweep_over(stamp, path(), some_rows(2), {}, {}));
+  EXPECT_EQ(read_sweep(path()).rows.size(), 2u);
+  // Somebody has put another file there.
+  write_text("other", "another's");
+  fs::rename(path("other"), path());
+  EXPECT_FALSE(publish_sweep_over(stamp, path(), some_rows(3), {}, {}));
+  EXPECT_FALSE(publish_sweep_over("", path(), some_rows(3), {}, {}));
+  EXPECT_EQ(text_of("sweep.h5"), "another's");
+  fs::remove(path());
+  EXPECT_TRUE(publish_sweep_over(stamp, path(), some_rows(4), {}, {}));
+  EXPECT_EQ(read_sweep(path()).rows.size(), 4u);
+  EXPECT_EQ(num_files(), 1) << "no draft is left";
+}
+
 TEST_F(RunTableTest, RemovesItsStaleDraftsAndNoOthers) {
   write_text("sweep.h5.new", "a user's");
   write_text("sweep.h5.clogsweep-draft1", "also a user's");

@@ -35,7 +35,7 @@ class Activity {
   void lengthen();
 };
 
-/// The lines of the latest sessions, one more included.
+/// Adds a session's line to the lines of earlier sessions; only those of the latest sessions are kept.
 std::string with_session(const std::string& lines, const std::string& line);
 
 }  // namespace clog::campaign

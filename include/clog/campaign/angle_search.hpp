@@ -14,9 +14,9 @@
 
 namespace clog::campaign {
 
-/// What the runs at one angle of a lattice say. A droplet leaves the rows if it comes more than the distance
-/// between two rows off the line through its place of release; it follows them if it does not, although on a
-/// way along the flow it would have crossed two rows.
+/// What the runs at one angle of a lattice say. A droplet leaves the rows if it ends farther than the
+/// distance between two rows from the line that runs along them through its place of release. It follows them
+/// if it ends nearer, although straight along the flow it would have crossed two rows.
 struct TriedAngle {
   double angle = 0;  ///< [degrees]
   int num_following = 0;
@@ -26,7 +26,8 @@ struct TriedAngle {
   bool follows() const { return num_following > 0 && num_leaving == 0; }
   bool leaves() const { return num_leaving > 0; }
 };
-/// Counts one run. @param across, along  displacement, of which the flow has the direction of `along` [sigma]
+/// Counts one run. @param along, across  displacement along the flow and across it [sigma]
+/// @param spacing  distance between two rows [sigma]
 void count_run(TriedAngle& angle, double along, double across, double spacing);
 
 /// The critical angle lies between these: at the lower one all droplets follow the rows, at the upper one,

@@ -55,8 +55,8 @@ inline constexpr DoubtText doubt_texts[] = {
      "runs went farther than boxes times box, where obstacles repeat: what lets a droplet pass once does so "
      "again"},
     {Doubt::met_none, 'n', "met_none",
-     "droplets met no obstacle: what they sank freely is in lambda; lambda_met is that of the others, from "
-     "the first obstacle on"},
+     "droplets met no obstacle: lambda includes the way that they sank freely; lambda_met is that of the "
+     "others, from their first obstacle on"},
     {Doubt::below_spacing, 'v', "below_spacing",
      "lambda is below one obstacle spacing (diameter + gap): it reflects the release void, not how often "
      "gaps clog droplets (for user-supplied circles the spacing is 1/sqrt(circles per area))"},
@@ -129,8 +129,8 @@ struct Group {
 /// @param from_distance  clogging lengths count from here on [sigma]: runs that ended before are left out of
 /// them, the others are as long as they went beyond (left truncation)
 /// @param dwell  a droplet that has stood for longer than this counts as clogged where it did so first [t0].
-/// One that has not, nor clogged, is censored where its last dwell began: how long that one would have been
-/// is not known. What is not less than max-time changes nothing.
+/// One that has neither stood so long nor clogged is censored where its last dwell began, because the full
+/// length of that dwell is not known. A value of max-time or more changes nothing.
 /// @throws Error if the rows do not tell which droplets stood for so long
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence,
                               double from_distance = 0,

@@ -17,7 +17,7 @@ struct RoundsToCome {
 
 /// Prints on the standard output what a sweep would do.
 
-/// The tasks, and their number; of more than a thousand the first and the last.
+/// Prints the tasks and their number; of more than a thousand tasks, only the first and the last ones.
 void print_tasks(const sweep::Plan& plan);
 /// Prints known limits of the results, such as an array that repeats; nothing if there are none.
 void print_limits(const sweep::Plan& plan);

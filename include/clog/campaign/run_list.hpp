@@ -19,8 +19,9 @@ class RunList {
  public:
   /// All runs of a plan. @throws Error if another plan has other circles under the same name
   void add(const sweep::Plan& plan);
-  /// A run that may be beyond the plan, as of an earlier command of the sweep: its texts are those of the
-  /// plan's first parameter set, and its own numbers. Returns whether they mean this run.
+  /// Adds a run that may be outside the plan, for instance one of an earlier command of the sweep. It gets
+  /// the texts of the plan's first parameter set, with the row's own numbers in place of theirs. Returns
+  /// whether these texts describe this run.
   bool add(const sweep::Plan& plan, const sweep::RunRow& row);
 
   bool empty() const { return sets_.empty(); }

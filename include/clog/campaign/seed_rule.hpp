@@ -49,8 +49,8 @@ class SeedRule {
   std::vector<Unreached> unreached_;
 };
 
-/// In one line, which parameter sets have not reached the rule's precision when their seeds were over, and
-/// what to do; how many have if all did.
+/// One line: which parameter sets ran out of seeds before they reached the rule's precision, and what to do;
+/// if all reached it, how many there are.
 std::string outcome(const SeedRule& rule, const sweep::Plan& plan);
 
 /// A sweep that a rule may enlarge: its settings have all seeds that it may come to, those given first.

@@ -7,7 +7,8 @@
 namespace clog::campaign {
 
 /// The parameter_fields() of these runs as they would be by default: with the row's model and preset, where
-/// `auto` stands for what follows from the row's other parameters. Empty if the row's parameters cannot be.
+/// `auto` stands for what follows from the row's other parameters. Empty if the row's parameters are
+/// impossible.
 std::vector<Field> usual_parameters(const sweep::RunRow& row);
 
 }  // namespace clog::campaign

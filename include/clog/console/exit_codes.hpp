@@ -3,6 +3,8 @@
 namespace clog::console {
 
 inline constexpr int exit_success = 0;
+/// A fault of the program. Also what verify, replay and doctor return when they find damage, other bits, or
+/// something to fix.
 inline constexpr int exit_internal_fault = 1;
 inline constexpr int exit_user_fault = 2;
 /// Stopped before the end; the same command makes sense again.

@@ -31,6 +31,10 @@ class Place {
   bool take_from(const Place& other) const;
   /// The same, but never onto a file that is there.
   bool take_as_new_from(const Place& other) const;
+  /// The file of another name takes the place of the one with this stamp(), or of none if that was removed.
+  /// Returns whether it did; if a different file is here, both stay as they are, and errno is EEXIST. Where
+  /// the file system can exchange two names at once, a file that comes here in the last moment is kept, too.
+  bool replace(const std::string& stamp, const Place& other) const;
   /// Synchronises the folder to disk, so that renames survive a power cut. Returns whether it succeeded.
   bool sync_folder() const;
   /// Copies mode, owner, group and access list of the file here to an open file, as far as permitted. Returns
@@ -41,6 +45,7 @@ class Place {
   std::string stamp() const;
 
  private:
+  bool exchange_with(const Place& other) const;
   class Folder;
   std::shared_ptr<const Folder> folder_;
   std::string name_;

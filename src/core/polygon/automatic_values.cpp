@@ -42,7 +42,7 @@ std::vector<Rate> polygon_rates(const RunParameters& run) {
           {"wall-stiffness", run.wall_stiffness.value_or(0), modes.contact}};
 }
 
-/// Where none is given [t0], K_a and K_l are.
+/// The time step where none is given [t0]. K_a and K_l must be set.
 double automatic_time_step(const RunParameters& run, double sharpest_bend) {
   const double drag = drag_time_step(run);
   constexpr double depth = 0.02;  // of an obstacle in the contact range, over the vertex diameter

@@ -48,8 +48,8 @@ class Search {
   }
 
  private:
-  /// So many vertices apart counts as along the contour; pairs farther apart lie in groups of which another
-  /// one is between them.
+  /// list_along() finds the pairs up to so many vertices apart. Pairs farther apart lie in groups that have
+  /// another group between them; list_far() finds these.
   static constexpr int last_along = 2 * group_size - 1;
   static_assert(last_along + group_size <= close_vertices_beyond);
 
@@ -66,8 +66,8 @@ class Search {
 
   bool excluded_are_long() const { return (c_.exclusion - 1) * c_.longest_edge >= c_.arc; }
 
-  /// False only if no pair along the contour is close: up to 7 apart each is tested, of those beyond every
-  /// third or fifth, which are nearer to the others than one or two edges.
+  /// False only if no pair along the contour is close. Vertices up to 7 apart are all tested. Those 9 apart,
+  /// with a reach longer by one edge, stand for 8 to 10; those 13 apart, longer by two edges, for 11 to 15.
   bool along_may_meet() const {
     constexpr int last_tested = 7, third = 9, fifth = 13;
     if (c_.exclusion > last_tested || excluded_are_long()) return true;

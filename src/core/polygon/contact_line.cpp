@@ -37,8 +37,8 @@ double way(const WallPlace& wall, double from, double to) {
   return wall.wedge >= 0 ? to - from : std::remainder(to - from, turn);
 }
 
-/// Vertices that a contact lets hover, or that bounce, still lie on the wall up to this distance, over the
-/// vertex diameter: an end that is held must not be lost with them.
+/// Up to this distance beyond the contact, over the vertex diameter, a vertex counts as lying on the wall: an
+/// end that is held must not be lost when its vertex hovers or bounces.
 constexpr double hovering = 0.25;
 
 }  // namespace

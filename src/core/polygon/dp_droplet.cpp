@@ -9,8 +9,8 @@
 namespace clog {
 namespace {
 
-/// Contact lists, the frame and the stability bound are looked after once in so many steps: at most 32, and
-/// as few as keeps the way possible in between, and with it the lists, short.
+/// Contact lists and the stability bound are checked once in so many steps: at most 32, and so few that
+/// vertices cannot move far in between, which keeps the lists short.
 int steps_between_checks(double time_step) {
   constexpr double longest = 0.04;  // [t0]
   int steps = 32;

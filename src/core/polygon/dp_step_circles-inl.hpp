@@ -96,9 +96,9 @@ struct HalvesAtCircle {
         second(e.middle_x, e.middle_y, e.next_x, e.next_y, x, y, span) {}
 };
 
-/// The pushes on `lanes` edges of a window. A middle's push goes to the four vertices that decide where it
-/// is: of both coordinates what the edge's first and second vertex get, and what each of the two beyond them
-/// gets.
+/// What `lanes` edges of a window give their vertices. The push on an edge's middle goes to the four vertices
+/// that decide where the middle is: `begin` is for the edge's first vertex, `end` for its second, `far` for
+/// each of the two beyond them.
 struct WindowPushes {
   Push begin, end, far;
 

@@ -179,8 +179,8 @@ double pair_gaps(const SelfContacts::Item* items, std::size_t num_items, const C
   return least;
 }
 
-/// An edge pushes the vertex before it and the two behind it as well, which may belong to the other end of
-/// the contour.
+/// Edge i pushes the vertices i - 1 to i + 2. Hands what was pushed beyond the ends of the contour to the
+/// vertices of the other end.
 HWY_INLINE void add_pushes_beyond_ends(int n, int beyond, const StepArrays& a) {
   for (double* p : {a.push_x, a.push_y}) {
     p[n - 1] += std::exchange(p[-1], 0);

@@ -17,8 +17,8 @@ HWY_BEFORE_NAMESPACE();
 // NOLINTBEGIN(misc-definitions-in-headers): part of one source, compiled for each instruction set
 namespace clog::kernel::HWY_NAMESPACE {
 
-/// Adds up vertices' lengths on a circle. A half edge is as long on the wall as it is; the middle belongs to
-/// both vertices.
+/// Adds to each vertex its share of the interface on a circle: of each half edge that touches, three quarters
+/// of the length go to the vertex at its end, one quarter to the other vertex of the edge.
 void add_wetted(const WallWindow& window, V span, const StepArrays& a, double* wetted) {
   const V reach = all(window.reach), zero = all(0);
   for (int lane = 0; lane < edges_per_group; lane += lanes) {
@@ -61,13 +61,14 @@ HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCir
     const V inverse = square_root(hn::Max(hn::MulAdd(dx, dx, hn::Mul(dy, dy)), all(1e-300))).inverse;
     const V normal_x = hn::Mul(dx, inverse), normal_y = hn::Mul(dy, inverse);
     const V push_x = load(walls.push_x + i), push_y = load(walls.push_y + i);
-    // The middle next to the end of a contact pulls the vertex behind it a little towards the wall.
+    // At the end of a contact, the last middle pulls the vertex beyond it a little towards the wall
+    // (refined_far is negative); that does not count as a push.
     const V push = hn::Max(hn::MulAdd(push_x, normal_x, hn::Mul(push_y, normal_y)), all(0));
     V bears = hn::Mul(all(grip.coefficient), push);
     if constexpr (wets) bears = hn::MulAdd(all(grip.traction), load(walls.wetted + i), bears);
     const M touches = hn::Gt(bears, all(0));
 
-    // With the wall's point next to the vertex, radius normal, and with (-normal_y, normal_x) along it.
+    // The wall's point next to the vertex is radius * normal. Slips count along (-normal_y, normal_x).
     const M is_known = lanes_of(static_cast<int>(held_before), lane);
     const V anchor_x = load(walls.anchor_x + k), anchor_y = load(walls.anchor_y + k);
     const V slip = hn::IfThenElseZero(is_known, hn::MulSub(normal_y, anchor_x, hn::Mul(normal_x, anchor_y)));
@@ -79,8 +80,8 @@ HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCir
           walls.anchor_x + k);
     store(hn::IfThenElse(rests, anchor_y, hn::MulSub(radius, normal_y, hn::Mul(held, normal_x))),
           walls.anchor_y + k);
-    // By the trapezoidal rule, as the integrator: the force of before acts on half of the way. A spring that
-    // its wall lost gives up its energy.
+    // What the wall takes, by the trapezoidal rule of the integrator: the old force acts on half of the way,
+    // the new one on the other half. Where the vertex has left the wall, the spring's energy is lost.
     const V before = load(walls.slip + k);
     const V lost =
         hn::IfThenElse(touches, hn::Mul(hn::Add(before, held), hn::Sub(slip, held)), hn::Mul(before, before));

@@ -158,7 +158,7 @@ struct NearWallDrag {
   double far_rate;  ///< [1/t0]
 };
 
-/// What is looked after now and then.
+/// What the checks between steps need to know.
 struct Survey {
   double perimeter, shortest;    ///< of the edges [sigma]
   double speed, relative_speed;  ///< of the fastest vertex, and relative to their mean [sqrt(sigma g)]
@@ -181,11 +181,13 @@ struct StepKernel {
   /// How far every item's nearest pair is from contact.
   double (*pair_gaps)(const SelfContacts::Item* items, std::size_t num_items, const Contact& contact,
                       const StepArrays& arrays, double* gaps);
-  /// Then contacts, on the groups that the lists name. `clear` empties all groups.
+  /// clear_pushes() sets the pushes on all vertices to zero. push() finds those of circles, on the groups of
+  /// vertices that `walls` names, and those of the droplet on itself.
   void (*clear_pushes)(int n, const StepArrays& arrays);
   void (*push)(int n, const WallWindows& walls, const SelfContacts::Item* self, std::size_t num_self,
                const Contact& contact, const StepArrays& arrays);
-  /// The same on all groups, where circles hold what they push. Returns what walls took, over k_t [sigma^2].
+  /// As push(), on all groups; circles also hold by friction what they push. Returns the energy that walls
+  /// took, over k_t [sigma^2].
   double (*push_and_hold)(int n, const HoldingCircles& walls, const WallGrip& grip,
                           const SelfContacts::Item* self, std::size_t num_self, const Contact& contact,
                           const StepArrays& arrays);

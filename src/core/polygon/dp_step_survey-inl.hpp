@@ -1,4 +1,4 @@
-/// What is looked after now and then; part of dp_step_kernel.cpp.
+/// What the checks between steps need to know; part of dp_step_kernel.cpp.
 
 #if defined(CLOG_DP_STEP_SURVEY) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLOG_DP_STEP_SURVEY

@@ -119,7 +119,7 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<D>> truncated(V v) {
 #endif
 }
 
-/// A body that is not inlined keeps its sums in memory.
+/// For the bodies of for_vectors(): one that is not inlined keeps its sums in memory, which is slow.
 #undef CLOG_INLINE
 #if defined(__GNUC__)
 #define CLOG_INLINE __attribute__((always_inline))
@@ -127,10 +127,11 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<D>> truncated(V v) {
 #define CLOG_INLINE
 #endif
 
-/// Zeroes the lanes beyond the last vertex, if there are any.
+/// For a vector that ends before the last vertex or with it.
 struct KeepAll {
   HWY_INLINE V operator()(V v) const { return v; }
 };
+/// Zeroes the lanes beyond the last vertex.
 struct KeepFirst {
   M inside;
   explicit KeepFirst(int count) : inside(hn::FirstN(D(), static_cast<std::size_t>(count))) {}

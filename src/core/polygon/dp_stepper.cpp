@@ -62,8 +62,8 @@ kernel::Survey DpStepper::survey() const {
 
 void DpStepper::look(DropletState& state, const Travel& travel, Droplet::Work* work) {
   kernel_.clear_pushes(n_, arrays_);  // the lists may name other groups than before
-  // A contact speeds what is in it up by at most half its depth per step, and for a few steps: `travel` knows
-  // nothing of that.
+  // A contact accelerates the vertices in it, by at most half its depth per step, for a few steps. `travel`
+  // does not include that.
   constexpr double thrown = 4;
   const double unforeseen =
       0.1 * forces_->vertex_diameter() + thrown * near_.measure(kernel_, contact(0), *forces_, arrays_);
@@ -215,7 +215,7 @@ void DpStepper::hold_by_friction(DropletState& droplet, double impulse, Droplet:
   const WallYield yield =
       forces_->friction().follow(droplet, touches, Purpose::motion, touches_.known_anchors(), &friction_);
   if (work != nullptr) work->dissipated += yield.dissipated;
-  for (const WallAnchor& anchor : droplet.anchors) {  // of two of one vertex the first hands over both
+  for (const WallAnchor& anchor : droplet.anchors) {  // if a vertex has two, the first adds both forces
     const Eigen::Index x = anchor.holder, y = n_ + x;
     arrays_.push_x[x] += impulse * std::exchange(friction_[x], 0.0);
     arrays_.push_y[x] += impulse * std::exchange(friction_[y], 0.0);

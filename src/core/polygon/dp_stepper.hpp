@@ -22,13 +22,13 @@ class DpStepper {
   /// @param forces     its contact lists are used; must outlive this object
   DpStepper(const RunParameters& run, const ObstacleArray& obstacles, const DpForces& forces);
 
-  /// Takes over a droplet.
+  /// Copies the droplet's positions and velocities into the arrays of the step.
   void load(const DropletState& state);
-  /// And hands it over as it is now.
+  /// Copies them back, as they are now.
   void store(DropletState& state) const;
   /// Surveys the droplet as it is now, compared with where it was when contact lists were made.
   kernel::Survey survey() const;
-  /// Takes over what may touch on the way to the next look() from the contact lists, which must hold for it.
+  /// Selects from the contact lists what may touch before the next look(). The lists must hold until then.
   /// @param state, work  as for advance()
   void look(DropletState& state, const Travel& travel, Droplet::Work* work);
   /// `steps` steps of `time_step`. The last half kick is left open: positions are those of the steps' end,
@@ -37,7 +37,7 @@ class DpStepper {
   /// may be old
   /// @param work  if not null, what drag and springs did since the last call is added to it
   void advance(DropletState& state, int steps, double time_step, Droplet::Work* work);
-  /// The last half kick; stores.
+  /// Makes the last half kick if it is still open; copies positions, velocities and anchors into `state`.
   void finish(DropletState& state, Droplet::Work* work);
 
  private:
@@ -48,12 +48,11 @@ class DpStepper {
   int n_;
   StepMemory memory_;
   kernel::StepArrays arrays_;
-  // What may touch before the next look, and wedges in the droplet's frame.
-  NearContacts near_;
-  bool holds_circles_;  // does friction act, and only at edges that meet circles?
-  WallPlan plan_;       // otherwise
-  WallHold hold_;
-  std::vector<kernel::WedgePlace> wedges_;
+  NearContacts near_;                       // what may touch before the next look
+  bool holds_circles_;                      // does friction act, and only at edges that meet circles?
+  WallPlan plan_;                           // without holds_circles_
+  WallHold hold_;                           // with holds_circles_
+  std::vector<kernel::WedgePlace> wedges_;  // in the droplet's frame
   WallTouches touches_;
   WettedWalls::Forces wetting_;
   Eigen::ArrayXd friction_;              // on vertices, all x then all y; zero between steps

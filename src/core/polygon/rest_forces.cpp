@@ -74,7 +74,7 @@ void RestForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   }
   if (forces_->friction().is_on()) forces_->friction().add_forces(state, force);
 
-  // A kick of a droplet at rest, without drag, for as long that it is the force.
+  // A kick of a droplet at rest, without drag, so long that the change of velocity equals the force.
   std::fill_n(a.vx, n_, 0.0);
   std::fill_n(a.vy, n_, 0.0);
   const kernel::Coupling coupling =

@@ -21,12 +21,12 @@ class WallHold {
   WallHold(int num_vertices, double range);
 
   /// Takes the anchors over. @param near  see list_windows()
-  /// Returns half the sum of squares of the slips of anchors that no circle of these holds any more
+  /// Returns half the sum of the squared slips of those anchors that none of these circles can hold
   /// [sigma^2].
   double make(const std::vector<WallContacts::Item>& near, DropletState& droplet);
   /// Copies the anchors into the droplet, if make() was called since forget().
   void hand_back(DropletState& droplet) const;
-  /// For a droplet that has its anchors itself.
+  /// Drops the anchors: the next make() takes those of its droplet.
   void forget() { has_anchors_ = false; }
   /// Valid until the next make(), and to be changed by a step.
   const kernel::HoldingCircles& circles() const { return circles_; }

@@ -64,7 +64,7 @@ void WallPlan::add(const kernel::WallWindow& window) {
 void WallPlan::find_groups() {
   is_pushed_.assign(static_cast<std::size_t>(num_groups_) + 2, 0);
   for (const kernel::WallWindow& window : all_) mark_pushed_groups(window, is_pushed_);
-  // What one end pushes of the other end is added there.
+  // What edges push beyond one end of the contour is added to the groups at the other end.
   const bool wraps = is_pushed_.front() != 0 || is_pushed_.back() != 0 || is_pushed_[num_groups_] != 0;
   if (wraps) is_pushed_[1] = is_pushed_[num_groups_] = 1;
   groups_.clear();

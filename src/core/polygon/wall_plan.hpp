@@ -10,10 +10,9 @@
 
 namespace clog {
 
-/// How circles push a contour off until somebody looks again. A window is a circle and a vector of edges, the
-/// first of which may touch it: wherever a contact begins, a whole vector of edges is at work. Windows store
-/// what edges give their vertices, and the vertices' pushes are then put together in one go; an edge between
-/// two circles is in two windows, of which the second adds to what the first has stored.
+/// How circles push a contour off until the next make(). Each window (see list_windows()) stores what its
+/// edges give their vertices; afterwards these are added up once for each vertex. An edge that may touch two
+/// circles is in two windows: the second adds to what the first has stored.
 class WallPlan {
  public:
   explicit WallPlan(int num_vertices);

@@ -21,7 +21,9 @@ void list_windows(const std::vector<WallContacts::Item>& near, int num_groups,
     const int begin = item.group * size;
     for (unsigned edges = item.edges; edges != 0;) {
       const int edge = begin + std::countr_zero(edges);
-      if (windows.empty() || !is_same_circle(windows.back(), item) || edge - windows.back().first >= size)
+      const bool is_inside = !windows.empty() && is_same_circle(windows.back(), item) &&
+                             edge >= windows.back().first && edge - windows.back().first < size;
+      if (!is_inside)
         // Nothing can be read behind the last group.
         windows.push_back({item.x, item.y, item.reach, std::min(edge, (num_groups - 1) * size), 0});
       kernel::WallWindow& window = windows.back();

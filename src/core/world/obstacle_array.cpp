@@ -176,9 +176,11 @@ ObstacleArray::Pair ObstacleArray::closest_pair() const {
       const auto& [origin_x, origin_y, radius] = binned_.obstacles[first];
       visit_window({origin_x, origin_y, -radius, radius, -radius, radius, margin},
                    [&, r = radius](std::uint32_t second, double x, double y) {
-                     const double gap = std::hypot(x, y) - r - binned_.obstacles[second].radius;
-                     const bool is_one_post =
-                         post[second] == post[first] && std::hypot(x, y) < nearest_image / 2;
+                     const double apart = std::hypot(x, y);
+                     const double gap = apart - r - binned_.obstacles[second].radius;
+                     // Circles with the same centre are a mistake, in a post, too.
+                     const bool is_one_post = post[second] == post[first] && apart < nearest_image / 2 &&
+                                              (apart > 0 || second == first);
                      if (!is_one_post && gap < closest.gap)
                        closest = {binned_.obstacles[first], binned_.obstacles[second], gap};
                    });

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/polygon/wall_windows.hpp"
+
 namespace clog {
 namespace {
 
@@ -89,6 +91,17 @@ TEST(WallPlan, BeginsAWindowWhereACircleBegins) {
   ASSERT_EQ(plan.windows().num_all, 1) << "eight edges of two groups are one window";
   EXPECT_EQ(plan.windows().all[0].first, 21);
   EXPECT_EQ(plan.windows().all[0].edges, 0xff);
+}
+
+TEST(WallWindows, OfTheSameCircleTwiceAreListedTwice) {
+  const std::vector<Item> once = {{1, 2, 0.3, 0, 0x81}, {1, 2, 0.3, 3, 0x01}};
+  std::vector<Item> twice = once;
+  twice.insert(twice.end(), once.begin(), once.end());
+  std::vector<kernel::WallWindow> windows;
+  list_windows(once, 8, windows);
+  const std::size_t num_windows = windows.size();
+  list_windows(twice, 8, windows);
+  EXPECT_EQ(windows.size(), 2 * num_windows);
 }
 
 }  // namespace

@@ -364,6 +364,8 @@ TEST(ObstacleArray, CirclesWithACentreInEachOtherAreOnePost) {
   EXPECT_NE(post_at(0.2), post_at(0.6));
   EXPECT_NE(post_at(5), post_at(5, 1));
   EXPECT_NEAR(array.smallest_gap(), -0.6, 1e-12) << "of the two copies";
+  EXPECT_NEAR(ObstacleArray(10, {{1, 5, 0.3}, {1.2, 5, 0.3}, {1, 5, 0.3}}).smallest_gap(), -0.6, 1e-12)
+      << "of two copies in one post";
   // Circles of one post do not count, however near; a long post meets its own image.
   EXPECT_NEAR(ObstacleArray(10, {{1, 5, 0.3}, {1.2, 5, 0.3}, {1.4, 5, 0.3}, {1.65, 5, 0.3}, {4, 5, 0.3}})
                   .smallest_gap(),

@@ -5,8 +5,9 @@
 namespace clog {
 
 /// N_v where none is given. The corners of a polygon that hangs over an obstacle can hold up to x^2/16 of the
-/// weight, x = l/R', l the edges on the obstacle, R' the radius at which they lie: so many vertices that the
-/// longest edges to be expected hold half a percent, 128 at least, and at most 1024.
+/// weight: x = l/R', where l is the length of the edges on the obstacle, and R' the radius at which they lie.
+/// N_v is so large that the longest edges to be expected hold half a percent, but 128 at least and 1024 at
+/// most.
 /// @param obstacle_diameter  of the smallest obstacle that the droplet can hang over, infinite if there is
 /// none [sigma]
 int automatic_vertices(const RunParameters& run, double obstacle_diameter);
@@ -25,8 +26,8 @@ double automatic_perimeter_stiffness(const RunParameters& run);
 /// diameter tall.
 double expected_pressure(const RunParameters& run, double sharpest_bend);
 
-/// K_a where none is given [g rho / sigma]: the expected pressure changes the area by two thousandths, but at
-/// most the published 1e4, which soft droplets do not need and which would cost them steps.
+/// K_a where none is given [g rho / sigma]: so large that the expected pressure changes the area by two
+/// thousandths, but at most the published 1e4. Soft droplets need less, and would need more steps with more.
 double automatic_area_stiffness(const RunParameters& run, double sharpest_bend);
 
 /// DropletModel::resolve of the polygon. The automatic step resolves the drag's relaxation time ten times;

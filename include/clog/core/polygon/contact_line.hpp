@@ -47,8 +47,8 @@ struct VertexPlaces {
 /// Contact-angle hysteresis. The end of a wetted arc is at
 ///   q = u_m + sum share_e (u_e' - u_e)
 /// along the wall, u the wall's own coordinate, summed over the edges e from a wetted vertex m outwards,
-/// share_e their share of wetting; counted positive outwards. Over a smooth interface its gradient is normal
-/// to that: an end is a place, whichever vertices are there. A spring holds it,
+/// share_e their share of wetting; counted positive outwards. Where the interface is smooth, the gradient of
+/// q is normal to it, so that q does not depend on which vertices are there. A spring holds it,
 ///   U = (k_p/2) (q - q*)^2,  -Gamma (cos Y - cos A) <= f <= Gamma (cos R - cos Y),
 /// Y, A, R Young's, the advancing and the receding angle. A spring that asks for more than the wall bears
 /// pulls its anchor q* along, so that the wall just bears it.

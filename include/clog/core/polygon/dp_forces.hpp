@@ -19,8 +19,8 @@ struct Interface;
 }
 
 /// Potential energy of a deformable polygon among obstacles and its negative gradient.
-/// Contacts act through lists: update_contacts() must have been called, and nothing have travelled farther
-/// than it was told.
+/// Contacts act through lists: update_contacts() must have been called, and since then nothing may have
+/// travelled farther than it was told.
 class DpForces {
  public:
   /// @param run  resolved parameters (see resolve())
@@ -28,18 +28,18 @@ class DpForces {
 
   /// @param travel  bound on the way until the next call
   void update_contacts(const DropletState& state, const Travel& travel);
-  /// Does update_contacts() leave the lists as they are? False as well where only the state can tell.
-  /// @param moved           a vertex at most, since walls() were renewed [sigma]
-  /// @param moved_relative  to the vertices' mean, since self_contacts() were renewed [sigma]
+  /// Would update_contacts() leave the lists as they are? Also false if only the state can tell.
+  /// @param moved           bound on the way of any vertex since walls() were renewed [sigma]
+  /// @param moved_relative  the same, relative to their mean, since self_contacts() were renewed [sigma]
   bool contacts_hold(double moved, double moved_relative, const Travel& travel) const;
   /// Are there contact lists that nobody has invalidated?
   bool has_contact_lists() const {
     return walls_.reference() != nullptr &&
            (dp_.self_contact == SelfContact::off || self_.reference() != nullptr);
   }
-  /// To be called when local coordinates have moved by a shift of the frame.
+  /// Forgets the lists of obstacles. To be called when a shift of the frame has changed local coordinates.
   void forget_contacts();
-  /// Those with itself, too, which a shift does not change.
+  /// Forgets the pairs of self-contact, too, which a shift does not change.
   void forget_all_contacts();
 
   /// force = -grad U, all x then all y [g rho sigma^2]. Also measures shape() and, with near-wall drag,

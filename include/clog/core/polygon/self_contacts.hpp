@@ -21,11 +21,11 @@ struct VertexPair {
 /// Contact is between vertices and edges, so it holds when edges are longer than the vertex diameter. Every
 /// edge within reach pushes by itself, with its own nearest point: then energy and force are continuous
 /// wherever the vertex goes, also in a concave corner, where it is as near to two edges. Edges close along
-/// the contour do not count as contact, or every vertex would touch its neighbours: those less than three
-/// ranges away along the contour as it is, and fewer vertices than make up three ranges of it at rest. Of a
-/// compressed contour the number decides. It is fixed, or what holds vertices off each other there would
-/// depend on when the pairs were made. Of a stretched one the length decides, or long edges could cross in a
-/// sharp fold.
+/// the contour do not count as contact, or every vertex would touch its neighbours. Close means both: less
+/// than three ranges away along the present contour, and fewer vertices away than make up three ranges at
+/// rest. In a compressed contour the number of vertices decides; it is fixed, so that contacts there do not
+/// depend on when the pairs were made. In a stretched one the length decides, so that long edges cannot cross
+/// in a sharp fold.
 class SelfContacts {
  public:
   struct Pair {
@@ -43,8 +43,9 @@ class SelfContacts {
   /// Renews the pairs when the shape may change too much on the way to the next update.
   void update(const DropletState& state, const Travel& travel);
   void invalidate() { reference_.resize(0); }
-  /// The same as update(), where it is known how far a vertex is at most from where it was at renew(),
-  /// relative to their mean.
+  /// Do the pairs hold until the next update? Changes nothing.
+  /// @param moved  bound on how far any vertex is from where it was at renew(), relative to the mean of all
+  /// [sigma]
   bool hold(double moved, const Travel& travel) const;
   void renew(const DropletState& state, const Travel& travel);
   /// Where the vertices were then, relative to their mean, all x then all y, and behind them room for a whole

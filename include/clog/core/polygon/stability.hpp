@@ -31,7 +31,8 @@ inline constexpr double auto_contact_omega_dt2 = 0.5;
 /// stopped droplets were seen to chatter instead of coming to rest.
 inline constexpr double max_contact_omega_dt2 = 1.0;
 inline constexpr double max_total_omega_dt2 = 3.0;
-/// The same where a droplet touches itself as well, which is rarer and softer than the bound of it.
+/// The same for a droplet that touches itself as well. It is larger, because self-contact is rare, and softer
+/// than StiffModes::self_contact assumes.
 inline constexpr double max_total_with_self_omega_dt2 = 3.9;
 /// The area mode is anharmonic in the perimeter; it gets its own bound.
 inline constexpr double max_area_omega_dt2 = 1.0;

@@ -27,7 +27,8 @@ class WallContacts {
   void update(const DropletState& state, const Travel& travel);
   /// Forgets the lists: positions changed by more than a move (a new frame origin, a rescaled polygon).
   void invalidate() { reference_.resize(0); }
-  /// The same as update(), where it is known how far a vertex is at most from where it was at renew().
+  /// Do the lists hold until the next update? Changes nothing.
+  /// @param moved  bound on how far any vertex is from where it was at renew() [sigma]
   bool hold(double moved, const Travel& travel) const;
   void renew(const DropletState& state, const Travel& travel);
   /// Where the vertices were then, all x then all y, and behind them room for a whole vector; null: there are

@@ -29,11 +29,11 @@ class WettedWalls {
 
   /// Forces on the vertices, and memory that finding them needs. All x, then all y [g rho sigma^2].
   struct Forces {
-    Eigen::ArrayXd gradient;  ///< minus the energy's
-    Eigen::ArrayXd
-        spreading;  ///< minus the former's part along the interface, where springs carry no tension
-                    ///< (`along`), otherwise 0; it has no energy
-    std::vector<int> vertices;  ///< on all others they are 0
+    Eigen::ArrayXd gradient;  ///< minus the gradient of the energy
+    /// Cancels the part of `gradient` along the interface if springs carry no tension (`along`), otherwise 0.
+    /// It derives from no energy.
+    Eigen::ArrayXd spreading;
+    std::vector<int> vertices;  ///< on all others both forces are 0
     ContactLine::Ends ends;     ///< of wetted arcs
 
     explicit Forces(int num_vertices);
