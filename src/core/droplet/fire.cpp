@@ -28,7 +28,7 @@ ForceSums sum_forces(std::ptrdiff_t n, const double* __restrict force, const dou
 
 void move_points(std::ptrdiff_t n, const PointMove& move, const double* __restrict force,
                  double* __restrict velocity, double* __restrict position) {
-  const auto [kept, gain, fastest, time] = move;
+  const double kept = move.kept, gain = move.gain, fastest = move.fastest, time = move.time;
 #pragma omp simd
   for (std::ptrdiff_t i = 0; i < n; ++i) {
     const double v = kept * velocity[i] + gain * force[i];
