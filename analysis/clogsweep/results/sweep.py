@@ -139,8 +139,11 @@ class Sweep:
                             *(["--lab", lab] if lab is not None else []))
 
     def poster(self, *, lab: str | os.PathLike[str] | None = None) -> Picture:
-        """One page of the sweep to be printed, A3: its curves and some of its droplets. @param lab  file that describes the laboratory, for its
-        units, too. @throws UserError"""
+        """One page of the sweep to be printed, A3: its curves and some of its droplets.
+
+        @param lab  file that describes the laboratory, whose units are added
+        @throws UserError
+        """
         from ..pages import poster
         from ..style import Picture
 

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include "clog/core/tools/portable_math.hpp"
@@ -199,7 +200,8 @@ const std::vector<Index>& ContactLine::matched(std::span<const WallAnchor> ancho
       if (anchor.holder == end.side && anchor.wall.is(end.wall))
         matches.push_back({std::abs(way(end.wall, anchor.x, end.place)), e, a});
     }
-  std::ranges::sort(matches);
+  std::ranges::sort(matches, {},
+                    [](const auto& match) { return std::tuple(match.way, match.end, match.anchor); });
   ends.anchor_of_.assign(ends.all_.size(), -1);
   ends.is_taken_.assign(anchors.size(), 0);
   for (const auto& [distance, e, a] : matches) {
@@ -211,7 +213,7 @@ const std::vector<Index>& ContactLine::matched(std::span<const WallAnchor> ancho
 }
 
 void ContactLine::add_forces(std::span<const WallAnchor> anchors, const Ends& ends,
-                             Eigen::Ref<Eigen::ArrayXd> force) const {
+                             Eigen::ArrayXd& force) const {
   const std::vector<Index>& anchor_of = matched(anchors, ends);
   for (std::size_t e = 0; e < ends.all_.size(); ++e) {
     if (anchor_of[e] < 0) continue;

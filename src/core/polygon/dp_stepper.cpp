@@ -34,10 +34,10 @@ DpStepper::DpStepper(const RunParameters& run, const ObstacleArray& obstacles, c
       terms_(terms_of(run)),
       kernel_(kernel::step_kernel(terms_)),
       n_(*run.dp.vertices),
-      memory_(n_),
-      arrays_(memory_.arrays()),
       holds_circles_(forces.friction().is_on() && run.dp.wall_contact == WallContact::edge &&
                      obstacles.wedges().empty()),
+      memory_(n_),
+      arrays_(memory_.arrays()),
       plan_(n_),
       hold_(n_, forces.walls().range()),
       touches_(run, obstacles),

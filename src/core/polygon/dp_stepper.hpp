@@ -46,17 +46,17 @@ class DpStepper {
   kernel::KickTerms terms_;
   kernel::StepKernel kernel_;
   int n_;
+  bool holds_circles_;              // does friction act, and only at edges that meet circles?
+  bool are_pushes_spread_ = false;  // did friction push vertices in the last step?
   StepMemory memory_;
   kernel::StepArrays arrays_;
   NearContacts near_;                       // what may touch before the next look
-  bool holds_circles_;                      // does friction act, and only at edges that meet circles?
   WallPlan plan_;                           // without holds_circles_
   WallHold hold_;                           // with holds_circles_
   std::vector<kernel::WedgePlace> wedges_;  // in the droplet's frame
   WallTouches touches_;
   WettedWalls::Forces wetting_;
   Eigen::ArrayXd friction_;              // on vertices, all x then all y; zero between steps
-  bool are_pushes_spread_ = false;       // did friction push vertices in the last step?
   Eigen::Array2d wetting_spread_{0, 0};  // see WettedWalls::Forces::net_spreading()
   kernel::Sums sums_{};
   double open_step_ = 0;      // length of the step whose last half kick is to come; 0: none is

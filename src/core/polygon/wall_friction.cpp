@@ -9,15 +9,14 @@ WallFoot WallFriction::foot(const DropletState& state, const WallAnchor& anchor)
   return foot_on(wall, wedges_, {state.x()[anchor.holder] - wall.x, state.y()[anchor.holder] - wall.y});
 }
 
-void WallFriction::add_force(const WallAnchor& anchor, const WallFoot& at,
-                             Eigen::Ref<Eigen::ArrayXd> force) const {
+void WallFriction::add_force(const WallAnchor& anchor, const WallFoot& at, Eigen::ArrayXd& force) const {
   const double slip = (at.along * (at.point - Eigen::Array2d(anchor.x, anchor.y))).sum();
   const double pull = -stiffness_ * anchor.slip_of_force(slip) * at.gradient;
   force[anchor.holder] += pull * at.along[0];
   force[force.size() / 2 + anchor.holder] += pull * at.along[1];
 }
 
-void WallFriction::add_forces(const DropletState& state, Eigen::Ref<Eigen::ArrayXd> force) const {
+void WallFriction::add_forces(const DropletState& state, Eigen::ArrayXd& force) const {
   for (const WallAnchor& anchor : state.anchors) add_force(anchor, foot(state, anchor), force);
 }
 

@@ -50,7 +50,7 @@ void WallHold::add_groups(kernel::HoldingCircle& circle, int num_vertices) {
   for (int k = circle.first_window; k < circle.end_window; ++k) {
     const kernel::WallWindow& window = windows_[static_cast<std::size_t>(k)];
     mark_pushed_groups(window, is_pushed_);
-    const int last = window.first + std::bit_width(unsigned{window.edges}) - 1;
+    const int last = window.first + static_cast<int>(std::bit_width(window.edges)) - 1;
     circle.wraps |= (window.first == 0 && (window.edges & 1) != 0) || last + 2 >= num_vertices;
   }
   // What is pushed beyond the ends is the other end's.
@@ -58,13 +58,13 @@ void WallHold::add_groups(kernel::HoldingCircle& circle, int num_vertices) {
     is_pushed_.front() = is_pushed_[1] = is_pushed_[static_cast<std::size_t>(num_groups_)] =
         is_pushed_.back() = 1;
   circle.first_group = static_cast<int>(groups_.size());
-  for (int group = -1; group <= num_groups_; ++group)
-    if (is_pushed_[static_cast<std::size_t>(group + 1)] != 0) groups_.push_back(group);
+  for (std::size_t k = 0; k < is_pushed_.size(); ++k)
+    if (is_pushed_[k] != 0) groups_.push_back(static_cast<int>(k) - 1);
   circle.end_group = static_cast<int>(groups_.size());
 }
 
 void WallHold::arrange_memory() {
-  const std::size_t stride = static_cast<std::size_t>(before + num_groups_ + behind) * size;
+  const std::size_t stride = (static_cast<std::size_t>(num_groups_) + before + behind) * size;
   const std::size_t num_entries = groups_.size() * size;
   const std::size_t needed = (all_.size() * kernel::num_window_push_arrays + 3) * stride + 3 * num_entries;
   if (memory_size_ < needed) {

@@ -26,7 +26,7 @@ std::size_t whole_groups(std::size_t number) {
 
 WallFoot foot_on(const WallPlace& wall, std::span<const Wedge> wedges, const Eigen::Array2d& from_centre) {
   const double r = from_centre.matrix().norm();
-  const WallFoot on_circle = foot_on_circle(wall.radius, from_centre / r, wall.radius / r);
+  WallFoot on_circle = foot_on_circle(wall.radius, from_centre / r, wall.radius / r);
   if (wall.wedge < 0) return on_circle;
   const Wedge& wedge = wedges[static_cast<std::size_t>(wall.wedge)];
   const auto [distance, normal] = distance_to(wedge, from_centre);
@@ -51,7 +51,7 @@ int WallTouches::part(int vertex, const WallPlace& wall) {
 void WallTouches::add_edges(const Contour& contour, const WallContacts::Item& item, const WallPlace& circle) {
   static const kernel::TouchKernel touch_kernel = kernel::touch_kernel();
   const int first = item.group * WallContacts::edges_per_group;
-  kernel::GroupTouches found;
+  kernel::GroupTouches found{};
   touch_kernel.touch(contour.x + first, contour.y + first, {circle.x, circle.y, circle.radius + range_},
                      stiffness_, found);
   int parts[WallContacts::edges_per_group + 3];
@@ -86,15 +86,15 @@ const std::vector<WallTouch>& WallTouches::find(const DropletState& state,
   const auto n = static_cast<std::size_t>(state.size());
   constexpr std::size_t before = 1, behind = WallContacts::edges_per_group + 2;
   closed_contour_.resize(2 * (before + n + behind));
-  double* next = closed_contour_.data();
-  const double* coordinates[2];
-  for (const double* from : {state.position.data(), state.position.data() + n}) {
-    *next++ = from[n - 1];
-    coordinates[from != state.position.data()] = next;
-    next = std::copy_n(from, n, next);
-    next = std::copy_n(next - n, behind, next);
-  }
-  return find({static_cast<int>(n), coordinates[0], coordinates[1]}, state.frame, circles);
+  const auto close = [n](const double* from, double* to) {
+    to[0] = from[n - 1];
+    std::copy_n(from, n, to + before);
+    std::copy_n(from, behind, to + before + n);
+  };
+  double *const x = closed_contour_.data(), *const y = x + before + n + behind;
+  close(state.position.data(), x);
+  close(state.position.data() + n, y);
+  return find({static_cast<int>(n), x + before, y + before}, state.frame, circles);
 }
 
 const std::vector<WallTouch>& WallTouches::find(const Contour& contour, const LocalFrame& frame,

@@ -71,7 +71,8 @@ TEST(WallPlan, HoldsEveryEdgeOnceAndSharedOnesLast) {
       std::vector<Item> items;
       for (int circle = 0; circle < 6; ++circle)
         for (int group = 0; group < num_groups; ++group) {
-          const auto edges = static_cast<std::uint8_t>(engine() & engine());
+          const auto some = engine(), others = engine();
+          const auto edges = static_cast<std::uint8_t>(some & others);
           const bool is_last = group == num_groups - 1 && n % size != 0;
           const auto there = static_cast<std::uint8_t>(is_last ? edges & ((1 << n % size) - 1) : edges);
           if (there != 0 && engine() % 3 == 0) items.push_back({circle + 1.0, 0, 0.15, group, there});

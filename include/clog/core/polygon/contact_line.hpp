@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <compare>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -77,8 +76,7 @@ class ContactLine {
                  std::span<const WallContacts::Item> circles, Ends& ends) const;
 
   /// Adds the forces of the springs at their present anchors: all x, then all y [g rho sigma^2].
-  void add_forces(std::span<const WallAnchor> anchors, const Ends& ends,
-                  Eigen::Ref<Eigen::ArrayXd> force) const;
+  void add_forces(std::span<const WallAnchor> anchors, const Ends& ends, Eigen::ArrayXd& force) const;
   /// [g rho sigma^3]
   double energy(std::span<const WallAnchor> anchors, const Ends& ends) const;
   /// Lets walls yield: anchors follow. An end keeps the nearest anchor of its wall and side; new ends get one
@@ -129,7 +127,6 @@ class ContactLine::Ends {
   struct Match {
     double way;
     std::size_t end, anchor;
-    auto operator<=>(const Match&) const = default;
   };
   mutable std::vector<Match> matches_;
   mutable std::vector<Eigen::Index> anchor_of_;

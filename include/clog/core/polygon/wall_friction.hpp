@@ -30,7 +30,7 @@ class WallFriction {
   double stiffness() const { return stiffness_; }      ///< k_t [g rho sigma]
 
   /// Adds the forces of the springs at their present anchors: all x, then all y [g rho sigma^2].
-  void add_forces(const DropletState& state, Eigen::Ref<Eigen::ArrayXd> force) const;
+  void add_forces(const DropletState& state, Eigen::ArrayXd& force) const;
   /// [g rho sigma^3]
   double energy(const DropletState& state) const;
   /// Lets walls yield: anchors follow, new touches get one, those of touches that are no more are forgotten.
@@ -45,7 +45,7 @@ class WallFriction {
   std::span<const Wedge> wedges_;
 
   WallFoot foot(const DropletState& state, const WallAnchor& anchor) const;
-  void add_force(const WallAnchor& anchor, const WallFoot& at, Eigen::Ref<Eigen::ArrayXd> force) const;
+  void add_force(const WallAnchor& anchor, const WallFoot& at, Eigen::ArrayXd& force) const;
 };
 
 }  // namespace clog
