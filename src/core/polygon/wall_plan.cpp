@@ -48,7 +48,8 @@ void WallPlan::add(const kernel::WallWindow& window) {
   unsigned shared = 0;
   for (unsigned edges = window.edges; edges != 0; edges &= edges - 1) {
     const int edge = std::countr_zero(edges);
-    std::uint8_t& is_taken = is_taken_[static_cast<std::size_t>(window.first + edge)];
+    std::uint8_t& is_taken =
+        is_taken_[static_cast<std::size_t>(window.first) + static_cast<std::size_t>(edge)];
     if (is_taken != 0) shared |= 1U << edge;
     is_taken = 1;
   }
