@@ -108,11 +108,14 @@ bool asks_for_angle(const std::string& goal) { return goal.starts_with("critical
 /// A search for the critical angle of a lattice, which is all that its angle is refined for.
 std::unique_ptr<campaign::RoundRule> angle_search(const cli::CommandLine& line) {
   const std::string goal = line.has("until") ? line.get("until") : "critical-angle=";
-  if (!asks_for_angle(goal) || line.get("refine").find(',') != std::string::npos)
+  const auto refuse = [](const char* option, const std::string& value) {
     throw Error(
-        fmt::format("invalid --refine={} (lattice-angle is refined alone, for the critical angle) try "
+        fmt::format("invalid --{}={} (lattice-angle is refined alone, for the critical angle) try "
                     "--refine lattice-angle --until critical-angle=0.5",
-                    line.get("refine")));
+                    option, value));
+  };
+  if (line.get("refine").find(',') != std::string::npos) refuse("refine", line.get("refine"));
+  if (!asks_for_angle(goal)) refuse("until", goal);
   for (const char* option : {"same-seeds", "most-seeds"})
     if (line.has(option))
       throw Error(fmt::format("invalid --{} (each angle gets the seeds of `seeds`) leave it out", option));
