@@ -21,7 +21,6 @@ namespace clog::campaign {
 namespace {
 
 constexpr const char* angle_key = "lattice-angle";
-constexpr double hour = 3600;  // [s]
 constexpr double degree = std::numbers::pi / 180;
 constexpr double same_angle = 1e-9;  // [degrees]: equal ones differ by rounding only
 
@@ -41,13 +40,6 @@ std::vector<double> bounds_of(const sweep::Settings& settings) {
   if (!(angles.front() > 0 && angles.back() <= largest))
     refuse("the critical angle lies above 0, where droplets follow the rows by symmetry, up to 45 degrees");
   return angles;
-}
-
-void require_one_of_others(const sweep::Settings& settings) {
-  for (const sweep::Key& key : sweep::keys())
-    if (key.name != "seeds" && key.name != angle_key && settings.values(key.name).size() > 1)
-      throw Error(fmt::format("invalid {}={} (--refine takes one value of every other key) give one",
-                              key.name, settings.text(key.name)));
 }
 
 /// As few decimals as mean this lattice.
@@ -100,7 +92,7 @@ struct AngleSearch::Look {
 
 AngleSearch::AngleSearch(const sweep::Settings& settings, Options options)
     : options_(options), first_(settings), seeds_(settings.text("seeds")) {
-  require_one_of_others(settings);
+  require_one_value_of_others(settings, std::vector<std::string>{angle_key});
   const std::vector<double> given = bounds_of(settings);
   lowest_ = given.front();
   highest_ = given.back();
@@ -199,16 +191,12 @@ std::optional<sweep::Points> AngleSearch::next_round(std::span<const sweep::RunR
 }
 
 std::string AngleSearch::text() const {
-  std::string goal;
-  if (options_.width > 0) goal = fmt::format("critical-angle={}", shortest(options_.width));
-  if (std::isfinite(options_.budget))
-    goal += fmt::format("{}a budget of {} core-hours", goal.empty() ? "" : " or ",
-                        shortest(options_.budget / hour));
+  const std::string width =
+      options_.width > 0 ? fmt::format("critical-angle={}", shortest(options_.width)) : "";
   return fmt::format(
       "angles are added, in rounds of up to three, between the last one at which all droplets follow the "
-      "rows "
-      "of the lattice and the first at which some leave them, until {}",
-      goal);
+      "rows of the lattice and the first at which some leave them, until {}",
+      goal_or_budget(width, options_.budget));
 }
 
 std::vector<std::string> AngleSearch::rounds_in_words(double seconds_per_run) const {

@@ -33,8 +33,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double hour = 3600;
-
 /// The columns that differ between tasks.
 std::vector<const sweep::Column*> varying_columns(const sweep::Plan& plan) {
   const sweep::RunRow first = sweep::describe(plan.task(0));

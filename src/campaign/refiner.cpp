@@ -24,7 +24,6 @@
 namespace clog::campaign {
 namespace {
 
-constexpr double hour = 3600;  // [s]
 constexpr double confidence = 0.95;
 constexpr std::size_t most_keys = 2;
 
@@ -96,16 +95,6 @@ std::string seed_range(std::int64_t first, std::int64_t number) {
   return number == 1 ? std::to_string(first) : fmt::format("{}..{}", first, first + number - 1);
 }
 
-void require_one_of_others(const sweep::Settings& settings, const std::vector<std::string>& keys) {
-  for (const sweep::Key& key : sweep::keys())
-    if (key.name != "seeds" && std::ranges::find(keys, key.name) == keys.end() &&
-        settings.values(key.name).size() > 1)
-      throw Error(
-          fmt::format("invalid {0}={1} (--refine takes one value of every other key) give one, and the "
-                      "next in a command of its own, with the same --output",
-                      key.name, settings.text(key.name)));
-}
-
 }  // namespace
 
 /// The state of knowledge at one moment.
@@ -130,7 +119,7 @@ Refiner::Refiner(const sweep::Settings& settings, RefinementOptions options)
   if (num_keys == 2 && options_.goal.kind == RefinementGoal::Kind::crossing)
     throw Error("invalid --until=" + options_.goal.text() +
                 " (with two keys lambda crosses it along a line) give one key");
-  require_one_of_others(settings, options_.keys);
+  require_one_value_of_others(settings, options_.keys);
   const std::vector<std::string>& seeds = settings.values("seeds");
   block_ = static_cast<std::int64_t>(seeds.size());
   first_seed_ = sweep::to_integer(seeds.front());
@@ -298,10 +287,7 @@ std::optional<sweep::Points> Refiner::next_round(std::span<const sweep::RunRow> 
 }
 
 std::string Refiner::text() const {
-  std::string goal = options_.goal.text();
-  if (std::isfinite(options_.budget))
-    goal += fmt::format("{}a budget of {} core-hours", goal.empty() ? "" : " or ",
-                        shortest(options_.budget / hour));
+  const std::string goal = goal_or_budget(options_.goal.text(), options_.budget);
   return fmt::format(
       "values and seeds are added, in rounds, where they tell most of lambda over {} for their work, until "
       "{}; up to {} "

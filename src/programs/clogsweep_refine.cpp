@@ -24,7 +24,6 @@ namespace {
 using campaign::RefinementGoal;
 using campaign::RefinementOptions;
 
-constexpr double hour = 3600;  // [s]
 
 /// NaN if the text is not a number.
 double number_of(const std::string& text) {
@@ -89,7 +88,7 @@ double budget_of(std::string text) {
   const std::string given = text;
   if (text.ends_with('h')) text.pop_back();
   const double hours = number_of(text);
-  if (hours > 0) return hours * hour;
+  if (hours > 0) return hours * campaign::hour;
   throw Error("invalid --budget=" + given + " (must be a number of core-hours above zero) try 10h");
 }
 

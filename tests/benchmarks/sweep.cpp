@@ -10,11 +10,14 @@
 #include <ctime>
 #include <numbers>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "clog/core/droplet/time_step.hpp"
 #include "clog/core/run/droplet_run.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "core/polygon/dp_step_kernel.hpp"
+#include "core/polygon/step_input.hpp"
 #include "core/polygon/step_memory.hpp"
 
 namespace {
@@ -29,18 +32,12 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Kick and drift of a free circle at rest, with the terms of the interface that most sweeps have.
+/// Kick and drift of a free circle at rest, with the terms of a run.
 class BareStep {
  public:
-  BareStep(const RunParameters& run, bool elastic)
+  explicit BareStep(RunParameters run)
       : n_(*run.dp.vertices),
-        terms_{.elastic = elastic,
-               .on_area = !elastic,
-               .varying_rate = false,
-               .coupled = !elastic,
-               .rate = elastic ? drag_rate : 0,
-               .relative_rate = elastic ? 0 : drag_rate,
-               .area_rate = elastic ? 0 : drag_rate},
+        terms_(terms_of(std::move(run))),
         kernel_(kernel::step_kernel(terms_)),
         memory_(n_),
         a_(memory_.arrays()) {
@@ -63,11 +60,7 @@ class BareStep {
                                                 .keeps_kicked = false};
     const double begin = cpu_seconds();
     for (int step = 0; step < steps; ++step) {
-      const kernel::AreaForce force{.area = sums_.area,
-                                    .centre_x = sums_.moment_x / sums_.area,
-                                    .centre_y = sums_.moment_y / sums_.area,
-                                    .x = 0,
-                                    .y = 0};
+      const kernel::AreaForce force = area_force(sums_, {0, 0});
       const kernel::Coupling coupling = kernel_.kick(n_, terms_, {}, force, coefficients, a_);
       sums_ = kernel_.drift(n_, terms_, coefficients, coupling, time_step, a_);
     }
@@ -75,7 +68,10 @@ class BareStep {
   }
 
  private:
-  static constexpr double drag_rate = 1 / 0.03;
+  static kernel::KickTerms terms_of(RunParameters run) {
+    run.drag.near_wall = 0;  // there are no walls
+    return kick_terms(run, 1 / relaxation_time(run));
+  }
   int n_;
   kernel::KickTerms terms_;
   kernel::StepKernel kernel_;
@@ -160,7 +156,7 @@ Measured measure(const Task& task) {
       begin = cpu_seconds();
       over = droplet.advance(checks_per_slice);
       stepping += cpu_seconds() - begin;
-      if (is_polygon) limits.push_back(BareStep(run, run.dp.gravity == Gravity::vertex).time(bare_steps));
+      if (is_polygon) limits.push_back(BareStep(run).time(bare_steps));
     }
     steps += static_cast<double>(droplet.result().steps);
   }

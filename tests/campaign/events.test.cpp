@@ -49,6 +49,11 @@ class EventsTest : public testing::Test {
     for (const std::string& line : events_.look(file_)) all.push_back(json::parse(line));
     return all;
   }
+  /// Of the only event since the last look; null if there are more, or none.
+  json only() {
+    const std::vector<json> all = look();
+    return all.size() == 1 ? all.front() : json();
+  }
   std::vector<std::string> names() {
     std::vector<std::string> all;
     for (const json& one : look()) all.push_back(one["event"]);
@@ -58,11 +63,11 @@ class EventsTest : public testing::Test {
 
 TEST_F(EventsTest, BeginWithTheNumberOfRuns) {
   set(1, RunStatus::clogged);
-  const std::vector<json> first = look();
-  ASSERT_EQ(first.size(), 1u);
-  EXPECT_EQ(first[0]["event"], "begin");
-  EXPECT_EQ(first[0]["runs"], 3);
-  EXPECT_EQ(first[0]["over"], 1);
+  const json first = only();
+  ASSERT_TRUE(first.is_object());
+  EXPECT_EQ(first["event"], "begin");
+  EXPECT_EQ(first["runs"], 3);
+  EXPECT_EQ(first["over"], 1);
   EXPECT_TRUE(look().empty());
 }
 
@@ -71,12 +76,12 @@ TEST_F(EventsTest, AreAStartAndAnInterruptionOfARunThatIsStopped) {
   set(0, RunStatus::running);
   EXPECT_EQ(names(), std::vector<std::string>{"start"});
   set(0, RunStatus::interrupted);
-  const std::vector<json> stopped = look();
-  ASSERT_EQ(stopped.size(), 1u);
-  EXPECT_EQ(stopped[0]["event"], "interrupt");
-  EXPECT_EQ(stopped[0]["task"], 0);
-  EXPECT_EQ(stopped[0]["attempt"], 1);
-  EXPECT_EQ(stopped[0]["distance"], 2.5);
+  const json stopped = only();
+  ASSERT_TRUE(stopped.is_object());
+  EXPECT_EQ(stopped["event"], "interrupt");
+  EXPECT_EQ(stopped["task"], 0);
+  EXPECT_EQ(stopped["attempt"], 1);
+  EXPECT_EQ(stopped["distance"], 2.5);
   EXPECT_TRUE(look().empty());
   set(0, RunStatus::running);
   EXPECT_EQ(names(), std::vector<std::string>{"start"});
@@ -112,11 +117,11 @@ TEST_F(EventsTest, AreARoundWhenTheSweepGrows) {
   const store::SweepFile larger = file_of("1..5");
   file_.provenance = larger.provenance;
   file_.rows.insert(file_.rows.end(), larger.rows.begin() + 3, larger.rows.end());
-  const std::vector<json> grown = look();
-  ASSERT_EQ(grown.size(), 1u);
-  EXPECT_EQ(grown[0]["event"], "round");
-  EXPECT_EQ(grown[0]["runs"], 5);
-  EXPECT_EQ(grown[0]["over"], 1);
+  const json grown = only();
+  ASSERT_TRUE(grown.is_object());
+  EXPECT_EQ(grown["event"], "round");
+  EXPECT_EQ(grown["runs"], 5);
+  EXPECT_EQ(grown["over"], 1);
   EXPECT_TRUE(look().empty());
 }
 

@@ -23,6 +23,7 @@
 #include "clog/core/scene/scene.hpp"
 #include "clog/sweep/run_job.hpp"
 #include "shared_memory.hpp"
+#include "support.hpp"
 
 namespace clog::sweep {
 namespace {
@@ -331,14 +332,12 @@ TEST(NameLock, TellsWhetherAnotherUserHasTakenItsAddress) {
 
 TEST(RunJob, GivesTheSameRowInASharedArray) {
   // A run that goes far, around obstacles, and does not depend on the last bits.
-  Settings settings;
-  settings.set("line-tension", "0.1");
-  settings.set("obstacle-density", "1");
-  settings.set("vertices", "64");
-  settings.set("box", "160");
-  settings.set("max-time", "60");
-  settings.set("seeds", "1");
-  const Plan plan(settings);
+  const Plan plan(settings_of({{"line-tension", "0.1"},
+                               {"obstacle-density", "1"},
+                               {"vertices", "64"},
+                               {"box", "160"},
+                               {"max-time", "60"},
+                               {"seeds", "1"}}));
   ObstacleArrays builder;
   const auto built = builder.get(plan.task(0));
   const auto reader = std::make_shared<ObstacleArrays>();

@@ -10,15 +10,10 @@
 #include <vector>
 
 #include "clog/core/tools/error.hpp"
+#include "support.hpp"
 
 namespace clog::sweep {
 namespace {
-
-Settings settings_of(std::initializer_list<std::pair<const char*, const char*>> texts) {
-  Settings settings;
-  for (const auto& [name, text] : texts) settings.set(name, text);
-  return settings;
-}
 
 TEST(Plan, IsTheProductOfTheLists) {
   const Plan plan(settings_of({{"line-tension", "0.5,1,2"}, {"obstacle-gap", "0.2,0.3"}, {"seeds", "1..5"}}));

@@ -12,6 +12,7 @@
 
 #include "clog/core/run/dwell_record.hpp"
 #include "clog/sweep/row_check.hpp"
+#include "support.hpp"
 
 namespace clog::sweep {
 namespace {
@@ -23,12 +24,7 @@ std::vector<std::byte> packed(const RunRow& row) {
 }
 
 Plan small_plan(const char* seeds) {
-  Settings settings;
-  settings.set("vertices", "64");
-  settings.set("box", "20");
-  settings.set("max-time", "20");
-  settings.set("seeds", seeds);
-  return Plan(settings);
+  return Plan(settings_of({{"vertices", "64"}, {"box", "20"}, {"max-time", "20"}, {"seeds", seeds}}));
 }
 
 TEST(RunJob, GivesTheRowOfItsRun) {
@@ -56,15 +52,13 @@ TEST(RunJob, IsInterruptedUntilItIsOver) {
 
 TEST(RunJob, TurnsAnImpossibleReleaseIntoAFailedRow) {
   // Obstacles so near to each other that some seeds leave no void near the box's centre.
-  Settings settings;
-  settings.set("obstacle-diameter", "3");
-  settings.set("obstacle-gap", "0.06");
-  settings.set("obstacle-density", "saturated");
-  settings.set("vertices", "64");
-  settings.set("self-contact-range", "0.1");
-  settings.set("box", "13");
-  settings.set("seeds", "51..70");
-  const Plan plan(settings);
+  const Plan plan(settings_of({{"obstacle-diameter", "3"},
+                               {"obstacle-gap", "0.06"},
+                               {"obstacle-density", "saturated"},
+                               {"vertices", "64"},
+                               {"self-contact-range", "0.1"},
+                               {"box", "13"},
+                               {"seeds", "51..70"}}));
   int num_failed = 0;
   for (std::int64_t task = 0; task < plan.size(); ++task) {
     RunJob job(plan.task(task), task);
@@ -107,13 +101,12 @@ RunRow finished(RunJob job) {
 }
 
 RunParameters long_run() {
-  Settings settings;
-  settings.set("vertices", "64");
-  settings.set("box", "20");
-  settings.set("line-tension", "0.1");
-  settings.set("max-time", "2000");
-  settings.set("seeds", "5");
-  return Plan(settings).task(0);
+  return Plan(settings_of({{"vertices", "64"},
+                           {"box", "20"},
+                           {"line-tension", "0.1"},
+                           {"max-time", "2000"},
+                           {"seeds", "5"}}))
+      .task(0);
 }
 
 TEST(RunJob, ResumesFromASnapshot) {

@@ -33,4 +33,11 @@ class RoundRule {
   virtual std::string known(std::span<const sweep::RunRow> rows) const = 0;
 };
 
+/// The unit of computing time in which costs and budgets are told [s].
+inline constexpr double hour = 3600;
+/// The goal, the budget, or both. @param budget  computing time of all runs [s]; infinite: there is none
+std::string goal_or_budget(const std::string& goal, double budget);
+/// @throws Error if a key other than these and the seeds has several values
+void require_one_value_of_others(const sweep::Settings& settings, std::span<const std::string> keys);
+
 }  // namespace clog::campaign

@@ -144,27 +144,15 @@ HWY_INLINE void push_window(const WallWindow& window, V span, V stiffness, const
   }
 }
 
-/// The vector that begins two entries before p + i; see shifted_back().
-HWY_INLINE V shifted_back_twice([[maybe_unused]] const double* p, [[maybe_unused]] V before,
-                                [[maybe_unused]] V here) {
-#if HWY_TARGET == HWY_AVX3
-  const __m512i joined =
-      _mm512_alignr_epi64(_mm512_castpd_si512(here.raw), _mm512_castpd_si512(before.raw), 6);
-  return V{_mm512_castsi512_pd(joined)};
-#else
-  return load_at(p - 2);
-#endif
-}
-
 /// One coordinate of what windows push the vertices from p on.
 /// @param p  what edges' first vertices get; a stride behind it is what their second ones get, then the
 /// others
 HWY_INLINE V push_on_vertices(const double* p, std::ptrdiff_t stride) {
   const double *end = p + stride, *far = end + stride;
   const V far_before = load(far - lanes), far_here = load(far);
-  const V own = hn::Add(load(p), shifted_back(end, load(end - lanes), load(end)));
+  const V own = hn::Add(load(p), shifted_back<1>(end, load(end - lanes), load(end)));
   const V others =
-      hn::Add(shifted_forward(far_here, load(far + lanes)), shifted_back_twice(far, far_before, far_here));
+      hn::Add(shifted_forward(far_here, load(far + lanes)), shifted_back<2>(far, far_before, far_here));
   return hn::Add(own, others);
 }
 

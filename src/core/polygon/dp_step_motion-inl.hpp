@@ -283,9 +283,9 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
     corner.length = load(a.length + i);
     corner.tx = load(a.tangent_x + i);
     corner.ty = load(a.tangent_y + i);
-    corner.length_before = shifted_back(a.length + i, last.length, corner.length);
-    corner.tx_before = shifted_back(a.tangent_x + i, last.tx, corner.tx);
-    corner.ty_before = shifted_back(a.tangent_y + i, last.ty, corner.ty);
+    corner.length_before = shifted_back<1>(a.length + i, last.length, corner.length);
+    corner.tx_before = shifted_back<1>(a.tangent_x + i, last.tx, corner.tx);
+    corner.ty_before = shifted_back<1>(a.tangent_y + i, last.ty, corner.ty);
     last = corner;
     corner.multiply();
     // The chord between the neighbours. Turned outwards it is (y, -x).

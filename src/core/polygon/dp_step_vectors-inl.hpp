@@ -51,16 +51,17 @@ HWY_INLINE std::array<double, 4> sums(V a, V b, V c, V d) {
 #endif
 }
 
-/// The vector that begins one entry before p + i. `before` and `here` are those at p + i - lanes and p + i:
-/// two cache lines need not be read again.
+/// The vector that begins `num` entries before p. `before` and `here` are those at p - lanes and p: two cache
+/// lines need not be read again.
+template <int num>
 HWY_INLINE V shifted_back([[maybe_unused]] const double* p, [[maybe_unused]] V before,
                           [[maybe_unused]] V here) {
 #if HWY_TARGET == HWY_AVX3
   const __m512i joined =
-      _mm512_alignr_epi64(_mm512_castpd_si512(here.raw), _mm512_castpd_si512(before.raw), 7);
+      _mm512_alignr_epi64(_mm512_castpd_si512(here.raw), _mm512_castpd_si512(before.raw), lanes - num);
   return V{_mm512_castsi512_pd(joined)};
 #else
-  return load_at(p - 1);
+  return load_at(p - num);
 #endif
 }
 

@@ -6,6 +6,7 @@
 
 #include "clog/core/droplet/time_step.hpp"
 #include "clog/core/tools/units.hpp"
+#include "step_input.hpp"
 
 namespace clog {
 
@@ -14,24 +15,12 @@ namespace {
 /// The rate of the drag far from walls [1/t0].
 double far_rate_of(const RunParameters& run) { return 1 / relaxation_time(run); }
 
-kernel::KickTerms terms_of(const RunParameters& run) {
-  const double far_rate = far_rate_of(run);
-  const bool on_area = run.dp.gravity == Gravity::area;
-  return {.elastic = run.dp.perimeter_spring != PerimeterSpring::along,
-          .on_area = on_area,
-          .varying_rate = run.drag.near_wall > 0,
-          .coupled = on_area || run.drag.relative != 1,
-          .rate = run.drag.near_wall > 0 ? 0 : far_rate * run.drag.relative,
-          .relative_rate = (on_area ? run.drag.relative : run.drag.relative - 1) * far_rate,
-          .area_rate = on_area ? far_rate : 0};
-}
-
 }  // namespace
 
 DpStepper::DpStepper(const RunParameters& run, const ObstacleArray& obstacles, const DpForces& forces)
     : run_(run),
       forces_(&forces),
-      terms_(terms_of(run)),
+      terms_(kick_terms(run, far_rate_of(run))),
       kernel_(kernel::step_kernel(terms_)),
       n_(*run.dp.vertices),
       holds_circles_(forces.friction().is_on() && run.dp.wall_contact == WallContact::edge &&
@@ -49,8 +38,7 @@ void DpStepper::load(const DropletState& state) {
   memory_.load(state.position.data() + n_, arrays_.y);
   memory_.load(state.velocity.data(), arrays_.vx);
   memory_.load(state.velocity.data() + n_, arrays_.vy);
-  wedges_.clear();
-  for (const Wedge& wedge : forces_->wedges()) wedges_.push_back(kernel::place_in(state.frame, wedge));
+  wedges_ = wedges_in(state.frame, forces_->wedges());
   sums_ = kernel_.measure(n_, arrays_);
   hold_.forget();
   open_step_ = 0;
@@ -66,7 +54,8 @@ void DpStepper::look(DropletState& state, const Travel& travel, Droplet::Work* w
   // does not include that.
   constexpr double thrown = 4;
   const double unforeseen =
-      0.1 * forces_->vertex_diameter() + thrown * near_.measure(kernel_, contact(0), *forces_, arrays_);
+      0.1 * forces_->vertex_diameter() +
+      thrown * near_.measure(kernel_, contact_as_kick(run_, *forces_, 0), *forces_, arrays_);
   near_.keep(kernel_, *forces_, refined_sway * (travel.absolute + unforeseen),
              2 * (travel.relative + unforeseen));
   if (holds_circles_) {
@@ -120,11 +109,8 @@ void DpStepper::kick_and_drift(DropletState& droplet, const kernel::KickCoeffici
   push_off_everything(droplet, coefficients, impulse, work);
   const kernel::InterfaceKick interface =
       kernel::kick_of(forces_->interface(sums_.area, sums_.perimeter), impulse);
-  const kernel::AreaForce force{.area = sums_.area,
-                                .centre_x = sums_.moment_x / sums_.area,
-                                .centre_y = sums_.moment_y / sums_.area,
-                                .x = impulse * (units::droplet_mass * units::gravity - wetting_spread_[0]),
-                                .y = -impulse * wetting_spread_[1]};
+  const Eigen::Array2d weight{units::droplet_mass * units::gravity, 0};
+  const kernel::AreaForce force = area_force(sums_, impulse * (weight - wetting_spread_));
   const kernel::Coupling coupling = kernel_.kick(n_, terms_, interface, force, coefficients, arrays_);
   if (work != nullptr) {
     const Droplet::Work now = power(interface, coefficients, coupling);
@@ -141,14 +127,7 @@ void DpStepper::kick_and_drift(DropletState& droplet, const kernel::KickCoeffici
   sums_ = kernel_.drift(n_, terms_, coefficients, coupling, drift_time, arrays_);
 }
 
-kernel::Contact DpStepper::contact(double stiffness) const {
-  return {.stiffness = stiffness,
-          .span = run_.dp.wall_contact == WallContact::edge ? 1.0 : 0.0,
-          .self_range = forces_->self_contacts().range()};
-}
-
-void DpStepper::push_off_circles(double impulse, Droplet::Work* work) {
-  const kernel::Contact touching = contact(impulse * forces_->contact_stiffness());
+void DpStepper::push_off_circles(const kernel::Contact& touching, double impulse, Droplet::Work* work) {
   if (!holds_circles_) {
     kernel_.push(n_, plan_.windows(), near_.self().data(), near_.self().size(), touching, arrays_);
     return;
@@ -164,16 +143,17 @@ void DpStepper::push_off_circles(double impulse, Droplet::Work* work) {
 
 void DpStepper::push_off_everything(DropletState& droplet, const kernel::KickCoefficients& coefficients,
                                     double impulse, Droplet::Work* work) {
-  const double stiffness = impulse * forces_->contact_stiffness();
+  const kernel::Contact touching = contact_as_kick(run_, *forces_, impulse);
   const bool touches = !near_.walls().empty() || !wedges_.empty() || !droplet.anchors.empty();
   const bool slides = forces_->friction().is_on() && !holds_circles_ && touches;
   // Whatever these add, to vertices beyond the listed groups too, is gone before the next step.
   if (!wedges_.empty() || forces_->wetted_walls().is_on() || slides || are_pushes_spread_)
     kernel_.clear_pushes(n_, arrays_);
   are_pushes_spread_ = slides;
-  push_off_circles(impulse, work);
+  push_off_circles(touching, impulse, work);
   if (!wedges_.empty())
-    kernel_.push_off_wedges(n_, wedges_.data(), wedges_.size(), forces_->walls().range(), stiffness, arrays_);
+    kernel_.push_off_wedges(n_, wedges_.data(), wedges_.size(), forces_->walls().range(), touching.stiffness,
+                            arrays_);
   if (forces_->wetted_walls().is_on()) add_wetting(droplet, impulse, work);
   if (slides) hold_by_friction(droplet, impulse, work);
   if (!terms_.varying_rate) return;

@@ -62,8 +62,7 @@ class DpStepper {
   double open_step_ = 0;      // length of the step whose last half kick is to come; 0: none is
   Droplet::Work open_power_;  // at its beginning
 
-  kernel::Contact contact(double stiffness) const;
-  void push_off_circles(double impulse, Droplet::Work* work);
+  void push_off_circles(const kernel::Contact& touching, double impulse, Droplet::Work* work);
   void kick_and_drift(DropletState& droplet, const kernel::KickCoefficients& coefficients, double drift_time,
                       Droplet::Work* work);
   void push_off_everything(DropletState& droplet, const kernel::KickCoefficients& coefficients,

@@ -2,30 +2,15 @@
 
 #include <algorithm>
 
+#include "step_input.hpp"
+
 namespace clog {
-namespace {
-
-kernel::KickTerms terms_without_drag(const DpParameters& dp) {
-  const bool on_area = dp.gravity == Gravity::area;
-  return {.elastic = dp.perimeter_spring != PerimeterSpring::along,
-          .on_area = on_area,
-          .varying_rate = false,
-          .coupled = on_area,
-          .rate = 0,
-          .relative_rate = 0,
-          .area_rate = 0};
-}
-
-}  // namespace
-
 RestForces::RestForces(const RunParameters& run, DpForces& forces)
     : forces_(&forces),
       n_(*run.dp.vertices),
-      terms_(terms_without_drag(run.dp)),
+      terms_(kick_terms(run, 0)),
       kernel_(kernel::step_kernel(terms_)),
-      contact_{.stiffness = forces.contact_stiffness(),
-               .span = run.dp.wall_contact == WallContact::edge ? 1.0 : 0.0,
-               .self_range = forces.self_contacts().range()},
+      contact_(contact_as_kick(run, forces, 1)),
       memory_(n_),
       plan_(n_),
       wetting_(n_) {}
@@ -56,8 +41,7 @@ void RestForces::look(const DropletState& state, const Travel& travel) {
   near_.keep(kernel_, *forces_, refined_sway * way_, 2 * way_);
   plan_.make(near_.walls());
   kernel_.clear_pushes(n_, a);  // the plan may name other groups than before
-  wedges_.clear();
-  for (const Wedge& wedge : forces_->wedges()) wedges_.push_back(kernel::place_in(state.frame, wedge));
+  wedges_ = wedges_in(state.frame, forces_->wedges());
 }
 
 void RestForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
@@ -79,11 +63,7 @@ void RestForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   std::fill_n(a.vy, n_, 0.0);
   const kernel::Coupling coupling =
       kernel_.kick(n_, terms_, kernel::kick_of(forces_->interface(sums.area, sums.perimeter), 1),
-                   {.area = sums.area,
-                    .centre_x = sums.moment_x / sums.area,
-                    .centre_y = sums.moment_y / sums.area,
-                    .x = forces_->weight() - net_spreading[0],
-                    .y = -net_spreading[1]},
+                   area_force(sums, Eigen::Array2d(forces_->weight(), 0) - net_spreading),
                    {.kicks = 0, .h1 = 0, .h2 = 0, .weight = 1, .half_step = 0, .keeps_kicked = false}, a);
   const auto array = [this](const double* p) { return Eigen::Map<const Eigen::ArrayXd>(p, n_); };
   force.head(n_) += array(a.vx);

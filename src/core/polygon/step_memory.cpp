@@ -10,8 +10,7 @@ StepMemory::StepMemory(int num_vertices) : n_(num_vertices) {
   constexpr int line = 8;
   const int stride = (n_ + line - 1) / line * line + 3 * line;
   const auto size = static_cast<std::size_t>(kernel::num_step_arrays) * static_cast<std::size_t>(stride);
-  memory_ = hwy::AllocateAligned<double>(size);
-  std::fill_n(memory_.get(), size, 0.0);
+  memory_ = aligned_zeros(size);
   double* next = memory_.get() + line;
   for (double** array :
        {&arrays_.x,         &arrays_.y,       &arrays_.vx,      &arrays_.vy,       &arrays_.tangent_x,

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <hwy/aligned_allocator.h>
-
+#include "aligned_memory.hpp"
 #include "dp_step_kernel.hpp"
 
 namespace clog {

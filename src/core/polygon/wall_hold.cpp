@@ -68,10 +68,11 @@ void WallHold::arrange_memory() {
   const std::size_t num_entries = groups_.size() * size;
   const std::size_t needed = (all_.size() * kernel::num_window_push_arrays + 3) * stride + 3 * num_entries;
   if (memory_size_ < needed) {
-    memory_ = hwy::AllocateAligned<double>(2 * needed);
     memory_size_ = 2 * needed;
+    memory_ = aligned_zeros(memory_size_);
+  } else {
+    std::fill_n(memory_.get(), needed, 0.0);
   }
-  std::fill_n(memory_.get(), needed, 0.0);
   double* next = memory_.get() + std::ptrdiff_t{before} * size;
   for (kernel::HoldingCircle& circle : all_) {
     circle.pushes = {.first = next, .stride = static_cast<std::ptrdiff_t>(stride)};

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <hwy/aligned_allocator.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "aligned_memory.hpp"
 #include "clog/core/droplet/droplet_state.hpp"
 #include "clog/core/polygon/wall_contacts.hpp"
 #include "dp_step_kernel.hpp"

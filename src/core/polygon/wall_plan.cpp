@@ -18,9 +18,7 @@ WallPlan::WallPlan(int num_vertices) : num_groups_((num_vertices + size - 1) / s
   // Groups before and behind the contour, and those next to them, are read.
   constexpr int before = 2, behind = 2;
   windows_.pushes.stride = std::ptrdiff_t{before + num_groups_ + behind} * size;
-  const std::size_t total = num_arrays * static_cast<std::size_t>(windows_.pushes.stride);
-  memory_ = hwy::AllocateAligned<double>(total);
-  std::fill_n(memory_.get(), total, 0.0);
+  memory_ = aligned_zeros(num_arrays * static_cast<std::size_t>(windows_.pushes.stride));
   windows_.pushes.first = memory_.get() + std::ptrdiff_t{before} * size;
 }
 

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <hwy/aligned_allocator.h>
-
 #include <cstdint>
 #include <vector>
 
+#include "aligned_memory.hpp"
 #include "clog/core/polygon/wall_contacts.hpp"
 #include "dp_step_kernel.hpp"
 

@@ -46,7 +46,7 @@ void WettedWalls::Forces::clear() {
   const Eigen::Index n = gradient.size() / 2;
   for (const int i : vertices) {
     gradient[i] = gradient[n + i] = spreading[i] = spreading[n + i] = 0;
-    of_vertices[static_cast<std::size_t>(i)].is_pushed = false;
+    of_vertices[static_cast<std::size_t>(i)].is_listed = false;
   }
   vertices.clear();
   for (const int i : near) {
@@ -60,9 +60,9 @@ void WettedWalls::Forces::clear() {
 void WettedWalls::Forces::list_vertices() {
   const auto n = static_cast<int>(of_vertices.size());
   const auto list = [this](int i) {
-    bool& is_pushed = of_vertices[static_cast<std::size_t>(i)].is_pushed;
-    if (!is_pushed) vertices.push_back(i);
-    is_pushed = true;
+    bool& is_listed = of_vertices[static_cast<std::size_t>(i)].is_listed;
+    if (!is_listed) vertices.push_back(i);
+    is_listed = true;
   };
   for (const int i : near) {
     if (!(of_vertices[static_cast<std::size_t>(i)].share.share > 0)) continue;

@@ -46,7 +46,7 @@ class WettedWalls {
       double distance;        // from the nearest wall
       Eigen::Array2d normal;  // away from it
       WettedShare share{0, 0};
-      bool is_near = false, is_pushed = false;
+      bool is_near = false, is_listed = false;
     };
     std::vector<Vertex> of_vertices;
     std::vector<int> near;  // vertices that walls may wet
