@@ -37,8 +37,8 @@ RunParameters with_usual_values(const sweep::RunRow& row) {
 RunParameters resolved_in_any_layout(RunParameters run) {
   if (scene_of(run).walls_from != WallsFrom::circles) return resolve(run);
   const ObstacleParameters own = run.obstacles;
-  // Resolved in a generated array.
-  run.obstacles = {.gap = own.gap, .diameter = own.diameter, .box = own.box, .boxes = own.boxes};
+  // Resolved in a generated array, which the box and the gap of the device might not allow.
+  run.obstacles = {.diameter = own.diameter};
   run = resolve(run);
   run.obstacles = own;
   return run;

@@ -247,6 +247,7 @@ class Figures(Analysis):
             (["6c", "--programs", "nowhere"], ["no clogsweep in nowhere"]),
             (["6c", "--programs", BIN, "--draw-only", "--output", "."], ["clogging-robust.h5", "--draw-only"]),
             (["6c", "--programs", BIN, "--set", "seeds"], ["--set seeds", "KEY=VALUE"]),
+            (["6c", "--programs", BIN, "--set", "clogging:seeds=1..2"], ["--set clogging:seeds=1..2", "no figure has a config"]),
             (["6c", "--programs", BIN, "--output", ".", "--ranks", "1", "--set", "obstacle-gap=-1"], ["obstacle-gap=-1"]),
             (["2", "--programs", BIN, "--output", ".", *SET, "--profile", "no.csv"], ["cannot read no.csv"]),
         ]:

@@ -30,7 +30,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--profile", type=pathlib.Path, action="append", default=[], metavar="FILE.csv",
                         help="measured passage h [sigma], v [v_t], A to draw in 2, 3 (twice: w = 0.9, 0.7), 4, or to compare with in B2")
     parser.add_argument("--set", action="append", default=[], metavar="[CONFIG:]KEY=VALUE",
-                        help="another value than the config's, e.g. clogging:seeds=1..50; keys that a figure itself sets stay")
+                        help="another value than the config's, e.g. clogging-sp:seeds=1..50; keys that a figure itself sets stay")
     programs.add_option(parser)
     return parser.parse_args()
 

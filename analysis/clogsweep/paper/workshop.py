@@ -80,6 +80,10 @@ class Workshop:
         self._fits: dict[str, dict[str, Any]] = {}
         self._sources: list[str] = []
         self._model_versions: dict[str, set[int]] = {}
+        for override in self.overrides:
+            if override.config and not self.config(override.config).exists():
+                raise UserError(f"invalid --set {override.config}:{override.key}={override.value} (no figure has a config of that name) "
+                                "figures list shows the names, as sweep or settings")
 
     # Configs
 

@@ -406,7 +406,7 @@ std::vector<Parameter> period_entries() {
              .meaning = "period of the obstacle array across the flow, and along it with boxes=1",
              .role = numerics,
              .scope = &arrays,
-             .range = {from(5, "the droplet would meet its own periodic image", "use at least 5"),
+             .range = {from(1, "the droplet would not find room", "use at least 5, or more than 1 with side-walls=on"),
                        to(1e5, "no droplet travels that far", "use at most 1e5; the array is periodic")},
              .shapes_array = true}),
       entry("boxes", [](auto& run) -> auto& { return run.obstacles.boxes; },

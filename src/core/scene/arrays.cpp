@@ -16,8 +16,15 @@ std::string density_text(const ObstacleDensity& density) {
   return density.per_area ? shortest(*density.per_area) : "saturated";
 }
 
+void check_box(const ObstacleParameters& obstacles) {
+  require(obstacles.box >= narrowest_period, "box", obstacles.box, [&] {
+    return fmt::format("the droplet would meet its own periodic image) use at least {}", narrowest_period);
+  });
+}
+
 void check_spacing(const RunParameters& run) {
   const ObstacleParameters& obstacles = run.obstacles;
+  check_box(obstacles);
   const double spread = obstacles.diameter_spread;
   const double spacing = obstacles.smallest_diameter() + obstacles.gap;
   const double widest_spacing = obstacles.largest_diameter() + obstacles.gap;

@@ -8,6 +8,9 @@
 
 namespace clog {
 
+/// The droplet must not meet its own periodic image across the flow. @throws Error
+void check_box(const ObstacleParameters& obstacles);
+
 /// The common part of both arrays that follow from a gap and a diameter. @throws Error
 void check_spacing(const RunParameters& run);
 

@@ -133,6 +133,16 @@ void check_gaps_at_walls(const RunParameters& run) {
                                place_of(circle), gap, edge));
 }
 
+/// Walls separate the droplet from its images across the flow, but not from those along it.
+void check_period(const ObstacleParameters& obstacles) {
+  if (obstacles.side_walls == SideWalls::off) check_box(obstacles);
+  const double length = obstacles.period().along();
+  require(length >= narrowest_period, "length", length, [&] {
+    return fmt::format("the droplet would meet its own periodic image along the flow) use at least {}",
+                       narrowest_period);
+  });
+}
+
 void check_ways(const ObstacleParameters& obstacles) {
   const double length = obstacles.period().along(), box = obstacles.box;
   require(obstacles.length == 0 || obstacles.boxes == 1, "boxes", obstacles.boxes,
@@ -170,6 +180,7 @@ void check_circles(const RunParameters& run) {
     refuse_circles(*obstacles.own, "there are none) lines are x,y[,diameter]");
   require(obstacles.diameter_spread == 0, "obstacle-diameter-spread", obstacles.diameter_spread,
           "user-supplied circles have their own diameters) leave it out");
+  check_period(obstacles);
   check_ways(obstacles);
   const ObstacleArray::Pair pair = examined(obstacles).pair;
   const std::string both = fmt::format("those at {} and {}", place_of(pair.first), place_of(pair.second));
@@ -190,9 +201,7 @@ void check_circles(const RunParameters& run) {
 
 void find_gap_and_density(RunParameters& run) {
   ObstacleParameters& obstacles = run.obstacles;
-  // The gap between a few circles may be wider than an array of this box can have.
-  const double widest = obstacles.box / 2 - obstacles.diameter;
-  obstacles.gap = std::min(examined(obstacles).pair.gap, widest);
+  obstacles.gap = examined(obstacles).pair.gap;
   obstacles.density = static_cast<double>(examined(obstacles).num_posts) / obstacles.period().area();
 }
 

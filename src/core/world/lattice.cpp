@@ -7,7 +7,6 @@
 #include <random>
 #include <vector>
 
-#include "clog/core/parameters/schema.hpp"
 #include "clog/core/tools/portable_math.hpp"
 #include "clog/core/tools/units.hpp"
 
@@ -81,7 +80,7 @@ std::optional<CommensurateLattice> nearest_lattice(double spacing, double angle,
 
 std::optional<CommensurateLattice> nearest_lattice(const ObstacleParameters& obstacles) {
   const double spacing = obstacles.diameter + obstacles.gap;
-  const double narrowest = std::max(parameter("box").range.lower->value, 2 * spacing);
+  const double narrowest = std::max(narrowest_period, 2 * spacing);
   return nearest_lattice(spacing, obstacles.lattice_angle, narrowest, obstacles.box);
 }
 

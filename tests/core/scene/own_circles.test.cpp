@@ -166,6 +166,50 @@ TEST(OwnCircles, RefuseWaysThatCannotBe) {
   EXPECT_NE(refusal(run).find("at the wall"), std::string::npos);
 }
 
+TEST(OwnCircles, OfASingleOneHaveTheGapToItsPeriodicImage) {
+  EXPECT_DOUBLE_EQ(resolve(among({{5, 5, 3}})).obstacles.gap, 10 - 6);
+}
+
+TEST(OwnCircles, AreRefusedInAPeriodInWhichTheDropletMeetsItsImage) {
+  RunParameters run = among({{1, 1, 0.2}});
+  run.obstacles.box = 4.9;
+  EXPECT_NE(refusal(run).find("box=4.9 (the droplet would meet its own periodic image) use at least 5"),
+            std::string::npos);
+  run.obstacles.side_walls = SideWalls::on;
+  EXPECT_NE(refusal(run).find("length=4.9 (the droplet would meet its own periodic image along the flow)"),
+            std::string::npos);
+  run.obstacles.boxes = 2;
+  EXPECT_EQ(refusal(run), "");
+}
+
+/// A channel hardly wider than the droplet, with a bump of radius 0.4 on one wall.
+RunParameters narrow_channel(double width, double line_tension) {
+  RunParameters run = between_walls({{8, 0, 0.4}});
+  run.obstacles.box = width;
+  run.obstacles.entrance = 4;
+  run.obstacles.exit = 12;
+  run.dp.line_tension = line_tension;
+  run.max_time = 2000;
+  return resolve(run);
+}
+
+TEST(OwnCircles, BlockOrPassADropletInANarrowChannelByItsStiffness) {
+  // A circle of diameter 1 fits where 1.45 - 0.4 are free. Where 1.05 - 0.4 are, only a soft droplet does.
+  const auto end_of = [](const RunParameters& run) {
+    DropletRun droplet(run);
+    while (!droplet.advance(1000)) {
+    }
+    return droplet.result();
+  };
+  EXPECT_EQ(end_of(narrow_channel(1.45, 3)).status, RunStatus::passed);
+  EXPECT_EQ(end_of(narrow_channel(1.05, 0.1)).status, RunStatus::passed);
+  const RunResult stiff = end_of(narrow_channel(1.05, 3));
+  EXPECT_EQ(stiff.status, RunStatus::clogged);
+  // It rests on bump and wall: a circle of radius 1/2 on the upper wall touches that of 0.4 at (8, 0).
+  const double height = 1.05 - 0.5, reach = 0.5 + 0.4;
+  EXPECT_NEAR(stiff.release[0] + stiff.distance, 8 - std::sqrt(reach * reach - height * height), 0.1);
+}
+
 TEST(OwnCircles, LetADropletPassBetweenWallsWhichHoldIt) {
   // The gap between circle and wall is narrower than the droplet.
   RunParameters run = between_walls({{8, 1.75, 0.8}});

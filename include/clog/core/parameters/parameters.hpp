@@ -120,6 +120,9 @@ struct DpParameters {
   double break_up_neck = 0;
 };
 
+/// In a narrower one the droplet meets its own periodic image [sigma].
+inline constexpr double narrowest_period = 5;
+
 /// The rectangle after which an array repeats: square boxes in a row along the flow, or a length of its own.
 struct Period {
   double box = 0;  ///< [sigma]
