@@ -107,8 +107,8 @@ std::string left_out(const std::vector<Group>& groups) {
         sweep::counted(num_left_out, "run"));
   if (num_interrupted > 0)
     text += fmt::format(
-        "   {} {} under way or interrupted: lambda holds for the distances reached so far, and the clogs so "
-        "far are the early ones\n",
+        "   {} {} unfinished: lambda holds for the distances reached so far, and the clogs so far are the "
+        "early ones\n",
         sweep::counted(num_interrupted, "run"), num_interrupted == 1 ? "is" : "are");
   if (num_failed > 0) text += fmt::format("   {} failed; the column `message` says why\n", num_failed);
   if (num_damaged > 0) text += fmt::format("   {} damaged; clogsweep verify tells which\n", num_damaged);

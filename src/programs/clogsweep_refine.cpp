@@ -24,7 +24,6 @@ namespace {
 using campaign::RefinementGoal;
 using campaign::RefinementOptions;
 
-
 /// NaN if the text is not a number.
 double number_of(const std::string& text) {
   try {

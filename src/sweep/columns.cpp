@@ -217,8 +217,8 @@ std::vector<Column> columns_of_dwells() {
     const std::string name = dwell_column(i);
     const std::string meaning =
         i == 0
-            ? "longest time in which the droplet came no farther than dwell_length; one under way at the end "
-              "as long as it is by then, but not that of a clog, which has no end; NaN: none above ten "
+            ? "longest time in which the droplet came no farther than dwell_length; a dwell that lasts until "
+              "max_time counts with its length so far, that of a clog does not count; NaN: none above ten "
               "times dwell_length/V_t"
             : "the longest before " + dwell_column(i - 1) + " began; NaN likewise";
     all.push_back(number_in(
@@ -232,12 +232,10 @@ std::vector<Column> columns_of_dwells() {
   }
   all.push_back(number_in(
       "dwells_known_from", [](auto& row) -> auto& { return row.dwells.known_from; }, "t0",
-      "of any time from this on these columns tell the first dwell that was longer: of "
-      "those that are, the earliest"));
+      "for every duration above this one, the columns contain the first dwell that was longer"));
   all.push_back(number_in(
       "last_dwell_at", [](auto& row) -> auto& { return row.dwells.last_distance; }, "sigma",
-      "distance at which the last dwell began, however short: the one under way at the "
-      "end, or the clog"));
+      "distance at which the last dwell began, however short: the one in which the run ended, or the clog"));
   all.push_back(number_in(
       "last_dwell_from", [](auto& row) -> auto& { return row.dwells.last_begin; }, "t0",
       "time at which it began"));

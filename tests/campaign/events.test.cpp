@@ -49,7 +49,7 @@ class EventsTest : public testing::Test {
     for (const std::string& line : events_.look(file_)) all.push_back(json::parse(line));
     return all;
   }
-  /// Of the only event since the last look; null if there are more, or none.
+  /// The only event since the last look; null if there are more, or none.
   json only() {
     const std::vector<json> all = look();
     return all.size() == 1 ? all.front() : json();

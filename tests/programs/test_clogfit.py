@@ -437,7 +437,7 @@ class Fit(ProgramTest):
         self.assertEqual(group["clogging_length"], 6)
         self.assertEqual((group["runs"], group["interrupted"], group["failed"]), (3, 1, 1))
         text = self.succeed("clogfit", "sweep.h5").stdout
-        self.assertIn("1 run is under way or interrupted: lambda holds for the distances reached so far", text)
+        self.assertIn("1 run is unfinished: lambda holds for the distances reached so far", text)
         self.assertIn("1 failed", text)
 
     def test_physically_impossible_rows_are_excluded_with_a_doubt(self):

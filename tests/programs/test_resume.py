@@ -29,7 +29,7 @@ class Resumed(SweepTest):
         return (int(found[1]), int(found[2])) if found else (0, 0)
 
     def stop_under_way(self, sweep):
-        """Stops it where a run has a snapshot, at another try if need be. @return rows of the runs under way"""
+        """Stops it where a run has a snapshot, at another try if need be. @return rows of the unfinished runs"""
         for attempt in range(100):
             # A busy machine needs longer to come so far.
             if self.run_program("clogsweep", *sweep, f"--max-hours={0.0001 * 1.05**attempt:.6f}").returncode != 75:

@@ -89,7 +89,7 @@ TEST(DwellRecord, ADropletThatIsPushedBackStandsWhereItWas) {
 TEST(DwellRecord, OfTooManyRecordsTheEarliestAreNoLongerKnown) {
   std::vector<Stand> stands;
   for (int i = 1; i <= 11; ++i) stands.push_back({.place = 1.0 * i, .time = 10 * i});
-  const Dwells dwells = Course(stands).found();  // the last is under way, and a tenth as long as it will be
+  const Dwells dwells = Course(stands).found();  // the last is a tenth as long as it will be
   ASSERT_EQ(lengths(dwells).size(), Dwells::most);
   EXPECT_EQ(dwells.longest.front().length, 109);
   EXPECT_EQ(dwells.longest.back().length, 40);

@@ -48,8 +48,8 @@ class DwellRecord {
   /// To be called once per check of a run. @param displacement  along the flow since release [sigma]
   void add(double time, double displacement);
 
-  /// @param time  of the last check. The dwell under way is as long as it is by then, but for that of a clog:
-  /// it has no end and is none.
+  /// @param time  of the last check. A dwell that has not ended counts with its length so far; that of a
+  /// clog, which has no end, does not count.
   Dwells found(double time, bool has_clogged) const;
 
   void save(ByteWriter& bytes) const { bytes.put(found_); }
