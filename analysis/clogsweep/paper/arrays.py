@@ -77,7 +77,7 @@ def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity:
     return Plate(drawing, data)
 
 
-@figure("6c-saturated", "the same as 6c in saturated arrays, walls without friction", ["clogging-saturated"], "20 min")
+@figure("6c-saturated", "the same as 6c in saturated arrays, walls without friction", ["clogging-saturated"], "5 min")
 def lengths_of_polygons_in_saturated_arrays(shop: Workshop) -> Plate:
     return curves(shop, "clogging-saturated", "line_tension", "obstacle_gap", "length")
 

@@ -117,7 +117,7 @@ def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
 
 
 @figure("6c", "clogging length against line tension for four values of the minimum gap, dilute arrays: what holds droplets, on two meshes",
-        ["clogging-robust", "clogging-robust-mesh", "clogging-friction", "clogging-friction-mesh", "clogging-elastic", "clogging-elastic-mesh"], "90 min")
+        ["clogging-robust", "clogging-robust-mesh", "clogging-friction", "clogging-friction-mesh", "clogging-elastic", "clogging-elastic-mesh"], "60 min")
 def lengths_of_polygons(shop: Workshop) -> Plate:
     return families(shop, FAMILIES, True)
 
@@ -126,7 +126,7 @@ FILLINGS = [Family("clogging-elastic", "the same density in every array"), Famil
 
 
 @figure("6c-filling", "6c without friction at the same density for every gap, and at the same share of the saturated density",
-        ["clogging-elastic", "clogging-filling"], "40 min, shared with 6c")
+        ["clogging-elastic", "clogging-filling"], "5 min, shared with 6c")
 def lengths_at_one_filling(shop: Workshop) -> Plate:
     return families(shop, FILLINGS, False)
 
@@ -176,7 +176,7 @@ def draw_cell(axes: Axes, x: int, y: int, group: Group, norm: LogNorm) -> None:
     axes.text(x, y, ("> " if group["clogs"] == 0 else "") + text, ha="center", va="center", fontsize=7.5, color=ink)
 
 
-@figure("map", "clogging length against line tension, obstacle density and gap, walls without and with friction", ["map-robust", "map-friction"], "35 min")
+@figure("map", "clogging length against line tension, obstacle density and gap, walls without and with friction", ["map-robust", "map-friction"], "10 min")
 def lengths_on_a_map(shop: Workshop) -> Plate:
     kinds = [(family, shop.sweep(family.config)) for family in MAPS]
     every = [group for _, groups in kinds for group in groups]

@@ -105,8 +105,12 @@ std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, con
   // what its spring asks for, it gives what it bears, whatever the droplet does, and the search goes on from
   // there until all walls bear what they give.
   constexpr int most_yields = 20;
+  // If all walls come to bear what they give, the excess is below the first one by then
+  // (docs/notes/2026-11-25-searches-with-friction.md); otherwise it stays far above for all the yields.
+  constexpr int yields_until_excess_has_fallen = 6;
   const double bearable = 1e-6 * units::droplet_mass * units::gravity / *run.dp.vertices;
   WallTouches touches(run, obstacles);
+  double first_excess = 0;
   for (int yields = 0; rest && yields < most_yields; ++yields) {
     forces.update_contacts(*rest, {});
     const WallYield yield =
@@ -115,6 +119,8 @@ std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, con
       for (WallAnchor& anchor : rest->anchors) anchor.yields = 0;
       return rest;
     }
+    if (yields == 0) first_excess = yield.excess;
+    if (yields >= yields_until_excess_has_fallen && yield.excess > first_excess) return std::nullopt;
     rest = find_equilibrium(asked, *rest);
     if (rest && (rest->position - state.position).abs().maxCoeff() > farthest_rest) return std::nullopt;
   }
