@@ -83,7 +83,7 @@ class Workshop:
         for override in self.overrides:
             if override.config and not self.config(override.config).exists():
                 raise UserError(f"invalid --set {override.config}:{override.key}={override.value} (no figure has a config of that name) "
-                                "figures list shows the names, as sweep or settings")
+                                "use one of the sweeps that figures list shows")
 
     # Configs
 

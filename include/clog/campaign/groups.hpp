@@ -23,7 +23,7 @@ enum class Doubt {
   not_exponential,   ///< Weibull's law fits better, p < 0.05 by Holm's test of all groups with ten clogs or
                      ///< more
   censored_by_time,  ///< runs ended by max-time, slow ones nearer than fast ones
-  incomplete,        ///< runs are running, interrupted or failed
+  incomplete,        ///< runs are unfinished or failed
   damaged,           ///< rows hold what cannot be (sweep::fault_of)
   held_by_mesh,      ///< the polygon's corners may hold a tenth of the clogs or more
   array_repeats,     ///< runs went farther than the period of their array (sweep::has_met_repetition)

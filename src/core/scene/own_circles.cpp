@@ -138,8 +138,9 @@ void check_period(const ObstacleParameters& obstacles) {
   if (obstacles.side_walls == SideWalls::off) check_box(obstacles);
   const double length = obstacles.period().along();
   require(length >= narrowest_period, "length", length, [&] {
-    return fmt::format("the droplet would meet its own periodic image along the flow) use at least {}",
-                       narrowest_period);
+    return fmt::format(
+        "the droplet would meet its own periodic image along the flow) use at least {}, or more boxes",
+        narrowest_period);
   });
 }
 

@@ -167,7 +167,9 @@ std::vector<std::uint32_t> ObstacleArray::posts() const {
 ObstacleArray::Pair ObstacleArray::closest_pair() const {
   Pair closest{{}, {}, std::numeric_limits<double>::infinity()};
   const std::vector<std::uint32_t> post = posts();
-  const double nearest_image = std::min(period().along(), period().across());
+  const bool repeats_across = period().beside == 0;
+  const double nearest_image =
+      repeats_across ? std::min(period().along(), period().across()) : period().along();
   // Pairs nearer than the margin are all seen; widen it until the smallest one found is certain.
   double margin = 0.125 * units::droplet_diameter;
   do {
@@ -175,7 +177,8 @@ ObstacleArray::Pair ObstacleArray::closest_pair() const {
     for (std::uint32_t first = 0; first < binned_.obstacles.size(); ++first) {
       const auto& [origin_x, origin_y, radius] = binned_.obstacles[first];
       visit_window({origin_x, origin_y, -radius, radius, -radius, radius, margin},
-                   [&, r = radius](std::uint32_t second, double x, double y) {
+                   [&, r = radius, from = origin_y](std::uint32_t second, double x, double y) {
+                     if (!repeats_across && (from + y < 0 || from + y >= period().across())) return;
                      const double apart = std::hypot(x, y);
                      const double gap = apart - r - binned_.obstacles[second].radius;
                      // Circles with the same centre are a mistake, in a post, too.

@@ -167,7 +167,12 @@ TEST(OwnCircles, RefuseWaysThatCannotBe) {
 }
 
 TEST(OwnCircles, OfASingleOneHaveTheGapToItsPeriodicImage) {
-  EXPECT_DOUBLE_EQ(resolve(among({{5, 5, 3}})).obstacles.gap, 10 - 6);
+  RunParameters run = among({{5, 5, 3}});
+  run.obstacles.diameter = 6;
+  EXPECT_DOUBLE_EQ(resolve(run).obstacles.gap, 10 - 6);
+  EXPECT_DOUBLE_EQ(resolve(between_walls({{12, 5, 3}})).obstacles.gap, 23.5 - 6) << "none beyond the walls";
+  EXPECT_NEAR(resolve(between_walls({{4, 0.1, 0.3}, {10, 9.5, 0.3}})).obstacles.gap, std::hypot(6, 9.4) - 0.6,
+              1e-12);
 }
 
 TEST(OwnCircles, AreRefusedInAPeriodInWhichTheDropletMeetsItsImage) {

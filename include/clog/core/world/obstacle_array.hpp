@@ -58,7 +58,8 @@ class ObstacleArray {
   /// The post that each obstacle belongs to: circles of which one has its centre within the other are
   /// one post, whose outline they make together. A copy of a circle belongs to no post but its own.
   std::vector<std::uint32_t> posts() const;
-  /// The pair of two posts with the smallest gap, which is infinite if there is no pair nearer than a box.
+  /// The pair of two posts with the smallest gap, their images included, but not those beyond side walls. It
+  /// is infinite if there is no pair nearer than a box.
   Pair closest_pair() const;
   double smallest_gap() const { return closest_pair().gap; }
 
