@@ -217,7 +217,8 @@ std::vector<Column> columns_of_dwells() {
     const std::string name = dwell_column(i);
     const std::string meaning =
         i == 0
-            ? "longest time in which the droplet came no farther than dwell_length; a dwell that lasts until the "
+            ? "longest time in which the droplet came no farther than dwell_length; a dwell that lasts until "
+              "the "
               "run's end counts with its length so far, that of a clog does not count; NaN: none above ten "
               "times dwell_length/V_t"
             : "the longest before " + dwell_column(i - 1) + " began; NaN likewise";
