@@ -68,14 +68,14 @@ class Slurm(SweepTest):
         now = described("job", job)["JobState"]
         self.assertNotIn(now, {"COMPLETED", "CANCELLED", "FAILED", "TIMEOUT", "NODE_FAIL"} - {state}, self.log())
 
-    def wait_for_runs_under_way(self):
+    def wait_for_runs_with_snapshots(self):
         """Waits until some tasks have snapshots, and some are over."""
         def seen():
             if not (self.folder / "s.h5").exists():
                 return False
             rows = table(self.folder / "s.h5")
-            under_way = rows[rows.status == "running"]
-            return len(under_way) < len(rows) and (under_way.steps > STEPS_PER_SNAPSHOT).any()
+            running = rows[rows.status == "running"]
+            return len(running) < len(rows) and (running.steps > STEPS_PER_SNAPSHOT).any()
         self.wait_for(seen)
 
     def check_completed(self, job, restarts):
@@ -109,14 +109,14 @@ class Slurm(SweepTest):
 
     def test_a_job_that_is_queued_again_goes_on(self):
         job = self.submit("--nodes=2", "--ntasks-per-node=1")
-        self.wait_for_runs_under_way()
+        self.wait_for_runs_with_snapshots()
         slurm("scontrol", "requeue", job)
         self.check_completed(job, restarts=1)
         self.check_went_on()
 
     def test_a_cancelled_job_does_not_queue_again_and_another_goes_on(self):
         job = self.submit("--nodes=2", "--ntasks-per-node=1")
-        self.wait_for_runs_under_way()
+        self.wait_for_runs_with_snapshots()
         slurm("scancel", job)
         self.wait_for(lambda: all(described("node", node)["State"] == "IDLE" for node in NODES))
         self.assertEqual(described("job", job)["JobState"], "CANCELLED")
@@ -126,7 +126,7 @@ class Slurm(SweepTest):
 
     def test_a_job_whose_node_is_drained_goes_on_elsewhere(self):
         job = self.submit("--nodes=1", "--ntasks-per-node=2")
-        self.wait_for_runs_under_way()
+        self.wait_for_runs_with_snapshots()
         node = described("job", job)["BatchHost"]
         self.addCleanup(self.resume, node)
         slurm("scontrol", "update", f"nodename={node}", "state=drain", "reason=test")
@@ -140,7 +140,7 @@ class Slurm(SweepTest):
 
     def test_a_job_whose_node_goes_down_waits_until_it_is_back(self):
         job = self.submit("--nodes=2", "--ntasks-per-node=1")
-        self.wait_for_runs_under_way()
+        self.wait_for_runs_with_snapshots()
         self.addCleanup(self.resume, "node2")
         slurm("scontrol", "update", "nodename=node2", "state=down", "reason=test")
         self.wait_for_state(job, "PENDING")

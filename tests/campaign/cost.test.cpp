@@ -12,14 +12,14 @@ namespace {
 
 constexpr double seconds_per_work = 1e-6;
 
-RunCost over(double seconds, double longest) {
+RunCost finished(double seconds, double longest) {
   return {.seconds = seconds,
           .work = seconds / seconds_per_work,
           .longest_work = longest / seconds_per_work,
           .is_over = true};
 }
-RunCost under_way(double seconds, double longest) {
-  RunCost run = over(seconds, longest);
+RunCost unfinished(double seconds, double longest) {
+  RunCost run = finished(seconds, longest);
   run.is_over = false;
   return run;
 }
@@ -29,7 +29,7 @@ SweepCost cost(const std::vector<RunCost>& sample, std::int64_t num_runs) {
 }
 
 TEST(SweepCost, OfASampleThatIsTheSweepIsKnown) {
-  const SweepCost all = cost({over(1, 100), over(2, 100), over(3, 100)}, 3);
+  const SweepCost all = cost({finished(1, 100), finished(2, 100), finished(3, 100)}, 3);
   EXPECT_NEAR(all.seconds_per_work, seconds_per_work, 1e-15);
   EXPECT_NEAR(all.bound, 300, 1e-9);
   EXPECT_NEAR(all.expected, 6, 1e-9);
@@ -38,22 +38,22 @@ TEST(SweepCost, OfASampleThatIsTheSweepIsKnown) {
 }
 
 TEST(SweepCost, OfAKnownSweepIsTheSumThoughItsStepsDifferInCost) {
-  std::vector<RunCost> sample = {over(1, 2), over(2, 2), over(2, 2)};
+  std::vector<RunCost> sample = {finished(1, 2), finished(2, 2), finished(2, 2)};
   sample[1].work /= 3;
   EXPECT_NEAR(cost(sample, 3).expected, 5, 1e-9);
 }
 
 TEST(SweepCost, OfRunsThatAreOverIsTheirMeanTimesAll) {
-  const SweepCost all = cost({over(1, 100), over(2, 100), over(3, 100)}, 300);
+  const SweepCost all = cost({finished(1, 100), finished(2, 100), finished(3, 100)}, 300);
   EXPECT_NEAR(all.expected, 600, 1e-9);
   EXPECT_LT(all.lower, 500);
   EXPECT_GT(all.upper, 700);
 }
 
 TEST(SweepCost, OfAParameterSetWithoutAnEndMayBeTheBound) {
-  std::vector<RunCost> sample(24, over(0.1, 300));
+  std::vector<RunCost> sample(24, finished(0.1, 300));
   for (std::size_t i = 0; i < sample.size(); i += 4) {
-    sample[i] = under_way(0.4, 300);
+    sample[i] = unfinished(0.4, 300);
     sample[i].parameter_set = 1;
   }
   const SweepCost all = cost(sample, 2400);
@@ -64,7 +64,7 @@ TEST(SweepCost, OfAParameterSetWithoutAnEndMayBeTheBound) {
 }
 
 TEST(SweepCost, OfRunsOfWhichNoneEndsIsAnythingUpToTheBound) {
-  const SweepCost all = cost(std::vector<RunCost>(10, under_way(1, 100)), 1000);
+  const SweepCost all = cost(std::vector<RunCost>(10, unfinished(1, 100)), 1000);
   EXPECT_NEAR(all.bound, 1e5, 1e-6);
   EXPECT_NEAR(all.upper, all.bound, 1e-6);
   EXPECT_GT(all.lower, 2000);  // ten seconds without an end
@@ -73,13 +73,13 @@ TEST(SweepCost, OfRunsOfWhichNoneEndsIsAnythingUpToTheBound) {
 }
 
 TEST(SweepCost, IsTheBoundWhereEveryRunGoesToMaxTime) {
-  const SweepCost all = cost({over(10, 10), over(10, 10)}, 100);
+  const SweepCost all = cost({finished(10, 10), finished(10, 10)}, 100);
   EXPECT_NEAR(all.expected, all.bound, 1e-9);
   EXPECT_NEAR(all.upper, all.bound, 1e-9);
 }
 
 TEST(SweepCost, CountsWhatComesBeforeTheFirstStep) {
-  std::vector<RunCost> sample(3, over(1, 10));
+  std::vector<RunCost> sample(3, finished(1, 10));
   for (RunCost& run : sample) run.begin_seconds = 2;
   const SweepCost all = cost(sample, 100);
   EXPECT_NEAR(all.bound, 1200, 1e-9);
@@ -88,7 +88,7 @@ TEST(SweepCost, CountsWhatComesBeforeTheFirstStep) {
 
 TEST(SweepCost, WeighsRunsByWhatTheyMayCost) {
   // Half of the sweep's runs are ten times as dear: sampled or not, they are in the bound.
-  const std::vector<RunCost> sample = {over(1, 10), over(10, 100)};
+  const std::vector<RunCost> sample = {finished(1, 10), finished(10, 100)};
   EXPECT_NEAR(sweep_cost(sample, 110 * 50 / seconds_per_work, 100).expected, 550, 1e-9);
 }
 
@@ -102,8 +102,8 @@ WaitingRuns waiting(std::int64_t set, std::int64_t number, double longest) {
 
 TEST(CostLeft, IsThatOfTheParameterSetsThatWait) {
   // All long runs have begun, of the short ones a few.
-  std::vector<RunCost> begun(20, of_set(0, over(20, 100)));
-  for (const double seconds : {0.5, 0.6, 0.7, 0.8}) begun.push_back(of_set(1, over(seconds, 100)));
+  std::vector<RunCost> begun(20, of_set(0, finished(20, 100)));
+  for (const double seconds : {0.5, 0.6, 0.7, 0.8}) begun.push_back(of_set(1, finished(seconds, 100)));
   const std::vector<WaitingRuns> waits = {waiting(0, 0, 100), waiting(1, 16, 100)};
   const SweepCost left = cost_left(begun, waits);
   EXPECT_NEAR(left.expected, 16 * 0.65, 1e-9);
@@ -113,9 +113,9 @@ TEST(CostLeft, IsThatOfTheParameterSetsThatWait) {
 }
 
 TEST(CostLeft, HasWhatRunsUnderWayStillTake) {
-  std::vector<RunCost> begun(10, of_set(0, over(20, 100)));
-  for (const double seconds : {0.5, 0.6, 0.7, 0.8}) begun.push_back(of_set(1, over(seconds, 100)));
-  begun.push_back(of_set(1, under_way(0.4, 100)));
+  std::vector<RunCost> begun(10, of_set(0, finished(20, 100)));
+  for (const double seconds : {0.5, 0.6, 0.7, 0.8}) begun.push_back(of_set(1, finished(seconds, 100)));
+  begun.push_back(of_set(1, unfinished(0.4, 100)));
   const SweepCost left = cost_left(begun, {});
   EXPECT_GT(left.expected, 0.2);  // a short one, judged by the short ones
   EXPECT_LT(left.expected, 2);
@@ -124,14 +124,14 @@ TEST(CostLeft, HasWhatRunsUnderWayStillTake) {
 }
 
 TEST(CostLeft, OfASetWithoutAnEndMayBeTheBound) {
-  std::vector<RunCost> begun(10, of_set(0, over(1, 100)));
-  begun.push_back(of_set(1, under_way(1, 100)));
+  std::vector<RunCost> begun(10, of_set(0, finished(1, 100)));
+  begun.push_back(of_set(1, unfinished(1, 100)));
   const std::vector<WaitingRuns> waits = {waiting(1, 9, 100)};
   EXPECT_GT(cost_left(begun, waits).upper, 0.9 * 999);
 }
 
 TEST(CostLeft, OfASetThatHasNotBegunIsTheMeanOfAll) {
-  const std::vector<RunCost> begun = {of_set(0, over(1, 100)), of_set(1, over(3, 100))};
+  const std::vector<RunCost> begun = {of_set(0, finished(1, 100)), of_set(1, finished(3, 100))};
   const std::vector<WaitingRuns> waits = {waiting(2, 5, 100)};
   const SweepCost left = cost_left(begun, waits);
   EXPECT_NEAR(left.expected, 10, 1e-9);
@@ -140,7 +140,7 @@ TEST(CostLeft, OfASetThatHasNotBegunIsTheMeanOfAll) {
 }
 
 TEST(CostLeft, IsNothingOnceAllIsOver) {
-  const std::vector<RunCost> begun = {of_set(0, over(1, 100)), of_set(1, over(3, 100))};
+  const std::vector<RunCost> begun = {of_set(0, finished(1, 100)), of_set(1, finished(3, 100))};
   const SweepCost left = cost_left(begun, {});
   EXPECT_EQ(left.bound, 0);
   EXPECT_EQ(left.expected, 0);
@@ -160,7 +160,7 @@ TEST(CostLeft, CoversTheTruthWhereLongRunsBeginFirst) {
     for (std::size_t set = 0; set < means.size(); ++set) {
       std::exponential_distribution<> draw(1 / means[set]);
       for (std::int64_t i = 0; i < num_begun[set]; ++i)
-        begun.push_back(of_set(static_cast<std::int64_t>(set), over(draw(random), 1000)));
+        begun.push_back(of_set(static_cast<std::int64_t>(set), finished(draw(random), 1000)));
       waits.push_back(waiting(static_cast<std::int64_t>(set), 24 - num_begun[set], 1000));
       for (std::int64_t i = num_begun[set]; i < 24; ++i) truth += draw(random);
     }
@@ -182,7 +182,7 @@ double coverage(int num_sets) {
     for (int i = 0; i < 24; ++i) {
       const double mean = i % 3 == 0 ? 0.1 : i % 3 == 1 ? 2 : 40;
       const double seconds = std::min(100.0, std::exponential_distribution<>(1 / mean)(random));
-      sample.push_back(seconds < 0.4 ? over(seconds, 100) : under_way(0.4, 100));
+      sample.push_back(seconds < 0.4 ? finished(seconds, 100) : unfinished(0.4, 100));
       sample.back().parameter_set = i % num_sets;
     }
     const SweepCost all = cost(sample, 2400);

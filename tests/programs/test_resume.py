@@ -28,7 +28,7 @@ class Resumed(SweepTest):
         found = re.search(r"s.h5.journal: (\d+) records?, (\d+) of them with snapshots", words)
         return (int(found[1]), int(found[2])) if found else (0, 0)
 
-    def stop_under_way(self, sweep):
+    def stop_with_unfinished_runs(self, sweep):
         """Stops it where a run has a snapshot, at another try if need be. @return rows of the unfinished runs"""
         for attempt in range(100):
             # A busy machine needs longer to come so far.
@@ -36,9 +36,9 @@ class Resumed(SweepTest):
                 (self.folder / "s.h5").resolve().unlink()  # complete: once more from the beginning
                 continue
             rows = table(self.folder / "s.h5")
-            under_way = rows[rows.status == "interrupted"]
-            if (under_way.steps > STEPS_PER_SNAPSHOT).any():
-                return under_way
+            unfinished = rows[rows.status == "interrupted"]
+            if (unfinished.steps > STEPS_PER_SNAPSHOT).any():
+                return unfinished
         self.fail("no stop met a run with a snapshot")
 
     def test_kills_at_random_moments_lose_nothing(self):
@@ -141,7 +141,7 @@ class Resumed(SweepTest):
         status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
         self.assertTrue(status["alive"])
         self.assertEqual(status["runs"], 24)
-        self.assertGreater(status["under_way"], 0)
+        self.assertGreater(status["unfinished"], 0)
         self.assertIn(" running; ", self.succeed("clogsweep", "status", "s.h5").stdout)
         refused = self.run_program("clogsweep", *SWEEP)
         self.assertEqual(refused.returncode, 2)
@@ -152,11 +152,11 @@ class Resumed(SweepTest):
         self.assertIn("24 of 24 runs finished", watched)
         self.assertNotIn("\x1b", watched)  # no terminal, whose screen would be cleared
 
-    def test_status_counts_runs_under_way_as_not_clogged(self):
-        self.stop_under_way(SWEEP)
+    def test_status_counts_unfinished_runs_as_not_clogged(self):
+        self.stop_with_unfinished_runs(SWEEP)
         status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
         self.assertFalse(status["alive"])
-        self.assertEqual(status["under_way"], 1)
+        self.assertEqual(status["unfinished"], 1)
         rows = table(self.folder / "s.h5")
         for group in status["groups"]:
             members = rows[(rows.line_tension == group["line_tension"]) & (rows.obstacle_gap == group["obstacle_gap"])]
@@ -166,10 +166,10 @@ class Resumed(SweepTest):
         self.assertIn("the command that started it resumes it", self.succeed("clogsweep", "status", "s.h5").stdout)
         self.assertIn("all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
 
-    def test_a_smaller_sweep_keeps_what_the_larger_one_has_under_way(self):
-        under_way = self.stop_under_way(SWEEP)
-        self.assertEqual(len(under_way), 1)
-        other = {0.05: "0.5", 0.5: "0.05"}[under_way.line_tension.iloc[0]]
+    def test_a_smaller_sweep_keeps_the_unfinished_runs_of_a_larger_one(self):
+        unfinished = self.stop_with_unfinished_runs(SWEEP)
+        self.assertEqual(len(unfinished), 1)
+        other = {0.05: "0.5", 0.5: "0.05"}[unfinished.line_tension.iloc[0]]
         smaller = [*SWEEP[:2], "obstacle-gap=0.5", f"line-tension={other}", "max-time=4000", "seeds=1", "--output", "s.h5"]
         self.succeed("clogsweep", *smaller)
         self.assertTrue((self.folder / "s.h5.journal").exists(), "a snapshot is still needed")
@@ -178,7 +178,7 @@ class Resumed(SweepTest):
 
     def test_salvage_keeps_what_only_the_journal_of_a_killed_sweep_has(self):
         self.succeed("clogsweep", *SWEEP[:-1], "whole.h5", ranks=2)
-        self.stop_under_way(SWEEP)
+        self.stop_with_unfinished_runs(SWEEP)
         interrupted = table(self.folder / "s.h5")
         distance = interrupted.distance.max()
         content = (self.folder / "s.h5").read_bytes()
@@ -190,7 +190,7 @@ class Resumed(SweepTest):
         self.check_equal("salvaged.h5", "whole.h5")
 
     def test_a_journal_without_its_table_is_refused(self):
-        self.stop_under_way(SWEEP)
+        self.stop_with_unfinished_runs(SWEEP)
         (self.folder / "s.h5").unlink()
         self.refuse("clogsweep", *SWEEP, words=["its table is gone", "put the table back"])
 
@@ -215,7 +215,7 @@ class Resumed(SweepTest):
     def test_a_link_is_followed(self):
         (self.folder / "scratch").mkdir()
         (self.folder / "s.h5").symlink_to("scratch/target.h5")
-        self.stop_under_way(FEW)
+        self.stop_with_unfinished_runs(FEW)
         self.assertEqual({path.name for path in (self.folder / "scratch").iterdir()}, {"target.h5", "target.h5.journal"})
         self.succeed("clogsweep", *FEW[:-1], "scratch/target.h5", ranks=2)
         self.assertTrue((self.folder / "s.h5").is_symlink())
@@ -226,7 +226,7 @@ class Resumed(SweepTest):
         self.refuse("clogsweep", *FEW, words=["not a journal", "another --output"])
         (self.folder / short).unlink()
         notes = {self.write(name, name) for name in ("s.h5.new", "s.h5.journal.new", "s.h5.clogsweep-draft1")}
-        self.stop_under_way(FEW)
+        self.stop_with_unfinished_runs(FEW)
         self.succeed("clogsweep", *FEW, ranks=2)
         self.assertEqual(set(self.snapshot()), {"s.h5", *notes})
         for name in notes:
