@@ -28,23 +28,47 @@ struct Polygon {
   }
 };
 
-/// Does the droplet hang over an obstacle? Its interface covers the upstream side, not farther off than a
-/// radius, and reaches beyond the obstacle on both sides.
-bool hangs_over(const Polygon& polygon, const Obstacle& obstacle) {
+/// An obstacle: a circle, or several that are one post.
+struct Post {
+  std::vector<Obstacle> circles;
+
+  const Obstacle& most_upstream() const {
+    return *std::ranges::min_element(circles, {}, [](const Obstacle& c) { return c.x - c.radius; });
+  }
+  const Obstacle& most_downstream() const {
+    return *std::ranges::max_element(circles, {}, [](const Obstacle& c) { return c.x + c.radius; });
+  }
+};
+
+std::vector<Post> posts_of(std::span<const Obstacle> circles) {
+  const std::vector<int> post_of = posts_among(circles);
+  std::vector<Post> posts;
+  for (std::size_t k = 0; k < circles.size(); ++k) {
+    posts.resize(std::max(posts.size(), static_cast<std::size_t>(post_of[k]) + 1));
+    posts[post_of[k]].circles.push_back(circles[k]);
+  }
+  return posts;
+}
+
+/// Does the droplet hang over a post? Its interface covers the upstream side, not farther off than the radius
+/// there, and reaches beyond the post on both sides.
+bool hangs_over(const Polygon& polygon, const Post& post) {
+  const Obstacle& upstream = post.most_upstream();
   bool covers = false;
-  polygon.visit_crossings(1, obstacle.y, [&](double x) {
-    covers = covers || (x < obstacle.x && obstacle.x - x < 2 * obstacle.radius);
+  polygon.visit_crossings(1, upstream.y, [&](double x) {
+    covers = covers || (x < upstream.x && upstream.x - x < 2 * upstream.radius);
   });
   if (!covers) return false;
+  const Obstacle& downstream = post.most_downstream();
   bool left = false, right = false;
-  polygon.visit_crossings(0, obstacle.x + obstacle.radius, [&](double y) {
-    left = left || y < obstacle.y;
-    right = right || y > obstacle.y;
+  polygon.visit_crossings(0, downstream.x + downstream.radius, [&](double y) {
+    left = left || y < downstream.y;
+    right = right || y > downstream.y;
   });
   return left && right;
 }
 
-/// A touched obstacle. The support is the force that the overlaps of all edges exert on the droplet against
+/// A touched post. The support is the force that the overlaps of all edges exert on the droplet against
 /// the flow, over the contact's stiffness [sigma].
 struct Touched {
   double support = 0;
@@ -52,43 +76,45 @@ struct Touched {
   double longest_link = 0;  ///< that touches it, over the radius at which it lies
 };
 
-/// Which obstacle each edge touches, the one that it overlaps most; -1 for none.
+/// Which post each edge touches, the one that it overlaps most; -1 for none.
 struct Contacts {
-  std::vector<Touched> obstacles;
+  std::vector<Touched> posts;
   std::vector<int> of_edge;
 };
 
 Contacts find_contacts(const Polygon& polygon, std::span<const Obstacle> obstacles, double contact_range) {
   Contacts contacts{{}, std::vector<int>(static_cast<std::size_t>(polygon.size()), -1)};
   std::vector<double> deepest(contacts.of_edge.size(), 0);
-  for (const Obstacle& obstacle : obstacles) {
-    const Eigen::Array2d centre{obstacle.x, obstacle.y};
+  for (const Post& post : posts_of(obstacles)) {
     Touched touched;
     bool is_touched = false;
-    for (Eigen::Index i = 0; i < polygon.size(); ++i) {
-      const Eigen::Array2d away =
-          nearest_on_segment(centre, polygon.vertex(i), polygon.vertex(polygon.next(i))) - centre;
-      const double distance = away.matrix().norm();
-      const double overlap = contact_range + obstacle.radius - distance;
-      if (overlap <= 0) continue;
-      is_touched = true;
-      touched.support -= overlap * away[0] / distance;
-      const double length = (polygon.vertex(polygon.next(i)) - polygon.vertex(i)).matrix().norm();
-      touched.longest_link = std::max(touched.longest_link, length / (contact_range + obstacle.radius));
-      if (overlap <= deepest[i]) continue;
-      deepest[i] = overlap;
-      contacts.of_edge[i] = static_cast<int>(contacts.obstacles.size());
+    for (const Obstacle& circle : post.circles) {
+      const Eigen::Array2d centre{circle.x, circle.y};
+      for (Eigen::Index i = 0; i < polygon.size(); ++i) {
+        const Eigen::Array2d away =
+            nearest_on_segment(centre, polygon.vertex(i), polygon.vertex(polygon.next(i))) - centre;
+        const double distance = away.matrix().norm();
+        const double overlap = contact_range + circle.radius - distance;
+        if (overlap <= 0) continue;
+        is_touched = true;
+        touched.support -= overlap * away[0] / distance;
+        const double length = (polygon.vertex(polygon.next(i)) - polygon.vertex(i)).matrix().norm();
+        touched.longest_link = std::max(touched.longest_link, length / (contact_range + circle.radius));
+        if (overlap <= deepest[i]) continue;
+        deepest[i] = overlap;
+        contacts.of_edge[i] = static_cast<int>(contacts.posts.size());
+      }
     }
     if (!is_touched) continue;
-    touched.is_wrapped = hangs_over(polygon, obstacle);
-    contacts.obstacles.push_back(touched);
+    touched.is_wrapped = hangs_over(polygon, post);
+    contacts.posts.push_back(touched);
   }
   return contacts;
 }
 
-/// A run of successive edges that touch the same obstacle, counter-clockwise.
+/// A run of successive edges that touch the same post, counter-clockwise.
 struct Arc {
-  int obstacle;
+  int post;
   Eigen::Index first_edge, last_edge;
 };
 
@@ -112,7 +138,7 @@ ClogGeometry clog_geometry(const Eigen::ArrayXd& position, std::span<const Obsta
   const Contacts contacts = find_contacts(polygon, obstacles, contact_range);
   ClogGeometry geometry;
   double support = 0, wrapped_support = 0, mesh_hold = 0;
-  for (const Touched& touched : contacts.obstacles) {
+  for (const Touched& touched : contacts.posts) {
     support += std::max(0.0, touched.support);
     if (!touched.is_wrapped) continue;
     ++geometry.num_wrapped;
@@ -128,10 +154,9 @@ ClogGeometry clog_geometry(const Eigen::ArrayXd& position, std::span<const Obsta
   for (std::size_t i = 0; i < arcs.size(); ++i) {
     const Arc& from = arcs[i];
     const Arc& to = arcs[(i + 1) % arcs.size()];
-    if (from.obstacle == to.obstacle) continue;
+    if (from.post == to.post) continue;
     // One side may push across the flow only, or a little downstream, and is a side of the gap all the same.
-    if (std::max(contacts.obstacles[from.obstacle].support, contacts.obstacles[to.obstacle].support) <= 0)
-      continue;
+    if (std::max(contacts.posts[from.post].support, contacts.posts[to.post].support) <= 0) continue;
     // The outward normal of a counter-clockwise contour points downstream where y grows.
     const double begin_y = polygon.vertex(polygon.next(from.last_edge))[1];
     const double end_y = polygon.vertex(to.first_edge)[1];

@@ -56,17 +56,20 @@ void ContactRecord::add(const DropletState& state, const ObstacleArray& obstacle
       (origin_ == state.frame.origin).all() && (lower >= lower_).all() && (upper <= upper_).all();
   if (!is_listed) look_around(state, obstacles, lower, upper);
   const double far = reach_.range + parting;
-  for (const Obstacle& circle : near_) {
+  seen_.assign(num_posts_, {});
+  for (std::size_t k = 0; k < near_.size(); ++k) {
+    const Obstacle& circle = near_[k];
     const Eigen::Array2d centre{circle.x, circle.y};
     const bool is_far =
         (centre + circle.radius + far < lower).any() || (centre - circle.radius - far > upper).any();
     const double gap = is_far ? far : distance_from(circle, state, reach_.by_edges) - circle.radius;
-    see({release[0] + circle.x, release[1] + circle.y}, gap, distance);
+    include(seen_[post_of_[k]], {release[0] + circle.x, release[1] + circle.y}, gap);
   }
   for (const Wedge& wedge : obstacles.wedges()) {
     const Eigen::Array2d place = release + wedge.tip - state.frame.global({0, 0});
-    see({place[0], place[1]}, gap_to(wedge, state), distance);
+    include(seen_.emplace_back(), {place[0], place[1]}, gap_to(wedge, state));
   }
+  for (const Seen& obstacle : seen_) count(obstacle, distance);
 }
 
 void ContactRecord::look_around(const DropletState& state, const ObstacleArray& obstacles,
@@ -79,20 +82,25 @@ void ContactRecord::look_around(const DropletState& state, const ObstacleArray& 
   obstacles.gather(
       {origin_[0], origin_[1], lower_[0], upper_[0], lower_[1], upper_[1], reach_.range + parting + 2 * skin},
       near_);
+  post_of_ = posts_among(near_);
+  num_posts_ = near_.empty() ? 0 : static_cast<std::size_t>(std::ranges::max(post_of_)) + 1;
 }
 
-/// @param gap  between the obstacle's surface and what moves [sigma]
-void ContactRecord::see(const Place& place, double gap, double distance) {
-  const auto met = std::ranges::find_if(met_, [&](const Place& one) {
+void ContactRecord::include(Seen& obstacle, const Place& place, double gap) {
+  if (gap < obstacle.gap) {
+    obstacle.gap = gap;
+    obstacle.nearest = place;
+  }
+  const auto num_left = std::erase_if(met_, [&](const Place& one) {
     return std::abs(one.x - place.x) < same_place && std::abs(one.y - place.y) < same_place;
   });
-  if (met != met_.end()) {
-    if (gap >= reach_.range + parting) met_.erase(met);
-    return;
-  }
-  if (!(gap < reach_.range)) return;
-  met_.push_back(place);
-  if (++contacts_.number == 1) contacts_.first_distance = distance;
+  obstacle.is_met |= num_left > 0;
+}
+
+void ContactRecord::count(const Seen& obstacle, double distance) {
+  if (obstacle.gap >= reach_.range + (obstacle.is_met ? parting : 0)) return;
+  met_.push_back(obstacle.nearest);
+  if (!obstacle.is_met && ++contacts_.number == 1) contacts_.first_distance = distance;
 }
 
 void ContactRecord::save(ByteWriter& bytes) const {

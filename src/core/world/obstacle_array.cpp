@@ -44,6 +44,12 @@ CellAxis rows_of(const Period& period) {
   return {period.across(), num_cells_in(period.across()), num_cells_in(period.across())};
 }
 
+/// Does one of two circles have its centre within the other? Circles with the same centre are a mistake, or
+/// one and its own image.
+bool share_a_post(double apart, double first_radius, double second_radius) {
+  return apart > 0 && apart < std::max(first_radius, second_radius);
+}
+
 }  // namespace
 
 ObstacleArray::ObstacleArray(const Period& period, std::vector<Obstacle> obstacles, std::vector<Wedge> wedges)
@@ -155,12 +161,37 @@ std::vector<std::uint32_t> ObstacleArray::posts() const {
     const auto& [origin_x, origin_y, radius] = binned_.obstacles[first];
     visit_window({origin_x, origin_y, 0, 0, 0, 0, radius},
                  [&, r = radius](std::uint32_t second, double x, double y) {
-                   const double apart = std::hypot(x, y);
-                   if (apart > 0 && apart < std::max(r, binned_.obstacles[second].radius))
+                   if (share_a_post(std::hypot(x, y), r, binned_.obstacles[second].radius))
                      post[root_of(first)] = root_of(second);
                  });
   }
   for (std::uint32_t circle = 0; circle < post.size(); ++circle) post[circle] = root_of(circle);
+  return post;
+}
+
+std::vector<int> posts_among(std::span<const Obstacle> circles) {
+  constexpr int unknown = -1;
+  std::vector<int> post(circles.size(), unknown);
+  std::vector<std::size_t> reached;
+  int num_posts = 0;
+  for (std::size_t first = 0; first < circles.size(); ++first) {
+    if (post[first] != unknown) continue;
+    post[first] = num_posts++;
+    reached.assign(1, first);
+    while (!reached.empty()) {
+      const Obstacle from = circles[reached.back()];
+      const int of_from = post[reached.back()];
+      reached.pop_back();
+      for (std::size_t k = 0; k < circles.size(); ++k) {
+        const Obstacle& circle = circles[k];
+        if (post[k] != unknown ||
+            !share_a_post(std::hypot(circle.x - from.x, circle.y - from.y), from.radius, circle.radius))
+          continue;
+        post[k] = of_from;
+        reached.push_back(k);
+      }
+    }
+  }
   return post;
 }
 

@@ -112,6 +112,23 @@ TEST(ClogGeometry, ADropletOnOneObstacleIsHeldByNeither) {
   EXPECT_EQ(geometry.mechanism(), ClogMechanism::none);
 }
 
+TEST(ClogGeometry, ThereIsNoGapWithinAPost) {
+  expect_counts(disc_on({-20, 20}).geometry(), 0, 1, 2);
+  // Now the circles between them make one post of all.
+  const ClogGeometry geometry = disc_on({-20, 20, -10, 10, 0}).geometry();
+  expect_counts(geometry, 0, 0, 5);
+  EXPECT_EQ(geometry.mechanism(), ClogMechanism::none);
+}
+
+TEST(ClogGeometry, ADropletHangsOverAWholePost) {
+  for (const double lobe : {0.18, 0.22}) {
+    Scene scene = horseshoe(lobe, lobe);
+    expect_counts(scene.geometry(), 1, 0, 1);
+    scene.obstacles.push_back({0.1, 0, 0.1});  // ends at 0.2
+    expect_counts(scene.geometry(), lobe > 0.2 ? 1 : 0, 0, 1);
+  }
+}
+
 TEST(ClogGeometry, NothingHoldsADropletThatTouchesNothing) {
   Scene scene = disc_on({});
   scene.obstacles.push_back({2, 0, radius});

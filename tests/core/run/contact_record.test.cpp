@@ -79,6 +79,25 @@ TEST(ContactRecord, CountsAnObstacleOncePerPeriodAndMeeting) {
   EXPECT_EQ(shaken.found().number, 2);
 }
 
+/// Overlapping circles along the flow, beside the droplet's lane.
+std::vector<Obstacle> row(double from, double to) {
+  std::vector<Obstacle> circles;
+  for (double x = from; x < to; x += 0.05) circles.push_back({x, 5.55, 0.1});
+  return circles;
+}
+
+TEST(ContactRecord, CountsAPostOfManyCirclesOnce) {
+  // Longer than what is looked at around the droplet.
+  Passage along_a_row(row(4, 8));
+  along_a_row.move_by_steps_to(8);
+  EXPECT_EQ(along_a_row.found().number, 1);
+  std::vector<Obstacle> circles = row(4, 6);
+  for (const Obstacle& circle : row(6.3, 8)) circles.push_back(circle);
+  Passage along_two_rows(circles);
+  along_two_rows.move_by_steps_to(8);
+  EXPECT_EQ(along_two_rows.found().number, 2);
+}
+
 TEST(ContactRecord, BeginsAtTheRangeOfTheContact) {
   Passage passage({{5, 5, 0.1}}, 5, 0.05);
   passage.move_to(2.34);

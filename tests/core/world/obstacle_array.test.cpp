@@ -373,6 +373,18 @@ TEST(ObstacleArray, CirclesWithACentreInEachOtherAreOnePost) {
   EXPECT_NEAR(ObstacleArray(2, {{0.4, 1, 0.3}, {0.6, 1, 0.3}, {0.8, 1, 0.3}}).smallest_gap(), 1, 1e-12);
 }
 
+TEST(ObstacleArray, FindsPostsAmongAFewCircles) {
+  // The circle that joins the first two comes last; then a copy of it, and one that only overlaps.
+  const std::vector<Obstacle> circles{
+      {1, 1, 0.2}, {1.3, 1, 0.2}, {1.55, 1, 0.2}, {1.15, 1, 0.2}, {1.15, 1, 0.2}};
+  EXPECT_EQ(posts_among(circles), (std::vector<int>{0, 0, 1, 0, 0}));
+  EXPECT_EQ(posts_among(std::vector<Obstacle>{{1, 1, 0.2}, {1, 1, 0.2}}), (std::vector<int>{0, 1}))
+      << "a copy";
+  // A small circle whose centre is in a large one belongs to it.
+  EXPECT_EQ(posts_among(std::vector<Obstacle>{{1, 1, 0.1}, {1.4, 1, 0.5}}), (std::vector<int>{0, 0}));
+  EXPECT_TRUE(posts_among({}).empty());
+}
+
 TEST(ObstacleArray, NamesItsClosestPair) {
   const auto pair = ObstacleArray(20, {{5, 5, 1}, {19.5, 1, 0.8}, {1, 1, 0.5}, {9, 5, 1}}).closest_pair();
   EXPECT_NEAR(pair.gap, 0.2, 1e-12);

@@ -13,8 +13,9 @@ namespace clog {
 
 /// Obstacles that a droplet has met on its way.
 struct Contacts {
-  /// How often it came to touch one. An obstacle counts again once the droplet has been farther than
-  /// ContactRecord::parting from it; each period of an array has obstacles of its own.
+  /// How often it came to touch one: a circle, a post of several circles, or a wedge. It counts again once
+  /// the droplet has been farther than ContactRecord::parting from it; each period of an array has obstacles
+  /// of its own.
   std::int64_t number = 0;
   double first_distance = std::numeric_limits<double>::quiet_NaN();  ///< at the first; NaN: none [sigma]
 };
@@ -41,21 +42,33 @@ class ContactRecord {
   void restore(ByteReader& bytes);
 
  private:
-  /// Place of an obstacle's centre, from the droplet's place of release [sigma].
+  /// Place of a circle's centre or a wedge's tip, from the droplet's place of release [sigma].
   struct Place {
     double x, y;
   };
+  /// An obstacle near the droplet.
+  struct Seen {
+    double gap = std::numeric_limits<double>::infinity();  ///< between its surface and what moves [sigma]
+    Place nearest{0, 0};                                   ///< of its circles
+    bool is_met = false;                                   ///< one of its circles was in met_
+  };
   ContactReach reach_;
   Contacts contacts_;
-  std::vector<Place> met_;  // and not left since
-  // Circles near the droplet, in its frame, as long as it stays within the window.
+  std::vector<Place> met_;  // and not left since: of each, the circle that is nearest
+  // Circles near the droplet, in its frame, as long as it stays within the window, and their posts.
   std::vector<Obstacle> near_;
+  std::vector<int> post_of_;
+  std::size_t num_posts_ = 0;
+  std::vector<Seen> seen_;
   Eigen::Array2d origin_{0, 0};
   Eigen::Array2d lower_{1, 1}, upper_{0, 0};
 
   void look_around(const DropletState& state, const ObstacleArray& obstacles, const Eigen::Array2d& lower,
                    const Eigen::Array2d& upper);
-  void see(const Place& place, double gap, double distance);
+  /// Includes a circle, or a wedge, in what is seen of its obstacle, and takes it out of met_.
+  void include(Seen& obstacle, const Place& place, double gap);
+  /// Puts it back into met_ if the droplet touches it, or touched it and has not left.
+  void count(const Seen& obstacle, double distance);
 };
 
 }  // namespace clog

@@ -76,6 +76,11 @@ class ObstacleArray {
   void visit_window(const Window& window, Visit visit) const;
 };
 
+/// The post of each of a few circles, numbered from 0 in the order in which posts first appear: as
+/// ObstacleArray::posts(), but through these circles alone. A post that is continuous only farther away
+/// is several.
+std::vector<int> posts_among(std::span<const Obstacle> circles);
+
 /// A Poisson-disk sample by random sequential addition. Discs arrive one by one, with a diameter uniform in
 /// diameter (1 -+ spread) at a uniform place (periodic), and stay if all earlier surfaces are at least `gap`
 /// away: in a dense mixture small ones are more frequent than among the arriving ones. With a density, stops
