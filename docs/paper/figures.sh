@@ -25,7 +25,7 @@ for name in "$@"; do
       draw figures 5 --output "$folder/clogs" --set clogging-friction:line-tension=0.05,0.5 \
         --set clogging-friction:obstacle-gap=0.2 --set clogging-friction:seeds=1..2
       ;;
-    mesh) draw figures W1 --output "$folder/mesh" ;; # 32 core-minutes; docs/pictures/figure-W1.png
+    mesh) draw figures W1 --output "$folder/mesh" ;; # 11 core-minutes; docs/pictures/figure-W1.png
     *) echo "no figure is called $name; there are: clogging-length clogs mesh" >&2; exit 2 ;;
   esac
 done
