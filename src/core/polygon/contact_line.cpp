@@ -35,8 +35,12 @@ double turn_between(double cross, double dot) {
 /// From one place along a wall to another: around a circle the shorter way.
 double way(const WallPlace& wall, double from, double to) {
   const double turn = 2 * pi * wall.radius;
-  return wall.wedge >= 0 ? to - from : std::remainder(to - from, turn);
+  const bool is_short = std::abs(to - from) < turn / 2;
+  return wall.wedge >= 0 || is_short ? to - from : std::remainder(to - from, turn);
 }
+
+/// @param k  from -size to 2 size - 1
+Index around(Index k, Index size) { return k < 0 ? k + size : k < size ? k : k - size; }
 
 /// Up to this distance beyond the contact, over the vertex diameter, a vertex counts as lying on the wall: an
 /// end that is held must not be lost when its vertex hovers or bounces.
@@ -140,9 +144,9 @@ void ContactLine::add_ends(const Zone& zone, const VertexPlaces& vertices, Ends&
   const Index n = vertices.size;
   const auto num = static_cast<Index>(zone.vertices.size());
   const auto vertex = [&](Index k) -> const Zone::Vertex& {
-    return zone.vertices[static_cast<std::size_t>((k % num + num) % num)];
+    return zone.vertices[static_cast<std::size_t>(around(k, num))];
   };
-  const auto follows = [&](Index k) { return (vertex(k).vertex + 1) % n == vertex(k + 1).vertex; };
+  const auto follows = [&](Index k) { return around(vertex(k).vertex + 1, n) == vertex(k + 1).vertex; };
   const auto further_on_wall = [&](const Beside& from, const Beside& to) {
     if (zone.wall.wedge >= 0) return to.on_wedge - from.on_wedge;
     return zone.wall.radius * turn_between(from.normal[0] * to.normal[1] - from.normal[1] * to.normal[0],
@@ -168,7 +172,7 @@ void ContactLine::add_ends(const Zone& zone, const VertexPlaces& vertices, Ends&
       Eigen::Array2d carried = here.forward;  // what u of the present vertex weighs so far
       for (Index j = k;; j += step) {
         const bool is_last = j == last;
-        const Index next = (vertex(j).vertex + step + n) % n;
+        const Index next = around(vertex(j).vertex + step, n);
         const Beside there = beside(zone.wall, vertices, next);
         const double share = (vertex(j).share + (is_last ? 0 : vertex(j + step).share)) / 2;
         const double further = further_on_wall(here, there);
