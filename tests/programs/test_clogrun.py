@@ -185,6 +185,16 @@ class Run(ProgramTest):
                 self.assertLess(energy.diff().max(), 0)
                 self.assertLess((energy + samples.dissipated_energy).pipe(np.ptp), 1e-4 * samples.dissipated_energy.iloc[-1])
 
+    def test_a_droplet_that_creeps_along_walls_with_friction_is_not_certified(self):
+        # It creeps for 3000 t0, then continues for 15 sigma. A search as early as without friction would certify it.
+        self.succeed("clogrun", "array", "preset=elastic", "friction=0.1", "line-tension=0.3", "vertices=256", "obstacle-gap=0.3", "obstacle-density=65%",
+                     "box=50", "boxes=4", "seeds=6", "max-time=300", "--sample-interval=60", "--output", "creep.h5")
+        with h5py.File(self.folder / "creep.h5") as file:
+            last = file["trajectory"][-2:]
+        self.assertLess(abs(last["distance"][1] - last["distance"][0]), 1e-3)
+        self.assertTrue((last["kinetic_energy_ratio"] < 1e-7).all() and (last["kinetic_energy_ratio"] > 1e-9).all(), last["kinetic_energy_ratio"])
+        self.assertEqual(table(self.folder / "creep.h5").status[0], "flowing")
+
     def test_a_channel_run_writes_h_speed_shape_and_polygons(self):
         self.succeed(
             "clogrun", "channel", "vertices=128", "line-tension=0.3", "terminal-speed=0.08", "--orifice", 0.7,

@@ -17,6 +17,7 @@ using Eigen::ArrayXd;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using SparseMatrix = Eigen::SparseMatrix<double>;
 
 /// Most searches end within ten.
 constexpr int most_iterations = 30;
@@ -52,33 +53,34 @@ bool is_stable(double bound, const MatrixXd& k, bool has_energy) {
 /// be held by its own discretisation.
 class Stiffness {
  public:
-  Stiffness(const MatrixXd& k, bool has_energy)
-      : size_(k.rows() / 2),
-        has_energy_(has_energy),
-        normal_along_(k.topRightCorner(size_, size_)),
-        along_(k.bottomRightCorner(size_, size_)),
-        along_factor_(along_),
-        adapting_(along_factor_.solve(k.bottomLeftCorner(size_, size_))),
-        shape_(k.topLeftCorner(size_, size_) - normal_along_ * adapting_),
-        shape_factor_(shape_) {}
+  explicit Stiffness(bool has_energy) : has_energy_(has_energy) {}
 
-  /// Does it resist all displacements by more than `bound`, and let the vertices find their places?
-  bool resists(double bound) const { return is_definite(0, along_) && is_stable(bound, shape_, has_energy_); }
+  /// Replaces K. Returns whether it resists all displacements by more than `bound`, and lets the vertices
+  /// find their places; otherwise nothing can be solved.
+  bool set(const MatrixXd& k, double bound) {
+    const Index n = k.rows() / 2;
+    if (!is_definite(0, k.bottomRightCorner(n, n))) return false;
+    normal_along_ = k.topRightCorner(n, n);
+    along_.compute(k.bottomRightCorner(n, n));
+    adapting_ = along_.solve(k.bottomLeftCorner(n, n));
+    shape_ = k.topLeftCorner(n, n) - normal_along_ * adapting_;
+    if (!is_stable(bound, shape_, has_energy_)) return false;
+    shape_factor_.compute(shape_);
+    return true;
+  }
   VectorXd solve(const VectorXd& force) const {
-    const VectorXd along = along_factor_.solve(force.tail(size_));
-    VectorXd move(2 * size_);
-    move.head(size_) = shape_factor_.solve(force.head(size_) - normal_along_ * along);
-    move.tail(size_) = along - adapting_ * move.head(size_);
+    const Index n = force.size() / 2;
+    const VectorXd along = along_.solve(force.tail(n));
+    VectorXd move(2 * n);
+    move.head(n) = shape_factor_.solve(force.head(n) - normal_along_ * along);
+    move.tail(n) = along - adapting_ * move.head(n);
     return move;
   }
 
  private:
-  Index size_;
   bool has_energy_;
-  MatrixXd normal_along_, along_;
-  Eigen::PartialPivLU<MatrixXd> along_factor_;
-  MatrixXd adapting_, shape_;
-  Eigen::PartialPivLU<MatrixXd> shape_factor_;
+  MatrixXd normal_along_, adapting_, shape_;
+  Eigen::PartialPivLU<MatrixXd> along_, shape_factor_;
 };
 
 /// Forces along given axes, around a state that moves.
@@ -99,27 +101,31 @@ class ForceField {
     return force;
   }
 
-  /// At the place of the last force_at().
-  MatrixXd stiffness(const Axes& axes) {
+  /// At the place of the last force_at(). Valid until the next call.
+  const MatrixXd& stiffness(const Axes& axes) {
     const ArrayXd middle = state_.position;
-    MatrixXd stiffness(middle.size(), middle.size());
+    stiffness_.resize(middle.size(), middle.size());
     for (Index k = 0; k < middle.size(); ++k) {
-      const ArrayXd step = difference_step * VectorXd(axes.directions.col(k)).array();
-      state_.position = middle + step;
-      forces_.evaluate(state_, force_);
-      state_.position = middle - step;
-      forces_.evaluate(state_, below_);
-      stiffness.col(k) = axes.directions.transpose() * ((below_ - force_) / (2 * difference_step)).matrix();
+      const auto evaluate_at = [&](double distance, ArrayXd& force) {
+        state_.position = middle;
+        for (SparseMatrix::InnerIterator entry(axes.directions, k); entry; ++entry)
+          state_.position[entry.row()] += distance * entry.value();
+        forces_.evaluate(state_, force);
+      };
+      evaluate_at(difference_step, force_);
+      evaluate_at(-difference_step, below_);
+      stiffness_.col(k) = axes.directions.transpose() * ((below_ - force_) / (2 * difference_step)).matrix();
     }
     state_.position = middle;
-    if (axes.slide.size() > 0) hold_slide(axes.slide, stiffness);
-    return stiffness;
+    if (axes.slide.size() > 0) hold_slide(axes.slide, stiffness_);
+    return stiffness_;
   }
 
  private:
   const EquilibriumForces& forces_;
   DropletState state_;
   ArrayXd force_, below_;
+  MatrixXd stiffness_;
 
   static void hold_slide(const VectorXd& slide, MatrixXd& stiffness) {
     const Index n = slide.size();
@@ -138,12 +144,12 @@ class ForceField {
 std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, const DropletState& initial) {
   const double point_weight = units::droplet_mass * units::gravity / static_cast<double>(initial.size());
   ForceField field(forces, initial);
+  Stiffness stiffness(forces.have_energy);
   ArrayXd position = initial.position;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const Axes axes = forces.axes(field.state());
     const VectorXd force = field.force_at(position, axes);
-    const Stiffness stiffness(field.stiffness(axes), forces.have_energy);
-    if (!stiffness.resists(least_stiffness * point_weight)) return std::nullopt;
+    if (!stiffness.set(field.stiffness(axes), least_stiffness * point_weight)) return std::nullopt;
     const VectorXd move = stiffness.solve(force);
     const double longest = move.lpNorm<Eigen::Infinity>();
     if (longest < move_tolerance && force.lpNorm<Eigen::Infinity>() < force_tolerance * point_weight)

@@ -57,10 +57,15 @@ HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCir
   for (int lane = 0; lane < edges_per_group; lane += lanes) {
     const std::ptrdiff_t i = std::ptrdiff_t{walls.groups[entry]} * edges_per_group + lane;
     const std::ptrdiff_t k = std::ptrdiff_t{entry} * edges_per_group + lane;
+    const V push_x = load(walls.push_x + i), push_y = load(walls.push_y + i);
+    const M is_known = lanes_of(static_cast<int>(held_before), lane);
+    M touched_or_held = hn::Or(is_known, hn::Or(hn::Ne(push_x, all(0)), hn::Ne(push_y, all(0))));
+    // The nearest point of a half edge may be its end, so that the wall does not push all that it wets.
+    if constexpr (wets) touched_or_held = hn::Or(touched_or_held, hn::Gt(load(walls.wetted + i), all(0)));
+    if (hn::AllFalse(D(), touched_or_held)) continue;
     const V dx = hn::Sub(load(a.x + i), all(circle.x)), dy = hn::Sub(load(a.y + i), all(circle.y));
     const V inverse = square_root(hn::Max(hn::MulAdd(dx, dx, hn::Mul(dy, dy)), all(1e-300))).inverse;
     const V normal_x = hn::Mul(dx, inverse), normal_y = hn::Mul(dy, inverse);
-    const V push_x = load(walls.push_x + i), push_y = load(walls.push_y + i);
     // At the end of a contact, the last middle pulls the vertex beyond it a little towards the wall
     // (refined_far is negative); that does not count as a push.
     const V push = hn::Max(hn::MulAdd(push_x, normal_x, hn::Mul(push_y, normal_y)), all(0));
@@ -69,7 +74,6 @@ HWY_INLINE V hold_group(const HoldingCircle& circle, int entry, const HoldingCir
     const M touches = hn::Gt(bears, all(0));
 
     // The wall's point next to the vertex is radius * normal. Slips count along (-normal_y, normal_x).
-    const M is_known = lanes_of(static_cast<int>(held_before), lane);
     const V anchor_x = load(walls.anchor_x + k), anchor_y = load(walls.anchor_y + k);
     const V slip = hn::IfThenElseZero(is_known, hn::MulSub(normal_y, anchor_x, hn::Mul(normal_x, anchor_y)));
     const V spring = hn::Mul(stiffness, hn::Mul(radius, inverse));

@@ -24,8 +24,12 @@ constexpr double relaxation_times_before_a_clog = 10;
 /// the relaxation time at its speed, farther than it may be from it.
 double first_search(const RunParameters& run) {
   constexpr double slow = 1e-4;
+  // While walls with friction yield, a droplet may creep, come free and continue, which no search foresees
+  // (docs/notes/2026-11-25-later-searches-with-friction.md).
+  constexpr double slow_with_friction = 1e-10;
+  const bool has_friction = run.dp.friction > 0 || run.dp.yield_traction > 0;
   const double coasting = farthest_rest / (relaxation_time(run) * run.drag.terminal_speed);  // over V_t
-  return std::min(slow, coasting * coasting);
+  return std::min(has_friction ? slow_with_friction : slow, coasting * coasting);
 }
 /// After a search in vain the next one waits until E_k/E_t has fallen by so much again,
 constexpr double fall_between_searches = 0.1;
