@@ -82,9 +82,9 @@ std::vector<std::string> Events::of_row(const RunRow& row) const {
 std::vector<std::string> Events::look(const store::SweepFile& file) {
   const bool is_round = count_runs(file);
   std::vector<std::string> lines;
-  num_over_ = 0;
+  num_finished_ = 0;
   for (const RunRow& row : file.rows) {
-    num_over_ += !sweep::is_unfinished(row.status);
+    num_finished_ += !sweep::is_unfinished(row.status);
     if (has_looked_)
       for (std::string& one : of_row(row)) lines.push_back(std::move(one));
     known_[row.task] = {row.status, row.attempt};
@@ -92,7 +92,7 @@ std::vector<std::string> Events::look(const store::SweepFile& file) {
   if (!has_looked_ || is_round) {
     Json one = event(has_looked_ ? "round" : "begin");
     one["runs"] = num_runs_;
-    one["over"] = num_over_;
+    one["finished"] = num_finished_;
     lines.push_back(line(one));
   }
   has_looked_ = true;
@@ -102,8 +102,8 @@ std::vector<std::string> Events::look(const store::SweepFile& file) {
 std::string Events::end() const {
   Json one = event("done");
   one["runs"] = num_runs_;
-  one["over"] = num_over_;
-  one["complete"] = num_over_ >= num_runs_;
+  one["finished"] = num_finished_;
+  one["complete"] = num_finished_ >= num_runs_;
   return line(one);
 }
 

@@ -327,6 +327,7 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
       if (!is_left_out) group.seeds.push_back(run->parameters.seed);
       if (!is_left_out) meetings.count(*run, ending, from_distance);
       group.num_on_mesh += !is_left_out && sweep::may_hang_on_mesh(*run);
+      group.num_passed += !is_left_out && !ending.is_clog && run->status == RunStatus::passed;
       group.num_flowing += !is_left_out && !ending.is_clog && run->status == RunStatus::flowing;
       const double relative_speed = run->mean_speed / run->parameters.drag.terminal_speed;
       speeds.push_back(relative_speed);
@@ -380,6 +381,7 @@ std::vector<Field> result_fields(const Group& group) {
   std::vector<Field> fields = {
       {"runs", value_of(group.clogging.num_runs)},
       {"clogs", value_of(group.clogging.num_clogs)},
+      {"passed", value_of(group.num_passed)},
       {"flowing", value_of(group.num_flowing)},
       {"interrupted", value_of(group.num_interrupted)},
       {"failed", value_of(group.num_failed)},

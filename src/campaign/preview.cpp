@@ -223,13 +223,13 @@ void print_expected(const sweep::Plan& plan, const Sample& sample, const SweepCo
       std::cout,
       "# at most {:.3g} core-hours on this machine, {:.3g} us per step measured; runs that clog end sooner\n",
       cost.bound / hour, us_per_step);
-  const auto num_over =
+  const auto num_finished =
       std::count_if(sample.costs.begin(), sample.costs.end(), [](const RunCost& run) { return run.is_over; });
   const auto num_runs = static_cast<std::int64_t>(sample.costs.size());
   fmt::print(std::cout,
              "# expected {:.2g} core-hours (95 %: {:.2g} to {:.2g}), from {} {}, {} of them ended\n",
              cost.expected / hour, cost.lower / hour, cost.upper / hour, sweep::counted(num_runs, "run"),
-             sample.source, num_over);
+             sample.source, num_finished);
 }
 
 /// @param cost  of the whole plan

@@ -108,6 +108,8 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
   std::vector<ResultColumn> columns = {
       {"runs", [](const Group& group) { return std::to_string(group.clogging.num_runs); }},
       {"clogs", [](const Group& group) { return std::to_string(group.clogging.num_clogs); }}};
+  if (std::ranges::any_of(groups, [](const Group& group) { return group.num_passed > 0; }))
+    columns.push_back({"passed", [](const Group& group) { return std::to_string(group.num_passed); }});
   if (are_mechanisms_shown(groups)) columns.push_back({"w/s/h/o", mechanism_counts});
   const std::string level = fmt::format("{:g} %", 100 * confidence);
   columns.insert(columns.end(),

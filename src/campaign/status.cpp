@@ -50,7 +50,7 @@ Status status_of(const std::string& path, const store::SweepFile& file, double c
   }
   const std::int64_t num_wanted = status.runs.num_runs - status.runs.num_beyond;
   status.left = time_left(times_of_sets(file.rows, plan, num_wanted),
-                          std::max<std::size_t>(1, static_cast<std::size_t>(status.num_under_way())));
+                          std::max<std::size_t>(1, static_cast<std::size_t>(status.num_unfinished())));
   if (!file.rows.empty()) status.groups = group_runs(file.rows, confidence);
   return status;
 }
@@ -59,14 +59,15 @@ std::string to_text(const std::string& path, const Status& status, double confid
                     SharedParameters shared) {
   std::string text = fmt::format(
       "{}: {} of {} finished{}, {} clogged, {} flowing, {} failed", console::printable(path),
-      status.num_over(), sweep::counted(status.runs.num_runs, "run"), status.runs.text_of_beyond(),
+      status.num_finished(), sweep::counted(status.runs.num_runs, "run"), status.runs.text_of_beyond(),
       status.count(RunStatus::clogged), status.count(RunStatus::flowing), status.count(RunStatus::failed));
-  if (const std::int64_t broken = status.count(RunStatus::broken); broken > 0)
-    text += fmt::format(", {} broken", broken);
-  if (const std::int64_t under_way = status.num_under_way(); under_way > 0)
-    text += fmt::format("; {} {}", under_way, status.is_alive ? "running" : "interrupted");
+  for (const RunStatus rare : {RunStatus::passed, RunStatus::broken})
+    if (const std::int64_t number = status.count(rare); number > 0)
+      text += fmt::format(", {} {}", number, name(rare));
+  if (const std::int64_t unfinished = status.num_unfinished(); unfinished > 0)
+    text += fmt::format("; {} {}", unfinished, status.is_alive ? "running" : "interrupted");
   text += fmt::format("; {:.3g} core-hours", status.core_hours);
-  if (status.num_over() == status.runs.num_runs)
+  if (status.num_finished() == status.runs.num_runs)
     text += "; complete";
   else if (!status.is_alive)
     text += "; no sweep is writing to it: the command that started it resumes it";
@@ -82,10 +83,11 @@ std::string to_json(const Status& status, double confidence) {
   nlohmann::ordered_json all;
   all["runs"] = status.runs.num_runs;
   all["runs_beyond_lists"] = status.runs.num_beyond;
-  all["over"] = status.num_over();
-  for (const RunStatus one : {RunStatus::clogged, RunStatus::broken, RunStatus::flowing, RunStatus::failed})
+  all["finished"] = status.num_finished();
+  for (const RunStatus one :
+       {RunStatus::clogged, RunStatus::broken, RunStatus::passed, RunStatus::flowing, RunStatus::failed})
     all[name(one)] = status.count(one);
-  all["under_way"] = status.num_under_way();
+  all["unfinished"] = status.num_unfinished();
   all["alive"] = status.is_alive;
   all["core_hours"] = status.core_hours;
   all["seconds_left"] = status.left.is_known

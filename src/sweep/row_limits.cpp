@@ -171,6 +171,20 @@ std::string bare_lanes(std::span<const Obstacle> circles, const ObstacleParamete
       obstacles.own->source(), joined(named), shortest(period));
 }
 
+/// Lengths of the device in other units than those of the circles make it far too large.
+std::string small_part(std::span<const Obstacle> circles, const ObstacleParameters& obstacles) {
+  constexpr double small = 0.2;
+  const auto [left, right] = std::ranges::minmax(circles, {}, &Obstacle::x);
+  const auto [lowest, highest] = std::ranges::minmax(circles, {}, &Obstacle::y);
+  const double along = obstacles.period().along();
+  if (right.x - left.x > small * along && highest.y - lowest.y > small * obstacles.box) return "";
+  return fmt::format(
+      "obstacles={} has all circles at x={:.4g} to {:.4g}, y={:.4g} to {:.4g}, a small part of {:.4g} by "
+      "{:.4g}: box, "
+      "length, entrance and exit are in droplet diameters",
+      obstacles.own->source(), left.x, right.x, lowest.y, highest.y, along, obstacles.box);
+}
+
 std::vector<std::string> bare_arrays(const Plan& plan) {
   std::vector<std::string> all;
   std::set<std::tuple<std::string, double, double>> seen;
@@ -183,6 +197,8 @@ std::vector<std::string> bare_arrays(const Plan& plan) {
     // A bare band before an exit, or a bare lane between walls, is meant to be there.
     if (obstacles.exit == 0) all.push_back(bare_band(circles, obstacles));
     if (obstacles.side_walls == SideWalls::off) all.push_back(bare_lanes(circles, obstacles));
+    if (obstacles.exit > 0 || obstacles.side_walls == SideWalls::on)
+      all.push_back(small_part(circles, obstacles));
   }
   std::erase(all, "");
   return all;

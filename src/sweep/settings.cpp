@@ -176,10 +176,11 @@ std::vector<std::string> meant_names(std::string_view word, const std::vector<st
   constexpr std::size_t most_named = 3;
   if (const std::string key = key_of_symbol(word); std::ranges::find(names, key) != names.end()) return {key};
   std::vector<std::string> all = with_part(word, names);
-  if (all.size() > most_named) all.resize(most_named);
-  if (!all.empty()) return all;
   const std::string near = did_you_mean(word, names);
-  return near.empty() ? all : std::vector{near};
+  std::erase(all, near);
+  if (!near.empty()) all.insert(all.begin(), near);
+  if (all.size() > most_named) all.resize(most_named);
+  return all;
 }
 
 const Key& find_key(std::string_view name) {

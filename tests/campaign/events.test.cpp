@@ -67,7 +67,7 @@ TEST_F(EventsTest, BeginWithTheNumberOfRuns) {
   ASSERT_TRUE(first.is_object());
   EXPECT_EQ(first["event"], "begin");
   EXPECT_EQ(first["runs"], 3);
-  EXPECT_EQ(first["over"], 1);
+  EXPECT_EQ(first["finished"], 1);
   EXPECT_TRUE(look().empty());
 }
 
@@ -121,7 +121,7 @@ TEST_F(EventsTest, AreARoundWhenTheSweepGrows) {
   ASSERT_TRUE(grown.is_object());
   EXPECT_EQ(grown["event"], "round");
   EXPECT_EQ(grown["runs"], 5);
-  EXPECT_EQ(grown["over"], 1);
+  EXPECT_EQ(grown["finished"], 1);
   EXPECT_TRUE(look().empty());
 }
 
@@ -132,7 +132,7 @@ TEST_F(EventsTest, EndWithWhetherTheSweepIsComplete) {
   look();
   const json end = json::parse(events_.end());
   EXPECT_EQ(end["event"], "done");
-  EXPECT_EQ(end["over"], 3);
+  EXPECT_EQ(end["finished"], 3);
   EXPECT_EQ(end["complete"], true);
 }
 

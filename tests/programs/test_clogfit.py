@@ -440,6 +440,16 @@ class Fit(ProgramTest):
         self.assertIn("1 run is unfinished: lambda holds for the distances reached so far", text)
         self.assertIn("1 failed", text)
 
+    def test_droplets_that_passed_are_counted(self):
+        self.sweep("seeds=1..4", *FAR)
+        self.assertNotIn("passed", self.succeed("clogfit", "sweep.h5").stdout)
+        self.change(distance=[1, 2, 3, 3], status=[b"clogged", b"flowing", b"passed", b"passed"])
+        group, = self.fit()["groups"]
+        self.assertEqual((group["clogs"], group["passed"], group["flowing"]), (1, 2, 1))
+        self.assertRegex(self.succeed("clogfit", "sweep.h5").stdout, r"clogs +passed")
+        self.assertIn(", 1 clogged, 1 flowing, 0 failed, 2 passed;", self.succeed("clogsweep", "status", "sweep.h5").stdout)
+        self.assertEqual(json.loads(self.succeed("clogsweep", "status", "sweep.h5", "--format", "json").stdout)["passed"], 2)
+
     def test_physically_impossible_rows_are_excluded_with_a_doubt(self):
         self.sweep("seeds=1..8", *FAR)
         distance = np.array([1.0, 2, 3, 4, 5, 6, 7, 8])

@@ -156,7 +156,7 @@ class Sweep(ProgramTest):
         self.assertIn(f"10 of 10 runs finished {beyond}, ", status)
         self.assertIn("; complete", status)
         status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
-        self.assertEqual((status["runs"], status["over"], status["runs_beyond_lists"]), (10, 10, 4))
+        self.assertEqual((status["runs"], status["finished"], status["runs_beyond_lists"]), (10, 10, 4))
 
     def test_an_array_that_may_repeat_is_told_once_when_the_sweep_starts(self):
         sweep = [*SMALL, "max-time=700", "seeds=1", "--output", "s.h5"]

@@ -108,12 +108,12 @@ class Events(SweepTest):
         lines = [json.loads(line) for line in self.succeed("clogsweep", "status", "s.h5", "--follow", "--format", "json").stdout.splitlines()]
         self.assertEqual(process.wait(), 0)
         self.assertEqual((lines[0]["event"], lines[0]["runs"]), ("begin", 2))
-        self.assertEqual((lines[-1]["event"], lines[-1]["over"], lines[-1]["complete"]), ("done", 2, True))
+        self.assertEqual((lines[-1]["event"], lines[-1]["finished"], lines[-1]["complete"]), ("done", 2, True))
         ended = {line["task"]: line for line in lines if line["event"] == "end"}
         rows = table(self.folder / "s.h5").set_index("task")
         for task, line in ended.items():
             self.assertEqual((line["status"], line["distance"], line["seed"]), (rows.status[task], rows.distance[task], rows.seed[task]))
-        self.assertEqual(len(ended), 2 - lines[0]["over"])
+        self.assertEqual(len(ended), 2 - lines[0]["finished"])
 
     def test_a_sweep_that_is_over_has_a_beginning_and_an_end(self):
         self.succeed("clogsweep", *QUICK, "seeds=1..2", "--output", "s.h5")

@@ -119,6 +119,17 @@ class Curve(ProgramTest):
         self.assertIn("fitted curves, with 95 % bands", notes)
         self.assertIn("points of a curve share seeds and so obstacles: their errors are correlated", notes)
 
+    def test_bounds_alone_draw_no_curve(self):
+        self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
+
+        def clogged_at_two(rows):
+            others = ~np.isin(rows["line_tension"], TENSIONS[:2])
+            rows["status"][others], rows["clogged_by"][others], rows["mechanism"][others] = b"flowing", b"none", b"none"
+
+        stored_rows.change(self.folder / "sweep.h5", clogged_at_two)
+        axes = clogsweep.open(self.folder / "sweep.h5", programs=BIN).fit().curve().figure.axes[0]
+        self.assertFalse([line for line in axes.lines if line.get_label().startswith("_fitted")])
+
     def test_it_says_where_points_share_obstacles(self):
         words = "points share seeds and so obstacles"
         self.sweep(FAR[0], FAR[2], "line-tension=0.1,1", "obstacle-gap=0.4,0.5", lengths={0.1: 1.0, 1.0: 10.0})

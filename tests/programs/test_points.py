@@ -46,7 +46,7 @@ class Points(PointsTest):
         self.assertEqual(listed[:15], own[:15])
         self.sweep("s.h5", "--points", "p.csv")
         status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
-        self.assertEqual((status["runs"], status["over"], len(status["groups"])), (14, 14, 3))
+        self.assertEqual((status["runs"], status["finished"], len(status["groups"])), (14, 14, 3))
         self.assertIn("14 rows of 14 runs, all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
 
     def test_a_file_grows_by_points_and_by_lists(self):

@@ -36,7 +36,7 @@ class Precision(ProgramTest):
             self.assertIn("within +-75 %", file.attrs["stopping_rule"].decode())
         status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format=json").stdout)
         self.assertEqual(status["runs"], groups[0.3]["runs"] + groups[2]["runs"])
-        self.assertEqual(status["over"], status["runs"])
+        self.assertEqual(status["finished"], status["runs"])
         self.assertIn("complete", self.succeed("clogsweep", "status", "s.h5").stdout)
         last = table(self.folder / "s.h5").task.max()
         self.assertIn("the same bits", self.succeed("clogsweep", "replay", "s.h5", last).stdout)
@@ -87,7 +87,7 @@ class Precision(ProgramTest):
         with h5py.File(self.folder / "s.h5") as file:
             self.assertNotIn("stopping_rule", file.attrs)
         status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format=json").stdout)
-        self.assertEqual(status["over"], status["runs"])
+        self.assertEqual(status["finished"], status["runs"])
         self.assertEqual(status["runs"], len(table(self.folder / "s.h5")))
 
     def test_a_dry_run_tells_between_what_limits_all_rounds_cost(self):

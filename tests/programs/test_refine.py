@@ -36,7 +36,7 @@ class Refine(ProgramTest):
             self.assertIn("until curve=70%", file.attrs["stopping_rule"].decode())
             self.assertIn("round-keys = line-tension seeds", file.attrs["config"].decode())
         status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format=json").stdout)
-        self.assertEqual((status["runs"], status["over"]), (len(rows), len(rows)))
+        self.assertEqual((status["runs"], status["finished"]), (len(rows), len(rows)))
         self.succeed("clogsweep", "verify", "s.h5")
         self.assertIn("the same bits", self.succeed("clogsweep", "replay", "s.h5", rows.task.max()).stdout)
         again = self.succeed("clogsweep", *SWEEP, GOAL, "--output", "s.h5")

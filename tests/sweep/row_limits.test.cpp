@@ -133,6 +133,26 @@ TEST(BareArrays, AreThoseThatCirclesOfAFileDoNotFill) {
   EXPECT_EQ(bare_in("15", "1").size(), 2u) << "along and across";
 }
 
+TEST(BareArrays, AreDevicesOfWhichCirclesFillASmallPart) {
+  const auto said_of = [](const char* box, const char* length, const char* exit) {
+    Settings settings;
+    settings.attach("posts.csv", OwnCircles({{2, 2, 0.2}, {8, 4, 0.2}, {14, 2, 0.2}}, "posts.csv"));
+    for (const auto& [name, text] : Keys{{"obstacles", "posts.csv"},
+                                         {"box", box},
+                                         {"length", length},
+                                         {"side-walls", "on"},
+                                         {"release", "entrance"},
+                                         {"exit", exit}})
+      settings.set(name, text);
+    return bare_arrays(Plan(settings));
+  };
+  EXPECT_TRUE(said_of("6", "16", "15").empty());
+  EXPECT_EQ(
+      said_of("1500", "4000", "3500"),
+      std::vector<std::string>{"obstacles=posts.csv has all circles at x=2 to 14, y=2 to 4, a small part of "
+                               "4000 by 1500: box, length, entrance and exit are in droplet diameters"});
+}
+
 TEST(LimitsOfResults, AreTheLinesThatSaySomething) {
   EXPECT_TRUE(limits_of_results(plan_of({{"box", "20"}, {"max-time", "600"}})).empty());
   const Plan plan = plan_of({{"box", "20"}, {"max-time", "1e3"}, {"line-tension", "30"}});

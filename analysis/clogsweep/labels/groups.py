@@ -13,6 +13,7 @@ from ..tools.hints import AnyPath, Column, Group
 from . import AXES, is_number, runs_a_point, said, symbol
 
 FEWEST_POINTS = 3  # that a fitted curve is drawn through
+FEWEST_CLOGGING = 3  # of these with a clog: bounds alone do not tell its shape
 FINISHED = ("passed", "clogged", "broken", "flowing")
 
 
@@ -55,7 +56,10 @@ class Groups:
 
     @functools.cached_property
     def _fitted(self) -> list[dict[str, Any]]:
-        return [curve for curve in self._ask_for_curves() if len(curve["points"]) >= FEWEST_POINTS]
+        def tells_its_shape(curve: dict[str, Any]) -> bool:
+            return sum(point["clogs"] > 0 for point in curve["points"]) >= FEWEST_CLOGGING
+
+        return [curve for curve in self._ask_for_curves() if len(curve["points"]) >= FEWEST_POINTS and tells_its_shape(curve)]
 
     def fitted_curve(self, members: Collection[Group]) -> dict[str, Any] | None:
         """The fitted curve through these groups, if there is one."""

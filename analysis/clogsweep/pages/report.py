@@ -91,7 +91,10 @@ def draw_causes(axes: Axes, groups: Groups, label: str, members: Sequence[Group]
     ranks, base = np.arange(len(members)), np.zeros(len(members))
     shares = {name if name == "broken" else f"clogged, {name}": (colour, [(group[name] or 0) / group["runs"] for group in members])
               for name, colour in style.CAUSE_COLOURS.items()}
-    shares["still going"] = ("0.88", [1 - (group["clogs"] + (group["broken"] or 0)) / group["runs"] for group in members])
+    passed = [(group["passed"] or 0) / group["runs"] for group in members]
+    ended = [(group["clogs"] + (group["broken"] or 0)) / group["runs"] for group in members]
+    shares["passed"] = (style.PASSED_COLOUR, passed)
+    shares["still going"] = ("0.88", [1 - one - other for one, other in zip(ended, passed)])
     for name, (colour, share) in shares.items():
         if any(share):
             for bar, group in zip(axes.bar(ranks, share, bottom=base, color=colour, width=0.8, label=name), members):

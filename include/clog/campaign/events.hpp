@@ -36,7 +36,7 @@ class Events {
   std::string config_;
   std::string num_wanted_;
   std::int64_t num_runs_ = 0;
-  std::int64_t num_over_ = 0;
+  std::int64_t num_finished_ = 0;
   std::map<std::int64_t, Known> known_;
   std::vector<std::string> columns_;  // that events name, see listed_columns()
 

@@ -114,6 +114,7 @@ struct Group {
   fit::MeanSpeed relative_speed_all;
   fit::Migration migration;
   std::vector<std::uint32_t> seeds;  ///< of the runs behind the clogging length
+  int num_passed = 0;                ///< came to the exit of their device
   int num_flowing = 0;               ///< ended by max-time
   int num_interrupted = 0;
   int num_failed = 0;     ///< left out of all fits

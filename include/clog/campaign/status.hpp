@@ -26,9 +26,9 @@ struct Status {
     const auto found = by_status.find(status);
     return found == by_status.end() ? 0 : found->second;
   }
-  std::int64_t num_under_way() const { return count(RunStatus::running) + count(RunStatus::interrupted); }
-  std::int64_t num_over() const {
-    std::int64_t sum = -num_under_way();
+  std::int64_t num_unfinished() const { return count(RunStatus::running) + count(RunStatus::interrupted); }
+  std::int64_t num_finished() const {
+    std::int64_t sum = -num_unfinished();
     for (const auto& [status, number] : by_status) sum += number;
     return sum;
   }

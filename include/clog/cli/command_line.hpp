@@ -59,8 +59,7 @@ class CommandLine {
   boost::program_options::options_description own_{"Options"};
   boost::program_options::options_description usual_keys_{
       "Keys that most sweeps set, in the config file, as key=value or as options. Numbers take a list: "
-      "0.2,0.3  "
-      "lin(a,b,n)  log(a,b,n)  1..50"};
+      "0.2,0.3  1..50  'lin(a,b,n)'  'log(a,b,n)'  (quotes, since shells read parentheses)"};
   boost::program_options::options_description keys_{"Keys of all else"};
   boost::program_options::positional_options_description positional_;
   std::vector<std::string> commands_;

@@ -25,18 +25,18 @@ DwellRecord::DwellRecord(double dwell_length, double terminal_speed) : dwell_len
 
 void DwellRecord::add(double time, double displacement) {
   if (displacement <= found_.last_distance + dwell_length_) return;
-  found_.keep(under_way(time));
+  found_.keep(present(time));
   found_.last_distance = displacement;
   found_.last_begin = time;
 }
 
 Dwells DwellRecord::found(double time, bool has_clogged) const {
   Dwells all = found_;
-  if (!has_clogged) all.keep(under_way(time));
+  if (!has_clogged) all.keep(present(time));
   return all;
 }
 
-Dwell DwellRecord::under_way(double time) const {
+Dwell DwellRecord::present(double time) const {
   return {.length = time - found_.last_begin, .distance = found_.last_distance, .begin = found_.last_begin};
 }
 

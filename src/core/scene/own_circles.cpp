@@ -57,16 +57,17 @@ Period period_of(const ObstacleParameters& obstacles) {
 
 void check_place(const Obstacle& circle, const ObstacleParameters& obstacles) {
   const Period period = period_of(obstacles);
+  if (!(circle.x >= 0 && circle.x < period.along() && circle.y >= 0 && circle.y < period.box))
+    refuse_circles(
+        *obstacles.own,
+        fmt::format("the one at {} lies outside the array) x runs from 0 to {}={}, y from 0 to box={}; other "
+                    "units than droplet diameters need a first line such as # units=um droplet=200um",
+                    place_of(circle), obstacles.length > 0 ? "length" : "boxes*box", shortest(period.along()),
+                    shortest(period.box)));
   if (2 * circle.radius >= std::min(period.along(), period.across()))
     refuse_circles(*obstacles.own, fmt::format("the one at {} meets its own periodic image) use a box larger "
                                                "than its diameter",
                                                place_of(circle)));
-  if (!(circle.x >= 0 && circle.x < period.along() && circle.y >= 0 && circle.y < period.box))
-    refuse_circles(
-        *obstacles.own,
-        fmt::format("the one at {} lies outside the array) x runs from 0 to {}={}, y from 0 to box={}",
-                    place_of(circle), obstacles.length > 0 ? "length" : "boxes*box", shortest(period.along()),
-                    shortest(period.box)));
 }
 
 /// The smallest gap between a wall and a post that does not touch it.
@@ -173,6 +174,11 @@ void check_ways(const ObstacleParameters& obstacles) {
   });
 }
 
+std::string overlap_of(double gap) {
+  constexpr double round_off = 1e-9;
+  return gap > -round_off ? "touch" : fmt::format("overlap by {:.3g} sigma", -gap);
+}
+
 void check_circles(const RunParameters& run) {
   const ObstacleParameters& obstacles = run.obstacles;
   if (!obstacles.own)
@@ -186,10 +192,11 @@ void check_circles(const RunParameters& run) {
   const ObstacleArray::Pair pair = examined(obstacles).pair;
   const std::string both = fmt::format("those at {} and {}", place_of(pair.first), place_of(pair.second));
   if (pair.gap <= 0)
-    refuse_circles(*obstacles.own,
-                   fmt::format("{} touch or overlap, by {:.3g} sigma, across the border of the box too) move "
-                               "them apart or make them smaller; of one post each has its centre in another",
-                               both, -pair.gap));
+    refuse_circles(
+        *obstacles.own,
+        fmt::format("{} {}) move them apart, also from periodic images, or make them smaller; in a "
+                    "post of several circles each has its centre in the next",
+                    both, overlap_of(pair.gap)));
   const double edge = model_of(run).narrowest(run);
   if (pair.gap <= edge)
     refuse_circles(

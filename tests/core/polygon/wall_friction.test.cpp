@@ -316,8 +316,8 @@ RunResult finished(DropletRun run) {
 }
 
 TEST(WallFriction, HoldsADropletThatHangsOverADisc) {
-  // Without friction it slips off. Proved or waited for, it is the same rest: it is searched for once the walls
-  // hardly yield any more.
+  // Without friction it slips off. Proved or waited for, it is the same rest: it is searched for once the
+  // walls hardly yield any more.
   constexpr double quiet = 1e-15;
   EXPECT_EQ(finished(falls_on_disc(0, ClogDetection::certified, quiet)).status, RunStatus::passed);
   const RunResult certified = finished(falls_on_disc(0.1, ClogDetection::certified, quiet));

@@ -61,11 +61,13 @@ TEST(OwnCircles, HaveTheGapAndTheDensityOfTheirFile) {
 }
 
 TEST(OwnCircles, AreRefusedWithTheirPlaces) {
-  EXPECT_NE(
-      refusal(among({{2, 5, 0.5}, {2.5, 5, 0.5}})).find("posts.csv (those at x=2, y=5 and x=2.5, y=5 touch"),
-      std::string::npos);
-  EXPECT_NE(refusal(among({{0.1, 5, 0.5}, {9.4, 5, 0.5}})).find("across the border"), std::string::npos);
+  EXPECT_NE(refusal(among({{2, 5, 0.5}, {2.5, 5, 0.5}}))
+                .find("posts.csv (those at x=2, y=5 and x=2.5, y=5 overlap by 0.5 sigma)"),
+            std::string::npos);
+  EXPECT_NE(refusal(among({{0.1, 5, 0.5}, {9.4, 5, 0.5}})).find("periodic images"), std::string::npos);
   EXPECT_NE(refusal(among({{11, 5, 0.5}})).find("outside the array"), std::string::npos);
+  EXPECT_NE(refusal(among({{700, 125, 60}})).find("first line such as # units=um droplet=200um"),
+            std::string::npos);
   EXPECT_NE(refusal(among({{std::nan(""), 5, 0.5}})).find("outside the array"), std::string::npos);
   EXPECT_NE(refusal(among({{5, 5, 5}})).find("periodic image"), std::string::npos);
   EXPECT_NE(refusal(among({{5, 5, 0.5}, {6.04, 5, 0.5}})).find("not wider than an edge"), std::string::npos);
@@ -116,7 +118,7 @@ TEST(OwnCircles, AreShiftedSoThatTheDropletStartsAnywhere) {
 TEST(OwnCircles, MayBeAnyLengthAndFindEachOtherOverItsBorder) {
   RunParameters run = among({{0.2, 5, 0.25}, {23.2, 5, 0.25}});
   run.obstacles.length = 23.5;
-  EXPECT_NE(refusal(run).find("touch or overlap"), std::string::npos);
+  EXPECT_NE(refusal(run).find("x=23.2, y=5 touch)"), std::string::npos);
   run.obstacles.own = OwnCircles({{0.2, 5, 0.25}, {22.9, 5, 0.25}});
   EXPECT_NEAR(resolve(run).obstacles.gap, 0.8 - 0.5, 1e-12);
   EXPECT_DOUBLE_EQ(resolve(run).obstacles.density.per_area.value(), 2 / 235.0);

@@ -59,7 +59,7 @@ class DwellRecord {
   double dwell_length_;
   Dwells found_;  // those that have ended
 
-  Dwell under_way(double time) const;
+  Dwell present(double time) const;
 };
 
 }  // namespace clog
