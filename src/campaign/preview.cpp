@@ -75,6 +75,7 @@ struct Sample {
   std::int64_t num_clogged = 0;
   std::int64_t num_short = 0;  ///< clogged runs that ended within one obstacle spacing of their release
   double spacing = 0;          ///< of the obstacles of such a run [sigma]
+  bool has_own_circles = false;
 
   void count(const sweep::RunRow& row) {
     if (row.status != RunStatus::clogged) return;
@@ -82,6 +83,7 @@ struct Sample {
     if (!(row.distance < sweep::obstacle_spacing(row))) return;
     ++num_short;
     spacing = sweep::obstacle_spacing(row);
+    has_own_circles |= row.parameters.obstacles.layout == ObstacleLayout::file;
   }
 };
 
@@ -249,9 +251,10 @@ void print_short_lengths(const Sample& sample) {
   if (sample.num_short < fewest || one_in * sample.num_short < sample.num_clogged) return;
   fmt::print(std::cout,
              "# {} of {} clogged within one obstacle spacing ({:.3g} sigma) of their release: such lengths "
-             "reflect the release site, not clogging (v); give fewer obstacles, e.g. the default "
-             "obstacle-density\n",
-             sample.num_short, sweep::counted(sample.num_clogged, "run"), sample.spacing);
+             "reflect the release site, not clogging (v); {}\n",
+             sample.num_short, sweep::counted(sample.num_clogged, "run"), sample.spacing,
+             sample.has_own_circles ? "the share of droplets that got past says more"
+                                    : "give fewer obstacles, e.g. the default obstacle-density");
 }
 
 /// Limits of the cost of a sweep that adds seeds.

@@ -339,7 +339,7 @@ class Pictures(Analysis):
         status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
         self.succeed("clogfit", "report", "s.h5", "--output", "report.html", "--examples", 0)
         self.assertEqual(status["runs"], 40)
-        self.assertIn(f"{status['over']} of 40 runs finished", (self.folder / "report.html").read_text())
+        self.assertIn(f"{status['finished']} of 40 runs finished", (self.folder / "report.html").read_text())
 
     def test_a_report_says_which_programs_made_it(self):
         self.succeed("clogsweep", *QUICK, "seeds=1..2", "--output", "s.h5")

@@ -1,5 +1,6 @@
 """clogfit units, and sweeps, fits and figures that know their laboratory."""
 
+import html
 import json
 import re
 import subprocess
@@ -8,6 +9,9 @@ import unittest
 
 import h5py
 from support import BIN, QUICK, ROOT, ProgramTest
+
+sys.path.insert(0, str(ROOT / "analysis"))
+from clogsweep.tools import rounded  # noqa: E402
 
 # The droplets of Cheng et al.: diameter, tilt, terminal speed; V_t and Gamma_exp as printed there, with half of their last digit, or of that of
 # what they follow from ("sigma = 3.5 mm, v_t = 7 mm/s" may be off by one part in fourteen).
@@ -84,6 +88,13 @@ class Units(ProgramTest):
         self.succeed("clogsweep", *QUICK, "line-tension=1", "seeds=1..4", "--output", "plain.h5")
         self.assertNotIn("lambda/mm", self.succeed("clogfit", "plain.h5").stdout)
         self.assertIn("lambda/mm", self.succeed("clogfit", "plain.h5", "--lab", lab).stdout)
+
+    def test_a_report_has_bounds_in_laboratory_units(self):
+        self.succeed("clogsweep", "--lab", self.lab(), "vertices=64", "box=20", "max-time=20", "seeds=1..4", "--output", "s.h5")
+        group, = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
+        self.assertEqual(group["clogs"], 0)
+        self.succeed("clogfit", "report", "s.h5", "--output", "r.html")
+        self.assertIn(f"> {rounded.plain(group['clogging_length_lower_mm'])}<", html.unescape((self.folder / "r.html").read_text()))
 
     def test_a_run_of_a_laboratory_is_told_in_its_units(self):
         lab = self.lab()

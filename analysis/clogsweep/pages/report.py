@@ -129,6 +129,12 @@ def laboratory_columns(groups: Groups) -> dict[str, str]:
     return named if groups.laboratory else {}
 
 
+def in_laboratory(group: Group, name: str) -> str:
+    """A number in laboratory units, or the lower bound of a length."""
+    bound = group["clogging_length_lower_mm"] if name == "clogging_length_mm" and group["clogs"] == 0 else None
+    return rounded.plain(group[name]) if bound is None else f"> {rounded.plain(bound)}"
+
+
 def slope(group: Group) -> str:
     """Lateral displacement per distance."""
     return "-" if group["lateral_slope"] is None else rounded.with_error(group["lateral_slope"], group["lateral_slope_error"])
@@ -185,7 +191,7 @@ def table_of_lengths(groups: Groups, sentences: dict[str, str], rows: pandas.Dat
               *(["lateral/r"] if groups.are_lattices else []), "&lang;v<sub>g</sub>&rang;/v<sub>t</sub>", *laboratory_columns(groups).values(), "Ca", "seeds"]
     lines = [[*(cell(groups, group, name) for name in names), str(group["runs"]), str(group["clogs"]),
               *(str(group[name]) for name in style.MECHANISM_COLOURS), length(group),
-              *([slope(group)] if groups.are_lattices else []), speed(group), *(rounded.plain(group[name]) for name in laboratory_columns(groups)), rounded.plain(group["capillary_number"]), seeds_of(group, names, rows)] for group in groups.members]
+              *([slope(group)] if groups.are_lattices else []), speed(group), *(in_laboratory(group, name) for name in laboratory_columns(groups)), rounded.plain(group["capillary_number"]), seeds_of(group, names, rows)] for group in groups.members]
     return table(titles, lines, [doubts_of(group, sentences) for group in groups.members])
 
 
@@ -247,7 +253,7 @@ def run_examples(shown: Sequence[np.void], sweep: pathlib.Path, clogrun: pathlib
 def progress_of(status: dict[str, Any], rows: pandas.DataFrame) -> str:
     """@param status  of clogsweep status; @param rows  the tasks that have begun"""
     counts = ", ".join(f"{count} {name}" for name, count in rows.status.value_counts().items())
-    return f"{status['over']} of {rounded.counted(status['runs'], 'run')} finished ({counts})"
+    return f"{status['finished']} of {rounded.counted(status['runs'], 'run')} finished ({counts})"
 
 
 LENGTHS = ("&lambda; is the way after which 1/e of the droplets have not clogged, in droplet diameters; v<sub>t</sub> is the speed of a free droplet. "
