@@ -20,6 +20,10 @@ SVG = """<svg xmlns="http://www.w3.org/2000/svg" width="3.6mm" height="1.2mm" vi
 <rect x="0" y="0" width="3600" height="1200" fill="none" stroke="black"/>{}</svg>"""
 
 
+def box(left, bottom, right, top):
+    return [(left, bottom), (right, bottom), (right, top), (left, top)]
+
+
 def csv(scale=1.0):
     return "".join(f"{scale * x:.10g},{scale * y:.10g},{scale * 0.5:.10g}\n" for x, y in ROW)
 
@@ -208,6 +212,53 @@ class Drawings(Analysis):
         self.write("posts.csv", "my own")
         self.write("device.svg", SVG.format('<circle cx="800" cy="300" r="50"/>'))
         self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts", words=["will not overwrite"])
+
+
+class WrongDrawings(Analysis):
+    """What a drawing may have that a user did not intend."""
+
+    COMMAND = ["--droplet", "200um", "--output", "posts"]
+
+    def dxf(self, unit=13, circles=(), outlines=(), lines=()):
+        import ezdxf
+
+        drawing = ezdxf.new("R2010")
+        drawing.header["$INSUNITS"] = unit
+        space = drawing.modelspace()
+        for x, y in circles:
+            space.add_circle((x, y), 50)
+        for outline in outlines:
+            space.add_lwpolyline(outline, close=True)
+        for begin, end in lines:
+            space.add_line(begin, end)
+        drawing.saveas(self.folder / "device.dxf")
+
+    def refuse(self, *options, words):
+        super().refuse_analysis("circles", "device.dxf", *self.COMMAND, *options, words=words)
+        self.assertFalse((self.folder / "posts.csv").exists())
+
+    def test_a_device_too_large_or_too_small_for_the_droplet(self):
+        edge, post = box(0, 0, 3600, 1200), box(500, 500, 600, 600)
+        for unit, options, words in [(6, [], ["1.8e+07 by 6e+06 droplet diameters (the drawing's unit is m)", "$INSUNITS", "--droplet"]),
+                                     (12, [], ["unit is nm"]), (0, ["--unit", "mm"], ["unit is mm", "check --unit"])]:
+            with self.subTest(unit=unit):
+                self.dxf(unit, outlines=[edge, post])
+                self.refuse("--as-rows", *options, words=words)
+                self.assertFalse((self.folder / "posts.png").exists())
+        self.dxf(outlines=[box(0, 0, 36e4, 36e4), box(1e4, 1e4, 35e4, 35e4)])
+        self.refuse("--as-rows", "--corner", "0.01", words=["circles (at most 200000)", "--corner"])
+        self.write("device.svg", SVG.format('<circle cx="800" cy="300" r="50"/>').replace('width="3.6mm" height="1.2mm"', ""))
+        self.refuse_analysis("circles", "device.svg", "--droplet", "10mm", "--output", "other", "--unit", "um", words=["unit is um"])
+        self.refuse_analysis("circles", "device.svg", "--droplet", "10um", "--output", "other", words=["px", "give --unit"])
+
+    def test_a_unit_other_than_the_drawing_states(self):
+        self.dxf(circles=[(800, 300), (1600, 300)], outlines=[box(0, 0, 3600, 1200)])
+        self.refuse("--unit", "mm", words=["--unit mm", "the drawing says um"])
+        self.refuse("--pixel", "2um", words=["--pixel 2um", "the drawing says um"])
+        self.draw("circles", "device.dxf", *self.COMMAND, "--unit", "um")
+        self.write("device.svg", SVG.format('<circle cx="800" cy="300" r="50"/>'))
+        self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "other", "--unit", "um", words=["the drawing says mm"])
+        self.draw("circles", "device.svg", "--droplet", "200um", "--output", "other", "--unit", "mm")
 
 
 NEW = ["length", "side_walls", "entrance", "entrance_from", "entrance_to", "exit", "release_x", "release_y"]

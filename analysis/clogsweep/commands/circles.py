@@ -68,14 +68,35 @@ def options() -> argparse.Namespace:
 
 def metres_of(arguments: argparse.Namespace, drawing: shapes.Drawing) -> float:
     """Metres per unit of the drawing. @throws UserError"""
-    if arguments.pixel:
-        return shapes.length_in_metres(arguments.pixel, "--pixel")
-    if arguments.unit:
-        return shapes.METRES[arguments.unit]
+    if drawing.metres and not drawing.unit_is_assumed and arguments.unit == drawing.unit:
+        return drawing.metres
+    if arguments.pixel or arguments.unit:
+        metres = shapes.length_in_metres(arguments.pixel, "--pixel") if arguments.pixel else shapes.METRES[arguments.unit]
+        refuse_other_unit(arguments, drawing, metres)
+        return metres
     if drawing.metres is None:
         what = "--pixel, such as --pixel 2.5um" if drawing.frame else "--unit, such as --unit um"
         raise UserError(f"{arguments.drawing} does not say how long its unit is; give {what}")
     return drawing.metres
+
+
+def refuse_other_unit(arguments: argparse.Namespace, drawing: shapes.Drawing, metres: float) -> None:
+    """@param metres  of the unit that the user gave. @throws UserError  if the drawing states another"""
+    if drawing.metres is None or drawing.unit_is_assumed or np.isclose(metres, drawing.metres, rtol=1e-6, atol=0):
+        return
+    option = f"--pixel {arguments.pixel}" if arguments.pixel else f"--unit {arguments.unit}"
+    raise UserError(f"{option} contradicts {arguments.drawing} (the drawing says {drawing.unit}); run without {option}, or correct the unit in the drawing")
+
+
+def remedy_of_unit(arguments: argparse.Namespace, drawing: shapes.Drawing) -> str:
+    """What to do if lengths are wrong."""
+    if arguments.pixel or arguments.unit:
+        return f"check {'--pixel' if arguments.pixel else '--unit'}"
+    return "give --unit" if drawing.unit_is_assumed else "correct the unit in the drawing (of DXF $INSUNITS)"
+
+
+def unit_in_words(arguments: argparse.Namespace, drawing: shapes.Drawing) -> str:
+    return str(arguments.pixel or arguments.unit or drawing.unit)
 
 
 def call_of(device: shapes.Device, output: pathlib.Path) -> str:
@@ -113,7 +134,9 @@ def body() -> int:
     outputs.refuse_unwritable_picture(arguments.output, arguments.drawing)
     outputs.refuse_unwritable(table, "csv", arguments.drawing)
     drawing = readers.read(arguments.drawing, arguments.layer, arguments.posts)
-    device = shapes.understood(drawing, metres_of(arguments, drawing), droplet, arguments.tolerance, TURNS[arguments.flow])
+    metres = metres_of(arguments, drawing)
+    device = shapes.understood(drawing, metres, droplet, arguments.tolerance, TURNS[arguments.flow])
+    shapes.refuse_unlikely(device, unit_in_words(arguments, drawing), remedy_of_unit(arguments, drawing))
     made: list[str] = []
     if arguments.as_rows and device.others:
         device, made = in_rows(device, arguments.corner)

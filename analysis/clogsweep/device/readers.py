@@ -16,6 +16,7 @@ from .shapes import Drawing, area
 PICTURES = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg")
 UNITS_OF_DXF = {1: 25.4e-3, 4: 1e-3, 5: 1e-2, 6: 1.0, 12: 1e-9, 13: 1e-6}  # $INSUNITS
 METRES_IN_PIXEL_OF_SVG = 25.4e-3 / 96
+LENGTHS_OF_SVG = ("mm", "cm", "in", "pt", "pc", "Q")
 FLATNESS = 1e-3  # of a curve's size, that straight pieces may be off
 
 
@@ -99,8 +100,11 @@ def read_gds(path: pathlib.Path, layer: str | None) -> Drawing:
 def read_svg(path: pathlib.Path) -> Drawing:
     """Circles, and closed outlines with their curves."""
     svgelements = library("svgelements", "python3-svgelements")
-    found = Drawing([], [], METRES_IN_PIXEL_OF_SVG, skipped=collections.Counter())
-    for element in svgelements.SVG.parse(str(path), reify=True).elements():
+    content = svgelements.SVG.parse(str(path), reify=True)
+    width = str(content.values.get("width", "")).strip()
+    found = Drawing([], [], METRES_IN_PIXEL_OF_SVG, unit_is_assumed=not width.endswith(LENGTHS_OF_SVG), skipped=collections.Counter())
+    found.unit_in_words = "px, 96 in an inch" if found.unit_is_assumed else width.lstrip("0123456789.eE+- ")
+    for element in content.elements():
         if not isinstance(element, svgelements.Shape) or element.values.get("visibility") == "hidden":
             continue
         for part in svgelements.Path(element).as_subpaths():

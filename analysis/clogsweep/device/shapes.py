@@ -11,6 +11,7 @@ from ..tools.errors import UserError
 from ..tools.hints import Numbers
 
 METRES = {"nm": 1e-9, "um": 1e-6, "µm": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 25.4e-3}
+LONGEST = 10000  # side of a device that is not taken for a mistake of the unit [sigma]
 
 
 @dataclasses.dataclass
@@ -21,7 +22,13 @@ class Drawing:
     outlines: list[Numbers]  # corners (n, 2); the last one is joined to the first unless the border of a picture cuts it
     metres: float | None  # in one unit; None if the drawing does not say
     frame: tuple[float, float, float, float] | None = None  # left, bottom, right, top, if the drawing has edges of its own
+    unit_is_assumed: bool = False
+    unit_in_words: str | None = None  # its name, if that is not the length `metres`
     skipped: dict[str, int] = dataclasses.field(default_factory=dict)  # kinds of objects that are no posts, with their numbers
+
+    @property
+    def unit(self) -> str:
+        return self.unit_in_words or unit_name(self.metres or 0.0)
 
 
 @dataclasses.dataclass
@@ -71,6 +78,17 @@ def length_in_metres(text: str, option: str) -> float:
     if value <= 0:
         raise UserError(f"invalid {option}: {text} (must be a length with its unit, nm, um, mm, cm, m or in) try 200um")
     return value
+
+
+def unit_name(metres: float) -> str:
+    """A unit's name, such as um, or its length if it has none."""
+    return next((name for name, size in METRES.items() if np.isclose(size, metres, rtol=1e-6, atol=0)), f"{metres:.4g} m")
+
+
+def refuse_unlikely(device: Device, unit: str, remedy: str) -> None:
+    """@param unit  in which the drawing was read. @throws UserError  if the device is too large or too small for such droplets"""
+    if max(device.length, device.width) > LONGEST or min(device.length, device.width) < 1:
+        raise UserError(f"the device is {device.length:.2g} by {device.width:.2g} droplet diameters (the drawing's unit is {unit}); {remedy}, or check --droplet")
 
 
 def area(outline: Numbers) -> float:
