@@ -15,7 +15,7 @@ import pathlib
 
 import numpy as np
 
-from ..device import readers, rows, shapes
+from ..device import lines, readers, rows, shapes
 from ..drawing import device as drawn
 from ..style import Picture
 from ..tools import outputs, rounded
@@ -107,14 +107,31 @@ def call_of(device: shapes.Device, output: pathlib.Path) -> str:
 
 def told(device: shapes.Device, drawing: shapes.Drawing) -> list[str]:
     """Describes in words what was read from the drawing."""
-    edge = "its own edge" if device.has_frame else "no edge is drawn: that of what surrounds the posts"
-    lines = [f"{rounded.counted(device.num_posts(), 'post')}, device {device.length:.4g} x {device.width:.4g} droplet diameters ({edge})"]
+    edge = "its own edge" if device.has_frame else "no edge is drawn"
+    words = [f"{rounded.counted(device.num_posts(), 'post')}, device {device.length:.4g} x {device.width:.4g} droplet diameters ({edge})"]
     if len(device.circles):
         diameters = device.circles[:, 2]
-        lines.append(f"diameters {diameters.min():.4g} to {diameters.max():.4g}, smallest gap {device.smallest_gap():.4g}, in droplet diameters")
-    if drawing.skipped:
-        lines.append("skipped: " + ", ".join(f"{count} {kind}" for kind, count in sorted(drawing.skipped.items())))
-    return lines
+        gap = f", smallest gap {device.smallest_gap():.4g}" if device.num_posts() > 1 else ""
+        words.append(f"diameters {diameters.min():.4g} to {diameters.max():.4g}{gap}, in droplet diameters")
+    if not device.has_frame:
+        where = "where there is no wall" if device.walls else "on every side"
+        words.append(f"no edge is drawn: half a droplet diameter is added around the posts {where}")
+    if number := len(device.walls):
+        are = "post as long as the device is taken for a wall" if number == 1 else "posts as long as the device are taken for walls"
+        words.append(f"{number} {are}: side-walls=on")
+    if drawing.joined[0]:
+        words.append(f"{rounded.counted(drawing.joined[0], 'line')} closed into {rounded.counted(drawing.joined[1], 'outline')}")
+    return words + skipped(drawing)
+
+
+def skipped(drawing: shapes.Drawing) -> list[str]:
+    """Describes what of the drawing is not used, and what to do about it."""
+    if not drawing.skipped:
+        return []
+    names = ", ".join(f"{count} {kind}" for kind, count in sorted(drawing.skipped.items()))
+    install = "" if drawing.can_join else ", or install python3-shapely, which joins lines"
+    remedy = f" (lines red in the picture); draw closed outlines{install}; straight walls at both sides are side-walls=on" if drawing.lines else ""
+    return [f"skipped: {names}{remedy}"]
 
 
 def in_rows(device: shapes.Device, radius: float) -> tuple[shapes.Device, list[str]]:
@@ -134,6 +151,7 @@ def body() -> int:
     outputs.refuse_unwritable_picture(arguments.output, arguments.drawing)
     outputs.refuse_unwritable(table, "csv", arguments.drawing)
     drawing = readers.read(arguments.drawing, arguments.layer, arguments.posts)
+    lines.join(drawing)
     metres = metres_of(arguments, drawing)
     device = shapes.understood(drawing, metres, droplet, arguments.tolerance, TURNS[arguments.flow])
     shapes.refuse_unlikely(device, unit_in_words(arguments, drawing), remedy_of_unit(arguments, drawing))
