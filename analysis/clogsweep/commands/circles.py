@@ -5,8 +5,8 @@
     clogsweep obstacles=posts.csv box=... length=...      # as the command prints it
 
 posts.csv has the posts in micrometres, and the droplet's diameter. posts.png shows what was understood: look at it before
-you run anything. An outline that holds everything else is the edge of the device; of a picture it is its own edge. Round
-posts are circles. Others, such as triangles, are red in the picture, and nothing is written unless --as-rows replaces each by rows
+you run anything. An outline that holds everything else is the edge of the device; of a picture it is its own edge. Lines
+that close are outlines; those that do not are red. Flat outlines along the sides are walls. Round posts are circles. Others, such as triangles, are red in the picture, and nothing is written unless --as-rows replaces each by rows
 of overlapping circles along its outline, or --as-circles by a circle of the same area.
 """
 
