@@ -1,16 +1,21 @@
 """Devices of a user's own: files of circles in any form, walls, entrance, exit; drawings of them, and pictures."""
 
 import json
+import sys
 import unittest
+from unittest import mock
 
 import h5py
+import matplotlib
 import numpy as np
+from matplotlib import image
 from PIL import Image, ImageDraw
 
 import stored_rows
 from drawing import Analysis
 from support import BIN, table
 
+from clogsweep import style
 from clogsweep.drawing import device as drawn
 
 ROW = [(4 + 3 * i, 0.9 + 1.7 * j + 0.6 * (i % 2)) for i in range(4) for j in range(3)]  # posts, in droplet diameters
@@ -18,6 +23,10 @@ KEYS = ["box=6", "length=18", "side-walls=on", "release=entrance", "entrance=1",
         "max-time=2000", "seeds=1..3"]
 SVG = """<svg xmlns="http://www.w3.org/2000/svg" width="3.6mm" height="1.2mm" viewBox="0 0 3600 1200">
 <rect x="0" y="0" width="3600" height="1200" fill="none" stroke="black"/>{}</svg>"""
+
+
+def box(left, bottom, right, top):
+    return [(left, bottom), (right, bottom), (right, top), (left, top)]
 
 
 def csv(scale=1.0):
@@ -208,6 +217,132 @@ class Drawings(Analysis):
         self.write("posts.csv", "my own")
         self.write("device.svg", SVG.format('<circle cx="800" cy="300" r="50"/>'))
         self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "posts", words=["will not overwrite"])
+
+
+class WrongDrawings(Analysis):
+    """What a drawing may have that a user did not intend."""
+
+    COMMAND = ["--droplet", "200um", "--output", "posts"]
+
+    def dxf(self, unit=13, circles=(), outlines=(), lines=()):
+        import ezdxf
+
+        drawing = ezdxf.new("R2010")
+        drawing.header["$INSUNITS"] = unit
+        space = drawing.modelspace()
+        for x, y in circles:
+            space.add_circle((x, y), 50)
+        for outline in outlines:
+            space.add_lwpolyline(outline, close=True)
+        for begin, end in lines:
+            space.add_line(begin, end)
+        drawing.saveas(self.folder / "device.dxf")
+
+    def refuse(self, *options, words):
+        super().refuse_analysis("circles", "device.dxf", *self.COMMAND, *options, words=words)
+        self.assertFalse((self.folder / "posts.csv").exists())
+
+    def test_a_device_too_large_or_too_small_for_the_droplet(self):
+        edge, post = box(0, 0, 3600, 1200), box(500, 500, 600, 600)
+        for unit, options, words in [(6, [], ["1.8e+07 by 6e+06 droplet diameters (the drawing's unit is m)", "$INSUNITS", "--droplet"]),
+                                     (12, [], ["unit is nm"]), (0, ["--unit", "mm"], ["unit is mm", "check --unit"])]:
+            with self.subTest(unit=unit):
+                self.dxf(unit, outlines=[edge, post])
+                self.refuse("--as-rows", *options, words=words)
+                self.assertFalse((self.folder / "posts.png").exists())
+        self.dxf(outlines=[box(0, 0, 36e4, 36e4), box(1e4, 1e4, 35e4, 35e4)])
+        self.refuse("--as-rows", "--corner", "0.01", words=["circles (at most 200000)", "--corner"])
+        self.write("device.svg", SVG.format('<circle cx="800" cy="300" r="50"/>').replace('width="3.6mm" height="1.2mm"', ""))
+        self.refuse_analysis("circles", "device.svg", "--droplet", "10mm", "--output", "other", "--unit", "um", words=["unit is um"])
+        self.refuse_analysis("circles", "device.svg", "--droplet", "10um", "--output", "other", words=["px", "give --unit"])
+
+    def test_a_unit_other_than_the_drawing_states(self):
+        self.dxf(circles=[(800, 300), (1600, 300)], outlines=[box(0, 0, 3600, 1200)])
+        self.refuse("--unit", "mm", words=["--unit mm", "the drawing says um"])
+        self.refuse("--pixel", "2um", words=["--pixel 2um", "the drawing says um"])
+        self.draw("circles", "device.dxf", *self.COMMAND, "--unit", "um")
+        self.write("device.svg", SVG.format('<circle cx="800" cy="300" r="50"/>'))
+        self.refuse_analysis("circles", "device.svg", "--droplet", "200um", "--output", "other", "--unit", "um", words=["the drawing says mm"])
+        self.draw("circles", "device.svg", "--droplet", "200um", "--output", "other", "--unit", "mm")
+
+    def test_lines_that_close_are_outlines(self):
+        def sides(corners):
+            return list(zip(corners, corners[1:] + corners[:1]))
+
+        triangles = [[(x, 400), (x + 150, 400 + 1e-4), (x + 75, 550)] for x in (600, 1200, 1800)]
+        lines = [side for corners in [box(0, 0, 3600, 1200), *triangles] for side in sides(corners)]
+        loose = [((2500, 300), (2900, 700))]
+        self.dxf(lines=lines + loose)
+        told = self.draw("circles", "device.dxf", *self.COMMAND, "--as-rows").stdout
+        for words in ("3 posts, device 18 x 6", "13 lines closed into 4 outlines", "skipped: 1 LINE (lines red", "draw closed outlines", "side-walls=on"):
+            self.assertIn(words, told)
+        self.assertGreater(self.red().sum(), 100)
+        crossing = [((500, 450), (2000, 450)), ((2300, 400), (2800, 400)), ((2350, 350), (2600, 900)), ((2750, 350), (2500, 900))]
+        self.dxf(lines=lines + lines[-3:] + crossing)
+        told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "crossing", "--as-rows").stdout
+        for words in ("4 posts, device 18 x 6", "19 lines closed into 5 outlines", "skipped: 1 LINE"):
+            self.assertIn(words, told)
+        self.dxf(circles=[(800, 300), (1600, 300)], lines=sides(triangles[0])[:2])
+        told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "open").stdout
+        self.assertIn("skipped: 2 LINE", told)
+        with mock.patch.dict(sys.modules, {"shapely": None, "shapely.ops": None, "shapely.geometry": None}):
+            self.dxf(circles=[(800, 300), (1600, 300)], lines=lines)
+            told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "other").stdout
+        self.assertIn("skipped: 13 LINE", told)
+        self.assertIn("install python3-shapely", told)
+
+    def red(self):
+        """Which pixels of the picture are."""
+        pixels = image.imread(self.folder / "posts.png")
+        return (pixels[..., 0] > 0.7) & (pixels[..., 1:3] < 0.5).all(axis=2)
+
+    def run_printed(self, told, *keys):
+        """The command that circles prints."""
+        begin = told.strip().splitlines()[-1].removesuffix(" ...").split()
+        self.succeed(*begin, "line-tension=1", "vertices=64", "max-time=5", "seeds=1..2", *keys, "--output", "s.h5")
+        return begin
+
+    def test_without_an_edge_there_is_room_around_the_posts(self):
+        self.dxf(circles=[(800, 300), (1600, 300), (1200, 900)])
+        told = self.draw("circles", "device.dxf", *self.COMMAND).stdout
+        self.assertIn("no edge is drawn: half a droplet diameter is added around the posts on every side", told)
+        self.assertIn("box=4.5", self.run_printed(told))
+        self.assertIn("length=5.5", told)
+        np.testing.assert_allclose(np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4)[0], (150, 150, 100))
+
+    def test_walls_drawn_as_outlines_are_no_posts(self):
+        walls, post = [box(0, -20, 3600, 0), box(0, 1200, 3600, 1220)], box(1500, 500, 1600, 600)
+        self.dxf(circles=[(800, 300), (800, 900)], outlines=[*walls, post])
+        told = self.draw("circles", "device.dxf", *self.COMMAND, "--as-rows").stdout
+        self.assertIn("2 posts as long as the device are taken for walls: side-walls=on", told)
+        self.assertIn("3 posts, device 18 x 6", told)
+        self.assertIn("side-walls=on", self.run_printed(told))
+        self.dxf(circles=[(800, 300), (800, 900)], outlines=[box(0, -20, 3600, 1200), walls[0]])
+        told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "one").stdout
+        self.assertIn("1 post as long as the device is taken for a wall", told)
+        self.assertIn("box=6 length=18", told)
+        self.dxf(circles=[(300, 800), (900, 800)], outlines=[box(0, 0, 10, 3600), box(1200, 0, 1220, 3600)])
+        told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "down", "--flow", "down").stdout
+        self.assertIn("box=5.95 length=18", told)
+        with self.subTest("a wall with teeth is a post"):
+            teeth = [(3600 - 100 * i, 20 + 40 * (i % 2)) for i in range(37)]
+            self.dxf(circles=[(800, 300), (800, 900)], outlines=[[(0, 0), (3600, 0), *teeth], box(0, 1200, 3600, 1220)])
+            told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "teeth", "--as-rows").stdout
+            self.assertIn("1 post as long", told)
+            self.assertIn("3 posts", told)
+
+    def test_the_package_that_rows_need_is_named(self):
+        self.dxf(outlines=[box(0, 0, 3600, 1200), box(500, 500, 600, 600)])
+        with mock.patch.dict(sys.modules, {"shapely": None, "shapely.ops": None, "shapely.geometry": None}):
+            self.refuse("--as-rows", words=["--as-rows needs python3-shapely (apt install python3-shapely)"])
+
+    def test_rows_are_drawn_as_solid_posts(self):
+        self.dxf(outlines=[box(0, 0, 3600, 1200), box(1600, 200, 2400, 1000)])
+        self.draw("circles", "device.dxf", *self.COMMAND, "--as-rows")
+        pixels = image.imread(self.folder / "posts.png")[..., :3]
+        grey = (abs(pixels - np.array(matplotlib.colors.to_rgb(style.OBSTACLE))) < 0.02).all(axis=2)
+        rows, columns = (np.flatnonzero(self.red().any(axis=axis)) for axis in (1, 0))
+        self.assertGreater(grey[rows[0]:rows[-1], columns[0]:columns[-1]].mean(), 0.9)
 
 
 NEW = ["length", "side_walls", "entrance", "entrance_from", "entrance_to", "exit", "release_x", "release_y"]

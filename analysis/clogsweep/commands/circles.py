@@ -5,8 +5,8 @@
     clogsweep obstacles=posts.csv box=... length=...      # as the command prints it
 
 posts.csv has the posts in micrometres, and the droplet's diameter. posts.png shows what was understood: look at it before
-you run anything. An outline that holds everything else is the edge of the device; of a picture it is its own edge. Round
-posts are circles. Others, such as triangles, are red in the picture, and nothing is written unless --as-rows replaces each by rows
+you run anything. An outline that holds everything else is the edge of the device; of a picture it is its own edge. Lines
+that close are outlines; those that do not are red. Flat outlines along the sides are walls. Round posts are circles. Others, such as triangles, are red in the picture, and nothing is written unless --as-rows replaces each by rows
 of overlapping circles along its outline, or --as-circles by a circle of the same area.
 """
 
@@ -15,7 +15,7 @@ import pathlib
 
 import numpy as np
 
-from ..device import readers, rows, shapes
+from ..device import lines, readers, rows, shapes
 from ..drawing import device as drawn
 from ..style import Picture
 from ..tools import outputs, rounded
@@ -68,14 +68,35 @@ def options() -> argparse.Namespace:
 
 def metres_of(arguments: argparse.Namespace, drawing: shapes.Drawing) -> float:
     """Metres per unit of the drawing. @throws UserError"""
-    if arguments.pixel:
-        return shapes.length_in_metres(arguments.pixel, "--pixel")
-    if arguments.unit:
-        return shapes.METRES[arguments.unit]
+    if drawing.metres and not drawing.unit_is_assumed and arguments.unit == drawing.unit:
+        return drawing.metres
+    if arguments.pixel or arguments.unit:
+        metres = shapes.length_in_metres(arguments.pixel, "--pixel") if arguments.pixel else shapes.METRES[arguments.unit]
+        refuse_other_unit(arguments, drawing, metres)
+        return metres
     if drawing.metres is None:
         what = "--pixel, such as --pixel 2.5um" if drawing.frame else "--unit, such as --unit um"
         raise UserError(f"{arguments.drawing} does not say how long its unit is; give {what}")
     return drawing.metres
+
+
+def refuse_other_unit(arguments: argparse.Namespace, drawing: shapes.Drawing, metres: float) -> None:
+    """@param metres  of the unit that the user gave. @throws UserError  if the drawing states another"""
+    if drawing.metres is None or drawing.unit_is_assumed or np.isclose(metres, drawing.metres, rtol=1e-6, atol=0):
+        return
+    option = f"--pixel {arguments.pixel}" if arguments.pixel else f"--unit {arguments.unit}"
+    raise UserError(f"{option} contradicts {arguments.drawing} (the drawing says {drawing.unit}); run without {option}, or correct the unit in the drawing")
+
+
+def remedy_of_unit(arguments: argparse.Namespace, drawing: shapes.Drawing) -> str:
+    """What to do if lengths are wrong."""
+    if arguments.pixel or arguments.unit:
+        return f"check {'--pixel' if arguments.pixel else '--unit'}"
+    return "give --unit" if drawing.unit_is_assumed else "correct the unit in the drawing (of DXF $INSUNITS)"
+
+
+def unit_in_words(arguments: argparse.Namespace, drawing: shapes.Drawing) -> str:
+    return str(arguments.pixel or arguments.unit or drawing.unit)
 
 
 def call_of(device: shapes.Device, output: pathlib.Path) -> str:
@@ -86,14 +107,31 @@ def call_of(device: shapes.Device, output: pathlib.Path) -> str:
 
 def told(device: shapes.Device, drawing: shapes.Drawing) -> list[str]:
     """Describes in words what was read from the drawing."""
-    edge = "its own edge" if device.has_frame else "no edge is drawn: that of what surrounds the posts"
-    lines = [f"{rounded.counted(device.num_posts(), 'post')}, device {device.length:.4g} x {device.width:.4g} droplet diameters ({edge})"]
+    edge = "its own edge" if device.has_frame else "no edge is drawn"
+    words = [f"{rounded.counted(device.num_posts(), 'post')}, device {device.length:.4g} x {device.width:.4g} droplet diameters ({edge})"]
     if len(device.circles):
         diameters = device.circles[:, 2]
-        lines.append(f"diameters {diameters.min():.4g} to {diameters.max():.4g}, smallest gap {device.smallest_gap():.4g}, in droplet diameters")
-    if drawing.skipped:
-        lines.append("skipped: " + ", ".join(f"{count} {kind}" for kind, count in sorted(drawing.skipped.items())))
-    return lines
+        gap = f", smallest gap {device.smallest_gap():.4g}" if device.num_posts() > 1 else ""
+        words.append(f"diameters {diameters.min():.4g} to {diameters.max():.4g}{gap}, in droplet diameters")
+    if not device.has_frame:
+        where = "where there is no wall" if device.walls else "on every side"
+        words.append(f"no edge is drawn: half a droplet diameter is added around the posts {where}")
+    if number := len(device.walls):
+        are = "post as long as the device is taken for a wall" if number == 1 else "posts as long as the device are taken for walls"
+        words.append(f"{number} {are}: side-walls=on")
+    if drawing.joined[0]:
+        words.append(f"{rounded.counted(drawing.joined[0], 'line')} closed into {rounded.counted(drawing.joined[1], 'outline')}")
+    return words + skipped(drawing)
+
+
+def skipped(drawing: shapes.Drawing) -> list[str]:
+    """Describes what of the drawing is not used, and what to do about it."""
+    if not drawing.skipped:
+        return []
+    names = ", ".join(f"{count} {kind}" for kind, count in sorted(drawing.skipped.items()))
+    install = "" if drawing.can_join else ", or install python3-shapely, which joins lines"
+    remedy = f" (lines red in the picture); draw closed outlines{install}; straight walls at both sides are side-walls=on" if drawing.lines else ""
+    return [f"skipped: {names}{remedy}"]
 
 
 def in_rows(device: shapes.Device, radius: float) -> tuple[shapes.Device, list[str]]:
@@ -113,7 +151,10 @@ def body() -> int:
     outputs.refuse_unwritable_picture(arguments.output, arguments.drawing)
     outputs.refuse_unwritable(table, "csv", arguments.drawing)
     drawing = readers.read(arguments.drawing, arguments.layer, arguments.posts)
-    device = shapes.understood(drawing, metres_of(arguments, drawing), droplet, arguments.tolerance, TURNS[arguments.flow])
+    lines.join(drawing)
+    metres = metres_of(arguments, drawing)
+    device = shapes.understood(drawing, metres, droplet, arguments.tolerance, TURNS[arguments.flow])
+    shapes.refuse_unlikely(device, unit_in_words(arguments, drawing), remedy_of_unit(arguments, drawing))
     made: list[str] = []
     if arguments.as_rows and device.others:
         device, made = in_rows(device, arguments.corner)

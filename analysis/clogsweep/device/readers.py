@@ -11,11 +11,13 @@ from typing import Any
 import numpy as np
 
 from ..tools.errors import UserError
-from .shapes import Drawing, area
+from .shapes import Drawing
+from .walls import area
 
 PICTURES = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg")
 UNITS_OF_DXF = {1: 25.4e-3, 4: 1e-3, 5: 1e-2, 6: 1.0, 12: 1e-9, 13: 1e-6}  # $INSUNITS
 METRES_IN_PIXEL_OF_SVG = 25.4e-3 / 96
+LENGTHS_OF_SVG = ("mm", "cm", "in", "pt", "pc", "Q")
 FLATNESS = 1e-3  # of a curve's size, that straight pieces may be off
 
 
@@ -64,13 +66,13 @@ def read_dxf(path: pathlib.Path, layer: str | None) -> Drawing:
             found.skipped[f"{kind} on layer {entity.dxf.layer}"] += 1
         elif kind == "CIRCLE":
             found.circles.append((entity.dxf.center.x, entity.dxf.center.y, 2 * entity.dxf.radius))
-        elif kind in ("LWPOLYLINE", "POLYLINE", "ELLIPSE", "SPLINE"):
+        elif kind in ("LINE", "ARC", "LWPOLYLINE", "POLYLINE", "ELLIPSE", "SPLINE"):
             curve = paths.make_path(entity)
             corners = np.array([(point.x, point.y) for point in curve.flattening(FLATNESS * size_of(curve))])
             if curve.is_closed or getattr(entity, "is_closed", False):
                 found.outlines.append(corners)
             else:
-                found.skipped[f"open {kind}"] += 1
+                found.pieces.append((kind if kind in ("LINE", "ARC") else f"open {kind}", corners))
         else:
             found.skipped[kind] += 1
     return found
@@ -99,8 +101,11 @@ def read_gds(path: pathlib.Path, layer: str | None) -> Drawing:
 def read_svg(path: pathlib.Path) -> Drawing:
     """Circles, and closed outlines with their curves."""
     svgelements = library("svgelements", "python3-svgelements")
-    found = Drawing([], [], METRES_IN_PIXEL_OF_SVG, skipped=collections.Counter())
-    for element in svgelements.SVG.parse(str(path), reify=True).elements():
+    content = svgelements.SVG.parse(str(path), reify=True)
+    width = str(content.values.get("width", "")).strip()
+    found = Drawing([], [], METRES_IN_PIXEL_OF_SVG, unit_is_assumed=not width.endswith(LENGTHS_OF_SVG), skipped=collections.Counter())
+    found.unit_in_words = "px, 96 in an inch" if found.unit_is_assumed else width.lstrip("0123456789.eE+- ")
+    for element in content.elements():
         if not isinstance(element, svgelements.Shape) or element.values.get("visibility") == "hidden":
             continue
         for part in svgelements.Path(element).as_subpaths():
@@ -108,7 +113,7 @@ def read_svg(path: pathlib.Path) -> Drawing:
             number = max(64, 16 * len(outline))
             corners = np.array([(float(point.x), -float(point.y)) for point in (outline.point(at) for at in np.linspace(0, 1, number))])
             if len(corners) < 3 or not np.allclose(corners[0], corners[-1], atol=1e-3 * float(np.ptp(corners, axis=0).max())):
-                found.skipped["open outline"] += 1
+                found.pieces.append(("open outline", corners))
             else:
                 found.outlines.append(corners[:-1])
     return found

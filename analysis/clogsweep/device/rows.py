@@ -9,12 +9,21 @@ import numpy as np
 
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
-from .readers import library
+from .readers import library as any_library
 from .shapes import Device
 
 SPACING = 1 / 3  # of a row's circles, over their radius: the wall is rough by 1.4 % of the radius
 SMALLEST_VOID = 0.35  # radius of what may be left empty inside a post, where no droplet fits [sigma]
 MOST_FILLERS = 100
+MOST_CIRCLES = 200000
+
+
+def library(name: str) -> Any:
+    """@throws UserError"""
+    try:
+        return any_library(name, "python3-shapely")
+    except UserError as error:
+        raise UserError("--as-rows needs python3-shapely (apt install python3-shapely); start /usr/bin/python3") from error
 
 
 @dataclasses.dataclass
@@ -30,25 +39,36 @@ class Rows:
 def as_rows(device: Device, corner: float) -> Rows:
     """With rows of circles in place of each outline that is not round. @param corner  radius to which corners are rounded; of
     a thinner post, nearly half of its width. @throws UserError  if an outline crosses itself"""
-    geometry = library("shapely.geometry", "python3-shapely")
+    geometry = library("shapely.geometry")
     frame = geometry.box(0, 0, device.length, device.width)
     circles, posts = [device.circles], [np.arange(len(device.circles))]
     number, farthest = len(device.circles), 0.0
-    for outline in device.others:
-        polygon = geometry.Polygon(outline)
-        if not polygon.is_valid:
-            x, y = outline.mean(axis=0)
-            raise UserError(f"the outline around x={x:.4g}, y={y:.4g} in droplet diameters crosses itself; mend it in the drawing")
-        inside = polygon.intersection(frame) if device.has_frame else polygon
-        for part in parts(inside):
-            made = np.vstack([of_part(core, part, radius) for core, radius in cores(part, corner)])
-            circles.append(made)
-            posts.append(np.full(len(made), number))
-            number += 1
-            farthest = max(farthest, distance_left(part, made))
+    whole = [part for outline in device.others for part in parts(valid(geometry.Polygon(outline)).intersection(frame))]
+    refuse_too_many([cores(part, corner) for part in whole])
+    for part in whole:
+        made = np.vstack([of_part(core, part, radius) for core, radius in cores(part, corner)])
+        circles.append(made)
+        posts.append(np.full(len(made), number))
+        number += 1
+        farthest = max(farthest, distance_left(part, made))
     rough = corner * (1 - np.sqrt(1 - SPACING**2 / 4))
     made_of_them = dataclasses.replace(device, circles=np.vstack(circles), others=[], post_of=np.concatenate(posts), replaced=device.others)
     return Rows(made_of_them, corner, farthest, float(rough))
+
+
+def valid(polygon: Any) -> Any:
+    """@throws UserError  if its outline crosses itself"""
+    if not polygon.is_valid:
+        x, y = np.asarray(polygon.exterior.coords).mean(axis=0)
+        raise UserError(f"the outline around x={x:.4g}, y={y:.4g} in droplet diameters crosses itself; correct it in the drawing")
+    return polygon
+
+
+def refuse_too_many(all_cores: list[list[tuple[Any, float]]]) -> None:
+    """@throws UserError  before rows of so many circles are made that nothing can be done with them"""
+    number = sum(core.exterior.length / (SPACING * radius) for of_part in all_cores for core, radius in of_part)
+    if number > MOST_CIRCLES:
+        raise UserError(f"--as-rows needs {number:.2g} circles (at most {MOST_CIRCLES}); give a larger --corner, or check --unit and --droplet")
 
 
 def parts(shape: Any) -> list[Any]:
@@ -58,7 +78,7 @@ def parts(shape: Any) -> list[Any]:
 
 def deepest(polygon: Any) -> tuple[Any, float]:
     """The centre and radius of the largest circle that fits in."""
-    ops = library("shapely.ops", "python3-shapely")
+    ops = library("shapely.ops")
     centre = ops.polylabel(polygon, 1e-3 * np.sqrt(polygon.area))
     return centre, polygon.boundary.distance(centre)
 
@@ -96,5 +116,8 @@ def distance_left(polygon: Any, circles: Numbers) -> float:
     """The largest distance of the outline from the circles."""
     edge = np.array([polygon.exterior.interpolate(place, normalized=True).coords[0] for place in np.linspace(0, 1, 2000)])
     corners = np.vstack([edge, np.asarray(polygon.exterior.coords)])
-    gaps = np.hypot(corners[:, None, 0] - circles[None, :, 0], corners[:, None, 1] - circles[None, :, 1]) - circles[None, :, 2] / 2
-    return float(gaps.min(axis=1).max())
+    nearest = np.full(len(corners), np.inf)
+    for some in np.array_split(circles, 1 + len(circles) // 1000):  # all at once need gigabytes
+        gaps = np.hypot(corners[:, None, 0] - some[None, :, 0], corners[:, None, 1] - some[None, :, 1]) - some[None, :, 2] / 2
+        nearest = np.minimum(nearest, gaps.min(axis=1))
+    return float(nearest.max())

@@ -9,8 +9,12 @@ import numpy as np
 
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
+from . import walls
+from .walls import area
 
 METRES = {"nm": 1e-9, "um": 1e-6, "µm": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 25.4e-3}
+MARGIN = 0.5  # between the posts and the edge of a device without a drawn one [sigma]
+LONGEST = 10000  # side of a device that is not taken for a mistake of the unit [sigma]
 
 
 @dataclasses.dataclass
@@ -21,7 +25,17 @@ class Drawing:
     outlines: list[Numbers]  # corners (n, 2); the last one is joined to the first unless the border of a picture cuts it
     metres: float | None  # in one unit; None if the drawing does not say
     frame: tuple[float, float, float, float] | None = None  # left, bottom, right, top, if the drawing has edges of its own
+    unit_is_assumed: bool = False
+    pieces: list[tuple[str, Numbers]] = dataclasses.field(default_factory=list)  # kinds and points of open lines, before they are joined
+    lines: list[Numbers] = dataclasses.field(default_factory=list)  # of them those that close into no outline
+    joined: tuple[int, int] = (0, 0)  # number of the pieces that do, and of their outlines
+    can_join: bool = True
+    unit_in_words: str | None = None  # its name, if that is not the length `metres`
     skipped: dict[str, int] = dataclasses.field(default_factory=dict)  # kinds of objects that are no posts, with their numbers
+
+    @property
+    def unit(self) -> str:
+        return self.unit_in_words or unit_name(self.metres or 0.0)
 
 
 @dataclasses.dataclass
@@ -36,6 +50,8 @@ class Device:
     droplet_metres: float
     post_of: Numbers | None = None  # number of the post of each circle; None: each is one
     replaced: list[Numbers] = dataclasses.field(default_factory=list)  # outlines for which there are circles
+    walls: list[Numbers] = dataclasses.field(default_factory=list)  # outlines beside the device, for which there is side-walls=on
+    lines: list[Numbers] = dataclasses.field(default_factory=list)  # that close into no outline
 
     def overlaps(self) -> list[tuple[int, int]]:
         """Pairs of posts that touch, which clogsweep refuses."""
@@ -73,10 +89,16 @@ def length_in_metres(text: str, option: str) -> float:
     return value
 
 
-def area(outline: Numbers) -> float:
-    """Within a closed outline, positive if it is counter-clockwise."""
-    x, y = outline.T
-    return float(0.5 * (x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
+def unit_name(metres: float) -> str:
+    """A unit's name, such as um, or its length if it has none."""
+    return next((name for name, size in METRES.items() if np.isclose(size, metres, rtol=1e-6, atol=0)), f"{metres:.4g} m")
+
+
+def refuse_unlikely(device: Device, unit: str, remedy: str) -> None:
+    """@param unit  in which the drawing was read. @throws UserError  if the device is too large or too small for such droplets"""
+    if max(device.length, device.width) > LONGEST or min(device.length, device.width) < 1:
+        size = f"{device.length:.2g} by {device.width:.2g} droplet diameters"
+        raise UserError(f"the device is {size} (the drawing's unit is {unit}); {remedy}, or check --droplet")
 
 
 def along_edges(outline: Numbers, is_closed: bool) -> Numbers:
@@ -135,23 +157,36 @@ def understood(drawing: Drawing, metres: float, droplet: float, tolerance: float
         circles.append(circle) if circle else others.append(outline)
     if not circles and not others:
         raise UserError("the drawing holds no posts; choose another --layer, or close the outlines")
-    return placed(np.array(circles or np.empty((0, 3))), others, frame, metres / droplet, droplet, turns)
+    return placed(drawing, np.array(circles or np.empty((0, 3))), others, frame, metres / droplet, droplet, turns)
 
 
-def placed(circles: Numbers, others: list[Numbers], frame: tuple[float, ...] | None, scale: float, droplet: float, turns: int) -> Device:
+def placed(drawing: Drawing, circles: Numbers, others: list[Numbers], frame: tuple[float, ...] | None, scale: float, droplet: float, turns: int) -> Device:
     """Turned, moved to (0, 0), and in droplet diameters."""
-    turn = np.linalg.matrix_power(np.array([[0, -1], [1, 0]]), turns % 4)
-    centres = circles[:, :2] @ turn.T
+    turn = scale * np.linalg.matrix_power(np.array([[0, -1], [1, 0]]), turns % 4)
+    circles = np.column_stack([circles[:, :2] @ turn.T, scale * circles[:, 2]])
     others = [outline @ turn.T for outline in others]
-    if frame is not None:
-        edges = np.array(frame).reshape(2, 2) @ turn.T
-    else:
-        radii = circles[:, 2:] / 2
-        edges = np.vstack([centres - radii, centres + radii, *others])
+    edges = surroundings(circles, others) if frame is None else np.array(frame).reshape(2, 2) @ turn.T
+    found = walls.among(circles, others, float(np.ptp(edges[:, 0])))
+    sides = [others[index] for index in found if index is not None]
+    others = [outline for index, outline in enumerate(others) if index not in found]
+    if frame is None:
+        inside = surroundings(circles, others)
+        ends = [(x, inside[0, 1]) for side in sides for x in side[:, 0]]
+        edges = np.vstack([inside.min(axis=0) - MARGIN, inside.max(axis=0) + MARGIN, *ends])
     low, high = edges.min(axis=0), edges.max(axis=0)
-    length, width = (high - low) * scale
-    return Device(circles=np.column_stack([(centres - low) * scale, circles[:, 2] * scale]), others=[(outline - low) * scale for outline in others],
-                  length=float(length), width=float(width), has_frame=frame is not None, droplet_metres=droplet)
+    lower, upper = found
+    low[1] = sides[0][:, 1].max() if lower is not None else low[1]
+    high[1] = sides[-1][:, 1].min() if upper is not None else high[1]
+    length, width = high - low
+    circles[:, :2] -= low
+    return Device(circles=circles, others=[outline - low for outline in others], length=float(length), width=float(width), has_frame=frame is not None,
+                  droplet_metres=droplet, walls=[side - low for side in sides], lines=[line @ turn.T - low for line in drawing.lines])
+
+
+def surroundings(circles: Numbers, others: list[Numbers]) -> Numbers:
+    """Points of which the box is that around all posts."""
+    radii = circles[:, 2:] / 2
+    return np.vstack([circles[:, :2] - radii, circles[:, :2] + radii, *others])
 
 
 def as_circles(device: Device) -> Device:

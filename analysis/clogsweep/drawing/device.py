@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon, Rectangle
+from matplotlib.transforms import ScaledTranslation
 
 from .. import style
 from ..device.shapes import METRES, Device
@@ -43,13 +44,25 @@ def draw_posts(axes: Axes, circles: Numbers, colour: str = style.OBSTACLE) -> No
     axes.add_collection(PatchCollection([Circle((x, y), diameter / 2) for x, y, diameter in circles], facecolor=colour, edgecolor="none"))
 
 
-def frame(axes: Axes, length: float, width: float, line: str) -> None:
-    """The edge of the device, and what is beside it."""
+def frame(axes: Axes, length: float, width: float, line: str, points_below: float, beside: Sequence[Numbers] = ()) -> None:
+    """The edge of the device, and what is beside it. @param points_below  where the arrow of the flow is; @param beside  lines to be
+    in the picture, too, unless they are farther away than the device is large"""
     axes.add_patch(Rectangle((0, 0), length, width, fill=False, edgecolor="0.3", linestyle=line))
+    size = np.array([length, width])
+    points = np.clip(np.vstack([np.zeros(2), size, *beside]), -size, 2 * size)
     margin = 0.02 * max(length, width) + 0.5
-    surroundings.frame_limits(axes, (-margin, -margin), (length + margin, width + margin))
-    surroundings.draw_guides(axes)
+    surroundings.frame_limits(axes, tuple(points.min(axis=0) - margin), tuple(points.max(axis=0) + margin))
+    surroundings.draw_bar(axes)
+    draw_flow(axes, points_below)
     axes.set_ylabel(r"$y/\sigma$")
+
+
+def draw_flow(axes: Axes, points_below: float) -> None:
+    """An arrow along the flow, below the right end of the axes, where no post is."""
+    place = axes.transAxes + ScaledTranslation(0, -points_below / 72, axes.figure.dpi_scale_trans)
+    start = axes.transAxes + ScaledTranslation(-0.6, -points_below / 72, axes.figure.dpi_scale_trans)
+    axes.annotate("flow", (1, 0), (1, 0), xycoords=place, textcoords=start, va="center", ha="right", fontsize=9, annotation_clip=False,
+                  arrowprops={"arrowstyle": "-|>", "linewidth": 1.5, "color": "black", "shrinkB": 0})
 
 
 def understood(device: Device, source: str) -> Figure:
@@ -59,10 +72,14 @@ def understood(device: Device, source: str) -> Figure:
     for outline in device.others:
         axes.add_patch(Polygon(outline, facecolor=RED, edgecolor="black", linewidth=0.5))
     for outline in device.replaced:
-        axes.add_patch(Polygon(outline, fill=False, edgecolor=RED, linewidth=0.5))
+        axes.add_patch(Polygon(outline, facecolor=style.OBSTACLE, edgecolor=RED, linewidth=0.5))
+    for outline in device.walls:
+        axes.add_patch(Polygon(outline, facecolor=style.OBSTACLE, edgecolor=style.OBSTACLE))
+    for line in device.lines:
+        axes.plot(*line.T, color=RED, linewidth=1.0)
     for pair in device.overlaps():
         draw_posts(axes, device.circles[list(pair)], RED)
-    frame(axes, device.length, device.width, "--" if device.has_frame else ":")
+    frame(axes, device.length, device.width, "--" if device.has_frame else ":", 26, [*device.walls, *device.lines])
     axes.set_xlabel(r"$x/\sigma$, along the flow")
     micrometres = device.droplet_metres / METRES["um"]
     red = f", {len(device.others)} not round (red)" if device.others else ""
@@ -243,7 +260,7 @@ def draw(place: Place, lines: Sequence[Numbers] = (), mapped: Sequence[Numbers] 
     if mapped:
         draw_map(figure, [axes, below], place, mapped)
     draw_posts(axes, place.circles)
-    frame(axes, place.length, place.width, "-" if place.has_walls else ":")
+    frame(axes, place.length, place.width, "-" if place.has_walls else ":", 12)
     if place.exit > 0:
         axes.axvline(place.exit, color="0.3", linestyle="--", linewidth=0.8)
     for number, way in enumerate(lines):

@@ -36,13 +36,20 @@ def draw_walls(axes: Axes, trajectory: Trajectory, shift: float | Numbers = 0.0)
 
 def draw_guides(axes: Axes) -> None:
     """A bar as long as a droplet is wide, and the direction of the flow. Both stay in their corners when axes are moved."""
-    bar = AnchoredSizeBar(axes.transData, 1.0, r"$\sigma$", "lower left", pad=0.2, borderpad=0.3, sep=2, label_top=True, frameon=False)
-    bar.set_zorder(6)
-    axes.add_artist(bar)
+    draw_bar(axes)
     arrow = axes.annotate("", (0.17, 0.95), (0.02, 0.95), xycoords="axes fraction", zorder=6,
                           arrowprops={"arrowstyle": "-|>", "linewidth": 1.5, "color": "black"})
     word = axes.text(0.03, 0.925, "flow", transform=axes.transAxes, va="top", fontsize=9, zorder=6)
-    for artist in (bar.size_bar.get_children()[0], *bar.findobj(Text), arrow.arrow_patch, word):
+    for artist in (arrow.arrow_patch, word):
+        artist.set_path_effects([HALO])
+
+
+def draw_bar(axes: Axes) -> None:
+    """As long as a droplet is wide."""
+    bar = AnchoredSizeBar(axes.transData, 1.0, r"$\sigma$", "lower left", pad=0.2, borderpad=0.3, sep=2, label_top=True, frameon=False)
+    bar.set_zorder(6)
+    axes.add_artist(bar)
+    for artist in (bar.size_bar.get_children()[0], *bar.findobj(Text)):
         artist.set_path_effects([HALO])
 
 

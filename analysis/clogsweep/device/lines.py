@@ -1,0 +1,71 @@
+"""Lines that are drawn separately but close into outlines, such as the three of a triangle."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..tools.errors import UserError
+from ..tools.hints import Numbers
+from .readers import library
+from .shapes import Drawing
+
+MISSED = 1e-5  # of the size of all lines, by which ends may miss each other
+
+
+def join(drawing: Drawing) -> None:
+    """Moves pieces that close into outlines there. The others are skipped, all of them without shapely."""
+    pieces = [(kind, piece) for kind, piece in drawing.pieces if np.ptp(piece, axis=0).max() > 0]
+    if not pieces:
+        return
+    try:
+        geometry, ops, prepared = (library(f"shapely.{name}", "python3-shapely") for name in ("geometry", "ops", "prepared"))
+    except UserError:
+        drawing.can_join = False
+        skip(drawing, pieces)
+        return
+    tolerance = MISSED * float(np.ptp(np.vstack([piece for _, piece in pieces]), axis=0).max())
+    shapes = [geometry.LineString(piece) for piece in meeting([piece for _, piece in pieces], tolerance)]
+    faces: list[Any] = []
+    left = list(range(len(pieces)))
+    for cut in (distinct, ops.unary_union):  # first those that meet with their ends, so that a centre line cuts no post in two; then those that cross
+        found = [face for face in ops.polygonize(cut([shapes[index] for index in left])) if face.is_valid]
+        near = ops.unary_union([face.boundary for face in found]).buffer(tolerance)
+        within = prepared.prep(near)
+        left = [index for index in left if not within.contains(shapes[index]) and is_off(near, shapes[index])]
+        faces += found
+    drawing.joined = len(pieces) - len(left), len(faces)
+    drawing.outlines += [np.asarray(face.exterior.coords)[:-1] for face in faces]
+    skip(drawing, [pieces[index] for index in left])
+
+
+def distinct(shapes: list[Any]) -> list[Any]:
+    """Without lines that are drawn twice."""
+    return list({shape.normalize().wkb: shape for shape in shapes}.values())
+
+
+def skip(drawing: Drawing, pieces: list[tuple[str, Numbers]]) -> None:
+    for kind, piece in pieces:
+        drawing.skipped[kind] = drawing.skipped.get(kind, 0) + 1
+        drawing.lines.append(piece)
+
+
+def is_off(outlines: Any, line: Any) -> bool:
+    """Whether most of a line is no part of the outlines."""
+    return bool(line.difference(outlines).length > line.length / 2)
+
+
+def meeting(pieces: list[Numbers], tolerance: float) -> list[Numbers]:
+    """The pieces, with ends that nearly meet moved to the same place."""
+    known: dict[tuple[int, int], Numbers] = {}
+
+    def place(end: Numbers) -> Numbers:
+        i, j = (int(cell) for cell in np.floor(end / tolerance))
+        for cell in ((i + di, j + dj) for di in (-1, 0, 1) for dj in (-1, 0, 1)):
+            if cell in known and np.hypot(*(known[cell] - end)) <= tolerance:
+                return known[cell]
+        known[i, j] = end
+        return end
+
+    return [np.vstack([place(piece[0]), piece[1:-1], place(piece[-1])]) for piece in pieces]
