@@ -114,8 +114,7 @@ def places(ring: Any, spacing: float) -> Numbers:
 
 def distance_left(polygon: Any, circles: Numbers) -> float:
     """The largest distance of the outline from the circles."""
-    edge = np.array([polygon.exterior.interpolate(place, normalized=True).coords[0] for place in np.linspace(0, 1, 2000)])
-    corners = np.vstack([edge, np.asarray(polygon.exterior.coords)])
+    corners = places(polygon.exterior, polygon.exterior.length / 2000)
     nearest = np.full(len(corners), np.inf)
     for some in np.array_split(circles, 1 + len(circles) // 1000):  # all at once need gigabytes
         gaps = np.hypot(corners[:, None, 0] - some[None, :, 0], corners[:, None, 1] - some[None, :, 1]) - some[None, :, 2] / 2

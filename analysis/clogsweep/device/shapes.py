@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import re
 
 import numpy as np
@@ -55,12 +56,13 @@ class Device:
 
     def overlaps(self) -> list[tuple[int, int]]:
         """Pairs of posts that touch, which clogsweep refuses."""
-        return [(i, j) for i, j, gap in self._gaps() if gap <= 0]
+        return [(i, j) for i, j, gap in self._gaps if gap <= 0]
 
     def smallest_gap(self) -> float:
         """The narrowest gap between two posts; infinite if there are fewer than two."""
-        return min((gap for _, _, gap in self._gaps()), default=np.inf)
+        return min((gap for _, _, gap in self._gaps), default=np.inf)
 
+    @functools.cached_property  # with many circles it takes minutes
     def _gaps(self) -> list[tuple[int, int, float]]:
         """For each post, its number, that of the nearest post after it, and the gap between them."""
         found = []
