@@ -112,7 +112,7 @@ TEST(CostLeft, IsThatOfTheParameterSetsThatWait) {
   EXPECT_NEAR(left.bound, 16 * 100, 1e-6);
 }
 
-TEST(CostLeft, HasWhatRunsUnderWayStillTake) {
+TEST(CostLeft, HasWhatUnfinishedRunsStillTake) {
   std::vector<RunCost> begun(10, of_set(0, finished(20, 100)));
   for (const double seconds : {0.5, 0.6, 0.7, 0.8}) begun.push_back(of_set(1, finished(seconds, 100)));
   begun.push_back(of_set(1, unfinished(0.4, 100)));

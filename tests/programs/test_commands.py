@@ -39,6 +39,7 @@ class Meant(ProgramTest):
         for typed, told in [("gap=0.3", "unknown key gap; did you mean obstacle-gap?"),
                             ("--gap=0.3", "unknown option --gap; did you mean --obstacle-gap?"),
                             ("contact=edge", "unknown key contact; did you mean wall-contact or self-contact?"),
+                            ("obstacle=a.csv", "unknown key obstacle; did you mean obstacles or obstacle-gap or obstacle-density?"),
                             ("Gamma=0.3", "unknown key Gamma; did you mean line-tension?"),
                             ("Γ=0.3", "unknown key Γ; did you mean line-tension?"),
                             ("w_ob=0.3", "unknown key w_ob; did you mean obstacle-gap?"),

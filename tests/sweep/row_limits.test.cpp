@@ -108,18 +108,19 @@ TEST(Repetition, IsForeseenFromTheLongestTime) {
       "obstacles again: terminal-speed*max-time is up to 300, boxes*box 20; boxes=15 is long enough");
 }
 
+std::vector<std::string> bare_with(std::vector<Obstacle> circles, const Keys& keys) {
+  Settings settings;
+  settings.attach("posts.csv", OwnCircles(std::move(circles), "posts.csv"));
+  settings.set("obstacles", "posts.csv");
+  for (const auto& [name, text] : keys) settings.set(name, text);
+  return bare_arrays(Plan(settings));
+}
+
 TEST(BareArrays, AreThoseThatCirclesOfAFileDoNotFill) {
   EXPECT_TRUE(bare_arrays(plan_of({{"box", "20"}})).empty());
   const auto bare_in = [](const char* box, const char* boxes) {
-    Settings settings;
-    settings.attach("posts.csv", OwnCircles({{1, 2, 0.5}, {4, 5, 0.5}, {7, 8, 0}}, "posts.csv"));
-    for (const auto& [name, text] : Keys{{"obstacles", "posts.csv"},
-                                         {"box", box},
-                                         {"boxes", boxes},
-                                         {"line-tension", "0.1,1"},
-                                         {"obstacle-diameter", "1"}})
-      settings.set(name, text);
-    return bare_arrays(Plan(settings));
+    return bare_with({{1, 2, 0.5}, {4, 5, 0.5}, {7, 8, 0}},
+                     {{"box", box}, {"boxes", boxes}, {"line-tension", "0.1,1"}, {"obstacle-diameter", "1"}});
   };
   const std::string lanes =
       "obstacles=posts.csv leaves y=2.5 to 4.5, 5.5 to 7.5, 8.5 to 10.5 bare, wider than a droplet; the "
@@ -135,16 +136,9 @@ TEST(BareArrays, AreThoseThatCirclesOfAFileDoNotFill) {
 
 TEST(BareArrays, AreDevicesOfWhichCirclesFillASmallPart) {
   const auto said_of = [](const char* box, const char* length, const char* exit) {
-    Settings settings;
-    settings.attach("posts.csv", OwnCircles({{2, 2, 0.2}, {8, 4, 0.2}, {14, 2, 0.2}}, "posts.csv"));
-    for (const auto& [name, text] : Keys{{"obstacles", "posts.csv"},
-                                         {"box", box},
-                                         {"length", length},
-                                         {"side-walls", "on"},
-                                         {"release", "entrance"},
-                                         {"exit", exit}})
-      settings.set(name, text);
-    return bare_arrays(Plan(settings));
+    return bare_with(
+        {{2, 2, 0.2}, {8, 4, 0.2}, {14, 2, 0.2}},
+        {{"box", box}, {"length", length}, {"side-walls", "on"}, {"release", "entrance"}, {"exit", exit}});
   };
   EXPECT_TRUE(said_of("6", "16", "15").empty());
   EXPECT_EQ(

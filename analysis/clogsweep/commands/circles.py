@@ -6,8 +6,9 @@
 
 posts.csv has the posts in micrometres, and the droplet's diameter. posts.png shows what was understood: look at it before
 you run anything. An outline that holds everything else is the edge of the device; of a picture it is its own edge. Lines
-that close are outlines; those that do not are red. Flat outlines along the sides are walls. Round posts are circles. Others, such as triangles, are red in the picture, and nothing is written unless --as-rows replaces each by rows
-of overlapping circles along its outline, or --as-circles by a circle of the same area.
+that close are outlines; those that do not are red. Flat outlines along the sides are walls. Round posts are circles.
+Others, such as triangles, are red in the picture, and nothing is written unless --as-rows replaces each by rows of
+overlapping circles along its outline, or --as-circles by a circle of the same area.
 """
 
 import argparse

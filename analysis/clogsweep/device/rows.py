@@ -9,7 +9,7 @@ import numpy as np
 
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
-from .readers import library as any_library
+from .readers import library
 from .shapes import Device
 
 SPACING = 1 / 3  # of a row's circles, over their radius: the wall is rough by 1.4 % of the radius
@@ -18,12 +18,12 @@ MOST_FILLERS = 100
 MOST_CIRCLES = 200000
 
 
-def library(name: str) -> Any:
-    """@throws UserError"""
+def shapely(part: str) -> Any:
+    """@throws UserError  if it is not installed"""
     try:
-        return any_library(name, "python3-shapely")
+        return library(f"shapely.{part}", "python3-shapely")
     except UserError as error:
-        raise UserError("--as-rows needs python3-shapely (apt install python3-shapely); start /usr/bin/python3") from error
+        raise UserError("--as-rows needs python3-shapely (apt install python3-shapely), and Debian's own /usr/bin/python3") from error
 
 
 @dataclasses.dataclass
@@ -39,7 +39,7 @@ class Rows:
 def as_rows(device: Device, corner: float) -> Rows:
     """With rows of circles in place of each outline that is not round. @param corner  radius to which corners are rounded; of
     a thinner post, nearly half of its width. @throws UserError  if an outline crosses itself"""
-    geometry = library("shapely.geometry")
+    geometry = shapely("geometry")
     frame = geometry.box(0, 0, device.length, device.width)
     circles, posts = [device.circles], [np.arange(len(device.circles))]
     number, farthest = len(device.circles), 0.0
@@ -78,7 +78,7 @@ def parts(shape: Any) -> list[Any]:
 
 def deepest(polygon: Any) -> tuple[Any, float]:
     """The centre and radius of the largest circle that fits in."""
-    ops = library("shapely.ops")
+    ops = shapely("ops")
     centre = ops.polylabel(polygon, 1e-3 * np.sqrt(polygon.area))
     return centre, polygon.boundary.distance(centre)
 
