@@ -100,6 +100,10 @@ std::string left_out(const std::vector<Group>& groups) {
     text +=
         "lambda_b: mean distance before break-up. Broken droplets are censored in lambda, clogged ones in "
         "lambda_b\n";
+  if (std::ranges::any_of(groups, [](const Group& group) { return group.num_passed > 0; }))
+    text +=
+        "passed: droplets that reached the exit. Each adds its whole way to lambda, which may be longer than "
+        "the device\n";
   if (num_left_out > 0)
     text += fmt::format(
         "   {} ended before --from-distance, left out of runs, clogs and lambda; <v_g> is still of all "

@@ -15,6 +15,7 @@
 #include "clog/console/build_info.hpp"
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/rounded.hpp"
+#include "clog/core/polygon/automatic_values.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/laboratory/scales.hpp"
 
@@ -138,6 +139,15 @@ Line line_of(const Conversion& one) {
           fmt::format("{} = {}", one.symbol, console::plain(one.model))};
 }
 
+/// What to sweep in place of a droplet that is nearly rigid; nothing for others.
+std::string advice_of(const Scales& scales) {
+  if (!(scales.line_tension > nearly_rigid_tension)) return "";
+  return fmt::format(
+      "\nThis droplet is nearly rigid. A sweep with line-tension={} costs less and clogs in the same places; "
+      "so does the soft disk, model=sp wall-stiffness={}.\n",
+      console::plain(nearly_rigid_tension), console::plain(scales.wall_stiffness));
+}
+
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json json_of(const Laboratory& lab, const Scales& scales) {
@@ -187,7 +197,7 @@ int clogfit_units(int argc, const char* const* argv) {
   std::vector<Line> lines = lines_of(lab, scales);
   if (!asked.empty()) lines.push_back({"", "", ""});
   for (const Conversion& one : asked) lines.push_back(line_of(one));
-  std::cout << lines_text(lines);
+  std::cout << lines_text(lines) << advice_of(scales);
   return console::exit_success;
 }
 

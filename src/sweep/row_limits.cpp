@@ -105,7 +105,7 @@ std::string unproven_parameters(const Plan& plan) {
     all.resize(most_named);
     all.push_back(others);
   }
-  return "not proved sound (docs/explanation/soundness.md): " + joined(all);
+  return "not proved sound (handbook, Which droplets are sound): " + joined(all);
 }
 
 double repetition_length(const RunRow& row) {
@@ -185,7 +185,17 @@ std::string small_part(std::span<const Obstacle> circles, const ObstacleParamete
       obstacles.own->source(), left.x, right.x, lowest.y, highest.y, along, obstacles.box);
 }
 
-std::vector<std::string> bare_arrays(const Plan& plan) {
+/// Circles that have no diameter in their file have one nonetheless, which is easily overlooked.
+std::string missing_diameters(const ObstacleParameters& obstacles) {
+  if (obstacles.diameter != ObstacleParameters().diameter) return "";
+  const auto all = obstacles.own->circles();
+  const auto number = std::ranges::count(all, 0.0, &Obstacle::radius);
+  if (number == 0) return "";
+  return fmt::format("obstacles={} has no diameter for {}: there it is obstacle-diameter={}",
+                     obstacles.own->source(), counted(number, "circle"), shortest(obstacles.diameter));
+}
+
+std::vector<std::string> limits_of_circles(const Plan& plan) {
   std::vector<std::string> all;
   std::set<std::tuple<std::string, double, double>> seen;
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
@@ -194,6 +204,7 @@ std::vector<std::string> bare_arrays(const Plan& plan) {
     if (scene_of(run).walls_from != WallsFrom::circles) continue;
     if (!seen.emplace(obstacles.own->check_sum(), obstacles.box, obstacles.period().along()).second) continue;
     const std::vector<Obstacle> circles = obstacles.own->with_radii(obstacles.diameter / 2);
+    all.push_back(missing_diameters(obstacles));
     // A bare band before an exit, or a bare lane between walls, is meant to be there.
     if (obstacles.exit == 0) all.push_back(bare_band(circles, obstacles));
     if (obstacles.side_walls == SideWalls::off) all.push_back(bare_lanes(circles, obstacles));
@@ -208,7 +219,7 @@ std::vector<std::string> limits_of_results(const Plan& plan) {
   std::vector<std::string> all = plan.possible_decimals();
   all.push_back(possible_repetition(plan));
   all.push_back(unproven_parameters(plan));
-  for (const std::string& words : bare_arrays(plan)) all.push_back(words);
+  for (const std::string& words : limits_of_circles(plan)) all.push_back(words);
   std::erase(all, "");
   return all;
 }

@@ -199,7 +199,7 @@ class Sweep(ProgramTest):
         self.assertNotIn("proved", told)
         told = self.succeed("clogsweep", *SMALL, "max-time=2000", "--dry-run").stdout
         self.assertIn("# droplets of 1 of 1 parameter set may travel farther than the length of their array ", told)
-        self.assertIn("# not proved sound (docs/explanation/soundness.md): line-tension=30 ", self.succeed("clogsweep", *QUICK, "line-tension=30", "--dry-run").stdout)
+        self.assertIn("# not proved sound (handbook, Which droplets are sound): line-tension=30 ", self.succeed("clogsweep", *QUICK, "line-tension=30", "--dry-run").stdout)
 
     def test_what_was_not_proved_sound_is_said_once_when_the_sweep_starts(self):
         sweep = [*SMALL, "max-time=1", "line-tension=0.05,30", "seeds=1..3", "--output", "s.h5"]

@@ -15,8 +15,11 @@ import stored_rows
 from drawing import Analysis
 from support import BIN, table
 
+import clogsweep
 from clogsweep import style
+from clogsweep.device import shapes
 from clogsweep.drawing import device as drawn
+from clogsweep.drawing import device_plan
 
 ROW = [(4 + 3 * i, 0.9 + 1.7 * j + 0.6 * (i % 2)) for i in range(4) for j in range(3)]  # posts, in droplet diameters
 KEYS = ["box=6", "length=18", "side-walls=on", "release=entrance", "entrance=1", "exit=16", "vertices=64", "line-tension=0.05",
@@ -82,7 +85,50 @@ class Devices(Analysis):
         place = drawn.the_place(self.folder / "s.h5")
         self.assertEqual((place.name, place.length, place.width, place.has_walls, len(place.circles)), ("posts.csv", 18, 6, True, 12))
         self.draw("report", "s.h5", "--examples", 1, "--programs", BIN)
-        self.assertIn("posts.csv", (self.folder / "s-report.html").read_text())
+        page = (self.folder / "s-report.html").read_text()
+        self.assertIn("posts.csv", page)
+        self.assertIn('<th scope="col">passed</th>', page)
+        self.assertIn("passed: droplets that reached the exit", self.succeed("clogfit", "s.h5").stdout)
+
+    def test_each_line_tension_has_a_panel(self):
+        self.write("posts.csv", "x,y,diameter\n" + csv())
+        self.succeed("clogsweep", "obstacles=posts.csv", *KEYS[:-3], "line-tension=0.5,1,1.5,2,3,4,5", "max-time=20", "seeds=1", "--output", "s.h5")
+        sweep = clogsweep.Sweep(self.folder / "s.h5", BIN)
+        groups, place = sweep.fit().known, drawn.the_place(self.folder / "s.h5", BIN)
+        self.assertEqual([part.label for part in place.parts(groups)], [rf"$\Gamma = {value:g}$" for value in (0.5, 1, 1.5, 2, 3, 4, 5)])
+        for part in place.parts(groups):
+            self.assertEqual([rf"$\Gamma = {row['line_tension']:g}$" for row in part.place.rows], [part.label])
+        figure = sweep.device(ways=1, map=0).figure
+        panels = [axes.get_ylabel() for axes in figure.axes]
+        self.assertEqual([label.split("\n")[0] for label in panels], [rf"$\Gamma = {value:g}$" for value in (0.5, 1, 1.5, 3, 4, 5)] + ["share that"])
+        self.assertIn("6 of 7 parameter sets", figure.texts[0].get_text())
+
+    def test_the_strip_tells_how_many_came_past(self):
+        rows = np.array([(1.0, 0.0, 4.0, 0.0), (1.0, 0.0, 13.0, 0.0)], dtype=[(name, float) for name in ("release_x", "release_y", "distance", "lateral_displacement")])
+        place = drawn.Place(name="none", circles=np.empty((0, 3)), length=10.0, width=4.0, has_walls=False, exit=0.0, rows=rows)
+        at, counts = drawn.came_past(place)
+        for x, count in ((0.5, 1), (2.0, 3), (4.5, 2), (8.0, 1)):
+            self.assertEqual(counts[np.argmin(np.abs(at - x))], count, x)
+
+    def test_gaps_between_posts_are_those_of_all_pairs(self):
+        random = np.random.default_rng(1)
+        for number, size in ((2, 1.0), (3, 1.0), (60, 1.0), (300, 1.0), (300, 0.05)):
+            circles = np.column_stack([random.uniform(0, 40, number), random.uniform(0, 20, number), size * random.uniform(0.1, 0.6, number)])
+            posts = np.arange(number) // 3
+            gaps = np.hypot(*(circles[:, None, :2] - circles[None, :, :2]).T) - (circles[:, None, 2] + circles[None, :, 2]) / 2
+            gaps[posts[:, None] == posts] = np.inf
+            device = shapes.Device(circles=circles, others=[], length=40, width=20, has_frame=True, droplet_metres=1, post_of=posts)
+            self.assertAlmostEqual(device.smallest_gap(), gaps.min(), places=12)
+            self.assertEqual({frozenset(posts[list(pair)]) for pair in device.overlaps()}, {frozenset((posts[i], posts[j])) for i, j in np.argwhere(gaps <= 0)})
+
+    def test_rows_of_circles_that_close_are_filled(self):
+        around = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+        ring = np.column_stack([5 + np.cos(around), 2 + np.sin(around), np.full(40, 0.4)])
+        filler, alone = [(5, 2, 1.0)], [(9, 2, 0.5), (9.7, 2, 0.5)]
+        open_row = np.column_stack([np.arange(0, 2, 0.1), np.full(20, 7), np.full(20, 0.4)])
+        found, = device_plan.rings_among(np.vstack([alone, ring, filler, open_row]))
+        np.testing.assert_array_equal(found, ring[:, :2])
+        self.assertEqual(device_plan.rings_among(np.empty((0, 3))), [])
 
     def test_the_map_is_the_share_of_droplets_that_passed_over_a_place(self):
         def place(**others):
@@ -288,7 +334,8 @@ class WrongDrawings(Analysis):
         with mock.patch.dict(sys.modules, {"shapely": None, "shapely.ops": None, "shapely.geometry": None}):
             self.dxf(circles=[(800, 300), (1600, 300)], lines=lines)
             told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "other").stdout
-        self.assertIn("skipped: 13 LINE", told)
+        self.assertIn("2 outlines as long as the device are taken for walls", told)  # lines of its edge
+        self.assertIn("skipped: 11 LINE", told)
         self.assertIn("install python3-shapely", told)
 
     def red(self):
@@ -314,21 +361,27 @@ class WrongDrawings(Analysis):
         walls, post = [box(0, -20, 3600, 0), box(0, 1200, 3600, 1220)], box(1500, 500, 1600, 600)
         self.dxf(circles=[(800, 300), (800, 900)], outlines=[*walls, post])
         told = self.draw("circles", "device.dxf", *self.COMMAND, "--as-rows").stdout
-        self.assertIn("2 posts as long as the device are taken for walls: side-walls=on", told)
+        self.assertIn("2 outlines as long as the device are taken for walls: side-walls=on", told)
         self.assertIn("3 posts, device 18 x 6", told)
         self.assertIn("side-walls=on", self.run_printed(told))
         self.dxf(circles=[(800, 300), (800, 900)], outlines=[box(0, -20, 3600, 1200), walls[0]])
         told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "one").stdout
-        self.assertIn("1 post as long as the device is taken for a wall", told)
+        self.assertIn("1 outline as long as the device is taken for a wall", told)
         self.assertIn("box=6 length=18", told)
         self.dxf(circles=[(300, 800), (900, 800)], outlines=[box(0, 0, 10, 3600), box(1200, 0, 1220, 3600)])
         told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "down", "--flow", "down").stdout
         self.assertIn("box=5.95 length=18", told)
+        with self.subTest("walls are single lines"):
+            sides = [((0, 0), (3600, 0)), ((3600, 1200), (0, 1200))]
+            self.dxf(circles=[(800, 300), (800, 900)], lines=[*sides, ((2500, 300), (2900, 700))])
+            told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "lines").stdout
+            for words in ("2 outlines as long as the device are taken for walls", "2 posts, device 18 x 6", "skipped: 1 LINE (lines red", "box=6 length=18"):
+                self.assertIn(words, told)
         with self.subTest("a wall with teeth is a post"):
             teeth = [(3600 - 100 * i, 20 + 40 * (i % 2)) for i in range(37)]
             self.dxf(circles=[(800, 300), (800, 900)], outlines=[[(0, 0), (3600, 0), *teeth], box(0, 1200, 3600, 1220)])
             told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "teeth", "--as-rows").stdout
-            self.assertIn("1 post as long", told)
+            self.assertIn("1 outline as long", told)
             self.assertIn("3 posts", told)
 
     def test_the_package_that_rows_need_is_named(self):

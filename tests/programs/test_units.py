@@ -8,7 +8,8 @@ import sys
 import unittest
 
 import h5py
-from support import BIN, QUICK, ROOT, ProgramTest
+import numpy as np
+from support import BIN, QUICK, ROOT, ProgramTest, table
 
 sys.path.insert(0, str(ROOT / "analysis"))
 from clogsweep.tools import rounded  # noqa: E402
@@ -52,6 +53,23 @@ class Units(ProgramTest):
         self.assertRegex(told, r"(?m)^length +84\.0 mm +r/sigma = 24\.0$")
         self.assertRegex(told, r"(?m)^interfacial tension +9\.60 mN/m +Gamma_exp = 0\.5\d+$")
 
+    def test_a_nearly_rigid_droplet_gets_advice(self):
+        self.assertNotIn("rigid", self.succeed("clogfit", "units", self.lab()).stdout)
+        lab = self.lab("200 um", "90 deg", "1 mm/s", "20 mN/m", "stiff.cfg")
+        told = self.succeed("clogfit", "units", lab).stdout
+        self.assertIn("Gamma = 52.", told)
+        self.assertIn("line-tension=30.0 ", told)
+        # They do clog in the same places.
+        common = ["obstacle-density=0.35", "obstacle-gap=0.2", "box=20", "max-time=1500", "seeds=1..3"]
+        disk, = re.findall(r"model=sp wall-stiffness=\S*\d", told)
+        ways = []
+        for number, keys in enumerate((["line-tension=52", "vertices=64"], ["line-tension=30", "vertices=64"], disk.split())):
+            self.succeed("clogsweep", *common, *keys, "--output", f"{number}.h5")
+            rows = table(self.folder / f"{number}.h5")
+            self.assertEqual(set(rows["status"]), {"clogged"})
+            ways.append(rows["distance"])
+        np.testing.assert_allclose(ways[1:], [ways[0]] * 2, atol=0.1)
+
     def test_the_sag_is_that_of_a_droplet_on_a_wall(self):
         found = self.units(self.lab(tension="4 mN/m"))
         run = self.succeed("clogrun", "sag", f"line-tension={found['line_tension']}", "--output", "sag.h5")
@@ -94,7 +112,10 @@ class Units(ProgramTest):
         group, = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
         self.assertEqual(group["clogs"], 0)
         self.succeed("clogfit", "report", "s.h5", "--output", "r.html")
-        self.assertIn(f"> {rounded.plain(group['clogging_length_lower_mm'])}<", html.unescape((self.folder / "r.html").read_text()))
+        page = html.unescape((self.folder / "r.html").read_text())
+        self.assertIn(f"> {rounded.plain(group['clogging_length_lower_mm'])}<", page)
+        self.assertIn('<th scope="col">tension [mN/m]</th>', page)
+        self.assertIn("<td><span>9.60</span></td>", page)
 
     def test_a_run_of_a_laboratory_is_told_in_its_units(self):
         lab = self.lab()

@@ -60,10 +60,10 @@ TEST(UnprovenParameters, AreNamedWithTheirValueBeyondIt) {
 
 TEST(UnprovenParameters, OfAPlanAreNamedOnceEach) {
   EXPECT_EQ(unproven_parameters(plan_of({{"line-tension", "0.1,1"}})), "");
-  EXPECT_EQ(
-      unproven_parameters(plan_of({{"line-tension", "0,1,30"}, {"obstacle-gap", "0.2,0.3"}})),
-      "not proved sound (docs/explanation/soundness.md): line-tension=0 (robust is sound from 0.01 to 10), "
-      "line-tension=30 (robust is sound from 0.01 to 10)");
+  EXPECT_EQ(unproven_parameters(plan_of({{"line-tension", "0,1,30"}, {"obstacle-gap", "0.2,0.3"}})),
+            "not proved sound (handbook, Which droplets are sound): line-tension=0 (robust is sound from "
+            "0.01 to 10), "
+            "line-tension=30 (robust is sound from 0.01 to 10)");
   EXPECT_TRUE(
       unproven_parameters(plan_of({{"line-tension", "11,12,13,14,15,16"}})).ends_with(", and 2 more"));
 }
@@ -108,19 +108,31 @@ TEST(Repetition, IsForeseenFromTheLongestTime) {
       "obstacles again: terminal-speed*max-time is up to 300, boxes*box 20; boxes=15 is long enough");
 }
 
-std::vector<std::string> bare_with(std::vector<Obstacle> circles, const Keys& keys) {
+std::vector<std::string> limits_with(std::vector<Obstacle> circles, const Keys& keys) {
   Settings settings;
   settings.attach("posts.csv", OwnCircles(std::move(circles), "posts.csv"));
   settings.set("obstacles", "posts.csv");
   for (const auto& [name, text] : keys) settings.set(name, text);
-  return bare_arrays(Plan(settings));
+  return limits_of_circles(Plan(settings));
 }
 
-TEST(BareArrays, AreThoseThatCirclesOfAFileDoNotFill) {
-  EXPECT_TRUE(bare_arrays(plan_of({{"box", "20"}})).empty());
+TEST(Repetition, OfOwnCirclesIsNotMendedByMoreBoxes) {
+  Settings settings;
+  settings.attach("posts.csv", OwnCircles({{1, 2, 0.5}, {4, 5, 0.5}}, "posts.csv"));
+  for (const auto& [name, text] : Keys{{"obstacles", "posts.csv"}, {"box", "7"}, {"max-time", "600"}})
+    settings.set(name, text);
+  const std::string said = possible_repetition(Plan(settings));
+  EXPECT_TRUE(
+      said.ends_with("up to 18, boxes*box 7; give a file of circles that is as long, or a shorter max-time"))
+      << said;
+}
+
+TEST(LimitsOfCircles, AreThoseThatCirclesOfAFileDoNotFill) {
+  EXPECT_TRUE(limits_of_circles(plan_of({{"box", "20"}})).empty());
   const auto bare_in = [](const char* box, const char* boxes) {
-    return bare_with({{1, 2, 0.5}, {4, 5, 0.5}, {7, 8, 0}},
-                     {{"box", box}, {"boxes", boxes}, {"line-tension", "0.1,1"}, {"obstacle-diameter", "1"}});
+    return limits_with(
+        {{1, 2, 0.5}, {4, 5, 0.5}, {7, 8, 0}},
+        {{"box", box}, {"boxes", boxes}, {"line-tension", "0.1,1"}, {"obstacle-diameter", "1"}});
   };
   const std::string lanes =
       "obstacles=posts.csv leaves y=2.5 to 4.5, 5.5 to 7.5, 8.5 to 10.5 bare, wider than a droplet; the "
@@ -134,9 +146,9 @@ TEST(BareArrays, AreThoseThatCirclesOfAFileDoNotFill) {
   EXPECT_EQ(bare_in("15", "1").size(), 2u) << "along and across";
 }
 
-TEST(BareArrays, AreDevicesOfWhichCirclesFillASmallPart) {
+TEST(LimitsOfCircles, AreDevicesOfWhichCirclesFillASmallPart) {
   const auto said_of = [](const char* box, const char* length, const char* exit) {
-    return bare_with(
+    return limits_with(
         {{2, 2, 0.2}, {8, 4, 0.2}, {14, 2, 0.2}},
         {{"box", box}, {"length", length}, {"side-walls", "on"}, {"release", "entrance"}, {"exit", exit}});
   };
@@ -145,6 +157,18 @@ TEST(BareArrays, AreDevicesOfWhichCirclesFillASmallPart) {
       said_of("1500", "4000", "3500"),
       std::vector<std::string>{"obstacles=posts.csv has all circles at x=2 to 14, y=2 to 4, a small part of "
                                "4000 by 1500: box, length, entrance and exit are in droplet diameters"});
+}
+
+TEST(LimitsOfCircles, AreDiametersThatAFileLacks) {
+  const auto said_of = [](double radius, const char* diameter) {
+    return limits_with({{1, 1, 0.5}, {3, 2.5, radius}, {5, 3.3, radius}, {7, 4.6, 0.5}},
+                       {{"box", "5"}, {"length", "9"}, {"obstacle-diameter", diameter}});
+  };
+  EXPECT_TRUE(said_of(0.5, "0.3").empty());
+  EXPECT_TRUE(said_of(0, "0.4").empty()) << "whoever gives it knows";
+  EXPECT_EQ(said_of(0, "0.3"),
+            std::vector<std::string>{
+                "obstacles=posts.csv has no diameter for 2 circles: there it is obstacle-diameter=0.3"});
 }
 
 TEST(LimitsOfResults, AreTheLinesThatSaySomething) {

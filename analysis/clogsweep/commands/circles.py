@@ -12,12 +12,13 @@ overlapping circles along its outline, or --as-circles by a circle of the same a
 """
 
 import argparse
+import collections
 import pathlib
 
 import numpy as np
 
 from ..device import lines, readers, rows, shapes
-from ..drawing import device as drawn
+from ..drawing import device_plan
 from ..style import Picture
 from ..tools import outputs, rounded
 from ..tools.errors import UserError
@@ -118,20 +119,22 @@ def told(device: shapes.Device, drawing: shapes.Drawing) -> list[str]:
         where = "where there is no wall" if device.walls else "on every side"
         words.append(f"no edge is drawn: half a droplet diameter is added around the posts {where}")
     if number := len(device.walls):
-        are = "post as long as the device is taken for a wall" if number == 1 else "posts as long as the device are taken for walls"
+        are = "outline as long as the device is taken for a wall" if number == 1 else "outlines as long as the device are taken for walls"
         words.append(f"{number} {are}: side-walls=on")
     if drawing.joined[0]:
         words.append(f"{rounded.counted(drawing.joined[0], 'line')} closed into {rounded.counted(drawing.joined[1], 'outline')}")
-    return words + skipped(drawing)
+    return words + skipped(device, drawing)
 
 
-def skipped(drawing: shapes.Drawing) -> list[str]:
+def skipped(device: shapes.Device, drawing: shapes.Drawing) -> list[str]:
     """Describes what of the drawing is not used, and what to do about it."""
-    if not drawing.skipped:
+    counts = collections.Counter(drawing.skipped)
+    counts.update(kind for kind, _ in device.lines)
+    if not counts:
         return []
-    names = ", ".join(f"{count} {kind}" for kind, count in sorted(drawing.skipped.items()))
+    names = ", ".join(f"{count} {kind}" for kind, count in sorted(counts.items()))
     install = "" if drawing.can_join else ", or install python3-shapely, which joins lines"
-    remedy = f" (lines red in the picture); draw closed outlines{install}; straight walls at both sides are side-walls=on" if drawing.lines else ""
+    remedy = f" (lines red in the picture); draw closed outlines{install}; straight walls at both sides are side-walls=on" if device.lines else ""
     return [f"skipped: {names}{remedy}"]
 
 
@@ -161,7 +164,7 @@ def body() -> int:
         device, made = in_rows(device, arguments.corner)
     if arguments.as_circles:
         device = shapes.as_circles(device)
-    picture = Picture(drawn.understood(device, arguments.drawing.name), f"python3 -m clogsweep circles {arguments.drawing}")
+    picture = Picture(device_plan.understood(device, arguments.drawing.name), f"python3 -m clogsweep circles {arguments.drawing}")
     print(f"{picture.save(arguments.output)} (and .pdf)")
     print("\n".join(told(device, drawing) + made))
     if device.others:

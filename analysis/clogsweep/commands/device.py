@@ -3,9 +3,10 @@
     clogsweep obstacles=posts.csv box=8 length=20 side-walls=on release=entrance exit=20 seeds=1..20 --output sweep.h5
     python3 -m clogsweep device sweep.h5                 # sweep-device.png, sweep-device.pdf
 
-The ways are those of runs from the shortest way to the longest, which are replayed (clogrun). The colour of a place is
-the share of such runs whose droplet passed over it. The strip below counts the droplets that came past each place along the
-flow. All lengths are in droplet diameters, places are those of the file.
+Each parameter set, such as each line tension, has a panel; of more than six, six are shown, and clogsweep select makes a
+sweep of the others. The lines are ways of runs from the shortest way to the longest, which are replayed (clogrun). The
+colour of a place is the share of such runs whose droplet passed over it. The strip below tells which share of the droplets
+came past each place along the flow. All lengths are in droplet diameters, places are those of the file.
 """
 
 import argparse
@@ -15,8 +16,8 @@ from .command_line import sweep_to_draw, whole
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--ways", type=whole(0), default=6, help="lines, of so many runs (%(default)s)")
-    parser.add_argument("--map", type=whole(0), default=20, help="colours, of so many runs (%(default)s)")
+    parser.add_argument("--ways", type=whole(0), default=4, help="lines, of so many runs in each panel (%(default)s)")
+    parser.add_argument("--map", type=whole(0), default=10, help="colours, of so many runs in each panel (%(default)s)")
     parser.add_argument("--jobs", type=whole(1), default=2, help="runs at a time (%(default)s)")
 
 

@@ -15,7 +15,7 @@ MISSED = 1e-5  # of the size of all lines, by which ends may miss each other
 
 
 def join(drawing: Drawing) -> None:
-    """Moves pieces that close into outlines there. The others are skipped, all of them without shapely."""
+    """Moves pieces that close into outlines there; the others remain lines, all of them without shapely."""
     pieces = [(kind, piece) for kind, piece in drawing.pieces if np.ptp(piece, axis=0).max() > 0]
     if not pieces:
         return
@@ -23,7 +23,7 @@ def join(drawing: Drawing) -> None:
         geometry, ops, prepared = (library(f"shapely.{name}", "python3-shapely") for name in ("geometry", "ops", "prepared"))
     except UserError:
         drawing.can_join = False
-        skip(drawing, pieces)
+        drawing.lines = pieces
         return
     tolerance = MISSED * float(np.ptp(np.vstack([piece for _, piece in pieces]), axis=0).max())
     shapes = [geometry.LineString(piece) for piece in meeting([piece for _, piece in pieces], tolerance)]
@@ -37,18 +37,12 @@ def join(drawing: Drawing) -> None:
         faces += found
     drawing.joined = len(pieces) - len(left), len(faces)
     drawing.outlines += [np.asarray(face.exterior.coords)[:-1] for face in faces]
-    skip(drawing, [pieces[index] for index in left])
+    drawing.lines = [pieces[index] for index in left]
 
 
 def distinct(shapes: list[Any]) -> list[Any]:
     """Without lines that are drawn twice."""
     return list({shape.normalize().wkb: shape for shape in shapes}.values())
-
-
-def skip(drawing: Drawing, pieces: list[tuple[str, Numbers]]) -> None:
-    for kind, piece in pieces:
-        drawing.skipped[kind] = drawing.skipped.get(kind, 0) + 1
-        drawing.lines.append(piece)
 
 
 def is_off(outlines: Any, line: Any) -> bool:

@@ -16,6 +16,7 @@ from .walls import area
 METRES = {"nm": 1e-9, "um": 1e-6, "µm": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 25.4e-3}
 MARGIN = 0.5  # between the posts and the edge of a device without a drawn one [sigma]
 LONGEST = 10000  # side of a device that is not taken for a mistake of the unit [sigma]
+Line = tuple[str, Numbers]  # kind of an object in a drawing, and its points (n, 2)
 
 
 @dataclasses.dataclass
@@ -27,12 +28,12 @@ class Drawing:
     metres: float | None  # in one unit; None if the drawing does not say
     frame: tuple[float, float, float, float] | None = None  # left, bottom, right, top, if the drawing has edges of its own
     unit_is_assumed: bool = False
-    pieces: list[tuple[str, Numbers]] = dataclasses.field(default_factory=list)  # kinds and points of open lines, before they are joined
-    lines: list[Numbers] = dataclasses.field(default_factory=list)  # of them those that close into no outline
+    pieces: list[Line] = dataclasses.field(default_factory=list)  # open lines, before they are joined
+    lines: list[Line] = dataclasses.field(default_factory=list)  # of them those that close into no outline
     joined: tuple[int, int] = (0, 0)  # number of the pieces that do, and of their outlines
     can_join: bool = True
     unit_in_words: str | None = None  # its name, if that is not the length `metres`
-    skipped: dict[str, int] = dataclasses.field(default_factory=dict)  # kinds of objects that are no posts, with their numbers
+    skipped: dict[str, int] = dataclasses.field(default_factory=dict)  # kinds of objects that are no posts, lines apart, with their numbers
 
     @property
     def unit(self) -> str:
@@ -51,29 +52,38 @@ class Device:
     droplet_metres: float
     post_of: Numbers | None = None  # number of the post of each circle; None: each is one
     replaced: list[Numbers] = dataclasses.field(default_factory=list)  # outlines for which there are circles
-    walls: list[Numbers] = dataclasses.field(default_factory=list)  # outlines beside the device, for which there is side-walls=on
-    lines: list[Numbers] = dataclasses.field(default_factory=list)  # that close into no outline
+    walls: list[Numbers] = dataclasses.field(default_factory=list)  # outlines or lines beside the device, for which there is side-walls=on
+    lines: list[Line] = dataclasses.field(default_factory=list)  # that close into no outline, and are no walls
 
     def overlaps(self) -> list[tuple[int, int]]:
-        """Pairs of posts that touch, which clogsweep refuses."""
-        return [(i, j) for i, j, gap in self._gaps if gap <= 0]
+        """Circles of each pair of posts that touch, which clogsweep refuses."""
+        return self._gaps[1]
 
     def smallest_gap(self) -> float:
         """The narrowest gap between two posts; infinite if there are fewer than two."""
-        return min((gap for _, _, gap in self._gaps), default=np.inf)
+        return self._gaps[0]
 
-    @functools.cached_property  # with many circles it takes minutes
-    def _gaps(self) -> list[tuple[int, int, float]]:
-        """For each post, its number, that of the nearest post after it, and the gap between them."""
-        found = []
+    @functools.cached_property
+    def _gaps(self) -> tuple[float, list[tuple[int, int]]]:
+        """The narrowest gap, and two circles of each pair of posts that touch. Circles in the order of x are compared with the next one, the
+        next but one, and so on, until all are farther apart along x than the narrowest gap so far."""
         posts = np.arange(len(self.circles)) if self.post_of is None else self.post_of
-        for i, (x, y, diameter) in enumerate(self.circles[:-1]):
-            others = self.circles[i + 1:]
-            gaps = np.hypot(others[:, 0] - x, others[:, 1] - y) - (others[:, 2] + diameter) / 2
-            gaps[posts[i + 1:] == posts[i]] = np.inf
-            nearest = int(np.argmin(gaps))
-            found.append((i, i + 1 + nearest, float(gaps[nearest])))
-        return found
+        order = np.argsort(self.circles[:, 0], kind="stable")
+        x, y, diameter = self.circles[order].T
+        posts = posts[order]
+        narrowest = np.inf
+        touching: dict[frozenset[int], tuple[int, int]] = {}
+        for step in range(1, len(x)):
+            is_near = x[step:] - x[:-step] <= (diameter[:-step] + diameter.max()) / 2 + max(narrowest, 0.0)
+            if not is_near.any():
+                break
+            i = np.flatnonzero(is_near & (posts[step:] != posts[:-step]))
+            gaps = np.hypot(x[i + step] - x[i], y[i + step] - y[i]) - (diameter[i + step] + diameter[i]) / 2
+            narrowest = min(narrowest, gaps.min(initial=np.inf))
+            for first in i[gaps <= 0]:
+                pair = (int(order[first]), int(order[first + step]))
+                touching.setdefault(frozenset((posts[first], posts[first + step])), (min(pair), max(pair)))
+        return float(narrowest), sorted(touching.values())
 
     def num_posts(self) -> int:
         return len(self.circles) if self.post_of is None else len(np.unique(self.post_of))
@@ -168,8 +178,11 @@ def placed(drawing: Drawing, circles: Numbers, others: list[Numbers], frame: tup
     circles = np.column_stack([circles[:, :2] @ turn.T, scale * circles[:, 2]])
     others = [outline @ turn.T for outline in others]
     edges = surroundings(circles, others) if frame is None else np.array(frame).reshape(2, 2) @ turn.T
-    found = walls.among(circles, others, float(np.ptp(edges[:, 0])))
-    sides = [others[index] for index in found if index is not None]
+    lines = [(kind, line @ turn.T) for kind, line in drawing.lines]
+    candidates = [*others, *(line for _, line in lines)]
+    found = walls.among(circles, candidates, float(np.ptp(edges[:, 0])))
+    sides = [candidates[index] for index in found if index is not None]
+    lines = [line for index, line in enumerate(lines, len(others)) if index not in found]
     others = [outline for index, outline in enumerate(others) if index not in found]
     if frame is None:
         inside = surroundings(circles, others)
@@ -182,7 +195,7 @@ def placed(drawing: Drawing, circles: Numbers, others: list[Numbers], frame: tup
     length, width = high - low
     circles[:, :2] -= low
     return Device(circles=circles, others=[outline - low for outline in others], length=float(length), width=float(width), has_frame=frame is not None,
-                  droplet_metres=droplet, walls=[side - low for side in sides], lines=[line @ turn.T - low for line in drawing.lines])
+                  droplet_metres=droplet, walls=[side - low for side in sides], lines=[(kind, line - low) for kind, line in lines])
 
 
 def surroundings(circles: Numbers, others: list[Numbers]) -> Numbers:

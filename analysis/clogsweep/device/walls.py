@@ -1,4 +1,4 @@
-"""Side walls that a drawing has as long, thin outlines: no posts, since side-walls=on makes them."""
+"""Side walls that a drawing has as long, thin outlines or as lines: no posts, since side-walls=on makes them."""
 
 from __future__ import annotations
 

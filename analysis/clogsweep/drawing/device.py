@@ -1,4 +1,4 @@
-"""A device as a whole: what was understood of its drawing; where droplets of a sweep were released, passed and clogged."""
+"""What happened in a device: where droplets of a sweep were released, where they passed, and where they clogged."""
 
 from __future__ import annotations
 
@@ -6,86 +6,25 @@ import dataclasses
 import pathlib
 import tempfile
 from collections.abc import Sequence
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import PatchCollection
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle, Polygon, Rectangle
-from matplotlib.transforms import ScaledTranslation
+from matplotlib.image import AxesImage
 
 from .. import style
-from ..device.shapes import METRES, Device
+from ..labels.groups import Groups
 from ..reading import replays, stored
-from ..tools import rounded
 from ..tools.errors import UserError
 from ..tools.hints import AnyPath, Numbers, Records
-from . import surroundings
+from . import device_plan
 
-WIDEST, NARROWEST = 14.0, 5.0  # figures [inches]
-RED = "#D00000"
 T = TypeVar("T")
+MOST_PANELS = 6
+BESIDE = 1.2  # width of the colours' scale and of the strip's legend [inches]
 STEP = 0.1  # between two points of a way, of a free droplet [sigma]
 CELL = 0.1  # of the map of passages [sigma]
-
-
-def axes_for(length: float, width: float, rows: int = 1) -> tuple[Figure, Numbers]:
-    """A figure and its axes, with equal scales along and across a device of this shape. @param rows  2: with a strip below it"""
-    figure_width = min(WIDEST, max(NARROWEST, 0.45 * length))
-    height = min(12.0, max(2.2, figure_width * width / length))
-    figure, axes = style.subplots(rows, figsize=(figure_width, height + 1.3 + 1.5 * (rows - 1)), squeeze=False, sharex=True,
-                                  height_ratios=[height, 1.5][:rows])
-    return figure, axes[:, 0]
-
-
-def draw_posts(axes: Axes, circles: Numbers, colour: str = style.OBSTACLE) -> None:
-    """@param circles  (n, 3): x, y, diameter"""
-    axes.add_collection(PatchCollection([Circle((x, y), diameter / 2) for x, y, diameter in circles], facecolor=colour, edgecolor="none"))
-
-
-def frame(axes: Axes, length: float, width: float, line: str, points_below: float, beside: Sequence[Numbers] = ()) -> None:
-    """The edge of the device, and what is beside it. @param points_below  where the arrow of the flow is; @param beside  lines to be
-    in the picture, too, unless they are farther away than the device is large"""
-    axes.add_patch(Rectangle((0, 0), length, width, fill=False, edgecolor="0.3", linestyle=line))
-    size = np.array([length, width])
-    points = np.clip(np.vstack([np.zeros(2), size, *beside]), -size, 2 * size)
-    margin = 0.02 * max(length, width) + 0.5
-    surroundings.frame_limits(axes, tuple(points.min(axis=0) - margin), tuple(points.max(axis=0) + margin))
-    surroundings.draw_bar(axes)
-    draw_flow(axes, points_below)
-    axes.set_ylabel(r"$y/\sigma$")
-
-
-def draw_flow(axes: Axes, points_below: float) -> None:
-    """An arrow along the flow, below the right end of the axes, where no post is."""
-    place = axes.transAxes + ScaledTranslation(0, -points_below / 72, axes.figure.dpi_scale_trans)
-    start = axes.transAxes + ScaledTranslation(-0.6, -points_below / 72, axes.figure.dpi_scale_trans)
-    axes.annotate("flow", (1, 0), (1, 0), xycoords=place, textcoords=start, va="center", ha="right", fontsize=9, annotation_clip=False,
-                  arrowprops={"arrowstyle": "-|>", "linewidth": 1.5, "color": "black", "shrinkB": 0})
-
-
-def understood(device: Device, source: str) -> Figure:
-    """Posts grey, what is not round red, the edge dashed. @param source  name of the drawing"""
-    figure, (axes,) = axes_for(device.length, device.width)
-    draw_posts(axes, device.circles)
-    for outline in device.others:
-        axes.add_patch(Polygon(outline, facecolor=RED, edgecolor="black", linewidth=0.5))
-    for outline in device.replaced:
-        axes.add_patch(Polygon(outline, facecolor=style.OBSTACLE, edgecolor=RED, linewidth=0.5))
-    for outline in device.walls:
-        axes.add_patch(Polygon(outline, facecolor=style.OBSTACLE, edgecolor=style.OBSTACLE))
-    for line in device.lines:
-        axes.plot(*line.T, color=RED, linewidth=1.0)
-    for pair in device.overlaps():
-        draw_posts(axes, device.circles[list(pair)], RED)
-    frame(axes, device.length, device.width, "--" if device.has_frame else ":", 26, [*device.walls, *device.lines])
-    axes.set_xlabel(r"$x/\sigma$, along the flow")
-    micrometres = device.droplet_metres / METRES["um"]
-    red = f", {len(device.others)} not round (red)" if device.others else ""
-    style.caption(axes, rf"{source}: {rounded.counted(device.num_posts(), 'post')}{red}, "
-                        rf"$\sigma$ = {micrometres:.4g} µm, device {device.length * micrometres:.5g} µm x {device.width * micrometres:.5g} µm")
-    return figure
 
 
 @dataclasses.dataclass
@@ -105,6 +44,17 @@ class Place:
         x, y = points.T
         return np.column_stack([x if self.exit > 0 else x % self.length, y if self.has_walls else y % self.width])
 
+    def parts(self, groups: Groups) -> list[Part]:
+        """Its runs by parameter set, in the order of clogfit's table."""
+        names = groups.distinguishing()
+        found = []
+        for member in groups.members:
+            of_group = np.all([self.rows[name] == (member[name].encode() if isinstance(member[name], str) else member[name]) for name in names] or
+                              [np.ones(len(self.rows), dtype=bool)], axis=0)
+            if of_group.any():
+                found.append(Part(groups.label_of(member), dataclasses.replace(self, rows=self.rows[of_group])))
+        return found
+
     @property
     def releases(self) -> Numbers:
         return np.column_stack([self.rows["release_x"], self.rows["release_y"]])
@@ -112,6 +62,16 @@ class Place:
     @property
     def ends(self) -> Numbers:
         return self.releases + np.column_stack([self.rows["distance"], self.rows["lateral_displacement"]])
+
+
+@dataclasses.dataclass
+class Part:
+    """The runs of one parameter set in a device, and the ways of some."""
+
+    label: str
+    place: Place
+    lines: Sequence[Numbers] = ()  # places of the centre (n, 2)
+    mapped: Sequence[Numbers] = ()  # the same, for the map of passages
 
 
 DEVICE_COLUMNS = ["obstacles", "obstacle_diameter", "box", "boxes", "length", "side_walls", "exit"]
@@ -172,10 +132,13 @@ def ways_of(place: Place, sweep: pathlib.Path, clogrun: pathlib.Path, number: in
             for row, run in zip(rows, runs)]
 
 
-def shown_ways(place: Place, sweep: pathlib.Path, clogrun: pathlib.Path, num_lines: int, num_mapped: int, jobs: int) -> tuple[list[Numbers], list[Numbers]]:
-    """Those to be lines, and those for the map."""
-    ways = ways_of(place, sweep, clogrun, max(num_lines, num_mapped), jobs)
-    return evenly(ways, num_lines), evenly(ways, num_mapped)
+def shown_parts(place: Place, groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path, num_lines: int, num_mapped: int, jobs: int) -> list[Part]:
+    """Those parameter sets that have a panel, with their ways. @param num_lines, num_mapped  of so many runs of each"""
+    shown = evenly(place.parts(groups), MOST_PANELS)
+    for part in shown:
+        ways = ways_of(part.place, sweep, clogrun, max(num_lines, num_mapped), jobs)
+        part.lines, part.mapped = evenly(ways, num_lines), evenly(ways, num_mapped)
+    return shown
 
 
 def unbroken(points: Numbers, place: Place) -> Numbers:
@@ -203,8 +166,8 @@ def draw_ends(axes: Axes, place: Place) -> None:
                       label=f"clogged, {mechanism}: {of_kind.sum()}", zorder=5)
 
 
-def draw_passages(axes: Axes, place: Place) -> None:
-    """The number of droplets that passed each place along the flow. One that passes the device twice counts twice."""
+def came_past(place: Place) -> tuple[Numbers, Numbers]:
+    """Places along the flow, and the number of droplets that came past each. One that passes the device twice counts twice."""
     cells = np.linspace(0, place.length, 201)
     middles = (cells[1:] + cells[:-1]) / 2
     counts = np.zeros(len(middles))
@@ -212,11 +175,24 @@ def draw_passages(axes: Axes, place: Place) -> None:
         for lap in range(int(np.floor(begin / place.length)), int(np.floor(end / place.length)) + 1) if place.exit == 0 else (0,):
             at = middles + lap * place.length
             counts += (at >= begin) & (at <= end)
-    axes.fill_between(middles, counts, step="mid", color=style.COLOURS[5], alpha=0.6, linewidth=0)
-    axes.set_ylabel("droplets\nthat came past")
+    return middles, counts
+
+
+def draw_passages(axes: Axes, parts: Sequence[Part]) -> None:
+    """The droplets that came past each place along the flow, divided by those released."""
+    for number, part in enumerate(parts):
+        middles, counts = came_past(part.place)
+        axes.step(middles, counts / len(part.place.rows), where="mid", color=colour_of(number, len(parts)), linewidth=1.2, label=part.label)
+    axes.set_ylabel("share that\ncame past")
     axes.set_ylim(bottom=0)
     axes.set_xlabel(r"$x/\sigma$, along the flow")
     style.grid(axes)
+    if len(parts) > 1:
+        axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8, frameon=False)
+
+
+def colour_of(number: int, count: int) -> Any:
+    return style.VIRIDIS(0.85 * number / max(1, count - 1))
 
 
 def passages(place: Place, ways: Sequence[Numbers]) -> Numbers:
@@ -245,30 +221,48 @@ def along(way: Numbers) -> Numbers:
     return np.column_stack([np.interp(wanted, ways, way[:, axis]) for axis in (0, 1)])
 
 
-def draw_map(figure: Figure, panels: Sequence[Axes], place: Place, ways: Sequence[Numbers]) -> None:
-    """Where droplets went, on the first of the panels. The scale is beside all."""
-    shares = passages(place, ways)
-    drawn = panels[0].imshow(np.where(shares > 0, shares, np.nan), extent=(0, place.length, 0, place.width), origin="lower", cmap=style.PASSAGES, vmin=0,
-                             interpolation="nearest", aspect="equal", zorder=0)
+def draw_map(axes: Axes, part: Part) -> AxesImage:
+    """Where droplets went."""
+    shares = passages(part.place, part.mapped)
+    return axes.imshow(np.where(shares > 0, shares, np.nan), extent=(0, part.place.length, 0, part.place.width), origin="lower", cmap=style.PASSAGES,
+                       vmin=0, vmax=1, interpolation="nearest", aspect="equal", zorder=0)
+
+
+def draw_scale(figure: Figure, panels: Sequence[Axes], drawn: AxesImage, parts: Sequence[Part]) -> None:
+    """What the colours of the maps say."""
+    counts = {len(part.mapped) for part in parts}
+    most = f"{counts.pop()}" if len(counts) == 1 else f"up to {max(counts)}"
     scale = figure.colorbar(drawn, ax=list(panels), pad=0.01, fraction=0.05)
-    scale.set_label(f"share of {len(ways)} of {rounded.counted(len(place.rows), 'droplet')}\nthat passed over it", fontsize=8)
+    scale.set_label(f"share of {most} droplets{' each' if len(parts) > 1 else ''}\nthat passed over it", fontsize=8)
 
 
-def draw(place: Place, lines: Sequence[Numbers] = (), mapped: Sequence[Numbers] = ()) -> Figure:
-    """@param lines, mapped  ways of shown_ways(), for lines and for the map"""
-    figure, (axes, below) = axes_for(place.length, place.width, rows=2)
-    if mapped:
-        draw_map(figure, [axes, below], place, mapped)
-    draw_posts(axes, place.circles)
-    frame(axes, place.length, place.width, "-" if place.has_walls else ":", 12)
+def draw_part(axes: Axes, part: Part) -> None:
+    place = part.place
+    device_plan.draw_posts(axes, place.circles)
+    device_plan.frame(axes, place.length, place.width, "-" if place.has_walls else ":")
+    if part.label:
+        axes.set_ylabel(f"{part.label}\n$y/\\sigma$")
     if place.exit > 0:
         axes.axvline(place.exit, color="0.3", linestyle="--", linewidth=0.8)
-    for number, way in enumerate(lines):
-        axes.plot(*unbroken(way, place).T, color=style.VIRIDIS(0.85 * number / max(1, len(lines) - 1)), linewidth=1.0, zorder=3)
+    for number, way in enumerate(part.lines):
+        axes.plot(*unbroken(way, place).T, color=style.COLOURS[number % len(style.COLOURS)], linewidth=1.0, zorder=3)
     axes.plot(*place.wrapped(place.releases).T, "|", color="#009E73", markersize=7, label=f"released: {len(place.rows)}", zorder=4)
     draw_ends(axes, place)
-    axes.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=4, fontsize=8, frameon=False)
-    draw_passages(below, place)
+    axes.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=4, fontsize=8, frameon=False, borderaxespad=0.2)
+
+
+def draw(parts: Sequence[Part], num_parts: int) -> Figure:
+    """A panel for each part, and a strip that compares them. @param parts  of one device; @param num_parts  of all its parameter sets"""
+    place = parts[0].place
+    figure, (*panels, below) = device_plan.axes_for(place.length, place.width, len(parts), strip=1.5, beside=BESIDE if len(parts) > 1 or parts[0].mapped else 0)
+    for axes, part in zip(panels, parts):
+        drawn = draw_map(axes, part) if part.mapped else None
+        draw_part(axes, part)
+    if drawn:
+        draw_scale(figure, panels, drawn, parts)
+    device_plan.draw_flow(panels[-1], 12)
+    draw_passages(below, parts)
     walls = "between walls" if place.has_walls else "periodic across the flow"
-    figure.suptitle(f"{place.name}: {rounded.counted(len(place.circles), 'circle')}, {place.length:.4g} x {place.width:.4g} droplet diameters, {walls}", fontsize=9)
+    some = f"; {len(parts)} of {num_parts} parameter sets" if len(parts) < num_parts else ""
+    figure.suptitle(f"{place.name}: {place.length:.4g} x {place.width:.4g} droplet diameters, {walls}{some}", fontsize=9)
     return figure

@@ -10,7 +10,6 @@ from .. import style
 from ..labels import LABORATORY
 from ..labels.groups import Groups
 from ..tools.errors import UserError
-from ..tools.hints import Group
 from .lengths import add_scale, draw_lengths, finish_lengths
 
 NUM_TIMES = 12
@@ -28,19 +27,13 @@ def times_of(groups: Groups) -> list[float]:
     return [first, *np.geomspace(first, last, NUM_TIMES)[1:-1].tolist(), last]
 
 
-def label_of(groups: Groups, member: Group) -> str:
-    """The values that distinguish a group from the others."""
-    names = [name for name in [groups.abscissa, *groups.curve_parameters()] if groups.varies(name)]
-    return ", ".join(groups.said(name, member[name]) for name in names)
-
-
 def draw(times: Sequence[float], fits: Sequence[Groups]) -> Figure:
     """@param fits  groups of the same sweep for each of these times"""
     figure, axes = style.subplots(figsize=(6.4, 4.8))
     curves = list(zip(*(groups.members for groups in fits)))
     for index, members in enumerate(curves):
         places = [time * style.side_by_side(index, len(curves), times) for time in times]
-        draw_lengths(axes, places, members, index, label_of(fits[-1], members[-1]))
+        draw_lengths(axes, places, members, index, fits[-1].label_of(members[-1]))
     style.logarithmic_abscissa(axes, times)
     axes.xaxis.set_major_formatter("{x:g}")  # times may be long
     lengths = fits[-1].values("dwell_length")

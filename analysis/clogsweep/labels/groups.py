@@ -139,6 +139,14 @@ class Groups:
         """A parameter's value, and for the check sum of circles the name of their file, if it is known."""
         return self._circle_files.get(value, value) if name == "obstacles" else value
 
+    def distinguishing(self) -> list[str]:
+        """Names of the parameters that tell the groups apart."""
+        return [name for name in [self.abscissa, *self.curve_parameters()] if self.varies(name)]
+
+    def label_of(self, member: Group) -> str:
+        """The values that distinguish a group from the others."""
+        return ", ".join(self.said(name, member[name]) for name in self.distinguishing())
+
     def axis_label(self) -> str:
         if self.abscissa in AXES:
             return AXES[self.abscissa]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import json
+import math
 import pathlib
 import string
 import tempfile
@@ -20,7 +21,7 @@ from ..labels.groups import Groups
 from ..reading import fits, programs, stored
 from ..tools import outputs, rounded
 from ..tools.errors import UserError
-from ..tools.hints import Group, Numbers
+from ..tools.hints import Group
 from .chart import Charts
 
 if TYPE_CHECKING:
@@ -125,12 +126,16 @@ def speed(group: Group) -> str:
 
 def laboratory_columns(groups: Groups) -> dict[str, str]:
     """Headings of what a table has in laboratory units, by column."""
-    named = {"clogging_length_mm": "&lambda; [mm]", "speed_mm_per_s": "v<sub>g</sub> [mm/s]", "time_to_clog_s": "time to clog [s]"}
-    return named if groups.laboratory else {}
+    named = {"tension_mN_per_m": "tension [mN/m]", "clogging_length_mm": "&lambda; [mm]", "speed_mm_per_s": "v<sub>g</sub> [mm/s]", "time_to_clog_s": "time to clog [s]"}
+    if not groups.laboratory:
+        return {}
+    return {column: title for column, title in named.items() if column != "tension_mN_per_m" or groups.are_polygons}
 
 
-def in_laboratory(group: Group, name: str) -> str:
+def in_laboratory(groups: Groups, group: Group, name: str) -> str:
     """A number in laboratory units, or the lower bound of a length."""
+    if name == "tension_mN_per_m":
+        return rounded.plain(group["line_tension"] * (groups.laboratory["tension_mN_per_m"] or math.nan))
     bound = group["clogging_length_lower_mm"] if name == "clogging_length_mm" and group["clogs"] == 0 else None
     return rounded.plain(group[name]) if bound is None else f"> {rounded.plain(bound)}"
 
@@ -174,24 +179,32 @@ def doubts_of(group: Group, sentences: dict[str, str]) -> str:
     return ", ".join(f'<abbr title="{html.escape(sentences[name])}">{name.replace("_", " ")}</abbr>' for name in style.doubts(group))
 
 
+def table_cell(text: str) -> str:
+    """In HTML. What is in brackets moves to lines of its own in a narrow table."""
+    number, space, rest = text.partition(" (")
+    return f"<td><span>{html.escape(number)}</span>{f'<small>{html.escape(space + rest)}</small>' if rest else ''}</td>"
+
+
 def table(titles: Sequence[str], lines: Sequence[Sequence[str]], doubts: Sequence[str]) -> str:
     """Every number of the page; what points show of it, and how it is sorted, is in `page.js`.
 
     @param titles  in HTML; @param lines  cells of each group; @param doubts  of each, in HTML
     """
     head = "".join(f'<th scope="col">{title}</th>' for title in [*titles, "doubts"])
-    body = "\n".join(f'<tr data-groups="{number}">' + "".join(f"<td>{html.escape(cell)}</td>" for cell in cells) + f'<td class="doubt">{doubt}</td></tr>'
+    body = "\n".join(f'<tr data-groups="{number}">' + "".join(table_cell(cell) for cell in cells) + f'<td class="doubt">{doubt}</td></tr>'
                      for number, (cells, doubt) in enumerate(zip(lines, doubts)))
     return f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>\n{body}\n</tbody></table></div>'
 
 
 def table_of_lengths(groups: Groups, sentences: dict[str, str], rows: pandas.DataFrame) -> str:
     names = parameters(groups)
-    titles = [*(name.replace("_", " ") for name in names), "runs", "clogs", *style.MECHANISM_COLOURS, f"&lambda;/&sigma; ({100 * groups.confidence:g} %)",
+    passed = ["passed"] if any(group["passed"] for group in groups.members) else []
+    titles = [*(name.replace("_", " ") for name in names), "runs", "clogs", *style.MECHANISM_COLOURS, *passed, f"&lambda;/&sigma; ({100 * groups.confidence:g} %)",
               *(["lateral/r"] if groups.are_lattices else []), "&lang;v<sub>g</sub>&rang;/v<sub>t</sub>", *laboratory_columns(groups).values(), "Ca", "seeds"]
     lines = [[*(cell(groups, group, name) for name in names), str(group["runs"]), str(group["clogs"]),
-              *(str(group[name]) for name in style.MECHANISM_COLOURS), length(group),
-              *([slope(group)] if groups.are_lattices else []), speed(group), *(in_laboratory(group, name) for name in laboratory_columns(groups)), rounded.plain(group["capillary_number"]), seeds_of(group, names, rows)] for group in groups.members]
+              *(str(group[name]) for name in [*style.MECHANISM_COLOURS, *passed]), length(group),
+              *([slope(group)] if groups.are_lattices else []), speed(group), *(in_laboratory(groups, group, name) for name in laboratory_columns(groups)),
+              rounded.plain(group["capillary_number"]), seeds_of(group, names, rows)] for group in groups.members]
     return table(titles, lines, [doubts_of(group, sentences) for group in groups.members])
 
 
@@ -270,7 +283,7 @@ def valued(groups: Groups, group: Group) -> str:
     return ", ".join(f"{name.replace('_', ' ')} {cell(groups, group, name)}" for name in parameters(groups))
 
 
-MAPPED = 12  # runs whose ways make the map of a device
+MAPPED = 6  # runs in each panel of a device whose ways make its map
 
 
 def devices(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
@@ -278,13 +291,13 @@ def devices(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Pa
     @param count  ways to draw; with 0 nothing is run"""
     if groups.values("obstacle_filling") != {"file"} or "release_x" not in stored.columns_of(stored.read_rows(sweep, clogrun.parent)):
         return {}
-    caption = "releases, clogs, where droplets went, and how many came past each place"
+    caption = "releases, clogs, where droplets went, and the share that came past each place"
 
-    def ways(place: device.Place) -> tuple[list[Numbers], list[Numbers]]:
-        return device.shown_ways(place, sweep, clogrun, count, MAPPED if count else 0, 2)
+    def drawn(place: device.Place) -> str:
+        parts = device.shown_parts(place, groups, sweep, clogrun, count, MAPPED if count else 0, 2)
+        return framed(charts.draw(device.draw(parts, len(place.parts(groups))), caption), f"{place.name}: {caption}", "wide")
 
-    return {"Devices": "".join(framed(charts.draw(device.draw(place, *ways(place)), caption), f"{place.name}: {caption}", "wide")
-                               for place in device.places(sweep, clogrun.parent))}
+    return {"Devices": "".join(drawn(place) for place in device.places(sweep, clogrun.parent) if place.parts(groups))}
 
 
 def of_lengths(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:

@@ -101,10 +101,11 @@ class Sweep:
         rows = clogs.chosen(clogs.of_polygons(self._records, self.path), self.path, mechanism=mechanism, tasks=tasks, most=most)
         return clogs.run_all(self._program("clogrun"), self.path, rows, jobs)
 
-    def device(self, *, ways: int = 6, map: int = 20, jobs: int = 2) -> Picture:
-        """User-supplied circles, with the places where droplets were released, passed and clogged, and where they went.
+    def device(self, *, ways: int = 4, map: int = 10, jobs: int = 2) -> Picture:
+        """User-supplied circles, with the places where droplets were released, passed and clogged, and where they went: a panel
+        for each of up to six parameter sets.
 
-        @param ways  of so many runs a line; @param map  of so many runs the share that passed over each place; they are replayed
+        @param ways  of so many runs of each a line; @param map  of so many the share that passed over each place; they are replayed
         @param jobs  runs at a time
         @throws UserError  if the sweep has no user-supplied circles, or those of several devices
         """
@@ -115,7 +116,9 @@ class Sweep:
         checked.whole("map", map, 0)
         checked.whole("jobs", jobs, 1)
         place = device.the_place(self.path, self._programs)
-        return Picture(device.draw(place, *device.shown_ways(place, self.path, self._program("clogrun"), ways, map, jobs)), stored.source(self.attributes))
+        groups = self.fit().known.finished(self.path)
+        parts = device.shown_parts(place, groups, self.path, self._program("clogrun"), ways, map, jobs)
+        return Picture(device.draw(parts, len(place.parts(groups))), stored.source(self.attributes))
 
     def replay(self, task: int, output: str | os.PathLike[str] | None = None, *, interval: float = 1.0) -> Run:
         """Replays a run, with outlines. @param output  file to keep it in; @param interval  between outlines [t0]. @throws UserError"""

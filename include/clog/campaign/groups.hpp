@@ -62,7 +62,7 @@ inline constexpr DoubtText doubt_texts[] = {
      "gaps clog droplets (for user-supplied circles the spacing is 1/sqrt(circles per area))"},
     {Doubt::not_proved_sound, 'u', "not_proved_sound",
      "line tension, preset, vertices or obstacles are outside the range tested for soundness: droplets may "
-     "cross themselves or obstacles (docs/explanation/soundness.md)"}};
+     "cross themselves or obstacles (handbook, Which droplets are sound)"}};
 const DoubtText& text_of(Doubt doubt);
 
 /// The ways in which a run may end, competing risks: the mechanism that holds a clog (`other`: none of them),

@@ -23,8 +23,9 @@ bool has_met_repetition(const RunRow& row);
 /// One line that says whether runs of a plan may come so far; empty if none does.
 std::string possible_repetition(const Plan& plan);
 
-/// One line a file of circles that leaves a conspicuous part of its array bare; empty if none does.
-std::vector<std::string> bare_arrays(const Plan& plan);
+/// Lines about files of circles that leave a conspicuous part of their array bare, or have circles without a
+/// diameter; none for others.
+std::vector<std::string> limits_of_circles(const Plan& plan);
 
 /// What a plan's results will be worth less for, as far as that is known beforehand: the lines above that say
 /// something.

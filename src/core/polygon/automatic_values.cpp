@@ -66,8 +66,8 @@ void validate_compression(const DpParameters& dp, bool automatic_area) {
     require(*dp.area_stiffness >= softest, "line-tension", dp.line_tension, [&] {
       return fmt::format(
           "would compress the droplet by more than 5 %, with the stiffest automatic area-stiffness) "
-          "use at most {:.3g} (from 30 on droplets are nearly rigid), or the soft disk, model=sp",
-          rounded_down(*dp.area_stiffness / softest_per_tension));
+          "use at most {:.3g} (from {} on droplets are nearly rigid), or the soft disk, model=sp",
+          rounded_down(*dp.area_stiffness / softest_per_tension), nearly_rigid_tension);
     });
   require(*dp.area_stiffness >= softest, "area-stiffness", *dp.area_stiffness, [&] {
     return fmt::format("the line tension would compress the droplet by more than 5 %) use at least {:.3g}",

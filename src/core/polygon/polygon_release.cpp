@@ -1,12 +1,16 @@
 #include "core/polygon/polygon_release.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <numbers>
+#include <string>
 #include <utility>
 
 #include "clog/core/droplet/fire.hpp"
 #include "clog/core/droplet/release.hpp"
 #include "clog/core/droplet/shape.hpp"
+#include "clog/core/polygon/automatic_values.hpp"
 #include "clog/core/polygon/dp_forces.hpp"
 #include "clog/core/polygon/stability.hpp"
 #include "clog/core/tools/units.hpp"
@@ -16,9 +20,6 @@ namespace clog {
 namespace {
 
 constexpr double radius = units::droplet_diameter / 2;
-/// Gamma from which on a droplet sags by less than a hundredth of its diameter under its own weight, and a
-/// larger one changes nothing but the cost.
-constexpr double nearly_rigid = 30;
 
 /// A polygon smaller than the droplet has a smaller perimeter: a stiffer tension mode, a softer area mode.
 FireOptions fire_options(const RunParameters& run, double perimeter) {
@@ -142,10 +143,12 @@ DropletState release_polygon(const RunParameters& run, const ObstacleArray& obst
   if (!rests)
     refuse_release(
         "the grown droplet does not come to rest",
-        run.dp.line_tension > nearly_rigid
-            ? "line-tension=30, since stiffer droplets are nearly rigid, fewer obstacles, the soft disk "
-              "(model=sp)"
-            : "a larger line-tension");
+        run.dp.line_tension > nearly_rigid_tension
+            ? fmt::format(
+                  "line-tension={}, since stiffer droplets are nearly rigid, fewer obstacles, the soft "
+                  "disk (model=sp)",
+                  nearly_rigid_tension)
+            : std::string("a larger line-tension"));
   if (num_enclosed(state, obstacles) > 0)
     refuse_release("the grown droplet encloses an obstacle", "more vertices");
   return state;

@@ -4,6 +4,10 @@
 
 namespace clog {
 
+/// Gamma from which on a droplet sags by less than a hundredth of its diameter under its own weight: a larger
+/// one changes where it clogs by less than a hundredth of a diameter, and costs more.
+inline constexpr double nearly_rigid_tension = 30;
+
 /// N_v where none is given. The corners of a polygon that hangs over an obstacle can hold up to x^2/16 of the
 /// weight: x = l/R', where l is the length of the edges on the obstacle, and R' the radius at which they lie.
 /// N_v is so large that the longest edges to be expected hold half a percent, but 128 at least and 1024 at

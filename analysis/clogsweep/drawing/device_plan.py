@@ -1,0 +1,97 @@
+"""A device on paper: posts, edges, the direction of the flow; and what was understood of a drawing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PatchCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle, Polygon, Rectangle
+from matplotlib.transforms import ScaledTranslation
+
+from .. import style
+from ..device.shapes import METRES, Device
+from ..tools import rounded
+from ..tools.hints import Numbers
+from . import surroundings
+
+WIDEST, NARROWEST = 14.0, 5.0  # figures [inches]
+RED = "#D00000"
+
+
+def axes_for(length: float, width: float, panels: int = 1, strip: float = 0.0, beside: float = 0.0) -> tuple[Figure, Numbers]:
+    """A figure and its axes, one above the other, with equal scales along and across a device of this shape.
+    @param strip  height of a last one, below the devices [inches]; @param beside  width for what is drawn beside them [inches]"""
+    figure_width = min(WIDEST, max(NARROWEST, 0.45 * length))
+    height = min(12.0, max(2.2, figure_width * width / length))
+    heights = [height] * panels + ([strip] if strip else [])
+    figure, axes = style.subplots(len(heights), figsize=(figure_width + beside, sum(heights) + 1.3 + 0.3 * (panels - 1)), squeeze=False, sharex=True,
+                                  height_ratios=heights)
+    return figure, axes[:, 0]
+
+
+def draw_posts(axes: Axes, circles: Numbers, colour: str = style.OBSTACLE) -> None:
+    """@param circles  (n, 3): x, y, diameter"""
+    rings = [Polygon(ring) for ring in rings_among(circles)]
+    axes.add_collection(PatchCollection([*(Circle((x, y), diameter / 2) for x, y, diameter in circles), *rings], facecolor=colour, edgecolor="none"))
+
+
+def rings_among(circles: Numbers) -> list[Numbers]:
+    """Centres (n, 2) of the rows of overlapping circles that close: droplets see the post, not the empty space within."""
+    def overlap(i: int, j: int) -> bool:
+        return bool(np.hypot(*(circles[i, :2] - circles[j, :2])) < max(circles[i, 2], circles[j, 2]) / 2)
+
+    breaks = [i for i in range(1, len(circles)) if not overlap(i - 1, i)]
+    found = []
+    for begin, end in zip([0, *breaks], [*breaks, len(circles)]):
+        # A circle that fills the inside may follow the row.
+        last = next((j for j in range(end - 1, begin + 2, -1) if overlap(j, begin)), None)
+        if last is not None:
+            found.append(circles[begin:last + 1, :2])
+    return found
+
+
+def frame(axes: Axes, length: float, width: float, line: str, beside: Sequence[Numbers] = ()) -> None:
+    """The edge of the device, and what is beside it. @param beside  lines to be in the picture, too, unless they are farther away
+    than the device is large"""
+    axes.add_patch(Rectangle((0, 0), length, width, fill=False, edgecolor="0.3", linestyle=line))
+    size = np.array([length, width])
+    points = np.clip(np.vstack([np.zeros(2), size, *beside]), -size, 2 * size)
+    margin = 0.02 * max(length, width) + 0.5
+    surroundings.frame_limits(axes, tuple(points.min(axis=0) - margin), tuple(points.max(axis=0) + margin))
+    surroundings.draw_bar(axes)
+    axes.set_ylabel(r"$y/\sigma$")
+
+
+def draw_flow(axes: Axes, points_below: float) -> None:
+    """An arrow along the flow, so far below the right end of the axes, where no post is."""
+    place = axes.transAxes + ScaledTranslation(0, -points_below / 72, axes.figure.dpi_scale_trans)
+    start = axes.transAxes + ScaledTranslation(-0.6, -points_below / 72, axes.figure.dpi_scale_trans)
+    axes.annotate("flow", (1, 0), (1, 0), xycoords=place, textcoords=start, va="center", ha="right", fontsize=9, annotation_clip=False,
+                  arrowprops={"arrowstyle": "-|>", "linewidth": 1.5, "color": "black", "shrinkB": 0})
+
+
+def understood(device: Device, source: str) -> Figure:
+    """Posts grey, what is not round red, the edge dashed. @param source  name of the drawing"""
+    figure, (axes,) = axes_for(device.length, device.width)
+    draw_posts(axes, device.circles)
+    for outline in device.others:
+        axes.add_patch(Polygon(outline, facecolor=RED, edgecolor="black", linewidth=0.5))
+    for outline in device.replaced:
+        axes.add_patch(Polygon(outline, facecolor=style.OBSTACLE, edgecolor=RED, linewidth=0.5))
+    for outline in device.walls:
+        axes.add_patch(Polygon(outline, closed=False, facecolor=style.OBSTACLE, edgecolor=style.OBSTACLE))
+    for _, line in device.lines:
+        axes.plot(*line.T, color=RED, linewidth=1.0)
+    for pair in device.overlaps():
+        draw_posts(axes, device.circles[list(pair)], RED)
+    frame(axes, device.length, device.width, "--" if device.has_frame else ":", [*device.walls, *(line for _, line in device.lines)])
+    draw_flow(axes, 26)
+    axes.set_xlabel(r"$x/\sigma$, along the flow")
+    micrometres = device.droplet_metres / METRES["um"]
+    red = f", {len(device.others)} not round (red)" if device.others else ""
+    style.caption(axes, rf"{source}: {rounded.counted(device.num_posts(), 'post')}{red}, "
+                        rf"$\sigma$ = {micrometres:.4g} µm, device {device.length * micrometres:.5g} µm x {device.width * micrometres:.5g} µm")
+    return figure
