@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <functional>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <random>
@@ -120,19 +121,26 @@ struct Tally {
 };
 
 /// lambda as it is read from a grid without a fit: S/d at each value (half a clog where there is none),
-/// straight lines of log lambda between. Of one key.
-double on_straight_lines(const std::vector<RefinedPoint>& points, double place) {
-  const auto log_length = [](const RefinedPoint& point) {
-    constexpr double half_a_clog = 0.5;
-    return std::log(point.distance / std::max(point.num_clogs, half_a_clog));
+/// straight lines of log lambda between, along each key.
+double on_straight_lines(const std::vector<RefinedPoint>& points, const CurvePlace& place) {
+  CurvePlace below = CurvePlace::Constant(-std::numeric_limits<double>::infinity()), above = -below;
+  for (const RefinedPoint& point : points)
+    for (int key = 0; key < place.size(); ++key) {
+      if (point.place[key] <= place[key]) below[key] = std::max(below[key], point.place[key]);
+      if (point.place[key] >= place[key]) above[key] = std::min(above[key], point.place[key]);
+    }
+  const auto share = [&](const CurvePlace& corner, int key) {
+    if (corner[key] == below[key] && below[key] == above[key]) return 1.0;
+    if (corner[key] == below[key]) return (above[key] - place[key]) / (above[key] - below[key]);
+    if (corner[key] == above[key]) return (place[key] - below[key]) / (above[key] - below[key]);
+    return 0.0;
   };
-  auto right =
-      std::ranges::find_if(points, [&](const RefinedPoint& point) { return point.place[0] >= place; });
-  if (right == points.begin()) return log_length(*right);
-  if (right == points.end()) --right;
-  const auto left = right - 1;
-  const double share = (place - left->place[0]) / (right->place[0] - left->place[0]);
-  return (1 - share) * log_length(*left) + share * log_length(*right);
+  constexpr double half_a_clog = 0.5;
+  double sum = 0;
+  for (const RefinedPoint& point : points)
+    sum += share(point.place, 0) * share(point.place, 1) *
+           std::log(point.distance / std::max(point.num_clogs, half_a_clog));
+  return sum;
 }
 
 void judge(Tally& tally, const Truth& truth, const Sweep& sweep, std::span<const CurvePlace> places,
@@ -153,10 +161,9 @@ void judge(Tally& tally, const Truth& truth, const Sweep& sweep, std::span<const
   ++tally.number;
   tally.work += sweep.work();
   tally.mean_square += squares / size;
-  if (truth.num_keys == 1)
-    for (const CurvePlace& place : places)
-      tally.square_of_lines +=
-          std::pow(on_straight_lines(sweep.points(), place[0]) - truth.log_length(place), 2) / size;
+  const std::vector<RefinedPoint> points = sweep.points();
+  for (const CurvePlace& place : places)
+    tally.square_of_lines += std::pow(on_straight_lines(points, place) - truth.log_length(place), 2) / size;
   tally.band += held / size;
   const CurvePlace top = truth.num_keys == 1 ? CurvePlace(truth.peak * range, 0) : places[highest];
   const double height = truth.log_length(top);
@@ -305,7 +312,6 @@ int main(int argc, char** argv) {
   fmt::print(
       "\nwork of grids over that of the refined sweep, for the same error of log lambda along the curve\n");
   print_gains("with the same fit", refined, grids, &Tally::error);
-  if (num_keys == 1)
-    print_gains("with straight lines between the values", refined, grids, &Tally::error_of_lines);
+  print_gains("with straight lines between the values", refined, grids, &Tally::error_of_lines);
   return 0;
 }
