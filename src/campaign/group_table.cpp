@@ -102,8 +102,9 @@ std::string left_out(const std::vector<Group>& groups) {
         "lambda_b\n";
   if (std::ranges::any_of(groups, [](const Group& group) { return group.num_passed > 0; }))
     text +=
-        "passed: droplets that reached the exit. Each adds its whole way to lambda, which may be longer than "
-        "the device\n";
+        "passed: droplets that reached the exit. They count as not clogged on their way, so lambda may "
+        "exceed the "
+        "device's length\n";
   if (num_left_out > 0)
     text += fmt::format(
         "   {} ended before --from-distance, left out of runs, clogs and lambda; <v_g> is still of all "

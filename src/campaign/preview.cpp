@@ -251,7 +251,7 @@ void print_short_lengths(const Sample& sample) {
   if (sample.num_short < fewest || one_in * sample.num_short < sample.num_clogged) return;
   fmt::print(std::cout,
              "# {} of {} clogged within one obstacle spacing ({:.3g} sigma) of their release: such lengths "
-             "reflect the release site, not clogging (v); {}\n",
+             "reflect the release void, not clogging (v); {}\n",
              sample.num_short, sweep::counted(sample.num_clogged, "run"), sample.spacing,
              sample.has_own_circles ? "the share of droplets that got past says more"
                                     : "give fewer obstacles, e.g. the default obstacle-density");

@@ -15,7 +15,7 @@ CATALOGUE: dict[str, Entry] = {}
 INTERFACES = {
     "robust": "preset robust: weight on the liquid",
     "heavy-interface": "preset heavy-interface: weight on the interface",
-    "elastic": "preset elastic: weight on the interface, tension grows with length",
+    "elastic": "preset elastic: weight on the interface, tension grows with perimeter",
     "literal": "preset literal: as published",
 }
 
