@@ -75,7 +75,7 @@ std::string legend(const std::vector<Group>& groups) {
 
 std::vector<ResultColumn> result_columns(const std::vector<Group>& groups, double confidence,
                                          const std::optional<LaboratoryScale>& lab) {
-  std::vector<ResultColumn> columns = columns_of_findings(groups, confidence);
+  std::vector<ResultColumn> columns = columns_of_findings(groups, confidence, lab.has_value());
   if (lab && has_clogging_length(groups.front().first_row))
     for (ResultColumn& column : laboratory_columns(*lab)) columns.push_back(std::move(column));
   if (std::any_of(groups.begin(), groups.end(), [](const Group& group) { return !group.doubts.empty(); }))
@@ -85,17 +85,21 @@ std::vector<ResultColumn> result_columns(const std::vector<Group>& groups, doubl
 
 /// Names the runs that are missing from the table, or from some of its columns.
 std::string left_out(const std::vector<Group>& groups) {
-  int num_failed = 0, num_damaged = 0, num_interrupted = 0, num_left_out = 0;
+  int num_failed = 0, num_damaged = 0, num_interrupted = 0, num_left_out = 0, num_resting = 0;
+  double shortest_rest = std::numeric_limits<double>::infinity();
   for (const Group& group : groups) {
     num_failed += group.num_failed;
     num_damaged += group.num_damaged;
     num_interrupted += group.num_interrupted;
     num_left_out += group.num_left_out;
+    num_resting += group.num_resting;
+    shortest_rest = std::min(shortest_rest, group.shortest_rest);
   }
   std::string text;
   if (are_mechanisms_shown(groups))
-    text += fmt::format("w/s/h/o: clogs that are wrapped, squeezed, hybrid, other{}\n",
-                        std::ranges::any_of(groups, is_dwell_possible) ? " (or droplets that moved on)" : "");
+    text += fmt::format(
+        "w/s/h/o: clogs that are wrapped, squeezed, hybrid, other (for instance at rest on one obstacle{})\n",
+        std::ranges::any_of(groups, is_dwell_possible) ? "; or droplets that moved on" : "");
   if (have_some_broken(groups))
     text +=
         "lambda_b: mean distance before break-up. Broken droplets are censored in lambda, clogged ones in "
@@ -110,6 +114,14 @@ std::string left_out(const std::vector<Group>& groups) {
         "   {} ended before --from-distance, left out of runs, clogs and lambda; <v_g> is still of all "
         "runs\n",
         sweep::counted(num_left_out, "run"));
+  if (num_resting > 0) {
+    const double unit = std::pow(10, std::floor(std::log10(shortest_rest)));
+    text += fmt::format(
+        "   {} ended by max-time with the droplet at rest for {} t0 or longer: --dwell={} counts {} as "
+        "clogged\n",
+        sweep::counted(num_resting, "run"), console::plain(shortest_rest),
+        shortest(unit * std::floor(shortest_rest / unit)), num_resting == 1 ? "it" : "them");
+  }
   if (num_interrupted > 0)
     text += fmt::format(
         "   {} {} unfinished: lambda holds for the distances reached so far, and the clogs so far are the "

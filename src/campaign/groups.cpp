@@ -245,6 +245,15 @@ fit::MeanSpeed of_enough_runs(fit::MeanSpeed speed) {
   return speed;
 }
 
+/// Counts a run that ended by max-time although its droplet had long been at rest.
+void add_rest(const sweep::RunRow& run, Group& group) {
+  constexpr double diameters = 10;
+  const double rest = run.time - run.dwells.last_begin;
+  if (run.status != RunStatus::flowing || !(rest > diameters / run.parameters.drag.terminal_speed)) return;
+  ++group.num_resting;
+  group.shortest_rest = std::min(group.shortest_rest, rest);
+}
+
 /// The travel until the run ended or the droplet came to its arrest; not known in files without dwells.
 fit::Travel travel_until_arrest(const sweep::RunRow& run) {
   const bool is_clogged = run.status == RunStatus::clogged;
@@ -329,6 +338,7 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
       group.num_on_mesh += !is_left_out && sweep::may_hang_on_mesh(*run);
       group.num_passed += !is_left_out && !ending.is_clog && run->status == RunStatus::passed;
       group.num_flowing += !is_left_out && !ending.is_clog && run->status == RunStatus::flowing;
+      if (!is_left_out && !ending.is_clog) add_rest(*run, group);
       const double relative_speed = run->mean_speed / run->parameters.drag.terminal_speed;
       speeds.push_back(relative_speed);
       travels.push_back({relative_speed * run->travel_time, run->travel_time});

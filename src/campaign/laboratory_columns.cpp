@@ -15,13 +15,21 @@ double time_to_clog(const Group& group, const LaboratoryScale& scale) {
   return group.clogging.length * scale.length / (group.relative_speed_all.mean * scale.speed);
 }
 
+/// The interfacial tension of a polygon [mN/m]; NaN for the soft disk.
+double tension_of(const Group& group, const LaboratoryScale& scale) {
+  const RunParameters& run = group.first_row.parameters;
+  return run.model == Model::dp ? run.dp.line_tension * scale.tension
+                                : std::numeric_limits<double>::quiet_NaN();
+}
+
 Value value_of(double number) { return std::isfinite(number) ? Value(number) : Value(); }
 
 }  // namespace
 
 std::vector<Field> laboratory_fields(const Group& group, const LaboratoryScale& scale) {
   const fit::CloggingLength& clogging = group.clogging;
-  return {{"clogging_length_mm", value_of(clogging.length * scale.length)},
+  return {{"tension_mN_per_m", value_of(tension_of(group, scale))},
+          {"clogging_length_mm", value_of(clogging.length * scale.length)},
           {"clogging_length_lower_mm", value_of(clogging.interval.lower * scale.length)},
           {"clogging_length_upper_mm", value_of(clogging.interval.upper * scale.length)},
           {"speed_mm_per_s", value_of(group.relative_speed_all.mean * scale.speed)},
@@ -30,7 +38,8 @@ std::vector<Field> laboratory_fields(const Group& group, const LaboratoryScale& 
 }
 
 std::vector<ResultColumn> laboratory_columns(const LaboratoryScale& scale) {
-  return {{"lambda/mm",
+  return {{"tension/(mN/m)", [=](const Group& group) { return console::plain(tension_of(group, scale)); }},
+          {"lambda/mm",
            [=](const Group& group) {
              const fit::CloggingLength& clogging = group.clogging;
              if (clogging.num_runs == 0) return std::string("-");
@@ -41,7 +50,7 @@ std::vector<ResultColumn> laboratory_columns(const LaboratoryScale& scale) {
                                            clogging.interval.upper * scale.length)
                  .value;
            }},
-          {"v_g in mm/s",
+          {"all runs/(mm/s)",
            [=](const Group& group) {
              return console::with_error(group.relative_speed_all.mean * scale.speed,
                                         group.relative_speed_all.standard_error * scale.speed)

@@ -104,12 +104,15 @@ console::RoundedError slope_of(const Group& group) {
   return console::with_error(group.migration.slope, group.migration.standard_error);
 }
 
-std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, double confidence) {
+std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, double confidence,
+                                            bool has_laboratory) {
   std::vector<ResultColumn> columns = {
       {"runs", [](const Group& group) { return std::to_string(group.clogging.num_runs); }},
       {"clogs", [](const Group& group) { return std::to_string(group.clogging.num_clogs); }}};
   if (std::ranges::any_of(groups, [](const Group& group) { return group.num_passed > 0; }))
-    columns.push_back({"passed", [](const Group& group) { return std::to_string(group.num_passed); }});
+    columns.insert(columns.end(),
+                   {{"passed", [](const Group& group) { return std::to_string(group.num_passed); }},
+                    {"flowing", [](const Group& group) { return std::to_string(group.num_flowing); }}});
   if (are_mechanisms_shown(groups)) columns.push_back({"w/s/h/o", mechanism_counts});
   const std::string level = fmt::format("{:g} %", 100 * confidence);
   columns.insert(columns.end(),
@@ -126,7 +129,8 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
                                    {"lambda_b/sigma", break_up_length}});
   columns.insert(columns.end(), {{"<v_g>/v_t", [](const Group& group) { return speed_of(group).value; }},
                                  {"+-", [](const Group& group) { return speed_of(group).error; }}});
-  if (std::ranges::any_of(groups, lacks_speeds))
+  // Speeds in laboratory units are those of all runs.
+  if (has_laboratory || std::ranges::any_of(groups, lacks_speeds))
     for (ResultColumn& column : columns_of_all_speeds()) columns.push_back(std::move(column));
   // A droplet in a random array goes straight on average.
   if (std::any_of(groups.begin(), groups.end(), is_lattice))
@@ -168,10 +172,11 @@ std::vector<ResultColumn> columns_of_walls() {
 
 }  // namespace
 
-std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, double confidence) {
+std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, double confidence,
+                                              bool has_laboratory) {
   switch (scene_of(groups.front().first_row.parameters).finding) {
     case Finding::clogging_length:
-      return columns_of_arrays(groups, confidence);
+      return columns_of_arrays(groups, confidence, has_laboratory);
     case Finding::passage:
       return columns_of_channels();
     case Finding::sag:

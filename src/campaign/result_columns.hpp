@@ -15,7 +15,8 @@ struct ResultColumn {
 };
 
 /// The columns of the scene's results. @param groups  not empty
-std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, double confidence);
+std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, double confidence,
+                                              bool has_laboratory);
 
 /// Whether the table shows the mechanisms: if clogs differ in them, or some are excluded.
 bool are_mechanisms_shown(const std::vector<Group>& groups);

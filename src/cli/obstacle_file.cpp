@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -142,12 +144,26 @@ Obstacle parse_circle(const std::vector<std::string>& cells, const Columns& colu
   if (has(columns.radius)) circle.radius = number(columns.radius);
   const bool has_size = has(columns.diameter) || has(columns.radius);
   if (has_size && !(circle.radius > 0)) throw Error("diameter must be positive");
+  if (!has_size && !scale.unit.empty())
+    throw Error("needs a diameter, as the file is in " + scale.unit +
+                " and obstacle-diameter in droplet diameters");
   return circle;
 }
 
 }  // namespace
 
+std::optional<double> droplet_of_circles(const std::string& path) {
+  std::istringstream file(console::read_text(path));
+  Scale scale;
+  for (std::string line; std::getline(file, line);)
+    if (const std::string text = console::trimmed(line); text.starts_with('#')) read_scale(text, scale);
+  return scale.unit.empty() ? std::nullopt : std::optional(scale.droplet_metres);
+}
+
 OwnCircles read_circles(const std::string& path) {
+  static const std::set<std::string> drawings = {".dxf", ".gds", ".svg", ".png", ".tif", ".bmp", ".jpg"};
+  if (drawings.contains(in_lower_case(std::filesystem::path(path).extension())))
+    throw Error(path + " is a drawing; python3 -m clogsweep circles makes a file of circles of it");
   std::vector<Obstacle> circles;
   std::istringstream file(console::read_text(path));
   Columns columns;

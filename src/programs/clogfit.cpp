@@ -74,6 +74,9 @@ std::optional<campaign::LaboratoryScale> laboratory_of(const cli::CommandLine& l
   const laboratory::Laboratory lab =
       line.has("lab") ? laboratory::read_laboratory(line.get("lab"))
                       : laboratory::parse_laboratory(stored, path + ", attribute laboratory,");
+  if (!stored.empty() && lab.text != stored)
+    std::cerr << "clogfit: " << line.get("lab") << " replaces the laboratory that is stored in " << path
+              << '\n';
   constexpr double milli = 1e-3;
   const laboratory::Scales scales = laboratory::scales_of(lab);
   return campaign::LaboratoryScale{.length = scales.length / milli,

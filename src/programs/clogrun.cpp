@@ -16,9 +16,8 @@
 #include "clog/console/exit_codes.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
-#include "clog/laboratory/lab_file.hpp"
-#include "clog/laboratory/scales.hpp"
 #include "clogrun_commands.hpp"
+#include "laboratory_option.hpp"
 
 namespace {
 
@@ -72,7 +71,7 @@ cli::CommandLine parse(int argc, char** argv) {
   if (line.has("seed") && line.has("seeds"))
     throw Error("--seed and --seeds contradict each other; give one of them");
   if (line.has("seed")) line.settings().set("seeds", line.get("seed"));
-  if (line.has("lab")) laboratory::set_droplet(laboratory::read_laboratory(line.get("lab")), line.settings());
+  use_laboratory(line);
   return line;
 }
 

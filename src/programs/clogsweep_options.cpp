@@ -14,10 +14,10 @@
 #include "clog/cli/obstacle_file.hpp"
 #include "clog/cli/points_file.hpp"
 #include "clog/core/tools/error.hpp"
-#include "clog/laboratory/scales.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "clogsweep_commands.hpp"
 #include "clogsweep_refine.hpp"
+#include "laboratory_option.hpp"
 
 namespace clog::programs {
 namespace {
@@ -158,7 +158,7 @@ void parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
       "--output names the file of a sweep, and clogsweep status FILE tells how far it is");
   line.parse(argc, argv);
   refuse_other_format(line);
-  if (line.has("lab")) laboratory::set_droplet(laboratory::read_laboratory(line.get("lab")), line.settings());
+  use_laboratory(line);
   add_plan_options(line);
 }
 

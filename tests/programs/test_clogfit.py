@@ -146,7 +146,7 @@ class Fit(ProgramTest):
                 self.assertEqual(group["relative_speed"], of_clogs["relative_speed"])
                 stood_and_went_on += clogs - of_clogs["clogs"]
         self.assertGreater(stood_and_went_on, 0)
-        self.assertIn("hybrid, other (or droplets that moved on)\n", self.succeed("clogfit", "sweep.h5", "--dwell=25").stdout)
+        self.assertIn("hybrid, other (for instance at rest on one obstacle; or droplets that moved on)\n", self.succeed("clogfit", "sweep.h5", "--dwell=25").stdout)
 
     def test_lengths_rise_with_the_time_to_those_of_clogs_alone(self):
         self.sweep(*self.DWELLING)

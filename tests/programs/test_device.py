@@ -60,10 +60,40 @@ class Devices(Analysis):
         for text, words in [("a,b\n1,2\n", ["columns have to be x, y"]), ("x,y,width\n1,2,3\n", ["columns have to be", "width"]),
                             ("x,y,d,r\n1,2,1,1\n", ["columns have to be"]), ("x,x,y\n1,2,1\n", ["two columns 'x'"]),
                             ("# units=um\nx,y\n1,2\n", ["line 1", "droplet=200um"]), ("# units=foot droplet=2foot\n1,2\n", ["'foot' is no unit"]),
-                            ("# units=um droplet=-2um\n1,2\n", ["droplet must be"]), ("x,y,diameter\n1\n", ["line 2"])]:
+                            ("# units=um droplet=-2um\n1,2\n", ["droplet must be"]), ("x,y,diameter\n1\n", ["line 2"]),
+                            ("# units=um droplet=200um\nx,y\n100,200\n", ["line 3", "needs a diameter", "in um"])]:
             with self.subTest(text):
                 self.write("bad.csv", text)
                 self.refuse("clogsweep", "obstacles=bad.csv", "box=6", "--output", "x.h5", words=["bad.csv", *words])
+
+    def test_a_drawing_in_place_of_circles_and_another_droplet_than_the_laboratory_s_are_refused(self):
+        self.write("posts.svg", SVG.format(""))
+        self.refuse("clogsweep", "obstacles=posts.svg", "box=6", "--output", "x.h5", words=["posts.svg is a drawing", "circles"])
+        self.write("posts.csv", "# units=um droplet=200um\nx,y,diameter\n" + csv(200))
+        for diameter, is_refused in (("300 um", True), ("0.2 mm", False)):
+            self.write("lab.cfg", f"diameter = {diameter}\nangle = 90 deg\ntension = 0.1 mN/m\nspeed = 1 mm/s\n")
+            arguments = ("--lab", "lab.cfg", "obstacles=posts.csv", "box=6", "length=18", "max-time=20", "seeds=1")
+            if is_refused:
+                self.refuse("clogsweep", *arguments, "--output", "x.h5", words=["lab.cfg has a droplet of 300 um", "posts.csv one of 200 um"])
+                self.refuse("clogrun", "array", *arguments, "--output", "x.h5", words=["lab.cfg has a droplet of 300 um"])
+            else:
+                self.succeed("clogsweep", *arguments, "--output", "s.h5")
+        told = self.succeed("clogfit", "s.h5")
+        self.assertIn("tension/(mN/m)", told.stdout)
+        self.assertEqual(told.stderr, "")
+        self.write("other.cfg", "diameter = 0.2 mm\nangle = 45 deg\n")
+        self.assertIn("other.cfg replaces the laboratory that is stored in s.h5", self.succeed("clogfit", "s.h5", "--lab", "other.cfg").stderr)
+
+    def test_droplets_that_rest_uncertified_are_named(self):
+        # On the flat top of a row of circles across the flow nothing holds a droplet sideways.
+        self.write("row.csv", "".join(f"10,{y:.4f},0.1\n" for y in np.arange(3, 7, 0.0167)))
+        self.succeed("clogsweep", "obstacles=row.csv", "box=10", "length=20", "release=entrance", "entrance=8", "entrance-from=4.9", "entrance-to=5.1",
+                     "line-tension=1", "vertices=64", "max-time=1500", "seeds=1", "clog-detection=threshold", "clog-energy=1e-30", "--output", "s.h5")
+        told = self.succeed("clogfit", "s.h5").stdout
+        self.assertRegex(told, r"1 run ended by max-time with the droplet at rest for 1[34]\d\d t0 or longer: --dwell=1000 counts it as clogged")
+        group, = json.loads(self.succeed("clogfit", "s.h5", "--dwell", 1000, "--format", "json").stdout)["groups"]
+        self.assertEqual((group["clogs"], group["flowing"]), (1, 0))
+        self.assertNotIn("at rest", self.succeed("clogfit", "s.h5", "--dwell", 1000).stdout)
 
     def test_droplets_enter_pass_and_leave_between_walls(self):
         self.write("posts.csv", "x,y,diameter\n" + csv())
@@ -290,7 +320,7 @@ class WrongDrawings(Analysis):
 
     def test_a_device_too_large_or_too_small_for_the_droplet(self):
         edge, post = box(0, 0, 3600, 1200), box(500, 500, 600, 600)
-        for unit, options, words in [(6, [], ["1.8e+07 by 6e+06 droplet diameters (the drawing's unit is m)", "$INSUNITS", "--droplet"]),
+        for unit, options, words in [(6, [], ["1.8e+07 by 6e+06 droplet diameters (the drawing's unit is m, in um it would be 18 by 6)", "$INSUNITS", "--droplet"]),
                                      (12, [], ["unit is nm"]), (0, ["--unit", "mm"], ["unit is mm", "check --unit"])]:
             with self.subTest(unit=unit):
                 self.dxf(unit, outlines=[edge, post])
@@ -352,7 +382,7 @@ class WrongDrawings(Analysis):
     def test_without_an_edge_there_is_room_around_the_posts(self):
         self.dxf(circles=[(800, 300), (1600, 300), (1200, 900)])
         told = self.draw("circles", "device.dxf", *self.COMMAND).stdout
-        self.assertIn("no edge is drawn: half a droplet diameter is added around the posts on every side", told)
+        self.assertIn("no edge is drawn: the device ends half a droplet diameter beyond the posts on every side", told)
         self.assertIn("box=4.5", self.run_printed(told))
         self.assertIn("length=5.5", told)
         np.testing.assert_allclose(np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4)[0], (150, 150, 100))

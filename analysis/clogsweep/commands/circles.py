@@ -114,10 +114,9 @@ def told(device: shapes.Device, drawing: shapes.Drawing) -> list[str]:
     if len(device.circles):
         diameters = device.circles[:, 2]
         gap = f", smallest gap {device.smallest_gap():.4g}" if device.num_posts() > 1 else ""
-        words.append(f"diameters {diameters.min():.4g} to {diameters.max():.4g}{gap}, in droplet diameters")
+        words.append(f"diameters of circles {diameters.min():.4g} to {diameters.max():.4g}{gap}, in droplet diameters")
     if not device.has_frame:
-        where = "where there is no wall" if device.walls else "on every side"
-        words.append(f"no edge is drawn: half a droplet diameter is added around the posts {where}")
+        words.append("no edge is drawn: the device ends half a droplet diameter beyond the posts" + (", or where a wall ends" if device.walls else " on every side"))
     if number := len(device.walls):
         are = "outline as long as the device is taken for a wall" if number == 1 else "outlines as long as the device are taken for walls"
         words.append(f"{number} {are}: side-walls=on")
@@ -158,7 +157,7 @@ def body() -> int:
     lines.join(drawing)
     metres = metres_of(arguments, drawing)
     device = shapes.understood(drawing, metres, droplet, arguments.tolerance, TURNS[arguments.flow])
-    shapes.refuse_unlikely(device, unit_in_words(arguments, drawing), remedy_of_unit(arguments, drawing))
+    shapes.refuse_unlikely(device, unit_in_words(arguments, drawing), metres, remedy_of_unit(arguments, drawing))
     made: list[str] = []
     if arguments.as_rows and device.others:
         device, made = in_rows(device, arguments.corner)

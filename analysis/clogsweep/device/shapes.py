@@ -106,11 +106,18 @@ def unit_name(metres: float) -> str:
     return next((name for name, size in METRES.items() if np.isclose(size, metres, rtol=1e-6, atol=0)), f"{metres:.4g} m")
 
 
-def refuse_unlikely(device: Device, unit: str, remedy: str) -> None:
-    """@param unit  in which the drawing was read. @throws UserError  if the device is too large or too small for such droplets"""
-    if max(device.length, device.width) > LONGEST or min(device.length, device.width) < 1:
-        size = f"{device.length:.2g} by {device.width:.2g} droplet diameters"
-        raise UserError(f"the device is {size} (the drawing's unit is {unit}); {remedy}, or check --droplet")
+def is_likely(length: float, width: float) -> bool:
+    """@param length, width  of a device [sigma]"""
+    return max(length, width) <= LONGEST and min(length, width) >= 1
+
+
+def refuse_unlikely(device: Device, unit: str, metres: float, remedy: str) -> None:
+    """@param unit, metres  in which the drawing was read. @throws UserError  if the device is too large or too small for such droplets"""
+    if is_likely(device.length, device.width):
+        return
+    in_others = ((name, device.length * METRES[name] / metres, device.width * METRES[name] / metres) for name in ("um", "mm"))
+    better = "".join(f", in {name} it would be {length:.2g} by {width:.2g}" for name, length, width in in_others if is_likely(length, width))
+    raise UserError(f"the device is {device.length:.2g} by {device.width:.2g} droplet diameters (the drawing's unit is {unit}{better}); {remedy}, or check --droplet")
 
 
 def along_edges(outline: Numbers, is_closed: bool) -> Numbers:

@@ -16,13 +16,14 @@ from matplotlib.image import AxesImage
 from .. import style
 from ..labels.groups import Groups
 from ..reading import replays, stored
+from ..tools import progress, rounded
 from ..tools.errors import UserError
-from ..tools.hints import AnyPath, Numbers, Records
+from ..tools.hints import AnyPath, Group, Numbers, Records
 from . import device_plan
 
 T = TypeVar("T")
 MOST_PANELS = 6
-BESIDE = 1.2  # width of the colours' scale and of the strip's legend [inches]
+BESIDE, OF_LETTER = 0.9, 0.055  # width of the colours' scale, or of the strip's legend without its words, and of a letter of these [inches]
 STEP = 0.1  # between two points of a way, of a free droplet [sigma]
 CELL = 0.1  # of the map of passages [sigma]
 
@@ -52,7 +53,7 @@ class Place:
             of_group = np.all([self.rows[name] == (member[name].encode() if isinstance(member[name], str) else member[name]) for name in names] or
                               [np.ones(len(self.rows), dtype=bool)], axis=0)
             if of_group.any():
-                found.append(Part(groups.label_of(member), dataclasses.replace(self, rows=self.rows[of_group])))
+                found.append(Part(label_of(groups, member), dataclasses.replace(self, rows=self.rows[of_group])))
         return found
 
     @property
@@ -62,6 +63,12 @@ class Place:
     @property
     def ends(self) -> Numbers:
         return self.releases + np.column_stack([self.rows["distance"], self.rows["lateral_displacement"]])
+
+
+def label_of(groups: Groups, member: Group) -> str:
+    """What distinguishes a group, also in the laboratory's units."""
+    tension = groups.laboratory.get("tension_mN_per_m") if groups.varies("line_tension") else None
+    return groups.label_of(member) + (f" ({rounded.plain(tension * member['line_tension'])} mN/m)" if tension else "")
 
 
 @dataclasses.dataclass
@@ -135,7 +142,7 @@ def ways_of(place: Place, sweep: pathlib.Path, clogrun: pathlib.Path, number: in
 def shown_parts(place: Place, groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path, num_lines: int, num_mapped: int, jobs: int) -> list[Part]:
     """Those parameter sets that have a panel, with their ways. @param num_lines, num_mapped  of so many runs of each"""
     shown = evenly(place.parts(groups), MOST_PANELS)
-    for part in shown:
+    for part in progress.shown(shown, "replayed panel", len(shown)):
         ways = ways_of(part.place, sweep, clogrun, max(num_lines, num_mapped), jobs)
         part.lines, part.mapped = evenly(ways, num_lines), evenly(ways, num_mapped)
     return shown
@@ -170,6 +177,8 @@ def came_past(place: Place) -> tuple[Numbers, Numbers]:
     """Places along the flow, and the number of droplets that came past each. One that passes the device twice counts twice."""
     cells = np.linspace(0, place.length, 201)
     middles = (cells[1:] + cells[:-1]) / 2
+    if place.exit > 0:
+        middles = middles[middles <= place.exit]
     counts = np.zeros(len(middles))
     for begin, end in zip(place.releases[:, 0], place.ends[:, 0]):
         for lap in range(int(np.floor(begin / place.length)), int(np.floor(end / place.length)) + 1) if place.exit == 0 else (0,):
@@ -185,7 +194,6 @@ def draw_passages(axes: Axes, parts: Sequence[Part]) -> None:
         axes.step(middles, counts / len(part.place.rows), where="mid", color=colour_of(number, len(parts)), linewidth=1.2, label=part.label)
     axes.set_ylabel("share that\ncame past")
     axes.set_ylim(bottom=0)
-    axes.set_xlabel(r"$x/\sigma$, along the flow")
     style.grid(axes)
     if len(parts) > 1:
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize=8, frameon=False)
@@ -251,10 +259,12 @@ def draw_part(axes: Axes, part: Part) -> None:
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1.0), ncols=4, fontsize=8, frameon=False, borderaxespad=0.2)
 
 
-def draw(parts: Sequence[Part], num_parts: int) -> Figure:
-    """A panel for each part, and a strip that compares them. @param parts  of one device; @param num_parts  of all its parameter sets"""
+def draw(parts: Sequence[Part], num_parts: int, droplet_mm: float | None = None) -> Figure:
+    """A panel for each part, and a strip that compares them. @param parts  of one device; @param num_parts  of all its parameter sets;
+    @param droplet_mm  its diameter, if it is known [mm]"""
     place = parts[0].place
-    figure, (*panels, below) = device_plan.axes_for(place.length, place.width, len(parts), strip=1.5, beside=BESIDE if len(parts) > 1 or parts[0].mapped else 0)
+    beside = BESIDE + OF_LETTER * max(len(part.label) for part in parts) if len(parts) > 1 else BESIDE if parts[0].mapped else 0
+    figure, (*panels, below) = device_plan.axes_for(place.length, place.width, len(parts), strip=1.5, beside=beside)
     for axes, part in zip(panels, parts):
         drawn = draw_map(axes, part) if part.mapped else None
         draw_part(axes, part)
@@ -262,7 +272,18 @@ def draw(parts: Sequence[Part], num_parts: int) -> Figure:
         draw_scale(figure, panels, drawn, parts)
     device_plan.draw_flow(panels[-1], 12)
     draw_passages(below, parts)
+    below.set_xlabel(r"$x/\sigma$, along the flow" + (rf"; $\sigma$ = {droplet_mm:.4g} mm" if droplet_mm else ""))
     walls = "between walls" if place.has_walls else "periodic across the flow"
     some = f"; {len(parts)} of {num_parts} parameter sets" if len(parts) < num_parts else ""
     figure.suptitle(f"{place.name}: {place.length:.4g} x {place.width:.4g} droplet diameters, {walls}{some}", fontsize=9)
+    align(below, panels[-1])
     return figure
+
+
+def align(strip: Axes, panel: Axes) -> None:
+    """The strip as wide as the panel above it, which its equal scales may have made narrower than the layout did."""
+    strip.figure.draw_without_rendering()
+    strip.figure.set_layout_engine("none")
+    panel.apply_aspect()
+    wide, high = panel.get_position(), strip.get_position()
+    strip.set_position([wide.x0, high.y0, wide.width, high.height])

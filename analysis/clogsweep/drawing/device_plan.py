@@ -27,7 +27,7 @@ def axes_for(length: float, width: float, panels: int = 1, strip: float = 0.0, b
     figure_width = min(WIDEST, max(NARROWEST, 0.45 * length))
     height = min(12.0, max(2.2, figure_width * width / length))
     heights = [height] * panels + ([strip] if strip else [])
-    figure, axes = style.subplots(len(heights), figsize=(figure_width + beside, sum(heights) + 1.3 + 0.3 * (panels - 1)), squeeze=False, sharex=True,
+    figure, axes = style.subplots(len(heights), figsize=(figure_width + beside, sum(heights) + 1.3 + 0.45 * (panels - 1)), squeeze=False, sharex=True,
                                   height_ratios=heights)
     return figure, axes[:, 0]
 

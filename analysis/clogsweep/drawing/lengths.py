@@ -137,7 +137,8 @@ def add_scale(axes: Axes, side: str, factor: float, label: str) -> None:
     axis = second.yaxis if upright else second.xaxis
     axis.set_label_text(label)
     if (axes.get_yscale() if upright else axes.get_xscale()) == "log":
-        style.plain_logarithmic(axis)
+        first, last = axes.get_ylim() if upright else axes.get_xlim()
+        style.plain_logarithmic(axis, last / first)
 
 
 def draw_curves(axes: Axes, groups: Groups, draw_curve: Callable[..., None]) -> None:

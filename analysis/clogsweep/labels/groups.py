@@ -50,7 +50,8 @@ class Groups:
 
     def fit_curves(self, clogfit: pathlib.Path, sweep: AnyPath, *options: str) -> Groups:
         """The same, whose pictures have clogfit's smooth curves over the abscissa, where these can be drawn. @param options  of the fit"""
-        if self.members and not self.are_passages and self.is_logarithmic():
+        # A device with an exit holds droplets at few places, not at random ones: between its values nothing is known.
+        if self.members and not self.are_passages and self.is_logarithmic() and not any(group["exit"] for group in self.members):
             self._ask_for_curves = lambda: fits.curves_if_any(clogfit, sweep, self.abscissa, *options)
         return self
 

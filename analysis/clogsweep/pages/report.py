@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 
 from .. import style
 from ..drawing import activity, clogs, curve, device, lengths, passages, survival_curve
+from ..labels import LABORATORY
 from ..labels.groups import Groups
 from ..reading import fits, programs, stored
 from ..tools import outputs, rounded
@@ -76,14 +77,14 @@ def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
             axes.step(way, [*share, share[-1]], where="post", color=colour, linewidth=1.2, label=groups.said(groups.abscissa, group[groups.abscissa]),
                       gid=style.mark("point", [group]))
         axes.set_title(name, fontsize=10)
-        axes.set_xscale("log")
+        style.logarithmic_abscissa(axes)
         axes.set_xlim(begin, longest)
         axes.set_ylim(0, 1.02)
         axes.set_xlabel(r"$r/\sigma$")
         style.grid(axes)
     all_axes[0][0].set_ylabel("probability to have ended so within $r$")
     mark_steps(all_axes[0][0])
-    figure.suptitle(label or groups.caption(), fontsize=8, wrap=True)
+    style.heading(figure, label or groups.caption())
     return figure
 
 
@@ -101,8 +102,10 @@ def draw_causes(axes: Axes, groups: Groups, label: str, members: Sequence[Group]
             for bar, group in zip(axes.bar(ranks, share, bottom=base, color=colour, width=0.8, label=name), members):
                 bar.set_gid(style.mark("point", [group]))
         base += share
-    axes.set_xticks(ranks, [f"{group[groups.abscissa]:g}" for group in members], rotation=0 if len(members) <= 10 else 90)
-    axes.set_xlabel(groups.axis_label())
+    tension = groups.laboratory.get("tension_mN_per_m") if groups.abscissa == "line_tension" else None
+    below = [f"\n{rounded.plain(tension * group['line_tension'])}" if tension else "" for group in members]
+    axes.set_xticks(ranks, [f"{group[groups.abscissa]:g}{more}" for group, more in zip(members, below)], rotation=0 if len(members) <= 10 else 90)
+    axes.set_xlabel(groups.axis_label() + (f"\n{LABORATORY['line_tension']}" if tension else ""))
     axes.set_ylabel("share of the runs")
     axes.legend(frameon=False, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=5, fontsize=8, title=label, title_fontsize=8)
 
@@ -198,7 +201,7 @@ def table(titles: Sequence[str], lines: Sequence[Sequence[str]], doubts: Sequenc
 
 def table_of_lengths(groups: Groups, sentences: dict[str, str], rows: pandas.DataFrame) -> str:
     names = parameters(groups)
-    passed = ["passed"] if any(group["passed"] for group in groups.members) else []
+    passed = ["passed", "flowing"] if any(group["passed"] for group in groups.members) else []
     titles = [*(name.replace("_", " ") for name in names), "runs", "clogs", *style.MECHANISM_COLOURS, *passed, f"&lambda;/&sigma; ({100 * groups.confidence:g} %)",
               *(["lateral/r"] if groups.are_lattices else []), "&lang;v<sub>g</sub>&rang;/v<sub>t</sub>", *laboratory_columns(groups).values(), "Ca", "seeds"]
     lines = [[*(cell(groups, group, name) for name in names), str(group["runs"]), str(group["clogs"]),
@@ -283,7 +286,7 @@ def valued(groups: Groups, group: Group) -> str:
     return ", ".join(f"{name.replace('_', ' ')} {cell(groups, group, name)}" for name in parameters(groups))
 
 
-MAPPED = 6  # runs in each panel of a device whose ways make its map
+MAPPED = 4  # runs in each panel of a device whose ways make its map
 
 
 def devices(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
@@ -295,7 +298,7 @@ def devices(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Pa
 
     def drawn(place: device.Place) -> str:
         parts = device.shown_parts(place, groups, sweep, clogrun, count, MAPPED if count else 0, 2)
-        return framed(charts.draw(device.draw(parts, len(place.parts(groups))), caption), f"{place.name}: {caption}", "wide")
+        return framed(charts.draw(device.draw(parts, len(place.parts(groups)), groups.laboratory.get("length_mm")), caption), f"{place.name}: {caption}", "wide")
 
     return {"Devices": "".join(drawn(place) for place in device.places(sweep, clogrun.parent) if place.parts(groups))}
 

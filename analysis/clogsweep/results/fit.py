@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ..style import Picture
 
 LENGTHS = ("runs", "clogs", "clogging_length", "clogging_length_lower", "clogging_length_upper", "clogging_length_met", "relative_speed_all",
-           "relative_speed_all_error", "lateral_slope", "clogging_length_mm", "speed_mm_per_s", "time_to_clog_s", "doubts")
+           "relative_speed_all_error", "lateral_slope", "tension_mN_per_m", "clogging_length_mm", "speed_mm_per_s", "time_to_clog_s", "doubts")
 PASSAGE = ("status", "largest_shape_parameter", "smallest_relative_speed", "largest_relative_speed", "sag", "top_sag", "doubts")
 HDF5_BEGINNING = b"\x89HDF\r\n\x1a\n"
 

@@ -101,7 +101,7 @@ class Sweep:
         rows = clogs.chosen(clogs.of_polygons(self._records, self.path), self.path, mechanism=mechanism, tasks=tasks, most=most)
         return clogs.run_all(self._program("clogrun"), self.path, rows, jobs)
 
-    def device(self, *, ways: int = 4, map: int = 10, jobs: int = 2) -> Picture:
+    def device(self, *, ways: int = 3, map: int = 6, jobs: int = 2) -> Picture:
         """User-supplied circles, with the places where droplets were released, passed and clogged, and where they went: a panel
         for each of up to six parameter sets.
 
@@ -118,7 +118,7 @@ class Sweep:
         place = device.the_place(self.path, self._programs)
         groups = self.fit().known.finished(self.path)
         parts = device.shown_parts(place, groups, self.path, self._program("clogrun"), ways, map, jobs)
-        return Picture(device.draw(parts, len(place.parts(groups))), stored.source(self.attributes))
+        return Picture(device.draw(parts, len(place.parts(groups)), groups.laboratory.get("length_mm")), stored.source(self.attributes))
 
     def replay(self, task: int, output: str | os.PathLike[str] | None = None, *, interval: float = 1.0) -> Run:
         """Replays a run, with outlines. @param output  file to keep it in; @param interval  between outlines [t0]. @throws UserError"""

@@ -167,9 +167,9 @@ def logarithmic_ordinate(axes: Axes) -> None:
     axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, position: label(value, (1, 10), usual(value, position))))
 
 
-def plain_logarithmic(axis: Axis) -> None:
-    """Numbers at 1, 2 and 5 of each decade."""
-    axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
+def plain_logarithmic(axis: Axis, span: float = 1.0) -> None:
+    """Numbers at 1, 2 and 5 of each decade, or at its beginning only. @param span  last number over the first, where it may be large"""
+    axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1.0, 2.0, 5.0) if span < 1000 else (1.0,)))
     axis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
 
@@ -200,6 +200,18 @@ def caption(axes: Axes, text: str) -> None:
                 lines[-1] += ","
                 lines.append(phrase)
     title.set_text("\n".join(lines))
+
+
+def heading(figure: Figure, text: str) -> None:
+    """Above all axes of a figure, in lines that are as wide. Breaks stand between phrases: within one they would spoil a formula."""
+    widest = 16 * figure.get_figwidth()
+    lines = [""]
+    for phrase in text.split(", "):
+        if lines[-1] and len(lines[-1]) + len(phrase) > widest:
+            lines[-1] += ","
+            lines.append("")
+        lines[-1] += f", {phrase}" if lines[-1] else phrase
+    figure.suptitle("\n".join(lines), fontsize=8)
 
 
 def notes(axes: Axes, lines: Sequence[str]) -> None:

@@ -116,6 +116,10 @@ struct Group {
   std::vector<std::uint32_t> seeds;  ///< of the runs behind the clogging length
   int num_passed = 0;                ///< came to the exit of their device
   int num_flowing = 0;               ///< ended by max-time
+  /// Of these, those whose droplet had rested for longer than it falls ten diameters without obstacles, and
+  /// the shortest of these rests [t0].
+  int num_resting = 0;
+  double shortest_rest = std::numeric_limits<double>::infinity();
   int num_interrupted = 0;
   int num_failed = 0;     ///< left out of all fits
   int num_damaged = 0;    ///< likewise

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +15,9 @@ namespace clog::cli {
 /// which units the following lengths are.
 /// @throws Error naming the line
 OwnCircles read_circles(const std::string& path);
+
+/// The droplet's diameter that such a file states, if it does [m]. @throws Error
+std::optional<double> droplet_of_circles(const std::string& path);
 
 /// Writes them in the same form, with digits that read back exactly. @throws Error
 void write_obstacles(const std::string& path, std::span<const Obstacle> obstacles);
