@@ -72,7 +72,7 @@ def legend(below: SubFigure, axes: Axes, groups: Sequence[Group], has_finer: boo
         meshes = {group["vertices"] for group in groups}
         marks.append((Line2D([], [], color="0.4", marker="s", markersize=3, linestyle=FINER), f"{max(meshes)} vertices (others: {min(meshes)})"))
     marks.append((Line2D([], [], color="black", marker="*", markersize=11, markerfacecolor="gold", linestyle="none"), r"published, $w_\mathrm{ob} = 0.2\sigma$"))
-    below.legend(*zip(*curves, *marks), loc="center", ncols=4, frameon=False, fontsize=8)
+    below.legend(*zip(*curves, *marks), loc="center", ncols=4, frameon=False, fontsize=8, handlelength=4)
 
 
 def families(shop: Workshop, chosen: Sequence[Family], finer: bool) -> Plate:
