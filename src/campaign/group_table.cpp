@@ -77,24 +77,14 @@ std::vector<ResultColumn> result_columns(const std::vector<Group>& groups, doubl
                                          const std::optional<LaboratoryScale>& lab) {
   std::vector<ResultColumn> columns = columns_of_findings(groups, confidence, lab.has_value());
   if (lab && has_clogging_length(groups.front().first_row))
-    for (ResultColumn& column : laboratory_columns(*lab)) columns.push_back(std::move(column));
+    for (ResultColumn& column : laboratory_columns(groups, *lab)) columns.push_back(std::move(column));
   if (std::any_of(groups.begin(), groups.end(), [](const Group& group) { return !group.doubts.empty(); }))
     columns.push_back({"note", [](const Group& group) { return letters(group.doubts); }});
   return columns;
 }
 
-/// Names the runs that are missing from the table, or from some of its columns.
-std::string left_out(const std::vector<Group>& groups) {
-  int num_failed = 0, num_damaged = 0, num_interrupted = 0, num_left_out = 0, num_resting = 0;
-  double shortest_rest = std::numeric_limits<double>::infinity();
-  for (const Group& group : groups) {
-    num_failed += group.num_failed;
-    num_damaged += group.num_damaged;
-    num_interrupted += group.num_interrupted;
-    num_left_out += group.num_left_out;
-    num_resting += group.num_resting;
-    shortest_rest = std::min(shortest_rest, group.shortest_rest);
-  }
+/// Explains columns that their heads do not.
+std::string column_notes(const std::vector<Group>& groups) {
   std::string text;
   if (are_mechanisms_shown(groups))
     text += fmt::format(
@@ -104,24 +94,55 @@ std::string left_out(const std::vector<Group>& groups) {
     text +=
         "lambda_b: mean distance before break-up. Broken droplets are censored in lambda, clogged ones in "
         "lambda_b\n";
-  if (std::ranges::any_of(groups, [](const Group& group) { return group.num_passed > 0; }))
+  if (has_clogging_length(groups.front().first_row) &&
+      std::ranges::any_of(groups, [](const Group& group) { return group.num_passed > 0; }))
     text +=
         "passed: droplets that reached the exit. They count as not clogged on their way, so lambda may "
         "exceed the "
         "device's length\n";
+  return text;
+}
+
+/// The longest time of one digit that is shorter than this one.
+double shorter_dwell(double rest) {
+  const double unit = std::pow(10, std::floor(std::log10(rest)));
+  const double digit = std::ceil(rest / unit) - 1;
+  return digit < 1 ? 0.9 * unit : digit * unit;
+}
+
+/// Names the droplets at rest that count as moving, and what would count them as clogged.
+std::string note_of_rest(const std::vector<Group>& groups) {
+  int num_resting = 0;
+  double shortest_rest = std::numeric_limits<double>::infinity(), known_from = 0;
+  for (const Group& group : groups) {
+    num_resting += group.num_resting;
+    shortest_rest = std::min(shortest_rest, group.shortest_rest);
+    known_from = std::max(known_from, group.dwells_known_from);
+  }
+  if (num_resting == 0 || !has_clogging_length(groups.front().first_row)) return "";
+  std::string text = fmt::format("   {} ended by max-time with the droplet at rest for {} t0 or longer",
+                                 sweep::counted(num_resting, "run"), console::plain(shortest_rest));
+  if (const double dwell = shorter_dwell(shortest_rest); dwell >= known_from)
+    text +=
+        fmt::format(": --dwell={} counts {} as clogged", shortest(dwell), num_resting == 1 ? "it" : "them");
+  return text + '\n';
+}
+
+/// Names the runs that are missing from the table, or from some of its columns.
+std::string left_out(const std::vector<Group>& groups) {
+  int num_failed = 0, num_damaged = 0, num_interrupted = 0, num_left_out = 0;
+  for (const Group& group : groups) {
+    num_failed += group.num_failed;
+    num_damaged += group.num_damaged;
+    num_interrupted += group.num_interrupted;
+    num_left_out += group.num_left_out;
+  }
+  std::string text;
   if (num_left_out > 0)
     text += fmt::format(
         "   {} ended before --from-distance, left out of runs, clogs and lambda; <v_g> is still of all "
         "runs\n",
         sweep::counted(num_left_out, "run"));
-  if (num_resting > 0) {
-    const double unit = std::pow(10, std::floor(std::log10(shortest_rest)));
-    text += fmt::format(
-        "   {} ended by max-time with the droplet at rest for {} t0 or longer: --dwell={} counts {} as "
-        "clogged\n",
-        sweep::counted(num_resting, "run"), console::plain(shortest_rest),
-        shortest(unit * std::floor(shortest_rest / unit)), num_resting == 1 ? "it" : "them");
-  }
   if (num_interrupted > 0)
     text += fmt::format(
         "   {} {} unfinished: lambda holds for the distances reached so far, and the clogs so far are the "
@@ -292,7 +313,8 @@ std::string to_text(const std::vector<Group>& groups, double confidence, SharedP
     append_shown(parameter_texts(group), shown, line);
     for (const ResultColumn& column : columns) line.push_back(column.cell(group));
   }
-  return text + "\n\n" + console::aligned(lines) + legend(groups) + left_out(groups);
+  return text + "\n\n" + console::aligned(lines) + legend(groups) + column_notes(groups) +
+         note_of_rest(groups) + left_out(groups);
 }
 
 std::string to_csv(const std::vector<Group>& groups, const std::optional<LaboratoryScale>& lab) {
@@ -359,7 +381,7 @@ std::string to_json(const std::vector<Group>& groups, double confidence, const s
     document["laboratory"] = {{"length_mm", lab->length},
                               {"time_s", lab->time},
                               {"speed_mm_per_s", number_or_null(lab->speed)},
-                              {"tension_mN_per_m", lab->tension}};
+                              {"tension_mN_per_m_of_gamma_1", lab->tension}};
   return document.dump(2) + "\n";
 }
 

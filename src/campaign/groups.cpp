@@ -285,6 +285,7 @@ constexpr std::pair<std::string_view, std::string_view> units_of_results[] = {
 
 std::string_view unit_of(std::string_view field) {
   if (field.ends_with("_mm")) return "mm";
+  if (field.ends_with("_mN_per_m")) return "mN/m";
   if (field.ends_with("_mm_per_s")) return "mm/s";
   if (field == "time_to_clog_s") return "s";
   if (field.starts_with("clogging_length") || field.starts_with("break_up_length")) return "sigma";

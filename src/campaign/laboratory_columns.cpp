@@ -1,5 +1,6 @@
 #include "laboratory_columns.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -37,26 +38,30 @@ std::vector<Field> laboratory_fields(const Group& group, const LaboratoryScale& 
           {"time_to_clog_s", value_of(time_to_clog(group, scale))}};
 }
 
-std::vector<ResultColumn> laboratory_columns(const LaboratoryScale& scale) {
-  return {{"tension/(mN/m)", [=](const Group& group) { return console::plain(tension_of(group, scale)); }},
-          {"lambda/mm",
-           [=](const Group& group) {
-             const fit::CloggingLength& clogging = group.clogging;
-             if (clogging.num_runs == 0) return std::string("-");
-             if (clogging.num_clogs == 0)
-               return "> " + console::plain(clogging.interval.lower * scale.length);
-             return console::with_interval(clogging.length * scale.length,
-                                           clogging.interval.lower * scale.length,
-                                           clogging.interval.upper * scale.length)
-                 .value;
-           }},
-          {"all runs/(mm/s)",
-           [=](const Group& group) {
-             return console::with_error(group.relative_speed_all.mean * scale.speed,
-                                        group.relative_speed_all.standard_error * scale.speed)
-                 .value;
-           }},
-          {"time to clog/s", [=](const Group& group) { return console::plain(time_to_clog(group, scale)); }}};
+std::vector<ResultColumn> laboratory_columns(const std::vector<Group>& groups, const LaboratoryScale& scale) {
+  std::vector<ResultColumn> columns = {
+      {"lambda/mm",
+       [=](const Group& group) {
+         const fit::CloggingLength& clogging = group.clogging;
+         if (clogging.num_runs == 0) return std::string("-");
+         if (clogging.num_clogs == 0) return "> " + console::plain(clogging.interval.lower * scale.length);
+         return console::with_interval(clogging.length * scale.length, clogging.interval.lower * scale.length,
+                                       clogging.interval.upper * scale.length)
+             .value;
+       }},
+      {"all runs/(mm/s)",
+       [=](const Group& group) {
+         return console::with_error(group.relative_speed_all.mean * scale.speed,
+                                    group.relative_speed_all.standard_error * scale.speed)
+             .value;
+       }},
+      {"time to clog/s", [=](const Group& group) { return console::plain(time_to_clog(group, scale)); }}};
+  if (std::ranges::any_of(groups,
+                          [](const Group& group) { return group.first_row.parameters.model == Model::dp; }))
+    columns.insert(columns.begin(), {"tension/(mN/m)", [=](const Group& group) {
+                                       return console::plain(tension_of(group, scale));
+                                     }});
+  return columns;
 }
 
 }  // namespace clog::campaign

@@ -152,18 +152,11 @@ Obstacle parse_circle(const std::vector<std::string>& cells, const Columns& colu
 
 }  // namespace
 
-std::optional<double> droplet_of_circles(const std::string& path) {
-  std::istringstream file(console::read_text(path));
-  Scale scale;
-  for (std::string line; std::getline(file, line);)
-    if (const std::string text = console::trimmed(line); text.starts_with('#')) read_scale(text, scale);
-  return scale.unit.empty() ? std::nullopt : std::optional(scale.droplet_metres);
-}
-
 OwnCircles read_circles(const std::string& path) {
-  static const std::set<std::string> drawings = {".dxf", ".gds", ".svg", ".png", ".tif", ".bmp", ".jpg"};
+  static const std::set<std::string> drawings = {".dxf", ".gds",  ".gdsii", ".svg", ".png",
+                                                 ".tif", ".tiff", ".bmp",   ".jpg", ".jpeg"};
   if (drawings.contains(in_lower_case(std::filesystem::path(path).extension())))
-    throw Error(path + " is a drawing; python3 -m clogsweep circles makes a file of circles of it");
+    throw Error(path + " is a drawing; python3 -m clogsweep circles converts it to a file of circles");
   std::vector<Obstacle> circles;
   std::istringstream file(console::read_text(path));
   Columns columns;
@@ -192,7 +185,8 @@ OwnCircles read_circles(const std::string& path) {
     }
   }
   if (circles.empty()) throw Error(path + " holds no obstacles; lines are x,y[,diameter]");
-  return OwnCircles(std::move(circles), path);
+  const std::optional droplet = scale.unit.empty() ? std::nullopt : std::optional(scale.droplet_metres);
+  return OwnCircles(std::move(circles), path, droplet);
 }
 
 void write_obstacles(const std::string& path, std::span<const Obstacle> obstacles) {

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <map>
 #include <numbers>
+#include <string_view>
 
 #include "clog/core/tools/error.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -12,11 +13,18 @@ namespace clog::laboratory {
 namespace {
 
 const std::map<std::string, std::map<std::string, double>> known_units = {
-    {"length", {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}, {"µm", 1e-6}, {"μm", 1e-6}}},
+    {"length", {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}}},
     {"speed", {{"m/s", 1}, {"cm/s", 1e-2}, {"mm/s", 1e-3}, {"um/s", 1e-6}}},
     {"tension", {{"N/m", 1}, {"mN/m", 1e-3}, {"J/m^2", 1}, {"mJ/m^2", 1e-3}}},
     {"density", {{"kg/m^3", 1}, {"g/cm^3", 1e3}, {"g/ml", 1e3}}},
     {"angle", {{"deg", std::numbers::pi / 180}, {"°", std::numbers::pi / 180}, {"rad", 1}}}};
+
+/// The unit with u for the micro sign, of which there are two.
+std::string with_plain_micro(std::string unit) {
+  for (const std::string_view sign : {"µ", "μ"})
+    if (const std::size_t at = unit.find(sign); at != std::string::npos) unit.replace(at, sign.size(), "u");
+  return unit;
+}
 
 const std::map<std::string, std::string> usual_units = {
     {"length", "mm"}, {"speed", "mm/s"}, {"tension", "mN/m"}, {"density", "g/ml"}, {"angle", "deg"}};
@@ -25,7 +33,7 @@ const std::map<std::string, std::string> usual_units = {
 
 double si_factor(const std::string& unit, const std::string& units) {
   const auto& known = known_units.at(units);
-  if (const auto found = known.find(unit); found != known.end()) return found->second;
+  if (const auto found = known.find(with_plain_micro(unit)); found != known.end()) return found->second;
   std::string names;
   for (const auto& [name, factor] : known) names += (names.empty() ? "" : ", ") + name;
   throw Error("unknown unit '" + unit + "' for " + units + " (known: " + names + ")");
@@ -37,8 +45,8 @@ double to_si(const std::string& text, const std::string& units) {
   const auto end = static_cast<std::size_t>(rest - text.c_str());
   const std::size_t unit = text.find_first_not_of(' ', end);
   if (unit == std::string::npos)
-    throw Error("'" + text + "' has no unit; write for example " + text.substr(0, end) + " " +
-                usual_units.at(units));
+    throw Error("'" + text + "' has no unit; write for example " + (end == 0 ? "3.5" : text.substr(0, end)) +
+                " " + usual_units.at(units));
   return sweep::to_number(text.substr(0, end)) * si_factor(text.substr(unit), units);
 }
 

@@ -35,7 +35,7 @@ seeds have no obstacles in common.
 std::vector<campaign::Side> sides(const cli::CommandLine& line, const std::vector<std::string>& paths) {
   if (line.has("by")) return campaign::sides_of_column(line.get("by"), campaign::read_together(paths));
   if (paths.size() < 2)
-    throw Error("one file is not compared with anything; give another, or --by and a key that varies in it");
+    throw Error("nothing to compare this file with; give a second one, or --by and a key that varies in it");
   return campaign::sides_of_files(paths);
 }
 

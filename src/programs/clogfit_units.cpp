@@ -47,8 +47,8 @@ lab.cfg has lines key = value:
   tension-ratio = 0.3         Gamma of the model over Gamma_exp (likewise)
 
 diameter and angle are needed. Gamma_exp = gamma/(g_exp rho sigma^2) is of an interface in three dimensions; the model has
-two, in which the droplets of the article move like the measured ones with 0.3 of it. Calibrate your own droplet, clogfit
-calibrate, for a ratio of its own.
+two, in which the droplets of the article move like the measured ones with 0.3 of it. Run clogfit calibrate to
+find the ratio of your droplet.
 )";
 
 constexpr double milli = 1e-3;
@@ -143,9 +143,11 @@ Line line_of(const Conversion& one) {
 std::string advice_of(const Scales& scales) {
   if (!(scales.line_tension > nearly_rigid_tension)) return "";
   return fmt::format(
-      "\nThis droplet is nearly rigid. A sweep with line-tension={} costs less and clogs in the same places; "
-      "so does the soft disk, model=sp wall-stiffness={}.\n",
-      console::plain(nearly_rigid_tension), console::plain(scales.wall_stiffness));
+      "\nThis droplet is nearly rigid. The soft disk, model=sp wall-stiffness={}, clogs in the same places "
+      "and "
+      "costs a tenth.\nSo does the polygon with line-tension={}, which costs less than this one, but was not "
+      "tested for soundness.\n",
+      console::plain(scales.wall_stiffness), console::plain(nearly_rigid_tension));
 }
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }

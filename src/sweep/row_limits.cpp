@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <set>
 #include <string_view>
 #include <tuple>
@@ -185,18 +186,27 @@ std::string small_part(std::span<const Obstacle> circles, const ObstacleParamete
       obstacles.own->source(), left.x, right.x, lowest.y, highest.y, along, obstacles.box);
 }
 
-/// Circles that have no diameter in their file have one nonetheless, which is easily overlooked.
-std::string missing_diameters(const ObstacleParameters& obstacles) {
-  if (obstacles.diameter != ObstacleParameters().diameter) return "";
-  const auto all = obstacles.own->circles();
-  const auto number = std::ranges::count(all, 0.0, &Obstacle::radius);
-  if (number == 0) return "";
-  return fmt::format("obstacles={} has no diameter for {}: there it is obstacle-diameter={}",
-                     obstacles.own->source(), counted(number, "circle"), shortest(obstacles.diameter));
+/// A line for each file of circles without diameters, unless obstacle-diameter was chosen: they have one
+/// nonetheless, which is easily overlooked.
+std::vector<std::string> missing_diameters(const Plan& plan) {
+  std::map<std::string, std::string> lines;
+  for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
+    const RunParameters run = plan.group(group);
+    if (scene_of(run).walls_from != WallsFrom::circles) continue;
+    if (run.obstacles.diameter != ObstacleParameters().diameter) return {};
+    const OwnCircles& own = *run.obstacles.own;
+    if (const auto number = std::ranges::count(own.circles(), 0.0, &Obstacle::radius); number > 0)
+      lines[own.check_sum()] = fmt::format(
+          "obstacles={} gives no diameter for {}; obstacle-diameter={} is used for {}", own.source(),
+          counted(number, "circle"), shortest(run.obstacles.diameter), number == 1 ? "it" : "them");
+  }
+  std::vector<std::string> all;
+  for (auto& [check_sum, line] : lines) all.push_back(std::move(line));
+  return all;
 }
 
 std::vector<std::string> limits_of_circles(const Plan& plan) {
-  std::vector<std::string> all;
+  std::vector<std::string> all = missing_diameters(plan);
   std::set<std::tuple<std::string, double, double>> seen;
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
     const RunParameters run = plan.group(group);
@@ -204,7 +214,6 @@ std::vector<std::string> limits_of_circles(const Plan& plan) {
     if (scene_of(run).walls_from != WallsFrom::circles) continue;
     if (!seen.emplace(obstacles.own->check_sum(), obstacles.box, obstacles.period().along()).second) continue;
     const std::vector<Obstacle> circles = obstacles.own->with_radii(obstacles.diameter / 2);
-    all.push_back(missing_diameters(obstacles));
     // A bare band before an exit, or a bare lane between walls, is meant to be there.
     if (obstacles.exit == 0) all.push_back(bare_band(circles, obstacles));
     if (obstacles.side_walls == SideWalls::off) all.push_back(bare_lanes(circles, obstacles));

@@ -184,7 +184,7 @@ class Calibrate(ProgramTest):
             (["p.csv", "--tension=10mN/m"], ["--tension needs"]),
             (["p.csv", "--density=1g/ml", "--outer-density=1g/ml"], ["--density and --outer-density are equal"]),
             (["p.csv", "line-tension=1"], ["--line-tension is what"]),
-            (["p.csv", "--diameter=2mm", "--speed=3mm/s", "vertices=64,128"], ["2 runs, one is wanted"]),
+            (["p.csv", "--diameter=2mm", "--speed=3mm/s", "vertices=64,128"], ["2 runs, but one is needed"]),
             (["p.csv", "--diameter=2mm", "--speed=3mm/s", "--format=xml"], ["--format=xml"]),
             (["p.csv", "--diameter=2mm", "--speed=3mm/s", "--orifice=0.01"], ["orifice"]),
         ]:

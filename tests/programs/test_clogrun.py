@@ -334,7 +334,7 @@ class Run(ProgramTest):
             (["sag", "--seed", "3"], ["seeds=3", "nothing is random"]),
             (["sag", "line-tension=nan"], ["line-tension=nan"]),
             (["array", "gravity=vertex", *out], ["perimeter-spring=along contradicts gravity=vertex"]),
-            (["array", "line-tension=1,2", *out], ["2 runs", "one is wanted"]),
+            (["array", "line-tension=1,2", *out], ["2 runs", "one is needed"]),
             (["array", "--output", "no/such/folder/r.h5"], ["no/such/folder"]),
             (["array", "--write-obstacles", "words.csv", *out], ["words.csv", "will not overwrite"]),
             (["array", "--write-obstacles", "r.h5", *out], ["same file"]),

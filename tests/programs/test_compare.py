@@ -97,7 +97,7 @@ class Together(Analysis):
         stored_rows.change_columns(self.folder / "b.h5", model_version=1)
         with self.assertRaisesRegex(clogsweep.UserError, "model versions"):
             clogsweep.open([self.folder / "a.h5", self.folder / "b.h5"], BIN)
-        with self.assertRaisesRegex(clogsweep.UserError, "one file or none"):
+        with self.assertRaisesRegex(clogsweep.UserError, "a list needs at least two files"):
             clogsweep.open([self.folder / "a.h5"], BIN)
 
 

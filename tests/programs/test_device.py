@@ -78,6 +78,10 @@ class Devices(Analysis):
                 self.refuse("clogrun", "array", *arguments, "--output", "x.h5", words=["lab.cfg has a droplet of 300 um"])
             else:
                 self.succeed("clogsweep", *arguments, "--output", "s.h5")
+        self.write("lab.cfg", "diameter = 300 um\nangle = 90 deg\n")
+        self.write("points.csv", "obstacles,box\nposts.csv,6\n")
+        self.refuse("clogsweep", "--lab", "lab.cfg", "--points", "points.csv", "length=18", "max-time=20", "seeds=1", "--output", "x.h5",
+                    words=["lab.cfg has a droplet of 300 um"])
         told = self.succeed("clogfit", "s.h5")
         self.assertIn("tension/(mN/m)", told.stdout)
         self.assertEqual(told.stderr, "")
@@ -94,6 +98,22 @@ class Devices(Analysis):
         group, = json.loads(self.succeed("clogfit", "s.h5", "--dwell", 1000, "--format", "json").stdout)["groups"]
         self.assertEqual((group["clogs"], group["flowing"]), (1, 0))
         self.assertNotIn("at rest", self.succeed("clogfit", "s.h5", "--dwell", 1000).stdout)
+        # At rest from the beginning, for a time of one digit: the advice is to use a shorter one.
+        self.succeed("clogsweep", "obstacles=row.csv", "box=10", "length=20", "release=entrance", "entrance=9.44", "entrance-from=4.9", "entrance-to=5.1",
+                     "line-tension=1", "vertices=64", "max-time=1000", "seeds=1", "clog-detection=threshold", "clog-energy=1e-30", "--output", "t.h5")
+        self.assertIn("--dwell=900 counts it as clogged", self.succeed("clogfit", "t.h5").stdout)
+        group, = json.loads(self.succeed("clogfit", "t.h5", "--dwell", 900, "--format", "json").stdout)["groups"]
+        self.assertEqual(group["clogs"], 1)
+
+    def test_notes_about_passed_and_resting_droplets_are_of_arrays_only(self):
+        channel = ["obstacle-layout=channel", "terminal-speed=0.05", "start=-1.5", "end=1", "vertices=64"]
+        self.succeed("clogsweep", *channel, "orifice=0.95", "max-time=2000", "--output", "passed.h5")
+        self.succeed("clogsweep", *channel, "orifice=0.3", "max-time=1000", "clog-detection=threshold", "clog-energy=1e-30", "--output", "rests.h5")
+        self.assertEqual([table(self.folder / f"{name}.h5")["status"][0] for name in ("passed", "rests")], ["passed", "flowing"])
+        for name in ("passed", "rests"):
+            told = self.succeed("clogfit", f"{name}.h5").stdout
+            self.assertNotIn("reached the exit", told)
+            self.assertNotIn("at rest", told)
 
     def test_droplets_enter_pass_and_leave_between_walls(self):
         self.write("posts.csv", "x,y,diameter\n" + csv())
@@ -133,11 +153,37 @@ class Devices(Analysis):
         self.assertEqual([label.split("\n")[0] for label in panels], [rf"$\Gamma = {value:g}$" for value in (0.5, 1, 1.5, 3, 4, 5)] + ["share that"])
         self.assertIn("6 of 7 parameter sets", figure.texts[0].get_text())
 
+    def test_a_sweep_of_both_models_has_panels_for_both(self):
+        self.write("posts.csv", "x,y,diameter\n" + csv())
+        self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=18", "model=dp,sp", "max-time=20", "seeds=1", "--output", "s.h5")
+        figure = clogsweep.Sweep(self.folder / "s.h5", BIN).device(ways=0, map=1).figure
+        self.assertEqual([axes.get_ylabel().count("sigma") for axes in figure.axes][:2], [1, 1])
+        self.assertIn("share of 1 droplet each", figure.axes[-1].get_ylabel())
+
+    def test_the_scale_of_the_maps_is_there_whichever_panel_has_one(self):
+        rows = np.array([(1.0, 2.0, 4.0, 0.0, b"flowing", b"none")],
+                        dtype=[*((name, float) for name in ("release_x", "release_y", "distance", "lateral_displacement")), ("status", "S9"), ("mechanism", "S9")])
+        place = drawn.Place(name="none", circles=np.empty((0, 3)), length=10.0, width=4.0, has_walls=False, exit=0.0, rows=rows)
+        way = [np.array([(1.0, 2.0), (5.0, 2.0)])]
+        for parts in ([drawn.Part("a", place, mapped=way), drawn.Part("b", place)], [drawn.Part("a", place), drawn.Part("b", place, mapped=way)]):
+            figure = drawn.draw(parts, 2, 0.2)
+            self.assertEqual(len(figure.axes), 4)
+            self.assertIn("$\\sigma$ = 0.2 mm", figure.axes[2].get_xlabel())
+
+    def test_no_curve_is_fitted_through_the_lengths_of_a_device_with_an_exit(self):
+        self.write("posts.csv", "x,y,diameter\n" + csv())
+        keys = ["obstacles=posts.csv", *KEYS[:-3], "line-tension=1,2,3,4", "max-time=600", "seeds=1..2"]
+        for name, more in (("with", []), ("without", ["exit=0"])):
+            self.succeed("clogsweep", *[key for key in keys if not (more and key.startswith("exit"))], "--output", f"{name}.h5")
+            groups = clogsweep.Sweep(self.folder / f"{name}.h5", BIN).fit().known
+            self.assertGreaterEqual(sum(group["clogs"] > 0 for group in groups.members), 3)
+            self.assertEqual(groups.fitted_curve(groups.members) is not None, name == "without")
+
     def test_the_strip_tells_how_many_came_past(self):
         rows = np.array([(1.0, 0.0, 4.0, 0.0), (1.0, 0.0, 13.0, 0.0)], dtype=[(name, float) for name in ("release_x", "release_y", "distance", "lateral_displacement")])
         place = drawn.Place(name="none", circles=np.empty((0, 3)), length=10.0, width=4.0, has_walls=False, exit=0.0, rows=rows)
         at, counts = drawn.came_past(place)
-        for x, count in ((0.5, 1), (2.0, 3), (4.5, 2), (8.0, 1)):
+        for x, count in ((0.5, 1), (2.0, 2), (4.5, 2), (8.0, 1)):
             self.assertEqual(counts[np.argmin(np.abs(at - x))], count, x)
 
     def test_gaps_between_posts_are_those_of_all_pairs(self):
@@ -364,7 +410,7 @@ class WrongDrawings(Analysis):
         with mock.patch.dict(sys.modules, {"shapely": None, "shapely.ops": None, "shapely.geometry": None}):
             self.dxf(circles=[(800, 300), (1600, 300)], lines=lines)
             told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "other").stdout
-        self.assertIn("2 outlines as long as the device are taken for walls", told)  # lines of its edge
+        self.assertIn("2 outlines or lines as long as the device are taken for walls", told)  # lines of its edge
         self.assertIn("skipped: 11 LINE", told)
         self.assertIn("install python3-shapely", told)
 
@@ -391,12 +437,12 @@ class WrongDrawings(Analysis):
         walls, post = [box(0, -20, 3600, 0), box(0, 1200, 3600, 1220)], box(1500, 500, 1600, 600)
         self.dxf(circles=[(800, 300), (800, 900)], outlines=[*walls, post])
         told = self.draw("circles", "device.dxf", *self.COMMAND, "--as-rows").stdout
-        self.assertIn("2 outlines as long as the device are taken for walls: side-walls=on", told)
+        self.assertIn("2 outlines or lines as long as the device are taken for walls: side-walls=on", told)
         self.assertIn("3 posts, device 18 x 6", told)
         self.assertIn("side-walls=on", self.run_printed(told))
         self.dxf(circles=[(800, 300), (800, 900)], outlines=[box(0, -20, 3600, 1200), walls[0]])
         told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "one").stdout
-        self.assertIn("1 outline as long as the device is taken for a wall", told)
+        self.assertIn("1 outline or line as long as the device is taken for a wall", told)
         self.assertIn("box=6 length=18", told)
         self.dxf(circles=[(300, 800), (900, 800)], outlines=[box(0, 0, 10, 3600), box(1200, 0, 1220, 3600)])
         told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "down", "--flow", "down").stdout
@@ -405,13 +451,30 @@ class WrongDrawings(Analysis):
             sides = [((0, 0), (3600, 0)), ((3600, 1200), (0, 1200))]
             self.dxf(circles=[(800, 300), (800, 900)], lines=[*sides, ((2500, 300), (2900, 700))])
             told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "lines").stdout
-            for words in ("2 outlines as long as the device are taken for walls", "2 posts, device 18 x 6", "skipped: 1 LINE (lines red", "box=6 length=18"):
+            for words in ("2 outlines or lines as long as the device are taken for walls", "2 posts, device 18 x 6", "skipped: 1 LINE (lines red", "box=6 length=18"):
                 self.assertIn(words, told)
+        def said_of(name, **drawn):
+            self.dxf(**drawn)
+            return self.draw("circles", "device.dxf", "--droplet", "200um", "--output", name).stdout
+
+        posts, edge = [(800, 300), (800, 900)], box(0, 0, 3600, 1200)
+        with self.subTest("a dimension line beside the device moves no edge"):
+            self.assertIn("device 18 x 6", said_of("dimension", circles=posts, outlines=[edge], lines=[((0, -200), (3600, -200))]))
+            self.assertIn("device 18 x 6", said_of("farther", circles=posts, lines=[*sides, ((-300, -900), (3900, -900))]))
+        with self.subTest("of walls that are double lines the inner faces count"):
+            double = [((0, -20), (3600, -20)), ((0, 1220), (3600, 1220))]
+            told = said_of("double", circles=posts, lines=[*sides, *double])
+            self.assertIn("device 18 x 6", told)
+            self.assertNotIn("skipped", told)
+        with self.subTest("a long outline that is the only post is none"):
+            self.dxf(outlines=[box(0, 500, 3600, 520)], lines=[((500, 800), (600, 900))])
+            told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "only", "--as-rows").stdout
+            self.assertIn("1 post, device", told)
         with self.subTest("a wall with teeth is a post"):
             teeth = [(3600 - 100 * i, 20 + 40 * (i % 2)) for i in range(37)]
             self.dxf(circles=[(800, 300), (800, 900)], outlines=[[(0, 0), (3600, 0), *teeth], box(0, 1200, 3600, 1220)])
             told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "teeth", "--as-rows").stdout
-            self.assertIn("1 outline as long", told)
+            self.assertIn("1 outline or line as long", told)
             self.assertIn("3 posts", told)
 
     def test_the_package_that_rows_need_is_named(self):

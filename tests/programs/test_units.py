@@ -58,7 +58,7 @@ class Units(ProgramTest):
         lab = self.lab("200 um", "90 deg", "1 mm/s", "20 mN/m", "stiff.cfg")
         told = self.succeed("clogfit", "units", lab).stdout
         self.assertIn("Gamma = 52.", told)
-        self.assertIn("line-tension=30.0 ", told)
+        self.assertIn("line-tension=30.0, ", told)
         # They do clog in the same places.
         common = ["obstacle-density=0.35", "obstacle-gap=0.2", "box=20", "max-time=1500", "seeds=1..3"]
         disk, = re.findall(r"model=sp wall-stiffness=\S*\d", told)
@@ -69,6 +69,12 @@ class Units(ProgramTest):
             self.assertEqual(set(rows["status"]), {"clogged"})
             ways.append(rows["distance"])
         np.testing.assert_allclose(ways[1:], [ways[0]] * 2, atol=0.1)
+
+    def test_units_may_be_typed_with_their_signs(self):
+        plain = self.units(self.lab("200 um", "60 deg", "800 um/s"))
+        for micro in ("µ", "μ"):
+            signed = self.units(self.lab(f"200 {micro}m", "60 °", f"800 {micro}m/s", name="signed.cfg"))
+            self.assertEqual({name: value for name, value in signed.items()}, plain)
 
     def test_the_sag_is_that_of_a_droplet_on_a_wall(self):
         found = self.units(self.lab(tension="4 mN/m"))
@@ -116,6 +122,14 @@ class Units(ProgramTest):
         self.assertIn(f"> {rounded.plain(group['clogging_length_lower_mm'])}<", page)
         self.assertIn('<th scope="col">tension [mN/m]</th>', page)
         self.assertIn("<td><span>9.60</span></td>", page)
+        self.assertIn("interfacial tension [mN/m]", page)
+        fit = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)
+        self.assertAlmostEqual(fit["groups"][0]["tension_mN_per_m"], 9.6, delta=0.01)
+        self.assertEqual(fit["units"]["tension_mN_per_m"], "mN/m")
+        self.succeed("clogsweep", "model=sp", "wall-stiffness=1", "box=20", "max-time=20", "seeds=1", "--output", "disk.h5")
+        told = self.succeed("clogfit", "disk.h5", "--lab", "lab.cfg").stdout
+        self.assertIn("lambda/mm", told)
+        self.assertNotIn("tension/(mN/m)", told)
 
     def test_a_run_of_a_laboratory_is_told_in_its_units(self):
         lab = self.lab()

@@ -161,9 +161,6 @@ void judge(Tally& tally, const Truth& truth, const Sweep& sweep, std::span<const
   ++tally.number;
   tally.work += sweep.work();
   tally.mean_square += squares / size;
-  const std::vector<RefinedPoint> points = sweep.points();
-  for (const CurvePlace& place : places)
-    tally.square_of_lines += std::pow(on_straight_lines(points, place) - truth.log_length(place), 2) / size;
   tally.band += held / size;
   const CurvePlace top = truth.num_keys == 1 ? CurvePlace(truth.peak * range, 0) : places[highest];
   const double height = truth.log_length(top);
@@ -179,6 +176,16 @@ void judge(Tally& tally, const Truth& truth, const Sweep& sweep, std::span<const
     ++tally.num_crossings;
     tally.crossing += one.interval.lower <= crossed && crossed <= one.interval.upper;
   }
+}
+
+/// The same of a grid, which may also be read without a fit.
+void judge_grid(Tally& tally, const Truth& truth, const Sweep& sweep, std::span<const CurvePlace> places) {
+  judge(tally, truth, sweep, places, fitted(sweep, places));
+  const std::vector<RefinedPoint> points = sweep.points();
+  double squares = 0;
+  for (const CurvePlace& place : places)
+    squares += std::pow(on_straight_lines(points, place) - truth.log_length(place), 2);
+  tally.square_of_lines += squares / static_cast<double>(places.size());
 }
 
 using Stages = std::map<int, Tally>;
@@ -296,12 +303,10 @@ int main(int argc, char** argv) {
         const std::vector<CurvePlace> values = grid(num_keys, num_values);
         Sweep until(truth, engine());
         fill_grid(until, values, number);
-        judge(grids[fmt::format("{} until precision", num_values)][number], truth, until, places,
-              fitted(until, places));
+        judge_grid(grids[fmt::format("{} until precision", num_values)][number], truth, until, places);
         Sweep equal(truth, engine());
         for (const CurvePlace& place : values) equal.run(place, number);
-        judge(grids[fmt::format("{} equal seeds", num_values)][number], truth, equal, places,
-              fitted(equal, places));
+        judge_grid(grids[fmt::format("{} equal seeds", num_values)][number], truth, equal, places);
       }
   }
   fmt::print("{:24} {:>5} {:>5} {:>10} {:>7}  {:>6} {:>6} {:>6} {:>6}\n", "way", "stage", "reps", "work",

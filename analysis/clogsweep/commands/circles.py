@@ -6,7 +6,7 @@
 
 posts.csv has the posts in micrometres, and the droplet's diameter. posts.png shows what was understood: look at it before
 you run anything. An outline that holds everything else is the edge of the device; of a picture it is its own edge. Lines
-that close are outlines; those that do not are red. Flat outlines along the sides are walls. Round posts are circles.
+that close are outlines. Flat outlines and lines along the sides are walls; other lines are red. Round posts are circles.
 Others, such as triangles, are red in the picture, and nothing is written unless --as-rows replaces each by rows of
 overlapping circles along its outline, or --as-circles by a circle of the same area.
 """
@@ -60,7 +60,7 @@ def options() -> argparse.Namespace:
     parser.add_argument("--layer", help="of a DXF or GDSII file; without it all count")
     parser.add_argument("--posts", choices=("dark", "bright"), default="dark", help="of a picture (dark)")
     parser.add_argument("--flow", choices=TURNS, default="right", help="where it goes in the drawing (right)")
-    parser.add_argument("--tolerance", type=tolerance, default=0.04, help="so much of its radius may a post be off a circle (0.04)")
+    parser.add_argument("--tolerance", type=tolerance, default=0.04, help="largest deviation of a post from a circle, as a part of its radius (0.04)")
     others = parser.add_mutually_exclusive_group()
     others.add_argument("--as-rows", action="store_true", help="replace other posts by rows of circles along their outlines")
     others.add_argument("--as-circles", action="store_true", help="replace other posts by circles of the same area")
@@ -118,7 +118,7 @@ def told(device: shapes.Device, drawing: shapes.Drawing) -> list[str]:
     if not device.has_frame:
         words.append("no edge is drawn: the device ends half a droplet diameter beyond the posts" + (", or where a wall ends" if device.walls else " on every side"))
     if number := len(device.walls):
-        are = "outline as long as the device is taken for a wall" if number == 1 else "outlines as long as the device are taken for walls"
+        are = "outline or line as long as the device is taken for a wall" if number == 1 else "outlines or lines as long as the device are taken for walls"
         words.append(f"{number} {are}: side-walls=on")
     if drawing.joined[0]:
         words.append(f"{rounded.counted(drawing.joined[0], 'line')} closed into {rounded.counted(drawing.joined[1], 'outline')}")
@@ -157,7 +157,7 @@ def body() -> int:
     lines.join(drawing)
     metres = metres_of(arguments, drawing)
     device = shapes.understood(drawing, metres, droplet, arguments.tolerance, TURNS[arguments.flow])
-    shapes.refuse_unlikely(device, unit_in_words(arguments, drawing), metres, remedy_of_unit(arguments, drawing))
+    shapes.refuse_unlikely(device, unit_in_words(arguments, drawing), metres, remedy_of_unit(arguments, drawing), drawing.frame is not None)
     made: list[str] = []
     if arguments.as_rows and device.others:
         device, made = in_rows(device, arguments.corner)

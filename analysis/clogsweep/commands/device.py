@@ -16,8 +16,8 @@ from .command_line import sweep_to_draw, whole
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--ways", type=whole(0), default=3, help="lines, of so many runs in each panel (%(default)s)")
-    parser.add_argument("--map", type=whole(0), default=6, help="colours, of so many runs in each panel (%(default)s)")
+    parser.add_argument("--ways", type=whole(0), default=3, help="runs of each panel drawn as lines (%(default)s)")
+    parser.add_argument("--map", type=whole(0), default=6, help="runs of each panel behind its map; 0: no map (%(default)s)")
     parser.add_argument("--jobs", type=whole(1), default=2, help="runs at a time (%(default)s)")
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import functools
 import re
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from .walls import area
 
 METRES = {"nm": 1e-9, "um": 1e-6, "µm": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 25.4e-3}
 MARGIN = 0.5  # between the posts and the edge of a device without a drawn one [sigma]
+NEAR = 0.01  # by which a line may be beyond the edge that it is part of [sigma]
 LONGEST = 10000  # side of a device that is not taken for a mistake of the unit [sigma]
 Line = tuple[str, Numbers]  # kind of an object in a drawing, and its points (n, 2)
 
@@ -29,8 +31,8 @@ class Drawing:
     frame: tuple[float, float, float, float] | None = None  # left, bottom, right, top, if the drawing has edges of its own
     unit_is_assumed: bool = False
     pieces: list[Line] = dataclasses.field(default_factory=list)  # open lines, before they are joined
-    lines: list[Line] = dataclasses.field(default_factory=list)  # of them those that close into no outline
-    joined: tuple[int, int] = (0, 0)  # number of the pieces that do, and of their outlines
+    lines: list[Line] = dataclasses.field(default_factory=list)  # the pieces that do not form a closed outline
+    joined: tuple[int, int] = (0, 0)  # how many pieces were joined, and into how many outlines
     can_join: bool = True
     unit_in_words: str | None = None  # its name, if that is not the length `metres`
     skipped: dict[str, int] = dataclasses.field(default_factory=dict)  # kinds of objects that are no posts, lines apart, with their numbers
@@ -52,8 +54,8 @@ class Device:
     droplet_metres: float
     post_of: Numbers | None = None  # number of the post of each circle; None: each is one
     replaced: list[Numbers] = dataclasses.field(default_factory=list)  # outlines for which there are circles
-    walls: list[Numbers] = dataclasses.field(default_factory=list)  # outlines or lines beside the device, for which there is side-walls=on
-    lines: list[Line] = dataclasses.field(default_factory=list)  # that close into no outline, and are no walls
+    walls: list[Numbers] = dataclasses.field(default_factory=list)  # outlines or lines beside the device, replaced by side-walls=on
+    lines: list[Line] = dataclasses.field(default_factory=list)  # that form no closed outline, and are no walls
 
     def overlaps(self) -> list[tuple[int, int]]:
         """Circles of each pair of posts that touch, which clogsweep refuses."""
@@ -111,11 +113,12 @@ def is_likely(length: float, width: float) -> bool:
     return max(length, width) <= LONGEST and min(length, width) >= 1
 
 
-def refuse_unlikely(device: Device, unit: str, metres: float, remedy: str) -> None:
-    """@param unit, metres  in which the drawing was read. @throws UserError  if the device is too large or too small for such droplets"""
+def refuse_unlikely(device: Device, unit: str, metres: float, remedy: str, is_picture: bool) -> None:
+    """@param unit, metres  in which the drawing was read; @param is_picture  made of pixels, whose size is no unit.
+    @throws UserError  if the device is too large or too small for such droplets"""
     if is_likely(device.length, device.width):
         return
-    in_others = ((name, device.length * METRES[name] / metres, device.width * METRES[name] / metres) for name in ("um", "mm"))
+    in_others: Iterable[tuple[str, float, float]] = [] if is_picture else ((name, device.length * METRES[name] / metres, device.width * METRES[name] / metres) for name in ("um", "mm"))
     better = "".join(f", in {name} it would be {length:.2g} by {width:.2g}" for name, length, width in in_others if is_likely(length, width))
     raise UserError(f"the device is {device.length:.2g} by {device.width:.2g} droplet diameters (the drawing's unit is {unit}{better}); {remedy}, or check --droplet")
 
@@ -130,8 +133,8 @@ def along_edges(outline: Numbers, is_closed: bool) -> Numbers:
 
 
 def fitted_circle(outline: Numbers, is_closed: bool, tolerance: float) -> tuple[float, float, float] | None:
-    """The circle nearest to an outline by least squares (Kasa's method): x, y, diameter. None if a point is farther from
-    it than this part of the radius."""
+    """The circle nearest to an outline by least squares (Kasa's method): x, y, diameter. None if a point deviates
+    by more than `tolerance` times the radius."""
     points = along_edges(outline, is_closed)
     middle = points.mean(axis=0)
     near = points - middle
@@ -186,19 +189,20 @@ def placed(drawing: Drawing, circles: Numbers, others: list[Numbers], frame: tup
     others = [outline @ turn.T for outline in others]
     edges = surroundings(circles, others) if frame is None else np.array(frame).reshape(2, 2) @ turn.T
     lines = [(kind, line @ turn.T) for kind, line in drawing.lines]
-    candidates = [*others, *(line for _, line in lines)]
-    found = walls.among(circles, candidates, float(np.ptp(edges[:, 0])))
-    sides = [candidates[index] for index in found if index is not None]
-    lines = [line for index, line in enumerate(lines, len(others)) if index not in found]
-    others = [outline for index, outline in enumerate(others) if index not in found]
+    is_inside = [frame is None or bool((line >= edges.min(axis=0) - NEAR).all() and (line <= edges.max(axis=0) + NEAR).all()) for _, line in lines]
+    candidates = [*others, *(line for (_, line), inside in zip(lines, is_inside) if inside)]
+    below, above = walls.among(circles, others, candidates[len(others):], float(np.ptp(edges[:, 0])))
+    taken = {id(candidates[index]) for index in [*below, *above]}
+    sides = [candidates[index] for index in [*below[:1], *above[:1]]]
+    lines = [(kind, line) for kind, line in lines if id(line) not in taken]
+    others = [outline for outline in others if id(outline) not in taken]
     if frame is None:
         inside = surroundings(circles, others)
         ends = [(x, inside[0, 1]) for side in sides for x in side[:, 0]]
         edges = np.vstack([inside.min(axis=0) - MARGIN, inside.max(axis=0) + MARGIN, *ends])
     low, high = edges.min(axis=0), edges.max(axis=0)
-    lower, upper = found
-    low[1] = sides[0][:, 1].max() if lower is not None else low[1]
-    high[1] = sides[-1][:, 1].min() if upper is not None else high[1]
+    low[1] = sides[0][:, 1].max() if below else low[1]
+    high[1] = sides[-1][:, 1].min() if above else high[1]
     length, width = high - low
     circles[:, :2] -= low
     return Device(circles=circles, others=[outline - low for outline in others], length=float(length), width=float(width), has_frame=frame is not None,
@@ -206,7 +210,7 @@ def placed(drawing: Drawing, circles: Numbers, others: list[Numbers], frame: tup
 
 
 def surroundings(circles: Numbers, others: list[Numbers]) -> Numbers:
-    """Points of which the box is that around all posts."""
+    """Points whose bounding box is that of all posts."""
     radii = circles[:, 2:] / 2
     return np.vstack([circles[:, :2] - radii, circles[:, :2] + radii, *others])
 

@@ -11,20 +11,18 @@ SLENDER = 3  # length over thickness, at least: a column of square posts has no 
 FLAT = 0.05  # by which a wall's outline may be off a rectangle [sigma]
 
 
-def among(circles: Numbers, others: list[Numbers], length: float) -> tuple[int | None, int | None]:
-    """Indices of the outlines that are the lower and the upper wall, all in droplet diameters. None if there would be no other post."""
-    middles = [outline.mean(axis=0)[1] for outline in others]
-    lower = upper = None
-    for index, outline in enumerate(others):
-        rest = np.array([*circles[:, 1], *(middle for other, middle in enumerate(middles) if other != index)])
-        if len(rest) == 0 or not is_wall(outline, length):
-            continue
-        if (rest >= outline[:, 1].max()).all():
-            lower = index
-        elif (rest <= outline[:, 1].min()).all():
-            upper = index
-    found = (lower is not None) + (upper is not None)
-    return (lower, upper) if len(circles) + len(others) > found else (None, None)
+def among(circles: Numbers, outlines: list[Numbers], lines: list[Numbers], length: float) -> tuple[list[int], list[int]]:
+    """Indices among outlines and lines, in this order, of the lower and of the upper walls, the nearest to the posts first, all in
+    droplet diameters. None if there would be no other post."""
+    candidates = [*outlines, *lines]
+    found = [index for index, candidate in enumerate(candidates) if is_wall(candidate, length)]
+    middles = [outline.mean(axis=0)[1] for index, outline in enumerate(outlines) if index not in found]
+    posts = np.array([*circles[:, 1], *middles])
+    if len(posts) == 0:
+        return [], []
+    lower = [index for index in found if (posts >= candidates[index][:, 1].max()).all()]
+    upper = [index for index in found if (posts <= candidates[index][:, 1].min()).all()]
+    return sorted(lower, key=lambda index: -candidates[index][:, 1].max()), sorted(upper, key=lambda index: candidates[index][:, 1].min())
 
 
 def is_wall(outline: Numbers, length: float) -> bool:

@@ -23,7 +23,7 @@ from . import device_plan
 
 T = TypeVar("T")
 MOST_PANELS = 6
-BESIDE, OF_LETTER = 0.9, 0.055  # width of the colours' scale, or of the strip's legend without its words, and of a letter of these [inches]
+BESIDE, OF_LETTER = 0.9, 0.055  # width of the colour bar, or of the legend without its text; of a letter of that text [inches]
 STEP = 0.1  # between two points of a way, of a free droplet [sigma]
 CELL = 0.1  # of the map of passages [sigma]
 
@@ -41,19 +41,20 @@ class Place:
     rows: Records
 
     def wrapped(self, points: Numbers) -> Numbers:
-        """Back into the device, of places (n, 2) of droplets for which it repeats."""
+        """Maps positions (n, 2) back into the device, along each direction in which it is periodic."""
         x, y = points.T
         return np.column_stack([x if self.exit > 0 else x % self.length, y if self.has_walls else y % self.width])
 
     def parts(self, groups: Groups) -> list[Part]:
         """Its runs by parameter set, in the order of clogfit's table."""
-        names = groups.distinguishing()
         found = []
         for member in groups.members:
-            of_group = np.all([self.rows[name] == (member[name].encode() if isinstance(member[name], str) else member[name]) for name in names] or
-                              [np.ones(len(self.rows), dtype=bool)], axis=0)
-            if of_group.any():
-                found.append(Part(label_of(groups, member), dataclasses.replace(self, rows=self.rows[of_group])))
+            is_of_group = np.ones(len(self.rows), dtype=bool)
+            for name in groups.distinguishing():
+                if member[name] is not None:  # where a model lacks the parameter, others tell it apart
+                    is_of_group &= self.rows[name] == (member[name].encode() if isinstance(member[name], str) else member[name])
+            if is_of_group.any():
+                found.append(Part(panel_label(groups, member), dataclasses.replace(self, rows=self.rows[is_of_group])))
         return found
 
     @property
@@ -65,10 +66,10 @@ class Place:
         return self.releases + np.column_stack([self.rows["distance"], self.rows["lateral_displacement"]])
 
 
-def label_of(groups: Groups, member: Group) -> str:
+def panel_label(groups: Groups, member: Group) -> str:
     """What distinguishes a group, also in the laboratory's units."""
-    tension = groups.laboratory.get("tension_mN_per_m") if groups.varies("line_tension") else None
-    return groups.label_of(member) + (f" ({rounded.plain(tension * member['line_tension'])} mN/m)" if tension else "")
+    tension = member.get("tension_mN_per_m") if groups.varies("line_tension") else None
+    return groups.label_of(member) + (f" ({rounded.plain(tension)} mN/m)" if tension else "")
 
 
 @dataclasses.dataclass
@@ -121,7 +122,7 @@ def chosen(rows: Records, number: int) -> list[np.void]:
 
 
 def evenly(members: list[T], number: int) -> list[T]:
-    """So many of them at most, the first and the last among them."""
+    """At most `number` of them, evenly spaced, including the first and the last."""
     if number == 0 or not members:
         return []
     return [members[i] for i in np.unique(np.linspace(0, len(members) - 1, min(number, len(members))).round().astype(int))]
@@ -139,13 +140,17 @@ def ways_of(place: Place, sweep: pathlib.Path, clogrun: pathlib.Path, number: in
             for row, run in zip(rows, runs)]
 
 
-def shown_parts(place: Place, groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path, num_lines: int, num_mapped: int, jobs: int) -> list[Part]:
-    """Those parameter sets that have a panel, with their ways. @param num_lines, num_mapped  of so many runs of each"""
-    shown = evenly(place.parts(groups), MOST_PANELS)
+def shown_parts(place: Place, groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path, num_lines: int, num_mapped: int, jobs: int) -> tuple[list[Part], int]:
+    """Those parameter sets that have a panel, with their ways, and the number of all. @param num_lines, num_mapped  runs of each panel drawn
+    as lines, and behind its map. @throws UserError  if no run has ended"""
+    every = place.parts(groups)
+    if not every:
+        raise UserError(f"no run among the circles of {place.name} has ended; let the sweep finish some first")
+    shown = evenly(every, MOST_PANELS)
     for part in progress.shown(shown, "replayed panel", len(shown)):
         ways = ways_of(part.place, sweep, clogrun, max(num_lines, num_mapped), jobs)
         part.lines, part.mapped = evenly(ways, num_lines), evenly(ways, num_mapped)
-    return shown
+    return shown, len(every)
 
 
 def unbroken(points: Numbers, place: Place) -> Numbers:
@@ -174,16 +179,15 @@ def draw_ends(axes: Axes, place: Place) -> None:
 
 
 def came_past(place: Place) -> tuple[Numbers, Numbers]:
-    """Places along the flow, and the number of droplets that came past each. One that passes the device twice counts twice."""
+    """Places along the flow, and the number of droplets that came past each, at least once."""
     cells = np.linspace(0, place.length, 201)
     middles = (cells[1:] + cells[:-1]) / 2
     if place.exit > 0:
         middles = middles[middles <= place.exit]
     counts = np.zeros(len(middles))
     for begin, end in zip(place.releases[:, 0], place.ends[:, 0]):
-        for lap in range(int(np.floor(begin / place.length)), int(np.floor(end / place.length)) + 1) if place.exit == 0 else (0,):
-            at = middles + lap * place.length
-            counts += (at >= begin) & (at <= end)
+        laps = range(int(np.floor(begin / place.length)), int(np.floor(end / place.length)) + 1) if place.exit == 0 else (0,)
+        counts += np.any([(at >= begin) & (at <= end) for at in (middles + lap * place.length for lap in laps)], axis=0)
     return middles, counts
 
 
@@ -238,10 +242,10 @@ def draw_map(axes: Axes, part: Part) -> AxesImage:
 
 def draw_scale(figure: Figure, panels: Sequence[Axes], drawn: AxesImage, parts: Sequence[Part]) -> None:
     """What the colours of the maps say."""
-    counts = {len(part.mapped) for part in parts}
-    most = f"{counts.pop()}" if len(counts) == 1 else f"up to {max(counts)}"
+    counts = {len(part.mapped) for part in parts if part.mapped}
+    most = ("" if len(counts) == 1 else "up to ") + rounded.counted(max(counts), "droplet")
     scale = figure.colorbar(drawn, ax=list(panels), pad=0.01, fraction=0.05)
-    scale.set_label(f"share of {most} droplets{' each' if len(parts) > 1 else ''}\nthat passed over it", fontsize=8)
+    scale.set_label(f"share of {most}{' each' if len(parts) > 1 else ''}\nthat passed over it", fontsize=8)
 
 
 def draw_part(axes: Axes, part: Part) -> None:
@@ -265,11 +269,11 @@ def draw(parts: Sequence[Part], num_parts: int, droplet_mm: float | None = None)
     place = parts[0].place
     beside = BESIDE + OF_LETTER * max(len(part.label) for part in parts) if len(parts) > 1 else BESIDE if parts[0].mapped else 0
     figure, (*panels, below) = device_plan.axes_for(place.length, place.width, len(parts), strip=1.5, beside=beside)
+    maps = [draw_map(axes, part) for axes, part in zip(panels, parts) if part.mapped]
     for axes, part in zip(panels, parts):
-        drawn = draw_map(axes, part) if part.mapped else None
         draw_part(axes, part)
-    if drawn:
-        draw_scale(figure, panels, drawn, parts)
+    if maps:
+        draw_scale(figure, panels, maps[0], parts)
     device_plan.draw_flow(panels[-1], 12)
     draw_passages(below, parts)
     below.set_xlabel(r"$x/\sigma$, along the flow" + (rf"; $\sigma$ = {droplet_mm:.4g} mm" if droplet_mm else ""))
@@ -281,7 +285,7 @@ def draw(parts: Sequence[Part], num_parts: int, droplet_mm: float | None = None)
 
 
 def align(strip: Axes, panel: Axes) -> None:
-    """The strip as wide as the panel above it, which its equal scales may have made narrower than the layout did."""
+    """Makes the strip as wide as the panel above it, which may be narrower than its slot in the layout, because its scales are equal."""
     strip.figure.draw_without_rendering()
     strip.figure.set_layout_engine("none")
     panel.apply_aspect()

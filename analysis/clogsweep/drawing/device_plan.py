@@ -18,6 +18,7 @@ from ..tools.hints import Numbers
 from . import surroundings
 
 WIDEST, NARROWEST = 14.0, 5.0  # figures [inches]
+TALLEST = 24.0  # all panels together [inches]
 RED = "#D00000"
 
 
@@ -25,7 +26,7 @@ def axes_for(length: float, width: float, panels: int = 1, strip: float = 0.0, b
     """A figure and its axes, one above the other, with equal scales along and across a device of this shape.
     @param strip  height of a last one, below the devices [inches]; @param beside  width for what is drawn beside them [inches]"""
     figure_width = min(WIDEST, max(NARROWEST, 0.45 * length))
-    height = min(12.0, max(2.2, figure_width * width / length))
+    height = min(TALLEST / panels, max(2.2, figure_width * width / length))
     heights = [height] * panels + ([strip] if strip else [])
     figure, axes = style.subplots(len(heights), figsize=(figure_width + beside, sum(heights) + 1.3 + 0.45 * (panels - 1)), squeeze=False, sharex=True,
                                   height_ratios=heights)
@@ -39,7 +40,7 @@ def draw_posts(axes: Axes, circles: Numbers, colour: str = style.OBSTACLE) -> No
 
 
 def rings_among(circles: Numbers) -> list[Numbers]:
-    """Centres (n, 2) of the rows of overlapping circles that close: droplets see the post, not the empty space within."""
+    """Closed chains of overlapping circles, as centres (n, 2), to be drawn filled: droplets meet the post, not the space inside."""
     def overlap(i: int, j: int) -> bool:
         return bool(np.hypot(*(circles[i, :2] - circles[j, :2])) < max(circles[i, 2], circles[j, 2]) / 2)
 
@@ -66,7 +67,7 @@ def frame(axes: Axes, length: float, width: float, line: str, beside: Sequence[N
 
 
 def draw_flow(axes: Axes, points_below: float) -> None:
-    """An arrow along the flow, so far below the right end of the axes, where no post is."""
+    """An arrow along the flow, `points_below` points below the right end of the axes, clear of all posts."""
     place = axes.transAxes + ScaledTranslation(0, -points_below / 72, axes.figure.dpi_scale_trans)
     start = axes.transAxes + ScaledTranslation(-0.6, -points_below / 72, axes.figure.dpi_scale_trans)
     axes.annotate("flow", (1, 0), (1, 0), xycoords=place, textcoords=start, va="center", ha="right", fontsize=9, annotation_clip=False,

@@ -125,7 +125,7 @@ def add_laboratory(axes: Axes, groups: Groups, ordinate: str) -> None:
     """A second scale in the units of the laboratory, where the sweep or clogfit was given one. @param ordinate  "length" or "speed" """
     if upright := groups.laboratory.get({"length": "length_mm", "speed": "speed_mm_per_s"}[ordinate]):
         add_scale(axes, "right", upright, LABORATORY[ordinate])
-    tension = groups.laboratory.get("tension_mN_per_m")
+    tension = groups.laboratory.get("tension_mN_per_m_of_gamma_1")
     if tension and groups.abscissa == "line_tension":
         add_scale(axes, "top", tension, LABORATORY["line_tension"])
 

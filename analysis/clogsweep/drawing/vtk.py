@@ -22,7 +22,7 @@ def data_array(parent: xml.Element, name: str, values: npt.ArrayLike, components
     if components > 1:
         element.set("NumberOfComponents", str(components))
     if not np.isfinite(values).all():
-        raise UserError(f"{name} holds what is no number, which VTK's readers cannot read; replay the droplet (clogrun replay)")
+        raise UserError(f"{name} contains NaN or infinity, which VTK's readers reject; replay the droplet (clogrun replay)")
     element.text = " ".join(map(repr, values.ravel().tolist()))
     return element
 

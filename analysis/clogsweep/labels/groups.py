@@ -163,7 +163,7 @@ class Groups:
 
     def is_logarithmic(self) -> bool:
         values = self.values(self.abscissa)
-        return min(values) > 0 and (self.abscissa in AXES or max(values) > 5 * min(values))
+        return None not in values and min(values) > 0 and (self.abscissa in AXES or max(values) > 5 * min(values))
 
     def caption(self) -> str:
         """The parameters that all curves share, and their number of runs."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import html
 import json
-import math
 import pathlib
 import string
 import tempfile
@@ -82,7 +81,7 @@ def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
         axes.set_ylim(0, 1.02)
         axes.set_xlabel(r"$r/\sigma$")
         style.grid(axes)
-    all_axes[0][0].set_ylabel("probability to have ended so within $r$")
+    all_axes[0][0].set_ylabel("probability of having ended this way within $r$")
     mark_steps(all_axes[0][0])
     style.heading(figure, label or groups.caption())
     return figure
@@ -102,8 +101,8 @@ def draw_causes(axes: Axes, groups: Groups, label: str, members: Sequence[Group]
             for bar, group in zip(axes.bar(ranks, share, bottom=base, color=colour, width=0.8, label=name), members):
                 bar.set_gid(style.mark("point", [group]))
         base += share
-    tension = groups.laboratory.get("tension_mN_per_m") if groups.abscissa == "line_tension" else None
-    below = [f"\n{rounded.plain(tension * group['line_tension'])}" if tension else "" for group in members]
+    tension = groups.abscissa == "line_tension" and "tension_mN_per_m" in members[0]
+    below = [f"\n{rounded.plain(group['tension_mN_per_m'])}" if tension else "" for group in members]
     axes.set_xticks(ranks, [f"{group[groups.abscissa]:g}{more}" for group, more in zip(members, below)], rotation=0 if len(members) <= 10 else 90)
     axes.set_xlabel(groups.axis_label() + (f"\n{LABORATORY['line_tension']}" if tension else ""))
     axes.set_ylabel("share of the runs")
@@ -135,10 +134,8 @@ def laboratory_columns(groups: Groups) -> dict[str, str]:
     return {column: title for column, title in named.items() if column != "tension_mN_per_m" or groups.are_polygons}
 
 
-def in_laboratory(groups: Groups, group: Group, name: str) -> str:
+def in_laboratory(group: Group, name: str) -> str:
     """A number in laboratory units, or the lower bound of a length."""
-    if name == "tension_mN_per_m":
-        return rounded.plain(group["line_tension"] * (groups.laboratory["tension_mN_per_m"] or math.nan))
     bound = group["clogging_length_lower_mm"] if name == "clogging_length_mm" and group["clogs"] == 0 else None
     return rounded.plain(group[name]) if bound is None else f"> {rounded.plain(bound)}"
 
@@ -154,7 +151,7 @@ def value(cell: float | str | None, digits: int = 6) -> str:
 
 
 def cell(groups: Groups, group: Group, name: str) -> str:
-    """The same of a group, with a file's name for circles of one's own."""
+    """The same of a group, with a file's name for user-supplied circles."""
     return value(groups.named(name, group[name]))
 
 
@@ -206,7 +203,7 @@ def table_of_lengths(groups: Groups, sentences: dict[str, str], rows: pandas.Dat
               *(["lateral/r"] if groups.are_lattices else []), "&lang;v<sub>g</sub>&rang;/v<sub>t</sub>", *laboratory_columns(groups).values(), "Ca", "seeds"]
     lines = [[*(cell(groups, group, name) for name in names), str(group["runs"]), str(group["clogs"]),
               *(str(group[name]) for name in [*style.MECHANISM_COLOURS, *passed]), length(group),
-              *([slope(group)] if groups.are_lattices else []), speed(group), *(in_laboratory(groups, group, name) for name in laboratory_columns(groups)),
+              *([slope(group)] if groups.are_lattices else []), speed(group), *(in_laboratory(group, name) for name in laboratory_columns(groups)),
               rounded.plain(group["capillary_number"]), seeds_of(group, names, rows)] for group in groups.members]
     return table(titles, lines, [doubts_of(group, sentences) for group in groups.members])
 
@@ -263,7 +260,7 @@ def run_examples(shown: Sequence[np.void], sweep: pathlib.Path, clogrun: pathlib
     try:
         return clogs.run_all(clogrun, sweep, shown, 2)
     except UserError as error:
-        raise UserError(f"{error}; --examples 0 does without") from error
+        raise UserError(f"{error}; use --examples 0 to skip the replays") from error
 
 
 def progress_of(status: dict[str, Any], rows: pandas.DataFrame) -> str:
@@ -272,7 +269,7 @@ def progress_of(status: dict[str, Any], rows: pandas.DataFrame) -> str:
     return f"{status['finished']} of {rounded.counted(status['runs'], 'run')} finished ({counts})"
 
 
-LENGTHS = ("&lambda; is the way after which 1/e of the droplets have not clogged, in droplet diameters; v<sub>t</sub> is the speed of a free droplet. "
+LENGTHS = ("&lambda; is the distance that a fraction 1/e of the droplets travels without clogging, in droplet diameters; v<sub>t</sub> is the speed of a free droplet. "
            "Each point of a curve has a row of the table.")
 
 
@@ -290,15 +287,15 @@ MAPPED = 4  # runs in each panel of a device whose ways make its map
 
 
 def devices(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
-    """Circles of one's own, each with its releases and clogs. Older files do not say where droplets were released.
-    @param count  ways to draw; with 0 nothing is run"""
+    """User-supplied circles, with releases and clogs. Older files do not say where droplets were released.
+    @param count  paths to draw in each panel; with 0 nothing is replayed"""
     if groups.values("obstacle_filling") != {"file"} or "release_x" not in stored.columns_of(stored.read_rows(sweep, clogrun.parent)):
         return {}
     caption = "releases, clogs, where droplets went, and the share that came past each place"
 
     def drawn(place: device.Place) -> str:
         parts = device.shown_parts(place, groups, sweep, clogrun, count, MAPPED if count else 0, 2)
-        return framed(charts.draw(device.draw(parts, len(place.parts(groups)), groups.laboratory.get("length_mm")), caption), f"{place.name}: {caption}", "wide")
+        return framed(charts.draw(device.draw(*parts, groups.laboratory.get("length_mm")), caption), f"{place.name}: {caption}", "wide")
 
     return {"Devices": "".join(drawn(place) for place in device.places(sweep, clogrun.parent) if place.parts(groups))}
 

@@ -105,7 +105,7 @@ class Sweep:
         """User-supplied circles, with the places where droplets were released, passed and clogged, and where they went: a panel
         for each of up to six parameter sets.
 
-        @param ways  of so many runs of each a line; @param map  of so many the share that passed over each place; they are replayed
+        @param ways  runs of each panel drawn as lines; @param map  runs of each panel behind its map; all are replayed
         @param jobs  runs at a time
         @throws UserError  if the sweep has no user-supplied circles, or those of several devices
         """
@@ -118,7 +118,7 @@ class Sweep:
         place = device.the_place(self.path, self._programs)
         groups = self.fit().known.finished(self.path)
         parts = device.shown_parts(place, groups, self.path, self._program("clogrun"), ways, map, jobs)
-        return Picture(device.draw(parts, len(place.parts(groups)), groups.laboratory.get("length_mm")), stored.source(self.attributes))
+        return Picture(device.draw(*parts, groups.laboratory.get("length_mm")), stored.source(self.attributes))
 
     def replay(self, task: int, output: str | os.PathLike[str] | None = None, *, interval: float = 1.0) -> Run:
         """Replays a run, with outlines. @param output  file to keep it in; @param interval  between outlines [t0]. @throws UserError"""
@@ -165,7 +165,7 @@ def merged(paths: Sequence[str | os.PathLike[str]], folder: str | os.PathLike[st
     """Several files as one sweep, which lies in a file of its own as long as it is used. @param folder  of the programs.
     @throws UserError  if they contradict each other, or are not sweeps"""
     if len(paths) < 2:
-        raise UserError("one file or none in a list of files; give the name of the file alone")
+        raise UserError("a list needs at least two files; give the name of a single file without a list")
     place = tempfile.TemporaryDirectory(prefix="clogsweep-merged-")
     path = pathlib.Path(place.name) / "merged.h5"
     try:

@@ -187,8 +187,13 @@ def caption(axes: Axes, text: str) -> None:
 
     def fits(line: str) -> bool:
         title.set_text(line)
-        return title.get_window_extent(renderer).width <= widest
+        return bool(title.get_window_extent(renderer).width <= widest)
 
+    title.set_text(in_lines(text, fits))
+
+
+def in_lines(text: str, fits: Callable[[str], bool]) -> str:
+    """Lines that fit, broken between phrases only: within one a break would spoil a formula."""
     lines = []
     for line in text.strip().split("\n"):
         first, *others = line.split(", ")
@@ -199,19 +204,13 @@ def caption(axes: Axes, text: str) -> None:
             else:
                 lines[-1] += ","
                 lines.append(phrase)
-    title.set_text("\n".join(lines))
+    return "\n".join(lines)
 
 
 def heading(figure: Figure, text: str) -> None:
-    """Above all axes of a figure, in lines that are as wide. Breaks stand between phrases: within one they would spoil a formula."""
-    widest = 16 * figure.get_figwidth()
-    lines = [""]
-    for phrase in text.split(", "):
-        if lines[-1] and len(lines[-1]) + len(phrase) > widest:
-            lines[-1] += ","
-            lines.append("")
-        lines[-1] += f", {phrase}" if lines[-1] else phrase
-    figure.suptitle("\n".join(lines), fontsize=8)
+    """Above all axes of a figure."""
+    letters_per_inch = 16
+    figure.suptitle(in_lines(text, lambda line: len(line) <= letters_per_inch * figure.get_figwidth()), fontsize=8)
 
 
 def notes(axes: Axes, lines: Sequence[str]) -> None:

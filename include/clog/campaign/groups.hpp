@@ -68,8 +68,8 @@ const DoubtText& text_of(Doubt doubt);
 /// The ways in which a run may end, competing risks: the mechanism that holds a clog (`other`: none of them),
 /// or the droplet's break-up.
 enum class Cause { wrapped, squeezed, hybrid, other, broken };
-/// The names in files of the number of its ends, of their length (S divided by that number), and its
-/// interval.
+/// Names in files: the number of runs that it ended, their length (S over that number), and the interval of
+/// that length.
 struct CauseText {
   Cause cause;
   bool is_clog;
@@ -110,14 +110,14 @@ struct Group {
   fit::MeanSpeed relative_speed;         ///< v_g/v_t, mean of the runs
   fit::MeanSpeed relative_speed_pooled;  ///< v_g/v_t, way over time of all runs together
   /// v_g/v_t, way over time of all runs until they ended or came to their arrest, however short their way
-  /// was. Runs that went far enough to have a speed of their own are the faster ones where droplets clog.
+  /// was. Where droplets clog, only the faster runs go far enough to have an individual mean speed.
   fit::MeanSpeed relative_speed_all;
   fit::Migration migration;
   std::vector<std::uint32_t> seeds;  ///< of the runs behind the clogging length
   int num_passed = 0;                ///< came to the exit of their device
   int num_flowing = 0;               ///< ended by max-time
-  /// Of these, those whose droplet had rested for longer than it falls ten diameters without obstacles, and
-  /// the shortest of these rests [t0].
+  /// Of num_flowing: runs whose droplet had rested for longer than a free droplet takes to fall ten
+  /// diameters; and the shortest such rest [t0].
   int num_resting = 0;
   double shortest_rest = std::numeric_limits<double>::infinity();
   int num_interrupted = 0;
@@ -131,8 +131,8 @@ struct Group {
 };
 
 /// Groups rows by everything but the seed, in the order of their parameters.
-/// @param from_distance  clogging lengths count from here on [sigma]: runs that ended before are left out of
-/// them, the others are as long as they went beyond (left truncation)
+/// @param from_distance  distances are measured from here [sigma]: runs that ended earlier are excluded, the
+/// others count with the distance beyond it (left truncation)
 /// @param dwell  a droplet that has stood for longer than this counts as clogged where it did so first [t0].
 /// One that has neither stood so long nor clogged is censored where its last dwell began, because the full
 /// length of that dwell is not known. A value of max-time or more changes nothing.
@@ -145,8 +145,8 @@ bool is_dwell_possible(const Group& group);
 
 using sweep::Value;
 using Field = std::pair<const char*, Value>;
-/// Columns that make a group: all parameters but the seed. First those of the physics, and of these first
-/// what shapes the array.
+/// Columns that make a group: all parameters but the seed. Physical parameters come first, and among
+/// them those that shape the array.
 std::span<const sweep::Column* const> group_columns();
 /// The values of a row in these columns.
 std::vector<Field> parameter_fields(const sweep::RunRow& row);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,12 +11,9 @@ namespace clog::cli {
 /// Reads circles from a text file, one a line: x, y and the diameter [sigma], or as the names in the first
 /// line say; cells are separated by commas, semicolons, tabs or blanks. A line without a diameter means
 /// obstacle-diameter. Lines starting with # are skipped, but for `# units=um droplet=200um`, which says in
-/// which units the following lengths are.
+/// which units the following lengths are; then no diameter may be missing.
 /// @throws Error naming the line
 OwnCircles read_circles(const std::string& path);
-
-/// The droplet's diameter that such a file states, if it does [m]. @throws Error
-std::optional<double> droplet_of_circles(const std::string& path);
 
 /// Writes them in the same form, with digits that read back exactly. @throws Error
 void write_obstacles(const std::string& path, std::span<const Obstacle> obstacles);

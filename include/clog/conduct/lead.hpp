@@ -41,7 +41,7 @@ struct GrownSweep {
 struct Growth {
   campaign::SeedRule* rule = nullptr;
   campaign::RoundRule* refiner = nullptr;
-  /// Makes the sweep grow by a round of the refiner. What it returns lasts as long as the sweep.
+  /// Makes the sweep grow by a round of the refiner. The returned pointers stay valid until the sweep ends.
   std::function<GrownSweep(const sweep::Points& round)> grow;
 
   bool is_possible() const { return rule != nullptr || refiner != nullptr; }

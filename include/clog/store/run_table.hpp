@@ -34,8 +34,8 @@ struct CircleFile {
   OwnCircles circles;
 };
 
-/// Makes the sweep's file, or replaces it: the path leads to a whole table at every moment, the old or the
-/// new, so readers may come when they like. It is on the disk when this returns. @throws Error, and the old
+/// Makes the sweep's file, or replaces it: at every moment the path names a complete table, the old or the
+/// new, so it can be read at any time. It is on the disk when this returns. @throws Error, and the old
 /// file stays
 void publish_sweep(const Place& place, std::span<const sweep::RunRow> rows, const Provenance& provenance,
                    std::span<const CircleFile> circles = {});
@@ -54,7 +54,7 @@ enum class Checked {
 struct SweepFile {
   std::vector<sweep::RunRow> rows;
   Provenance provenance;
-  std::vector<CircleFile> circles;  ///< that rows are among
+  std::vector<CircleFile> circles;  ///< that the rows refer to
   Checked checked = Checked::everything;
 };
 /// Files of format version 2 and later: columns that they do not have get the values for "not known".
@@ -63,7 +63,7 @@ SweepFile read_sweep(const std::string& path);
 /// A warning for readers of this file; empty if all of it was checked.
 std::string caution(const std::string& path, const SweepFile& file);
 
-/// A file that may be damaged: the rows and attributes that are as they were written, and what is not.
+/// A file that may be damaged: the intact rows and attributes, and a list of what is damaged.
 struct Examination {
   SweepFile whole;
   std::vector<std::string> damage;  ///< a sentence each

@@ -15,8 +15,8 @@ std::vector<std::string> unproven_parameters(const RunRow& row);
 std::string unproven_parameters(const Plan& plan);
 
 /// The way after which a droplet may meet the same obstacles again [sigma]: the length of an array that
-/// stands for a random one. Across the flow nothing comes again before. Infinite for lattices, which repeat
-/// by nature, and where there is no array.
+/// stands for a random one. Periodicity across the flow does not shorten it. Infinite for lattices, which
+/// repeat by nature, and where there is no array.
 double repetition_length(const RunRow& row);
 /// Has the droplet come so far?
 bool has_met_repetition(const RunRow& row);
@@ -27,19 +27,18 @@ std::string possible_repetition(const Plan& plan);
 /// diameter; none for others.
 std::vector<std::string> limits_of_circles(const Plan& plan);
 
-/// What a plan's results will be worth less for, as far as that is known beforehand: the lines above that say
-/// something.
+/// Known limitations of a plan's results: the lines of the functions above that are not empty.
 std::vector<std::string> limits_of_results(const Plan& plan);
 
-/// The corners of a polygon that hangs over obstacles may hold as much of its weight, and no more, before a
-/// clog is theirs rather than the obstacles'.
+/// Largest share of the droplet's weight that the polygon's corners may carry; beyond it, a clog is
+/// attributed to the corners, not to the obstacles.
 inline constexpr double tolerated_mesh_hold = 0.01;
-/// Is it a clog that may be theirs? Where it is not known what they can hold, every droplet that hangs over
-/// obstacles is.
+/// May the corners be what holds this clog? If mesh_hold is unknown: true for every droplet that hangs over
+/// obstacles.
 bool may_hang_on_mesh(const RunRow& row);
 
-/// Distance between the centres of two obstacles as near to each other as they may be, the mean for a mixture
-/// [sigma]. For user-supplied circles, which may have any diameters and one gap narrower than all others:
+/// Smallest possible centre-to-centre distance of two obstacles; the mean of these if diameters vary [sigma].
+/// For user-supplied circles, which may have any diameters and one gap narrower than all others:
 /// 1/sqrt(circles per area). The void in which a droplet is released is about as large.
 double obstacle_spacing(const RunRow& row);
 

@@ -23,10 +23,11 @@ std::uint64_t check_sum_of(const std::vector<Obstacle>& circles) {
 
 }  // namespace
 
-OwnCircles::OwnCircles(std::vector<Obstacle> circles, std::string source)
+OwnCircles::OwnCircles(std::vector<Obstacle> circles, std::string source, std::optional<double> droplet)
     : check_sum_(check_sum_of(circles)),
       circles_(std::make_shared<const std::vector<Obstacle>>(std::move(circles))),
-      source_(std::move(source)) {}
+      source_(std::move(source)),
+      droplet_(droplet) {}
 
 OwnCircles OwnCircles::from_check_sum(std::string_view text) {
   std::uint64_t sum = 0;

@@ -24,13 +24,16 @@ class OwnCircles {
  public:
   /// @param circles  a radius of 0 stands for half of obstacle-diameter
   /// @param source   where they are from, for messages
-  explicit OwnCircles(std::vector<Obstacle> circles, std::string source = "");
-  /// Circles of which no more is known. @throws Error if it is not one that check_sum() has written
+  /// @param droplet  the diameter for which they were drawn, if the source says it [m]
+  explicit OwnCircles(std::vector<Obstacle> circles, std::string source = "",
+                      std::optional<double> droplet = {});
+  /// Circles known only by their checksum. @throws Error  if the text does not have the form of check_sum()
   static OwnCircles from_check_sum(std::string_view text);
 
   /// CRC-64/XZ of the circles' coordinates and radii, in their order: 16 hexadecimal digits.
   std::string check_sum() const;
   const std::string& source() const { return source_; }
+  std::optional<double> droplet() const { return droplet_; }
   bool are_known() const { return circles_ != nullptr; }
   /// @throws Error if only their check sum is known
   const std::vector<Obstacle>& circles() const;
@@ -44,6 +47,7 @@ class OwnCircles {
   std::uint64_t check_sum_;
   std::shared_ptr<const std::vector<Obstacle>> circles_;
   std::string source_;
+  std::optional<double> droplet_;
 
   explicit OwnCircles(std::uint64_t check_sum) : check_sum_(check_sum) {}
 };

@@ -5,7 +5,7 @@
 namespace clog {
 
 /// Gamma from which on a droplet sags by less than a hundredth of its diameter under its own weight: a larger
-/// one changes where it clogs by less than a hundredth of a diameter, and costs more.
+/// one changes where it clogs by some hundredths of a diameter, and costs more.
 inline constexpr double nearly_rigid_tension = 30;
 
 /// N_v where none is given. The corners of a polygon that hangs over an obstacle can hold up to x^2/16 of the
@@ -21,11 +21,11 @@ double half_vertex_diameter(const DpParameters& dp);
 
 /// K_l where none is given [g rho sigma]: a fraction of Gamma for springs to the rest length; 1 for those to
 /// the mean length; 0.003/V_t for those along the interface, which even out vertices at a rate of (2 pi)^2
-/// K_l V_t/M = 0.15/t0. Stiffer ones have been seen to flutter where the drag is weak, as they have no
-/// energy.
+/// K_l V_t/M = 0.15/t0. Stiffer springs of the last kind were seen to flutter at weak drag, since their
+/// force derives from no potential energy.
 double automatic_perimeter_stiffness(const RunParameters& run);
 
-/// Greatest pressure difference over the interface of a droplet held by obstacles that can be expected [g rho
+/// Largest pressure difference to be expected across the interface of a droplet held by obstacles [g rho
 /// sigma]: that of its own curvature, of the sharpest bend (see Scene), and of a column of liquid one
 /// diameter tall.
 double expected_pressure(const RunParameters& run, double sharpest_bend);

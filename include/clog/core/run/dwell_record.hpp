@@ -38,8 +38,7 @@ struct Dwells {
 /// ends.
 class DwellRecord {
  public:
-  /// A droplet without obstacles needs dwell_length/terminal_speed. Dwells of up to so many times that are
-  /// not kept.
+  /// Dwells of up to this many times dwell_length/terminal_speed, which a free droplet needs, are not kept.
   static constexpr double shortest = 10;
 
   /// @param dwell_length [sigma]; @param terminal_speed [sqrt(sigma g)]
