@@ -155,9 +155,13 @@ class Devices(Analysis):
 
     def test_a_sweep_of_both_models_has_panels_for_both(self):
         self.write("posts.csv", "x,y,diameter\n" + csv())
-        self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=18", "model=dp,sp", "max-time=20", "seeds=1", "--output", "s.h5")
+        self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=18", "model=dp,sp", "wall-stiffness=1", "max-time=20", "seeds=1", "--output", "s.h5")
         figure = clogsweep.Sweep(self.folder / "s.h5", BIN).device(ways=0, map=1).figure
-        self.assertEqual([axes.get_ylabel().count("sigma") for axes in figure.axes][:2], [1, 1])
+        labels = [axes.get_ylabel() for axes in figure.axes[:2]]
+        self.assertEqual([label.split("\n")[-1] for label in labels], [r"$y/\sigma$"] * 2)
+        self.assertIn(r"\Gamma = 1", labels[0])
+        self.assertNotIn("E_w", labels[0])
+        self.assertIn("E_w", labels[1])
         self.assertIn("share of 1 droplet each", figure.axes[-1].get_ylabel())
 
     def test_the_scale_of_the_maps_is_there_whichever_panel_has_one(self):
@@ -171,8 +175,8 @@ class Devices(Analysis):
             self.assertIn("$\\sigma$ = 0.2 mm", figure.axes[2].get_xlabel())
 
     def test_no_curve_is_fitted_through_the_lengths_of_a_device_with_an_exit(self):
-        self.write("posts.csv", "x,y,diameter\n" + csv())
-        keys = ["obstacles=posts.csv", *KEYS[:-3], "line-tension=1,2,3,4", "max-time=600", "seeds=1..2"]
+        self.write("posts.csv", "x,y,diameter\n" + "".join(f"{x},{y},1.1\n" for x, y in ROW))
+        keys = ["obstacles=posts.csv", *KEYS[:-3], "line-tension=2,3,4,5", "max-time=600", "seeds=1..2"]
         for name, more in (("with", []), ("without", ["exit=0"])):
             self.succeed("clogsweep", *[key for key in keys if not (more and key.startswith("exit"))], "--output", f"{name}.h5")
             groups = clogsweep.Sweep(self.folder / f"{name}.h5", BIN).fit().known
@@ -453,6 +457,7 @@ class WrongDrawings(Analysis):
             told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "lines").stdout
             for words in ("2 outlines or lines as long as the device are taken for walls", "2 posts, device 18 x 6", "skipped: 1 LINE (lines red", "box=6 length=18"):
                 self.assertIn(words, told)
+
         def said_of(name, **drawn):
             self.dxf(**drawn)
             return self.draw("circles", "device.dxf", "--droplet", "200um", "--output", name).stdout

@@ -12,6 +12,9 @@ import numpy as np
 from support import BIN, QUICK, ROOT, ProgramTest, table
 
 sys.path.insert(0, str(ROOT / "analysis"))
+import clogsweep  # noqa: E402
+from clogsweep import style  # noqa: E402
+from clogsweep.pages import report  # noqa: E402
 from clogsweep.tools import rounded  # noqa: E402
 
 # The droplets of Cheng et al.: diameter, tilt, terminal speed; V_t and Gamma_exp as printed there, with half of their last digit, or of that of
@@ -122,7 +125,10 @@ class Units(ProgramTest):
         self.assertIn(f"> {rounded.plain(group['clogging_length_lower_mm'])}<", page)
         self.assertIn('<th scope="col">tension [mN/m]</th>', page)
         self.assertIn("<td><span>9.60</span></td>", page)
-        self.assertIn("interfacial tension [mN/m]", page)
+        groups, (_, axes) = clogsweep.Sweep(self.folder / "s.h5", BIN).fit().known, style.subplots(figsize=(4, 3))
+        report.draw_causes(axes, groups, "", groups.members)
+        self.assertEqual([label.get_text() for label in axes.get_xticklabels()], ["0.1736\n9.60"])
+        self.assertIn("interfacial tension [mN/m]", axes.get_xlabel())
         fit = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)
         self.assertAlmostEqual(fit["groups"][0]["tension_mN_per_m"], 9.6, delta=0.01)
         self.assertEqual(fit["units"]["tension_mN_per_m"], "mN/m")

@@ -146,7 +146,7 @@ class Groups:
 
     def label_of(self, member: Group) -> str:
         """The values that distinguish a group from the others."""
-        return ", ".join(self.said(name, member[name]) for name in self.distinguishing())
+        return ", ".join(self.said(name, member[name]) for name in self.distinguishing() if member[name] is not None)
 
     def axis_label(self) -> str:
         if self.abscissa in AXES:

@@ -45,7 +45,7 @@ struct Curve {
 Curve curve_of_scales(std::span<const CurvePoint> points, const CurveScales& scales,
                       std::span<const CurvePlace> places);
 
-/// The curve, averaged over the scales. A priori, all amplitudes from a factor of 1.3 to one of 3000 are
+/// The curve, averaged over the scales. Beforehand, all amplitudes from a factor of 1.3 to one of 3000 are
 /// equally likely, and correlation lengths from a tenth of the range of places to three times that.
 /// @throws std::invalid_argument as curve_of_scales()
 Curve fit_curve(std::span<const CurvePoint> points, std::span<const CurvePlace> places);
