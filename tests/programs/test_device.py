@@ -161,7 +161,7 @@ class Devices(Analysis):
         self.assertEqual([label.split("\n")[-1] for label in labels], [r"$y/\sigma$"] * 2)
         self.assertIn(r"\Gamma = 1", labels[0])
         self.assertNotIn("E_w", labels[0])
-        self.assertIn("E_w", labels[1])
+        self.assertNotIn(r"\Gamma =", labels[1])
         self.assertIn("share of 1 droplet each", figure.axes[-1].get_ylabel())
 
     def test_the_scale_of_the_maps_is_there_whichever_panel_has_one(self):
