@@ -76,7 +76,8 @@ def lengths_by_friction(shop: Workshop) -> Plate:
                 draw_lengths(axes, [group["line_tension"] * shift for group in curve], curve, index,
                              f"{said(columns['friction'], friction)}, $N_v = {vertices}$", line)
                 data += numbers(curve, f"friction {friction:g}, gap {gap:g}", **of_each(curve, "friction", *HOLDS))
-        finish(axes, places, members, f"{interface_of(groups[0]['preset'])}\n{said(columns['obstacle_gap'], gap)}")
+        of_gap = f"\n{said(columns['obstacle_gap'], gap)}" if len(gaps) > 1 else ""  # one gap stands above all panels
+        finish(axes, places, members, interface_of(groups[0]["preset"]) + of_gap)
         axes.set_xlabel(AXES["line_tension"])
     panels[0][0].set_ylabel(AXES["length"])
     explain(drawing, shop, config, groups)
