@@ -182,7 +182,9 @@ def doubts_of(group: Group, sentences: dict[str, str]) -> str:
 def table_cell(text: str) -> str:
     """In HTML. What is in brackets moves to lines of its own in a narrow table."""
     number, space, rest = text.partition(" (")
-    return f"<td><span>{html.escape(number)}</span>{f'<small>{html.escape(space + rest)}</small>' if rest else ''}</td>"
+    if not rest:
+        return f"<td>{html.escape(text)}</td>"
+    return f"<td><span>{html.escape(number)}</span><small>{html.escape(space + rest)}</small></td>"
 
 
 def table(titles: Sequence[str], lines: Sequence[Sequence[str]], doubts: Sequence[str]) -> str:
