@@ -174,7 +174,7 @@ class Figures(Analysis):
         self.assertNotRegex(page, r"(src|href)=\"(?!data:|#)", "nothing from elsewhere")
         fit = json.loads(self.succeed("clogfit", sweep, "--format", "json").stdout)
         for group in fit["groups"]:
-            self.assertIn(f"<td>{report.speed(group)}</td>", page)
+            self.assertIn(report.table_cell(report.speed(group)), page)
         for heading in ("How far droplets get", "What becomes of them"):
             self.assertIn(heading, page)
         self.assertIn("few clogs", page)
@@ -367,7 +367,7 @@ class Pictures(Analysis):
         groups.members[0]["doubts"] = "censored_by_time"
         places, notes = hollow_places()
         self.assertEqual(places, [30])
-        for reason in ("outside the range that was tested for soundness", "shorter than one obstacle spacing"):
+        for reason in ("outside the range that was tested for soundness", "lengths below one obstacle spacing"):
             self.assertIn(reason, " ".join(notes.partition("hollow: ")[2].split()))
         self.assertNotIn("incomplete", notes)
         groups.members[0]["doubts"] = "few_clogs incomplete"

@@ -65,7 +65,7 @@ class Module(Analysis):
         axes, = fit.speeds().figure.axes
         self.assertEqual([bars.lines[0].get_xdata().tolist() for bars in axes.containers], [[0.1, 0.7]])  # of all runs
         self.draw("report", "s.h5", "-o", "r.html", "--examples", 0, "--programs", BIN)
-        cells = re.findall(r"<td>([^<]* \(mean of \d of \d runs: [^<]*\))</td>", (self.folder / "r.html").read_text())
+        cells = re.findall(r"<td><span>[^<]*</span><small>( \(mean of \d of \d runs: [^<]*\))</small></td>", (self.folder / "r.html").read_text())
         self.assertEqual([re.search(r"\(.* runs", cell)[0] for cell in cells], ["(mean of 3 of 4 runs", "(mean of 2 of 4 runs"])
         self.assertTrue(cells[1].endswith(": -)"))
 

@@ -122,8 +122,8 @@ def speed(group: Group) -> str:
     if group.get(lengths.OF_ALL_RUNS) is None:
         return f"{mean} ({runs})" if mean else "-"
     of_all = rounded.with_error(group[lengths.OF_ALL_RUNS], group[f"{lengths.OF_ALL_RUNS}_error"])
-    return f"{of_all} (mean of {group['relative_speed_runs']} of {rounded.counted(group['runs'], 'run')}: {mean})" \
-        if mean and group["relative_speed_runs"] < group["runs"] else f"{of_all} ({rounded.counted(group['runs'], 'run')})"
+    return f"{of_all} (mean of {group['relative_speed_runs']} of {rounded.counted(group['runs'], 'run')}: {mean or '-'})" \
+        if group["relative_speed_runs"] < group["runs"] else f"{of_all} ({runs})"
 
 
 def laboratory_columns(groups: Groups) -> dict[str, str]:
