@@ -7,7 +7,6 @@
 #include <iterator>
 #include <limits>
 #include <map>
-#include <ranges>
 #include <set>
 #include <string_view>
 #include <tuple>
@@ -201,8 +200,10 @@ std::vector<std::string> missing_diameters(const Plan& plan) {
           "obstacles={} gives no diameter for {}; obstacle-diameter={} is used for {}", own.source(),
           counted(number, "circle"), shortest(run.obstacles.diameter), number == 1 ? "it" : "them");
   }
-  const auto all = std::views::values(lines);
-  return {all.begin(), all.end()};
+  std::vector<std::string> all;
+  all.reserve(lines.size());
+  for (auto& [check_sum, line] : lines) all.push_back(std::move(line));
+  return all;
 }
 
 std::vector<std::string> limits_of_circles(const Plan& plan) {
