@@ -98,8 +98,8 @@ std::string column_notes(const std::vector<Group>& groups) {
       std::ranges::any_of(groups, [](const Group& group) { return group.num_passed > 0; }))
     text +=
         "passed: droplets that reached the exit. They count as not clogged on their way, so lambda may "
-        "exceed the "
-        "device's length\n";
+        "exceed "
+        "the device's length\n";
   return text;
 }
 

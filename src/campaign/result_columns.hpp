@@ -15,6 +15,7 @@ struct ResultColumn {
 };
 
 /// The columns of the scene's results. @param groups  not empty
+/// @param has_laboratory  columns in its units follow, in which speeds are those of all runs
 std::vector<ResultColumn> columns_of_findings(const std::vector<Group>& groups, double confidence,
                                               bool has_laboratory);
 

@@ -144,9 +144,8 @@ std::string advice_of(const Scales& scales) {
   if (!(scales.line_tension > nearly_rigid_tension)) return "";
   return fmt::format(
       "\nThis droplet is nearly rigid. The soft disk, model=sp wall-stiffness={}, clogs in the same places "
-      "and "
-      "costs a tenth.\nSo does the polygon with line-tension={}, which costs less than this one, but was not "
-      "tested for soundness.\n",
+      "and costs a tenth.\nSo does the polygon with line-tension={}, which costs less than this one, but was "
+      "not tested for soundness.\n",
       console::plain(scales.wall_stiffness), console::plain(nearly_rigid_tension));
 }
 

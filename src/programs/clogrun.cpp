@@ -72,7 +72,7 @@ cli::CommandLine parse(int argc, char** argv) {
     throw Error("--seed and --seeds contradict each other; give one of them");
   if (line.has("seed")) line.settings().set("seeds", line.get("seed"));
   use_laboratory(line);
-  refuse_other_droplets(line, line.settings());
+  refuse_other_droplets(line);
   return line;
 }
 

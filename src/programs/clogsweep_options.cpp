@@ -160,7 +160,7 @@ void parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
   refuse_other_format(line);
   use_laboratory(line);
   add_plan_options(line);
-  refuse_other_droplets(line, line.settings());
+  refuse_other_droplets(line);
 }
 
 conduct::LeadOptions lead_options(const cli::CommandLine& line) {

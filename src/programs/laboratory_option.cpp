@@ -14,11 +14,11 @@ void use_laboratory(cli::CommandLine& line) {
   if (line.has("lab")) laboratory::set_droplet(laboratory::read_laboratory(line.get("lab")), line.settings());
 }
 
-void refuse_other_droplets(const cli::CommandLine& line, const sweep::Settings& settings) {
+void refuse_other_droplets(const cli::CommandLine& line) {
   if (!line.has("lab")) return;
   constexpr double rounding = 0.005, micro = 1e-6;
   const double diameter = laboratory::read_laboratory(line.get("lab")).experiment.diameter;
-  for (const auto& [file, circles] : settings.circle_files())
+  for (const auto& [file, circles] : line.settings().circle_files())
     if (circles.droplet() && std::abs(*circles.droplet() / diameter - 1) > rounding)
       throw Error(fmt::format("{} has a droplet of {:.4g} um, {} one of {:.4g} um; correct one of them",
                               line.get("lab"), diameter / micro, file, *circles.droplet() / micro));

@@ -8,6 +8,6 @@ namespace clog::programs {
 void use_laboratory(cli::CommandLine& line);
 
 /// @throws Error  if there is a file of --lab, and circles are drawn for a droplet of another diameter
-void refuse_other_droplets(const cli::CommandLine& line, const sweep::Settings& settings);
+void refuse_other_droplets(const cli::CommandLine& line);
 
 }  // namespace clog::programs

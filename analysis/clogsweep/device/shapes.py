@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import functools
 import re
-from collections.abc import Iterable
 
 import numpy as np
 
@@ -118,8 +117,10 @@ def refuse_unlikely(device: Device, unit: str, metres: float, remedy: str, is_pi
     @throws UserError  if the device is too large or too small for such droplets"""
     if is_likely(device.length, device.width):
         return
-    in_others: Iterable[tuple[str, float, float]] = [] if is_picture else ((name, device.length * METRES[name] / metres, device.width * METRES[name] / metres) for name in ("um", "mm"))
-    better = "".join(f", in {name} it would be {length:.2g} by {width:.2g}" for name, length, width in in_others if is_likely(length, width))
+    better = ""
+    for name in () if is_picture else ("um", "mm"):
+        length, width = (size * METRES[name] / metres for size in (device.length, device.width))
+        better += f", in {name} it would be {length:.2g} by {width:.2g}" if is_likely(length, width) else ""
     raise UserError(f"the device is {device.length:.2g} by {device.width:.2g} droplet diameters (the drawing's unit is {unit}{better}); {remedy}, or check --droplet")
 
 
@@ -189,13 +190,11 @@ def placed(drawing: Drawing, circles: Numbers, others: list[Numbers], frame: tup
     others = [outline @ turn.T for outline in others]
     edges = surroundings(circles, others) if frame is None else np.array(frame).reshape(2, 2) @ turn.T
     lines = [(kind, line @ turn.T) for kind, line in drawing.lines]
-    is_inside = [frame is None or bool((line >= edges.min(axis=0) - NEAR).all() and (line <= edges.max(axis=0) + NEAR).all()) for _, line in lines]
-    candidates = [*others, *(line for (_, line), inside in zip(lines, is_inside) if inside)]
-    below, above = walls.among(circles, others, candidates[len(others):], float(np.ptp(edges[:, 0])))
-    taken = {id(candidates[index]) for index in [*below, *above]}
-    sides = [candidates[index] for index in [*below[:1], *above[:1]]]
-    lines = [(kind, line) for kind, line in lines if id(line) not in taken]
-    others = [outline for outline in others if id(outline) not in taken]
+    reaching = [line for _, line in lines if frame is None or is_within(line, edges)]
+    below, above = walls.among(circles, others, reaching, float(np.ptp(edges[:, 0])))
+    sides = [*below[:1], *above[:1]]
+    lines = [(kind, line) for kind, line in lines if not walls.is_one_of(line, [*below, *above])]
+    others = [outline for outline in others if not walls.is_one_of(outline, [*below, *above])]
     if frame is None:
         inside = surroundings(circles, others)
         ends = [(x, inside[0, 1]) for side in sides for x in side[:, 0]]
@@ -207,6 +206,11 @@ def placed(drawing: Drawing, circles: Numbers, others: list[Numbers], frame: tup
     circles[:, :2] -= low
     return Device(circles=circles, others=[outline - low for outline in others], length=float(length), width=float(width), has_frame=frame is not None,
                   droplet_metres=droplet, walls=[side - low for side in sides], lines=[(kind, line - low) for kind, line in lines])
+
+
+def is_within(line: Numbers, edges: Numbers) -> bool:
+    """A line beside the drawn edge, such as that of a dimension, is no wall."""
+    return bool((line >= edges.min(axis=0) - NEAR).all() and (line <= edges.max(axis=0) + NEAR).all())
 
 
 def surroundings(circles: Numbers, others: list[Numbers]) -> Numbers:

@@ -11,18 +11,20 @@ SLENDER = 3  # length over thickness, at least: a column of square posts has no 
 FLAT = 0.05  # by which a wall's outline may be off a rectangle [sigma]
 
 
-def among(circles: Numbers, outlines: list[Numbers], lines: list[Numbers], length: float) -> tuple[list[int], list[int]]:
-    """Indices among outlines and lines, in this order, of the lower and of the upper walls, the nearest to the posts first, all in
-    droplet diameters. None if there would be no other post."""
-    candidates = [*outlines, *lines]
-    found = [index for index, candidate in enumerate(candidates) if is_wall(candidate, length)]
-    middles = [outline.mean(axis=0)[1] for index, outline in enumerate(outlines) if index not in found]
-    posts = np.array([*circles[:, 1], *middles])
+def among(circles: Numbers, outlines: list[Numbers], lines: list[Numbers], length: float) -> tuple[list[Numbers], list[Numbers]]:
+    """The lower and the upper walls among outlines and lines, the nearest to the posts first, all in droplet diameters. None if there
+    would be no other post."""
+    flat = [candidate for candidate in [*outlines, *lines] if is_wall(candidate, length)]
+    posts = np.array([*circles[:, 1], *(outline.mean(axis=0)[1] for outline in outlines if not is_one_of(outline, flat))])
     if len(posts) == 0:
         return [], []
-    lower = [index for index in found if (posts >= candidates[index][:, 1].max()).all()]
-    upper = [index for index in found if (posts <= candidates[index][:, 1].min()).all()]
-    return sorted(lower, key=lambda index: -candidates[index][:, 1].max()), sorted(upper, key=lambda index: candidates[index][:, 1].min())
+    lower = [wall for wall in flat if (posts >= wall[:, 1].max()).all()]
+    upper = [wall for wall in flat if (posts <= wall[:, 1].min()).all()]
+    return sorted(lower, key=lambda wall: -wall[:, 1].max()), sorted(upper, key=lambda wall: wall[:, 1].min())
+
+
+def is_one_of(outline: Numbers, others: list[Numbers]) -> bool:
+    return any(outline is other for other in others)
 
 
 def is_wall(outline: Numbers, length: float) -> bool:

@@ -141,12 +141,16 @@ class Groups:
         return self._circle_files.get(value, value) if name == "obstacles" else value
 
     def distinguishing(self) -> list[str]:
-        """Names of the parameters that tell the groups apart."""
-        return [name for name in [self.abscissa, *self.curve_parameters()] if self.varies(name)]
+        """Names of the parameters that tell the groups apart. What only one model has, the model tells."""
+        names = [name for name in [self.abscissa, *self.curve_parameters()] if name != "model" and self.varies(name)]
+        if not self.varies("model"):
+            return names
+        return ["model", *(name for name in names if len(self.values(name) - {None}) > 1)]
 
     def label_of(self, member: Group) -> str:
         """The values that distinguish a group from the others."""
-        return ", ".join(self.said(name, member[name]) for name in self.distinguishing() if member[name] is not None)
+        is_lacking = {name for name in self.distinguishing() if member[name] is None and self.varies("model")}
+        return ", ".join(self.said(name, member[name]) for name in self.distinguishing() if name not in is_lacking)
 
     def axis_label(self) -> str:
         if self.abscissa in AXES:
