@@ -20,9 +20,9 @@ const std::map<std::string, std::map<std::string, double>> known_units = {
     {"angle", {{"deg", std::numbers::pi / 180}, {"°", std::numbers::pi / 180}, {"rad", 1}}}};
 
 /// The unit with u for the micro sign, of which there are two.
-std::string with_plain_micro(std::string unit) {
+std::string with_plain_micro(const std::string& unit) {
   for (const std::string_view sign : {"µ", "μ"})
-    if (const std::size_t at = unit.find(sign); at != std::string::npos) unit.replace(at, sign.size(), "u");
+    if (unit.starts_with(sign)) return std::string("u").append(unit, sign.size());
   return unit;
 }
 
