@@ -56,6 +56,19 @@ def falls(curve: Sequence[Group], is_less: Callable[[Group, Group], bool]) -> bo
     return rises(curve[::-1], is_less)
 
 
+def trend(is_as_published: bool, is_opposite: bool) -> str:
+    """The verdict on one curve: it has clear steps as published, opposite ones, or both."""
+    return (IN_KIND if is_opposite else AGREES) if is_as_published else DOES_NOT if is_opposite else NOT_KNOWN
+
+
+def fall_with_stiffness(found: Mapping[float, Sequence[Group]], is_less: Callable[[Group, Group], bool], said: Callable[[Group], str]) -> Finding:
+    """Do curves of soft disks, by their gaps, fall with E_w?"""
+    ordered = {gap: sorted(curve, key=lambda group: group["wall_stiffness"]) for gap, curve in found.items()}
+    return Finding(overall([trend(falls(curve, is_less), rises(curve, is_less)) for curve in ordered.values()]),
+                   "; ".join(f"gap {gap:g}: {said(curve[0])} at {curve[0]['wall_stiffness']:g}, {said(curve[-1])} at {curve[-1]['wall_stiffness']:g}"
+                             for gap, curve in ordered.items()))
+
+
 def overall(verdicts: Sequence[str]) -> str:
     """One verdict for several curves: theirs if all are alike, `qualitatively` if only some of those known agree."""
     known = set(verdicts) - {NOT_KNOWN}

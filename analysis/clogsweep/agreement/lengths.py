@@ -10,7 +10,7 @@ from ..paper.arrays import sags
 from ..paper.dilute import PUBLISHED, Family
 from ..paper.workshop import Workshop
 from ..tools.hints import Group
-from .evidence import bounds, curves, falls, fisher_p_value, grow_with_gap, length_of, overall, rises, shorter
+from .evidence import bounds, curves, fall_with_stiffness, falls, fisher_p_value, grow_with_gap, length_of, overall, shorter, trend
 from .statements import AGREES, DOES_NOT, FITTED, IN_KIND, NOT_KNOWN, Finding, statement, statement_of_family, statement_of_walls
 
 
@@ -100,8 +100,7 @@ def grows_with_gap(groups: Iterable[Group], abscissa: str) -> Finding:
             words.append(f"{length_of(narrow)} and {length_of(wide)} at {place:g}")
         longer += shorter(narrow, wide)
         less += shorter(wide, narrow)
-    verdict = AGREES if longer and not less else DOES_NOT if less and not longer else IN_KIND if longer else NOT_KNOWN
-    return Finding(verdict, "; ".join(words) or "no clear difference between the narrowest and the widest gap")
+    return Finding(trend(longer > 0, less > 0), "; ".join(words) or "no clear difference between the narrowest and the widest gap")
 
 
 @statement_of_walls("4.2, figure 6c", "λ grows with the gap", in_kind="at some line tensions it shrinks",
@@ -172,13 +171,7 @@ def is_exponential(shop: Workshop) -> Finding:
 
 @statement("4.2, figure 7a", "λ of soft disks falls monotonically with E_w", "7a")
 def disks_are_monotonic(shop: Workshop) -> Finding:
-    verdicts, words = [], []
-    for gap, curve in curves(shop.sweep("clogging-sp"), "obstacle_gap").items():
-        curve = sorted(curve, key=lambda group: group["wall_stiffness"])
-        down, up = falls(curve, shorter), rises(curve, shorter)
-        verdicts.append(AGREES if down and not up else IN_KIND if down else DOES_NOT if up else NOT_KNOWN)
-        words.append(f"gap {gap:g}: {length_of(curve[0])} at {curve[0]['wall_stiffness']:g}, {length_of(curve[-1])} at {curve[-1]['wall_stiffness']:g}")
-    return Finding(overall(verdicts), "; ".join(words))
+    return fall_with_stiffness(curves(shop.sweep("clogging-sp"), "obstacle_gap"), shorter, length_of)
 
 
 @statement("4.2, figure 7a", "λ of soft disks grows with the gap", "7a", not_known="too few clogs")

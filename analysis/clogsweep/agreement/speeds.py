@@ -6,7 +6,7 @@ from typing import Any
 from ..paper.arrays import sags
 from ..paper.workshop import Workshop
 from ..tools.hints import Group
-from .evidence import by_tolerance, curves, falls, overall, rises, slower, speed_of
+from .evidence import by_tolerance, curves, fall_with_stiffness, falls, overall, rises, slower, speed_of, trend
 from .statements import AGREES, DOES_NOT, IN_KIND, NOT_KNOWN, Finding, statement
 
 
@@ -19,8 +19,7 @@ def speeds_rise(shop: Workshop, config: str, parameter: str, name: str) -> Findi
     """Does the mean speed rise monotonically with Gamma?"""
     verdicts, words = [], []
     for value, curve in speed_curves(shop, config, parameter, "line_tension").items():
-        up, down = rises(curve, slower), falls(curve, slower)
-        verdicts.append(AGREES if up and not down else IN_KIND if up else DOES_NOT if down else NOT_KNOWN)
+        verdicts.append(trend(rises(curve, slower), falls(curve, slower)))
         top = max(curve, key=lambda group: group["relative_speed"])
         words.append(f"{name} {value:g}: " + ", ".join(f"{speed_of(group)} at {group['line_tension']:g}" for group in (curve[0], top, curve[-1])))
     return Finding(overall(verdicts), "; ".join(words))
@@ -40,7 +39,7 @@ def plateau(shop: Workshop, config: str, parameter: str) -> list[Group]:
 @statement("4.3, figure 8a, b", "at large Γ the speed reaches a plateau set by the gap", "8a")
 def plateau_by_gap(shop: Workshop) -> Finding:
     stiff = plateau(shop, "speed", "obstacle_gap")
-    return Finding(AGREES if slower(stiff[0], stiff[-1]) else DOES_NOT if slower(stiff[-1], stiff[0]) else NOT_KNOWN,
+    return Finding(trend(slower(stiff[0], stiff[-1]), slower(stiff[-1], stiff[0])),
                    ", ".join(f"{speed_of(group)} in gaps of {group['obstacle_gap']:g}" for group in stiff))
 
 
@@ -55,8 +54,7 @@ def plateau_by_diameter(shop: Workshop) -> Finding:
            not_known="the errors are as large as the difference")
 def soft_by_diameter(shop: Workshop) -> Finding:
     soft = [curve[0] for curve in speed_curves(shop, "speed-diameter", "obstacle_diameter", "line_tension").values()]
-    verdict = AGREES if slower(soft[0], soft[-1]) else DOES_NOT if slower(soft[-1], soft[0]) else NOT_KNOWN
-    return Finding(verdict, ", ".join(f"{speed_of(group)} of {group['obstacle_diameter']:g}" for group in soft))
+    return Finding(trend(slower(soft[0], soft[-1]), slower(soft[-1], soft[0])), ", ".join(f"{speed_of(group)} of {group['obstacle_diameter']:g}" for group in soft))
 
 
 @statement("4.3, text on figure 8a", "the speed is nearly constant at small Ca and falls at large Ca", "8ca",
@@ -73,12 +71,7 @@ def speed_by_capillary_number(shop: Workshop) -> Finding:
 
 @statement("4.3, figure 9a", "the speed of soft disks falls with E_w", "9a")
 def disks_slow_down(shop: Workshop) -> Finding:
-    verdicts, words = [], []
-    for gap, curve in speed_curves(shop, "speed-sp", "obstacle_gap", "wall_stiffness").items():
-        down, up = falls(curve, slower), rises(curve, slower)
-        verdicts.append(AGREES if down and not up else IN_KIND if down else DOES_NOT if up else NOT_KNOWN)
-        words.append(f"gap {gap:g}: {speed_of(curve[0])} at {curve[0]['wall_stiffness']:g}, {speed_of(curve[-1])} at {curve[-1]['wall_stiffness']:g}")
-    return Finding(overall(verdicts), "; ".join(words))
+    return fall_with_stiffness(speed_curves(shop, "speed-sp", "obstacle_gap", "wall_stiffness"), slower, speed_of)
 
 
 @statement("4.3, figure 9a", "the speed of soft disks tends to v_t as E_w tends to 0", "9a",

@@ -27,28 +27,6 @@ from . import command_line
 TURNS = {"right": 0, "down": 1, "left": 2, "up": 3}
 
 
-def tolerance(word: str) -> float:
-    """Type of an option: a part of the radius."""
-    try:
-        value = float(word)
-    except ValueError:
-        value = -1.0
-    if not 0 < value < 0.5:
-        raise argparse.ArgumentTypeError(f"invalid value: {word} (must be a part of the radius, above 0 and below 0.5)")
-    return value
-
-
-def corner(word: str) -> float:
-    """Type of an option: a radius in droplet diameters."""
-    try:
-        value = float(word)
-    except ValueError:
-        value = -1.0
-    if not 0.01 <= value <= 1:
-        raise argparse.ArgumentTypeError(f"invalid value: {word} (must be a radius in droplet diameters, 0.01 to 1)")
-    return value
-
-
 def options() -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
     parser.add_argument("drawing", type=pathlib.Path, help=".dxf, .gds, .svg, .png, .tif, .bmp or .jpg")
@@ -60,11 +38,11 @@ def options() -> argparse.Namespace:
     parser.add_argument("--layer", help="of a DXF or GDSII file; without it all count")
     parser.add_argument("--posts", choices=("dark", "bright"), default="dark", help="of a picture (dark)")
     parser.add_argument("--flow", choices=TURNS, default="right", help="where it goes in the drawing (right)")
-    parser.add_argument("--tolerance", type=tolerance, default=0.04, help="largest deviation of a post from a circle, as a part of its radius (0.04)")
+    parser.add_argument("--tolerance", type=command_line.between(0.001, 0.5, "a part of the radius"), default=0.04, help="largest deviation of a post from a circle, as a part of its radius (0.04)")
     others = parser.add_mutually_exclusive_group()
     others.add_argument("--as-rows", action="store_true", help="replace other posts by rows of circles along their outlines")
     others.add_argument("--as-circles", action="store_true", help="replace other posts by circles of the same area")
-    parser.add_argument("--corner", type=corner, default=0.05, help="with --as-rows: radius of rounded corners, in droplet diameters (0.05)")
+    parser.add_argument("--corner", type=command_line.between(0.01, 1, "a radius in droplet diameters"), default=0.05, help="with --as-rows: radius of rounded corners, in droplet diameters (0.05)")
     return parser.parse_args()
 
 

@@ -3,6 +3,7 @@
 import argparse
 import contextlib
 import logging
+import math
 import os
 import pathlib
 import sys
@@ -48,6 +49,20 @@ def whole(least: int) -> Callable[[str], int]:
         if not word.lstrip("+-").isdecimal() or int(word) < least:
             raise argparse.ArgumentTypeError(f"invalid value: {word} (must be a whole number, {least} or more)")
         return int(word)
+
+    return number
+
+
+def between(low: float, high: float, meaning: str) -> Callable[[str], float]:
+    """Type of an option: a number from low to high."""
+    def number(word: str) -> float:
+        try:
+            value = float(word)
+        except ValueError:
+            value = math.nan
+        if not low <= value <= high:
+            raise argparse.ArgumentTypeError(f"invalid value: {word} (must be {meaning}, {low:g} to {high:g})")
+        return value
 
     return number
 

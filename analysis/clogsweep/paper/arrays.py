@@ -52,6 +52,15 @@ def drawing_of(quantity: str) -> Callable[[Axes, Sequence[float], Sequence[Group
     return draw_speeds
 
 
+def finish(axes: Axes, shop: Workshop, config: str, drawn: Sequence[Group], abscissa: str, quantity: str, varied: Sequence[str]) -> None:
+    """Labels of the axes, caption and notes. @param quantity  as of drawing_of(); @param varied  columns that the caption leaves out"""
+    if quantity == "length":
+        style.logarithmic_ordinate(axes)
+    style.label(axes, AXES[abscissa], AXES[quantity])
+    style.caption(axes, describe(shop.columns(config), drawn, varied))
+    style.notes(axes, length_notes(drawn, shop.confidence(config), [axes]) if quantity == "length" else SPEED_NOTES)
+
+
 def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity: str) -> Plate:
     """One curve for each value of a parameter. @param quantity  as of drawing_of()"""
     groups = shop.sweep(config)
@@ -66,55 +75,30 @@ def curves(shop: Workshop, config: str, abscissa: str, parameter: str, quantity:
         drawing_of(quantity)(axes, [group[abscissa] * shift for group in members], members, index, label)
         data += numbers(members, label)
     style.logarithmic_abscissa(axes, places)
-    if quantity == "length":
-        style.logarithmic_ordinate(axes)
-    axes.set_xlabel(AXES[abscissa])
-    axes.set_ylabel(AXES[quantity])
-    style.grid(axes)
     style.legend(axes, groups if quantity == "length" else ())
-    style.caption(axes, describe(shop.columns(config), groups, [parameter, abscissa]))
-    style.notes(axes, length_notes(groups, shop.confidence(config), [axes]) if quantity == "length" else SPEED_NOTES)
+    finish(axes, shop, config, groups, abscissa, quantity, [parameter, abscissa])
     return Plate(drawing, data)
 
 
-@figure("6c-saturated", "the same as 6c in saturated arrays, walls without friction", ["clogging-saturated"], "5 min")
-def lengths_of_polygons_in_saturated_arrays(shop: Workshop) -> Plate:
-    return curves(shop, "clogging-saturated", "line_tension", "obstacle_gap", "length")
+def enter(name: str, caption: str, config: str, cost: str, *, abscissa: str, parameter: str, quantity: str) -> None:
+    """Enters a figure of curves() into the catalogue."""
+    figure(name, caption, [config], cost)(lambda shop: curves(shop, config, abscissa, parameter, quantity))
 
 
-@figure("7a", "clogging length against wall stiffness for four values of the minimum gap (soft disk), dilute arrays", ["clogging-sp"], "1 min")
-def lengths_of_disks(shop: Workshop) -> Plate:
-    return curves(shop, "clogging-sp", "wall_stiffness", "obstacle_gap", "length")
-
-
-@figure("7a-saturated", "the same as 7a in saturated arrays", ["clogging-sp-saturated"], "10 s")
-def lengths_of_disks_in_saturated_arrays(shop: Workshop) -> Plate:
-    return curves(shop, "clogging-sp-saturated", "wall_stiffness", "obstacle_gap", "length")
-
-
-@figure("8a", "mean speed against line tension for four wide gaps (deformable polygon)", ["speed"], "1 min")
-def speeds_of_polygons(shop: Workshop) -> Plate:
-    return curves(shop, "speed", "line_tension", "obstacle_gap", "speed")
-
-
-@figure("8b", "mean speed against line tension for three obstacle diameters", ["speed-diameter"], "1 min")
-def speeds_by_diameter(shop: Workshop) -> Plate:
-    return curves(shop, "speed-diameter", "line_tension", "obstacle_diameter", "speed")
-
-
-@figure("8ca", "the speeds of 8a against the capillary number", ["speed"], "1 min, shared with 8a")
-def speeds_by_capillary_number(shop: Workshop) -> Plate:
-    return curves(shop, "speed", "capillary_number", "obstacle_gap", "speed")
-
-
-@figure("9a", "mean speed against wall stiffness for four wide gaps (soft disk)", ["speed-sp"], "5 s")
-def speeds_of_disks(shop: Workshop) -> Plate:
-    return curves(shop, "speed-sp", "wall_stiffness", "obstacle_gap", "speed")
-
-
-@figure("E", "mean speed against line tension for three near-wall drags", ["near-wall-drag"], "1 min")
-def speeds_by_drag(shop: Workshop) -> Plate:
-    return curves(shop, "near-wall-drag", "line_tension", "near_wall_drag", "speed")
+enter("6c-saturated", "the same as 6c in saturated arrays, walls without friction", "clogging-saturated", "5 min",
+      abscissa="line_tension", parameter="obstacle_gap", quantity="length")
+enter("7a", "clogging length against wall stiffness for four values of the minimum gap (soft disk), dilute arrays", "clogging-sp", "1 min",
+      abscissa="wall_stiffness", parameter="obstacle_gap", quantity="length")
+enter("7a-saturated", "the same as 7a in saturated arrays", "clogging-sp-saturated", "10 s", abscissa="wall_stiffness", parameter="obstacle_gap", quantity="length")
+enter("8a", "mean speed against line tension for four wide gaps (deformable polygon)", "speed", "1 min",
+      abscissa="line_tension", parameter="obstacle_gap", quantity="speed")
+enter("8b", "mean speed against line tension for three obstacle diameters", "speed-diameter", "1 min",
+      abscissa="line_tension", parameter="obstacle_diameter", quantity="speed")
+enter("8ca", "the speeds of 8a against the capillary number", "speed", "1 min, shared with 8a", abscissa="capillary_number", parameter="obstacle_gap", quantity="speed")
+enter("9a", "mean speed against wall stiffness for four wide gaps (soft disk)", "speed-sp", "5 s",
+      abscissa="wall_stiffness", parameter="obstacle_gap", quantity="speed")
+enter("E", "mean speed against line tension for three near-wall drags", "near-wall-drag", "1 min",
+      abscissa="line_tension", parameter="near_wall_drag", quantity="speed")
 
 
 # Both models over the sag
@@ -147,16 +131,10 @@ def over_sag(shop: Workshop, curves: Sequence[Curve], gap: float, quantity: str)
         data += numbers(groups, label, sag=places)
         drawn += groups
     style.logarithmic_abscissa(axes)
-    if quantity == "length":
-        style.logarithmic_ordinate(axes)
-    axes.set_xlabel(AXES["sag"])
-    axes.set_ylabel(AXES[quantity])
     axes.axvline(0.25, color="0.75", linewidth=0.8, linestyle=":", zorder=0)
     axes.text(0.25, 0.02, r"$\delta_s = 0.25\sigma$ ", ha="right", color="0.4", fontsize=8, transform=axes.get_xaxis_transform())
-    style.grid(axes)
     axes.legend(frameon=False)
-    style.caption(axes, describe(shop.columns(curves[0][0]), drawn, ["line_tension"]))
-    style.notes(axes, length_notes(drawn, shop.confidence(curves[0][0]), [axes]) if quantity == "length" else SPEED_NOTES)
+    finish(axes, shop, curves[0][0], drawn, "sag", quantity, ["line_tension"])
     return Plate(drawing, data)
 
 
@@ -312,9 +290,7 @@ def kinetic_energy(shop: Workshop) -> Plate:
     axes.axhline(threshold, color="0.5", linewidth=0.8, linestyle="--")
     axes.text(0.99, threshold * 2, "threshold of a clog", ha="right", fontsize=8, color="0.4", transform=axes.get_yaxis_transform())
     axes.set_yscale("log")
-    axes.set_xlabel(r"time $t/t_0$")
-    axes.set_ylabel(r"kinetic energy divided by that at terminal speed $E_k/E_t$")
-    style.grid(axes)
+    style.label(axes, r"time $t/t_0$", r"kinetic energy divided by that at terminal speed $E_k/E_t$")
     axes.legend(frameon=False)
     row = run.row
     style.caption(axes, rf"$\Gamma = 0.5$, $\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, saturated arrays, $V_t = {row['terminal_speed']:g}$, "
@@ -356,9 +332,7 @@ def survival(shop: Workshop) -> Plate:
     axes.set_ylim(lowest_shown(group, end), 1.3)
     axes.set_xlim(0, 1.02 * end)
     axes.yaxis.set_major_formatter("{x:g}")
-    axes.set_xlabel(r"displacement along the flow $r/\sigma$")
-    axes.set_ylabel(r"probability of not having clogged $P(r)$")
-    style.grid(axes)
+    style.label(axes, r"displacement along the flow $r/\sigma$", r"probability of not having clogged $P(r)$")
     axes.legend(frameon=False)
     style.caption(axes, f"{describe(shop.columns('survival'), [group])}\nexponential? Weibull shape {group['weibull_shape']:.2f}, p = {group['weibull_p_value']:.2f}")
     names = ["distance", "probability", "standard_error", "lower", "upper"]
@@ -385,9 +359,7 @@ def displacement(shop: Workshop) -> Plate:
     t = np.array([0, axes.get_xlim()[1]])
     axes.plot(t, row["terminal_speed"] * t, ":", color="0.5", linewidth=1, label="terminal speed")
     axes.set_xlim(0, t[1]), axes.set_ylim(bottom=0)
-    axes.set_xlabel(r"time $t/t_0$")
-    axes.set_ylabel(r"displacement along the flow $r/\sigma$")
-    style.grid(axes)
+    style.label(axes, r"time $t/t_0$", r"displacement along the flow $r/\sigma$")
     axes.legend(frameon=False)
     style.caption(axes, rf"$w_\mathrm{{ob}} = {row['obstacle_gap']:g}\sigma$, $\sigma_\mathrm{{ob}} = {row['obstacle_diameter']:g}\sigma$, saturated array, "
                   rf"$V_t = {row['terminal_speed']:g}$, $N_v = {row['vertices']}$, seed {row['seed']}" f"\ninterface {run.word('preset')}")

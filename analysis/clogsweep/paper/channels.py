@@ -241,9 +241,7 @@ def near_wall_drag(shop: Workshop) -> Plate:
     axes.plot(d, ratio[-1] * (d / distances[-1]) ** exponent, "--", color="0.4", linewidth=1, label=rf"slope {exponent:.3g}, of every vertex")
     style.logarithmic_abscissa(axes)
     axes.set_yscale("log")
-    axes.set_xlabel(r"distance between wall and droplet $d/\sigma$")
-    axes.set_ylabel(r"$v_g/(v_t - v_g)$")
-    style.grid(axes)
+    style.label(axes, r"distance between wall and droplet $d/\sigma$", r"$v_g/(v_t - v_g)$")
     axes.legend(frameon=False)
     style.caption(axes, rf"$\Gamma = 1$, $b_0/b_\infty = 0.07$, $V_t = 0.03$, $N_v = {row['vertices']}$, no error bars: one run a point" "\n"
                   "near a wall only the nearest vertices feel it: the exponent of the whole droplet is smaller than theirs")
@@ -296,9 +294,8 @@ def perimeter_springs(shop: Workshop) -> Plate:
         data += [{"preset": preset, "stiffness_ratio": x, "delta_v": y} for x, y in zip(places, found)]
     style.logarithmic_abscissa(axes)
     axes.set_ylim(bottom=0)
-    axes.set_xlabel(r"perimeter stiffness divided by line tension $K_l/\Gamma$")
-    axes.set_ylabel(r"$\Delta_v$ from the measured profile" if shop.profiles else r"$\Delta_v$ from the profile at $K_l/\Gamma = 10^{-4}$")
-    style.grid(axes)
+    style.label(axes, r"perimeter stiffness divided by line tension $K_l/\Gamma$",
+                r"$\Delta_v$ from the measured profile" if shop.profiles else r"$\Delta_v$ from the profile at $K_l/\Gamma = 10^{-4}$")
     axes.legend(frameon=False)
     style.caption(axes, parameters(run, 0.9) + "\nsprings to the rest length")
     return Plate(drawing, data)

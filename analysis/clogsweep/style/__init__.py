@@ -179,6 +179,13 @@ def grid(axes: Axes) -> None:
     axes.set_axisbelow(True)
 
 
+def label(axes: Axes, along: str, up: str) -> None:
+    """Names both axes, and draws a grid."""
+    axes.set_xlabel(along)
+    axes.set_ylabel(up)
+    grid(axes)
+
+
 def caption(axes: Axes, text: str) -> None:
     """Above the axes; lines that are wider than these go on below."""
     title = axes.set_title(text, fontsize=8, color="0.25")
