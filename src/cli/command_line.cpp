@@ -222,6 +222,19 @@ double CommandLine::get_positive(const std::string& option) const {
   throw Error(fmt::format("invalid --{}={} (must be a positive number)", option, get(option)));
 }
 
+std::vector<double> CommandLine::get_positives(const std::string& option) const {
+  std::vector<double> values;
+  if (!has(option)) return values;
+  try {
+    for (const std::string& item : sweep::expand_list(get(option), ValueKind::number, {}))
+      values.push_back(sweep::to_number(item));
+  } catch (const Error& error) {
+    throw Error(fmt::format("invalid --{}={} ({})", option, get(option), error.what()));
+  }
+  if (std::ranges::all_of(values, [](double value) { return value > 0; })) return values;
+  throw Error(fmt::format("invalid --{}={} (must be positive numbers)", option, get(option)));
+}
+
 double CommandLine::get_number(const std::string& option, double fallback) const {
   return has(option) ? number(option) : fallback;
 }

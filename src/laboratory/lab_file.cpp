@@ -80,6 +80,10 @@ Laboratory laboratory_of(const Entries& entries) {
                     .interfacial_tension = value_of(entries, "tension", unknown)};
   lab.thickness = value_of(entries, "thickness", unknown);
   lab.tension_ratio = value_of(entries, "tension-ratio", lab.tension_ratio);
+  constexpr double largest = 0.1;  // [m]
+  if (lab.experiment.diameter > largest)
+    throw Error(fmt::format("invalid diameter={} (a droplet wider than {} m; is the unit right?)",
+                            entries.at("diameter"), largest));
   constexpr double right_angle = std::numbers::pi / 2 * (1 + 1e-12);
   if (lab.experiment.tilt > right_angle)
     throw Error(fmt::format("invalid angle={} (beyond 90 degrees)", entries.at("angle")));

@@ -113,10 +113,14 @@ void set_droplet(const Laboratory& lab, sweep::Settings& settings) {
   if (models == std::vector<std::string>{"sp"}) set("wall-stiffness", scales.wall_stiffness);
 }
 
-double tilt_of(double line_tension, const Laboratory& lab) {
+double line_tension_upright(const Laboratory& lab) {
   Experiment upright = lab.experiment;
   upright.tilt = std::numbers::pi / 2;
-  return std::asin(lab.tension_ratio * upright.line_tension() / line_tension);
+  return lab.tension_ratio * upright.line_tension();
+}
+
+double tilt_of(double line_tension, const Laboratory& lab) {
+  return std::asin(line_tension_upright(lab) / line_tension);
 }
 
 }  // namespace clog::laboratory

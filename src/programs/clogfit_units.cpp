@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "clog/cli/command_line.hpp"
@@ -32,7 +34,7 @@ sigma, the gravity g along the plates and the droplet's density rho are 1.
 
   clogfit units lab.cfg
   clogfit units lab.cfg --length 24 --time 2000          of the model, in mm and s
-  clogfit units lab.cfg --line-tension 0.16              which interfacial tension, or which tilt, that is
+  clogfit units lab.cfg --line-tension 0.16,0.2          which interfacial tension, or which tilt, each of them is
   clogsweep --lab lab.cfg ... ; clogfit sweep.h5         sweeps and fits in both
 
 lab.cfg has lines key = value:
@@ -98,45 +100,38 @@ std::vector<Line> lines_of(const Laboratory& lab, const Scales& scales) {
   return lines;
 }
 
-/// Values of the options that give numbers of the model.
-struct Given {
-  double length, time, line_tension, terminal_speed, wall_stiffness;  ///< NaN if it was not given
-};
-Given given(const cli::CommandLine& line) {
-  const auto number = [&](const char* option) {
-    return line.has(option) ? line.get_positive(option) : std::numeric_limits<double>::quiet_NaN();
-  };
-  return {number("length"), number("time"), number("line-tension"), number("terminal-speed"),
-          number("wall-stiffness")};
-}
-
-/// A number of the model, and what it is in the laboratory.
+/// How a number of the model, an option's, is converted.
 struct Conversion {
+  const char *option, *symbol;
   const char *name, *what, *unit;
-  double value;
-  const char* symbol;
-  double model;
+  std::function<double(double)> convert;  ///< NaN where nothing in the laboratory is that
 };
-std::vector<Conversion> converted(const Given& model, const Laboratory& lab, const Scales& scales) {
-  const double sag = std::numbers::pi / (16 * model.wall_stiffness);
-  std::vector<Conversion> all = {
-      {"length_mm", "length", "mm", model.length * scales.length / milli, "r/sigma", model.length},
-      {"time_s", "time", "s", model.time * scales.time, "t/t0", model.time},
-      {"tension_mN_per_m", "interfacial tension at this tilt", "mN/m",
-       model.line_tension * scales.tension / milli, "Gamma", model.line_tension},
-      {"angle_degrees", "or tilt with this tension", "deg",
-       laboratory::tilt_of(model.line_tension, lab) / degree, "Gamma", model.line_tension},
-      {"speed_mm_per_s", "terminal speed", "mm/s", model.terminal_speed * scales.length / scales.time / milli,
-       "V_t", model.terminal_speed},
-      {"line_tension_of_equal_sag", "Gamma of the droplet that sags as far", "",
-       laboratory::line_tension_of_sag(sag), "E_w", model.wall_stiffness}};
-  std::erase_if(all, [](const Conversion& one) { return std::isnan(one.model); });
-  return all;
+std::vector<Conversion> conversions(const Laboratory& lab, const Scales& scales) {
+  const auto times = [](double unit) { return [unit](double model) { return model * unit; }; };
+  return {{"length", "r/sigma", "length_mm", "length", "mm", times(scales.length / milli)},
+          {"time", "t/t0", "time_s", "time", "s", times(scales.time)},
+          {"line-tension", "Gamma", "tension_mN_per_m", "interfacial tension at this tilt", "mN/m",
+           times(scales.tension / milli)},
+          {"line-tension", "Gamma", "angle_degrees", "or tilt with this tension", "deg",
+           [&lab](double model) { return laboratory::tilt_of(model, lab) / degree; }},
+          {"terminal-speed", "V_t", "speed_mm_per_s", "terminal speed", "mm/s",
+           times(scales.length / scales.time / milli)},
+          {"wall-stiffness", "E_w", "line_tension_of_equal_sag", "Gamma of the droplet that sags as far", "",
+           [](double model) { return laboratory::line_tension_of_sag(std::numbers::pi / (16 * model)); }}};
 }
 
-Line line_of(const Conversion& one) {
-  return {one.what, with_unit(one.value, one.unit),
-          fmt::format("{} = {}", one.symbol, console::plain(one.model))};
+/// Why no tilt gives a droplet this Gamma.
+std::string why_no_tilt(const Laboratory& lab) {
+  if (std::isnan(lab.experiment.interfacial_tension)) return "not known without tension in lab.cfg";
+  return fmt::format("none, upright it has Gamma = {}",
+                     console::plain(laboratory::line_tension_upright(lab)));
+}
+
+Line line_of(const Conversion& conversion, double model, const Laboratory& lab) {
+  const double value = conversion.convert(model);
+  const bool is_no_tilt = std::isnan(value) && std::string_view(conversion.name) == "angle_degrees";
+  return {conversion.what, is_no_tilt ? why_no_tilt(lab) : with_unit(value, conversion.unit),
+          fmt::format("{} = {}", conversion.symbol, console::plain(model))};
 }
 
 /// What to sweep in place of a droplet that is nearly rigid; nothing for others.
@@ -177,7 +172,8 @@ int clogfit_units(int argc, const char* const* argv) {
   namespace po = boost::program_options;
   cli::CommandLine line("clogfit units", usage, cli::CommandLine::SweepKeys::none);
   const auto text = [] { return po::value<std::string>(); };
-  line.add_options()("file", text(), "lab.cfg")("length", text(), "of the model, such as lambda [sigma]")(
+  line.add_options()("file", text(), "lab.cfg")(
+      "length", text(), "of the model, such as lambda [sigma]; each of these takes a list")(
       "time", text(), "of the model [t0]")("line-tension", text(), "Gamma of the model")(
       "terminal-speed", text(), "V_t of the model")("wall-stiffness", text(), "E_w of a soft disk")(
       "format", text()->default_value("text"), "text or json");
@@ -188,16 +184,26 @@ int clogfit_units(int argc, const char* const* argv) {
   const std::string format = line.get_word("format", {"text", "json"});
   const Laboratory lab = laboratory::read_laboratory(line.get("file"));
   const Scales scales = laboratory::scales_of(lab);
-  const std::vector<Conversion> asked = converted(given(line), lab, scales);
+  const std::vector<Conversion> known = conversions(lab, scales);
   if (format == "json") {
     Json document = json_of(lab, scales);
-    for (const Conversion& one : asked) document["given"][one.name] = number(one.value);
+    for (const Conversion& conversion : known) {
+      const std::vector<double> models = line.get_positives(conversion.option);
+      if (models.empty()) continue;
+      Json& values = document["given"][conversion.name];
+      for (const double model : models) values.push_back(number(conversion.convert(model)));
+      if (models.size() == 1) values = Json(values.front());
+    }
     std::cout << document.dump(2) << '\n';
     return console::exit_success;
   }
   std::vector<Line> lines = lines_of(lab, scales);
-  if (!asked.empty()) lines.push_back({"", "", ""});
-  for (const Conversion& one : asked) lines.push_back(line_of(one));
+  const std::size_t num_scales = lines.size();
+  for (const Conversion& conversion : known)
+    for (const double model : line.get_positives(conversion.option)) {
+      if (lines.size() == num_scales) lines.push_back({"", "", ""});
+      lines.push_back(line_of(conversion, model, lab));
+    }
   std::cout << lines_text(lines) << advice_of(scales);
   return console::exit_success;
 }

@@ -1,5 +1,7 @@
 """Devices of a user's own: files of circles in any form, walls, entrance, exit; drawings of them, and pictures."""
 
+import contextlib
+import io
 import json
 import sys
 import unittest
@@ -138,7 +140,11 @@ class Devices(Analysis):
         page = (self.folder / "s-report.html").read_text()
         self.assertIn("posts.csv", page)
         self.assertIn('<th scope="col">passed</th>', page)
+        self.assertLess(page.index("<h2>Table"), page.index("<h2>Devices"))
+        self.assertLess(page.index("<h2>What may spoil"), page.index("<h2>Devices"))
+        self.assertLess(page.index("<h2>Devices"), page.index("<h2>How busy"))
         self.assertIn("passed: droplets that reached the exit", self.succeed("clogfit", "s.h5").stdout)
+        self.assertNotIn("few_clogs", group["doubts"] or [], "more seeds of droplets that all pass tell nothing new")
 
     def test_each_line_tension_has_a_panel(self):
         self.write("posts.csv", "x,y,diameter\n" + csv())
@@ -148,7 +154,9 @@ class Devices(Analysis):
         self.assertEqual([part.label for part in place.parts(groups)], [rf"$\Gamma = {value:g}$" for value in (0.5, 1, 1.5, 2, 3, 4, 5)])
         for part in place.parts(groups):
             self.assertEqual([rf"$\Gamma = {row['line_tension']:g}$" for row in part.place.rows], [part.label])
-        figure = sweep.device(ways=1, map=0).figure
+        with contextlib.redirect_stderr(io.StringIO()) as told:
+            figure = sweep.device(ways=1, map=0).figure
+        self.assertIn("posts.csv: 6 of 7 parameter sets are drawn; clogsweep select", told.getvalue())
         panels = [axes.get_ylabel() for axes in figure.axes]
         self.assertEqual([label.split("\n")[0] for label in panels], [rf"$\Gamma = {value:g}$" for value in (0.5, 1, 1.5, 3, 4, 5)] + ["share that"])
         self.assertIn("6 of 7 parameter sets", figure.texts[0].get_text())

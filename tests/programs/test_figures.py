@@ -400,20 +400,23 @@ class Pictures(Analysis):
         self.assertTrue((image.imread(self.folder / "from-fit.png") == image.imread(self.folder / "from-sweep.png")).all())
 
     def test_edges_marked_as_touching_are_those_that_the_program_counts(self):
+        # One post leaves gaps narrower than the droplet at both side walls.
+        self.write("post.csv", "3,0.9,1\n")
         # Uneven edges, whose chords touch elsewhere than the interface; contact at the surface and off it.
         for name, points_per_vertex, keys in [
-            ("surface", 2, ["preset=elastic", "vertices=32", "line-tension=0.3,1"]),
-            ("off", 2, ["contact-range=half-vertex", "vertices=32", "line-tension=1"]),
-            ("vertices", 1, ["wall-contact=vertex", "contact-range=half-vertex", "vertices=64", "line-tension=1"]),
+            ("surface", 2, ["preset=elastic", "vertices=32", "line-tension=0.3,1", "box=20"]),
+            ("off", 2, ["contact-range=half-vertex", "vertices=32", "line-tension=1", "box=20"]),
+            ("vertices", 1, ["wall-contact=vertex", "contact-range=half-vertex", "vertices=64", "line-tension=1", "box=20"]),
+            ("walls", 2, ["obstacles=post.csv", "box=1.8", "length=9", "side-walls=on", "release=entrance", "entrance=1.5", "line-tension=1"]),
         ]:
-            self.succeed("clogsweep", *keys, "box=20", "max-time=500", "seeds=1..4", "--output", f"{name}.h5")
+            self.succeed("clogsweep", *keys, "max-time=500", "seeds=1..4", "--output", f"{name}.h5")
             found = clogsweep.open(self.folder / f"{name}.h5", BIN).clogs(most=100)
             self.assertGreater(len(found), 0)
             for clog in found:
                 row = clog.row
                 with self.subTest(contact=name, task=clog.task):
                     self.assertEqual(clog.polygon.shape[1], points_per_vertex * row["vertices"])
-                    depths = clogs.overlaps(row, clog.polygon, clog.obstacles)
+                    depths = clogs.overlaps(clog)
                     touched = np.where(depths.max(axis=0) > 0, depths.argmax(axis=0), -1)
                     arcs = np.count_nonzero((touched >= 0) & (touched != np.roll(touched, 1)))
                     self.assertEqual(arcs, row["num_arcs"])

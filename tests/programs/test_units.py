@@ -56,6 +56,27 @@ class Units(ProgramTest):
         self.assertRegex(told, r"(?m)^length +84\.0 mm +r/sigma = 24\.0$")
         self.assertRegex(told, r"(?m)^interfacial tension +9\.60 mN/m +Gamma_exp = 0\.5\d+$")
 
+    def test_lists_are_converted_one_by_one(self):
+        lab = self.lab()
+        upright, = self.units(self.lab(angle="90 deg", name="upright.cfg"), "--line-tension", "log(0.1,0.4,3)")["given"]["tension_mN_per_m"][:1]
+        self.assertAlmostEqual(upright, self.units("upright.cfg", "--line-tension", 0.1)["given"]["tension_mN_per_m"])
+        given = self.units(lab, "--line-tension", "0.05,0.2", "--length", "2,3")["given"]
+        self.assertEqual(given["length_mm"], [7.0, 10.5])
+        self.assertIsNone(given["angle_degrees"][0])
+        self.assertAlmostEqual(given["angle_degrees"][1], 24.0, delta=0.5)
+        self.assertEqual(clogsweep.units(self.folder / lab, length=[2, 3], folder=BIN)["given"]["length_mm"], [7.0, 10.5])
+        # Between upright plates this droplet has 0.0815, the least of all tilts.
+        told = self.succeed("clogfit", "units", lab, "--line-tension", "0.05,0.2").stdout
+        self.assertRegex(told, r"(?m)^or tilt with this tension +none, upright it has Gamma = 0\.0815 +Gamma = 0\.0500$")
+        self.assertRegex(told, r"(?m)^or tilt with this tension +2\d\.\d deg +Gamma = 0\.200$")
+        self.write("no-tension.cfg", "diameter = 3.5 mm\nangle = 28 deg\n")
+        self.assertIn("not known without tension in lab.cfg", self.succeed("clogfit", "units", "no-tension.cfg", "--line-tension", 0.2).stdout)
+        self.refuse("clogfit", "units", lab, "--length", "1,-2", words=["--length=1,-2", "positive"])
+        self.refuse("clogfit", "units", lab, "--length", "1,x", words=["--length=1,x", "x"])
+
+    def test_a_droplet_of_unlikely_size_is_refused(self):
+        self.refuse("clogfit", "units", self.lab("0.2 m"), words=["diameter=0.2 m", "wider than 0.1 m", "unit"])
+
     def test_a_nearly_rigid_droplet_gets_advice(self):
         self.assertNotIn("rigid", self.succeed("clogfit", "units", self.lab()).stdout)
         lab = self.lab("200 um", "90 deg", "1 mm/s", "20 mN/m", "stiff.cfg")

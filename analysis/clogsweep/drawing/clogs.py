@@ -12,7 +12,7 @@ from typing import overload
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle
+from matplotlib.patches import Circle, Patch, Polygon
 
 from .. import style
 from ..reading import replays, stored, trajectory
@@ -59,6 +59,7 @@ class Clog:
     row: np.void  # of the sweep
     polygon: Numbers  # 2 x N, the interface that walls meet [sigma]
     obstacles: Numbers  # n x 3: x, y, diameter [sigma]
+    wedges: Numbers  # n x 6: side walls, as in a trajectory's file [sigma]
     source: str = ""  # where the row comes from
 
     @property
@@ -119,7 +120,7 @@ def run_again(clogrun: pathlib.Path, sweep: pathlib.Path, source: str, row: np.v
     # A certified row describes an equilibrium that the run ends before.
     replays.replay(clogrun, sweep, row["task"], output, "--to-rest", "--polygon-interval", "1e9", "--sample-interval", "1e9")
     with stored.opened(output) as file:
-        return Clog(row, trajectory.refined(file["polygons"][-1], row), file["obstacles"][:], source)
+        return Clog(row, trajectory.refined(file["polygons"][-1], row), file["obstacles"][:], file["wedges"][:] if "wedges" in file else np.empty((0, 6)), source)
 
 
 def run_all(clogrun: pathlib.Path, sweep: pathlib.Path, rows: Sequence[np.void], jobs: int) -> Clogs:
@@ -141,9 +142,22 @@ def distances(polygon: Numbers, obstacle: Numbers) -> Numbers:
     return np.hypot(*(to_centre - along * way)) - obstacle[2] / 2
 
 
-def overlaps(row: np.void, polygon: Numbers, obstacles: Numbers) -> Numbers:
-    """How deep every obstacle (rows) is in the contact of every edge (columns) [sigma]; above 0 they touch."""
-    return trajectory.contact_range(row) - np.array([distances(polygon, obstacle) for obstacle in obstacles])
+def distances_to_wedge(polygon: Numbers, wedge: Numbers) -> Numbers:
+    """Distances from a wedge's surface to the nearer end of every edge."""
+    tip, axis, half_angle, radius = wedge[:2], wedge[2:4], wedge[4], wedge[5]
+    from_centre = polygon - (tip + radius * axis)[:, None]
+    along, across = axis @ from_centre, np.abs([-axis[1], axis[0]] @ from_centre)
+    flank = across * np.cos(half_angle) - along * np.sin(half_angle)
+    before_tip = along * np.cos(half_angle) + across * np.sin(half_angle) < 0
+    of_vertex = np.where(before_tip, np.hypot(along, across), flank) - radius
+    return np.minimum(of_vertex, np.roll(of_vertex, -1))
+
+
+def overlaps(clog: Clog) -> Numbers:
+    """How deep every obstacle, then every wedge (rows), is in the contact of every edge (columns) [sigma]; above 0 they touch."""
+    surfaces = [distances(clog.polygon, obstacle) for obstacle in clog.obstacles]
+    surfaces += [distances_to_wedge(clog.polygon, wedge) for wedge in clog.wedges]
+    return trajectory.contact_range(clog.row) - np.array(surfaces)
 
 
 def hull(points: Numbers) -> Numbers:
@@ -169,21 +183,24 @@ def title(row: np.void) -> str:
 
 def draw(axes: Axes, clog: Clog) -> None:
     """Draws around the droplet's middle. All panels have one shape: titles over flat ones would leave the sheet."""
-    row, polygon, obstacles = clog.row, clog.polygon, clog.obstacles
+    polygon = clog.polygon
     low, high = polygon.min(axis=1), polygon.max(axis=1)
     middle, half = (low + high) / 2, (high - low).max() / 2 + 0.3
     interface = polygon - middle[:, None]
     axes.fill(*interface, facecolor="#E69F00", edgecolor="black", linewidth=0.6, alpha=0.7)
     axes.plot(*np.vstack([hull(interface.T), hull(interface.T)[:1]]).T, color="0.4", linewidth=0.6, linestyle="--")
-    for obstacle, depths in zip(obstacles, overlaps(row, polygon, obstacles)):
+    patches: list[Patch] = [Circle(obstacle[:2] - middle, obstacle[2] / 2) for obstacle in clog.obstacles]
+    patches += [Polygon(trajectory.wedge_outline(wedge) - middle) for wedge in clog.wedges]
+    for patch, depths in zip(patches, overlaps(clog)):
         touches = np.flatnonzero(depths > 0)
-        axes.add_patch(Circle(obstacle[:2] - middle, obstacle[2] / 2, color="#0072B2" if len(touches) else "0.85"))
+        patch.set_color("#0072B2" if len(touches) else "0.85")
+        axes.add_patch(patch)
         for edge in touches:
             axes.plot(*interface[:, [edge, (edge + 1) % interface.shape[1]]], color="#D00000", linewidth=1.8)
     surroundings.frame_limits(axes, (-half, -1.2 * half), (half, 1.2 * half))  # with room for the guides
     axes.locator_params(nbins=5)
     surroundings.draw_guides(axes)
-    axes.set_title(title(row), fontsize=8)
+    axes.set_title(title(clog.row), fontsize=8)
 
 
 def sheet(clogs: Sequence[Clog]) -> Figure:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import pathlib
+import sys
 import tempfile
 from collections.abc import Sequence
 from typing import Any, TypeVar
@@ -142,11 +143,13 @@ def ways_of(place: Place, sweep: pathlib.Path, clogrun: pathlib.Path, number: in
 
 def shown_parts(place: Place, groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path, num_lines: int, num_mapped: int, jobs: int) -> tuple[list[Part], int]:
     """Those parameter sets that have a panel, with their ways, and the number of all. @param num_lines, num_mapped  runs of each panel drawn
-    as lines, and behind its map. @throws UserError  if no run has ended"""
+    as lines, and behind its map. Of more than MOST_PANELS, a line says that some are left out. @throws UserError  if no run has ended"""
     every = place.parts(groups)
     if not every:
         raise UserError(f"no run among the circles of {place.name} has ended; let the sweep finish some first")
     shown = evenly(every, MOST_PANELS)
+    if len(shown) < len(every):
+        print(f"{place.name}: {len(shown)} of {len(every)} parameter sets are drawn; clogsweep select makes a sweep of the others", file=sys.stderr)
     for part in progress.shown(shown, "replayed panel", len(shown)):
         ways = ways_of(part.place, sweep, clogrun, max(num_lines, num_mapped), jobs)
         part.lines, part.mapped = evenly(ways, num_lines), evenly(ways, num_mapped)

@@ -43,9 +43,7 @@ def draw_survival(axes: Axes, groups: Groups, label: str, members: Sequence[Grou
         survival_curve.draw(axes, group, colour, groups.said(groups.abscissa, group[groups.abscissa]), begin=begin)
     axes.set_xscale("log")
     axes.set_ylim(0, 1.02)
-    axes.set_xlabel(r"displacement along the flow $r/\sigma$")
-    axes.set_ylabel("probability $P(r)$ of not having clogged")
-    style.grid(axes)
+    style.label(axes, r"displacement along the flow $r/\sigma$", "probability $P(r)$ of not having clogged")
     mark_steps(axes)
     style.caption(axes, label or groups.caption())
     style.notes(axes, ["steps: clogs; ticks: censored runs; dashed: exponential of the same length"])
@@ -391,10 +389,12 @@ def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: path
     sentences = told["doubts"]
     label, tell = (label_of_passage, of_passages) if groups.are_passages else (label_of_length, of_lengths)
     charts = Charts([label(groups, group) for group in groups.members])
-    sections = tell(groups, sweep, examples, folder / "clogrun", charts)
-    sections |= {"How busy the ranks were": busy_ranks(about, charts),
-                 "What may spoil these numbers": doubts(groups.members, sentences, rows),
-                 "Table": table_of_passages(groups, sentences) if groups.are_passages else table_of_lengths(groups, sentences, rows)}
+    curves, *pictures = tell(groups, sweep, examples, folder / "clogrun", charts).items()
+    sections = dict([curves,
+                     ("Table", table_of_passages(groups, sentences) if groups.are_passages else table_of_lengths(groups, sentences, rows)),
+                     ("What may spoil these numbers", doubts(groups.members, sentences, rows)),
+                     *pictures,
+                     ("How busy the ranks were", busy_ranks(about, charts))])
     try:
         output.write_text(page(sweep.name, groups, sections, progress_of(status, rows), about, charts, stored.writer(told)))
     except OSError as error:

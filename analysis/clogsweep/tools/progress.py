@@ -9,7 +9,11 @@ Item = TypeVar("Item")
 
 
 def readable_duration(seconds: float) -> str:
-    return f"{seconds:.0f} s" if seconds < 90 else f"{seconds / 60:.0f} min"
+    """In seconds as long as whole minutes would jump, as clogsweep shows it."""
+    if seconds < 119.5:
+        return f"{seconds:.0f} s"
+    whole = round(seconds)
+    return f"{whole // 60} min {whole % 60:02} s" if whole < 600 else f"{whole / 60:.0f} min"
 
 
 def shown(items: Iterable[Item], what: str, total: int) -> Iterator[Item]:

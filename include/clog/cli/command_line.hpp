@@ -43,6 +43,8 @@ class CommandLine {
   double get_share(const std::string& option) const;
   /// @throws Error if the option's value is not a number above zero
   double get_positive(const std::string& option) const;
+  /// All values of a list, as of a key: `0.1,0.2` or `log(0.1,1,5)`; none if the option was not given.
+  std::vector<double> get_positives(const std::string& option) const;
   /// The option's value, or the default if it was not given. @throws Error if it is not a finite number
   double get_number(const std::string& option, double fallback) const;
   const std::string& program() const { return program_; }

@@ -34,6 +34,8 @@ double line_tension_of_sag(double sag);
 /// E_w = pi/(16 sag), of the soft disk that sags as far.
 double wall_stiffness_of_sag(double sag);
 
+/// Gamma of the laboratory's droplet between upright plates, the least it can have; NaN without its tension.
+double line_tension_upright(const Laboratory& lab);
 /// Tilt at which a droplet of the laboratory has this Gamma [rad]; NaN if none does.
 double tilt_of(double line_tension, const Laboratory& lab);
 

@@ -68,25 +68,23 @@ bool hangs_over(const Polygon& polygon, const Post& post) {
   return left && right;
 }
 
-/// A touched post. The support is the force that the overlaps of all edges exert on the droplet against
-/// the flow, over the contact's stiffness [sigma].
+/// A touched obstacle, a post or a wall. The support is the force that the overlaps of all edges exert on the
+/// droplet against the flow, over the contact's stiffness [sigma].
 struct Touched {
   double support = 0;
   bool is_wrapped = false;
-  double longest_link = 0;  ///< that touches it, over the radius at which it lies
+  bool is_several_circles = false;
+  double longest_link = 0;  ///< that touches it, over the radius at which it lies; a wall has no corners
 };
 
-/// Which post each edge touches, the one that it overlaps most; -1 for none.
-struct Contacts {
-  std::vector<Touched> posts;
-  std::vector<int> of_edge;
-};
+/// Which obstacle each edge touches, the one that it overlaps most; -1 for none.
+class Contacts {
+ public:
+  Contacts(const Polygon& polygon, double range)
+      : range_(range), of_edge_(static_cast<std::size_t>(polygon.size()), -1), deepest_(of_edge_.size(), 0) {}
 
-Contacts find_contacts(const Polygon& polygon, std::span<const Obstacle> obstacles, double contact_range) {
-  Contacts contacts{{}, std::vector<int>(static_cast<std::size_t>(polygon.size()), -1)};
-  std::vector<double> deepest(contacts.of_edge.size(), 0);
-  for (const Post& post : posts_of(obstacles)) {
-    Touched touched;
+  void add_post(const Polygon& polygon, const Post& post) {
+    Touched touched{.is_several_circles = post.circles.size() > 1};
     bool is_touched = false;
     for (const Obstacle& circle : post.circles) {
       const Eigen::Array2d centre{circle.x, circle.y};
@@ -94,31 +92,68 @@ Contacts find_contacts(const Polygon& polygon, std::span<const Obstacle> obstacl
         const Eigen::Array2d away =
             nearest_on_segment(centre, polygon.vertex(i), polygon.vertex(polygon.next(i))) - centre;
         const double distance = away.matrix().norm();
-        const double overlap = contact_range + circle.radius - distance;
-        if (overlap <= 0) continue;
+        const double overlap = range_ + circle.radius - distance;
+        if (!take(i, overlap, overlap * away[0] / distance, touched)) continue;
         is_touched = true;
-        touched.support -= overlap * away[0] / distance;
         const double length = (polygon.vertex(polygon.next(i)) - polygon.vertex(i)).matrix().norm();
-        touched.longest_link = std::max(touched.longest_link, length / (contact_range + circle.radius));
-        if (overlap <= deepest[i]) continue;
-        deepest[i] = overlap;
-        contacts.of_edge[i] = static_cast<int>(contacts.posts.size());
+        touched.longest_link = std::max(touched.longest_link, length / (range_ + circle.radius));
       }
     }
-    if (!is_touched) continue;
+    if (!is_touched) return;
     touched.is_wrapped = hangs_over(polygon, post);
-    contacts.posts.push_back(touched);
+    touched_.push_back(touched);
   }
-  return contacts;
-}
 
-/// A run of successive edges that touch the same post, counter-clockwise.
+  void add_wall(const Polygon& polygon, const Wedge& wall) {
+    Touched touched;
+    bool is_touched = false;
+    for (Eigen::Index i = 0; i < polygon.size(); ++i) {
+      const Eigen::Array2d begin = polygon.vertex(i), end = polygon.vertex(polygon.next(i));
+      // Nearest to a flank is an end of the edge; to the rounded tip, maybe a place between them.
+      const auto distance = [&](const Eigen::Array2d& place) {
+        return distance_to(wall, place - wall.centre());
+      };
+      const WedgeDistance nearest =
+          std::min({distance(begin), distance(end), distance(nearest_on_segment(wall.centre(), begin, end))},
+                   [](const WedgeDistance& a, const WedgeDistance& b) { return a.distance < b.distance; });
+      const double overlap = range_ - nearest.distance;
+      constexpr double round_off = 1e-12;  // of a wall along the flow, which supports nothing
+      const double upstream = std::abs(nearest.normal[0]) < round_off ? 0 : nearest.normal[0];
+      is_touched |= take(i, overlap, overlap * upstream, touched);
+    }
+    if (is_touched) touched_.push_back(touched);
+  }
+
+  const std::vector<Touched>& touched() const { return touched_; }
+  const std::vector<int>& of_edge() const { return of_edge_; }
+
+ private:
+  double range_;
+  std::vector<Touched> touched_;
+  std::vector<int> of_edge_;
+  std::vector<double> deepest_;
+
+  /// Does the edge touch the obstacle that touched_ gets next? Then it pushes the droplet along the flow.
+  bool take(Eigen::Index edge, double overlap, double push, Touched& obstacle) {
+    if (overlap <= 0) return false;
+    obstacle.support -= push;
+    if (overlap > deepest_[edge]) {
+      deepest_[edge] = overlap;
+      of_edge_[edge] = static_cast<int>(touched_.size());
+    }
+    return true;
+  }
+};
+
+/// A run of successive edges that touch the same obstacle, counter-clockwise. On a post of several circles,
+/// edges between two of them do not end it.
 struct Arc {
-  int post;
+  int obstacle;
   Eigen::Index first_edge, last_edge;
 };
 
-std::vector<Arc> find_arcs(const Polygon& polygon, const std::vector<int>& of_edge) {
+std::vector<Arc> find_arcs(const Polygon& polygon, const Contacts& contacts) {
+  const std::vector<int>& of_edge = contacts.of_edge();
   std::vector<Arc> arcs;
   for (Eigen::Index i = 0; i < polygon.size(); ++i) {
     const Eigen::Index before = i > 0 ? i - 1 : polygon.size() - 1;
@@ -127,18 +162,35 @@ std::vector<Arc> find_arcs(const Polygon& polygon, const std::vector<int>& of_ed
     while (of_edge[polygon.next(last)] == of_edge[i]) last = polygon.next(last);
     arcs.push_back({of_edge[i], i, last});
   }
-  return arcs;
+  const auto are_one = [&](const Arc& from, const Arc& to) {
+    return from.obstacle == to.obstacle && contacts.touched()[from.obstacle].is_several_circles;
+  };
+  std::vector<Arc> joined;
+  for (const Arc& arc : arcs) {
+    if (!joined.empty() && are_one(joined.back(), arc))
+      joined.back().last_edge = arc.last_edge;
+    else
+      joined.push_back(arc);
+  }
+  if (joined.size() > 1 && are_one(joined.back(), joined.front())) {
+    joined.front().first_edge = joined.back().first_edge;
+    joined.pop_back();
+  }
+  return joined;
 }
 
 }  // namespace
 
-ClogGeometry clog_geometry(const Eigen::ArrayXd& position, std::span<const Obstacle> obstacles,
-                           double contact_range, int links_per_edge) {
+ClogGeometry clog_geometry(const Eigen::ArrayXd& position, const Surroundings& around, double contact_range,
+                           int links_per_edge) {
   const Polygon polygon{position};
-  const Contacts contacts = find_contacts(polygon, obstacles, contact_range);
+  Contacts contacts(polygon, contact_range);
+  for (const Post& post : posts_of(around.circles)) contacts.add_post(polygon, post);
+  for (const Wedge& wall : around.walls) contacts.add_wall(polygon, wall);
+
   ClogGeometry geometry;
   double support = 0, wrapped_support = 0, mesh_hold = 0;
-  for (const Touched& touched : contacts.posts) {
+  for (const Touched& touched : contacts.touched()) {
     support += std::max(0.0, touched.support);
     if (!touched.is_wrapped) continue;
     ++geometry.num_wrapped;
@@ -149,14 +201,15 @@ ClogGeometry clog_geometry(const Eigen::ArrayXd& position, std::span<const Obsta
   if (support > 0) geometry.wrapped_support = wrapped_support / support;
   if (support > 0) geometry.mesh_hold = mesh_hold / support;
 
-  const std::vector<Arc> arcs = find_arcs(polygon, contacts.of_edge);
+  const std::vector<Arc> arcs = find_arcs(polygon, contacts);
   geometry.num_arcs = static_cast<int>(arcs.size());
   for (std::size_t i = 0; i < arcs.size(); ++i) {
     const Arc& from = arcs[i];
     const Arc& to = arcs[(i + 1) % arcs.size()];
-    if (from.post == to.post) continue;
+    if (from.obstacle == to.obstacle) continue;
     // One side may push across the flow only, or a little downstream, and is a side of the gap all the same.
-    if (std::max(contacts.posts[from.post].support, contacts.posts[to.post].support) <= 0) continue;
+    const std::vector<Touched>& touched = contacts.touched();
+    if (std::max(touched[from.obstacle].support, touched[to.obstacle].support) <= 0) continue;
     // The outward normal of a counter-clockwise contour points downstream where y grows.
     const double begin_y = polygon.vertex(polygon.next(from.last_edge))[1];
     const double end_y = polygon.vertex(to.first_edge)[1];
@@ -170,12 +223,14 @@ ClogGeometry clog_geometry(const DropletState& state, const ObstacleArray& array
   const bool meets_edges = dp.wall_contact == WallContact::edge;
   const Eigen::ArrayXd interface = meets_edges ? refined(state.position) : state.position;
   const Eigen::Index n = interface.size() / 2;
-  std::vector<Obstacle> obstacles;
+  Surroundings around;
   array.gather({state.frame.origin[0], state.frame.origin[1], interface.head(n).minCoeff(),
                 interface.head(n).maxCoeff(), interface.tail(n).minCoeff(), interface.tail(n).maxCoeff(),
                 contact_range},
-               obstacles);
-  return clog_geometry(interface, obstacles, contact_range, meets_edges ? 2 : 1);
+               around.circles);
+  around.walls = array.wedges();
+  for (Wedge& wall : around.walls) wall.tip -= state.frame.global({0, 0});
+  return clog_geometry(interface, around, contact_range, meets_edges ? 2 : 1);
 }
 
 }  // namespace clog

@@ -18,8 +18,9 @@ constexpr double radius = 0.15;  // of the obstacles
 struct Scene {
   Eigen::ArrayXd position;
   std::vector<Obstacle> obstacles;
+  std::vector<Wedge> walls = {};
 
-  ClogGeometry geometry() const { return clog_geometry(position, obstacles, range); }
+  ClogGeometry geometry() const { return clog_geometry(position, {obstacles, walls}, range); }
 };
 
 /// An obstacle that a disc of diameter 1 around the origin touches, seen from there at an angle [degrees].
@@ -114,10 +115,55 @@ TEST(ClogGeometry, ADropletOnOneObstacleIsHeldByNeither) {
 
 TEST(ClogGeometry, ThereIsNoGapWithinAPost) {
   expect_counts(disc_on({-20, 20}).geometry(), 0, 1, 2);
-  // Now the circles between them make one post of all.
+  // Now the circles between them make one post of all, which is one contact.
   const ClogGeometry geometry = disc_on({-20, 20, -10, 10, 0}).geometry();
-  expect_counts(geometry, 0, 0, 5);
+  expect_counts(geometry, 0, 0, 1);
   EXPECT_EQ(geometry.mechanism(), ClogMechanism::none);
+  // Between two contacts with it, the droplet touches another.
+  expect_counts(disc_on({-20, -10, 0, 10, 20, 100}).geometry(), 0, 1, 2);
+}
+
+/// A wall along the flow, on either side; the droplet overlaps it by half the range.
+Wedge side_wall(double side) { return {.tip = {0, side * (0.5 + 0.5 * range)}, .axis = {0, side}}; }
+
+TEST(ClogGeometry, ADiscBetweenAnObstacleAndASideWallIsSqueezed) {
+  for (const double side : {-1.0, 1.0}) {
+    Scene scene = disc_on({-side * 40});
+    EXPECT_EQ(scene.geometry().mechanism(), ClogMechanism::none);
+    scene.walls = {side_wall(side)};
+    const ClogGeometry geometry = scene.geometry();
+    expect_counts(geometry, 0, 1, 2);
+    EXPECT_EQ(geometry.wrapped_support, 0);
+    EXPECT_EQ(geometry.mechanism(), ClogMechanism::squeezed) << side;
+  }
+}
+
+TEST(ClogGeometry, WallsAloneHoldNothing) {
+  Scene scene = disc_on({});
+  scene.walls = {side_wall(-1), side_wall(1)};
+  const ClogGeometry geometry = scene.geometry();
+  expect_counts(geometry, 0, 0, 2);
+  EXPECT_TRUE(std::isnan(geometry.wrapped_support));
+  EXPECT_EQ(geometry.mechanism(), ClogMechanism::none);
+  // Nor does a wall hold more of a droplet that an obstacle from behind pushes.
+  scene = disc_on({140});
+  scene.walls = {side_wall(-1)};
+  EXPECT_EQ(scene.geometry().mechanism(), ClogMechanism::none);
+}
+
+/// In front of a narrow channel, two wedges at 45 degrees whose surfaces the disc touches.
+TEST(ClogGeometry, ADiscBetweenTheTipsOfTwoWedgesIsSqueezed) {
+  Scene scene = disc_on({});
+  const double r = 0.1, distance = 0.5 + r + 0.5 * range, across = 0.4;
+  const double ahead = std::sqrt(distance * distance - across * across);
+  for (const double side : {-1.0, 1.0})
+    scene.walls.push_back({.tip = {ahead, side * (across - r)},
+                           .axis = {0, side},
+                           .half_angle = std::numbers::pi / 4,
+                           .radius = r});
+  const ClogGeometry geometry = scene.geometry();
+  expect_counts(geometry, 0, 1, 2);
+  EXPECT_EQ(geometry.mechanism(), ClogMechanism::squeezed);
 }
 
 TEST(ClogGeometry, ADropletHangsOverAWholePost) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <span>
+#include <vector>
 
 #include "clog/core/droplet/droplet_state.hpp"
 #include "clog/core/droplet/hold.hpp"
@@ -10,14 +10,19 @@
 
 namespace clog {
 
+/// All obstacles that may touch a droplet, periodic images included, in the droplet's coordinates.
+struct Surroundings {
+  std::vector<Obstacle> circles;
+  std::vector<Wedge> walls;
+};
+
 /// How a droplet at rest lies among obstacles.
 /// @param position       counter-clockwise polygon, all x then all y [sigma]
-/// @param obstacles      all that may touch it, periodic images included, in the same coordinates
 /// @param contact_range  distance from an obstacle's surface at which contact begins [sigma]
 /// @param links_per_edge  the given polygon's edges for one edge of the droplet's mesh: 2 if it is refined
-ClogGeometry clog_geometry(const Eigen::ArrayXd& position, std::span<const Obstacle> obstacles,
-                           double contact_range, int links_per_edge = 1);
-/// The same for a droplet in a periodic array, from the interface that walls meet.
+ClogGeometry clog_geometry(const Eigen::ArrayXd& position, const Surroundings& around, double contact_range,
+                           int links_per_edge = 1);
+/// The same for a droplet in an array, from the interface that walls meet.
 /// @param dp  resolved
 ClogGeometry clog_geometry(const DropletState& state, const ObstacleArray& array, const DpParameters& dp);
 
