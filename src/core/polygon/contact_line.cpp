@@ -127,8 +127,11 @@ void ContactLine::find_ends(const VertexPlaces& vertices, const LocalFrame& fram
       return one.wall.x == circle.x && one.wall.y == circle.y;
     });
     Zone& zone = known == end ? ends.add_zone(circle) : *known;
-    for (unsigned bits = item.edges; bits != 0; bits &= bits - 1)
-      add_to(zone, vertices, Index{item.group} * WallContacts::edges_per_group + std::countr_zero(bits));
+    for (unsigned bits = item.edges; bits != 0; bits &= bits - 1) {
+      const Index i = Index{item.group} * WallContacts::edges_per_group + std::countr_zero(bits);
+      const Eigen::Vector2d away{vertices.x[i] - item.x, vertices.y[i] - item.y};
+      if (away.squaredNorm() < item.reach * item.reach) add_to(zone, vertices, i);
+    }
   }
   for (std::size_t k = 0; k < wedges_.size(); ++k) {
     const kernel::WedgePlace place = kernel::place_in(frame, wedges_[k]);

@@ -106,7 +106,7 @@ void DpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   if (wetted_walls_.is_on()) {
     wetted_walls_.find_forces(VertexPlaces(state), state.frame, state.anchors, wetting_);
     force += wetting_.gradient + wetting_.spreading;
-    spread += wetting_.net_spreading();
+    spread += wetting_.net_spreading;
   }
   if (dp_.gravity == Gravity::area) {
     // Tension and pressure add up to nothing; springs along the interface have no reaction on their

@@ -41,6 +41,7 @@ void DpStepper::load(const DropletState& state) {
   wedges_ = wedges_in(state.frame, forces_->wedges());
   sums_ = kernel_.measure(n_, arrays_);
   hold_.forget();
+  steps_to_rates_ = 0;
   open_step_ = 0;
 }
 
@@ -156,7 +157,20 @@ void DpStepper::push_off_everything(DropletState& droplet, const kernel::KickCoe
                             arrays_);
   if (forces_->wetted_walls().is_on()) add_wetting(droplet, impulse, work);
   if (slides) hold_by_friction(droplet, impulse, work);
-  if (!terms_.varying_rate) return;
+  if (terms_.varying_rate) renew_rates(coefficients);
+}
+
+/// The near-wall drag, which changes little while a vertex moves by a thousandth of its distance from a wall.
+void DpStepper::renew_rates(const kernel::KickCoefficients& coefficients) {
+  constexpr int steps_per_rates = 4;
+  const bool are_known =
+      steps_to_rates_ > 0 && coefficients.h1 == rates_for_.h1 && coefficients.h2 == rates_for_.h2;
+  if (are_known) {
+    --steps_to_rates_;
+    return;
+  }
+  steps_to_rates_ = steps_per_rates - 1;
+  rates_for_ = coefficients;
   const WallContacts& nearest = forces_->nearest_walls();
   kernel_.near_wall_rates(n_,
                           {.items = nearest.items().data(),
@@ -179,7 +193,7 @@ void DpStepper::add_wetting(DropletState& droplet, double impulse, Droplet::Work
   const WallYield yield = forces_->wetted_walls().follow_and_find_forces(
       {n_, arrays_.x, arrays_.y}, droplet.frame, droplet.anchors, wetting_);
   if (work != nullptr) work->dissipated += yield.dissipated;
-  wetting_spread_ = wetting_.net_spreading();
+  wetting_spread_ = wetting_.net_spreading;
   for (const int i : wetting_.vertices) {
     arrays_.wetting_x[i] = impulse * wetting_.spreading[i];
     arrays_.wetting_y[i] = impulse * wetting_.spreading[n_ + i];

@@ -57,16 +57,19 @@ class DpStepper {
   WallTouches touches_;
   WettedWalls::Forces wetting_;
   Eigen::ArrayXd friction_;              // on vertices, all x then all y; zero between steps
-  Eigen::Array2d wetting_spread_{0, 0};  // see WettedWalls::Forces::net_spreading()
+  Eigen::Array2d wetting_spread_{0, 0};  // see WettedWalls::Forces
   kernel::Sums sums_{};
-  double open_step_ = 0;      // length of the step whose last half kick is to come; 0: none is
-  Droplet::Work open_power_;  // at its beginning
+  int steps_to_rates_ = 0;                // for which the rates of the near-wall drag are kept
+  kernel::KickCoefficients rates_for_{};  // with these half steps
+  double open_step_ = 0;                  // length of the step whose last half kick is to come; 0: none is
+  Droplet::Work open_power_;              // at its beginning
 
   void push_off_circles(const kernel::Contact& touching, double impulse, Droplet::Work* work);
   void kick_and_drift(DropletState& droplet, const kernel::KickCoefficients& coefficients, double drift_time,
                       Droplet::Work* work);
   void push_off_everything(DropletState& droplet, const kernel::KickCoefficients& coefficients,
                            double impulse, Droplet::Work* work);
+  void renew_rates(const kernel::KickCoefficients& coefficients);
   void add_wetting(DropletState& droplet, double impulse, Droplet::Work* work);
   void hold_by_friction(DropletState& droplet, double impulse, Droplet::Work* work);
   double vertex_mass() const;  // that resists a change of speed

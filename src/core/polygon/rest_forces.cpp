@@ -53,7 +53,7 @@ void RestForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   force.setZero();
   if (const WettedWalls& walls = forces_->wetted_walls(); walls.is_on()) {
     walls.find_forces(VertexPlaces(state), state.frame, state.anchors, wetting_);
-    net_spreading = wetting_.net_spreading();
+    net_spreading = wetting_.net_spreading;
     force = wetting_.gradient + wetting_.spreading;
   }
   if (forces_->friction().is_on()) forces_->friction().add_forces(state, force);

@@ -34,13 +34,6 @@ WettedWalls::Forces::Forces(int num_vertices)
       spreading(gradient),
       of_vertices(static_cast<std::size_t>(num_vertices)) {}
 
-Eigen::Array2d WettedWalls::Forces::net_spreading() const {
-  const Eigen::Index n = spreading.size() / 2;
-  Eigen::Array2d sum{0, 0};
-  for (const int i : vertices) sum += Eigen::Array2d(spreading[i], spreading[n + i]);
-  return sum;
-}
-
 /// Forgets what was found before.
 void WettedWalls::Forces::clear() {
   const Eigen::Index n = gradient.size() / 2;
@@ -49,6 +42,7 @@ void WettedWalls::Forces::clear() {
     of_vertices[static_cast<std::size_t>(i)].is_listed = false;
   }
   vertices.clear();
+  net_spreading = {0, 0};
   for (const int i : near) {
     of_vertices[static_cast<std::size_t>(i)].share = {0, 0};
     of_vertices[static_cast<std::size_t>(i)].is_near = false;
@@ -73,7 +67,7 @@ void WettedWalls::Forces::list_vertices() {
       list(static_cast<int>(gradient_of_end.vertex));
 }
 
-/// Finds the wall next to each vertex.
+/// Finds the wall next to each vertex that a wall may wet.
 void WettedWalls::find_near(const VertexPlaces& vertices, const LocalFrame& frame, Forces& forces) const {
   const Eigen::Index n = vertices.size;
   const auto meet = [&](int i, double distance, const Eigen::Array2d& normal) {
@@ -88,7 +82,9 @@ void WettedWalls::find_near(const VertexPlaces& vertices, const LocalFrame& fram
     for (unsigned bits = item.edges; bits != 0; bits &= bits - 1) {
       const int i = item.group * WallContacts::edges_per_group + std::countr_zero(bits);
       const Eigen::Array2d away{vertices.x[i] - item.x, vertices.y[i] - item.y};
-      const double r = away.matrix().norm();
+      const double square = away.matrix().squaredNorm();
+      if (square >= item.reach * item.reach) continue;  // the wall does not wet it
+      const double r = std::sqrt(square);
       meet(i, r - (item.reach - contact_range_ - width_), away / r);
     }
   for (const Wedge& wedge : obstacles_->wedges()) {
@@ -144,6 +140,7 @@ void WettedWalls::spread(const VertexPlaces& vertices, Forces& forces) const {
     const Eigen::Array2d along = (here * chord).sum() / chord.square().sum() * chord;
     forces.spreading[i] = -along[0];
     forces.spreading[n + i] = -along[1];
+    forces.net_spreading -= along;
   }
 }
 

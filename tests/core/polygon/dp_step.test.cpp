@@ -53,24 +53,32 @@ class ReadableDroplet {
   WallTouches touches_;
   DropletState state_;
   Eigen::ArrayXd force_;
+  Eigen::ArrayXd rate_;  // of the drag on each vertex
+  int num_evaluations_ = 0;
 
   /// Walls that hold the droplet yield first.
   void find_forces() {
     if (forces_.has_anchors())
       forces_.let_walls_yield(state_, touches_, forces_.walls().items(), Purpose::motion);
     forces_.evaluate(state_, force_);
+    // That of the beginning, then of the first step's end and of every fourth after it.
+    if (num_evaluations_ == 0 || num_evaluations_ % 4 == 1) find_rates();
+    ++num_evaluations_;
+  }
+  void find_rates() {
+    const double far = units::gravity / run_.drag.terminal_speed;
+    rate_ = Eigen::ArrayXd::Constant(n_, far * run_.drag.relative);
+    if (run_.drag.near_wall > 0)
+      rate_ += far * run_.drag.near_wall * forces_.wall_distance().pow(-run_.drag.near_wall_exponent);
   }
   /// Deceleration by drag of vertices with these velocities.
   Eigen::ArrayXd drag(const Eigen::ArrayXd& v) {
     const double far = units::gravity / run_.drag.terminal_speed;
     const bool on_area = run_.dp.gravity == Gravity::area;
-    Eigen::ArrayXd rate = Eigen::ArrayXd::Constant(n_, far * run_.drag.relative);
-    if (run_.drag.near_wall > 0)
-      rate += far * run_.drag.near_wall * forces_.wall_distance().pow(-run_.drag.near_wall_exponent);
     const double to_mean = far * (on_area ? run_.drag.relative : run_.drag.relative - 1);
     Eigen::ArrayXd result(2 * n_);
-    result << to_mean * v.head(n_).mean() - rate * v.head(n_),
-        to_mean * v.tail(n_).mean() - rate * v.tail(n_);
+    result << to_mean * v.head(n_).mean() - rate_ * v.head(n_),
+        to_mean * v.tail(n_).mean() - rate_ * v.tail(n_);
     if (on_area) {
       const auto g = [this](Eigen::Index k) { return forces_.centroid_gradient().segment(k * n_, n_); };
       const double area_x = (g(0) * v.head(n_) + g(1) * v.tail(n_)).sum();

@@ -36,9 +36,10 @@ class WettedWalls {
     std::vector<int> vertices;  ///< on all others both forces are 0
     ContactLine::Ends ends;     ///< of wetted arcs
 
-    explicit Forces(int num_vertices);
     /// The net force of `spreading`. The liquid takes it: weight on the area is reduced by it.
-    Eigen::Array2d net_spreading() const;
+    Eigen::Array2d net_spreading{0, 0};
+
+    explicit Forces(int num_vertices);
 
    private:
     friend class WettedWalls;
