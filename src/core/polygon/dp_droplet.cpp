@@ -53,7 +53,7 @@ void DpDroplet::advance(int num_steps) {
       stepper_->store(state_);
       forces_.update_contacts(state_, travel);
     }
-    stepper_->look(state_, travel, work);
+    stepper_->look(state_, travel, now.speed, work);
     const int substeps = num_substeps(stiff_modes(run_.dp, *run_.wall_stiffness, now.perimeter, now.shortest),
                                       run_.time_step.value());
     stepper_->advance(state_, steps * substeps, run_.time_step.value() / substeps, work);

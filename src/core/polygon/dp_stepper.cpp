@@ -49,7 +49,8 @@ kernel::Survey DpStepper::survey() const {
   return kernel_.survey(n_, forces_->walls().reference(), forces_->self_contacts().reference(), arrays_);
 }
 
-void DpStepper::look(DropletState& state, const Travel& travel, Droplet::Work* work) {
+void DpStepper::look(DropletState& state, const Travel& travel, double speed, Droplet::Work* work) {
+  fastest_ = speed;
   kernel_.clear_pushes(n_, arrays_);  // the lists may name other groups than before
   // A contact accelerates the vertices in it, by at most half its depth per step, for a few steps. `travel`
   // does not include that.
@@ -160,16 +161,18 @@ void DpStepper::push_off_everything(DropletState& droplet, const kernel::KickCoe
   if (terms_.varying_rate) renew_rates(coefficients);
 }
 
-/// The near-wall drag, which changes little while a vertex moves by a thousandth of its distance from a wall.
+/// The near-wall drag. It is kept for a few steps, in which no vertex moves by more than a part of the
+/// smallest distance (docs/notes/2026-11-25-rates-of-near-wall-drag.md).
 void DpStepper::renew_rates(const kernel::KickCoefficients& coefficients) {
-  constexpr int steps_per_rates = 4;
+  constexpr double part = 0.2, most_steps = 4;
   const bool are_known =
       steps_to_rates_ > 0 && coefficients.h1 == rates_for_.h1 && coefficients.h2 == rates_for_.h2;
   if (are_known) {
     --steps_to_rates_;
     return;
   }
-  steps_to_rates_ = steps_per_rates - 1;
+  const double way = fastest_ * 2 * coefficients.half_step;  // of the fastest vertex in a step
+  steps_to_rates_ = static_cast<int>(std::min(most_steps, 1 + part * run_.drag.near_wall_cutoff / way)) - 1;
   rates_for_ = coefficients;
   const WallContacts& nearest = forces_->nearest_walls();
   kernel_.near_wall_rates(n_,

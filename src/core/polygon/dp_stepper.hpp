@@ -29,8 +29,8 @@ class DpStepper {
   /// Surveys the droplet as it is now, compared with where it was when contact lists were made.
   kernel::Survey survey() const;
   /// Selects from the contact lists what may touch before the next look(). The lists must hold until then.
-  /// @param state, work  as for advance()
-  void look(DropletState& state, const Travel& travel, Droplet::Work* work);
+  /// @param speed  of the fastest vertex; @param state, work  as for advance()
+  void look(DropletState& state, const Travel& travel, double speed, Droplet::Work* work);
   /// `steps` steps of `time_step`. The last half kick is left open: positions are those of the steps' end,
   /// velocities those of half a step before.
   /// @param state  the droplet that was loaded, of which walls' anchors are kept; positions and velocities
@@ -59,6 +59,7 @@ class DpStepper {
   Eigen::ArrayXd friction_;              // on vertices, all x then all y; zero between steps
   Eigen::Array2d wetting_spread_{0, 0};  // see WettedWalls::Forces
   kernel::Sums sums_{};
+  double fastest_ = 0;                    // speed of a vertex at the last look [sqrt(sigma g)]
   int steps_to_rates_ = 0;                // for which the rates of the near-wall drag are kept
   kernel::KickCoefficients rates_for_{};  // with these half steps
   double open_step_ = 0;                  // length of the step whose last half kick is to come; 0: none is

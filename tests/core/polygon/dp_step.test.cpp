@@ -54,15 +54,27 @@ class ReadableDroplet {
   DropletState state_;
   Eigen::ArrayXd force_;
   Eigen::ArrayXd rate_;  // of the drag on each vertex
-  int num_evaluations_ = 0;
+  double fastest_ = 0;   // vertex, when contacts were last looked at
+  int num_evaluations_ = 0, num_kept_ = 0;
 
   /// Walls that hold the droplet yield first.
   void find_forces() {
     if (forces_.has_anchors())
       forces_.let_walls_yield(state_, touches_, forces_.walls().items(), Purpose::motion);
     forces_.evaluate(state_, force_);
-    // That of the beginning, then of the first step's end and of every fourth after it.
-    if (num_evaluations_ == 0 || num_evaluations_ % 4 == 1) find_rates();
+    constexpr int steps_between_looks = 32;
+    if (num_evaluations_ % steps_between_looks == 0)
+      fastest_ =
+          std::sqrt((state_.velocity.head(n_).square() + state_.velocity.tail(n_).square()).maxCoeff());
+    // New at the beginning and at the first step's end, then kept for up to three steps, in which no vertex
+    // moves by more than a fifth of the smallest distance.
+    if (num_evaluations_ > 1 && num_kept_ > 0) {
+      --num_kept_;
+    } else {
+      find_rates();
+      const double way = fastest_ * *run_.time_step;
+      num_kept_ = static_cast<int>(std::min(3.0, 0.2 * run_.drag.near_wall_cutoff / way));
+    }
     ++num_evaluations_;
   }
   void find_rates() {
