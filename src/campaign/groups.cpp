@@ -48,7 +48,7 @@ std::vector<Doubt> doubts_about(const Group& group) {
     return doubts;
   }
   const bool has_runs = group.clogging.num_runs > 0;  // not if all ended before distances are counted
-  // Where all droplets passed the exit, the bound is what the device can tell.
+  // Where all droplets passed the exit, more seeds add nothing but a higher bound.
   const bool have_all_passed = group.num_passed == group.clogging.num_runs;
   if (has_runs && !have_all_passed && group.clogging.num_clogs < few) doubts.push_back(Doubt::few_clogs);
   if (group.num_flowing > 0) doubts.push_back(Doubt::censored_by_time);

@@ -226,7 +226,7 @@ std::vector<double> CommandLine::get_positives(const std::string& option) const 
   std::vector<double> values;
   if (!has(option)) return values;
   try {
-    for (const std::string& item : sweep::expand_list(get(option), ValueKind::number, {}))
+    for (const std::string& item : sweep::expand_values(get(option), ValueKind::number, {}))
       values.push_back(sweep::to_number(item));
   } catch (const Error& error) {
     throw Error(fmt::format("invalid --{}={} ({})", option, get(option), error.what()));

@@ -20,7 +20,9 @@ namespace {
 constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
 [[noreturn]] void refuse(const std::string& path, const std::string& reason) {
-  throw Error("cannot read " + path + " (" + reason + "); give a text file");
+  const bool is_missing = reason == std::strerror(ENOENT);
+  throw Error("cannot read " + path +
+              (is_missing ? " (no such file); check the name" : " (" + reason + "); give a text file"));
 }
 
 /// An open file, to be read without blocking: a pipe that nobody writes to must not keep a signal from ending

@@ -89,6 +89,11 @@ Laboratory laboratory_of(const Entries& entries) {
     throw Error(fmt::format("invalid angle={} (beyond 90 degrees)", entries.at("angle")));
   if (lab.experiment.droplet_density == lab.experiment.outer_density)
     throw Error("density and outer-density are equal: nothing drives the droplet");
+  constexpr double fastest = 10;
+  if (const double speed = lab.experiment.reduced_terminal_speed(); speed > fastest)
+    throw Error(
+        fmt::format("invalid speed={} (V_t = {:.3g}, of such a droplet, is above {}; is the unit right?)",
+                    entries.at("speed"), speed, fastest));
   for (const auto& [key, value] : entries) lab.text += fmt::format("{} = {}\n", key, value);
   return lab;
 }

@@ -20,7 +20,6 @@
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
-#include "clog/laboratory/scales.hpp"
 #include "clog/store/run_table.hpp"
 #include "clogfit_calibrate.hpp"
 #include "clogfit_compare.hpp"
@@ -28,6 +27,7 @@
 #include "clogfit_deviation.hpp"
 #include "clogfit_drag.hpp"
 #include "clogfit_units.hpp"
+#include "laboratory_option.hpp"
 
 namespace {
 
@@ -64,26 +64,6 @@ An experiment calls a droplet clogged if it has not moved for a waiting time. --
 advanced no farther than dwell-length (0.05 sigma by default) for longer than this time counts as clogged where it first
 did so, even if it moved on.
 )";
-
-/// The scale from --lab, or else from the sweep's own laboratory.
-std::optional<campaign::LaboratoryScale> laboratory_of(const cli::CommandLine& line,
-                                                       const store::SweepFile& sweep,
-                                                       const std::string& path) {
-  const std::string stored = campaign::attribute(sweep.provenance, "laboratory");
-  if (!line.has("lab") && stored.empty()) return std::nullopt;
-  const laboratory::Laboratory lab =
-      line.has("lab") ? laboratory::read_laboratory(line.get("lab"))
-                      : laboratory::parse_laboratory(stored, path + ", attribute laboratory,");
-  if (!stored.empty() && lab.text != stored)
-    std::cerr << "clogfit: " << line.get("lab") << " replaces the laboratory that is stored in " << path
-              << '\n';
-  constexpr double milli = 1e-3;
-  const laboratory::Scales scales = laboratory::scales_of(lab);
-  return campaign::LaboratoryScale{.length = scales.length / milli,
-                                   .time = scales.time,
-                                   .speed = scales.speed / milli,
-                                   .tension = scales.tension / milli};
-}
 
 int body(int argc, char** argv) {
   namespace po = boost::program_options;
@@ -123,7 +103,7 @@ int body(int argc, char** argv) {
         "no place for --dwell (droplets in a channel or on a wall have no clogging length) leave it out");
   const std::vector<campaign::Group> groups =
       campaign::group_runs(sweep.rows, confidence, from_distance, dwell);
-  const std::optional<campaign::LaboratoryScale> lab = laboratory_of(line, sweep, paths.front());
+  const std::optional<campaign::LaboratoryScale> lab = laboratory_scale(line, sweep, paths.front());
   const SharedParameters shared =
       line.has("all-parameters") ? SharedParameters::all : SharedParameters::unusual;
   std::cout << (format == "csv"    ? campaign::to_csv(groups, lab)

@@ -4,6 +4,7 @@
 
 #include <iostream>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,10 +14,12 @@
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/console/exit_codes.hpp"
+#include "clog/console/rounded.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/store/run_table.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "laboratory_option.hpp"
 
 namespace clog::programs {
 namespace {
@@ -67,7 +70,9 @@ int clogfit_curve(int argc, const char* const* argv) {
       "crossing", text(), "lengths that the curve may cross [sigma]")("format", text()->default_value("text"),
                                                                       "text, csv or json")(
       "confidence", text()->default_value("0.95"), "of the intervals")(
-      "from-distance", text(), "see clogfit --help [sigma]")("dwell", text(), "see clogfit --help [t0]");
+      "from-distance", text(), "see clogfit --help [sigma]")("dwell", text(), "see clogfit --help [t0]")(
+      "lab", text(),
+      "file that describes the laboratory, see clogfit units; its units are told below the curve");
   line.add_positional("file", -1);
   line.parse(argc - 1, argv + 1);
   if (cli::answer_help_or_version(line, {{"HDF5", store::library_version()}})) return console::exit_success;
@@ -90,9 +95,13 @@ int clogfit_curve(int argc, const char* const* argv) {
     throw Error(
         "no place for --crossing (a surface over two keys crosses a length along lines); give one --key");
   const std::vector<campaign::FittedCurve> curves = campaign::fit_curves(groups, question);
+  const std::optional<campaign::LaboratoryScale> lab = laboratory_scale(line, sweep, paths.front());
   std::cout << (format == "csv"    ? campaign::curves_to_csv(curves, question)
                 : format == "json" ? campaign::curves_to_json(curves, groups, question)
                                    : campaign::curves_to_text(curves, groups, question));
+  if (lab && format == "text")
+    fmt::print("in the laboratory: sigma = {} mm, Gamma = 1 is {} mN/m\n", console::plain(lab->length),
+               console::plain(lab->tension));
   return console::exit_success;
 }
 

@@ -3,7 +3,10 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <iostream>
+#include <string>
 
+#include "clog/campaign/stored_sweep.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/laboratory/lab_file.hpp"
 #include "clog/laboratory/scales.hpp"
@@ -22,6 +25,25 @@ void refuse_other_droplets(const cli::CommandLine& line) {
     if (circles.droplet() && std::abs(*circles.droplet() / diameter - 1) > rounding)
       throw Error(fmt::format("{} has a droplet of {:.4g} um, {} one of {:.4g} um; correct one of them",
                               line.get("lab"), diameter / micro, file, *circles.droplet() / micro));
+}
+
+std::optional<campaign::LaboratoryScale> laboratory_scale(const cli::CommandLine& line,
+                                                          const store::SweepFile& sweep,
+                                                          const std::string& path) {
+  const std::string stored = campaign::attribute(sweep.provenance, "laboratory");
+  if (!line.has("lab") && stored.empty()) return std::nullopt;
+  const laboratory::Laboratory lab =
+      line.has("lab") ? laboratory::read_laboratory(line.get("lab"))
+                      : laboratory::parse_laboratory(stored, path + ", attribute laboratory,");
+  if (!stored.empty() && lab.text != stored)
+    std::cerr << "clogfit: " << line.get("lab") << " replaces the laboratory that is stored in " << path
+              << '\n';
+  constexpr double milli = 1e-3;
+  const laboratory::Scales scales = laboratory::scales_of(lab);
+  return campaign::LaboratoryScale{.length = scales.length / milli,
+                                   .time = scales.time,
+                                   .speed = scales.speed / milli,
+                                   .tension = scales.tension / milli};
 }
 
 }  // namespace clog::programs

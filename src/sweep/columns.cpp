@@ -300,7 +300,7 @@ std::vector<Column> make_columns() {
       member("num_wrapped", &RunRow::num_wrapped, result, "",
              "touched obstacles that the clogged polygon hangs over, otherwise 0; -1: not known"),
       member("num_gaps", &RunRow::num_gaps, result, "",
-             "gaps between supporting obstacles that it looks into; -1: not known"),
+             "gaps that it looks into, at least one side of which supports it; -1: not known"),
       member("num_arcs", &RunRow::num_arcs, result, "", "arcs of contact; -1: not known"),
       member(
           "mesh_hold", &RunRow::mesh_hold, result, "",

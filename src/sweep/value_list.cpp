@@ -134,13 +134,19 @@ std::string question_of_comma(std::string_view text) {
 
 }  // namespace
 
-std::vector<std::string> expand_list(std::string_view text, ValueKind kind,
-                                     const std::vector<std::string>& words) {
+std::vector<std::string> expand_values(std::string_view text, ValueKind kind,
+                                       const std::vector<std::string>& words) {
   std::vector<std::string> values;
   for (const std::string_view item : split(trimmed(text))) {
     for (std::string& value : expand_item(item, kind, words)) values.push_back(std::move(value));
     if (std::ssize(values) > longest_list) throw Error("has more than a million values in all");
   }
+  return values;
+}
+
+std::vector<std::string> expand_list(std::string_view text, ValueKind kind,
+                                     const std::vector<std::string>& words) {
+  std::vector<std::string> values = expand_values(text, kind, words);
   std::vector<std::string> sorted = values;
   std::sort(sorted.begin(), sorted.end());
   if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end())

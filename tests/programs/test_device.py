@@ -383,6 +383,8 @@ class WrongDrawings(Analysis):
                 self.dxf(unit, outlines=[edge, post])
                 self.refuse("--as-rows", *options, words=words)
                 self.assertFalse((self.folder / "posts.png").exists())
+        self.dxf(circles=[(800, 300), (800, 900)], outlines=[box(0, -20, 3600, 0), box(0, 1200, 3600, 1220)])
+        self.refuse_analysis("circles", "device.dxf", "--droplet", "0.2m", "--output", "posts", words=["0.018 by 0.0062 droplet diameters"])
         self.dxf(outlines=[box(0, 0, 36e4, 36e4), box(1e4, 1e4, 35e4, 35e4)])
         self.refuse("--as-rows", "--corner", "0.01", words=["circles (at most 200000)", "--corner"])
         self.write("device.svg", SVG.format('<circle cx="800" cy="300" r="50"/>').replace('width="3.6mm" height="1.2mm"', ""))
@@ -439,7 +441,8 @@ class WrongDrawings(Analysis):
     def test_without_an_edge_there_is_room_around_the_posts(self):
         self.dxf(circles=[(800, 300), (1600, 300), (1200, 900)])
         told = self.draw("circles", "device.dxf", *self.COMMAND).stdout
-        self.assertIn("no edge is drawn: the device ends half a droplet diameter beyond the posts on every side", told)
+        self.assertIn("no edge is drawn: the device ends half a droplet diameter beyond the posts on every side; leave out side-walls=on", told)
+        self.assertNotIn("to a side", told)
         self.assertIn("box=4.5", self.run_printed(told))
         self.assertIn("length=5.5", told)
         np.testing.assert_allclose(np.loadtxt(self.folder / "posts.csv", delimiter=",", skiprows=4)[0], (150, 150, 100))
@@ -449,7 +452,9 @@ class WrongDrawings(Analysis):
         self.dxf(circles=[(800, 300), (800, 900)], outlines=[*walls, post])
         told = self.draw("circles", "device.dxf", *self.COMMAND, "--as-rows").stdout
         self.assertIn("2 outlines or lines as long as the device are taken for walls: side-walls=on", told)
-        self.assertIn("3 posts, device 18 x 6", told)
+        self.assertIn("3 posts, device 18 x 6 droplet diameters (between its walls)", told)
+        self.assertNotIn("no edge is drawn", told)
+        self.assertIn(", to a side 1.25 (250 um), in droplet diameters", told)
         self.assertIn("side-walls=on", self.run_printed(told))
         self.dxf(circles=[(800, 300), (800, 900)], outlines=[box(0, -20, 3600, 1200), walls[0]])
         told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "one").stdout

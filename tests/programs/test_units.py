@@ -62,6 +62,7 @@ class Units(ProgramTest):
         self.assertAlmostEqual(upright, self.units("upright.cfg", "--line-tension", 0.1)["given"]["tension_mN_per_m"])
         given = self.units(lab, "--line-tension", "0.05,0.2", "--length", "2,3")["given"]
         self.assertEqual(given["length_mm"], [7.0, 10.5])
+        self.assertEqual(self.units(lab, "--length", "2,3,2")["given"]["length_mm"], [7.0, 10.5, 7.0])
         self.assertIsNone(given["angle_degrees"][0])
         self.assertAlmostEqual(given["angle_degrees"][1], 24.0, delta=0.5)
         self.assertEqual(clogsweep.units(self.folder / lab, length=[2, 3], folder=BIN)["given"]["length_mm"], [7.0, 10.5])
@@ -74,8 +75,10 @@ class Units(ProgramTest):
         self.refuse("clogfit", "units", lab, "--length", "1,-2", words=["--length=1,-2", "positive"])
         self.refuse("clogfit", "units", lab, "--length", "1,x", words=["--length=1,x", "x"])
 
-    def test_a_droplet_of_unlikely_size_is_refused(self):
+    def test_a_droplet_of_unlikely_size_or_speed_is_refused(self):
         self.refuse("clogfit", "units", self.lab("0.2 m"), words=["diameter=0.2 m", "wider than 0.1 m", "unit"])
+        self.refuse("clogfit", "units", self.lab("200 um", speed="1 m/s"), words=["speed=1 m/s", "V_t = ", "unit"])
+        self.refuse("clogfit", "units", "nowhere.cfg", words=["cannot read nowhere.cfg (no such file); check the name"])
 
     def test_a_nearly_rigid_droplet_gets_advice(self):
         self.assertNotIn("rigid", self.succeed("clogfit", "units", self.lab()).stdout)
@@ -125,6 +128,8 @@ class Units(ProgramTest):
             self.assertAlmostEqual(file["runs"]["terminal_speed"][0] / known["terminal_speed"], 1, places=3)
         self.succeed("clogsweep", "--lab", lab, *QUICK, "seeds=1..5", "--output", "s.h5")  # grows
         self.succeed("clogsweep", "verify", "s.h5")
+        self.refuse("clogsweep", "--lab", self.lab(angle="90 deg", name="upright.cfg"), *QUICK, "seeds=1..6", f"terminal-speed={known['terminal_speed']:.4g}",
+                    f"line-tension={known['line_tension']:.4g}", "--output", "s.h5", words=["another laboratory: angle = 90 deg (file: angle = 28 deg)", "--output"])
         fit = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)
         group, = fit["groups"]
         self.assertAlmostEqual(fit["laboratory"]["length_mm"], 3.5)

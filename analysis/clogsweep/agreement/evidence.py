@@ -57,7 +57,7 @@ def falls(curve: Sequence[Group], is_less: Callable[[Group, Group], bool]) -> bo
 
 
 def trend(is_as_published: bool, is_opposite: bool) -> str:
-    """The verdict on one curve: it has clear steps as published, opposite ones, or both."""
+    """The verdict on a curve, or on two points: clear differences are as published, opposite, both, or absent."""
     return (IN_KIND if is_opposite else AGREES) if is_as_published else DOES_NOT if is_opposite else NOT_KNOWN
 
 

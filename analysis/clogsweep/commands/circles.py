@@ -87,14 +87,16 @@ def call_of(device: shapes.Device, output: pathlib.Path) -> str:
 
 def told(device: shapes.Device, drawing: shapes.Drawing) -> list[str]:
     """Describes in words what was read from the drawing."""
-    edge = "its own edge" if device.has_frame else "no edge is drawn"
+    edge = "its own edge" if device.has_frame else "between its walls" if len(device.walls) == 2 else "no edge is drawn"
+    micrometres = device.droplet_metres / shapes.METRES["um"]
     words = [f"{rounded.counted(device.num_posts(), 'post')}, device {device.length:.4g} x {device.width:.4g} droplet diameters ({edge})"]
     if len(device.circles):
         diameters = device.circles[:, 2]
-        gap = f", smallest gap {device.smallest_gap():.4g}" if device.num_posts() > 1 else ""
+        gaps = [("smallest gap", device.smallest_gap()), ("to a side", device.gap_to_sides() if device.has_frame or device.walls else np.inf)]
+        gap = "".join(f", {name} {gap:.4g} ({gap * micrometres:.4g} um)" for name, gap in gaps if np.isfinite(gap))
         words.append(f"diameters of circles {diameters.min():.4g} to {diameters.max():.4g}{gap}, in droplet diameters")
-    if not device.has_frame:
-        words.append("no edge is drawn: the device ends half a droplet diameter beyond the posts" + (", or where a wall ends" if device.walls else " on every side"))
+    if not device.has_frame and len(device.walls) < 2:
+        words.append("no edge is drawn: the device ends half a droplet diameter beyond the posts" + (", or where a wall ends" if device.walls else " on every side; leave out side-walls=on if it has no walls"))
     if number := len(device.walls):
         are = "outline or line as long as the device is taken for a wall" if number == 1 else "outlines or lines as long as the device are taken for walls"
         words.append(f"{number} {are}: side-walls=on")
@@ -149,7 +151,9 @@ def body() -> int:
                         "was written. Use --as-rows for rows of circles along their outlines, --as-circles for circles of the same area, or a larger --tolerance")
     if touching := device.overlaps():
         x, y, _ = device.circles[touching[0][0]]
-        raise UserError(f"{rounded.counted(len(touching), 'pair')} of posts touch, the first at x={x:.4g}, y={y:.4g} in droplet diameters; no {table} was written. "
+        micrometres = device.droplet_metres / shapes.METRES["um"]
+        raise UserError(f"{rounded.counted(len(touching), 'pair')} of posts touch, the first at x={x:.4g}, y={y:.4g} in droplet diameters "
+                        f"({x * micrometres:.5g} um, {y * micrometres:.5g} um from the device's lower left corner); no {table} was written. "
                         "Separate them in the drawing")
     outside = device.circles[np.any((device.circles[:, :2] < 0) | (device.circles[:, :2] >= (device.length, device.width)), axis=1)]
     if len(outside):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import sys
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from .shapes import Device
 SPACING = 1 / 3  # of a row's circles, over their radius: the wall is rough by 1.4 % of the radius
 SMALLEST_VOID = 0.35  # radius of what may be left empty inside a post, where no droplet fits [sigma]
 MOST_FILLERS = 100
-MOST_CIRCLES = 200000
+MOST_CIRCLES, MANY_CIRCLES = 200000, 20000
 
 
 def shapely(part: str) -> Any:
@@ -69,6 +70,8 @@ def refuse_too_many(all_cores: list[list[tuple[Any, float]]]) -> None:
     number = sum(core.exterior.length / (SPACING * radius) for of_part in all_cores for core, radius in of_part)
     if number > MOST_CIRCLES:
         raise UserError(f"--as-rows needs {number:.2g} circles (at most {MOST_CIRCLES}); give a larger --corner, or check --unit and --droplet")
+    if number > MANY_CIRCLES:
+        print(f"--as-rows makes about {number:.2g} circles, which takes minutes; a larger --corner makes fewer, and so does the right --droplet", file=sys.stderr)
 
 
 def parts(shape: Any) -> list[Any]:

@@ -86,6 +86,18 @@ class Device:
                 touching.setdefault(frozenset((posts[first], posts[first + step])), (min(pair), max(pair)))
         return float(narrowest), sorted(touching.values())
 
+    def gap_to_sides(self) -> float:
+        """The narrowest gap between a post and a side of the device; infinite where all posts overlap a side."""
+        x, y, diameter = self.circles.T
+        gaps = np.concatenate([y, self.width - y]) - np.tile(diameter / 2, 2)
+        return float(gaps.min(initial=np.inf, where=gaps > 0))
+
+    def drawn_size(self) -> Numbers:
+        """Length and width of what is drawn: the frame, or else posts and walls without a margin."""
+        if self.has_frame:
+            return np.array([self.length, self.width])
+        return np.ptp(np.vstack([surroundings(self.circles, self.others), *self.walls]), axis=0)
+
     def num_posts(self) -> int:
         return len(self.circles) if self.post_of is None else len(np.unique(self.post_of))
 
@@ -117,11 +129,12 @@ def refuse_unlikely(device: Device, unit: str, metres: float, remedy: str, is_pi
     @throws UserError  if the device is too large or too small for such droplets"""
     if is_likely(device.length, device.width):
         return
+    drawn = device.drawn_size()
     better = ""
     for name in () if is_picture else ("um", "mm"):
-        length, width = (size * METRES[name] / metres for size in (device.length, device.width))
+        length, width = drawn * METRES[name] / metres
         better += f", in {name} it would be {length:.2g} by {width:.2g}" if is_likely(length, width) else ""
-    raise UserError(f"the device is {device.length:.2g} by {device.width:.2g} droplet diameters (the drawing's unit is {unit}{better}); {remedy}, or check --droplet")
+    raise UserError(f"the device is {drawn[0]:.2g} by {drawn[1]:.2g} droplet diameters (the drawing's unit is {unit}{better}); {remedy}, or check --droplet")
 
 
 def along_edges(outline: Numbers, is_closed: bool) -> Numbers:

@@ -143,7 +143,7 @@ def ways_of(place: Place, sweep: pathlib.Path, clogrun: pathlib.Path, number: in
 
 def shown_parts(place: Place, groups: Groups, sweep: pathlib.Path, clogrun: pathlib.Path, num_lines: int, num_mapped: int, jobs: int) -> tuple[list[Part], int]:
     """Those parameter sets that have a panel, with their ways, and the number of all. @param num_lines, num_mapped  runs of each panel drawn
-    as lines, and behind its map. Of more than MOST_PANELS, a line says that some are left out. @throws UserError  if no run has ended"""
+    as lines, and behind its map. Prints a line if some are left out. @throws UserError  if no run has ended"""
     every = place.parts(groups)
     if not every:
         raise UserError(f"no run among the circles of {place.name} has ended; let the sweep finish some first")

@@ -81,7 +81,7 @@ def understood(device: Device, source: str) -> Figure:
     for outline in device.others:
         axes.add_patch(Polygon(outline, facecolor=RED, edgecolor="black", linewidth=0.5))
     for outline in device.replaced:
-        axes.add_patch(Polygon(outline, facecolor=style.OBSTACLE, edgecolor=RED, linewidth=0.5))
+        axes.add_patch(Polygon(outline, fill=False, edgecolor=RED, linewidth=0.5))
     for outline in device.walls:
         axes.add_patch(Polygon(outline, closed=False, facecolor=style.OBSTACLE, edgecolor=style.OBSTACLE))
     for _, line in device.lines:

@@ -359,6 +359,14 @@ def settings(config: str) -> str:
     return "\n".join(line for line in config.split("\n") if not (own_circles and line.partition(" = ")[0] in RANDOM_ARRAYS))
 
 
+def laboratory_of(groups: Groups, about: dict[str, str]) -> list[str]:
+    """What the laboratory's units are, and the stored file that describes it."""
+    if not groups.laboratory:
+        return []
+    units = ", ".join(f"{name.replace('_', ' ')} {rounded.plain(value)}" for name, value in groups.laboratory.items() if value is not None)
+    return [f"laboratory: {'; '.join(about.get('laboratory', 'of --lab').split(chr(10))).rstrip('; ')} ({units})"]
+
+
 def page(name: str, groups: Groups, sections: dict[str, str], progress: str, about: dict[str, str], charts: Charts, fitted_by: str) -> str:
     """@param sections  contents by title; @param charts  that they hold; @param fitted_by  version of clogfit"""
     def part(ending: str) -> str:
@@ -370,7 +378,7 @@ def page(name: str, groups: Groups, sections: dict[str, str], progress: str, abo
         progress=html.escape(f"{progress}, {rounded.counted(len(groups.members), 'point')}"),
         meaning=passages.kind_of(groups).about if groups.are_passages else LENGTHS,
         sections="\n".join(f"<h2>{title}</h2>{content}" for title, content in sections.items() if content),
-        provenance=html.escape("\n".join([*(f"{key}: {about[key]}" for key in PROVENANCE if key in about), f"fitted by clogfit {fitted_by}"])),
+        provenance=html.escape("\n".join([*(f"{key}: {about[key]}" for key in PROVENANCE if key in about), *laboratory_of(groups, about), f"fitted by clogfit {fitted_by}"])),
         config=html.escape(settings(about.get("config", ""))))
 
 

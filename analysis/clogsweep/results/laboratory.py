@@ -6,13 +6,13 @@ import json
 import os
 import pathlib
 import tempfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..reading import programs
 from ..tools.errors import UserError
 
-OneOrMore = float | Iterable[float] | None
+OneOrMore = float | Sequence[float] | None
 
 
 def units(lab: str | os.PathLike[str] | Mapping[str, str], *, length: OneOrMore = None, time: OneOrMore = None, line_tension: OneOrMore = None,
@@ -20,12 +20,14 @@ def units(lab: str | os.PathLike[str] | Mapping[str, str], *, length: OneOrMore 
     """The answer of `clogfit units` as numbers.
 
     @param lab  a file, or its lines, such as {"diameter": "3.5 mm", "angle": "28 deg", "tension": "9.6 mN/m", "speed": "7 mm/s"}
-    @param length, time, line_tension, terminal_speed, wall_stiffness  of the model, one or more to be converted: as many stand under "given"
+    @param length, time, line_tension, terminal_speed, wall_stiffness  of the model, to be converted: under "given" stands a number, or a list if there are several
     @param folder  of the programs
     @throws UserError  for what `lab` may not hold; ProgramFailed
     """
+    import numpy as np
+
     numbers = {"--length": length, "--time": time, "--line-tension": line_tension, "--terminal-speed": terminal_speed, "--wall-stiffness": wall_stiffness}
-    options = [word for name, value in numbers.items() if value is not None for word in (name, ",".join(repr(float(one)) for one in (value if isinstance(value, Iterable) else [value])))]
+    options = [word for name, value in numbers.items() if value is not None for word in (name, ",".join(repr(float(one)) for one in np.atleast_1d(value)))]
     clogfit = programs.programs_in(folder) / "clogfit"
     if not isinstance(lab, Mapping):
         return json.loads(programs.run_program(clogfit, "units", os.fspath(lab), *options, "--format", "json"))

@@ -25,7 +25,8 @@ def refuse_unwritable(path: pathlib.Path, kind: str, *inputs: pathlib.Path) -> N
     if any(path.exists() and source.exists() and path.samefile(source) for source in inputs):
         raise UserError(f"will not overwrite {path} (it is an input); give another --output")
     if path.is_file() and not is_of_kind(path, kind):
-        raise UserError(f"will not overwrite {path} (it is no {kind.upper()} file); give another --output, or remove it first")
+        reason = "it was not made by this command" if kind == "csv" else f"it is no {kind.upper()} file"
+        raise UserError(f"will not overwrite {path} ({reason}); give another --output, or remove it first")
 
 
 def is_of_kind(path: pathlib.Path, kind: str) -> bool:

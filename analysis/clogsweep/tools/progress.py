@@ -9,7 +9,7 @@ Item = TypeVar("Item")
 
 
 def readable_duration(seconds: float) -> str:
-    """In seconds as long as whole minutes would jump, as clogsweep shows it."""
+    """As clogsweep shows it: whole minutes alone would jump."""
     if seconds < 119.5:
         return f"{seconds:.0f} s"
     whole = round(seconds)

@@ -18,6 +18,9 @@ namespace clog::sweep {
 /// @throws Error, without the key's name, that says what is wrong with which item
 std::vector<std::string> expand_list(std::string_view text, ValueKind kind,
                                      const std::vector<std::string>& words);
+/// The same where values may repeat.
+std::vector<std::string> expand_values(std::string_view text, ValueKind kind,
+                                       const std::vector<std::string>& words);
 
 using clog::shortest;
 

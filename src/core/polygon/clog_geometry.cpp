@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "clog/core/droplet/shape.hpp"
@@ -73,8 +74,9 @@ bool hangs_over(const Polygon& polygon, const Post& post) {
 struct Touched {
   double support = 0;
   bool is_wrapped = false;
-  bool is_several_circles = false;
-  double longest_link = 0;  ///< that touches it, over the radius at which it lies; a wall has no corners
+  std::vector<Obstacle> circles;  ///< of a post
+  std::optional<Wedge> wall;
+  double longest_link = 0;  ///< that touches it, over the radius at which it lies; 0 for walls
 };
 
 /// Which obstacle each edge touches, the one that it overlaps most; -1 for none.
@@ -84,7 +86,7 @@ class Contacts {
       : range_(range), of_edge_(static_cast<std::size_t>(polygon.size()), -1), deepest_(of_edge_.size(), 0) {}
 
   void add_post(const Polygon& polygon, const Post& post) {
-    Touched touched{.is_several_circles = post.circles.size() > 1};
+    Touched touched{.circles = post.circles, .wall = {}};
     bool is_touched = false;
     for (const Obstacle& circle : post.circles) {
       const Eigen::Array2d centre{circle.x, circle.y};
@@ -105,7 +107,7 @@ class Contacts {
   }
 
   void add_wall(const Polygon& polygon, const Wedge& wall) {
-    Touched touched;
+    Touched touched{.circles = {}, .wall = wall};
     bool is_touched = false;
     for (Eigen::Index i = 0; i < polygon.size(); ++i) {
       const Eigen::Array2d begin = polygon.vertex(i), end = polygon.vertex(polygon.next(i));
@@ -133,7 +135,7 @@ class Contacts {
   std::vector<int> of_edge_;
   std::vector<double> deepest_;
 
-  /// Does the edge touch the obstacle that touched_ gets next? Then it pushes the droplet along the flow.
+  /// Does the edge touch the obstacle that touched_ gets next? If so, adds its push along the flow.
   bool take(Eigen::Index edge, double overlap, double push, Touched& obstacle) {
     if (overlap <= 0) return false;
     obstacle.support -= push;
@@ -144,6 +146,15 @@ class Contacts {
     return true;
   }
 };
+
+/// Is there no gap between the two, because a post overlaps a wall?
+bool overlap(const Touched& one, const Touched& other) {
+  if (!one.wall) return other.wall && overlap(other, one);
+  return std::ranges::any_of(other.circles, [&](const Obstacle& circle) {
+    const Eigen::Array2d from_centre = Eigen::Array2d(circle.x, circle.y) - one.wall->centre();
+    return distance_to(*one.wall, from_centre).distance < circle.radius;
+  });
+}
 
 /// A run of successive edges that touch the same obstacle, counter-clockwise. On a post of several circles,
 /// edges between two of them do not end it.
@@ -163,7 +174,7 @@ std::vector<Arc> find_arcs(const Polygon& polygon, const Contacts& contacts) {
     arcs.push_back({of_edge[i], i, last});
   }
   const auto are_one = [&](const Arc& from, const Arc& to) {
-    return from.obstacle == to.obstacle && contacts.touched()[from.obstacle].is_several_circles;
+    return from.obstacle == to.obstacle && contacts.touched()[from.obstacle].circles.size() > 1;
   };
   std::vector<Arc> joined;
   for (const Arc& arc : arcs) {
@@ -207,6 +218,7 @@ ClogGeometry clog_geometry(const Eigen::ArrayXd& position, const Surroundings& a
     const Arc& from = arcs[i];
     const Arc& to = arcs[(i + 1) % arcs.size()];
     if (from.obstacle == to.obstacle) continue;
+    if (overlap(contacts.touched()[from.obstacle], contacts.touched()[to.obstacle])) continue;
     // One side may push across the flow only, or a little downstream, and is a side of the gap all the same.
     const std::vector<Touched>& touched = contacts.touched();
     if (std::max(touched[from.obstacle].support, touched[to.obstacle].support) <= 0) continue;

@@ -60,7 +60,7 @@ class DpStepper {
   Eigen::Array2d wetting_spread_{0, 0};  // see WettedWalls::Forces
   kernel::Sums sums_{};
   double fastest_ = 0;                    // speed of a vertex at the last look [sqrt(sigma g)]
-  int steps_to_rates_ = 0;                // for which the rates of the near-wall drag are kept
+  int steps_to_rates_ = 0;                // left with the present rates of near-wall drag
   kernel::KickCoefficients rates_for_{};  // with these half steps
   double open_step_ = 0;                  // length of the step whose last half kick is to come; 0: none is
   Droplet::Work open_power_;              // at its beginning

@@ -138,6 +138,21 @@ TEST(ClogGeometry, ADiscBetweenAnObstacleAndASideWallIsSqueezed) {
   }
 }
 
+TEST(ClogGeometry, ThereIsNoGapBetweenAWallAndAPostThatOverlapsIt) {
+  for (const double side : {-1.0, 1.0}) {
+    Scene apart = disc_on({side * 10}), overlapping = disc_on({side * 40});
+    apart.walls = overlapping.walls = {side_wall(side)};
+    expect_counts(apart.geometry(), 0, 1, 2);
+    expect_counts(overlapping.geometry(), 0, 0, 2);
+    EXPECT_EQ(overlapping.geometry().mechanism(), ClogMechanism::none);
+    // Another circle joins the post to the wall.
+    const Obstacle circle = apart.obstacles[0];
+    apart.obstacles.push_back({circle.x + 0.1, circle.y + side * 0.1, 0.2});
+    apart.obstacles.push_back({circle.x + 0.15, circle.y + side * 0.25, 0.2});
+    expect_counts(apart.geometry(), 0, 0, 2);
+  }
+}
+
 TEST(ClogGeometry, WallsAloneHoldNothing) {
   Scene scene = disc_on({});
   scene.walls = {side_wall(-1), side_wall(1)};
@@ -145,7 +160,7 @@ TEST(ClogGeometry, WallsAloneHoldNothing) {
   expect_counts(geometry, 0, 0, 2);
   EXPECT_TRUE(std::isnan(geometry.wrapped_support));
   EXPECT_EQ(geometry.mechanism(), ClogMechanism::none);
-  // Nor does a wall hold more of a droplet that an obstacle from behind pushes.
+  // An obstacle from behind supports nothing either.
   scene = disc_on({140});
   scene.walls = {side_wall(-1)};
   EXPECT_EQ(scene.geometry().mechanism(), ClogMechanism::none);
@@ -249,6 +264,26 @@ TEST(ClogGeometry, IsTheSameWhereverTheDropletIs) {
     const ClogGeometry found = clog_geometry(state, array, as_it_is);
     expect_counts(found, expected.num_wrapped, expected.num_gaps, expected.num_arcs);
     EXPECT_NEAR(found.wrapped_support, expected.wrapped_support, 1e-9);
+  }
+}
+
+TEST(ClogGeometry, FindsWallsWhereverTheDropletIs) {
+  Scene scene = disc_on({-40});
+  scene.walls = {side_wall(1)};
+  DpParameters as_it_is;
+  as_it_is.wall_contact = WallContact::vertex;
+  as_it_is.contact_range = range;
+  for (const Eigen::Array2d& place : {Eigen::Array2d(10, 10), Eigen::Array2d(0.05, 3)}) {
+    std::vector<Obstacle> moved = scene.obstacles;
+    for (Obstacle& obstacle : moved) obstacle.x += place[0], obstacle.y += place[1];
+    std::vector<Wedge> walls = scene.walls;
+    walls[0].tip += place;
+    const ObstacleArray array(Period{20, 1}, moved, walls);
+    DropletState state = test::state_of(scene.position);
+    state.frame.origin = place;
+    const ClogGeometry found = clog_geometry(state, array, as_it_is);
+    expect_counts(found, 0, 1, 2);
+    EXPECT_EQ(found.mechanism(), ClogMechanism::squeezed);
   }
 }
 

@@ -24,7 +24,7 @@ struct ClogGeometry {
   int num_wrapped = 0;  ///< touched obstacles that the droplet hangs over
   /// Pairs of obstacles, one at least supporting, between which the interface looks downstream.
   int num_gaps = 0;
-  int num_arcs = 0;  ///< runs of successive edges in contact with one obstacle
+  int num_arcs = 0;  ///< runs of successive edges in contact with one obstacle, a post or a wall
   /// Part of the weight that the corners of the polygon can hold at most: of all wrapped obstacles, their
   /// part of the support times x^2/16, x the longest edge on the obstacle over the radius at which it lies.
   /// NaN without support.
