@@ -100,8 +100,8 @@ int clogfit_curve(int argc, const char* const* argv) {
                 : format == "json" ? campaign::curves_to_json(curves, groups, question)
                                    : campaign::curves_to_text(curves, groups, question));
   if (lab && format == "text")
-    fmt::print("in the laboratory: sigma = {} mm, Gamma = 1 is {} mN/m\n", console::plain(lab->length),
-               console::plain(lab->tension));
+    std::cout << fmt::format("in the laboratory: sigma = {} mm, Gamma = 1 is {} mN/m\n",
+                             console::plain(lab->length), console::plain(lab->tension));
   return console::exit_success;
 }
 

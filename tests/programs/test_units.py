@@ -163,6 +163,11 @@ class Units(ProgramTest):
         self.assertIn("lambda/mm", told)
         self.assertNotIn("tension/(mN/m)", told)
 
+    def test_a_curve_tells_the_units_of_its_laboratory(self):
+        self.succeed("clogsweep", "--lab", self.lab(), *QUICK, "line-tension=0.5,1,2", "seeds=1..3", "--output", "s.h5")
+        gamma = self.units("lab.cfg")["tension_mN_per_m_of_gamma_1"]
+        self.assertIn(f"in the laboratory: sigma = 3.50 mm, Gamma = 1 is {rounded.plain(gamma)} mN/m", self.succeed("clogfit", "curve", "s.h5").stdout)
+
     def test_a_run_of_a_laboratory_is_told_in_its_units(self):
         lab = self.lab()
         known = self.units(lab)
