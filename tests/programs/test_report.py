@@ -112,7 +112,9 @@ class Lengths(Browser):
             group = self.group(float(shown["obstacle gap"]), float(shown["line tension"]))
             length, lower, upper = (group[f"clogging_length{end}"] for end in ("", "_lower", "_upper"))
             self.assertEqual(shown["λ/σ (95 %)"], rounded.with_interval(length, lower, upper) if group["clogs"] else f"> {rounded.plain(lower)}")
-            for name in ("runs", "clogs", "wrapped", "squeezed", "hybrid", "other"):
+            occurring = {name for name in ("wrapped", "squeezed", "hybrid", "other") if any(one[name] for one in self.groups)}
+            self.assertEqual({name: shown[name] for name in shown if name in ("wrapped", "squeezed", "hybrid", "other")}, {name: str(group[name]) for name in occurring})
+            for name in ("runs", "clogs"):
                 self.assertEqual(shown[name], str(group[name]))
             self.assertEqual(shown["seeds"], "1 to 4")
             # Few runs clogged: clogfit says so, in a sentence.

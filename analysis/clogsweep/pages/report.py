@@ -198,11 +198,12 @@ def table(titles: Sequence[str], lines: Sequence[Sequence[str]], doubts: Sequenc
 
 def table_of_lengths(groups: Groups, sentences: dict[str, str], rows: pandas.DataFrame) -> str:
     names = parameters(groups)
+    mechanisms = [name for name in style.MECHANISM_COLOURS if any(group[name] for group in groups.members)]
     passed = ["passed", "flowing"] if any(group["passed"] for group in groups.members) else []
-    titles = [*(name.replace("_", " ") for name in names), "runs", "clogs", *style.MECHANISM_COLOURS, *passed, f"&lambda;/&sigma; ({100 * groups.confidence:g} %)",
+    titles = [*(name.replace("_", " ") for name in names), "runs", "clogs", *mechanisms, *passed, f"&lambda;/&sigma; ({100 * groups.confidence:g} %)",
               *(["lateral/r"] if groups.are_lattices else []), "&lang;v<sub>g</sub>&rang;/v<sub>t</sub>", *laboratory_columns(groups).values(), "Ca", "seeds"]
     lines = [[*(cell(groups, group, name) for name in names), str(group["runs"]), str(group["clogs"]),
-              *(str(group[name]) for name in [*style.MECHANISM_COLOURS, *passed]), length(group),
+              *(str(group[name]) for name in [*mechanisms, *passed]), length(group),
               *([slope(group)] if groups.are_lattices else []), speed(group), *(in_laboratory(group, name) for name in laboratory_columns(groups)),
               rounded.plain(group["capillary_number"]), seeds_of(group, names, rows)] for group in groups.members]
     return table(titles, lines, [doubts_of(group, sentences) for group in groups.members])
