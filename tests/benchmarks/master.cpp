@@ -24,6 +24,7 @@
 #include "clog/campaign/progress.hpp"
 #include "clog/parallel/scheduler.hpp"
 #include "clog/store/run_table.hpp"
+#include "clog/sweep/run_row.hpp"
 
 namespace {
 
@@ -46,7 +47,8 @@ double seconds_since(Clock::time_point begin) {
 /// Sleeps, in slices as a run computes in slices.
 class SleepingJob final : public sweep::Job {
  public:
-  SleepingJob(std::int64_t task, double seconds) : seconds_(seconds) {
+  SleepingJob(const sweep::Plan& plan, std::int64_t task, double seconds)
+      : seconds_(seconds), row_(sweep::describe(plan.task(task))) {
     row_.task = task;
     row_.status = RunStatus::clogged;
   }
@@ -118,7 +120,7 @@ int main(int argc, char** argv) {
   parallel::run_tasks(
       ranks, schedule,
       [&](std::int64_t task, std::span<const std::byte>) {
-        return std::make_unique<SleepingJob>(task, task_seconds);
+        return std::make_unique<SleepingJob>(plan, task, task_seconds);
       },
       events);
   if (ranks.rank() != 0) return 0;

@@ -141,6 +141,7 @@ BENCHMARK(elastic_polygon)
 void polygon_in_channel(benchmark::State& state) {
   RunParameters run = flowing_droplet(256, 0.01 * static_cast<double>(state.range(0)));
   run.drag.terminal_speed = 0.032;
+  run.obstacles = {};
   run.obstacles.layout = ObstacleLayout::channel;
   run.channel.start = -2;
   run = resolve(run);
