@@ -20,9 +20,13 @@ namespace {
 constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
 [[noreturn]] void refuse(const std::string& path, const std::string& reason) {
-  const bool is_missing = reason == std::strerror(ENOENT);
-  throw Error("cannot read " + path +
-              (is_missing ? " (no such file); check the name" : " (" + reason + "); give a text file"));
+  throw Error("cannot read " + path + " (" + reason + "); give a text file");
+}
+
+/// @param error  as in errno
+[[noreturn]] void refuse(const std::string& path, int error) {
+  if (error == ENOENT) throw Error("cannot read " + path + " (no such file); check the name");
+  refuse(path, std::strerror(error));
 }
 
 /// An open file, to be read without blocking: a pipe that nobody writes to must not keep a signal from ending
@@ -31,7 +35,7 @@ class OpenText {
  public:
   explicit OpenText(const std::string& path)
       : path_(path), descriptor_(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
-    if (descriptor_ < 0) refuse(path, std::strerror(errno));
+    if (descriptor_ < 0) refuse(path, errno);
   }
   OpenText(OpenText&&) = delete;
   ~OpenText() { close(descriptor_); }
@@ -42,7 +46,7 @@ class OpenText {
     std::array<char, 65536> bytes;
     const ssize_t size = read(descriptor_, bytes.data(), bytes.size());
     if (size < 0 && (errno == EINTR || errno == EAGAIN)) return true;
-    if (size < 0) refuse(path_, std::strerror(errno));
+    if (size < 0) refuse(path_, errno);
     text.append(bytes.data(), static_cast<std::size_t>(size));
     return size > 0;
   }
@@ -64,7 +68,7 @@ class OpenText {
 
 std::string read_text(const std::string& path) {
   struct stat status {};
-  if (stat(path.c_str(), &status) != 0) refuse(path, std::strerror(errno));
+  if (stat(path.c_str(), &status) != 0) refuse(path, errno);
   if (!S_ISREG(status.st_mode) && !S_ISFIFO(status.st_mode))
     refuse(path, "a folder, device or socket, neither a file nor a pipe");
   OpenText file(path);

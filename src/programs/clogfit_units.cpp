@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "clog/cli/command_line.hpp"
@@ -59,8 +58,8 @@ constexpr double degree = std::numbers::pi / 180;
 /// A line of the answer: what, in the laboratory, in the model.
 using Line = std::vector<std::string>;
 
-std::string with_unit(double value, const char* unit) {
-  if (!std::isfinite(value)) return "-";
+std::string with_unit(double value, const char* unit, const std::string& otherwise = "-") {
+  if (!std::isfinite(value)) return otherwise;
   return console::plain(value) + (*unit ? " " : "") + unit;
 }
 
@@ -100,11 +99,19 @@ std::vector<Line> lines_of(const Laboratory& lab, const Scales& scales) {
   return lines;
 }
 
+/// Why no tilt gives a droplet this Gamma.
+std::string why_no_tilt(const Laboratory& lab) {
+  if (std::isnan(lab.experiment.interfacial_tension)) return "not known without tension in lab.cfg";
+  return fmt::format("none: even upright, Gamma is {}",
+                     console::plain(laboratory::line_tension_upright(lab)));
+}
+
 /// How a number of the model, an option's, is converted.
 struct Conversion {
   const char *option, *symbol;
   const char *name, *what, *unit;
   std::function<double(double)> convert;  ///< NaN where nothing in the laboratory is that
+  std::string otherwise = "-";            ///< what is shown then
 };
 std::vector<Conversion> conversions(const Laboratory& lab, const Scales& scales) {
   const auto times = [](double unit) { return [unit](double model) { return model * unit; }; };
@@ -113,24 +120,15 @@ std::vector<Conversion> conversions(const Laboratory& lab, const Scales& scales)
           {"line-tension", "Gamma", "tension_mN_per_m", "interfacial tension at this tilt", "mN/m",
            times(scales.tension / milli)},
           {"line-tension", "Gamma", "angle_degrees", "or tilt with this tension", "deg",
-           [&lab](double model) { return laboratory::tilt_of(model, lab) / degree; }},
+           [&lab](double model) { return laboratory::tilt_of(model, lab) / degree; }, why_no_tilt(lab)},
           {"terminal-speed", "V_t", "speed_mm_per_s", "terminal speed", "mm/s",
            times(scales.length / scales.time / milli)},
           {"wall-stiffness", "E_w", "line_tension_of_equal_sag", "Gamma of the droplet that sags as far", "",
            [](double model) { return laboratory::line_tension_of_sag(std::numbers::pi / (16 * model)); }}};
 }
 
-/// Why no tilt gives a droplet this Gamma.
-std::string why_no_tilt(const Laboratory& lab) {
-  if (std::isnan(lab.experiment.interfacial_tension)) return "not known without tension in lab.cfg";
-  return fmt::format("none, upright it has Gamma = {}",
-                     console::plain(laboratory::line_tension_upright(lab)));
-}
-
-Line line_of(const Conversion& conversion, double model, const Laboratory& lab) {
-  const double value = conversion.convert(model);
-  const bool is_no_tilt = std::isnan(value) && std::string_view(conversion.name) == "angle_degrees";
-  return {conversion.what, is_no_tilt ? why_no_tilt(lab) : with_unit(value, conversion.unit),
+Line line_of(const Conversion& conversion, double model) {
+  return {conversion.what, with_unit(conversion.convert(model), conversion.unit, conversion.otherwise),
           fmt::format("{} = {}", conversion.symbol, console::plain(model))};
 }
 
@@ -202,7 +200,7 @@ int clogfit_units(int argc, const char* const* argv) {
   for (const Conversion& conversion : known)
     for (const double model : line.get_positives(conversion.option)) {
       if (lines.size() == num_scales) lines.push_back({"", "", ""});
-      lines.push_back(line_of(conversion, model, lab));
+      lines.push_back(line_of(conversion, model));
     }
   std::cout << lines_text(lines) << advice_of(scales);
   return console::exit_success;

@@ -421,7 +421,7 @@ class Pictures(Analysis):
                     arcs = np.count_nonzero((touched >= 0) & (touched != np.roll(touched, 1)))
                     self.assertEqual(arcs, row["num_arcs"])
                     if name == "walls":
-                        self.assertIn(1, (depths[len(clog.obstacles):].max(axis=1) > 0).astype(int), "a wall is touched")
+                        self.assertTrue((depths[len(clog.obstacles):] > 0).any(), "a wall is touched")
                         self.assertEqual(row["mechanism"], b"squeezed")
 
     def test_foreign_files_get_one_line(self):

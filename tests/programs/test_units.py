@@ -68,7 +68,7 @@ class Units(ProgramTest):
         self.assertEqual(clogsweep.units(self.folder / lab, length=[2, 3], folder=BIN)["given"]["length_mm"], [7.0, 10.5])
         # Between upright plates this droplet has 0.0815, the least of all tilts.
         told = self.succeed("clogfit", "units", lab, "--line-tension", "0.05,0.2").stdout
-        self.assertRegex(told, r"(?m)^or tilt with this tension +none, upright it has Gamma = 0\.0815 +Gamma = 0\.0500$")
+        self.assertRegex(told, r"(?m)^or tilt with this tension +none: even upright, Gamma is 0\.0815 +Gamma = 0\.0500$")
         self.assertRegex(told, r"(?m)^or tilt with this tension +2\d\.\d deg +Gamma = 0\.200$")
         self.write("no-tension.cfg", "diameter = 3.5 mm\nangle = 28 deg\n")
         self.assertIn("not known without tension in lab.cfg", self.succeed("clogfit", "units", "no-tension.cfg", "--line-tension", 0.2).stdout)

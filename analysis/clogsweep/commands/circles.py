@@ -88,7 +88,7 @@ def call_of(device: shapes.Device, output: pathlib.Path) -> str:
 def told(device: shapes.Device, drawing: shapes.Drawing) -> list[str]:
     """Describes in words what was read from the drawing."""
     edge = "its own edge" if device.has_frame else "between its walls" if len(device.walls) == 2 else "no edge is drawn"
-    micrometres = device.droplet_metres / shapes.METRES["um"]
+    micrometres = device.droplet_micrometres
     words = [f"{rounded.counted(device.num_posts(), 'post')}, device {device.length:.4g} x {device.width:.4g} droplet diameters ({edge})"]
     if len(device.circles):
         diameters = device.circles[:, 2]
@@ -121,7 +121,7 @@ def in_rows(device: shapes.Device, radius: float) -> tuple[shapes.Device, list[s
     """@return the device with rows of circles, and how near they come to the outlines, in words"""
     number = len(device.others)
     found = rows.as_rows(device, radius)
-    micrometres = device.droplet_metres / shapes.METRES["um"]
+    micrometres = device.droplet_micrometres
     advice = "; thin parts are cut off, and a smaller --corner keeps more of them" if found.farthest > 2 * found.corner else ""
     return found.device, [f"{rounded.counted(number, 'post')} not round (red lines) as {rounded.counted(len(found.device.circles) - len(device.circles), 'circle')} in rows: "
                           f"corners lose {found.farthest:.2g} at most ({found.farthest * micrometres:.2g} um), walls are rough by {found.roughness:.2g}, in droplet diameters{advice}"]
@@ -151,7 +151,7 @@ def body() -> int:
                         "was written. Use --as-rows for rows of circles along their outlines, --as-circles for circles of the same area, or a larger --tolerance")
     if touching := device.overlaps():
         x, y, _ = device.circles[touching[0][0]]
-        micrometres = device.droplet_metres / shapes.METRES["um"]
+        micrometres = device.droplet_micrometres
         raise UserError(f"{rounded.counted(len(touching), 'pair')} of posts touch, the first at x={x:.4g}, y={y:.4g} in droplet diameters "
                         f"({x * micrometres:.5g} um, {y * micrometres:.5g} um from the device's lower left corner); no {table} was written. "
                         "Separate them in the drawing")

@@ -56,6 +56,10 @@ class Device:
     walls: list[Numbers] = dataclasses.field(default_factory=list)  # outlines or lines beside the device, replaced by side-walls=on
     lines: list[Line] = dataclasses.field(default_factory=list)  # that form no closed outline, and are no walls
 
+    @property
+    def droplet_micrometres(self) -> float:
+        return self.droplet_metres / METRES["um"]
+
     def overlaps(self) -> list[tuple[int, int]]:
         """Circles of each pair of posts that touch, which clogsweep refuses."""
         return self._gaps[1]
@@ -240,7 +244,7 @@ def as_circles(device: Device) -> Device:
 
 def csv_of(device: Device, source: str) -> str:
     """A file of circles for clogsweep, in micrometres. Rounded to a nanometre."""
-    unit = device.droplet_metres / METRES["um"]
+    unit = device.droplet_micrometres
     lines = [f"# circles of {source}", f"# units=um droplet={unit:.10g}um", f"# the device is {device.length * unit:.10g} long and {device.width * unit:.10g} wide", "x,y,diameter"]
     lines += [",".join(f"{round(value * unit, 3):.12g}" for value in circle) for circle in device.circles]
     return "\n".join(lines) + "\n"

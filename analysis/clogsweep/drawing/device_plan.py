@@ -12,7 +12,7 @@ from matplotlib.patches import Circle, Polygon, Rectangle
 from matplotlib.transforms import ScaledTranslation
 
 from .. import style
-from ..device.shapes import METRES, Device
+from ..device.shapes import Device
 from ..tools import rounded
 from ..tools.hints import Numbers
 from . import surroundings
@@ -91,7 +91,7 @@ def understood(device: Device, source: str) -> Figure:
     frame(axes, device.length, device.width, "--" if device.has_frame else ":", [*device.walls, *(line for _, line in device.lines)])
     draw_flow(axes, 26)
     axes.set_xlabel(r"$x/\sigma$, along the flow")
-    micrometres = device.droplet_metres / METRES["um"]
+    micrometres = device.droplet_micrometres
     red = f", {len(device.others)} not round (red)" if device.others else ""
     style.caption(axes, rf"{source}: {rounded.counted(device.num_posts(), 'post')}{red}, "
                         rf"$\sigma$ = {micrometres:.4g} µm, device {device.length * micrometres:.5g} µm x {device.width * micrometres:.5g} µm")

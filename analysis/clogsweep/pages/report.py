@@ -365,7 +365,8 @@ def laboratory_of(groups: Groups, about: dict[str, str]) -> list[str]:
     if not groups.laboratory:
         return []
     units = ", ".join(f"{name.replace('_', ' ')} {rounded.plain(value)}" for name, value in groups.laboratory.items() if value is not None)
-    return [f"laboratory: {'; '.join(about.get('laboratory', 'of --lab').split(chr(10))).rstrip('; ')} ({units})"]
+    lines = about.get("laboratory", "of --lab").splitlines()
+    return [f"laboratory: {'; '.join(lines)} ({units})"]
 
 
 def page(name: str, groups: Groups, sections: dict[str, str], progress: str, about: dict[str, str], charts: Charts, fitted_by: str) -> str:
