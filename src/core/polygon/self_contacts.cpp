@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "close_vertices.hpp"
@@ -133,19 +135,15 @@ void SelfContacts::rebuild(const DropletState& state, double skin) {
   if (!pairs_.empty()) fill_items(state);
 }
 
-/// By groups of edges, then by vertices, then by edges.
-void SelfContacts::sort_pairs(int n) {
+/// Groups of edges, in the order of the contour; the pairs of a group keep their order.
+void SelfContacts::sort_pairs_by_groups(int n) {
   constexpr int group_size = WallContacts::edges_per_group;
-  order_.clear();
-  for (const Pair& pair : pairs_)
-    order_.push_back((std::int64_t{pair.edge / group_size} * n + pair.vertex) * group_size +
-                     pair.edge % group_size);
-  std::sort(order_.begin(), order_.end());
-  for (std::size_t k = 0; k < order_.size(); ++k) {
-    const std::int64_t group_and_vertex = order_[k] / group_size;
-    pairs_[k] = {static_cast<int>(group_and_vertex % n),
-                 static_cast<int>(group_and_vertex / n * group_size + order_[k] % group_size)};
-  }
+  end_of_group_.assign(static_cast<std::size_t>(n / group_size) + 2, 0);
+  for (const Pair& pair : pairs_) ++end_of_group_[pair.edge / group_size + 1];
+  std::partial_sum(end_of_group_.begin(), end_of_group_.end(), end_of_group_.begin());
+  sorted_.resize(pairs_.size());
+  for (const Pair& pair : pairs_) sorted_[end_of_group_[pair.edge / group_size]++] = pair;
+  std::swap(pairs_, sorted_);
 }
 
 void SelfContacts::fill_items(const DropletState& state) {
@@ -154,7 +152,7 @@ void SelfContacts::fill_items(const DropletState& state) {
   const double* x = state.position.data();
   const double* y = x + n;
   items_.clear();
-  sort_pairs(n);
+  sort_pairs_by_groups(n);
   item_of_.assign(2 * static_cast<std::size_t>(n), -1);  // the latest
   for (const Pair& pair : pairs_) {
     const int before = pair.vertex > 0 ? pair.vertex - 1 : n - 1, after = (pair.vertex + 1) % n;

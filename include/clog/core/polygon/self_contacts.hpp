@@ -80,8 +80,9 @@ class SelfContacts {
   std::vector<double> contour_;  // x, y and along_, with the beginning repeated; see kernel::CloseSearch
   std::vector<double> groups_;   // memory of the search
   std::vector<kernel::VertexPair> close_;
-  std::vector<std::int64_t> order_;  // of the pairs
-  std::vector<int> item_of_;         // by direction and first vertex
+  std::vector<Pair> sorted_;       // memory of the sort
+  std::vector<int> end_of_group_;  // where the pairs of a group of edges end
+  std::vector<int> item_of_;       // by direction and first vertex
 
   double skin_ = 0;  // of the present pairs
 
@@ -89,7 +90,7 @@ class SelfContacts {
   double measure_edges(const double* x, const double* y, int n);
   void find_close(const double* x, const double* y, double longest_edge, double reach);
   void rebuild(const DropletState& state, double skin);
-  void sort_pairs(int n);
+  void sort_pairs_by_groups(int n);
   void fill_items(const DropletState& state);
 };
 
