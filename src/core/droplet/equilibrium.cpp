@@ -22,12 +22,14 @@ using SparseMatrix = Eigen::SparseMatrix<double>;
 /// Most searches end within ten.
 constexpr int most_iterations = 30;
 constexpr int most_halvings = 10;
-/// Step of the central differences [sigma]: far below a contact's range, far above round-off.
+/// Step of the differences [sigma]: far below a contact's range, far above round-off.
 constexpr double difference_step = 1e-6;
 /// Force on a point over its weight; round-off of the contact forces is 1e-10.
 constexpr double force_tolerance = 1e-7;
 /// Remaining Newton step [sigma].
 constexpr double move_tolerance = 1e-7;
+/// What a step with a stiffness leaves of the way at most if the next one takes the same stiffness.
+constexpr double quick = 0.25;
 
 MatrixXd symmetric(const MatrixXd& matrix) { return (matrix + matrix.transpose()) / 2; }
 
@@ -87,7 +89,7 @@ class Stiffness {
 class ForceField {
  public:
   ForceField(const EquilibriumForces& forces, DropletState state)
-      : forces_(forces), state_(std::move(state)), force_(state_.position.size()), below_(force_) {}
+      : forces_(forces), state_(std::move(state)), force_(state_.position.size()), displaced_(force_) {}
 
   const DropletState& state() const { return state_; }
 
@@ -103,20 +105,16 @@ class ForceField {
 
   /// At the place of the last force_at(). Valid until the next call.
   const MatrixXd& stiffness(const Axes& axes) {
-    const ArrayXd middle = state_.position;
-    stiffness_.resize(middle.size(), middle.size());
-    for (Index k = 0; k < middle.size(); ++k) {
-      const auto evaluate_at = [&](double distance, ArrayXd& force) {
-        state_.position = middle;
-        for (SparseMatrix::InnerIterator entry(axes.directions, k); entry; ++entry)
-          state_.position[entry.row()] += distance * entry.value();
-        forces_.evaluate(state_, force);
-      };
-      evaluate_at(difference_step, force_);
-      evaluate_at(-difference_step, below_);
-      stiffness_.col(k) = axes.directions.transpose() * ((below_ - force_) / (2 * difference_step)).matrix();
+    const ArrayXd here = state_.position;
+    stiffness_.resize(here.size(), here.size());
+    for (Index k = 0; k < here.size(); ++k) {
+      for (SparseMatrix::InnerIterator entry(axes.directions, k); entry; ++entry)
+        state_.position[entry.row()] += difference_step * entry.value();
+      forces_.evaluate(state_, displaced_);
+      stiffness_.col(k) = axes.directions.transpose() * ((force_ - displaced_) / difference_step).matrix();
+      for (SparseMatrix::InnerIterator entry(axes.directions, k); entry; ++entry)
+        state_.position[entry.row()] = here[entry.row()];
     }
-    state_.position = middle;
     if (axes.slide.size() > 0) hold_slide(axes.slide, stiffness_);
     return stiffness_;
   }
@@ -124,7 +122,7 @@ class ForceField {
  private:
   const EquilibriumForces& forces_;
   DropletState state_;
-  ArrayXd force_, below_;
+  ArrayXd force_, displaced_;
   MatrixXd stiffness_;
 
   static void hold_slide(const VectorXd& slide, MatrixXd& stiffness) {
@@ -140,7 +138,8 @@ class ForceField {
 
 /// Newton's method with step halving: a step is accepted if it shortens the remaining Newton step, computed
 /// with the present stiffness (P. Deuflhard's natural monotonicity test). A test on forces would reject
-/// nearly every step, because contacts that open or close dominate them.
+/// nearly every step, because contacts that open or close dominate them. Further steps with the same
+/// stiffness are taken as long as each leaves little of the way.
 std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, const DropletState& initial) {
   const double point_weight = units::droplet_mass * units::gravity / static_cast<double>(initial.size());
   ForceField field(forces, initial);
@@ -148,20 +147,34 @@ std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, co
   ArrayXd position = initial.position;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
     const Axes axes = forces.axes(field.state());
-    const VectorXd force = field.force_at(position, axes);
+    VectorXd force = field.force_at(position, axes);
     if (!stiffness.set(field.stiffness(axes), least_stiffness * point_weight)) return std::nullopt;
-    const VectorXd move = stiffness.solve(force);
-    const double longest = move.lpNorm<Eigen::Infinity>();
-    if (longest < move_tolerance && force.lpNorm<Eigen::Infinity>() < force_tolerance * point_weight)
-      return field.state();
+    VectorXd move = stiffness.solve(force);
+    const auto longest = [&] { return move.lpNorm<Eigen::Infinity>(); };
+    const auto rests = [&] {
+      return longest() < move_tolerance && force.lpNorm<Eigen::Infinity>() < force_tolerance * point_weight;
+    };
+    if (rests()) return field.state();
+    const bool is_stiffness_of_rest = longest() < move_tolerance;
 
-    double part = std::min(1.0, farthest_rest / longest);
-    const auto place = [&] { return ArrayXd(position + part * (axes.directions * move).array()); };
-    const auto way_left = [&] { return stiffness.solve(field.force_at(place(), axes)).norm(); };
-    for (int halving = 0; !(way_left() < (1 - part / 4) * move.norm()); ++halving, part /= 2)
+    double part = std::min(1.0, farthest_rest / longest());
+    const auto leaves_at_most = [&](double share) {
+      const ArrayXd place = position + part * (axes.directions * move).array();
+      VectorXd force_there = field.force_at(place, axes);
+      VectorXd way_left = stiffness.solve(force_there);
+      if (!(way_left.norm() < share * move.norm())) return false;
+      position = place;
+      force = std::move(force_there);
+      move = std::move(way_left);
+      return true;
+    };
+    for (int halving = 0; !leaves_at_most(1 - part / 4); ++halving, part /= 2)
       if (halving == most_halvings) return std::nullopt;
-    position = place();
+    part = 1;
+    while (!rests() && leaves_at_most(quick)) {
+    }
     if ((position - initial.position).abs().maxCoeff() > farthest_rest) return std::nullopt;
+    if (is_stiffness_of_rest && rests()) return field.state();
   }
   return std::nullopt;
 }
