@@ -25,7 +25,7 @@ constexpr double radius = units::droplet_diameter / 2;
 FireOptions fire_options(const RunParameters& run, double perimeter) {
   const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, perimeter, perimeter / *run.dp.vertices);
   return {.mass = units::droplet_mass / *run.dp.vertices,
-          .largest_step = 0.5 * largest_stable_step(modes),
+          .largest_step = 0.8 * largest_stable_step(modes),
           .max_move = 0.05 * units::regular_edge_length(*run.dp.vertices)};
 }
 

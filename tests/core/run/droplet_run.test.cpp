@@ -244,7 +244,8 @@ TEST(DropletRun, EndsFlowingWhenItsTimeIsUp) {
   parameters.obstacles.density = {};
   const RunResult result = result_of(parameters, 100);
   EXPECT_EQ(result.status, RunStatus::flowing);
-  EXPECT_NEAR(result.time, 40, 1e-3);  // a whole number of steps
+  const double step = *resolve(parameters).time_step;
+  EXPECT_DOUBLE_EQ(result.time, std::round(40 / step) * step);
   EXPECT_EQ(result.hold.mechanism, ClogMechanism::none);
   EXPECT_GT(result.distance, 0.5);
   EXPECT_GT(result.speed.mean, 0.5 * parameters.drag.terminal_speed);
@@ -408,7 +409,7 @@ TEST(BreakUp, ComesBeforeACertifiedClog) {
   run.obstacles.box = 40;
   run.obstacles.density = {};
   run.max_time = 3000;
-  run.seed = 3;
+  run.seed = 5;
   run = resolve(run);
   DropletRun hung(run);
   while (!hung.advance(1000)) {
