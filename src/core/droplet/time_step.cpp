@@ -14,7 +14,10 @@ double relaxation_time(const RunParameters& run) {
   return run.dp.inertia * run.drag.terminal_speed / units::gravity;
 }
 
-double drag_time_step(const RunParameters& run) { return 0.1 * relaxation_time(run); }
+double drag_time_step(const RunParameters& run) {
+  const bool is_stronger_somewhere = run.drag.near_wall > 0 || run.drag.relative > 1;
+  return (is_stronger_somewhere ? 0.1 : 0.2) * relaxation_time(run);
+}
 
 void choose_time_step(RunParameters& run, double time_step, std::vector<Rate> rates) {
   run.time_step = time_step;

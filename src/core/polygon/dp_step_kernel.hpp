@@ -58,10 +58,10 @@ struct AreaForce {
 /// w is the velocity kicked by force and own drag, v' the next velocity once c and a are known (see
 /// Coupling). One kick thereby ends a time step and begins the next. q takes the place of the velocity.
 struct KickCoefficients {
-  double kicks;       ///< 1, or 0 where no time step ends
+  double kicks;       ///< h1 / half_step
   double h1, h2;      ///< [t0]
-  double weight;      ///< 2, or 1 where no time step ends or none begins
-  double half_step;   ///< [t0]
+  double weight;      ///< (h1 + h2) / half_step, h1 / half_step where no time step begins
+  double half_step;   ///< that of the forces [t0]
   bool keeps_kicked;  ///< is w wanted afterwards?
 };
 /// Which terms a kick has. The combinations are compiled apart.

@@ -336,15 +336,14 @@ decltype(StepKernel::kick) kick_version(const KickTerms& terms) {
 Power power(int n, const KickTerms& terms, const InterfaceKick& interface,
             const KickCoefficients& coefficients, const Coupling& coupling, const StepArrays& arrays) {
   const StepArrays a = arrays;
-  const bool ends_step = coefficients.kicks > 0;  // otherwise w is the velocity
-  const double one_s = ends_step ? 1 / (1 + coefficients.h1 * terms.rate) : 0;
+  const double one_s = coefficients.kicks / (1 + coefficients.h1 * terms.rate);  // 0: w is the velocity
   const V cx = all(coupling.c_x), cy = all(coupling.c_y), ax = all(coupling.a_x), ay = all(coupling.a_y);
   const V spreading = all(interface.spreading);
   V drag = all(0), spread_power = all(0), spread_x = all(0), spread_y = all(0);
   for_vectors(n, [&](int i, auto keep) CLOG_INLINE {
     V s = all(one_s), rate = all(terms.rate);
     if (terms.varying_rate) {
-      if (ends_step) s = load(a.damping + i);
+      s = hn::Mul(all(coefficients.kicks), load(a.damping + i));
       rate = load(a.rate + i);
     }
     V pull_x = cx, pull_y = cy;

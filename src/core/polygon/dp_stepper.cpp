@@ -76,16 +76,15 @@ void DpStepper::store(DropletState& state) const {
 }
 
 void DpStepper::advance(DropletState& state, int steps, double time_step, Droplet::Work* work) {
-  if (open_step_ != 0 && open_step_ != time_step) finish(state, work);
   const double h = 0.5 * time_step;
   for (int step = 0; step < steps; ++step) {
-    const bool ends_step = open_step_ != 0;
+    const double h_before = 0.5 * open_step_;
     open_step_ = time_step;
     kick_and_drift(state,
-                   {.kicks = ends_step ? 1.0 : 0.0,
-                    .h1 = ends_step ? h : 0,
+                   {.kicks = h_before / h,
+                    .h1 = h_before,
                     .h2 = h,
-                    .weight = ends_step ? 2.0 : 1.0,
+                    .weight = h_before / h + 1,
                     .half_step = h,
                     .keeps_kicked = work != nullptr},
                    time_step, work);

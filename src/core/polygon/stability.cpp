@@ -44,10 +44,11 @@ double largest_stable_step(const StiffModes& modes) {
                              max_total_with_self_omega_dt2 / (modes.sum() + modes.self_contact)}));
 }
 
-int num_substeps(const StiffModes& modes, double time_step) {
+int num_stable_steps(const StiffModes& modes, int steps, double time_step) {
   // The tolerance keeps a step that was chosen as exactly the largest stable one from being split.
-  const double parts = std::ceil(time_step / largest_stable_step(modes) - 1e-9);
-  return parts < most_substeps ? std::max(1, static_cast<int>(parts)) : most_substeps;
+  const double needed = std::ceil(steps * time_step / largest_stable_step(modes) - 1e-9);
+  const int most = most_substeps * steps;
+  return needed < most ? std::max(steps, static_cast<int>(needed)) : most;
 }
 
 }  // namespace clog

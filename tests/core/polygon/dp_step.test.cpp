@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "clog/core/polygon/dp_droplet.hpp"
+#include "clog/core/polygon/dp_forces.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/instruction_set.hpp"
+#include "core/polygon/dp_stepper.hpp"
 #include "support.hpp"
 
 namespace clog {
@@ -209,6 +211,48 @@ TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
       ASSERT_EQ(droplet.num_integrated_steps(), 3) << "the reference has no sub-steps";
       EXPECT_LT(position_error(droplet.state(), readable), 1e-14) << set << ", " << vertices;
       EXPECT_LT(velocity_error(droplet.state(), readable), 3e-12) << set << ", " << vertices;
+    }
+  }
+}
+
+TEST_P(Step, JoinsStepsOfDifferentLengths) {
+  // The half kicks of two steps are one, whether the steps are equally long or not.
+  for (const int vertices : {64, 101}) {
+    const RunParameters run = parameters(vertices);
+    const double diameter = units::regular_edge_length(vertices);
+    DropletState initial = state_of(shaken(full_size_dumbbell(vertices, 0.98 * diameter), 0.002 * diameter));
+    initial.velocity = shaken(Eigen::ArrayXd::Zero(initial.position.size()), 0.03, 7);
+    const ObstacleArray walls(20, {{initial.x().maxCoeff() + 0.15 + 0.45 * diameter, 0.02, 0.15}});
+    constexpr double long_step = 1e-3, short_step = 0.3e-3;
+    const auto moved = [&](bool finishes_between) {
+      // Faster than any vertex, so that near-wall drag is that of every place.
+      constexpr double speed = 100;
+      const Travel travel{.absolute = 0.1, .relative = 0.2};
+      DpForces forces(run, walls);
+      DropletState state = initial;
+      forces.update_contacts(state, travel);
+      DpStepper stepper(run, walls, forces);
+      const auto begin = [&] {
+        stepper.load(state);
+        stepper.look(state, travel, speed, nullptr);
+      };
+      begin();
+      for (const double time_step : {long_step, short_step, long_step}) {
+        stepper.advance(state, 3, time_step, nullptr);
+        if (!finishes_between) continue;
+        stepper.finish(state, nullptr);
+        begin();
+      }
+      if (!finishes_between) stepper.finish(state, nullptr);
+      return state;
+    };
+    for (const std::string& set : instruction_sets()) {
+      use_instruction_set(set);
+      const DropletState joined = moved(false), apart = moved(true);
+      ASSERT_GT((joined.position - initial.position).abs().maxCoeff(), 1e-5);
+      EXPECT_LT((joined.position - apart.position).abs().maxCoeff(), 1e-14) << set << ", " << vertices;
+      EXPECT_LT((joined.velocity - apart.velocity).abs().maxCoeff(), 1e-11 * apart.velocity.abs().maxCoeff())
+          << set << ", " << vertices;
     }
   }
 }

@@ -16,7 +16,8 @@ struct Rate {
 /// In which the speed of a droplet far from walls follows the forces, S V_t/g [t0].
 double relaxation_time(const RunParameters& run);
 
-/// Resolves the drag's relaxation time ten times [t0].
+/// Resolves the drag's relaxation time: five times, and ten times where walls or the motion relative to the
+/// mean increase the drag [t0].
 double drag_time_step(const RunParameters& run);
 
 /// Takes this automatic step.

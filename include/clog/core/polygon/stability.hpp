@@ -34,8 +34,9 @@ inline constexpr double max_total_omega_dt2 = 3.0;
 /// The same for a droplet that touches itself as well. It is larger, because self-contact is rare, and softer
 /// than StiffModes::self_contact assumes.
 inline constexpr double max_total_with_self_omega_dt2 = 3.9;
-/// The area mode is anharmonic in the perimeter; it gets its own bound.
-inline constexpr double max_area_omega_dt2 = 1.0;
+/// The area mode is anharmonic in the perimeter; it gets its own bound, below which the places of droplets
+/// are the same to five digits as with half of it (docs/notes/2026-11-25-longer-steps.md).
+inline constexpr double max_area_omega_dt2 = 2.0;
 
 /// The share of every bound that the modes of a circle take with the automatic step.
 inline constexpr double auto_step_margin = 0.8;
@@ -47,11 +48,11 @@ StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double per
 /// Largest time step [t0] that keeps every bound above.
 double largest_stable_step(const StiffModes& modes);
 
-/// A droplet that needs more has burst; the run is given up at its next check.
+/// A droplet that needs more for one has burst; the run is given up at its next check.
 inline constexpr int most_substeps = 1000;
 
-/// Number of equal sub-steps that `time_step` must be split into at these modes (1 when it holds as it is),
-/// at most most_substeps.
-int num_substeps(const StiffModes& modes, double time_step);
+/// In how many equal steps to go `steps` time steps, so that each keeps every bound: `steps` if they do
+/// themselves, at most most_substeps times as many.
+int num_stable_steps(const StiffModes& modes, int steps, double time_step);
 
 }  // namespace clog
