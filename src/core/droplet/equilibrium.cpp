@@ -139,7 +139,8 @@ class ForceField {
 /// Newton's method with step halving: a step is accepted if it shortens the remaining Newton step, computed
 /// with the present stiffness (P. Deuflhard's natural monotonicity test). A test on forces would reject
 /// nearly every step, because contacts that open or close dominate them. Further steps with the same
-/// stiffness are taken as long as each leaves little of the way.
+/// stiffness are taken as long as each leaves little of the way; that of the rest is computed within
+/// move_tolerance of it.
 std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, const DropletState& initial) {
   const double point_weight = units::droplet_mass * units::gravity / static_cast<double>(initial.size());
   ForceField field(forces, initial);

@@ -44,33 +44,48 @@ void RestForces::look(const DropletState& state, const Travel& travel) {
   wedges_ = wedges_in(state.frame, forces_->wedges());
 }
 
+/// A kick of a droplet at rest, without drag, so long that the change of velocity equals the force.
 void RestForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
   const kernel::StepArrays& a = memory_.arrays();
   load(state);
   const kernel::Sums sums = kernel_.measure(n_, a);
   push_off();
-  Eigen::Array2d net_spreading{0, 0};
-  force.setZero();
-  if (const WettedWalls& walls = forces_->wetted_walls(); walls.is_on()) {
-    walls.find_forces(VertexPlaces(state), state.frame, state.anchors, wetting_);
-    net_spreading = wetting_.net_spreading;
-    force = wetting_.gradient + wetting_.spreading;
-  }
-  if (forces_->friction().is_on()) forces_->friction().add_forces(state, force);
-
-  // A kick of a droplet at rest, without drag, so long that the change of velocity equals the force.
-  std::fill_n(a.vx, n_, 0.0);
-  std::fill_n(a.vy, n_, 0.0);
+  const Eigen::Array2d net_spreading = start_from_forces_of_walls(state, force);
   const kernel::Coupling coupling =
       kernel_.kick(n_, terms_, kernel::kick_of(forces_->interface(sums.area, sums.perimeter), 1),
                    area_force(sums, Eigen::Array2d(forces_->weight(), 0) - net_spreading),
                    {.kicks = 0, .h1 = 0, .h2 = 0, .weight = 1, .half_step = 0, .keeps_kicked = false}, a);
   const auto array = [this](const double* p) { return Eigen::Map<const Eigen::ArrayXd>(p, n_); };
-  force.head(n_) += array(a.vx);
-  force.tail(n_) += array(a.vy);
-  if (!terms_.on_area) return;
-  force.head(n_) -= coupling.a_x * array(a.grad_xx) + coupling.a_y * array(a.grad_yx);
-  force.tail(n_) -= coupling.a_x * array(a.grad_xy) + coupling.a_y * array(a.grad_yy);
+  if (terms_.on_area) {
+    force.head(n_) = array(a.vx) - coupling.a_x * array(a.grad_xx) - coupling.a_y * array(a.grad_yx);
+    force.tail(n_) = array(a.vy) - coupling.a_x * array(a.grad_xy) - coupling.a_y * array(a.grad_yy);
+  } else {
+    force.head(n_) = array(a.vx);
+    force.tail(n_) = array(a.vy);
+  }
+}
+
+/// Gives the vertices velocities: what wetted walls and friction, which no kick contains, would give them.
+/// @param force  memory  @return the net force of spreading
+Eigen::Array2d RestForces::start_from_forces_of_walls(const DropletState& state, Eigen::ArrayXd& force) {
+  const kernel::StepArrays& a = memory_.arrays();
+  const WettedWalls& walls = forces_->wetted_walls();
+  if (!walls.is_on() && !forces_->friction().is_on()) {
+    std::fill_n(a.vx, n_, 0.0);
+    std::fill_n(a.vy, n_, 0.0);
+    return {0, 0};
+  }
+  Eigen::Array2d net_spreading{0, 0};
+  force.setZero();
+  if (walls.is_on()) {
+    walls.find_forces(VertexPlaces(state), state.frame, state.anchors, wetting_);
+    net_spreading = wetting_.net_spreading;
+    force = wetting_.gradient + wetting_.spreading;
+  }
+  if (forces_->friction().is_on()) forces_->friction().add_forces(state, force);
+  std::copy_n(force.data(), n_, a.vx);
+  std::copy_n(force.data() + n_, n_, a.vy);
+  return net_spreading;
 }
 
 void RestForces::push_off() {

@@ -41,6 +41,7 @@ class RestForces {
   bool contacts_hold(const Travel& travel) const;
   void look(const DropletState& state, const Travel& travel);
   void push_off();
+  Eigen::Array2d start_from_forces_of_walls(const DropletState& state, Eigen::ArrayXd& force);
 };
 
 }  // namespace clog

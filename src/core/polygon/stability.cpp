@@ -46,9 +46,12 @@ double largest_stable_step(const StiffModes& modes) {
 
 int num_stable_steps(const StiffModes& modes, int steps, double time_step) {
   // The tolerance keeps a step that was chosen as exactly the largest stable one from being split.
-  const double needed = std::ceil(steps * time_step / largest_stable_step(modes) - 1e-9);
-  const int most = most_substeps * steps;
-  return needed < most ? std::max(steps, static_cast<int>(needed)) : most;
+  constexpr double tolerance = 1e-9;
+  constexpr double most_by_part = 2;
+  const double for_one = time_step / largest_stable_step(modes) - tolerance;
+  if (!(for_one < most_substeps)) return most_substeps * steps;
+  const double needed = for_one > most_by_part ? steps * std::ceil(for_one) : std::ceil(steps * for_one);
+  return std::max(steps, static_cast<int>(needed));
 }
 
 }  // namespace clog

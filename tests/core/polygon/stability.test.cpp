@@ -127,6 +127,8 @@ TEST(NumSubsteps, IsOneUpToTheLargestStableStep) {
   // Only as many more as are needed.
   EXPECT_EQ(num_stable_steps(modes, 8, largest), 8);
   EXPECT_EQ(num_stable_steps(modes, 8, 1.01 * largest), 9);
+  EXPECT_EQ(num_stable_steps(modes, 8, 1.99 * largest), 16);
+  EXPECT_EQ(num_stable_steps(modes, 8, 2.01 * largest), 24) << "beyond twice as many, a multiple";
   EXPECT_EQ(num_stable_steps(modes, 8, 0.5 * largest), 8) << "no step is longer than the time step";
   EXPECT_EQ(num_stable_steps(modes, 8, 1e9 * largest), 8 * most_substeps);
 }

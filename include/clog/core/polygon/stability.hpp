@@ -34,9 +34,9 @@ inline constexpr double max_total_omega_dt2 = 3.0;
 /// The same for a droplet that touches itself as well. It is larger, because self-contact is rare, and softer
 /// than StiffModes::self_contact assumes.
 inline constexpr double max_total_with_self_omega_dt2 = 3.9;
-/// The area mode is anharmonic in the perimeter; it gets its own bound, below which the places of droplets
-/// are the same to five digits as with half of it (docs/notes/2026-11-25-longer-steps.md).
-inline constexpr double max_area_omega_dt2 = 2.0;
+/// The area mode is anharmonic in the perimeter; it gets its own bound. With 2, droplets without drag
+/// diverged (docs/notes/2026-11-25-longer-steps.md).
+inline constexpr double max_area_omega_dt2 = 1.5;
 
 /// The share of every bound that the modes of a circle take with the automatic step.
 inline constexpr double auto_step_margin = 0.8;
@@ -52,7 +52,9 @@ double largest_stable_step(const StiffModes& modes);
 inline constexpr int most_substeps = 1000;
 
 /// In how many equal steps to go `steps` time steps, so that each keeps every bound: `steps` if they do
-/// themselves, at most most_substeps times as many.
+/// themselves, at most most_substeps times as many. Up to twice as many it is as many as needed, above that a
+/// multiple of `steps`: the bounds are those of regular polygons, and drawn-out ones need what that leaves
+/// (docs/notes/2026-11-25-longer-steps.md).
 int num_stable_steps(const StiffModes& modes, int steps, double time_step);
 
 }  // namespace clog
