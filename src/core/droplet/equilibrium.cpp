@@ -92,9 +92,10 @@ class ForceField {
       : forces_(forces), state_(std::move(state)), force_(state_.position.size()), displaced_(force_) {}
 
   const DropletState& state() const { return state_; }
+  void move_to(const ArrayXd& position) { state_.position = position; }
 
   VectorXd force_at(const ArrayXd& position, const Axes& axes) {
-    state_.position = position;
+    move_to(position);
     forces_.update_contacts(state_, {.absolute = 2 * difference_step, .relative = 4 * difference_step});
     forces_.evaluate(state_, force_);
     VectorXd force = axes.directions.transpose() * force_.matrix();
@@ -147,6 +148,7 @@ std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, co
   Stiffness stiffness(forces.have_energy);
   ArrayXd position = initial.position;
   for (int iteration = 0; iteration < most_iterations; ++iteration) {
+    field.move_to(position);  // the last step tried may have been too long
     const Axes axes = forces.axes(field.state());
     VectorXd force = field.force_at(position, axes);
     if (!stiffness.set(field.stiffness(axes), least_stiffness * point_weight)) return std::nullopt;

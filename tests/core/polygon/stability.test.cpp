@@ -117,7 +117,7 @@ TEST(StiffModes, ContactModeIsThatOfAVertexWithBothItsEdges) {
   EXPECT_NEAR(modes.contact, 2 * 1000 * 128 / units::droplet_mass, 1e-6);
 }
 
-TEST(NumSubsteps, IsOneUpToTheLargestStableStep) {
+TEST(NumStableSteps, AreAsManyAsTheModesNeed) {
   const RunParameters run = resolve(RunParameters{});
   const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, 3.14, 3.14 / *run.dp.vertices);
   const double largest = largest_stable_step(modes);
