@@ -22,7 +22,7 @@ using SparseMatrix = Eigen::SparseMatrix<double>;
 /// Most searches end within ten.
 constexpr int most_iterations = 30;
 constexpr int most_halvings = 10;
-/// Step of the differences [sigma]: far below a contact's range, far above round-off.
+/// Step of the central differences [sigma]: far below a contact's range, far above round-off.
 constexpr double difference_step = 1e-6;
 /// Force on a point over its weight; round-off of the contact forces is 1e-10.
 constexpr double force_tolerance = 1e-7;
@@ -89,7 +89,7 @@ class Stiffness {
 class ForceField {
  public:
   ForceField(const EquilibriumForces& forces, DropletState state)
-      : forces_(forces), state_(std::move(state)), force_(state_.position.size()), displaced_(force_) {}
+      : forces_(forces), state_(std::move(state)), force_(state_.position.size()), below_(force_) {}
 
   const DropletState& state() const { return state_; }
   void move_to(const ArrayXd& position) { state_.position = position; }
@@ -106,16 +106,20 @@ class ForceField {
 
   /// At the place of the last force_at(). Valid until the next call.
   const MatrixXd& stiffness(const Axes& axes) {
-    const ArrayXd here = state_.position;
-    stiffness_.resize(here.size(), here.size());
-    for (Index k = 0; k < here.size(); ++k) {
-      for (SparseMatrix::InnerIterator entry(axes.directions, k); entry; ++entry)
-        state_.position[entry.row()] += difference_step * entry.value();
-      forces_.evaluate(state_, displaced_);
-      stiffness_.col(k) = axes.directions.transpose() * ((force_ - displaced_) / difference_step).matrix();
-      for (SparseMatrix::InnerIterator entry(axes.directions, k); entry; ++entry)
-        state_.position[entry.row()] = here[entry.row()];
+    const ArrayXd middle = state_.position;
+    stiffness_.resize(middle.size(), middle.size());
+    for (Index k = 0; k < middle.size(); ++k) {
+      const auto evaluate_at = [&](double distance, ArrayXd& force) {
+        state_.position = middle;
+        for (SparseMatrix::InnerIterator entry(axes.directions, k); entry; ++entry)
+          state_.position[entry.row()] += distance * entry.value();
+        forces_.evaluate(state_, force);
+      };
+      evaluate_at(difference_step, force_);
+      evaluate_at(-difference_step, below_);
+      stiffness_.col(k) = axes.directions.transpose() * ((below_ - force_) / (2 * difference_step)).matrix();
     }
+    state_.position = middle;
     if (axes.slide.size() > 0) hold_slide(axes.slide, stiffness_);
     return stiffness_;
   }
@@ -123,7 +127,7 @@ class ForceField {
  private:
   const EquilibriumForces& forces_;
   DropletState state_;
-  ArrayXd force_, displaced_;
+  ArrayXd force_, below_;
   MatrixXd stiffness_;
 
   static void hold_slide(const VectorXd& slide, MatrixXd& stiffness) {
