@@ -21,15 +21,11 @@ namespace {
 
 constexpr double radius = units::droplet_diameter / 2;
 
-/// Over the largest stable one. The minimiser shortens its step where it has to; damped motion does not, and
-/// with longer steps stiff droplets without drag went round small cycles for ever.
-constexpr double step_of_minimiser = 0.8, step_of_damped_motion = 0.5;
-
 /// A polygon smaller than the droplet has a smaller perimeter: a stiffer tension mode, a softer area mode.
 FireOptions fire_options(const RunParameters& run, double perimeter) {
   const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, perimeter, perimeter / *run.dp.vertices);
   return {.mass = units::droplet_mass / *run.dp.vertices,
-          .largest_step = step_of_minimiser * largest_stable_step(modes),
+          .largest_step = 0.5 * largest_stable_step(modes),
           .max_move = 0.05 * units::regular_edge_length(*run.dp.vertices)};
 }
 
@@ -129,7 +125,6 @@ DropletState release_polygon(const RunParameters& run, const ObstacleArray& obst
   options.max_iterations = 100000;
   FireOptions longer = options;
   longer.max_iterations = 500000;
-  longer.largest_step *= step_of_damped_motion / step_of_minimiser;
   bool rests = comes_to_rest(growing, obstacles, forces, options, longer, state);
   // Then with its own interface; only springs with a tension of their own begin to act with the run.
   RunParameters own = run;
