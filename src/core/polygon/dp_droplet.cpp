@@ -54,11 +54,10 @@ void DpDroplet::advance(int num_steps) {
       forces_.update_contacts(state_, travel);
     }
     stepper_->look(state_, travel, now.speed, work);
-    const StiffModes modes = stiff_modes(run_.dp, *run_.wall_stiffness, now.perimeter, now.shortest);
-    const int stable_steps = num_stable_steps(modes, steps, run_.time_step.value());
-    stepper_->advance(state_, stable_steps,
-                      stable_steps == steps ? run_.time_step.value() : time / stable_steps, work);
-    num_integrated_steps_ += stable_steps;
+    const int substeps = num_substeps(stiff_modes(run_.dp, *run_.wall_stiffness, now.perimeter, now.shortest),
+                                      run_.time_step.value());
+    stepper_->advance(state_, steps * substeps, run_.time_step.value() / substeps, work);
+    num_integrated_steps_ += static_cast<std::int64_t>(steps) * substeps;
   }
   stepper_->finish(state_, work);
 }

@@ -44,14 +44,10 @@ double largest_stable_step(const StiffModes& modes) {
                              max_total_with_self_omega_dt2 / (modes.sum() + modes.self_contact)}));
 }
 
-int num_stable_steps(const StiffModes& modes, int steps, double time_step) {
+int num_substeps(const StiffModes& modes, double time_step) {
   // The tolerance keeps a step that was chosen as exactly the largest stable one from being split.
-  constexpr double tolerance = 1e-9;
-  constexpr double most_by_part = 2;
-  const double for_one = time_step / largest_stable_step(modes) - tolerance;
-  if (!(for_one < most_substeps)) return most_substeps * steps;
-  const double needed = for_one > most_by_part ? steps * std::ceil(for_one) : std::ceil(steps * for_one);
-  return std::max(steps, static_cast<int>(needed));
+  const double parts = std::ceil(time_step / largest_stable_step(modes) - 1e-9);
+  return parts < most_substeps ? std::max(1, static_cast<int>(parts)) : most_substeps;
 }
 
 }  // namespace clog

@@ -117,20 +117,13 @@ TEST(StiffModes, ContactModeIsThatOfAVertexWithBothItsEdges) {
   EXPECT_NEAR(modes.contact, 2 * 1000 * 128 / units::droplet_mass, 1e-6);
 }
 
-TEST(NumStableSteps, AreAsManyAsTheModesNeed) {
+TEST(NumSubsteps, IsOneUpToTheLargestStableStep) {
   const RunParameters run = resolve(RunParameters{});
   const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, 3.14, 3.14 / *run.dp.vertices);
   const double largest = largest_stable_step(modes);
-  EXPECT_EQ(num_stable_steps(modes, 1, largest), 1);
-  EXPECT_EQ(num_stable_steps(modes, 1, 1.01 * largest), 2);
-  EXPECT_EQ(num_stable_steps(modes, 1, 5.5 * largest), 6);
-  // Only as many more as are needed.
-  EXPECT_EQ(num_stable_steps(modes, 8, largest), 8);
-  EXPECT_EQ(num_stable_steps(modes, 8, 1.01 * largest), 9);
-  EXPECT_EQ(num_stable_steps(modes, 8, 1.99 * largest), 16);
-  EXPECT_EQ(num_stable_steps(modes, 8, 2.01 * largest), 24) << "beyond twice as many, a multiple";
-  EXPECT_EQ(num_stable_steps(modes, 8, 0.5 * largest), 8) << "no step is longer than the time step";
-  EXPECT_EQ(num_stable_steps(modes, 8, 1e9 * largest), 8 * most_substeps);
+  EXPECT_EQ(num_substeps(modes, largest), 1);
+  EXPECT_EQ(num_substeps(modes, 1.01 * largest), 2);
+  EXPECT_EQ(num_substeps(modes, 5.5 * largest), 6);
 }
 
 }  // namespace

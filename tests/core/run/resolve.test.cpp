@@ -223,7 +223,7 @@ TEST(Resolve, FillsInTheLargestStepThatHolds) {
       }
 }
 
-TEST(Resolve, TakesShorterStepsWhereDragIsStrongerSomewhere) {
+TEST(Resolve, TakesShorterStepsWithStrongerDragOrElasticInterface) {
   RunParameters run;
   run.dp.line_tension = 0.1;
   run.drag.terminal_speed = 0.003;  // so that drag limits the step
@@ -234,6 +234,10 @@ TEST(Resolve, TakesShorterStepsWhereDragIsStrongerSomewhere) {
   RunParameters relative = run;
   relative.drag.relative = 2;
   EXPECT_DOUBLE_EQ(*resolve(relative).time_step, 0.1 * 0.003);
+  RunParameters elastic = run;
+  elastic.dp.perimeter_spring = PerimeterSpring::rest;
+  elastic.dp.gravity = Gravity::vertex;
+  EXPECT_DOUBLE_EQ(*resolve(elastic).time_step, 0.1 * 0.003);
 }
 
 TEST(Resolve, TakesStepsAsLongAsTheRootOfTheInertia) {

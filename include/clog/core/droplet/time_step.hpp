@@ -17,7 +17,7 @@ struct Rate {
 double relaxation_time(const RunParameters& run);
 
 /// Resolves the drag's relaxation time: five times, and ten times where walls or the motion relative to the
-/// mean increase the drag [t0].
+/// mean increase the drag or springs carry tension [t0].
 double drag_time_step(const RunParameters& run);
 
 /// Takes this automatic step.
