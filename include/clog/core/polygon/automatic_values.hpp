@@ -34,10 +34,10 @@ double expected_pressure(const RunParameters& run, double sharpest_bend);
 /// thousandths, but at most the published 1e4. Soft droplets need less, and would need more steps with more.
 double automatic_area_stiffness(const RunParameters& run, double sharpest_bend);
 
-/// DropletModel::resolve of the polygon. The automatic step resolves the drag's relaxation time five or ten times;
-/// every stiff mode of a circle stays within auto_step_margin of its bound (stability.hpp), and an automatic
-/// contact, whose stiffness goes with the step, is so stiff that the expected pressure pushes an obstacle
-/// into the interface by a fiftieth of a vertex diameter. Rounded down to two digits.
+/// DropletModel::resolve of the polygon. The automatic step resolves the drag's relaxation time five or ten
+/// times; every stiff mode of a circle stays within auto_step_margin of its bound (stability.hpp), and an
+/// automatic contact, whose stiffness goes with the step, is so stiff that the expected pressure pushes an
+/// obstacle into the interface by a fiftieth of a vertex diameter. Rounded down to two digits.
 void resolve_polygon(RunParameters& run, double sharpest_bend);
 
 }  // namespace clog
