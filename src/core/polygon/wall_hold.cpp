@@ -19,6 +19,7 @@ WallHold::WallHold(int num_vertices, double range)
 
 double WallHold::make(const std::vector<WallContacts::Item>& near, DropletState& droplet) {
   hand_back(droplet);
+  clear_pushes();
   list_windows(near, num_groups_, windows_);
   find_circles(static_cast<int>(droplet.size()));
   arrange_memory();
@@ -63,36 +64,57 @@ void WallHold::add_groups(kernel::HoldingCircle& circle, int num_vertices) {
   circle.end_group = static_cast<int>(groups_.size());
 }
 
+/// Zeroes what windows stored for their circles.
+void WallHold::clear_pushes() {
+  for (const kernel::HoldingCircle& circle : all_)
+    for (int k = circle.first_window; k < circle.end_window; ++k)
+      for (int array = 0; array < kernel::num_window_push_arrays; ++array)
+        std::fill_n(circle.pushes.first + array * circle.pushes.stride +
+                        windows_[static_cast<std::size_t>(k)].first,
+                    size, 0.0);
+}
+
+/// First arrays of the whole contour, each as long: three for all circles, then those of each circle.
 void WallHold::arrange_memory() {
   const std::size_t stride = (static_cast<std::size_t>(num_groups_) + before + behind) * size;
-  const std::size_t num_entries = groups_.size() * size;
-  const std::size_t needed = (all_.size() * kernel::num_window_push_arrays + 3) * stride + 3 * num_entries;
+  const std::size_t needed = (3 + all_.size() * kernel::num_window_push_arrays) * stride;
   if (memory_size_ < needed) {
     memory_size_ = 2 * needed;
     memory_ = aligned_zeros(memory_size_);
   } else {
-    std::fill_n(memory_.get(), needed, 0.0);
+    std::fill_n(memory_.get(), 3 * stride, 0.0);
   }
   double* next = memory_.get() + std::ptrdiff_t{before} * size;
-  for (kernel::HoldingCircle& circle : all_) {
-    circle.pushes = {.first = next, .stride = static_cast<std::ptrdiff_t>(stride)};
-    next += kernel::num_window_push_arrays * stride;
-  }
   for (double** array : {&circles_.push_x, &circles_.push_y, &circles_.wetted}) {
     *array = next;
     next += stride;
   }
-  next -= std::ptrdiff_t{before} * size;
-  for (double** array : {&circles_.anchor_x, &circles_.anchor_y, &circles_.slip}) {
-    *array = next;
-    next += num_entries;
+  for (kernel::HoldingCircle& circle : all_) {
+    circle.pushes = {.first = next, .stride = static_cast<std::ptrdiff_t>(stride)};
+    next += kernel::num_window_push_arrays * stride;
   }
+  arrange_anchors();
   holds_.assign(groups_.size(), 0);
   circles_.all = all_.data();
   circles_.num = all_.size();
   circles_.windows = windows_.data();
   circles_.groups = groups_.data();
   circles_.holds = holds_.data();
+}
+
+void WallHold::arrange_anchors() {
+  const std::size_t num_entries = groups_.size() * size;
+  if (anchors_size_ < 3 * num_entries) {
+    anchors_size_ = 6 * num_entries;
+    anchors_ = aligned_zeros(anchors_size_);
+  } else {
+    std::fill_n(anchors_.get(), 3 * num_entries, 0.0);
+  }
+  double* next = anchors_.get();
+  for (double** array : {&circles_.anchor_x, &circles_.anchor_y, &circles_.slip}) {
+    *array = next;
+    next += num_entries;
+  }
 }
 
 /// Returns whether one of the circles can hold it.

@@ -34,8 +34,9 @@ class WallHold {
   int num_groups_;  // of edges
   double range_;
   bool has_anchors_ = false;
-  hwy::AlignedFreeUniquePtr<double[]> memory_;
-  std::size_t memory_size_ = 0;
+  // Of circles' pushes zero, but where windows_ stored what they push; and of the anchors.
+  hwy::AlignedFreeUniquePtr<double[]> memory_, anchors_;
+  std::size_t memory_size_ = 0, anchors_size_ = 0;
   std::vector<kernel::WallWindow> windows_;
   std::vector<kernel::HoldingCircle> all_;
   std::vector<int> groups_;  // of vertices, circle after circle
@@ -44,7 +45,9 @@ class WallHold {
 
   void find_circles(int num_vertices);
   void add_groups(kernel::HoldingCircle& circle, int num_vertices);
+  void clear_pushes();
   void arrange_memory();
+  void arrange_anchors();
   bool take(const WallAnchor& anchor);
 };
 
