@@ -29,7 +29,7 @@ constexpr double force_tolerance = 1e-7;
 /// Remaining Newton step [sigma].
 constexpr double move_tolerance = 1e-7;
 /// What a step with a stiffness leaves of the way at most if the next one takes the same stiffness.
-constexpr double quick = 0.25;
+constexpr double quick = 0.75;
 
 MatrixXd symmetric(const MatrixXd& matrix) { return (matrix + matrix.transpose()) / 2; }
 
