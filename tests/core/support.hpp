@@ -64,6 +64,16 @@ inline Eigen::ArrayXd shaken(Eigen::ArrayXd position, double amount, unsigned se
   return position;
 }
 
+inline constexpr double no_drag = 1e200;  // as a terminal speed
+
+/// An ellipse of the droplet's area: it swings under line tension.
+inline Eigen::ArrayXd ellipse(int n, double stretch) {
+  Eigen::ArrayXd position = regular_polygon(n, units::rest_area);
+  position.head(n) *= stretch;
+  position.tail(n) /= stretch;
+  return position;
+}
+
 /// Two lobes joined by a neck of the given width, counter-clockwise; vertices evenly spread along the
 /// contour, so that no edge is much shorter than the others.
 inline Eigen::ArrayXd dumbbell(int num_vertices, double neck) {

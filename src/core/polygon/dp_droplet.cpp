@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "clog/core/droplet/time_step.hpp"
 #include "clog/core/tools/units.hpp"
 #include "dp_stepper.hpp"
 
@@ -18,6 +19,13 @@ int steps_between_checks(double time_step) {
   return steps;
 }
 
+/// Whether drag damps what an implicit pressure feeds into the motion of a droplet that swings
+/// (docs/notes/2026-11-26-implicit-pressure.md).
+bool is_damped(const RunParameters& run) {
+  constexpr double most_steps = 32;
+  return relaxation_time(run) <= most_steps * run.time_step.value();
+}
+
 }  // namespace
 
 DpDroplet::DpDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial)
@@ -25,6 +33,7 @@ DpDroplet::DpDroplet(const RunParameters& run, const ObstacleArray& obstacles, D
       forces_(run, obstacles),
       vertex_mass_(run.dp.inertia * units::droplet_mass / *run.dp.vertices),
       steps_per_check_(steps_between_checks(run.time_step.value())),
+      may_have_implicit_pressure_(is_damped(run) && run.drag.near_wall == 0),
       stepper_(std::make_unique<DpStepper>(run, obstacles, forces_)) {
   state_ = std::move(initial);
   DpDroplet::start_afresh();
@@ -54,10 +63,12 @@ void DpDroplet::advance(int num_steps) {
       forces_.update_contacts(state_, travel);
     }
     stepper_->look(state_, travel, now.speed, work);
-    const int substeps = num_substeps(stiff_modes(run_.dp, *run_.wall_stiffness, now.perimeter, now.shortest),
-                                      run_.time_step.value());
-    stepper_->advance(state_, steps * substeps, run_.time_step.value() / substeps, work);
-    num_integrated_steps_ += static_cast<std::int64_t>(steps) * substeps;
+    const StiffModes modes = stiff_modes(run_.dp, *run_.wall_stiffness, now.perimeter, now.shortest);
+    const auto [num, implicit_pressure] =
+        stable_steps(modes, steps, run_.time_step.value(), may_have_implicit_pressure_);
+    stepper_->advance(state_, num, num == steps ? run_.time_step.value() : time / num, implicit_pressure,
+                      work);
+    num_integrated_steps_ += num;
   }
   stepper_->finish(state_, work);
 }

@@ -27,8 +27,9 @@ struct StepArrays {
   double* rate;                                   ///< drag rate of a vertex [1/t0], if it differs
   double *damping, *kept;                         ///< s and s (1 - h2 r), with the rate; see KickCoefficients
   double *kicked_x, *kicked_y;                    ///< w, if it is wanted; see KickCoefficients
+  double *chord_x, *chord_y;                      ///< between a vertex' neighbours, with an implicit pressure
 };
-inline constexpr int num_step_arrays = 20;
+inline constexpr int num_step_arrays = 22;
 
 /// A kick is what a force does to a vertex' velocity in half a time step: F below is the force times
 /// h/(M/N_v).
@@ -63,6 +64,8 @@ struct KickCoefficients {
   double weight;      ///< (h1 + h2) / half_step, h1 / half_step where no time step begins
   double half_step;   ///< that of the forces [t0]
   bool keeps_kicked;  ///< is w wanted afterwards?
+  /// Of an implicit pressure: K_a half_step^2/(M/N_v), K_a the area stiffness.
+  double softening = 0;
 };
 /// Which terms a kick has. The combinations are compiled apart.
 struct KickTerms {
@@ -70,15 +73,23 @@ struct KickTerms {
   bool on_area;                     ///< weight and mean drag act on the area; they are then coupled
   bool varying_rate;                ///< drag rates are those of the array; otherwise `rate`
   bool coupled;                     ///< does any force depend on all velocities?
+  bool implicit_pressure;           ///< see Coupling
   double rate;                      ///< [1/t0]
   double relative_rate, area_rate;  ///< at which the mean velocities of vertices and area act [1/t0]
 };
 /// Mean velocities, and what they add to those of the vertices.
+///
+/// An implicit pressure follows the area that would be reached if its present acceleration lasted for a time
+/// step: A + dt^2 d^2A/dt^2, with the acceleration by all forces on vertices and area, the added pressure
+/// among them. That is Newmark's method with beta = 1 for this one mode, while all others move by velocity
+/// Verlet: its frequency omega becomes omega/sqrt(1 + (omega dt)^2), stable for every step. Where the area is
+/// not accelerated, at rest and in steady motion, nothing is added.
 struct Coupling {
   double mean_x = 0, mean_y = 0;  ///< of the vertices
   double area_x = 0, area_y = 0;  ///< of the area's centroid
   double c_x = 0, c_y = 0;
-  double a_x = 0, a_y = 0;  ///< with the force on the area, over 6 a
+  double a_x = 0, a_y = 0;   ///< with the force on the area, over 6 a
+  double half_pressure = 0;  ///< that an implicit pressure adds, as a kick
 };
 /// Powers, each for M/N_v = 1.
 struct Power {

@@ -60,6 +60,9 @@ struct KickSums {
   double gg_xx, gg_xy, gg_yy;     ///< sum s G G^T
   double s;                       ///< sum s
   double g_xx, g_xy, g_yx, g_yy;  ///< sum s G
+  // For an implicit pressure; n is the chord turned outwards, twice the area's gradient.
+  double nn = 0, nf = 0;      ///< sum n.n, sum n.F
+  double ng_x = 0, ng_y = 0;  ///< sum G n
 };
 
 /// The coupled drag and the force on the area. With s_i = 1/(1 + h r_i) and w_i the velocity kicked by the
@@ -68,6 +71,10 @@ struct KickSums {
 /// e and b half a step's relative and area rate, R the kick by the force on the area: four linear equations
 /// for V and V_a, of which V is eliminated. They are implicit because the area's part is stiff for a
 /// drawn-out droplet, b sum |G_i|^2 growing with the square of its length and perimeter.
+/// An implicit pressure adds H n_i to the kick, n_i the chord turned outwards:
+///   H = -q/(1 + q sum n_j.n_j) (sum n_j.F_j + sum G_j n_j.(R - d V_a)),
+/// q the softening, R - d V_a the force on the area and its drag: the bracket is the area's acceleration.
+template <bool implicit_pressure>
 HWY_INLINE Coupling couple(int n, const KickTerms& terms, const AreaForce& force, const KickCoefficients& k,
                            const KickSums& sums) {
   const double one_nth = 1.0 / n;
@@ -75,6 +82,8 @@ HWY_INLINE Coupling couple(int n, const KickTerms& terms, const AreaForce& force
   const double feedback = 1 / (1 - e * one_nth * sums.s);
   const double pull = k.half_step * terms.relative_rate;
   double mean_x = one_nth * sums.w_x, mean_y = one_nth * sums.w_y;
+  const double softening = k.softening / (1 + k.softening * sums.nn);
+  double outwards = sums.nf;  // sum n.F with the force on the area
   Coupling result;
   if (terms.on_area) {
     const double unit = 1 / (6 * force.area);
@@ -88,17 +97,29 @@ HWY_INLINE Coupling couple(int n, const KickTerms& terms, const AreaForce& force
     mean_x += one_nth * (g_xx * before_x + g_yx * before_y);
     mean_y += one_nth * (g_xy * before_x + g_yy * before_y);
     const double both = e * feedback, both_b = both * b * one_nth;
-    const double right_x =
+    double right_x =
         unit * sums.gw_x + (gg_xx * before_x + gg_xy * before_y) + both * (g_xx * mean_x + g_xy * mean_y);
-    const double right_y =
+    double right_y =
         unit * sums.gw_y + (gg_xy * before_x + gg_yy * before_y) + both * (g_yx * mean_x + g_yy * mean_y);
-    const double m_xx = 1 + b * gg_xx + both_b * (g_xx * g_xx + g_xy * g_xy);
-    const double m_xy = b * gg_xy + both_b * (g_xx * g_yx + g_xy * g_yy);
-    const double m_yy = 1 + b * gg_yy + both_b * (g_yx * g_yx + g_yy * g_yy);
+    double m_xx = 1 + b * gg_xx + both_b * (g_xx * g_xx + g_xy * g_xy);
+    double m_xy = b * gg_xy + both_b * (g_xx * g_yx + g_xy * g_yy);
+    double m_yy = 1 + b * gg_yy + both_b * (g_yx * g_yx + g_yy * g_yy);
+    const double drag = k.half_step * terms.area_rate * n;
+    const double ng_x = unit * sums.ng_x, ng_y = unit * sums.ng_y;
+    if constexpr (implicit_pressure) {
+      outwards += ng_x * kick_x + ng_y * kick_y;
+      // With s the same for all vertices the pressure moves them by s n, which adds up to nothing.
+      const double pressed = k.kicks * softening * one_nth * sums.s;
+      right_x -= pressed * ng_x * outwards;
+      right_y -= pressed * ng_y * outwards;
+      m_xx -= pressed * drag * ng_x * ng_x;
+      m_xy -= pressed * drag * ng_x * ng_y;
+      m_yy -= pressed * drag * ng_y * ng_y;
+    }
     const double inverse = 1 / (m_xx * m_yy - m_xy * m_xy);
     result.area_x = inverse * (m_yy * right_x - m_xy * right_y);
     result.area_y = inverse * (m_xx * right_y - m_xy * right_x);
-    const double drag = k.half_step * terms.area_rate * n;
+    if constexpr (implicit_pressure) outwards -= drag * (ng_x * result.area_x + ng_y * result.area_y);
     result.a_x = unit * (drag * result.area_x - kick_x);
     result.a_y = unit * (drag * result.area_y - kick_y);
     mean_x -= b * one_nth * (g_xx * result.area_x + g_yx * result.area_y);
@@ -108,6 +129,7 @@ HWY_INLINE Coupling couple(int n, const KickTerms& terms, const AreaForce& force
   result.mean_y = feedback * mean_y;
   result.c_x = pull * result.mean_x;
   result.c_y = pull * result.mean_y;
+  if constexpr (implicit_pressure) result.half_pressure = -softening * outwards;
   return result;
 }
 
@@ -175,6 +197,17 @@ struct KickVectors {
   V spread_x = all(0), spread_y = all(0);
   V w_x = all(0), w_y = all(0), gw_x = all(0), gw_y = all(0), gg_xx = all(0), gg_xy = all(0), gg_yy = all(0);
   V s_sum = all(0), g_xx = all(0), g_xy = all(0), g_yx = all(0), g_yy = all(0);
+  V nn = all(0), nf = all(0), ng_x = all(0), ng_y = all(0);
+
+  template <class Keep>
+  HWY_INLINE void add_outwards(const PairOfVectors& chord, const PairOfVectors& force, Keep keep) {
+    nn = hn::Add(nn, keep(hn::MulAdd(chord.x, chord.x, hn::Mul(chord.y, chord.y))));
+    nf = hn::Add(nf, keep(hn::MulSub(chord.y, force.x, hn::Mul(chord.x, force.y))));
+  }
+  HWY_INLINE void add_outwards(const PairOfVectors& chord, const CentroidGradient& g) {
+    ng_x = hn::MulAdd(g.xx, chord.y, hn::NegMulAdd(g.xy, chord.x, ng_x));
+    ng_y = hn::MulAdd(g.yx, chord.y, hn::NegMulAdd(g.yy, chord.x, ng_y));
+  }
 
   template <class Keep>
   HWY_INLINE void add_velocity(V s, const PairOfVectors& w, Keep keep) {
@@ -205,6 +238,7 @@ struct KickVectors {
   }
 
   /// @param one_s  where s is the same for all vertices, it; it has been left out of the sums
+  template <bool implicit_pressure>
   HWY_INLINE KickSums total(int n, const AreaForce& force, double one_s) const {
     const auto w = sums(w_x, w_y, spread_x, spread_y);
     const auto gw = sums(gw_x, gw_y, gg_xx, gg_xy);
@@ -229,6 +263,13 @@ struct KickVectors {
       total.g_yx = g[2];
       total.g_yy = g[3];
       total.s = sum(s_sum);
+    }
+    if constexpr (implicit_pressure) {
+      const auto outwards = sums(nn, nf, ng_x, ng_y);
+      total.nn = outwards[0];
+      total.nf = outwards[1];
+      total.ng_x = outwards[2];
+      total.ng_y = outwards[3];
     }
     return total;
   }
@@ -263,7 +304,7 @@ HWY_INLINE PairOfVectors kick_force(const Corner& c, const PairOfVectors& chord,
   return {fx, fy};
 }
 
-template <bool elastic, bool coupled, bool on_area, bool varying_rate>
+template <bool elastic, bool coupled, bool on_area, bool varying_rate, bool implicit_pressure>
 Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface, const AreaForce& force,
                    const KickCoefficients& coefficients, const StepArrays& arrays) {
   const StepArrays a = arrays;  // a copy that stores cannot change
@@ -306,6 +347,11 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
       store(hn::Mul(w.y, s), a.kicked_y + i);
     }
     if constexpr (coupled) total.add_velocity(s, w, keep);
+    if constexpr (implicit_pressure) {
+      total.add_outwards(chord, {fx, fy}, keep);
+      store(chord.x, a.chord_x + i);
+      store(chord.y, a.chord_y + i);
+    }
     if constexpr (on_area) {
       const CentroidGradient g =
           centroid_gradient({load(a.x + i), load(a.y + i)}, centre, corner, chord, keep);
@@ -314,23 +360,32 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
       store(g.yx, a.grad_yx + i);
       store(g.yy, a.grad_yy + i);
       total.add_gradient(g, s, w);
+      if constexpr (implicit_pressure) total.add_outwards(chord, g);
     }
   });
-  if constexpr (!coupled) return {};
-  return couple(n, terms, force, coefficients, total.total(n, force, one_s));
+  if constexpr (!coupled && !implicit_pressure) return {};
+  return couple<implicit_pressure>(n, terms, force, coefficients,
+                                   total.template total<implicit_pressure>(n, force, one_s));
 }
 
+/// An implicit pressure is only there for rates that do not vary.
 decltype(StepKernel::kick) kick_version(const KickTerms& terms) {
-  constexpr decltype(StepKernel::kick) coupled[2][2][2] = {
-      {{kick_with<false, true, false, false>, kick_with<false, true, false, true>},
-       {kick_with<false, true, true, false>, kick_with<false, true, true, true>}},
-      {{kick_with<true, true, false, false>, kick_with<true, true, false, true>},
-       {kick_with<true, true, true, false>, kick_with<true, true, true, true>}}};
-  constexpr decltype(StepKernel::kick) free[2][2] = {
-      {kick_with<false, false, false, false>, kick_with<false, false, false, true>},
-      {kick_with<true, false, false, false>, kick_with<true, false, false, true>}};
-  return terms.coupled ? coupled[terms.elastic][terms.on_area][terms.varying_rate]
-                       : free[terms.elastic][terms.varying_rate];
+  constexpr decltype(StepKernel::kick) coupled[2][2][3] = {
+      {{kick_with<false, true, false, false, false>, kick_with<false, true, false, true, false>,
+        kick_with<false, true, false, false, true>},
+       {kick_with<false, true, true, false, false>, kick_with<false, true, true, true, false>,
+        kick_with<false, true, true, false, true>}},
+      {{kick_with<true, true, false, false, false>, kick_with<true, true, false, true, false>,
+        kick_with<true, true, false, false, true>},
+       {kick_with<true, true, true, false, false>, kick_with<true, true, true, true, false>,
+        kick_with<true, true, true, false, true>}}};
+  constexpr decltype(StepKernel::kick) free[2][3] = {
+      {kick_with<false, false, false, false, false>, kick_with<false, false, false, true, false>,
+       kick_with<false, false, false, false, true>},
+      {kick_with<true, false, false, false, false>, kick_with<true, false, false, true, false>,
+       kick_with<true, false, false, false, true>}};
+  const int version = terms.varying_rate ? 1 : terms.implicit_pressure ? 2 : 0;
+  return terms.coupled ? coupled[terms.elastic][terms.on_area][version] : free[terms.elastic][version];
 }
 
 Power power(int n, const KickTerms& terms, const InterfaceKick& interface,
@@ -338,7 +393,7 @@ Power power(int n, const KickTerms& terms, const InterfaceKick& interface,
   const StepArrays a = arrays;
   const double one_s = coefficients.kicks / (1 + coefficients.h1 * terms.rate);  // 0: w is the velocity
   const V cx = all(coupling.c_x), cy = all(coupling.c_y), ax = all(coupling.a_x), ay = all(coupling.a_y);
-  const V spreading = all(interface.spreading);
+  const V spreading = all(interface.spreading), pressure = all(coupling.half_pressure);
   V drag = all(0), spread_power = all(0), spread_x = all(0), spread_y = all(0);
   for_vectors(n, [&](int i, auto keep) CLOG_INLINE {
     V s = all(one_s), rate = all(terms.rate);
@@ -350,6 +405,10 @@ Power power(int n, const KickTerms& terms, const InterfaceKick& interface,
     if (terms.on_area) {
       pull_x = hn::NegMulAdd(load(a.grad_xx + i), ax, hn::NegMulAdd(load(a.grad_yx + i), ay, cx));
       pull_y = hn::NegMulAdd(load(a.grad_xy + i), ax, hn::NegMulAdd(load(a.grad_yy + i), ay, cy));
+    }
+    if (coupling.half_pressure != 0) {
+      pull_x = hn::MulAdd(pressure, load(a.chord_y + i), pull_x);
+      pull_y = hn::NegMulAdd(pressure, load(a.chord_x + i), pull_y);
     }
     const V vx = hn::MulAdd(s, pull_x, load(a.kicked_x + i));
     const V vy = hn::MulAdd(s, pull_y, load(a.kicked_y + i));
@@ -371,11 +430,12 @@ Power power(int n, const KickTerms& terms, const InterfaceKick& interface,
   return {.drag = s[0], .spreading = s[1], .spread_x = s[2], .spread_y = s[3]};
 }
 
-template <bool elastic, bool coupled, bool on_area, bool varying_rate>
+template <bool elastic, bool coupled, bool on_area, bool varying_rate, bool implicit_pressure>
 Sums drift_with(int n, const KickTerms& terms, const KickCoefficients& coefficients, const Coupling& coupling,
                 double time_step, const StepArrays& arrays) {
   const StepArrays a = arrays;
   const V cx = all(coupling.c_x), cy = all(coupling.c_y), ax = all(coupling.a_x), ay = all(coupling.a_y);
+  const V pressure = all(coupling.half_pressure);
   const V dt = all(time_step), weight = all(coefficients.weight);
   const V same = all(coefficients.weight / (1 + coefficients.h1 * terms.rate));
   struct Point {
@@ -383,13 +443,17 @@ Sums drift_with(int n, const KickTerms& terms, const KickCoefficients& coefficie
   };
   const auto move = [&](int i) CLOG_INLINE {
     V vx = load(a.vx + i), vy = load(a.vy + i);
-    if constexpr (coupled) {
+    if constexpr (coupled || implicit_pressure) {
       V share = same;
       if constexpr (varying_rate) share = hn::Mul(weight, load(a.damping + i));
       V pull_x = cx, pull_y = cy;
       if constexpr (on_area) {
         pull_x = hn::NegMulAdd(load(a.grad_xx + i), ax, hn::NegMulAdd(load(a.grad_yx + i), ay, cx));
         pull_y = hn::NegMulAdd(load(a.grad_xy + i), ax, hn::NegMulAdd(load(a.grad_yy + i), ay, cy));
+      }
+      if constexpr (implicit_pressure) {
+        pull_x = hn::MulAdd(pressure, load(a.chord_y + i), pull_x);
+        pull_y = hn::NegMulAdd(pressure, load(a.chord_x + i), pull_y);
       }
       vx = hn::MulAdd(share, pull_x, vx);
       vy = hn::MulAdd(share, pull_y, vy);
@@ -428,14 +492,21 @@ Sums drift_with(int n, const KickTerms& terms, const KickCoefficients& coefficie
 }
 
 decltype(StepKernel::drift) drift_version(const KickTerms& terms) {
-  constexpr decltype(StepKernel::drift) coupled[2][2][2] = {
-      {{drift_with<false, true, false, false>, drift_with<false, true, false, true>},
-       {drift_with<false, true, true, false>, drift_with<false, true, true, true>}},
-      {{drift_with<true, true, false, false>, drift_with<true, true, false, true>},
-       {drift_with<true, true, true, false>, drift_with<true, true, true, true>}}};
-  constexpr decltype(StepKernel::drift) free[2] = {drift_with<false, false, false, false>,
-                                                   drift_with<true, false, false, false>};
-  return terms.coupled ? coupled[terms.elastic][terms.on_area][terms.varying_rate] : free[terms.elastic];
+  constexpr decltype(StepKernel::drift) coupled[2][2][3] = {
+      {{drift_with<false, true, false, false, false>, drift_with<false, true, false, true, false>,
+        drift_with<false, true, false, false, true>},
+       {drift_with<false, true, true, false, false>, drift_with<false, true, true, true, false>,
+        drift_with<false, true, true, false, true>}},
+      {{drift_with<true, true, false, false, false>, drift_with<true, true, false, true, false>,
+        drift_with<true, true, false, false, true>},
+       {drift_with<true, true, true, false, false>, drift_with<true, true, true, true, false>,
+        drift_with<true, true, true, false, true>}}};
+  constexpr decltype(StepKernel::drift) free[2][2] = {
+      {drift_with<false, false, false, false, false>, drift_with<false, false, false, false, true>},
+      {drift_with<true, false, false, false, false>, drift_with<true, false, false, false, true>}};
+  const int version = terms.varying_rate ? 1 : terms.implicit_pressure ? 2 : 0;
+  return terms.coupled ? coupled[terms.elastic][terms.on_area][version]
+                       : free[terms.elastic][terms.implicit_pressure];
 }
 
 }  // namespace clog::kernel::HWY_NAMESPACE

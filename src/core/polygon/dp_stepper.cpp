@@ -15,6 +15,11 @@ namespace {
 /// The rate of the drag far from walls [1/t0].
 double far_rate_of(const RunParameters& run) { return 1 / relaxation_time(run); }
 
+kernel::KickTerms with_implicit_pressure(kernel::KickTerms terms) {
+  terms.implicit_pressure = true;
+  return terms;
+}
+
 }  // namespace
 
 DpStepper::DpStepper(const RunParameters& run, const ObstacleArray& obstacles, const DpForces& forces)
@@ -22,6 +27,7 @@ DpStepper::DpStepper(const RunParameters& run, const ObstacleArray& obstacles, c
       forces_(&forces),
       terms_(kick_terms(run, far_rate_of(run))),
       kernel_(kernel::step_kernel(terms_)),
+      implicit_kernel_(kernel::step_kernel(with_implicit_pressure(terms_))),
       n_(*run.dp.vertices),
       holds_circles_(forces.friction().is_on() && run.dp.wall_contact == WallContact::edge &&
                      obstacles.wedges().empty()),
@@ -75,7 +81,9 @@ void DpStepper::store(DropletState& state) const {
   std::copy_n(arrays_.vy, n_, state.velocity.data() + n_);
 }
 
-void DpStepper::advance(DropletState& state, int steps, double time_step, Droplet::Work* work) {
+void DpStepper::advance(DropletState& state, int steps, double time_step, bool implicit_pressure,
+                        Droplet::Work* work) {
+  has_implicit_pressure_ = implicit_pressure;
   const double h = 0.5 * time_step;
   for (int step = 0; step < steps; ++step) {
     const double h_before = 0.5 * open_step_;
@@ -86,7 +94,8 @@ void DpStepper::advance(DropletState& state, int steps, double time_step, Drople
                     .h2 = h,
                     .weight = h_before / h + 1,
                     .half_step = h,
-                    .keeps_kicked = work != nullptr},
+                    .keeps_kicked = work != nullptr,
+                    .softening = softening(h)},
                    time_step, work);
   }
 }
@@ -94,7 +103,14 @@ void DpStepper::advance(DropletState& state, int steps, double time_step, Drople
 void DpStepper::finish(DropletState& state, Droplet::Work* work) {
   if (open_step_ != 0) {
     const double h = 0.5 * open_step_;
-    kick_and_drift(state, {.kicks = 1, .h1 = h, .h2 = h, .weight = 1, .half_step = h, .keeps_kicked = true},
+    kick_and_drift(state,
+                   {.kicks = 1,
+                    .h1 = h,
+                    .h2 = h,
+                    .weight = 1,
+                    .half_step = h,
+                    .keeps_kicked = true,
+                    .softening = softening(h)},
                    0, work);
     open_step_ = 0;
   }
@@ -112,7 +128,8 @@ void DpStepper::kick_and_drift(DropletState& droplet, const kernel::KickCoeffici
       kernel::kick_of(forces_->interface(sums_.area, sums_.perimeter), impulse);
   const Eigen::Array2d weight{units::droplet_mass * units::gravity, 0};
   const kernel::AreaForce force = area_force(sums_, impulse * (weight - wetting_spread_));
-  const kernel::Coupling coupling = kernel_.kick(n_, terms_, interface, force, coefficients, arrays_);
+  const kernel::StepKernel& kernel = has_implicit_pressure_ ? implicit_kernel_ : kernel_;
+  const kernel::Coupling coupling = kernel.kick(n_, terms_, interface, force, coefficients, arrays_);
   if (work != nullptr) {
     const Droplet::Work now = power(interface, coefficients, coupling);
     if (coefficients.kicks != 0) {  // it ends a step
@@ -125,7 +142,7 @@ void DpStepper::kick_and_drift(DropletState& droplet, const kernel::KickCoeffici
     std::swap(arrays_.vx, arrays_.kicked_x);
     std::swap(arrays_.vy, arrays_.kicked_y);
   }
-  sums_ = kernel_.drift(n_, terms_, coefficients, coupling, drift_time, arrays_);
+  sums_ = kernel.drift(n_, terms_, coefficients, coupling, drift_time, arrays_);
 }
 
 void DpStepper::push_off_circles(const kernel::Contact& touching, double impulse, Droplet::Work* work) {
@@ -216,6 +233,10 @@ void DpStepper::hold_by_friction(DropletState& droplet, double impulse, Droplet:
     arrays_.push_x[x] += impulse * std::exchange(friction_[x], 0.0);
     arrays_.push_y[x] += impulse * std::exchange(friction_[y], 0.0);
   }
+}
+
+double DpStepper::softening(double half_step) const {
+  return run_.dp.area_stiffness.value() * half_step * half_step / vertex_mass();
 }
 
 double DpStepper::vertex_mass() const { return run_.dp.inertia * units::droplet_mass / n_; }

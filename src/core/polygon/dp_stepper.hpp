@@ -35,8 +35,9 @@ class DpStepper {
   /// velocities those of half a step before.
   /// @param state  the droplet that was loaded, of which walls' anchors are kept; positions and velocities
   /// may be old
+  /// @param implicit_pressure  see kernel::Coupling; not with near-wall drag
   /// @param work  if not null, what drag and springs did since the last call is added to it
-  void advance(DropletState& state, int steps, double time_step, Droplet::Work* work);
+  void advance(DropletState& state, int steps, double time_step, bool implicit_pressure, Droplet::Work* work);
   /// Makes the last half kick if it is still open; copies positions, velocities and anchors into `state`.
   void finish(DropletState& state, Droplet::Work* work);
 
@@ -44,7 +45,7 @@ class DpStepper {
   RunParameters run_;
   const DpForces* forces_;
   kernel::KickTerms terms_;
-  kernel::StepKernel kernel_;
+  kernel::StepKernel kernel_, implicit_kernel_;  // the latter with an implicit pressure
   int n_;
   bool holds_circles_;              // does friction act, and only at edges that meet circles?
   bool are_pushes_spread_ = false;  // did friction push vertices in the last step?
@@ -62,6 +63,7 @@ class DpStepper {
   double fastest_ = 0;                    // speed of a vertex at the last look [sqrt(sigma g)]
   int steps_to_rates_ = 0;                // left with the present rates of near-wall drag
   kernel::KickCoefficients rates_for_{};  // with these half steps
+  bool has_implicit_pressure_ = false;    // in the present steps
   double open_step_ = 0;                  // length of the step whose last half kick is to come; 0: none is
   Droplet::Work open_power_;              // at its beginning
 
@@ -73,7 +75,8 @@ class DpStepper {
   void renew_rates(const kernel::KickCoefficients& coefficients);
   void add_wetting(DropletState& droplet, double impulse, Droplet::Work* work);
   void hold_by_friction(DropletState& droplet, double impulse, Droplet::Work* work);
-  double vertex_mass() const;  // that resists a change of speed
+  double softening(double half_step) const;  // see KickCoefficients
+  double vertex_mass() const;                // that resists a change of speed
   Droplet::Work power(const kernel::InterfaceKick& interface, const kernel::KickCoefficients& coefficients,
                       const kernel::Coupling& coupling) const;
 };

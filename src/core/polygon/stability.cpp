@@ -8,6 +8,20 @@
 #include "clog/core/tools/units.hpp"
 
 namespace clog {
+namespace {
+
+/// @param longest  possible step
+int num_steps(double longest, int steps, double time_step) {
+  // The tolerance keeps a step that was chosen as exactly the largest stable one from being split.
+  constexpr double tolerance = 1e-9;
+  constexpr double most_by_part = 2;
+  const double for_one = time_step / longest - tolerance;
+  if (!(for_one < most_substeps)) return most_substeps * steps;
+  const double needed = for_one > most_by_part ? steps * std::ceil(for_one) : std::ceil(steps * for_one);
+  return std::max(steps, static_cast<int>(needed));
+}
+
+}  // namespace
 
 StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double perimeter,
                        double shortest_edge) {
@@ -44,10 +58,19 @@ double largest_stable_step(const StiffModes& modes) {
                              max_total_with_self_omega_dt2 / (modes.sum() + modes.self_contact)}));
 }
 
-int num_substeps(const StiffModes& modes, double time_step) {
-  // The tolerance keeps a step that was chosen as exactly the largest stable one from being split.
-  const double parts = std::ceil(time_step / largest_stable_step(modes) - 1e-9);
-  return parts < most_substeps ? std::max(1, static_cast<int>(parts)) : most_substeps;
+double largest_step_with_implicit_pressure(const StiffModes& modes) {
+  constexpr double area_omega_dt2 = 1;
+  const double others = modes.sum() - modes.area;
+  return std::sqrt(
+      std::min({max_contact_omega_dt2 / modes.contact, (max_total_omega_dt2 - area_omega_dt2) / others,
+                (max_total_with_self_omega_dt2 - area_omega_dt2) / (others + modes.self_contact)}));
+}
+
+StableSteps stable_steps(const StiffModes& modes, int steps, double time_step, bool may_be_implicit) {
+  const int num_explicit = num_steps(largest_stable_step(modes), steps, time_step);
+  if (!may_be_implicit) return {num_explicit, false};
+  const int num_implicit = num_steps(largest_step_with_implicit_pressure(modes), steps, time_step);
+  return num_implicit < num_explicit ? StableSteps{num_implicit, true} : StableSteps{num_explicit, false};
 }
 
 }  // namespace clog

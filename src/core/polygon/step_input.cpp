@@ -9,6 +9,7 @@ kernel::KickTerms kick_terms(const RunParameters& run, double far_rate) {
           .on_area = on_area,
           .varying_rate = varies,
           .coupled = on_area || (run.drag.relative != 1 && far_rate > 0),
+          .implicit_pressure = false,
           .rate = varies ? 0 : far_rate * run.drag.relative,
           .relative_rate = (on_area ? run.drag.relative : run.drag.relative - 1) * far_rate,
           .area_rate = on_area ? far_rate : 0};

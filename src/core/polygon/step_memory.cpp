@@ -16,7 +16,8 @@ StepMemory::StepMemory(int num_vertices) : n_(num_vertices) {
        {&arrays_.x,         &arrays_.y,       &arrays_.vx,      &arrays_.vy,       &arrays_.tangent_x,
         &arrays_.tangent_y, &arrays_.length,  &arrays_.push_x,  &arrays_.push_y,   &arrays_.wetting_x,
         &arrays_.wetting_y, &arrays_.grad_xx, &arrays_.grad_xy, &arrays_.grad_yx,  &arrays_.grad_yy,
-        &arrays_.rate,      &arrays_.damping, &arrays_.kept,    &arrays_.kicked_x, &arrays_.kicked_y}) {
+        &arrays_.rate,      &arrays_.damping, &arrays_.kept,    &arrays_.kicked_x, &arrays_.kicked_y,
+        &arrays_.chord_x,   &arrays_.chord_y}) {
     *array = next;
     next += stride;
   }

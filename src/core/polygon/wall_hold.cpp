@@ -69,9 +69,9 @@ void WallHold::clear_pushes() {
   for (const kernel::HoldingCircle& circle : all_)
     for (int k = circle.first_window; k < circle.end_window; ++k)
       for (int array = 0; array < kernel::num_window_push_arrays; ++array)
-        std::fill_n(circle.pushes.first + array * circle.pushes.stride +
-                        windows_[static_cast<std::size_t>(k)].first,
-                    size, 0.0);
+        std::fill_n(
+            circle.pushes.first + array * circle.pushes.stride + windows_[static_cast<std::size_t>(k)].first,
+            size, 0.0);
 }
 
 /// First arrays of the whole contour, each as long: three for all circles, then those of each circle.

@@ -23,8 +23,10 @@ using namespace test;
 /// The step as it is written in the documentation, a line for each formula, on the readable force.
 class ReadableDroplet {
  public:
-  ReadableDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial)
+  ReadableDroplet(const RunParameters& run, const ObstacleArray& obstacles, DropletState initial,
+                  bool implicit_pressure = false)
       : run_(run),
+        implicit_pressure_(implicit_pressure),
         n_(*run.dp.vertices),
         forces_(run, obstacles),
         touches_(run, obstacles),
@@ -38,18 +40,20 @@ class ReadableDroplet {
   void step() {
     const double h = *run_.time_step / 2;
     const double h_over_m = h * n_ / units::droplet_mass;
-    state_.velocity += h_over_m * force_ + h * drag(state_.velocity);
+    state_.velocity += h_over_m * force_ + h * drag(state_.velocity) + h * pressed(state_.velocity);
     state_.position += *run_.time_step * state_.velocity;
     find_forces();
     // The drag of the second half kick is that of its end: by iteration.
     const Eigen::ArrayXd kicked = state_.velocity + h_over_m * force_;
     // Averaging keeps the iteration stable next to a wall.
     for (int i = 0; i < 300; ++i)
-      state_.velocity += 0.4 * (kicked + h * drag(state_.velocity) - state_.velocity);
+      state_.velocity +=
+          0.4 * (kicked + h * drag(state_.velocity) + h * pressed(state_.velocity) - state_.velocity);
   }
 
  private:
   RunParameters run_;
+  bool implicit_pressure_;
   int n_;
   DpForces forces_;
   WallTouches touches_;
@@ -93,14 +97,35 @@ class ReadableDroplet {
     Eigen::ArrayXd result(2 * n_);
     result << to_mean * v.head(n_).mean() - rate_ * v.head(n_),
         to_mean * v.tail(n_).mean() - rate_ * v.tail(n_);
-    if (on_area) {
-      const auto g = [this](Eigen::Index k) { return forces_.centroid_gradient().segment(k * n_, n_); };
-      const double area_x = (g(0) * v.head(n_) + g(1) * v.tail(n_)).sum();
-      const double area_y = (g(2) * v.head(n_) + g(3) * v.tail(n_)).sum();
-      result.head(n_) -= far * n_ * (area_x * g(0) + area_y * g(2));
-      result.tail(n_) -= far * n_ * (area_x * g(1) + area_y * g(3));
-    }
+    if (on_area) result += area_drag(v);
     return result;
+  }
+  Eigen::ArrayXd area_drag(const Eigen::ArrayXd& v) {
+    const double far = units::gravity / run_.drag.terminal_speed;
+    const auto g = [this](Eigen::Index k) { return forces_.centroid_gradient().segment(k * n_, n_); };
+    const double area_x = (g(0) * v.head(n_) + g(1) * v.tail(n_)).sum();
+    const double area_y = (g(2) * v.head(n_) + g(3) * v.tail(n_)).sum();
+    Eigen::ArrayXd result(2 * n_);
+    result << -far * n_ * (area_x * g(0) + area_y * g(2)), -far * n_ * (area_x * g(1) + area_y * g(3));
+    return result;
+  }
+  /// Acceleration by what an implicit pressure adds: -K_a dt^2 times the area's acceleration, by the forces,
+  /// the area's drag and the added pressure itself.
+  Eigen::ArrayXd pressed(const Eigen::ArrayXd& v) {
+    Eigen::ArrayXd gradient(2 * n_);  // of the area
+    if (!implicit_pressure_) return Eigen::ArrayXd::Zero(2 * n_);
+    for (int i = 0; i < n_; ++i) {
+      const int next = (i + 1) % n_, before = (i + n_ - 1) % n_;
+      gradient[i] = (state_.y()[next] - state_.y()[before]) / 2;
+      gradient[n_ + i] = (state_.x()[before] - state_.x()[next]) / 2;
+    }
+    const double mass = units::droplet_mass / n_;
+    Eigen::ArrayXd without = force_ / mass;
+    if (run_.dp.gravity == Gravity::area) without += area_drag(v);
+    const double softening = *run_.dp.area_stiffness * *run_.time_step * *run_.time_step;
+    const double pressure =
+        -softening * (gradient * without).sum() / (1 + softening * gradient.square().sum() / mass);
+    return pressure / mass * gradient;
   }
 };
 
@@ -238,7 +263,7 @@ TEST_P(Step, JoinsStepsOfDifferentLengths) {
       };
       begin();
       for (const double time_step : {long_step, short_step, long_step}) {
-        stepper.advance(state, 3, time_step, nullptr);
+        stepper.advance(state, 3, time_step, false, nullptr);
         if (!finishes_between) continue;
         stepper.finish(state, nullptr);
         begin();
@@ -253,6 +278,42 @@ TEST_P(Step, JoinsStepsOfDifferentLengths) {
       EXPECT_LT((joined.position - apart.position).abs().maxCoeff(), 1e-14) << set << ", " << vertices;
       EXPECT_LT((joined.velocity - apart.velocity).abs().maxCoeff(), 1e-11 * apart.velocity.abs().maxCoeff())
           << set << ", " << vertices;
+    }
+  }
+}
+
+TEST_P(Step, IsThatOfTheReadableFormWithAnImplicitPressure) {
+  for (const int vertices : {64, 101}) {
+    const RunParameters run = parameters(vertices);
+    if (run.drag.near_wall > 0) continue;  // then the pressure is not implicit
+    const double diameter = units::regular_edge_length(vertices);
+    DropletState initial = state_of(shaken(full_size_dumbbell(vertices, 0.98 * diameter), 0.002 * diameter));
+    initial.velocity = shaken(Eigen::ArrayXd::Zero(initial.position.size()), 0.03, 7);
+    const ObstacleArray walls(20, {{initial.x().maxCoeff() + 0.15 + 0.45 * diameter, 0.02, 0.15}});
+    constexpr int num_steps = 3;
+    const auto moved = [&](bool implicit_pressure) {
+      constexpr double speed = 100;
+      const Travel travel{.absolute = 0.1, .relative = 0.2};
+      DpForces forces(run, walls);
+      DropletState state = initial;
+      forces.update_contacts(state, travel);
+      DpStepper stepper(run, walls, forces);
+      stepper.load(state);
+      stepper.look(state, travel, speed, nullptr);
+      stepper.advance(state, num_steps, *run.time_step, implicit_pressure, nullptr);
+      stepper.finish(state, nullptr);
+      return state;
+    };
+    for (const std::string& set : instruction_sets()) {
+      use_instruction_set(set);
+      ReadableDroplet readable(run, walls, initial, true);
+      for (int step = 0; step < num_steps; ++step) readable.step();
+      const DropletState state = moved(true);
+      EXPECT_LT((state.position - readable.state().position).abs().maxCoeff(), 1e-14) << set;
+      const double fastest = readable.state().velocity.abs().maxCoeff();
+      EXPECT_LT((state.velocity - readable.state().velocity).abs().maxCoeff(), 3e-12 * fastest) << set;
+      EXPECT_GT((state.velocity - moved(false).velocity).abs().maxCoeff(), 1e-4 * fastest)
+          << "the pressure adds something";
     }
   }
 }

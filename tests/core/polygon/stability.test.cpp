@@ -117,13 +117,40 @@ TEST(StiffModes, ContactModeIsThatOfAVertexWithBothItsEdges) {
   EXPECT_NEAR(modes.contact, 2 * 1000 * 128 / units::droplet_mass, 1e-6);
 }
 
-TEST(NumSubsteps, IsOneUpToTheLargestStableStep) {
+TEST(StableSteps, AreAsManyAsTheModesNeed) {
   const RunParameters run = resolve(RunParameters{});
   const StiffModes modes = stiff_modes(run.dp, *run.wall_stiffness, 3.14, 3.14 / *run.dp.vertices);
   const double largest = largest_stable_step(modes);
-  EXPECT_EQ(num_substeps(modes, largest), 1);
-  EXPECT_EQ(num_substeps(modes, 1.01 * largest), 2);
-  EXPECT_EQ(num_substeps(modes, 5.5 * largest), 6);
+  const auto num = [&](int steps, double step) { return stable_steps(modes, steps, step, false).num; };
+  EXPECT_EQ(num(1, largest), 1);
+  EXPECT_EQ(num(1, 1.01 * largest), 2);
+  EXPECT_EQ(num(1, 5.5 * largest), 6);
+  // Only as many more as are needed.
+  EXPECT_EQ(num(8, largest), 8);
+  EXPECT_EQ(num(8, 1.01 * largest), 9);
+  EXPECT_EQ(num(8, 1.99 * largest), 16);
+  EXPECT_EQ(num(8, 2.01 * largest), 24) << "beyond twice as many, a multiple";
+  EXPECT_EQ(num(8, 0.5 * largest), 8) << "no step is longer than the time step";
+  EXPECT_EQ(num(8, 1e9 * largest), 8 * most_substeps);
+}
+
+TEST(StableSteps, HaveAnImplicitPressureWhereTheAreaModeIsTheStiffOne) {
+  const RunParameters run = resolve(RunParameters{});
+  const double step = *run.time_step;
+  const auto steps = [&](double perimeter, double shortest_edge, bool may_be_implicit) {
+    return stable_steps(stiff_modes(run.dp, *run.wall_stiffness, perimeter, shortest_edge), 8, step,
+                        may_be_implicit);
+  };
+  const double edge = units::regular_edge_length(*run.dp.vertices);
+  EXPECT_FALSE(steps(3.14, edge, true).implicit_pressure) << "a circle needs none";
+  EXPECT_EQ(steps(3.14, edge, true).num, 8);
+  const StableSteps drawn_out = steps(10 * 3.14, 10 * edge, true);
+  EXPECT_TRUE(drawn_out.implicit_pressure);
+  EXPECT_EQ(drawn_out.num, 8);
+  const StableSteps split = steps(10 * 3.14, 10 * edge, false);
+  EXPECT_FALSE(split.implicit_pressure);
+  EXPECT_GT(split.num, 24);
+  EXPECT_FALSE(steps(3.14, 0.02 * edge, true).implicit_pressure) << "it does not help a short edge";
 }
 
 }  // namespace

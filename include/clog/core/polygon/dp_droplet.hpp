@@ -13,7 +13,8 @@ class DpStepper;
 ///   v += dt/2 (F - zeta v)/m,  x += dt v,  v = (v + dt/2 F/m)/(1 + dt zeta/(2m)),
 /// the drag of the second half kick being implicit, so that strong near-wall drag cannot destabilise it. A
 /// drag of relative motion is treated in the same way, with the velocity of the centre of mass of the same
-/// instant. The time step is split when the droplet's present perimeter makes a mode too stiff for it.
+/// instant. Where the droplet's present perimeter makes the area mode too stiff for the time step, the
+/// pressure is implicit (see kernel::Coupling); where another mode is too stiff, the time step is split.
 class DpDroplet final : public Droplet {
  public:
   /// @param run        resolved parameters
@@ -40,6 +41,7 @@ class DpDroplet final : public Droplet {
   DpForces forces_;
   double vertex_mass_;
   int steps_per_check_;
+  bool may_have_implicit_pressure_;
   std::unique_ptr<DpStepper> stepper_;
 };
 

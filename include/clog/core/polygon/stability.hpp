@@ -34,7 +34,8 @@ inline constexpr double max_total_omega_dt2 = 3.0;
 /// The same for a droplet that touches itself as well. It is larger, because self-contact is rare, and softer
 /// than StiffModes::self_contact assumes.
 inline constexpr double max_total_with_self_omega_dt2 = 3.9;
-/// The area mode is anharmonic in the perimeter; it gets its own bound.
+/// The area mode is anharmonic in the perimeter; it gets its own bound. With 1.25, three times as many
+/// droplets without drag diverged (docs/notes/2026-11-25-longer-steps.md).
 inline constexpr double max_area_omega_dt2 = 1.0;
 
 /// The share of every bound that the modes of a circle take with the automatic step.
@@ -46,12 +47,23 @@ StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double per
 
 /// Largest time step [t0] that keeps every bound above.
 double largest_stable_step(const StiffModes& modes);
+/// The same with an implicit pressure (see kernel::Coupling), with which (omega dt)^2 of the area mode is
+/// below 1 for every step.
+double largest_step_with_implicit_pressure(const StiffModes& modes);
 
-/// A droplet that needs more has burst; the run is given up at its next check.
+/// A droplet that needs more for one has burst; the run is given up at its next check.
 inline constexpr int most_substeps = 1000;
 
-/// Number of equal sub-steps that `time_step` must be split into at these modes (1 when it holds as it is),
-/// at most most_substeps.
-int num_substeps(const StiffModes& modes, double time_step);
+/// How to go some time steps, so that every bound is kept.
+struct StableSteps {
+  int num;                 ///< of equal length
+  bool implicit_pressure;  ///< see kernel::Coupling
+};
+/// As few steps as possible for `steps` time steps: as many if they keep the bounds themselves, at most
+/// most_substeps times as many. Up to twice as many it is as many as needed, above that a multiple of
+/// `steps`: the bounds are those of regular polygons, and drawn-out ones need what that leaves
+/// (docs/notes/2026-11-25-longer-steps.md).
+/// @param may_be_implicit  may the pressure be implicit if this saves steps?
+StableSteps stable_steps(const StiffModes& modes, int steps, double time_step, bool may_be_implicit);
 
 }  // namespace clog
