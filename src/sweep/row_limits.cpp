@@ -29,11 +29,9 @@ constexpr double most_traction = 0.1;
 constexpr double smallest_receding_angle = 60;  // [degrees]
 struct SoundPreset {
   std::string_view name;
-  double smallest_tension;         ///< with 128 vertices or more
-  double smallest_tension_coarse;  ///< with fewer
+  double smallest_tension;
 };
-constexpr SoundPreset sound_presets[] = {
-    {"robust", 0.01, 0.02}, {"heavy-interface", 0.05, 0.05}, {"elastic", 0.03, 0.03}};
+constexpr SoundPreset sound_presets[] = {{"robust", 0.02}, {"heavy-interface", 0.07}, {"elastic", 0.04}};
 
 std::string unproven_tension(const std::string& preset_name, const DpParameters& dp) {
   const auto* preset = std::find_if(std::begin(sound_presets), std::end(sound_presets),
@@ -42,12 +40,9 @@ std::string unproven_tension(const std::string& preset_name, const DpParameters&
     return "preset=" + preset_name +
            (preset_name == "custom" ? " (this interface was not tested)"
                                     : " (droplets cross themselves and obstacles)");
-  constexpr int fine = 128;
-  const double smallest = *dp.vertices >= fine ? preset->smallest_tension : preset->smallest_tension_coarse;
-  if (dp.line_tension >= smallest && dp.line_tension <= largest_tension) return "";
-  return fmt::format("line-tension={} ({}{} is sound from {} to {})", shortest(dp.line_tension), preset->name,
-                     *dp.vertices >= fine ? "" : " of less than 128 vertices", shortest(smallest),
-                     shortest(largest_tension));
+  if (dp.line_tension >= preset->smallest_tension && dp.line_tension <= largest_tension) return "";
+  return fmt::format("line-tension={} ({} is sound from {} to {})", shortest(dp.line_tension), preset->name,
+                     shortest(preset->smallest_tension), shortest(largest_tension));
 }
 
 std::string unproven_vertices(const DpParameters& dp) {

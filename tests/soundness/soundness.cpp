@@ -366,7 +366,7 @@ cli::CommandLine parse(int argc, char** argv) {
       "runs", po::value<std::string>(), "CSV file to write, one line for each run")(
       "longest", po::value<std::string>(), "give a run up after so many seconds of computing");
   sweep::Settings& settings = line.settings();
-  settings.set("line-tension", "0.01,0.02,0.05,0.1,0.3,1,3,10");
+  settings.set("line-tension", "0.02,0.03,0.05,0.1,0.3,1,3,10");
   settings.set("obstacle-gap", "0.2,0.35,0.5,1");
   settings.set("obstacle-density", "saturated,0.35");
   settings.set("seeds", "1..4");

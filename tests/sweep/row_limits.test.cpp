@@ -22,11 +22,11 @@ RunRow row_of(const Keys& keys) { return describe(plan_of(keys).task(0)); }
 
 TEST(UnprovenParameters, AreNoneWithinWhatWasFoundSound) {
   const Keys sound[] = {{},
-                        {{"line-tension", "0.01"}},
+                        {{"line-tension", "0.02"}},
                         {{"line-tension", "10"}, {"vertices", "256"}},
                         {{"line-tension", "0.02"}, {"vertices", "64"}},
-                        {{"preset", "elastic"}, {"line-tension", "0.03"}},
-                        {{"preset", "heavy-interface"}, {"line-tension", "0.05"}},
+                        {{"preset", "elastic"}, {"line-tension", "0.04"}},
+                        {{"preset", "heavy-interface"}, {"line-tension", "0.07"}},
                         {{"receding-angle", "120"}},
                         {{"preset", "elastic"}, {"friction", "0.5"}},
                         {{"model", "sp"}, {"wall-stiffness", "1"}}};
@@ -35,14 +35,13 @@ TEST(UnprovenParameters, AreNoneWithinWhatWasFoundSound) {
 
 TEST(UnprovenParameters, AreNamedWithTheirValueBeyondIt) {
   const std::pair<Keys, const char*> unproven[] = {
-      {{{"line-tension", "0"}}, "line-tension=0 (robust is sound from 0.01 to 10)"},
-      {{{"line-tension", "30"}}, "line-tension=30 (robust is sound from 0.01 to 10)"},
-      {{{"line-tension", "0.01"}, {"vertices", "64"}},
-       "line-tension=0.01 (robust of less than 128 vertices is sound from 0.02 to 10)"},
-      {{{"preset", "elastic"}, {"line-tension", "0.02"}},
-       "line-tension=0.02 (elastic is sound from 0.03 to 10)"},
-      {{{"preset", "heavy-interface"}, {"line-tension", "0.04"}},
-       "line-tension=0.04 (heavy-interface is sound from 0.05 to 10)"},
+      {{{"line-tension", "0"}}, "line-tension=0 (robust is sound from 0.02 to 10)"},
+      {{{"line-tension", "30"}}, "line-tension=30 (robust is sound from 0.02 to 10)"},
+      {{{"line-tension", "0.01"}}, "line-tension=0.01 (robust is sound from 0.02 to 10)"},
+      {{{"preset", "elastic"}, {"line-tension", "0.03"}},
+       "line-tension=0.03 (elastic is sound from 0.04 to 10)"},
+      {{{"preset", "heavy-interface"}, {"line-tension", "0.06"}},
+       "line-tension=0.06 (heavy-interface is sound from 0.07 to 10)"},
       {{{"preset", "literal"}}, "preset=literal (droplets cross themselves and obstacles)"},
       {{{"self-contact", "off"}}, "preset=custom (this interface was not tested)"},
       {{{"receding-angle", "50"}}, "receding-angle=50 (tested from 60 on)"},
@@ -62,8 +61,8 @@ TEST(UnprovenParameters, OfAPlanAreNamedOnceEach) {
   EXPECT_EQ(unproven_parameters(plan_of({{"line-tension", "0.1,1"}})), "");
   EXPECT_EQ(unproven_parameters(plan_of({{"line-tension", "0,1,30"}, {"obstacle-gap", "0.2,0.3"}})),
             "not proved sound (handbook, Which droplets are sound): line-tension=0 (robust is sound from "
-            "0.01 to 10), "
-            "line-tension=30 (robust is sound from 0.01 to 10)");
+            "0.02 to 10), "
+            "line-tension=30 (robust is sound from 0.02 to 10)");
   EXPECT_TRUE(
       unproven_parameters(plan_of({{"line-tension", "11,12,13,14,15,16"}})).ends_with(", and 2 more"));
 }
