@@ -12,12 +12,18 @@
 namespace clog::laboratory {
 namespace {
 
-const std::map<std::string, std::map<std::string, double>> known_units = {
-    {"length", {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}}},
-    {"speed", {{"m/s", 1}, {"cm/s", 1e-2}, {"mm/s", 1e-3}, {"um/s", 1e-6}}},
-    {"tension", {{"N/m", 1}, {"mN/m", 1e-3}, {"J/m^2", 1}, {"mJ/m^2", 1e-3}}},
-    {"density", {{"kg/m^3", 1}, {"g/cm^3", 1e3}, {"g/ml", 1e3}}},
-    {"angle", {{"deg", std::numbers::pi / 180}, {"°", std::numbers::pi / 180}, {"rad", 1}}}};
+// Tables are made where they are first asked for: before main() nobody would tell that memory is short.
+
+/// Of a quantity, with their values in SI units.
+const std::map<std::string, double>& known_units(const std::string& quantity) {
+  static const std::map<std::string, std::map<std::string, double>> units = {
+      {"length", {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}}},
+      {"speed", {{"m/s", 1}, {"cm/s", 1e-2}, {"mm/s", 1e-3}, {"um/s", 1e-6}}},
+      {"tension", {{"N/m", 1}, {"mN/m", 1e-3}, {"J/m^2", 1}, {"mJ/m^2", 1e-3}}},
+      {"density", {{"kg/m^3", 1}, {"g/cm^3", 1e3}, {"g/ml", 1e3}}},
+      {"angle", {{"deg", std::numbers::pi / 180}, {"°", std::numbers::pi / 180}, {"rad", 1}}}};
+  return units.at(quantity);
+}
 
 /// The unit with u for the micro sign, of which there are two.
 std::string with_plain_micro(const std::string& unit) {
@@ -26,13 +32,16 @@ std::string with_plain_micro(const std::string& unit) {
   return unit;
 }
 
-const std::map<std::string, std::string> usual_units = {
-    {"length", "mm"}, {"speed", "mm/s"}, {"tension", "mN/m"}, {"density", "g/ml"}, {"angle", "deg"}};
+const std::string& usual_unit(const std::string& quantity) {
+  static const std::map<std::string, std::string> units = {
+      {"length", "mm"}, {"speed", "mm/s"}, {"tension", "mN/m"}, {"density", "g/ml"}, {"angle", "deg"}};
+  return units.at(quantity);
+}
 
 }  // namespace
 
 double si_factor(const std::string& unit, const std::string& units) {
-  const auto& known = known_units.at(units);
+  const auto& known = known_units(units);
   if (const auto found = known.find(with_plain_micro(unit)); found != known.end()) return found->second;
   std::string names;
   for (const auto& [name, factor] : known) names += (names.empty() ? "" : ", ") + name;
@@ -46,7 +55,7 @@ double to_si(const std::string& text, const std::string& units) {
   const std::size_t unit = text.find_first_not_of(' ', end);
   if (unit == std::string::npos)
     throw Error("'" + text + "' has no unit; write for example " + (end == 0 ? "3.5" : text.substr(0, end)) +
-                " " + usual_units.at(units));
+                " " + usual_unit(units));
   return sweep::to_number(text.substr(0, end)) * si_factor(text.substr(unit), units);
 }
 

@@ -19,14 +19,17 @@ namespace {
 using Entries = std::map<std::string, std::string>;
 
 /// The quantity that each key gives; the ratio is a plain number.
-const std::map<std::string, std::string> known_keys = {
-    {"diameter", "length"}, {"thickness", "length"}, {"density", "density"}, {"outer-density", "density"},
-    {"tension", "tension"}, {"angle", "angle"},      {"speed", "speed"},     {"tension-ratio", ""}};
+const std::map<std::string, std::string>& known_keys() {
+  static const std::map<std::string, std::string> keys = {
+      {"diameter", "length"}, {"thickness", "length"}, {"density", "density"}, {"outer-density", "density"},
+      {"tension", "tension"}, {"angle", "angle"},      {"speed", "speed"},     {"tension-ratio", ""}};
+  return keys;
+}
 
 std::string names_of_keys() {
   std::vector<std::string> names;
-  names.reserve(known_keys.size());
-  for (const auto& [name, units] : known_keys) names.push_back(name);
+  names.reserve(known_keys().size());
+  for (const auto& [name, units] : known_keys()) names.push_back(name);
   return joined(names);
 }
 
@@ -42,7 +45,7 @@ Entries entries_of(const std::string& text) {
     if (equals == std::string::npos)
       throw Error(fmt::format("line {}: '{}' is not key = value", number, words.substr(0, 60)));
     const std::string key = console::trimmed(words.substr(0, equals));
-    if (!known_keys.contains(key))
+    if (!known_keys().contains(key))
       throw Error(
           fmt::format("line {}: unknown key '{}' (known: {})", number, key.substr(0, 60), names_of_keys()));
     if (!entries.emplace(key, console::trimmed(words.substr(equals + 1))).second)
@@ -56,7 +59,7 @@ double value_of(const Entries& entries, const std::string& key, double otherwise
   const auto found = entries.find(key);
   if (found == entries.end()) return otherwise;
   try {
-    const std::string& units = known_keys.at(key);
+    const std::string& units = known_keys().at(key);
     const double value = units.empty() ? sweep::to_number(found->second) : to_si(found->second, units);
     if (value > 0) return value;
     throw Error("must be positive");

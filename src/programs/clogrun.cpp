@@ -127,11 +127,14 @@ std::vector<std::string> film_options(const cli::CommandLine& line) {
 }
 
 /// Systems whose runs can be written to a file and filmed.
-const std::map<std::string, int (*)(cli::CommandLine&)> followed_systems = {
-    {"array", clogrun_array}, {"channel", clogrun_channel}, {"replay", clogrun_replay}};
+const std::map<std::string, int (*)(cli::CommandLine&)>& followed_systems() {
+  static const std::map<std::string, int (*)(cli::CommandLine&)> systems = {
+      {"array", clogrun_array}, {"channel", clogrun_channel}, {"replay", clogrun_replay}};
+  return systems;
+}
 
 int follow(cli::CommandLine& line, const std::string& system) {
-  const auto run = followed_systems.at(system);
+  const auto run = followed_systems().at(system);
   if (!line.has("frames")) {
     refuse_options(line, system + " without --frames", {"most-frames"});
     return run(line);
@@ -154,7 +157,7 @@ int body(int argc, char** argv) {
   if (system != "replay") refuse_options(line, system, {"file", "task", "to-rest"});
   if (system == "channel") choose_layout(line, "channel");
   if (system == "sag") choose_layout(line, "wall");
-  if (followed_systems.contains(system)) return follow(line, system);
+  if (followed_systems().contains(system)) return follow(line, system);
   if (system == "sag") return clogrun_sag(line);
   throw Error((system.empty() ? "missing system" : "unknown system '" + system + "'") +
               "; try clogrun array, clogrun channel, clogrun sag or clogrun replay");

@@ -35,7 +35,7 @@ class DpStepper {
   /// velocities those of half a step before.
   /// @param state  the droplet that was loaded, of which walls' anchors are kept; positions and velocities
   /// may be old
-  /// @param implicit_pressure  see kernel::Coupling; not with near-wall drag
+  /// @param implicit_pressure  see StableSteps; not with near-wall drag
   /// @param work  if not null, what drag and springs did since the last call is added to it
   void advance(DropletState& state, int steps, double time_step, bool implicit_pressure, Droplet::Work* work);
   /// Makes the last half kick if it is still open; copies positions, velocities and anchors into `state`.

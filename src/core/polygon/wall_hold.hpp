@@ -34,8 +34,8 @@ class WallHold {
   int num_groups_;  // of edges
   double range_;
   bool has_anchors_ = false;
-  // Of circles' pushes zero, but where windows_ stored what they push; and of the anchors.
-  hwy::AlignedFreeUniquePtr<double[]> memory_, anchors_;
+  hwy::AlignedFreeUniquePtr<double[]> memory_;   // circles' pushes: zero but where windows_ stored some
+  hwy::AlignedFreeUniquePtr<double[]> anchors_;  // one entry for each vertex of groups_, and each circle
   std::size_t memory_size_ = 0, anchors_size_ = 0;
   std::vector<kernel::WallWindow> windows_;
   std::vector<kernel::HoldingCircle> all_;

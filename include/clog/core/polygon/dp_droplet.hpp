@@ -14,7 +14,7 @@ class DpStepper;
 /// the drag of the second half kick being implicit, so that strong near-wall drag cannot destabilise it. A
 /// drag of relative motion is treated in the same way, with the velocity of the centre of mass of the same
 /// instant. Where the droplet's present perimeter makes the area mode too stiff for the time step, the
-/// pressure is implicit (see kernel::Coupling); where another mode is too stiff, the time step is split.
+/// pressure is implicit (see StableSteps); where another mode is too stiff, the time step is split.
 class DpDroplet final : public Droplet {
  public:
   /// @param run        resolved parameters

@@ -47,8 +47,7 @@ StiffModes stiff_modes(const DpParameters& dp, double wall_stiffness, double per
 
 /// Largest time step [t0] that keeps every bound above.
 double largest_stable_step(const StiffModes& modes);
-/// The same with an implicit pressure (see kernel::Coupling), with which (omega dt)^2 of the area mode is
-/// below 1 for every step.
+/// The same with an implicit pressure (see StableSteps).
 double largest_step_with_implicit_pressure(const StiffModes& modes);
 
 /// A droplet that needs more for one has burst; the run is given up at its next check.
@@ -56,8 +55,11 @@ inline constexpr int most_substeps = 1000;
 
 /// How to go some time steps, so that every bound is kept.
 struct StableSteps {
-  int num;                 ///< of equal length
-  bool implicit_pressure;  ///< see kernel::Coupling
+  int num;  ///< of equal length
+  /// Does the pressure follow the area that the droplet would have if its present acceleration lasted for a
+  /// step (docs/explanation/model.md, Integration)? Then (omega dt)^2 of the area mode is below 1 for every
+  /// step.
+  bool implicit_pressure;
 };
 /// As few steps as possible for `steps` time steps: as many if they keep the bounds themselves, at most
 /// most_substeps times as many. Up to twice as many it is as many as needed, above that a multiple of
