@@ -112,8 +112,8 @@ class ReadableDroplet {
   /// Acceleration by what an implicit pressure adds: -K_a dt^2 times the area's acceleration, by the forces,
   /// the area's drag and the added pressure itself.
   Eigen::ArrayXd pressed(const Eigen::ArrayXd& v) {
-    Eigen::ArrayXd gradient(2 * n_);  // of the area
-    if (!implicit_pressure_) return Eigen::ArrayXd::Zero(2 * n_);
+    if (!implicit_pressure_) return Eigen::ArrayXd::Zero(force_.size());
+    Eigen::ArrayXd gradient(force_.size());  // of the area
     for (int i = 0; i < n_; ++i) {
       const int next = (i + 1) % n_, before = (i + n_ - 1) % n_;
       gradient[i] = (state_.y()[next] - state_.y()[before]) / 2;
