@@ -12,9 +12,9 @@
 namespace clog::laboratory {
 namespace {
 
-// Tables are made where they are first asked for: before main() nobody would tell that memory is short.
+// Tables are made where they are first asked for: before main() a failed allocation could not be reported.
 
-/// Of a quantity, with their values in SI units.
+/// The units of a quantity, and what they are in SI units.
 const std::map<std::string, double>& known_units(const std::string& quantity) {
   static const std::map<std::string, std::map<std::string, double>> units = {
       {"length", {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}}},

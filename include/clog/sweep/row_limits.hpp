@@ -9,7 +9,7 @@
 namespace clog::sweep {
 
 /// The parameters of a run outside the range that tests/soundness found sound, each with its value and that
-/// range: "line-tension=30 (robust is sound from 0.01 to 10)".
+/// range: "line-tension=30 (robust is sound from 0.02 to 10)".
 std::vector<std::string> unproven_parameters(const RunRow& row);
 /// One line about all runs of a plan; empty if all are within.
 std::string unproven_parameters(const Plan& plan);

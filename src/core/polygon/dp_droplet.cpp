@@ -19,11 +19,11 @@ int steps_between_checks(double time_step) {
   return steps;
 }
 
-/// Whether drag damps what an implicit pressure feeds into the motion of a droplet that swings
-/// (docs/notes/2026-11-26-implicit-pressure.md).
+/// Whether the drag on vertices that move relative to their mean damps what an implicit pressure feeds into
+/// the motion of a droplet that swings (docs/notes/2026-11-26-implicit-pressure.md).
 bool is_damped(const RunParameters& run) {
   constexpr double most_steps = 32;
-  return relaxation_time(run) <= most_steps * run.time_step.value();
+  return relaxation_time(run) <= most_steps * run.time_step.value() * std::min(1.0, run.drag.relative);
 }
 
 }  // namespace

@@ -64,7 +64,8 @@ struct KickCoefficients {
   double weight;      ///< (h1 + h2) / half_step, h1 / half_step where no time step begins
   double half_step;   ///< that of the forces [t0]
   bool keeps_kicked;  ///< is w wanted afterwards?
-  /// Of an implicit pressure: K_a half_step^2/(M/N_v), K_a the area stiffness.
+  /// Of an implicit pressure: K_a half_step^2/(M/N_v), K_a the area stiffness. The half kick that ends a step
+  /// of another length takes that of the step that begins.
   double softening = 0;
 };
 /// Which terms a kick has. The combinations are compiled apart.
@@ -81,9 +82,10 @@ struct KickTerms {
 ///
 /// An implicit pressure follows the area that would be reached if its present acceleration lasted for a time
 /// step: A + dt^2 d^2A/dt^2, with the acceleration by all forces on vertices and area, the added pressure
-/// among them. That is Newmark's method with beta = 1 for this one mode, while all others move by velocity
-/// Verlet: its frequency omega becomes omega/sqrt(1 + (omega dt)^2), stable for every step. Where the area is
-/// not accelerated, at rest and in steady motion, nothing is added.
+/// among them, and by the area's drag (not the vertices' own, nor as the gradient of the area changes). That
+/// is Newmark's method with beta = 1 for this one mode, while all others move by velocity Verlet: its
+/// frequency omega becomes omega/sqrt(1 + (omega dt)^2), stable for every step. Where the area is not
+/// accelerated, at rest and in steady fall, nothing is added.
 struct Coupling {
   double mean_x = 0, mean_y = 0;  ///< of the vertices
   double area_x = 0, area_y = 0;  ///< of the area's centroid

@@ -16,7 +16,7 @@ class Droplet {
  public:
   virtual ~Droplet() = default;
 
-  /// Integrates the equations of motion over `num_steps` time steps. A step may be split into sub-steps.
+  /// Integrates the equations of motion over `num_steps` time steps, if need be in more and shorter ones.
   virtual void advance(int num_steps) = 0;
 
   /// Forgets everything but what save() saves: contact lists and sums over them are made anew. A droplet

@@ -13,8 +13,9 @@ class DpStepper;
 ///   v += dt/2 (F - zeta v)/m,  x += dt v,  v = (v + dt/2 F/m)/(1 + dt zeta/(2m)),
 /// the drag of the second half kick being implicit, so that strong near-wall drag cannot destabilise it. A
 /// drag of relative motion is treated in the same way, with the velocity of the centre of mass of the same
-/// instant. Where the droplet's present perimeter makes the area mode too stiff for the time step, the
-/// pressure is implicit (see StableSteps); where another mode is too stiff, the time step is split.
+/// instant. Where the droplet's present perimeter makes the area mode too stiff for the time step, and drag
+/// is strong and the same everywhere, the pressure is implicit (see StableSteps); otherwise steps get
+/// shorter.
 class DpDroplet final : public Droplet {
  public:
   /// @param run        resolved parameters

@@ -62,9 +62,8 @@ struct StableSteps {
   bool implicit_pressure;
 };
 /// As few steps as possible for `steps` time steps: as many if they keep the bounds themselves, at most
-/// most_substeps times as many. Up to twice as many it is as many as needed, above that a multiple of
-/// `steps`: the bounds are those of regular polygons, and drawn-out ones need what that leaves
-/// (docs/notes/2026-11-25-longer-steps.md).
+/// most_substeps times as many. Up to twice as many it is as many as needed, above that, where shapes are far
+/// from the regular polygons of the bounds, a multiple of `steps`.
 /// @param may_be_implicit  may the pressure be implicit if this saves steps?
 StableSteps stable_steps(const StiffModes& modes, int steps, double time_step, bool may_be_implicit);
 
