@@ -82,9 +82,9 @@ struct KickTerms {
 ///
 /// An implicit pressure follows the area that would be reached if its present acceleration lasted for a time
 /// step: A + dt^2 d^2A/dt^2, with the acceleration by all forces on vertices and area, the added pressure
-/// among them, and by the area's drag (not the vertices' own, nor as the gradient of the area changes). That
-/// is Newmark's method with beta = 1 for this one mode, while all others move by velocity Verlet: its
-/// frequency omega becomes omega/sqrt(1 + (omega dt)^2), stable for every step. Where the area is not
+/// among them, and by the area's drag; the vertices' own drag and the change of the area's gradient are left
+/// out. That is Newmark's method with beta = 1 for this one mode, while all others move by velocity Verlet:
+/// its frequency omega becomes omega/sqrt(1 + (omega dt)^2), stable for every step. Where the area is not
 /// accelerated, at rest and in steady fall, nothing is added.
 struct Coupling {
   double mean_x = 0, mean_y = 0;  ///< of the vertices
