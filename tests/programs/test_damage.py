@@ -209,15 +209,16 @@ class Damage(ProgramTest):
         sweep = [*SETTINGS[:-1], "new.h5"]
         told = []
 
-        def run_with(megabytes, name, arguments):
+        def run_with(size, name, arguments):
             return subprocess.run([BIN / name, *map(str, arguments)], cwd=self.folder, capture_output=True, text=True,
-                                  preexec_fn=lambda: limit_memory(megabytes * 2**20))
+                                  preexec_fn=lambda: limit_memory(size))
 
         for megabytes in [*range(30, 100, 6), 128, 200, 300, 450, 600]:
             for name, *arguments in [("clogfit", "s.h5"), ("clogsweep", "verify", "s.h5"), ("clogsweep", *sweep)]:
-                done = run_with(megabytes, name, arguments)
-                # For some 100 kB above what loading takes, Highway's library ends the process before main().
-                if done.returncode == -signal.SIGABRT and run_with(megabytes - 1, name, arguments).returncode == 127:
+                size = megabytes * 2**20
+                done = run_with(size, name, arguments)
+                # For 150 kB above what loading takes, Highway's library ends the process before main().
+                if done.returncode == -signal.SIGABRT and run_with(size - 2**18, name, arguments).returncode == 127:
                     continue
                 with self.subTest(program=name, arguments=arguments[:1], megabytes=megabytes):
                     self.assertIn(done.returncode, (0, 2, 127), done.stderr)  # 127: its libraries are not even loaded

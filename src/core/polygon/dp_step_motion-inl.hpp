@@ -7,6 +7,8 @@
 #define CLOG_DP_STEP_MOTION
 #endif
 
+#include <type_traits>
+
 #include "core/polygon/dp_step_vectors-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -368,24 +370,25 @@ Coupling kick_with(int n, const KickTerms& terms, const InterfaceKick& interface
                                    total.template total<implicit_pressure>(n, force, one_s));
 }
 
-/// An implicit pressure is only there for rates that do not vary.
+/// Calls make() with the terms that kicks and drifts know when they are compiled: elastic, coupled, on_area,
+/// varying_rate, implicit_pressure. The last is only there for rates that do not vary.
+template <class Make>
+auto version(const KickTerms& terms, Make make) {
+  constexpr std::true_type yes;
+  constexpr std::false_type no;
+  const auto of_drag = [&](auto... chosen) {
+    if (terms.varying_rate) return make(chosen..., yes, no);
+    return terms.implicit_pressure ? make(chosen..., no, yes) : make(chosen..., no, no);
+  };
+  const auto of_coupling = [&](auto elastic) {
+    if (!terms.coupled) return of_drag(elastic, no, no);
+    return terms.on_area ? of_drag(elastic, yes, yes) : of_drag(elastic, yes, no);
+  };
+  return terms.elastic ? of_coupling(yes) : of_coupling(no);
+}
+
 decltype(StepKernel::kick) kick_version(const KickTerms& terms) {
-  constexpr decltype(StepKernel::kick) coupled[2][2][3] = {
-      {{kick_with<false, true, false, false, false>, kick_with<false, true, false, true, false>,
-        kick_with<false, true, false, false, true>},
-       {kick_with<false, true, true, false, false>, kick_with<false, true, true, true, false>,
-        kick_with<false, true, true, false, true>}},
-      {{kick_with<true, true, false, false, false>, kick_with<true, true, false, true, false>,
-        kick_with<true, true, false, false, true>},
-       {kick_with<true, true, true, false, false>, kick_with<true, true, true, true, false>,
-        kick_with<true, true, true, false, true>}}};
-  constexpr decltype(StepKernel::kick) free[2][3] = {
-      {kick_with<false, false, false, false, false>, kick_with<false, false, false, true, false>,
-       kick_with<false, false, false, false, true>},
-      {kick_with<true, false, false, false, false>, kick_with<true, false, false, true, false>,
-       kick_with<true, false, false, false, true>}};
-  const int version = terms.varying_rate ? 1 : terms.implicit_pressure ? 2 : 0;
-  return terms.coupled ? coupled[terms.elastic][terms.on_area][version] : free[terms.elastic][version];
+  return version(terms, [](auto... chosen) { return &kick_with<chosen...>; });
 }
 
 Power power(int n, const KickTerms& terms, const InterfaceKick& interface,
@@ -492,21 +495,7 @@ Sums drift_with(int n, const KickTerms& terms, const KickCoefficients& coefficie
 }
 
 decltype(StepKernel::drift) drift_version(const KickTerms& terms) {
-  constexpr decltype(StepKernel::drift) coupled[2][2][3] = {
-      {{drift_with<false, true, false, false, false>, drift_with<false, true, false, true, false>,
-        drift_with<false, true, false, false, true>},
-       {drift_with<false, true, true, false, false>, drift_with<false, true, true, true, false>,
-        drift_with<false, true, true, false, true>}},
-      {{drift_with<true, true, false, false, false>, drift_with<true, true, false, true, false>,
-        drift_with<true, true, false, false, true>},
-       {drift_with<true, true, true, false, false>, drift_with<true, true, true, true, false>,
-        drift_with<true, true, true, false, true>}}};
-  constexpr decltype(StepKernel::drift) free[2][2] = {
-      {drift_with<false, false, false, false, false>, drift_with<false, false, false, false, true>},
-      {drift_with<true, false, false, false, false>, drift_with<true, false, false, false, true>}};
-  const int version = terms.varying_rate ? 1 : terms.implicit_pressure ? 2 : 0;
-  return terms.coupled ? coupled[terms.elastic][terms.on_area][version]
-                       : free[terms.elastic][terms.implicit_pressure];
+  return version(terms, [](auto... chosen) { return &drift_with<chosen...>; });
 }
 
 }  // namespace clog::kernel::HWY_NAMESPACE

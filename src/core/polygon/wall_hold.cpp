@@ -64,6 +64,15 @@ void WallHold::add_groups(kernel::HoldingCircle& circle, int num_vertices) {
   circle.end_group = static_cast<int>(groups_.size());
 }
 
+void WallHold::Memory::make_room(std::size_t needed, std::size_t num_zeroed) {
+  if (size < needed) {
+    size = 2 * needed;
+    numbers = aligned_zeros(size);
+  } else {
+    std::fill_n(numbers.get(), num_zeroed, 0.0);
+  }
+}
+
 /// Zeroes what windows stored for their circles.
 void WallHold::clear_pushes() {
   for (const kernel::HoldingCircle& circle : all_)
@@ -78,13 +87,8 @@ void WallHold::clear_pushes() {
 void WallHold::arrange_memory() {
   const std::size_t stride = (static_cast<std::size_t>(num_groups_) + before + behind) * size;
   const std::size_t needed = (3 + all_.size() * kernel::num_window_push_arrays) * stride;
-  if (memory_size_ < needed) {
-    memory_size_ = 2 * needed;
-    memory_ = aligned_zeros(memory_size_);
-  } else {
-    std::fill_n(memory_.get(), 3 * stride, 0.0);
-  }
-  double* next = memory_.get() + std::ptrdiff_t{before} * size;
+  memory_.make_room(needed, 3 * stride);
+  double* next = memory_.numbers.get() + std::ptrdiff_t{before} * size;
   for (double** array : {&circles_.push_x, &circles_.push_y, &circles_.wetted}) {
     *array = next;
     next += stride;
@@ -104,13 +108,8 @@ void WallHold::arrange_memory() {
 
 void WallHold::arrange_anchors() {
   const std::size_t num_entries = groups_.size() * size;
-  if (anchors_size_ < 3 * num_entries) {
-    anchors_size_ = 6 * num_entries;
-    anchors_ = aligned_zeros(anchors_size_);
-  } else {
-    std::fill_n(anchors_.get(), 3 * num_entries, 0.0);
-  }
-  double* next = anchors_.get();
+  anchors_.make_room(3 * num_entries, 3 * num_entries);
+  double* next = anchors_.numbers.get();
   for (double** array : {&circles_.anchor_x, &circles_.anchor_y, &circles_.slip}) {
     *array = next;
     next += num_entries;

@@ -34,9 +34,14 @@ class WallHold {
   int num_groups_;  // of edges
   double range_;
   bool has_anchors_ = false;
-  hwy::AlignedFreeUniquePtr<double[]> memory_;   // circles' pushes: zero but where windows_ stored some
-  hwy::AlignedFreeUniquePtr<double[]> anchors_;  // one entry for each vertex of groups_, and each circle
-  std::size_t memory_size_ = 0, anchors_size_ = 0;
+  struct Memory {
+    hwy::AlignedFreeUniquePtr<double[]> numbers;
+    std::size_t size = 0;
+    /// Zeroes the first ones, or all if they have to be new.
+    void make_room(std::size_t needed, std::size_t num_zeroed);
+  };
+  Memory memory_;   // circles' pushes: zero but where windows_ stored some
+  Memory anchors_;  // one entry for each vertex of groups_, and each circle
   std::vector<kernel::WallWindow> windows_;
   std::vector<kernel::HoldingCircle> all_;
   std::vector<int> groups_;  // of vertices, circle after circle

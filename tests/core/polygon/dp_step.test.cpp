@@ -12,7 +12,7 @@
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/instruction_set.hpp"
-#include "core/polygon/dp_stepper.hpp"
+#include "stepped_droplet.hpp"
 #include "support.hpp"
 
 namespace clog {
@@ -183,6 +183,19 @@ class Step : public testing::TestWithParam<StepCase> {
     const double size = std::sqrt(units::rest_area / polygon_shape(dumbbell(vertices, thin)).area);
     return size * dumbbell(vertices, film / size);
   }
+  /// A droplet that moves, touches itself, and touches a circle.
+  struct Scene {
+    RunParameters run;
+    DropletState initial;
+    ObstacleArray walls;
+  };
+  static Scene touching_droplet(int vertices) {
+    const double diameter = units::regular_edge_length(vertices);
+    DropletState initial = state_of(shaken(full_size_dumbbell(vertices, 0.98 * diameter), 0.002 * diameter));
+    initial.velocity = shaken(Eigen::ArrayXd::Zero(initial.position.size()), 0.03, 7);
+    const double end = initial.x().maxCoeff();
+    return {parameters(vertices), std::move(initial), {20, {{end + 0.15 + 0.45 * diameter, 0.02, 0.15}}}};
+  }
 };
 
 TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
@@ -243,37 +256,17 @@ TEST_P(Step, IsThatOfTheReadableFormWithEveryInstructionSet) {
 TEST_P(Step, JoinsStepsOfDifferentLengths) {
   // The half kicks of two steps are one, whether the steps are equally long or not.
   for (const int vertices : {64, 101}) {
-    const RunParameters run = parameters(vertices);
-    const double diameter = units::regular_edge_length(vertices);
-    DropletState initial = state_of(shaken(full_size_dumbbell(vertices, 0.98 * diameter), 0.002 * diameter));
-    initial.velocity = shaken(Eigen::ArrayXd::Zero(initial.position.size()), 0.03, 7);
-    const ObstacleArray walls(20, {{initial.x().maxCoeff() + 0.15 + 0.45 * diameter, 0.02, 0.15}});
+    const auto [run, initial, walls] = touching_droplet(vertices);
     constexpr double long_step = 1e-3, short_step = 0.3e-3;
-    const auto moved = [&](bool finishes_between) {
-      // Faster than any vertex, so that near-wall drag is that of every place.
-      constexpr double speed = 100;
-      const Travel travel{.absolute = 0.1, .relative = 0.2};
-      DpForces forces(run, walls);
-      DropletState state = initial;
-      forces.update_contacts(state, travel);
-      DpStepper stepper(run, walls, forces);
-      const auto begin = [&] {
-        stepper.load(state);
-        stepper.look(state, travel, speed, nullptr);
-      };
-      begin();
-      for (const double time_step : {long_step, short_step, long_step}) {
-        stepper.advance(state, 3, time_step, false, nullptr);
-        if (!finishes_between) continue;
-        stepper.finish(state, nullptr);
-        begin();
-      }
-      if (!finishes_between) stepper.finish(state, nullptr);
-      return state;
-    };
     for (const std::string& set : instruction_sets()) {
       use_instruction_set(set);
-      const DropletState joined = moved(false), apart = moved(true);
+      SteppedDroplet joining(run, walls, initial), finishing(run, walls, initial);
+      for (const double time_step : {long_step, short_step, long_step}) {
+        joining.advance(3, time_step);
+        finishing.advance(3, time_step);
+        finishing.finish();
+      }
+      const DropletState joined = joining.finish(), apart = finishing.finish();
       ASSERT_GT((joined.position - initial.position).abs().maxCoeff(), 1e-5);
       EXPECT_LT((joined.position - apart.position).abs().maxCoeff(), 1e-14) << set << ", " << vertices;
       EXPECT_LT((joined.velocity - apart.velocity).abs().maxCoeff(), 1e-11 * apart.velocity.abs().maxCoeff())
@@ -284,35 +277,21 @@ TEST_P(Step, JoinsStepsOfDifferentLengths) {
 
 TEST_P(Step, IsThatOfTheReadableFormWithAnImplicitPressure) {
   for (const int vertices : {64, 101}) {
-    const RunParameters run = parameters(vertices);
-    if (run.drag.near_wall > 0) continue;  // then the pressure is not implicit
-    const double diameter = units::regular_edge_length(vertices);
-    DropletState initial = state_of(shaken(full_size_dumbbell(vertices, 0.98 * diameter), 0.002 * diameter));
-    initial.velocity = shaken(Eigen::ArrayXd::Zero(initial.position.size()), 0.03, 7);
-    const ObstacleArray walls(20, {{initial.x().maxCoeff() + 0.15 + 0.45 * diameter, 0.02, 0.15}});
+    auto [run, initial, walls] = touching_droplet(vertices);
+    run.drag.near_wall = 0;  // with it the pressure is never implicit
     constexpr int num_steps = 3;
-    const auto moved = [&](bool implicit_pressure) {
-      constexpr double speed = 100;
-      const Travel travel{.absolute = 0.1, .relative = 0.2};
-      DpForces forces(run, walls);
-      DropletState state = initial;
-      forces.update_contacts(state, travel);
-      DpStepper stepper(run, walls, forces);
-      stepper.load(state);
-      stepper.look(state, travel, speed, nullptr);
-      stepper.advance(state, num_steps, *run.time_step, implicit_pressure, nullptr);
-      stepper.finish(state, nullptr);
-      return state;
-    };
     for (const std::string& set : instruction_sets()) {
       use_instruction_set(set);
       ReadableDroplet readable(run, walls, initial, true);
       for (int step = 0; step < num_steps; ++step) readable.step();
-      const DropletState state = moved(true);
+      SteppedDroplet with(run, walls, initial), without(run, walls, initial);
+      with.advance(num_steps, *run.time_step, true);
+      without.advance(num_steps, *run.time_step);
+      const DropletState state = with.finish();
       EXPECT_LT((state.position - readable.state().position).abs().maxCoeff(), 1e-14) << set;
       const double fastest = readable.state().velocity.abs().maxCoeff();
       EXPECT_LT((state.velocity - readable.state().velocity).abs().maxCoeff(), 3e-12 * fastest) << set;
-      EXPECT_GT((state.velocity - moved(false).velocity).abs().maxCoeff(), 1e-4 * fastest)
+      EXPECT_GT((state.velocity - without.finish().velocity).abs().maxCoeff(), 1e-4 * fastest)
           << "the pressure adds something";
     }
   }

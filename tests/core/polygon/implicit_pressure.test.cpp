@@ -4,10 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <utility>
 
-#include "clog/core/polygon/dp_forces.hpp"
-#include "core/polygon/dp_stepper.hpp"
+#include "stepped_droplet.hpp"
 #include "support.hpp"
 
 namespace clog {
@@ -15,42 +13,12 @@ namespace {
 
 using namespace test;
 
-/// A droplet that meets nothing.
-class Motion {
- public:
-  Motion(const RunParameters& run, DropletState initial)
-      : run_(run), forces_(run, nothing_), stepper_(run, nothing_, forces_), state_(std::move(initial)) {
-    const Travel travel{.absolute = 1, .relative = 1};
-    forces_.update_contacts(state_, travel);
-    stepper_.load(state_);
-    stepper_.look(state_, travel, 1, nullptr);
-  }
-  void advance(int steps, double time_step, bool implicit_pressure) {
-    stepper_.advance(state_, steps, time_step, implicit_pressure, &work_);
-    stepper_.finish(state_, &work_);
-  }
-  const DropletState& state() const { return state_; }
-  /// With what drag took, less what springs without an energy gave.
-  double energy() const {
-    const double mass = run_.dp.inertia * units::droplet_mass / static_cast<double>(state_.size());
-    return mass / 2 * state_.velocity.square().sum() + forces_.energy(state_).total() + work_.dissipated -
-           work_.spreading;
-  }
-
- private:
-  ObstacleArray nothing_ = no_obstacles();
-  RunParameters run_;
-  DpForces forces_;
-  DpStepper stepper_;
-  DropletState state_;
-  Droplet::Work work_;
-};
-
 TEST(ImplicitPressure, LetsACircleBreatheAtTheFrequencyOfNewmarksMethod) {
   // All vertices at a distance R + u from the centre: M u'' = -K_a A' (A - A_0), A' = 2 A/R. With
   // omega^2 = K_a A'^2/M the motion from rest is u_n = u_0 cos(n phi), 2 (1 - cos phi) =
   // (omega dt)^2/(1 + (omega dt)^2); explicit steps are unstable from omega dt = 2 on.
   constexpr int vertices = 64;
+  const ObstacleArray nothing = no_obstacles();
   RunParameters run = bare_parameters(vertices);
   run.drag.terminal_speed = no_drag;
   run.dp.line_tension = 1e-9;
@@ -66,10 +34,10 @@ TEST(ImplicitPressure, LetsACircleBreatheAtTheFrequencyOfNewmarksMethod) {
       constexpr double amplitude = 1e-5;  // u_0/R
       const double square = omega_dt * omega_dt;
       const double phi = std::acos(1 - square / (1 + square) / 2);
-      Motion motion(run, state_of((1 + amplitude) * circle));
+      SteppedDroplet droplet(run, nothing, state_of((1 + amplitude) * circle));
       for (int n = 1; n <= 40; ++n) {
-        motion.advance(1, omega_dt / omega, true);
-        const double area = polygon_shape(motion.state().position).area;
+        droplet.advance(1, omega_dt / omega, true);
+        const double area = polygon_shape(droplet.finish().position).area;
         EXPECT_NEAR((std::sqrt(area / units::rest_area) - 1) / amplitude, std::cos(n * phi), 2e-3)
             << omega_dt << ", step " << n;
       }
@@ -89,15 +57,16 @@ RunParameters film_parameters(Gravity gravity) {
 constexpr double film_time = 0.16;
 
 TEST(ImplicitPressure, MovesADropletAsShortStepsDoToSecondOrder) {
+  const ObstacleArray nothing = no_obstacles();
   for (const Gravity gravity : {Gravity::vertex, Gravity::area})
     for (const double relative_drag : {1.0, 3.0}) {
       RunParameters run = film_parameters(gravity);
       run.drag.relative = relative_drag;
       const DropletState initial = state_of(ellipse(128, 4));
       const auto position_after = [&](int steps, bool implicit_pressure) {
-        Motion motion(run, initial);
-        motion.advance(steps, film_time / steps, implicit_pressure);
-        return Eigen::ArrayXd(motion.state().position);
+        SteppedDroplet film(run, nothing, initial);
+        film.advance(steps, film_time / steps, implicit_pressure);
+        return Eigen::ArrayXd(film.finish().position);
       };
       const Eigen::ArrayXd exact = position_after(16000, false);
       ASSERT_GT((exact - initial.position).abs().maxCoeff(), 1e-3);
@@ -109,12 +78,19 @@ TEST(ImplicitPressure, MovesADropletAsShortStepsDoToSecondOrder) {
 }
 
 TEST(ImplicitPressure, BalancesTheEnergyToSecondOrder) {
+  const ObstacleArray nothing = no_obstacles();
   for (const Gravity gravity : {Gravity::vertex, Gravity::area}) {
     const auto imbalance = [&](int steps) {
-      Motion motion(film_parameters(gravity), state_of(ellipse(128, 4)));
-      const double begin = motion.energy();
-      motion.advance(steps, film_time / steps, true);
-      return std::abs(motion.energy() - begin);
+      const DropletState initial = state_of(ellipse(128, 4));
+      Droplet::Work work;
+      SteppedDroplet film(film_parameters(gravity), nothing, initial, &work);
+      const auto energy_of = [&](const DropletState& state) {
+        return units::droplet_mass / 128 / 2 * state.velocity.square().sum() +
+               film.forces().energy(state).total() + work.dissipated - work.spreading;
+      };
+      const double begin = energy_of(initial);
+      film.advance(steps, film_time / steps, true);
+      return std::abs(energy_of(film.finish()) - begin);
     };
     const double coarse = imbalance(160), fine = imbalance(1280);
     EXPECT_LT(fine, 2e-4);
