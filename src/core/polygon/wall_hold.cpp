@@ -65,9 +65,9 @@ void WallHold::add_groups(kernel::HoldingCircle& circle, int num_vertices) {
 }
 
 void WallHold::Memory::make_room(std::size_t needed, std::size_t num_zeroed) {
-  if (size < needed) {
-    size = 2 * needed;
-    numbers = aligned_zeros(size);
+  if (capacity < needed) {
+    capacity = 2 * needed;
+    numbers = aligned_zeros(capacity);
   } else {
     std::fill_n(numbers.get(), num_zeroed, 0.0);
   }

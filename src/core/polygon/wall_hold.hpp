@@ -36,7 +36,7 @@ class WallHold {
   bool has_anchors_ = false;
   struct Memory {
     hwy::AlignedFreeUniquePtr<double[]> numbers;
-    std::size_t size = 0;
+    std::size_t capacity = 0;
     /// Zeroes the first ones, or all if they have to be new.
     void make_room(std::size_t needed, std::size_t num_zeroed);
   };
