@@ -22,7 +22,7 @@ class SteppedDroplet {
   void advance(int steps, double time_step, bool implicit_pressure = false) {
     stepper_.advance(state_, steps, time_step, implicit_pressure, work_);
   }
-  /// Closes it, and begins anew.
+  /// Closes it. What follows begins with a new half kick.
   const DropletState& finish() {
     stepper_.finish(state_, work_);
     begin();
