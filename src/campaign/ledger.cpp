@@ -388,8 +388,10 @@ void Ledger::publish() {
   if (activity_)
     set_attribute(provenance_, "activity",
                   with_session(earlier_activity_, activity_->line(session_time_, seconds_so_far())));
-  if (!store::publish_sweep_over(stamp_, place_, rows, provenance_, circles_)) rescue(rows);
-  stamp_ = place_.stamp();
+  std::optional<std::string> published =
+      store::publish_sweep_over(stamp_, place_, rows, provenance_, circles_);
+  if (!published) rescue(rows);
+  stamp_ = *std::move(published);
   is_published_ = true;
   if (!has_journal)
     throw Error(

@@ -78,14 +78,15 @@ void Draft::publish() {
   check(place_.sync_folder(), "write", place_.path());
 }
 
-bool Draft::publish_over(const std::string& stamp) {
+std::optional<std::string> Draft::publish_over(const std::string& stamp) {
   place_.lend_access_to(descriptor_);
   check(sync(descriptor_), "write", place_.path());
+  std::string published = draft_.stamp();
   is_published_ = place_.replace(stamp, draft_);
-  if (!is_published_ && errno == EEXIST) return false;
+  if (!is_published_ && errno == EEXIST) return std::nullopt;
   check(is_published_, "write", place_.path());
   check(place_.sync_folder(), "write", place_.path());
-  return true;
+  return published;
 }
 
 void Draft::publish_new() {

@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "clog/store/place.hpp"
@@ -38,9 +40,10 @@ class Draft {
   /// Gives it the place's name, and the disk both; a file that is there is replaced, and hands on its mode,
   /// owner, group and access list. @throws Error
   void publish();
-  /// The same, but only in place of the file with this Place::stamp(), or of none. Returns whether it did.
-  /// @throws Error
-  bool publish_over(const std::string& stamp);
+  /// The same, but only in place of the file with this Place::stamp(), or of none. Returns the stamp of what
+  /// was published, which somebody may have replaced meanwhile; nothing if a different file is there, which
+  /// stays. @throws Error
+  std::optional<std::string> publish_over(const std::string& stamp);
   /// The same, but never onto a file that somebody else has made. @throws Error
   void publish_new();
   /// The open file, which is the caller's from now on.

@@ -107,8 +107,8 @@ void replace_whole(const Place& place, const std::function<void(hid_t file)>& fi
   draft.publish();
 }
 
-bool replace_whole(const Place& place, const std::string& stamp,
-                   const std::function<void(hid_t file)>& fill) {
+std::optional<std::string> replace_whole(const Place& place, const std::string& stamp,
+                                         const std::function<void(hid_t file)>& fill) {
   Draft draft(place, hdf5_mark);
   write_draft(draft, place.path(), fill);
   return draft.publish_over(stamp);

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -58,8 +59,9 @@ void require_memory_of_file(const std::string& purpose, std::size_t size, int co
 void create_whole(const std::string& path, const std::function<void(hid_t file)>& fill);
 /// The same, replacing a file that is there. One process at a time.
 void replace_whole(const Place& place, const std::function<void(hid_t file)>& fill);
-/// The same, but only in place of the file with this Place::stamp(), or of none. Returns whether it did.
-bool replace_whole(const Place& place, const std::string& stamp, const std::function<void(hid_t file)>& fill);
+/// The same, but only in place of the file with this Place::stamp(), or of none: Draft::publish_over().
+std::optional<std::string> replace_whole(const Place& place, const std::string& stamp,
+                                         const std::function<void(hid_t file)>& fill);
 
 /// All that a regular file holds. @throws Error that says what is wrong with the path
 std::vector<std::byte> read_file(const std::string& path);

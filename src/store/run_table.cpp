@@ -171,8 +171,9 @@ void publish_sweep(const Place& place, std::span<const RunRow> rows, const Prove
   replace_whole(place, writer(place, rows, provenance, circles));
 }
 
-bool publish_sweep_over(const std::string& stamp, const Place& place, std::span<const RunRow> rows,
-                        const Provenance& provenance, std::span<const CircleFile> circles) {
+std::optional<std::string> publish_sweep_over(const std::string& stamp, const Place& place,
+                                              std::span<const RunRow> rows, const Provenance& provenance,
+                                              std::span<const CircleFile> circles) {
   return replace_whole(place, stamp, writer(place, rows, provenance, circles));
 }
 

@@ -1,18 +1,37 @@
 #include "clog/campaign/ledger.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "clog/campaign/salvage.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/store/journal.hpp"
 #include "clog/store/run_table.hpp"
+
+namespace {
+
+/// What somebody else does while a folder is brought to the disk: just after a file in it was renamed.
+std::function<void()> deed_at_sync_of_folder;
+
+}  // namespace
+
+/// The system's, which this replaces in the test program.
+extern "C" int fsync(int descriptor) {
+  struct stat status {};
+  if (deed_at_sync_of_folder && fstat(descriptor, &status) == 0 && S_ISDIR(status.st_mode))
+    std::exchange(deed_at_sync_of_folder, nullptr)();
+  return static_cast<int>(syscall(SYS_fsync, descriptor));
+}
 
 namespace clog::campaign {
 namespace {
@@ -210,6 +229,20 @@ TEST_F(LedgerTest, OverwritesNoTableThatSomebodyElseHasPutThere) {
     std::filesystem::rename(path(), other);
     std::filesystem::rename(path() + ".rescued1", path());
   }
+}
+
+TEST_F(LedgerTest, OverwritesNoTableThatComesWhileItsOwnIsBroughtToTheDisk) {
+  const std::string other = (folder_ / "other.h5").string();
+  store::publish_sweep(other, {}, {{"config", "a = 1\n"}});
+  deed_at_sync_of_folder = [&] { std::filesystem::rename(other, path()); };
+  Ledger ledger = open();
+  EXPECT_EQ(deed_at_sync_of_folder, nullptr) << "the table was published";
+  ledger.start(0, 0);
+  ledger.report(report(ledger, 0, RunStatus::clogged, 2));
+  const std::string said = refusal([&] { ledger.finish(); });
+  EXPECT_NE(said.find("somebody has replaced it"), std::string::npos) << said;
+  EXPECT_EQ(store::read_sweep(path()).rows.size(), 0u);
+  EXPECT_EQ(store::read_sweep(path() + ".rescued1").rows[0].distance, 2);
 }
 
 TEST_F(LedgerTest, LeavesTheJournalOfAnotherSweepAndKeepsItsOwnRows) {

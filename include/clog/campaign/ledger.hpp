@@ -83,7 +83,7 @@ class Ledger {
 
   store::Place place_;
   std::string path_;   // for messages and readers: links followed
-  std::string stamp_;  // of the table as it was read or published last; empty if there was none
+  std::string stamp_;  // of the table as this sweep read or wrote it last; empty if there was none
   const sweep::Plan* plan_;
   store::Provenance provenance_;
   std::int64_t attempts_;
