@@ -295,7 +295,7 @@ class Module(Analysis):
 
 class UnderWay(SweepTest):
     def test_a_sweep_that_runs_can_be_read(self):
-        process = self.start("vertices=64", "box=20", "obstacle-gap=0.4", "line-tension=0.05", "max-time=1e5", "seeds=1..4",
+        process = self.start("vertices=64", "box=20", "obstacle-gap=0.4", "line-tension=0.05", "max-time=1e9", "seeds=1..4",
                              "--report-seconds=0.1", "--output", "s.h5")
         self.wait_for(lambda: (self.folder / "s.h5").exists() and len(table(self.folder / "s.h5")) > 0 or process.poll() is not None)
         sweep = clogsweep.open(self.folder / "s.h5", BIN)

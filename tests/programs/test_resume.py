@@ -16,7 +16,7 @@ import unittest
 
 import numpy as np
 import stored_rows
-from support import BIN, BLOCKED, LONGEST, MPI, QUICK, ROOT, SLOW, STEPS_PER_SNAPSHOT, SWEEP, ProgramTest, SweepTest, table
+from support import BIN, BLOCKED, ENDLESS, LONGEST, MPI, QUICK, ROOT, SLOW, STEPS_PER_SNAPSHOT, SWEEP, ProgramTest, SweepTest, table
 
 FEW = [word.replace("1..6", "1") for word in SWEEP]
 
@@ -75,15 +75,20 @@ class Resumed(SweepTest):
         self.check_equal("s.h5", "whole.h5")
         self.assertEqual({path.name for path in self.folder.iterdir()}, {"s.h5", "whole.h5"})
 
+    def stop_with_a_snapshot(self, sweep, signal_number, **options):
+        """@return its process and what it said; nothing if it was over before that"""
+        process = self.start(*sweep, **options)
+        self.wait_for(lambda: process.poll() is not None or (self.folder / "s.h5").exists() and
+                      (table(self.folder / "s.h5").query("status == 'running'").steps > STEPS_PER_SNAPSHOT).any())
+        process.send_signal(signal_number)
+        _, error = process.communicate(timeout=LONGEST)
+        return (process, error) if (self.folder / "s.h5.journal").exists() else None
+
     def test_a_signal_stops_and_the_same_command_resumes(self):
         sweep = [word.replace("max-time=2e4", "max-time=6e4") for word in SLOW]  # three sessions of a second and more
         self.succeed("clogsweep", *sweep[:-1], "whole.h5", ranks=2)
         for signal_number in (signal.SIGUSR1, signal.SIGINT, signal.SIGTERM):
-            process = self.start(*sweep)
-            self.wait_for(lambda: (self.folder / "s.h5").exists() and
-                          (table(self.folder / "s.h5").query("status == 'running'").steps > STEPS_PER_SNAPSHOT).any())
-            process.send_signal(signal_number)
-            _, error = process.communicate(timeout=LONGEST)
+            process, error = self.until_in_time(lambda: self.stop_with_a_snapshot(sweep, signal_number))
             if signal_number == signal.SIGUSR1:  # mpirun kills what is left a second after it forwarded the others
                 self.assertIn("the same command resumes the sweep", error)
                 rows = table(self.folder / "s.h5")
@@ -108,14 +113,25 @@ class Resumed(SweepTest):
         self.assertIn("stopped by a signal while reading s.cfg", error)
         self.assertFalse((self.folder / "s.h5").exists())
 
+    def hold_while_it_runs(self, ranks):
+        """@return its process and those of its ranks, which are stopped; nothing if it was over before that"""
+        process = self.start(*SWEEP, ranks=ranks)
+
+        def runs():
+            return (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any()
+        self.wait_for(lambda: process.poll() is not None or runs())
+        stopped = self.ranks_of(process)
+        for rank in stopped:
+            os.kill(rank, signal.SIGSTOP)
+        if stopped and runs():
+            return process, stopped
+        self.kill_all(process)
+        return None
+
     def test_a_sweep_whose_journal_is_removed_leaves_the_table_to_the_next(self):
         self.succeed("clogsweep", *SWEEP[:-1], "whole.h5", ranks=2)
         for ranks in (1, 2):
-            first = self.start(*SWEEP, ranks=ranks)
-            self.wait_for(lambda: (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any())
-            stopped = self.ranks_of(first)
-            for rank in stopped:
-                os.kill(rank, signal.SIGSTOP)
+            first, stopped = self.until_in_time(lambda: self.hold_while_it_runs(ranks))
             (self.folder / "s.h5.journal").unlink()
             self.succeed("clogsweep", *SWEEP)
             for rank in stopped:
@@ -135,19 +151,24 @@ class Resumed(SweepTest):
         self.succeed("clogsweep", *SWEEP, ranks=2)
 
     def test_running_tasks_are_in_the_table(self):
-        process = self.start(*SWEEP)
+        process = self.start(*ENDLESS)
         self.wait_for(lambda: (self.folder / "s.h5").exists() and
                       (table(self.folder / "s.h5").query("status == 'running'").distance > 0).any())
         status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
         self.assertTrue(status["alive"])
-        self.assertEqual(status["runs"], 24)
+        self.assertEqual(status["runs"], 2)
         self.assertGreater(status["unfinished"], 0)
         self.assertIn(" running; ", self.succeed("clogsweep", "status", "s.h5").stdout)
-        refused = self.run_program("clogsweep", *SWEEP)
+        refused = self.run_program("clogsweep", *ENDLESS)
         self.assertEqual(refused.returncode, 2)
         self.assertIn("another sweep is writing to it", refused.stderr)
-        _, error = process.communicate(timeout=LONGEST)
-        self.assertEqual(process.returncode, 0, error)
+        process.send_signal(signal.SIGUSR1)
+        process.communicate(timeout=LONGEST)
+        self.assertFalse(json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)["alive"])
+
+    def test_the_end_of_a_sweep_ends_its_watch(self):
+        self.start(*SWEEP)
+        self.wait_for(lambda: (self.folder / "s.h5").exists())
         watched = self.succeed("clogsweep", "status", "s.h5", "--watch").stdout
         self.assertIn("24 of 24 runs finished", watched)
         self.assertNotIn("\x1b", watched)  # no terminal, whose screen would be cleared
@@ -194,11 +215,16 @@ class Resumed(SweepTest):
         (self.folder / "s.h5").unlink()
         self.refuse("clogsweep", *SWEEP, words=["its table is gone", "put the table back"])
 
+    def kill_with_records(self, number):
+        """@return whether the journal had as many; else the sweep was over before that"""
+        process = self.start(*SLOW)
+        self.wait_for(lambda: process.poll() is not None or self.journal()[0] >= number)
+        self.kill_all(process)
+        return self.journal()[0] >= number
+
     def test_a_damaged_record_costs_no_other(self):
         self.succeed("clogsweep", *SLOW[:-1], "whole.h5", ranks=2)
-        process = self.start(*SLOW)
-        self.wait_for(lambda: self.journal()[0] >= 2)
-        self.kill_all(process)
+        self.until_in_time(lambda: self.kill_with_records(2))
         self.assertIn(", all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
         journal = self.folder / "s.h5.journal"
         content = bytearray(journal.read_bytes())
@@ -251,12 +277,12 @@ class Resumed(SweepTest):
     def test_a_run_under_two_instruction_sets_is_called_mixed(self):
         long = ["vertices=64", "box=20", "obstacle-gap=1.2", "max-time=2e4", "seeds=1..2", "--report-seconds=0.1",
                 "--output", "s.h5"]
-        process = self.start(*long, ranks=1)
-        self.wait_for(lambda: self.journal()[1] > 0)
-        process.send_signal(signal.SIGUSR1)
-        process.communicate(timeout=LONGEST)
+
+        def first_run_is_stopped():
+            self.stop_with_a_snapshot(long, signal.SIGUSR1, ranks=1)
+            return table(self.folder / "s.h5").status.tolist() == ["interrupted"]
+        self.until_in_time(first_run_is_stopped)
         begun = table(self.folder / "s.h5")
-        self.assertEqual(begun.status.tolist(), ["interrupted"])
         self.succeed("clogsweep", *long, "--instruction-set=baseline", ranks=2)
         only_one = begun.instruction_set[0] == "baseline"  # this processor has nothing else
         rows = table(self.folder / "s.h5").set_index("task")

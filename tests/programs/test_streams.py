@@ -7,7 +7,7 @@ import subprocess
 import sys
 import unittest
 
-from support import BIN, LONGEST, MPI, MPIRUN, QUICK, ROOT, SLOW, SweepTest, table
+from support import BIN, ENDLESS, LONGEST, MPI, MPIRUN, QUICK, ROOT, SweepTest, table
 
 sys.path.insert(0, str(ROOT / "analysis"))
 import clogsweep  # noqa: E402
@@ -169,7 +169,7 @@ class Alone(SweepTest):
 
     def test_it_needs_neither_environment_nor_daemon(self):
         environment = {name: value for name, value in os.environ.items() if name == "ASAN_OPTIONS"}
-        process = subprocess.Popen([str(BIN / "clogsweep"), *SLOW], cwd=self.folder, env=environment, stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen([str(BIN / "clogsweep"), *ENDLESS], cwd=self.folder, env=environment, stderr=subprocess.PIPE, text=True)
         self.addCleanup(lambda: process.poll() is None and process.kill())
         self.wait_for(lambda: (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any()
                       or process.poll() is not None)
