@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "clog/core/tools/units.hpp"
 
@@ -19,8 +20,11 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-/// Most searches end within ten.
-constexpr int most_iterations = 30;
+/// Of the stiffness. Most searches need two.
+constexpr int most_computations = 30;
+/// With one computed stiffness; most of its searches need 15. Rejections: in a row.
+constexpr int most_steps = 50;
+constexpr int most_rejections = 10;
 constexpr int most_halvings = 10;
 /// Step of the central differences [sigma]: far below a contact's range, far above round-off.
 constexpr double difference_step = 1e-6;
@@ -28,8 +32,11 @@ constexpr double difference_step = 1e-6;
 constexpr double force_tolerance = 1e-7;
 /// Remaining Newton step [sigma].
 constexpr double move_tolerance = 1e-7;
-/// What a step with a stiffness leaves of the way at most if the next one takes the same stiffness.
-constexpr double quick = 0.75;
+/// What an accepted step leaves of the way at most.
+constexpr double most_left = 0.75;
+/// A correction leaves at least this part of the stiffness along a step. A contact that opens on the way may
+/// take nearly all of it, and the next step would be far too long.
+constexpr double least_part = 0.5;
 
 MatrixXd symmetric(const MatrixXd& matrix) { return (matrix + matrix.transpose()) / 2; }
 
@@ -63,6 +70,7 @@ class Stiffness {
     const Index n = k.rows() / 2;
     if (!is_definite(0, k.bottomRightCorner(n, n))) return false;
     normal_along_ = k.topRightCorner(n, n);
+    corrections_.clear();
     along_.compute(k.bottomRightCorner(n, n));
     adapting_ = along_.solve(k.bottomLeftCorner(n, n));
     shape_ = k.topLeftCorner(n, n) - normal_along_ * adapting_;
@@ -70,17 +78,40 @@ class Stiffness {
     shape_factor_.compute(shape_);
     return true;
   }
+  /// The displacement that these forces would cause.
   VectorXd solve(const VectorXd& force) const {
     const Index n = force.size() / 2;
     const VectorXd along = along_.solve(force.tail(n));
     VectorXd move(2 * n);
     move.head(n) = shape_factor_.solve(force.head(n) - normal_along_ * along);
     move.tail(n) = along - adapting_ * move.head(n);
+    for (const Correction& correction : corrections_) move -= correction.step.dot(move) * correction.excess;
     return move;
   }
 
+  /// After a step whose change of force belongs to the displacement `found`, as solve() has it so far:
+  /// changes K by a matrix of rank one, so that it belongs to the step. This is how a contact that opens or
+  /// closes changes it. C. G. Broyden, Math. Comp. 19, 577 (1965); bounded as in J. J. More and J. A.
+  /// Trangenstein, Math. Comp. 30, 523 (1976).
+  void correct(const VectorXd& step, const VectorXd& found) {
+    const double part_kept = step.dot(found) / step.squaredNorm();
+    const double share = part_kept < least_part ? (1 - least_part) / (1 - part_kept) : 1;
+    const VectorXd excess = share * (found - step);
+    corrections_.push_back({step, excess / step.dot(step + excess)});
+  }
+  /// What solve() gives now where it gave `move` before the last correction.
+  VectorXd corrected(const VectorXd& move) const {
+    return move - corrections_.back().step.dot(move) * corrections_.back().excess;
+  }
+  void forget_corrections() { corrections_.clear(); }
+
  private:
+  /// Of a displacement x, (step.x) excess is too much.
+  struct Correction {
+    VectorXd step, excess;
+  };
   bool has_energy_;
+  std::vector<Correction> corrections_;
   MatrixXd normal_along_, adapting_, shape_;
   Eigen::PartialPivLU<MatrixXd> along_, shape_factor_;
 };
@@ -109,17 +140,18 @@ class ForceField {
     const ArrayXd middle = state_.position;
     stiffness_.resize(middle.size(), middle.size());
     for (Index k = 0; k < middle.size(); ++k) {
-      const auto evaluate_at = [&](double distance, ArrayXd& force) {
-        state_.position = middle;
+      const auto displace = [&](double distance) {
         for (SparseMatrix::InnerIterator entry(axes.directions, k); entry; ++entry)
-          state_.position[entry.row()] += distance * entry.value();
-        forces_.evaluate(state_, force);
+          state_.position[entry.row()] = middle[entry.row()] + distance * entry.value();
       };
-      evaluate_at(difference_step, force_);
-      evaluate_at(-difference_step, below_);
-      stiffness_.col(k) = axes.directions.transpose() * ((below_ - force_) / (2 * difference_step)).matrix();
+      displace(difference_step);
+      forces_.evaluate(state_, force_);
+      displace(-difference_step);
+      forces_.evaluate(state_, below_);
+      displace(0);
+      stiffness_.col(k) = (below_ - force_) / (2 * difference_step);
     }
-    state_.position = middle;
+    stiffness_ = axes.directions.transpose() * stiffness_;
     if (axes.slide.size() > 0) hold_slide(axes.slide, stiffness_);
     return stiffness_;
   }
@@ -139,51 +171,112 @@ class ForceField {
   }
 };
 
+/// Newton's method. A step is accepted if it shortens the remaining Newton step, computed with the present
+/// stiffness (P. Deuflhard's natural monotonicity test): a test on forces would reject nearly every step,
+/// because contacts that open or close dominate them. To compute a stiffness costs as much as 50 steps, so
+/// each step, accepted or not, corrects it for the next one; it is computed again where this does not help,
+/// and at last within difference_step of the rest.
+class Search {
+ public:
+  Search(const EquilibriumForces& forces, const DropletState& initial)
+      : forces_(forces),
+        initial_(initial),
+        point_weight_(units::droplet_mass * units::gravity / static_cast<double>(initial.size())),
+        field_(forces, initial),
+        stiffness_(forces.have_energy),
+        position_(initial.position) {}
+
+  std::optional<DropletState> run() {
+    for (int computations = 0; computations < most_computations; ++computations) {
+      find_axes_and_force();
+      if (!stiffness_.set(field_.stiffness(axes_), least_stiffness * point_weight_)) return std::nullopt;
+      move_ = stiffness_.solve(force_);
+      const bool is_stiffness_of_rest = longest() < difference_step;
+      if (!approach() && !take_part_of_step()) return std::nullopt;
+      if ((position_ - initial_.position).abs().maxCoeff() > farthest_rest) return std::nullopt;
+      if (is_stiffness_of_rest && rests()) return state();
+    }
+    return std::nullopt;
+  }
+
+ private:
+  const EquilibriumForces& forces_;
+  const DropletState& initial_;
+  double point_weight_;
+  ForceField field_;
+  Stiffness stiffness_;
+  ArrayXd position_;
+  // There:
+  Axes axes_;
+  VectorXd force_;
+  VectorXd move_;  // to the rest, by the stiffness
+
+  DropletState state() {
+    field_.move_to(position_);
+    return field_.state();
+  }
+  void find_axes_and_force() {
+    axes_ = forces_.axes(state());
+    force_ = field_.force_at(position_, axes_);
+  }
+  double longest() const { return move_.lpNorm<Eigen::Infinity>(); }
+  bool rests() const {
+    return longest() < move_tolerance && force_.lpNorm<Eigen::Infinity>() < force_tolerance * point_weight_;
+  }
+
+  /// Goes a part of the move if this leaves at most a share of the way, and returns whether it did.
+  bool tries(double part, double share) {
+    const VectorXd step = part * move_;
+    const ArrayXd place = position_ + (axes_.directions * step).array();
+    VectorXd force_there = field_.force_at(place, axes_);
+    const VectorXd way_left = stiffness_.solve(force_there);
+    if (!way_left.allFinite()) return false;
+    const bool succeeds = way_left.norm() < share * move_.norm();
+    stiffness_.correct(step, move_ - way_left);
+    move_ = stiffness_.corrected(succeeds ? way_left : move_);
+    if (succeeds) {
+      position_ = place;
+      force_ = std::move(force_there);
+    }
+    return succeeds;
+  }
+
+  /// Takes steps with one computed stiffness. Returns whether they have come closer, or the droplet rests.
+  bool approach() {
+    bool has_come_closer = false;
+    int rejections = 0;
+    for (int steps = 0; steps < most_steps && rejections < most_rejections; ++steps) {
+      if (rests()) {  // along axes that were those of an earlier place
+        find_axes_and_force();
+        move_ = stiffness_.solve(force_);
+        if (rests()) return true;
+      }
+      const bool succeeds = tries(std::min(1.0, farthest_rest / longest()), most_left);
+      rejections = succeeds ? 0 : rejections + 1;
+      has_come_closer = has_come_closer || succeeds;
+    }
+    return has_come_closer;
+  }
+
+  /// Halves the first step, that of the computed stiffness, until it succeeds. Returns whether it does.
+  bool take_part_of_step() {
+    stiffness_.forget_corrections();
+    const VectorXd first = stiffness_.solve(force_);
+    double part = std::min(1.0, farthest_rest / first.lpNorm<Eigen::Infinity>());
+    for (int halving = 0; halving < most_halvings; ++halving) {
+      part /= 2;
+      stiffness_.forget_corrections();
+      move_ = first;
+      if (tries(part, 1 - part / 4)) return true;
+    }
+    return false;
+  }
+};
+
 }  // namespace
 
-/// Newton's method with step halving: a step is accepted if it shortens the remaining Newton step, computed
-/// with the present stiffness (P. Deuflhard's natural monotonicity test). A test on forces would reject
-/// nearly every step, because contacts that open or close dominate them. Further steps with the same
-/// stiffness are taken as long as each leaves little of the way; that of the rest is computed within
-/// move_tolerance of it.
 std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, const DropletState& initial) {
-  const double point_weight = units::droplet_mass * units::gravity / static_cast<double>(initial.size());
-  ForceField field(forces, initial);
-  Stiffness stiffness(forces.have_energy);
-  ArrayXd position = initial.position;
-  for (int iteration = 0; iteration < most_iterations; ++iteration) {
-    field.move_to(position);  // the last step tried may have been too long
-    const Axes axes = forces.axes(field.state());
-    VectorXd force = field.force_at(position, axes);
-    if (!stiffness.set(field.stiffness(axes), least_stiffness * point_weight)) return std::nullopt;
-    VectorXd move = stiffness.solve(force);
-    const auto longest = [&] { return move.lpNorm<Eigen::Infinity>(); };
-    const auto rests = [&] {
-      return longest() < move_tolerance && force.lpNorm<Eigen::Infinity>() < force_tolerance * point_weight;
-    };
-    if (rests()) return field.state();
-    const bool is_stiffness_of_rest = longest() < move_tolerance;
-
-    double part = std::min(1.0, farthest_rest / longest());
-    const auto leaves_at_most = [&](double share) {
-      const ArrayXd place = position + part * (axes.directions * move).array();
-      VectorXd force_there = field.force_at(place, axes);
-      VectorXd way_left = stiffness.solve(force_there);
-      if (!(way_left.norm() < share * move.norm())) return false;
-      position = place;
-      force = std::move(force_there);
-      move = std::move(way_left);
-      return true;
-    };
-    for (int halving = 0; !leaves_at_most(1 - part / 4); ++halving, part /= 2)
-      if (halving == most_halvings) return std::nullopt;
-    part = 1;
-    while (!rests() && leaves_at_most(quick)) {
-    }
-    if ((position - initial.position).abs().maxCoeff() > farthest_rest) return std::nullopt;
-    if (is_stiffness_of_rest && rests()) return field.state();
-  }
-  return std::nullopt;
+  return Search(forces, initial).run();
 }
 
 }  // namespace clog

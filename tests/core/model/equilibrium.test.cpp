@@ -5,15 +5,20 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
 #include "clog/core/run/droplet_run.hpp"
 #include "clog/core/run/resolve.hpp"
+#include "clog/core/tools/units.hpp"
 #include "support.hpp"
 
 namespace clog {
@@ -167,6 +172,76 @@ TEST(Equilibrium, OfASoftDiskInAGapIsWhereTheForcesBalance) {
   ASSERT_TRUE(found.has_value());
   EXPECT_NEAR(found->position[0], low, 1e-8);
   EXPECT_NEAR(found->position[1], 10, 1e-8);
+}
+
+/// Points on springs, to their places and to the next ones, each coordinate with a much stiffer contact on
+/// its upper side: all in units of a point's weight.
+class PointsWithContacts {
+ public:
+  static constexpr int num_points = 16;
+  static constexpr Eigen::Index size = 2 * num_points;
+  static constexpr double stiffness_of_contact = 5000;
+
+  PointsWithContacts() : stiffness_(Eigen::MatrixXd::Zero(size, size)), load_(size), bound_(size) {
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const auto phase = static_cast<double>(i);
+      const Eigen::Index next = (i + 1) % size;
+      load_[i] = 0.3 * std::sin(2.1 * phase);
+      bound_[i] = 0.002 * std::cos(1.3 * phase);
+      stiffness_(i, i) += 20;
+      Eigen::Matrix2d spring;
+      spring << 50, -50, -50, 50;
+      stiffness_({i, next}, {i, next}) += spring;
+    }
+  }
+
+  /// Solved for one set of contacts after another until it is the set of those that touch.
+  Eigen::VectorXd rest() const {
+    Eigen::VectorXd position = Eigen::VectorXd::Zero(size);
+    for (int attempt = 0; attempt < 100; ++attempt) {
+      const Eigen::VectorXd contacts = stiffness_of_contact * touches(position);
+      const Eigen::MatrixXd all = stiffness_ + Eigen::MatrixXd(contacts.asDiagonal());
+      const Eigen::VectorXd next = all.ldlt().solve(load_ + contacts.cwiseProduct(bound_));
+      if (touches(next) == touches(position)) return next;
+      position = next;
+    }
+    throw std::logic_error("no set of contacts belongs to its own positions");
+  }
+  Eigen::VectorXd touches(const Eigen::VectorXd& position) const {
+    return (position.array() > bound_.array()).cast<double>();
+  }
+
+  void update_contacts(const DropletState&, const Travel&) {}
+  void evaluate(const DropletState& state, Eigen::ArrayXd& force) {
+    const Eigen::VectorXd position = state.position;
+    const Eigen::VectorXd depth = (position - bound_).cwiseMax(0);
+    force = point_weight * (load_ - stiffness_ * position - stiffness_of_contact * depth).array();
+  }
+  std::optional<DropletState> found_from(const Eigen::ArrayXd& position) {
+    const auto along_coordinates = [](const DropletState&) {
+      Axes axes{.directions = Eigen::SparseMatrix<double>(size, size), .slide = {}};
+      axes.directions.setIdentity();
+      return axes;
+    };
+    return find_equilibrium(EquilibriumForces::of(*this, along_coordinates, true), test::state_of(position));
+  }
+
+ private:
+  static constexpr double point_weight = units::droplet_mass * units::gravity / num_points;
+  Eigen::MatrixXd stiffness_;
+  Eigen::VectorXd load_, bound_;
+};
+
+TEST(Equilibrium, IsFoundThoughContactsOpenAndCloseOnTheWay) {
+  PointsWithContacts points;
+  const Eigen::VectorXd rest = points.rest();
+  for (const double offset : {-0.01, 0.0, 0.01}) {
+    const Eigen::ArrayXd start = Eigen::ArrayXd::Constant(PointsWithContacts::size, offset);
+    ASSERT_GE((points.touches(start) - points.touches(rest)).cwiseAbs().sum(), 8) << "contacts change";
+    const auto found = points.found_from(start);
+    ASSERT_TRUE(found.has_value());
+    EXPECT_LT((found->position.matrix() - rest).lpNorm<Eigen::Infinity>(), 1e-8);
+  }
 }
 
 TEST(Equilibrium, TooFarAwayIsRefused) {
