@@ -39,6 +39,15 @@ struct FireResult {
   double largest_force = 0;
 };
 
+/// Contact lists are brought up to date once in so many iterations, before the forces are asked for.
+inline constexpr int iterations_per_update = 3;
+
+/// How far points come from one update to the last forces before the next: max_move bounds each coordinate.
+inline Travel travel_between_updates(const FireOptions& options) {
+  const double farthest = (iterations_per_update - 1) * options.max_move * std::numbers::sqrt2;
+  return {.absolute = farthest, .relative = 2 * farthest};
+}
+
 /// Energy minimisation by the fast inertial relaxation engine, Bitzek et al., Phys. Rev. Lett. 97, 170201
 /// (2006), with its standard constants. Velocities are left at zero.
 /// @param forces  has update_contacts(state, travel) and evaluate(state, force)
@@ -46,11 +55,7 @@ template <class Forces>
 FireResult minimize_fire(Forces& forces, DropletState& state, const FireOptions& options) {
   constexpr int min_downhill = 5;
   constexpr double grow = 1.1, shrink = 0.5, start_mixing = 0.1, less_mixing = 0.99;
-  constexpr int iterations_per_check = 2;
-
-  // max_move bounds each coordinate.
-  const double farthest = iterations_per_check * options.max_move * std::numbers::sqrt2;
-  const Travel travel{.absolute = farthest, .relative = 2 * farthest};
+  const Travel travel = travel_between_updates(options);
   Eigen::ArrayXd force(state.position.size());
   state.velocity.setZero();
   double dt = 0.25 * options.largest_step;
@@ -58,7 +63,7 @@ FireResult minimize_fire(Forces& forces, DropletState& state, const FireOptions&
   int downhill = 0;
   FireResult result;
   for (; result.iterations < options.max_iterations; ++result.iterations) {
-    if (result.iterations % iterations_per_check == 0) forces.update_contacts(state, travel);
+    if (result.iterations % iterations_per_update == 0) forces.update_contacts(state, travel);
     forces.evaluate(state, force);
     const kernel::ForceSums sums = kernel::sum_forces(force.size(), force.data(), state.velocity.data());
     const bool is_finite = std::isfinite(sums.force2);
@@ -86,17 +91,18 @@ FireResult minimize_fire(Forces& forces, DropletState& state, const FireOptions&
   return result;
 }
 
-/// Damped motion until it comes to rest, as a droplet would. Slower than FIRE for soft modes, but it also
-/// settles forces that have no energy, where FIRE, which judges by the work done, goes round in circles.
+/// Damped motion until it comes to rest, as a droplet would. Slower than FIRE, but it also settles forces
+/// that have no energy, where FIRE, which judges by the work done, may go round in circles.
 template <class Forces>
 FireResult settle(Forces& forces, DropletState& state, const FireOptions& options, double damping_rate) {
   const double dt = options.largest_step;
   const double shrink = 1 / (1 + dt * damping_rate);
+  const Travel travel = travel_between_updates(options);
   Eigen::ArrayXd force(state.position.size());
   state.velocity.setZero();
   FireResult result;
   for (; result.iterations < options.max_iterations; ++result.iterations) {
-    forces.update_contacts(state, state.possible_travel(dt));
+    if (result.iterations % iterations_per_update == 0) forces.update_contacts(state, travel);
     forces.evaluate(state, force);
     const kernel::ForceSums sums = kernel::sum_forces(force.size(), force.data(), state.velocity.data());
     const bool is_finite = std::isfinite(sums.force2);
