@@ -138,8 +138,9 @@ DropletState release_polygon(const RunParameters& run, const ObstacleArray& obst
   DpForces own_forces = weightless_forces(own, obstacles);
   RestForces own_rest_forces(own, own_forces);
   if (rests)
-    rests = settle(own_rest_forces, state, longer, damping_rate).largest_force <=
-            release_sliding_tolerance * vertex_weight(run);
+    rests = minimize_fire(own_rest_forces, state, options).converged ||
+            settle(own_rest_forces, state, longer, damping_rate).largest_force <=
+                release_sliding_tolerance * vertex_weight(run);
   if (!rests)
     refuse_release(
         "the grown droplet does not come to rest",

@@ -22,6 +22,7 @@ RunParameters in_small_box(double line_tension, double gap) {
   run.dp.line_tension = line_tension;
   run.obstacles.gap = gap;
   run.obstacles.box = 12;
+  run.obstacles.density = {};  // saturated, so that the droplet touches
   return run;
 }
 
@@ -65,6 +66,16 @@ TEST(Release, ComesToRestWhereSpringsKeepTheInterfaceSliding) {
     Eigen::ArrayXd force(2 * vertices);
     forces.evaluate(state, force);
     EXPECT_LE(force.abs().maxCoeff(), 1.01 * release_sliding_tolerance * units::droplet_mass / vertices);
+  }
+}
+
+TEST(Release, ComesToRestBetweenObstaclesThatNearlyTouch) {
+  for (const std::uint32_t seed : {5u, 19u}) {  // damped motion alone takes forever here
+    RunParameters run = in_small_box(1, 0.05);
+    run.obstacles.box = 30;
+    run = resolve(run);
+    const DropletState state = model_of(run).release(run, sample_obstacles(run.obstacles, seed));
+    EXPECT_NEAR(polygon_shape(state.position).area, units::rest_area, 0.02);
   }
 }
 
