@@ -103,7 +103,6 @@ class Stiffness {
   VectorXd corrected(const VectorXd& move) const {
     return move - corrections_.back().step.dot(move) * corrections_.back().excess;
   }
-  void forget_corrections() { corrections_.clear(); }
 
  private:
   /// Of a displacement x, (step.x) excess is too much.
@@ -174,8 +173,9 @@ class ForceField {
 /// Newton's method. A step is accepted if it shortens the remaining Newton step, computed with the present
 /// stiffness (P. Deuflhard's natural monotonicity test): a test on forces would reject nearly every step,
 /// because contacts that open or close dominate them. To compute a stiffness costs as much as 50 steps, so
-/// each step, accepted or not, corrects it for the next one; it is computed again where this does not help,
-/// and at last within difference_step of the rest.
+/// each step, accepted or not, corrects it for the next one. It is computed again where this does not help,
+/// and at last within difference_step of the rest. Where such steps lead nowhere, or to a place without
+/// resistance, the search goes back and on without corrections: it halves its steps.
 class Search {
  public:
   Search(const EquilibriumForces& forces, const DropletState& initial)
@@ -184,17 +184,24 @@ class Search {
         point_weight_(units::droplet_mass * units::gravity / static_cast<double>(initial.size())),
         field_(forces, initial),
         stiffness_(forces.have_energy),
-        position_(initial.position) {}
+        position_(initial.position),
+        begun_at_(initial.position) {}
 
   std::optional<DropletState> run() {
     for (int computations = 0; computations < most_computations; ++computations) {
       find_axes_and_force();
-      if (!stiffness_.set(field_.stiffness(axes_), least_stiffness * point_weight_)) return std::nullopt;
-      move_ = stiffness_.solve(force_);
-      const bool is_stiffness_of_rest = longest() < difference_step;
-      if (!approach() && !take_part_of_step()) return std::nullopt;
-      if ((position_ - initial_.position).abs().maxCoeff() > farthest_rest) return std::nullopt;
-      if (is_stiffness_of_rest && rests()) return state();
+      bool goes_on = stiffness_.set(field_.stiffness(axes_), least_stiffness * point_weight_);
+      if (!goes_on && computations == 0) return std::nullopt;
+      if (goes_on) {
+        begun_at_ = position_;
+        move_ = stiffness_.solve(force_);
+        const bool is_stiffness_of_rest = longest() < difference_step;
+        goes_on = (halves_ ? approach_by_halves() : approach_with_corrections()) && is_near();
+        if (goes_on && is_stiffness_of_rest && rests()) return state();
+      }
+      if (!goes_on && halves_) return std::nullopt;
+      if (!goes_on) position_ = begun_at_;
+      halves_ = halves_ || !goes_on;
     }
     return std::nullopt;
   }
@@ -205,8 +212,10 @@ class Search {
   double point_weight_;
   ForceField field_;
   Stiffness stiffness_;
+  bool halves_ = false;
   ArrayXd position_;
-  // There:
+  ArrayXd begun_at_;  // where the last stiffness that resists was computed
+  // At the position:
   Axes axes_;
   VectorXd force_;
   VectorXd move_;  // to the rest, by the stiffness
@@ -219,7 +228,9 @@ class Search {
     axes_ = forces_.axes(state());
     force_ = field_.force_at(position_, axes_);
   }
+  bool is_near() const { return (position_ - initial_.position).abs().maxCoeff() <= farthest_rest; }
   double longest() const { return move_.lpNorm<Eigen::Infinity>(); }
+  double longest_part() const { return std::min(1.0, farthest_rest / longest()); }
   bool rests() const {
     return longest() < move_tolerance && force_.lpNorm<Eigen::Infinity>() < force_tolerance * point_weight_;
   }
@@ -229,20 +240,22 @@ class Search {
     const VectorXd step = part * move_;
     const ArrayXd place = position_ + (axes_.directions * step).array();
     VectorXd force_there = field_.force_at(place, axes_);
-    const VectorXd way_left = stiffness_.solve(force_there);
+    VectorXd way_left = stiffness_.solve(force_there);
     if (!way_left.allFinite()) return false;
     const bool succeeds = way_left.norm() < share * move_.norm();
-    stiffness_.correct(step, move_ - way_left);
-    move_ = stiffness_.corrected(succeeds ? way_left : move_);
+    if (!halves_) stiffness_.correct(step, move_ - way_left);
     if (succeeds) {
       position_ = place;
       force_ = std::move(force_there);
+      move_ = std::move(way_left);
     }
+    if (!halves_) move_ = stiffness_.corrected(move_);
     return succeeds;
   }
 
-  /// Takes steps with one computed stiffness. Returns whether they have come closer, or the droplet rests.
-  bool approach() {
+  /// Both ways take steps with one computed stiffness, and return whether they have come closer or the
+  /// droplet rests.
+  bool approach_with_corrections() {
     bool has_come_closer = false;
     int rejections = 0;
     for (int steps = 0; steps < most_steps && rejections < most_rejections; ++steps) {
@@ -251,25 +264,20 @@ class Search {
         move_ = stiffness_.solve(force_);
         if (rests()) return true;
       }
-      const bool succeeds = tries(std::min(1.0, farthest_rest / longest()), most_left);
+      const bool succeeds = tries(longest_part(), most_left);
       rejections = succeeds ? 0 : rejections + 1;
       has_come_closer = has_come_closer || succeeds;
     }
     return has_come_closer;
   }
-
-  /// Halves the first step, that of the computed stiffness, until it succeeds. Returns whether it does.
-  bool take_part_of_step() {
-    stiffness_.forget_corrections();
-    const VectorXd first = stiffness_.solve(force_);
-    double part = std::min(1.0, farthest_rest / first.lpNorm<Eigen::Infinity>());
-    for (int halving = 0; halving < most_halvings; ++halving) {
-      part /= 2;
-      stiffness_.forget_corrections();
-      move_ = first;
-      if (tries(part, 1 - part / 4)) return true;
+  bool approach_by_halves() {
+    if (rests()) return true;
+    double part = longest_part();
+    for (int halving = 0; !tries(part, 1 - part / 4); ++halving, part /= 2)
+      if (halving == most_halvings) return false;
+    while (!rests() && tries(1, most_left)) {
     }
-    return false;
+    return true;
   }
 };
 
