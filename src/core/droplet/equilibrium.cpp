@@ -20,9 +20,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-/// Of the stiffness. Most searches need two.
-constexpr int most_computations = 30;
-/// With one computed stiffness; most of its searches need 15. Rejections: in a row.
+constexpr int most_stiffnesses = 30;  // most searches compute two
+/// Steps with one computed stiffness, of which most need 15, and rejected ones in a row.
 constexpr int most_steps = 50;
 constexpr int most_rejections = 10;
 constexpr int most_halvings = 10;
@@ -105,7 +104,7 @@ class Stiffness {
   }
 
  private:
-  /// Of a displacement x, (step.x) excess is too much.
+  /// A displacement x has (step.x) excess too much.
   struct Correction {
     VectorXd step, excess;
   };
@@ -173,8 +172,8 @@ class ForceField {
 /// Newton's method. A step is accepted if it shortens the remaining Newton step, computed with the present
 /// stiffness (P. Deuflhard's natural monotonicity test): a test on forces would reject nearly every step,
 /// because contacts that open or close dominate them. To compute a stiffness costs as much as 50 steps, so
-/// each step, accepted or not, corrects it for the next one. It is computed again where this does not help,
-/// and at last within difference_step of the rest. Where such steps lead nowhere, or to a place without
+/// each step, accepted or not, corrects it for the next one. It is recomputed where this does not help, and
+/// at last within difference_step of the rest. Where such steps lead nowhere, or to a place without
 /// resistance, the search goes back and on without corrections: it halves its steps.
 class Search {
  public:
@@ -188,10 +187,10 @@ class Search {
         begun_at_(initial.position) {}
 
   std::optional<DropletState> run() {
-    for (int computations = 0; computations < most_computations; ++computations) {
+    for (int computed = 0; computed < most_stiffnesses; ++computed) {
       find_axes_and_force();
       bool goes_on = stiffness_.set(field_.stiffness(axes_), least_stiffness * point_weight_);
-      if (!goes_on && computations == 0) return std::nullopt;
+      if (!goes_on && computed == 0) return std::nullopt;
       if (goes_on) {
         begun_at_ = position_;
         move_ = stiffness_.solve(force_);

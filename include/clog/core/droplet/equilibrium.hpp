@@ -50,9 +50,9 @@ struct EquilibriumForces {
 /// The stable static equilibrium next to a droplet that has nearly stopped, where it is about to come to
 /// rest; nothing if there is none, or none that is certain to be the one that the droplet would reach.
 ///
-/// Newton's method on the forces, until nothing is left of them but round-off. Every shape on the way must
-/// lie where the potential energy is convex, and none may be farther than `farthest_rest` from the present
-/// one: then both lie in one basin. A droplet that balances on an obstacle, that could drift aside freely, or
+/// Newton's method on the forces, until nothing is left of them but round-off. The potential energy must be
+/// convex at the beginning, wherever else the search computes the stiffness, and at the end; and no such place
+/// may be farther than `farthest_rest` from the present one: then both lie in one basin. A droplet that balances on an obstacle, that could drift aside freely, or
 /// that creeps past a place where there is no equilibrium is refused.
 ///
 /// @param initial  the droplet; its velocities do not count
