@@ -11,7 +11,7 @@ from metadata import JOURNAL, STOPPED, Stopped
 from samples import FILE, REPORTS, VERIFY, check_complete, in_child, results, stored_rows
 
 # Settings of sweeps that cannot become part of this one.
-FOREIGN = ["max-time=2900", "vertices=48", "box=25"]
+FOREIGN = ["max-time=9000", "vertices=48", "box=25"]
 FILE_HEADER = 24
 RECORD_HEADER = struct.Struct("<QII")  # size and CRC-32 of row and snapshot, a magic word
 SPECIAL = [0.0, -0.0, -1.0, 1e-308, 1e308, -1e308, float("inf"), float("-inf"), float("nan"), 1e9, 1e17]

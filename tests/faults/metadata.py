@@ -13,8 +13,8 @@ from samples import (FILE, REPORTS, SEAL, VERIFY, check_complete, check_readers,
 from support import SMALL
 
 JOURNAL = FILE + ".journal"
-# The first run has 10^6 steps, and a snapshot after every 2^18 of them.
-STOPPED = [*SMALL, "obstacle-gap=0.4", "line-tension=0.05,0.5", "max-time=3000", "seeds=1", "--output", FILE]
+# The first run has a snapshot after every 2^18 steps: from a sixth of its time on.
+STOPPED = [*SMALL, "obstacle-gap=0.4", "line-tension=0.05,0.5", "max-time=1e4", "seeds=1", "--output", FILE]
 # After how long it is stopped: the slower the machine, or the busier, the later there is a snapshot.
 HOURS = [1e-4 * 1.5**n for n in range(16)]
 
