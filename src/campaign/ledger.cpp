@@ -425,6 +425,7 @@ void Ledger::rewrite_journal(bool with_all) {
 
 void Ledger::finish() {
   publish();
+  if (place_.stamp() != stamp_) publish();  // somebody has moved or removed it meanwhile
   const bool is_complete =
       static_cast<std::int64_t>(runs_.size()) >= num_wanted_ &&
       std::all_of(runs_.begin(), runs_.end(), [this](const auto& run) { return is_over(run.second.row); }) &&

@@ -8,9 +8,8 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
-#include <functional>
+#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "clog/campaign/salvage.hpp"
@@ -20,16 +19,23 @@
 
 namespace {
 
-/// What somebody else does while a folder is brought to the disk: just after a file in it was renamed.
-std::function<void()> deed_at_sync_of_folder;
+/// Somebody else moves a file over this one as soon as it is there and its folder is brought to the disk:
+/// just after it was renamed.
+struct Move {
+  std::filesystem::path from, to;
+};
+std::optional<Move> move_at_sync_of_folder;
 
 }  // namespace
 
 /// The system's, which this replaces in the test program.
 extern "C" int fsync(int descriptor) {
   struct stat status {};
-  if (deed_at_sync_of_folder && fstat(descriptor, &status) == 0 && S_ISDIR(status.st_mode))
-    std::exchange(deed_at_sync_of_folder, nullptr)();
+  if (move_at_sync_of_folder && std::filesystem::exists(move_at_sync_of_folder->to) &&
+      fstat(descriptor, &status) == 0 && S_ISDIR(status.st_mode)) {
+    std::filesystem::rename(move_at_sync_of_folder->from, move_at_sync_of_folder->to);
+    move_at_sync_of_folder.reset();
+  }
   return static_cast<int>(syscall(SYS_fsync, descriptor));
 }
 
@@ -234,15 +240,30 @@ TEST_F(LedgerTest, OverwritesNoTableThatSomebodyElseHasPutThere) {
 TEST_F(LedgerTest, OverwritesNoTableThatComesWhileItsOwnIsBroughtToTheDisk) {
   const std::string other = (folder_ / "other.h5").string();
   store::publish_sweep(other, {}, {{"config", "a = 1\n"}});
-  deed_at_sync_of_folder = [&] { std::filesystem::rename(other, path()); };
+  move_at_sync_of_folder = {other, path()};
   Ledger ledger = open();
-  EXPECT_EQ(deed_at_sync_of_folder, nullptr) << "the table was published";
+  EXPECT_FALSE(move_at_sync_of_folder) << "the table was published";
   ledger.start(0, 0);
   ledger.report(report(ledger, 0, RunStatus::clogged, 2));
   const std::string said = refusal([&] { ledger.finish(); });
   EXPECT_NE(said.find("somebody has replaced it"), std::string::npos) << said;
   EXPECT_EQ(store::read_sweep(path()).rows.size(), 0u);
   EXPECT_EQ(store::read_sweep(path() + ".rescued1").rows[0].distance, 2);
+}
+
+TEST_F(LedgerTest, LosesNoRowToATableThatComesWhileItsLastIsBroughtToTheDisk) {
+  const std::string other = (folder_ / "other.h5").string();
+  store::publish_sweep(other, {}, {{"config", "a = 1\n"}});
+  Ledger ledger = open();
+  for (const std::int64_t task : {0, 1}) {
+    ledger.start(task, 0);
+    ledger.report(report(ledger, task, RunStatus::clogged, 2));
+  }
+  move_at_sync_of_folder = {other, path()};
+  const std::string said = refusal([&] { ledger.finish(); });
+  EXPECT_NE(said.find("somebody has replaced it"), std::string::npos) << said;
+  EXPECT_EQ(store::read_sweep(path()).rows.size(), 0u);
+  EXPECT_EQ(store::read_sweep(path() + ".rescued1").rows.size(), 2u);
 }
 
 TEST_F(LedgerTest, LeavesTheJournalOfAnotherSweepAndKeepsItsOwnRows) {

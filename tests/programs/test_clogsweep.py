@@ -239,7 +239,7 @@ class Sweep(ProgramTest):
         self.assertTrue(failed.message.str.contains("no void near the centre of the box").all())
 
 
-class Stopped(ProgramTest):
+class Stopped(SweepTest):
     LONG = ["vertices=64", "box=20", "obstacle-gap=1.2", "max-time=1e9", "seeds=1..4", "--report-seconds=0.1", "--output", "s.h5"]
 
     def ranks_that_move(self):
@@ -247,7 +247,7 @@ class Stopped(ProgramTest):
 
     def stop(self, command, signal_number, ranks):
         process = subprocess.Popen(command, cwd=self.folder, stderr=subprocess.PIPE, text=True)
-        self.addCleanup(process.kill)
+        self.addCleanup(self.kill_all, process)
         self.wait_for(lambda: process.poll() is not None or
                       (self.folder / "s.h5").exists() and self.ranks_that_move() == set(range(ranks)))
         process.send_signal(signal_number)

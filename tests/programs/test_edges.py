@@ -10,7 +10,7 @@ import struct
 import subprocess
 import unittest
 
-from support import BIN, ENDLESS, LONGEST, QUICK, SweepTest, table
+from support import BIN, ENDLESS, LONGEST, QUICK, STEPS_PER_SNAPSHOT, SweepTest, table
 
 OWN = ["obstacle-layout=file", "box=10", "vertices=64", "max-time=30"]
 
@@ -94,17 +94,18 @@ class Places(SweepTest):
         return process
 
     def end(self, process, name):
-        """Ends it once it has written down a run, which the same command is to go on with."""
-        self.wait_for(lambda: (self.folder / name).exists() and len(table(self.folder / name)) == 1)
+        """Ends it once its run has a snapshot, from which the same command is to go on."""
+        self.wait_for(lambda: (self.folder / name).exists() and table(self.folder / name).steps.gt(STEPS_PER_SNAPSHOT).any())
         process.send_signal(signal.SIGUSR1)
         _, error = process.communicate(timeout=LONGEST)
         self.assertIn("the same command resumes the sweep", error)
-        self.check_goes_on(name)
+        self.assertIn("1 run resumes from the last checkpoint", self.go_on(name))
 
-    def check_goes_on(self, name):
+    def go_on(self, name):
         resumed = self.run_program("clogsweep", *ENDLESS[:-1], name, "--max-hours=1e-7")
         self.assertEqual(resumed.returncode, 75, resumed.stderr)
         self.assertEqual(table(self.folder / name).status.tolist(), ["interrupted"])
+        return resumed.stderr
 
     def test_changing_a_link_does_not_redirect_the_table(self):
         self.succeed("clogsweep", *FINISHED, "--output", "run-1.h5")
@@ -134,7 +135,7 @@ class Places(SweepTest):
         self.assertIn("somebody has replaced it or its journal", error)
         self.assertEqual((self.folder / "s.h5").read_bytes(), before)
         (self.folder / "s.h5.rescued1").rename(self.folder / "s.h5")
-        self.check_goes_on("s.h5")
+        self.go_on("s.h5")
 
 
 ACCESS_LIST = "system.posix_acl_access"

@@ -21,9 +21,8 @@ using Eigen::VectorXd;
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
 constexpr int most_stiffnesses = 30;  // most searches compute two
-/// Steps with one computed stiffness, of which most need 15, and rejected ones in a row.
-constexpr int most_steps = 50;
-constexpr int most_rejections = 10;
+constexpr int most_steps = 50;        // with one computed stiffness; most need 15
+constexpr int most_rejections = 10;   // of steps in a row
 constexpr int most_halvings = 10;
 /// Step of the central differences [sigma]: far below a contact's range, far above round-off.
 constexpr double difference_step = 1e-6;
@@ -88,10 +87,11 @@ class Stiffness {
     return move;
   }
 
-  /// After a step whose change of force belongs to the displacement `found`, as solve() has it so far:
-  /// changes K by a matrix of rank one, so that it belongs to the step. This is how a contact that opens or
-  /// closes changes it. C. G. Broyden, Math. Comp. 19, 577 (1965); bounded as in J. J. More and J. A.
-  /// Trangenstein, Math. Comp. 30, 523 (1976).
+  /// Changes K by a matrix of rank one, so that solve() gives `step` for the change of force along it, or
+  /// comes as near to it as least_part allows. The change that a contact makes has rank one, too, so a few
+  /// corrections are enough. C. G. Broyden, Math. Comp. 19, 577 (1965); J. J. More and J. A. Trangenstein,
+  /// Math. Comp. 30, 523 (1976).
+  /// @param found  what solve() gives for that change until now
   void correct(const VectorXd& step, const VectorXd& found) {
     const double part_kept = step.dot(found) / step.squaredNorm();
     const double share = part_kept < least_part ? (1 - least_part) / (1 - part_kept) : 1;
@@ -104,7 +104,7 @@ class Stiffness {
   }
 
  private:
-  /// A displacement x has (step.x) excess too much.
+  /// Takes (step.x) excess away from a displacement x.
   struct Correction {
     VectorXd step, excess;
   };
@@ -171,7 +171,7 @@ class ForceField {
 
 /// Newton's method. A step is accepted if it shortens the remaining Newton step, computed with the present
 /// stiffness (P. Deuflhard's natural monotonicity test): a test on forces would reject nearly every step,
-/// because contacts that open or close dominate them. To compute a stiffness costs as much as 50 steps, so
+/// because contacts that open or close dominate them. To compute a stiffness costs as much as 80 steps, so
 /// each step, accepted or not, corrects it for the next one. It is recomputed where this does not help, and
 /// at last within difference_step of the rest. Where such steps lead nowhere, or to a place without
 /// resistance, the search goes back and on without corrections: it halves its steps.
@@ -194,9 +194,9 @@ class Search {
       if (goes_on) {
         begun_at_ = position_;
         move_ = stiffness_.solve(force_);
-        const bool is_stiffness_of_rest = longest() < difference_step;
         goes_on = (halves_ ? approach_by_halves() : approach_with_corrections()) && is_near();
-        if (goes_on && is_stiffness_of_rest && rests()) return state();
+        const double way = (position_ - begun_at_).abs().maxCoeff();
+        if (goes_on && way < difference_step && rests_along_own_axes()) return state();
       }
       if (!goes_on && halves_) return std::nullopt;
       if (!goes_on) position_ = begun_at_;
@@ -234,6 +234,13 @@ class Search {
     return longest() < move_tolerance && force_.lpNorm<Eigen::Infinity>() < force_tolerance * point_weight_;
   }
 
+  /// Not along axes of an earlier place.
+  bool rests_along_own_axes() {
+    find_axes_and_force();
+    move_ = stiffness_.solve(force_);
+    return rests();
+  }
+
   /// Goes a part of the move if this leaves at most a share of the way, and returns whether it did.
   bool tries(double part, double share) {
     const VectorXd step = part * move_;
@@ -258,11 +265,7 @@ class Search {
     bool has_come_closer = false;
     int rejections = 0;
     for (int steps = 0; steps < most_steps && rejections < most_rejections; ++steps) {
-      if (rests()) {  // along axes that were those of an earlier place
-        find_axes_and_force();
-        move_ = stiffness_.solve(force_);
-        if (rests()) return true;
-      }
+      if (rests() && rests_along_own_axes()) return true;
       const bool succeeds = tries(longest_part(), most_left);
       rejections = succeeds ? 0 : rejections + 1;
       has_come_closer = has_come_closer || succeeds;

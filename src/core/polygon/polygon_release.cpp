@@ -137,10 +137,14 @@ DropletState release_polygon(const RunParameters& run, const ObstacleArray& obst
   }
   DpForces own_forces = weightless_forces(own, obstacles);
   RestForces own_rest_forces(own, own_forces);
-  if (rests)
-    rests = minimize_fire(own_rest_forces, state, options).converged ||
-            settle(own_rest_forces, state, longer, damping_rate).largest_force <=
-                release_sliding_tolerance * vertex_weight(run);
+  if (rests) {
+    const DropletState relaxed = state;
+    if (!minimize_fire(own_rest_forces, state, options).converged) {
+      state = relaxed;
+      rests = settle(own_rest_forces, state, longer, damping_rate).largest_force <=
+              release_sliding_tolerance * vertex_weight(run);
+    }
+  }
   if (!rests)
     refuse_release(
         "the grown droplet does not come to rest",

@@ -10,8 +10,8 @@
 
 namespace clog {
 
-/// The forces of DpForces by the passes of a step, for searches of a rest, which ask for them some thousand
-/// times.
+/// The forces of DpForces by the passes of a step, for releases and searches of a rest, which ask for them
+/// thousands of times.
 class RestForces {
  public:
   /// @param run     resolved parameters

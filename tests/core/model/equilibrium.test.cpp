@@ -244,6 +244,30 @@ TEST(Equilibrium, IsFoundThoughContactsOpenAndCloseOnTheWay) {
   }
 }
 
+TEST(Equilibrium, IsFoundAtTheFirstSearchEvenIfItsFirstStepsLeadAstray) {
+  // Half of these searches return to where they began, and find the rest with halved steps.
+  int num_early = 0;
+  for (const std::uint32_t seed : {3u, 7u, 11u, 14u, 16u}) {
+    RunParameters run;
+    run.dp.line_tension = 0.6;
+    run.dp.vertices = 256;
+    run.dp.perimeter_spring = PerimeterSpring::rest;
+    run.dp.perimeter_stiffness = 0.1 * run.dp.line_tension;
+    run.dp.gravity = Gravity::vertex;
+    run.obstacles.gap = 0.3;
+    run.obstacles.density = ObstacleDensity::share_of_saturated(0.65);
+    run.obstacles.box = 50;
+    run.obstacles.boxes = 4;
+    run.max_time = 6000;
+    run.seed = seed;
+    const RunResult result = finished(DropletRun(resolve(run)));
+    EXPECT_EQ(result.clogged_by, ClogDetection::certified);
+    constexpr double second_search = 1e-5;
+    if (result.kinetic_energy_ratio > second_search) ++num_early;
+  }
+  EXPECT_GE(num_early, 4);
+}
+
 TEST(Equilibrium, TooFarAwayIsRefused) {
   // The droplet is so soft that it touches both obstacles all the way, and its energy is convex.
   const RunParameters run = resolve(soft_disk(2));

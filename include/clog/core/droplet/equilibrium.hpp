@@ -51,9 +51,10 @@ struct EquilibriumForces {
 /// rest; nothing if there is none, or none that is certain to be the one that the droplet would reach.
 ///
 /// Newton's method on the forces, until nothing is left of them but round-off. The potential energy must be
-/// convex at the beginning, wherever else the search computes the stiffness, and at the end; and no such place
-/// may be farther than `farthest_rest` from the present one: then both lie in one basin. A droplet that balances on an obstacle, that could drift aside freely, or
-/// that creeps past a place where there is no equilibrium is refused.
+/// convex at the beginning, wherever else the search computes the stiffness, and at the end; and no such
+/// place may be farther than `farthest_rest` from the present one: then both are taken to lie in one basin. A
+/// droplet that balances on an obstacle, that could drift aside freely, or that creeps past a place where
+/// there is no equilibrium is refused.
 ///
 /// @param initial  the droplet; its velocities do not count
 std::optional<DropletState> find_equilibrium(const EquilibriumForces& forces, const DropletState& initial);

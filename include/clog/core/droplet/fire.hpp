@@ -91,8 +91,8 @@ FireResult minimize_fire(Forces& forces, DropletState& state, const FireOptions&
   return result;
 }
 
-/// Damped motion until it comes to rest, as a droplet would. Slower than FIRE, but it also settles forces
-/// that have no energy, where FIRE, which judges by the work done, may go round in circles.
+/// Damped motion until it comes to rest, as a droplet would. Slower than FIRE, but it may settle forces that
+/// have no energy, where FIRE, which judges by the work done, goes round in circles.
 template <class Forces>
 FireResult settle(Forces& forces, DropletState& state, const FireOptions& options, double damping_rate) {
   const double dt = options.largest_step;
