@@ -28,8 +28,9 @@ std::optional<Move> move_at_sync_of_folder;
 
 }  // namespace
 
-/// The system's, which this replaces in the test program.
-extern "C" int fsync(int descriptor) {
+/// Replaces the system's in the test program.
+extern "C" int our_fsync(int descriptor) __asm__("fsync");
+int our_fsync(int descriptor) {
   struct stat status {};
   if (move_at_sync_of_folder && std::filesystem::exists(move_at_sync_of_folder->to) &&
       fstat(descriptor, &status) == 0 && S_ISDIR(status.st_mode)) {

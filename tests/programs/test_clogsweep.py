@@ -13,7 +13,7 @@ import numpy as np
 import pandas
 
 import stored_rows
-from support import BIN, BLOCKED, LONGEST, MPI, MPIRUN, QUICK, ROOT, SMALL, STEPS_PER_SNAPSHOT, ProgramTest
+from support import BIN, BLOCKED, LONGEST, MPI, MPIRUN, QUICK, ROOT, SMALL, STEPS_PER_SNAPSHOT, ProgramTest, SweepTest
 
 # Columns that tell where and how fast a row was made, not its results.
 CIRCUMSTANCES = ["wall_seconds", "rank", "host"]

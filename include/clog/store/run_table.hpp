@@ -40,8 +40,9 @@ struct CircleFile {
 /// file stays
 void publish_sweep(const Place& place, std::span<const sweep::RunRow> rows, const Provenance& provenance,
                    std::span<const CircleFile> circles = {});
-/// The same, but only in place of the file with this Place::stamp(), or of none. Returns the stamp of the file
-/// that it wrote, even if somebody has replaced that since; nothing if a different file was there, which stays.
+/// The same, but only in place of the file with this Place::stamp(), or of none. Returns the stamp of the
+/// file that it wrote, even if somebody has replaced that since; nothing if a different file was there, which
+/// stays.
 std::optional<std::string> publish_sweep_over(const std::string& stamp, const Place& place,
                                               std::span<const sweep::RunRow> rows,
                                               const Provenance& provenance,

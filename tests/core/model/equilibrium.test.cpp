@@ -178,7 +178,7 @@ TEST(Equilibrium, OfASoftDiskInAGapIsWhereTheForcesBalance) {
 /// its upper side: all in units of a point's weight.
 class PointsWithContacts {
  public:
-  static constexpr int num_points = 16;
+  static constexpr Eigen::Index num_points = 16;
   static constexpr Eigen::Index size = 2 * num_points;
   static constexpr double stiffness_of_contact = 5000;
 
@@ -201,7 +201,7 @@ class PointsWithContacts {
     for (int attempt = 0; attempt < 100; ++attempt) {
       const Eigen::VectorXd contacts = stiffness_of_contact * touches(position);
       const Eigen::MatrixXd all = stiffness_ + Eigen::MatrixXd(contacts.asDiagonal());
-      const Eigen::VectorXd next = all.ldlt().solve(load_ + contacts.cwiseProduct(bound_));
+      Eigen::VectorXd next = all.ldlt().solve(load_ + contacts.cwiseProduct(bound_));
       if (touches(next) == touches(position)) return next;
       position = next;
     }
@@ -222,7 +222,7 @@ class PointsWithContacts {
       Axes axes{.directions = Eigen::SparseMatrix<double>(size, size), .slide = {}};
       axes.directions.setIdentity();
       return axes;
-    };
+    };  // NOLINT(clang-analyzer-unix.Malloc): the matrix takes its memory along
     return find_equilibrium(EquilibriumForces::of(*this, along_coordinates, true), test::state_of(position));
   }
 
