@@ -83,7 +83,7 @@ class Stiffness {
     VectorXd move(2 * n);
     move.head(n) = shape_factor_.solve(force.head(n) - normal_along_ * along);
     move.tail(n) = along - adapting_ * move.head(n);
-    for (const Correction& correction : corrections_) move -= correction.step.dot(move) * correction.excess;
+    for (const Correction& correction : corrections_) correction.apply_to(move);
     return move;
   }
 
@@ -92,21 +92,20 @@ class Stiffness {
   /// corrections are enough. C. G. Broyden, Math. Comp. 19, 577 (1965); J. J. More and J. A. Trangenstein,
   /// Math. Comp. 30, 523 (1976).
   /// @param found  what solve() gives for that change until now
-  void correct(const VectorXd& step, const VectorXd& found) {
+  void learn(const VectorXd& step, const VectorXd& found) {
     const double part_kept = step.dot(found) / step.squaredNorm();
     const double share = part_kept < least_part ? (1 - least_part) / (1 - part_kept) : 1;
     const VectorXd excess = share * (found - step);
     corrections_.push_back({step, excess / step.dot(step + excess)});
   }
-  /// What solve() gives now where it gave `move` before the last correction.
-  VectorXd corrected(const VectorXd& move) const {
-    return move - corrections_.back().step.dot(move) * corrections_.back().excess;
-  }
+  /// Makes what solve() gave before the last correction what it gives now.
+  void correct(VectorXd& move) const { corrections_.back().apply_to(move); }
 
  private:
-  /// Takes (step.x) excess away from a displacement x.
   struct Correction {
     VectorXd step, excess;
+
+    void apply_to(VectorXd& move) const { move -= step.dot(move) * excess; }
   };
   bool has_energy_;
   std::vector<Correction> corrections_;
@@ -189,18 +188,15 @@ class Search {
   std::optional<DropletState> run() {
     for (int computed = 0; computed < most_stiffnesses; ++computed) {
       find_axes_and_force();
-      bool goes_on = stiffness_.set(field_.stiffness(axes_), least_stiffness * point_weight_);
-      if (!goes_on && computed == 0) return std::nullopt;
-      if (goes_on) {
-        begun_at_ = position_;
-        move_ = stiffness_.solve(force_);
-        goes_on = (halves_ ? approach_by_halves() : approach_with_corrections()) && is_near();
-        const double way = (position_ - begun_at_).abs().maxCoeff();
-        if (goes_on && way < difference_step && rests_along_own_axes()) return state();
+      const bool resists = stiffness_.set(field_.stiffness(axes_), least_stiffness * point_weight_);
+      if (!resists && computed == 0) return std::nullopt;
+      if (resists && approach()) {
+        if (distance_from(begun_at_) < difference_step && rests_along_own_axes()) return state();
+        continue;
       }
-      if (!goes_on && halves_) return std::nullopt;
-      if (!goes_on) position_ = begun_at_;
-      halves_ = halves_ || !goes_on;
+      if (halves_) return std::nullopt;
+      halves_ = true;
+      position_ = begun_at_;
     }
     return std::nullopt;
   }
@@ -227,7 +223,7 @@ class Search {
     axes_ = forces_.axes(state());
     force_ = field_.force_at(position_, axes_);
   }
-  bool is_near() const { return (position_ - initial_.position).abs().maxCoeff() <= farthest_rest; }
+  double distance_from(const ArrayXd& place) const { return (position_ - place).abs().maxCoeff(); }
   double longest() const { return move_.lpNorm<Eigen::Infinity>(); }
   double longest_part() const { return std::min(1.0, farthest_rest / longest()); }
   bool rests() const {
@@ -249,18 +245,24 @@ class Search {
     VectorXd way_left = stiffness_.solve(force_there);
     if (!way_left.allFinite()) return false;
     const bool succeeds = way_left.norm() < share * move_.norm();
-    if (!halves_) stiffness_.correct(step, move_ - way_left);
+    if (!halves_) stiffness_.learn(step, move_ - way_left);
     if (succeeds) {
       position_ = place;
       force_ = std::move(force_there);
       move_ = std::move(way_left);
     }
-    if (!halves_) move_ = stiffness_.corrected(move_);
+    if (!halves_) stiffness_.correct(move_);
     return succeeds;
   }
 
-  /// Both ways take steps with one computed stiffness, and return whether they have come closer or the
-  /// droplet rests.
+  /// Takes steps with the stiffness computed here. Returns whether they have come closer, or the droplet
+  /// rests, and is not too far away.
+  bool approach() {
+    begun_at_ = position_;
+    move_ = stiffness_.solve(force_);
+    return (halves_ ? approach_by_halves() : approach_with_corrections()) &&
+           distance_from(initial_.position) <= farthest_rest;
+  }
   bool approach_with_corrections() {
     bool has_come_closer = false;
     int rejections = 0;

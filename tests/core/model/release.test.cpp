@@ -26,6 +26,16 @@ RunParameters in_small_box(double line_tension, double gap) {
   return run;
 }
 
+/// On a vertex, without weight, over the vertex's weight.
+double largest_force(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state) {
+  DpForces forces(run, obstacles);
+  forces.set_weight(0);
+  forces.update_contacts(state, {});
+  Eigen::ArrayXd force(state.position.size());
+  forces.evaluate(state, force);
+  return force.abs().maxCoeff() * *run.dp.vertices / (units::droplet_mass * units::gravity);
+}
+
 TEST(Release, NeverEnclosesAnObstacleAndStartsAtRest) {
   for (const double line_tension : {0.2, 1.0, 10.0})
     for (std::uint32_t seed = 1; seed <= 60; ++seed) {
@@ -34,23 +44,18 @@ TEST(Release, NeverEnclosesAnObstacleAndStartsAtRest) {
       run = resolve(run);
       const ObstacleArray obstacles = sample_obstacles(run.obstacles, seed);
       const DropletState state = model_of(run).release(run, obstacles);
-      EXPECT_EQ(num_enclosed(state, obstacles), 0) << "seed " << seed;
-
-      DpForces forces(run, obstacles);
-      forces.set_weight(0);
-      forces.update_contacts(state, {});
-      Eigen::ArrayXd force(2 * *run.dp.vertices);
-      forces.evaluate(state, force);
-      const double vertex_weight = units::droplet_mass / *run.dp.vertices;
-      EXPECT_LE(force.abs().maxCoeff(), 1.01 * release_force_tolerance * vertex_weight) << "seed " << seed;
-      EXPECT_NEAR(forces.shape().area, units::rest_area, 0.02) << "seed " << seed;
-      EXPECT_LT(DpDroplet(run, obstacles, state).deepest_overlap(), 0.6 * forces.vertex_diameter())
-          << "seed " << seed;
+      SCOPED_TRACE("seed " + std::to_string(seed));
+      EXPECT_EQ(num_enclosed(state, obstacles), 0);
+      EXPECT_LE(largest_force(run, obstacles, state), 1.01 * release_force_tolerance);
+      EXPECT_NEAR(polygon_shape(state.position).area, units::rest_area, 0.02);
+      EXPECT_LT(DpDroplet(run, obstacles, state).deepest_overlap(),
+                0.6 * DpForces(run, obstacles).vertex_diameter());
     }
 }
 
 TEST(Release, ComesToRestWhereSpringsKeepTheInterfaceSliding) {
-  // The springs of growth keep the first three sliding, the droplet's own springs the others.
+  // The minimiser goes round in circles with the springs of growth in three of these, and with the droplet's
+  // own springs in one; one of them needs weaker springs, too.
   for (const auto& [vertices, line_tension, seed] :
        {std::tuple{64, 0.1, 141u}, {64, 0.05, 113u}, {64, 0.05, 141u}, {32, 0.1, 76u}, {32, 0.05, 303u}}) {
     SCOPED_TRACE(std::to_string(vertices) + " vertices, seed " + std::to_string(seed));
@@ -60,12 +65,7 @@ TEST(Release, ComesToRestWhereSpringsKeepTheInterfaceSliding) {
     const ObstacleArray obstacles = sample_obstacles(run.obstacles, seed);
     const DropletState state = model_of(run).release(run, obstacles);
     EXPECT_EQ(num_enclosed(state, obstacles), 0);
-    DpForces forces(run, obstacles);
-    forces.set_weight(0);
-    forces.update_contacts(state, {});
-    Eigen::ArrayXd force(2 * vertices);
-    forces.evaluate(state, force);
-    EXPECT_LE(force.abs().maxCoeff(), 1.01 * release_sliding_tolerance * units::droplet_mass / vertices);
+    EXPECT_LE(largest_force(run, obstacles, state), 1.01 * release_sliding_tolerance);
   }
 }
 
@@ -74,7 +74,9 @@ TEST(Release, ComesToRestBetweenObstaclesThatNearlyTouch) {
     RunParameters run = in_small_box(1, 0.05);
     run.obstacles.box = 30;
     run = resolve(run);
-    const DropletState state = model_of(run).release(run, sample_obstacles(run.obstacles, seed));
+    const ObstacleArray obstacles = sample_obstacles(run.obstacles, seed);
+    const DropletState state = model_of(run).release(run, obstacles);
+    EXPECT_LE(largest_force(run, obstacles, state), 1.01 * release_force_tolerance);
     EXPECT_NEAR(polygon_shape(state.position).area, units::rest_area, 0.02);
   }
 }
