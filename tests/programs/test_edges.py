@@ -4,13 +4,12 @@ import errno
 import os
 import resource
 import shutil
-import signal
 import stat
 import struct
 import subprocess
 import unittest
 
-from support import BIN, ENDLESS, LONGEST, QUICK, STEPS_PER_SNAPSHOT, SweepTest, table
+from support import BIN, ENDLESS, LONGEST, QUICK, SLOW, SweepTest, table
 
 OWN = ["obstacle-layout=file", "box=10", "vertices=64", "max-time=30"]
 
@@ -87,55 +86,50 @@ FINISHED = [*QUICK, "line-tension=0.5", "obstacle-gap=0.4", "seeds=100..103"]
 class Places(SweepTest):
     """A place is resolved once; what others do to it meanwhile costs neither their files nor a row."""
 
-    def begin(self, output):
+    def begin(self, sweep, output):
         """A sweep that has published a table."""
-        process = self.start(*ENDLESS[:-1], output, ranks=1)
+        process = self.start(*sweep[:-1], output, ranks=1)
         self.wait_for(lambda: (self.folder / output).exists() or process.poll() is not None)
         return process
 
-    def end(self, process, name):
-        """Ends it once its run has a snapshot, from which the same command is to go on."""
-        self.wait_for(lambda: (self.folder / name).exists() and table(self.folder / name).steps.gt(STEPS_PER_SNAPSHOT).any())
-        process.send_signal(signal.SIGUSR1)
-        _, error = process.communicate(timeout=LONGEST)
-        self.assertIn("the same command resumes the sweep", error)
-        self.assertIn("1 run resumes from the last checkpoint", self.go_on(name))
+    def end(self, process):
+        return process.communicate(timeout=LONGEST)[1]
 
-    def go_on(self, name):
-        resumed = self.run_program("clogsweep", *ENDLESS[:-1], name, "--max-hours=1e-7")
-        self.assertEqual(resumed.returncode, 75, resumed.stderr)
-        self.assertEqual(table(self.folder / name).status.tolist(), ["interrupted"])
-        return resumed.stderr
+    def check_over(self, name):
+        self.assertEqual((~table(self.folder / name).status.isin(["running", "interrupted"])).sum(), 2)
+        self.assertFalse((self.folder / f"{name}.journal").exists())
 
     def test_changing_a_link_does_not_redirect_the_table(self):
         self.succeed("clogsweep", *FINISHED, "--output", "run-1.h5")
         before = (self.folder / "run-1.h5").read_bytes()
         (self.folder / "latest.h5").symlink_to("run-2.h5")
-        process = self.begin("latest.h5")
+        process = self.begin(SLOW, "latest.h5")
         (self.folder / "latest.h5").unlink()
         (self.folder / "latest.h5").symlink_to("run-1.h5")
-        self.end(process, "run-2.h5")
+        self.end(process)
         self.assertEqual((self.folder / "run-1.h5").read_bytes(), before)
-        self.assertFalse((self.folder / "run-1.h5.journal").exists())
+        self.check_over("run-2.h5")
 
     def test_a_folder_that_moves_keeps_its_sweep(self):
         (self.folder / "one").mkdir()
-        process = self.begin("one/s.h5")
+        process = self.begin(SLOW, "one/s.h5")
         (self.folder / "one").rename(self.folder / "other")
         (self.folder / "one").mkdir()
-        self.end(process, "other/s.h5")
+        self.end(process)
         self.assertEqual(list((self.folder / "one").iterdir()), [])
+        self.check_over("other/s.h5")
 
     def test_a_table_that_somebody_moves_there_is_not_overwritten(self):
         self.succeed("clogsweep", *FINISHED, "--output", "run-1.h5")
         before = (self.folder / "run-1.h5").read_bytes()
-        process = self.begin("s.h5")
+        process = self.begin(ENDLESS, "s.h5")
         (self.folder / "run-1.h5").rename(self.folder / "s.h5")
-        _, error = process.communicate(timeout=LONGEST)  # it ends by itself
-        self.assertIn("somebody has replaced it or its journal", error)
+        self.assertIn("somebody has replaced it or its journal", self.end(process))
         self.assertEqual((self.folder / "s.h5").read_bytes(), before)
         (self.folder / "s.h5.rescued1").rename(self.folder / "s.h5")
-        self.go_on("s.h5")
+        resumed = self.run_program("clogsweep", *ENDLESS, "--max-hours=1e-7")
+        self.assertEqual(resumed.returncode, 75, resumed.stderr)
+        self.assertEqual(table(self.folder / "s.h5").status.tolist(), ["interrupted"])
 
 
 ACCESS_LIST = "system.posix_acl_access"

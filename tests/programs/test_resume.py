@@ -163,7 +163,8 @@ class Resumed(SweepTest):
         self.assertEqual(refused.returncode, 2)
         self.assertIn("another sweep is writing to it", refused.stderr)
         process.send_signal(signal.SIGUSR1)
-        process.communicate(timeout=LONGEST)
+        _, error = process.communicate(timeout=LONGEST)
+        self.assertIn("the same command resumes the sweep", error)
         self.assertFalse(json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)["alive"])
 
     def test_the_end_of_a_sweep_ends_its_watch(self):
