@@ -1,12 +1,18 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, runs every test. Arguments go to ctest, e.g. ./tests/run.sh -L core
+# Installs what is missing, builds, runs the tests that a developer needs before a commit. With --all first: every test.
+# Other arguments go to ctest, e.g. ./tests/run.sh -L core
 # PRESET=asan ./tests/run.sh does the same under the sanitizers. WARNINGS=errors: a warning of the compiler ends it.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=${PRESET:-release}
+part=(--label-exclude slow)
+if [ "${1:-}" = --all ]; then
+  part=()
+  shift
+fi
 ./jobs/install-dependencies.sh tests
 errors=OFF
 if [ "${WARNINGS:-}" = errors ]; then errors=ON; fi
-cmake --preset "$preset" -DCMAKE_COMPILE_WARNING_AS_ERROR=$errors
+cmake --preset "$preset" -DCLOG_TESTS=ON -DCMAKE_COMPILE_WARNING_AS_ERROR=$errors
 cmake --build --preset "$preset"
-ctest --preset "$preset" --parallel "$(nproc)" "$@"
+ctest --preset "$preset" --parallel "$(nproc)" "${part[@]}" "$@"

@@ -1,5 +1,7 @@
 """Runs the built programs as a person would: in an empty folder, by their command line."""
 
+import fcntl
+import hashlib
 import os
 import pathlib
 import re
@@ -36,6 +38,31 @@ ENDLESS = [word.replace("max-time=2e4", "max-time=1e9") for word in SLOW]
 BLOCKED = ["vertices=64", "box=13", "obstacle-density=saturated", "max-time=5", "obstacle-diameter=3", "obstacle-gap=0.06", "self-contact-range=0.1"]
 # Columns that differ when the same run is recomputed: who did it, and how long it took.
 TIMING = ["wall_seconds", "rank", "host"]
+
+
+# Sweeps that several suites read. CTest empties the folder before the first suite that uses it.
+if "CLOG_SHARED_SWEEPS" in os.environ:
+    SHARED = pathlib.Path(os.environ["CLOG_SHARED_SWEEPS"])
+    SHARED.mkdir(parents=True, exist_ok=True)
+else:
+    of_this_process = tempfile.TemporaryDirectory(prefix="clog_shared_")
+    SHARED = pathlib.Path(of_this_process.name)
+
+
+def shared_sweep(*arguments, program="clogsweep"):
+    """The file that the program writes for these arguments. It is computed once for all suites of a CTest run, and is
+    read-only: a test that changes a file copies it first."""
+    command = [program, *map(str, arguments)]
+    path = SHARED / (hashlib.sha256("\0".join(command).encode()).hexdigest()[:16] + ".h5")
+    with open(path.with_suffix(".lock"), "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not path.exists():
+            draft = path.with_suffix(".draft.h5")
+            subprocess.run([str(BIN / program), *command[1:], "--output", str(draft)], cwd=SHARED, check=True,
+                           capture_output=True, text=True, timeout=LONGEST)
+            draft.chmod(0o444)
+            draft.rename(path)
+    return path
 
 
 class ProgramTest(unittest.TestCase):
