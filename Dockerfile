@@ -8,15 +8,15 @@
 FROM docker.io/library/debian:12-slim AS build
 # By themselves, so that they are not installed anew when a source has changed.
 COPY jobs/install-dependencies.sh /clogsweep/jobs/
-RUN /clogsweep/jobs/install-dependencies.sh
+RUN /clogsweep/jobs/install-dependencies.sh docs package
 COPY . /clogsweep
 WORKDIR /clogsweep
-RUN cmake --preset release -DCLOG_TESTS=OFF \
-    && cmake --build --preset release \
-    && cd build/release && cpack
+RUN cmake --preset package \
+    && cmake --build --preset package \
+    && cd build/package && cpack
 
 FROM docker.io/library/debian:12-slim
-COPY --from=build /clogsweep/build/release/clogsweep_*.deb /tmp/clogsweep.deb
+COPY --from=build /clogsweep/build/package/clogsweep_*.deb /tmp/clogsweep.deb
 RUN apt-get update \
     && apt-get install -y --no-install-recommends /tmp/clogsweep.deb \
     && rm -rf /tmp/clogsweep.deb /var/lib/apt/lists/* \

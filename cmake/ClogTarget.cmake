@@ -11,12 +11,15 @@ target_compile_definitions(clog_flags INTERFACE EIGEN_NO_CPUID EIGEN_MAX_ALIGN_B
 # The namespace has the name of a C library function (complex logarithm) that g++ treats as built in.
 target_compile_options(clog_flags INTERFACE -fno-builtin-clog)
 set(own_flags
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion
   # What is installed knows nothing of where it was built.
   "-ffile-prefix-map=${PROJECT_SOURCE_DIR}/="
   # Loops marked `omp simd` are vectorised (no OpenMP runtime). errno and floating-point traps are never read,
   # and would forbid vector square roots. Nothing here reorders sums beyond the marked reductions.
   -fopenmp-simd -fno-math-errno -fno-trapping-math)
+if(NOT CMAKE_UNITY_BUILD)  # which would report that names of one source hide those of another
+  list(APPEND own_flags -Wshadow)
+endif()
 if(CLOG_SANITIZE)
   list(APPEND own_flags -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(clog_flags INTERFACE "$<BUILD_INTERFACE:-fsanitize=address,undefined>")

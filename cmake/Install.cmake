@@ -56,56 +56,39 @@ foreach(folder vendor-completions site-functions)
   install(FILES "${completion}/_clogsweep" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/${folder}" COMPONENT programs)
 endforeach()
 
-# Man pages, which are pages of the handbook
+# The handbook, as man pages and as a site: for packages, since no program needs it
 
-find_program(CLOG_SPHINX NAMES sphinx-build PATHS /usr/bin NO_DEFAULT_PATH DOC "Debian's Sphinx, which has MyST")
-set(lacks_extensions TRUE)
-if(CLOG_SPHINX)
-  execute_process(COMMAND "${CLOG_PYTHON}" -c "import myst_parser, sphinx_copybutton" RESULT_VARIABLE lacks_extensions ERROR_QUIET)
-endif()
-if(NOT lacks_extensions)
+option(CLOG_HANDBOOK "Build and install the handbook, as man pages and as a site (jobs/install-dependencies.sh docs)" OFF)
+if(CLOG_HANDBOOK)
+  find_program(CLOG_SPHINX NAMES sphinx-build PATHS /usr/bin NO_DEFAULT_PATH DOC "Debian's Sphinx, which has MyST" REQUIRED)
+  find_program(CLOG_PANDOC pandoc DOC "for the notebook of the site" REQUIRED)
+  execute_process(COMMAND "${CLOG_PYTHON}" -c "import myst_parser, sphinx_copybutton, nbsphinx, furo" RESULT_VARIABLE lacks_extensions ERROR_QUIET)
+  if(lacks_extensions)
+    message(FATAL_ERROR "the handbook needs extensions of Sphinx that ${CLOG_PYTHON} lacks: ./jobs/install-dependencies.sh docs installs them; or configure with -DCLOG_HANDBOOK=OFF")
+  endif()
+  file(GLOB_RECURSE handbook CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/docs/*.md" "${PROJECT_SOURCE_DIR}/docs/*.png"
+    "${PROJECT_SOURCE_DIR}/docs/*.ipynb" "${PROJECT_SOURCE_DIR}/docs/_static/*")
+  list(APPEND handbook "${PROJECT_SOURCE_DIR}/docs/conf.py" "${PROJECT_SOURCE_DIR}/docs/mended_theme.py")
+
   set(manual "${PROJECT_BINARY_DIR}/man")
   set(pages clogsweep.1 clogrun.1 clogfit.1 clogsweep-keys.5 clogsweep-columns.5 clogsweep-files.5 clogsweep-exit-codes.7 clogsweep-python.7)
   list(TRANSFORM pages PREPEND "${manual}/")
-  file(GLOB_RECURSE handbook CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/docs/reference/*.md")
+  # Warnings are reported by docs/build.sh.
   add_custom_command(OUTPUT ${pages}
-    # Warnings are the business of docs/build.sh, which reads all pages.
     COMMAND "${CLOG_SPHINX}" -Q -b man -d "${PROJECT_BINARY_DIR}/man-doctrees" "${PROJECT_SOURCE_DIR}/docs" "${manual}"
-    DEPENDS ${handbook} "${PROJECT_SOURCE_DIR}/docs/conf.py"
+    DEPENDS ${handbook}
     VERBATIM)
-  add_custom_target(man ALL DEPENDS ${pages})
+  set(site "${PROJECT_BINARY_DIR}/html")
+  add_custom_command(OUTPUT "${site}/index.html"
+    COMMAND "${CLOG_SPHINX}" -Q -t site -b html -d "${PROJECT_BINARY_DIR}/html-doctrees" "${PROJECT_SOURCE_DIR}/docs" "${site}"
+    DEPENDS ${handbook}
+    VERBATIM)
+  add_custom_target(handbook ALL DEPENDS ${pages} "${site}/index.html")
   foreach(page ${pages})
     string(REGEX MATCH ".$" section "${page}")
     install(FILES "${page}" DESTINATION "${CMAKE_INSTALL_MANDIR}/man${section}" COMPONENT programs)
   endforeach()
-else()
-  message(STATUS "no man pages will be installed, for there is no Sphinx (./jobs/install-dependencies.sh)")
-endif()
-
-# The same pages as a site, in builds that are for users
-
-set(lacks_extensions TRUE)
-find_program(CLOG_PANDOC pandoc DOC "for the notebook of the site")
-if(CLOG_SPHINX AND CLOG_PANDOC)
-  execute_process(COMMAND "${CLOG_PYTHON}" -c "import myst_parser, sphinx_copybutton, nbsphinx, furo" RESULT_VARIABLE lacks_extensions ERROR_QUIET)
-endif()
-set(CLOG_HANDBOOK_DEFAULT OFF)
-if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT lacks_extensions)
-  set(CLOG_HANDBOOK_DEFAULT ON)
-endif()
-option(CLOG_HANDBOOK "Build the handbook as a site, and install it" ${CLOG_HANDBOOK_DEFAULT})
-if(CLOG_HANDBOOK)
-  set(site "${PROJECT_BINARY_DIR}/html")
-  file(GLOB_RECURSE handbook CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/docs/*.md" "${PROJECT_SOURCE_DIR}/docs/*.png"
-    "${PROJECT_SOURCE_DIR}/docs/*.ipynb" "${PROJECT_SOURCE_DIR}/docs/_static/*")
-  add_custom_command(OUTPUT "${site}/index.html"
-    COMMAND "${CLOG_SPHINX}" -Q -t site -b html -d "${PROJECT_BINARY_DIR}/html-doctrees" "${PROJECT_SOURCE_DIR}/docs" "${site}"
-    DEPENDS ${handbook} "${PROJECT_SOURCE_DIR}/docs/conf.py" "${PROJECT_SOURCE_DIR}/docs/mended_theme.py"
-    VERBATIM)
-  add_custom_target(handbook ALL DEPENDS "${site}/index.html")
   install(DIRECTORY "${site}" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs PATTERN ".buildinfo" EXCLUDE PATTERN "_sources" EXCLUDE)
-else()
-  message(STATUS "the handbook will not be installed as a site: that is for releases, with Sphinx and its extensions (./jobs/install-dependencies.sh)")
 endif()
 
 # Libraries: what a program needs that runs droplets, plans sweeps, reads their files, fits them

@@ -1,36 +1,49 @@
 #!/usr/bin/env bash
-# Installs what is missing of the Debian 12 packages that clogsweep needs. Does nothing when all are there.
-# With the argument `tests`: those, too, that the tests need; with `gates`: those that look at its sources
-# (tests/gates/README.md); with `docs`: those that make the site of docs/; with `paper` what makes a page of docs/paper;
-# with `mpich` MPICH, beside Open MPI
+# install-dependencies.sh [GROUP...]: installs the missing Debian packages that the programs, the sweep of laptop.sh and
+# its picture need, and those of each group named:
+#   tests      tests/run.sh (includes drawings)
+#   gates      tests/gates (includes tests and docs)
+#   docs       the handbook: man pages, the site, the interface of the library
+#   drawings   drawings and pictures of devices (python3 -m clogsweep circles)
+#   package    Debian packages by cpack
+#   paper      docs/paper
+#   mpich      MPICH, beside Open MPI
 set -euo pipefail
 packages=(
   g++ cmake ninja-build git                          # to build
-  dpkg-dev file                                      # Debian packages, by cpack
   libopenmpi-dev openmpi-bin                         # MPI
   libhdf5-dev zlib1g-dev                             # the table of runs, its checksums
   libeigen3-dev libhwy-dev                           # arrays; vector instructions
   libboost-dev libboost-program-options-dev          # random numbers and statistics; command line
   nlohmann-json3-dev libnlopt-cxx-dev                # JSON; the optimiser of clogfit calibrate
   libfmt-dev                                         # text with numbers in it
+  python3 python3-h5py python3-pandas python3-tables python3-matplotlib  # the Python module
+)
+drawings=(python3-ezdxf python3-gdspy python3-svgelements python3-skimage python3-shapely)
+tests=(
+  "${drawings[@]}"
   libgtest-dev libbenchmark-dev                      # tests and benchmarks
   procps iproute2                                    # tests that kill ranks, and join two hosts
-  python3-sphinx python3-myst-parser python3-sphinx-copybutton furo      # man pages, from the handbook
-  python3-ezdxf python3-gdspy python3-svgelements python3-skimage python3-shapely  # drawings and pictures of devices
-  python3-nbsphinx pandoc libjs-mathjax              # the handbook as a site, which the Debian package holds
-  python3 python3-h5py python3-pandas python3-tables python3-matplotlib  # the Python module, and readers for the tests
+  chromium-driver python3-selenium hdf5-tools        # a browser that reads a report; h5repack
   python3-nbclient python3-ipykernel                 # a test that runs the notebook of the gallery
 )
-of_tests=(chromium-driver python3-selenium hdf5-tools) # a browser that reads a report; h5repack
-case ${1:-} in
-  "") ;;
-  tests) packages+=("${of_tests[@]}") ;;
-  gates) packages+=("${of_tests[@]}" clang clang-format clang-tidy aspell aspell-en shellcheck flake8 mypy) ;;
-  docs) packages+=(doxygen) ;;
-  paper) packages+=(pandoc) ;;
-  mpich) packages+=(mpich libmpich-dev) ;;
-  *) echo "usage: install-dependencies.sh [tests|gates|docs|paper|mpich]" >&2; exit 2 ;;
-esac
+docs=(
+  python3-sphinx python3-myst-parser python3-sphinx-copybutton furo   # man pages and site, from the handbook
+  python3-nbsphinx pandoc libjs-mathjax              # notebooks and formulas of the site
+  doxygen                                            # the interface of the library
+)
+for group in "$@"; do
+  case $group in
+    tests) packages+=("${tests[@]}") ;;
+    gates) packages+=("${tests[@]}" "${docs[@]}" clang clang-format clang-tidy aspell aspell-en shellcheck flake8 mypy) ;;
+    docs) packages+=("${docs[@]}") ;;
+    drawings) packages+=("${drawings[@]}") ;;
+    package) packages+=(dpkg-dev file) ;;
+    paper) packages+=(pandoc) ;;
+    mpich) packages+=(mpich libmpich-dev) ;;
+    *) echo "usage: install-dependencies.sh [tests|gates|docs|drawings|package|paper|mpich]..." >&2; exit 2 ;;
+  esac
+done
 missing=()
 for package in "${packages[@]}"; do
   dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")

@@ -4,13 +4,14 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 ./jobs/install-dependencies.sh
-cmake --preset release -DCLOG_TESTS=OFF -B build/laptop >/dev/null
-cmake --build build/laptop
+# In the folder that tests/run.sh completes: what it has configured with tests stays so.
+[ -f build/release/CMakeCache.txt ] || cmake --preset release -DCLOG_TESTS=OFF >/dev/null
+cmake --build --preset release --target clogsweep clogrun clogfit
 . jobs/mpi-settings.sh
 
 results=results/laptop-$(date +%Y%m%d-%H%M%S)
 mkdir -p "$results"
-bin=build/laptop/bin
+bin=build/release/bin
 sweep=(mpirun -np 2 "$bin/clogsweep" --config jobs/laptop.cfg --output "$results/sweep.h5")
 "${sweep[@]}"
 # Stiff droplets among walls without friction; softer ones would not clog in this time.

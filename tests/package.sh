@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# tests/package.sh [FOLDER]: the Debian packages, made from build/release and installed into an empty Debian 12 in FOLDER
+# tests/package.sh [FOLDER]: the Debian packages, made by the preset package and installed into an empty Debian 12 in FOLDER
 # (/tmp/clogsweep-root), where a user without a source tree runs a sweep and builds a program of their own. Needs root and
 # debootstrap, and takes minutes: run by hand, before a release. Exit code 1: something of it fails.
 set -euo pipefail
@@ -11,12 +11,14 @@ command -v debootstrap >/dev/null || { echo "needs debootstrap: apt-get install 
 # In mounts of its own, which end with it.
 [ -n "${OWN_MOUNTS-}" ] || OWN_MOUNTS=1 exec unshare --mount "$PWD/tests/package.sh" "$root"
 
-cmake --build build/release
-rm -f build/release/*.deb
-(cd build/release && cpack >/dev/null)
+./jobs/install-dependencies.sh docs package
+cmake --preset package >/dev/null
+cmake --build --preset package
+rm -f build/package/*.deb
+(cd build/package && cpack >/dev/null)
 if [ ! -d "$root/usr" ] || [ -d "$root/debootstrap" ]; then rm -rf "$root"; fi
 [ -d "$root/usr" ] || debootstrap --variant=minbase bookworm "$root" >/dev/null
-cp build/release/clogsweep_*.deb "$root/tmp/clogsweep.deb"
+cp build/package/clogsweep_*.deb "$root/tmp/clogsweep.deb"
 
 inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8 "$@"; }
 mount -t proc proc "$root/proc"
@@ -47,7 +49,7 @@ ls -l
 VISIT
 inside su - visitor -c "bash visit.sh"
 
-cp build/release/libclogsweep-dev_*.deb "$root/tmp/libclogsweep-dev.deb"
+cp build/package/libclogsweep-dev_*.deb "$root/tmp/libclogsweep-dev.deb"
 inside apt-get -qq install -y --no-install-recommends --reinstall /tmp/libclogsweep-dev.deb g++ cmake make >/dev/null
 cat >"$root/home/visitor/build.sh" <<'BUILD'
 set -euxo pipefail

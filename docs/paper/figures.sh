@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # docs/paper/figures.sh [NAME...]: makes the paper's figures anew, in results/paper: clogging-length clogs mesh (all).
-# CLOG_BIN is the folder of the programs (build/laptop/bin). The same command resumes a stopped sweep.
+# CLOG_BIN is the folder of the programs (build/release/bin). The same command resumes a stopped sweep.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-bin=${CLOG_BIN:-build/laptop/bin}
+bin=${CLOG_BIN:-build/release/bin}
 [ -x "$bin/clogsweep" ] || { echo "no clogsweep in $bin: build it with ./jobs/laptop.sh, or set CLOG_BIN" >&2; exit 2; }
 . jobs/mpi-settings.sh
 if [ $# -eq 0 ]; then set -- clogging-length clogs mesh; fi

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t most_stretches = 200;
 constexpr std::ptrdiff_t most_sessions = 50;
 
-double rounded(double number) {
+double to_milliseconds(double number) {
   constexpr double steps = 1000;
   return std::round(number * steps) / steps;
 }
@@ -58,16 +58,17 @@ std::string Activity::line(const std::string& start_time, double now) const {
   nlohmann::ordered_json busy = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < all.busy_.size(); ++i) {
     const double length = std::min(all.stretch_, now - static_cast<double>(i) * all.stretch_);
-    busy.push_back(rounded(length > 0 ? all.busy_[i] / length : 0));
+    busy.push_back(to_milliseconds(length > 0 ? all.busy_[i] / length : 0));
   }
   const nlohmann::ordered_json line = {
       {"start_time", start_time},
       {"ranks", num_ranks_},
-      {"seconds", rounded(now)},
+      {"seconds", to_milliseconds(now)},
       {"stretch", all.stretch_},
       {"busy", busy},
-      {"idle_seconds", rounded(std::max(0.0, num_ranks_ * now - all.busy_seconds_))},
-      {"tail_seconds", rounded(std::max(0.0, num_ranks_ * (now - last_start_) - all.tail_busy_seconds_))}};
+      {"idle_seconds", to_milliseconds(std::max(0.0, num_ranks_ * now - all.busy_seconds_))},
+      {"tail_seconds",
+       to_milliseconds(std::max(0.0, num_ranks_ * (now - last_start_) - all.tail_busy_seconds_))}};
   return line.dump() + '\n';
 }
 

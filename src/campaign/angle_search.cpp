@@ -27,7 +27,7 @@ constexpr double same_angle = 1e-9;  // [degrees]: equal ones differ by rounding
 double spacing_of(const ObstacleParameters& obstacles) { return obstacles.diameter + obstacles.gap; }
 
 /// Values of the key's list, in increasing order. @throws Error unless there are two between 0 and 45 degrees
-std::vector<double> bounds_of(const sweep::Settings& settings) {
+std::vector<double> angle_bounds(const sweep::Settings& settings) {
   constexpr double largest = 45;  // a square lattice has no others, by symmetry
   const auto refuse = [&](const std::string& why) {
     throw Error(fmt::format("invalid {0}={1} ({2}) try {0}=5,40", angle_key, settings.text(angle_key), why));
@@ -93,7 +93,7 @@ struct AngleSearch::Look {
 AngleSearch::AngleSearch(const sweep::Settings& settings, Options options)
     : options_(options), first_(settings), seeds_(settings.text("seeds")) {
   require_one_value_of_others(settings, std::vector<std::string>{angle_key});
-  const std::vector<double> given = bounds_of(settings);
+  const std::vector<double> given = angle_bounds(settings);
   lowest_ = given.front();
   highest_ = given.back();
   const sweep::Plan plan(settings);  // refuses angles that do not fit

@@ -30,7 +30,7 @@ struct ParameterSet {
   std::map<std::uint32_t, const RunRow*> by_seed;
 };
 
-std::vector<Value> values_of(const RunRow& row, const std::vector<std::string>& columns) {
+std::vector<Value> column_values(const RunRow& row, const std::vector<std::string>& columns) {
   std::vector<Value> values;
   values.reserve(columns.size());
   for (const std::string& name : columns) values.push_back(sweep::column(name).get(row));
@@ -84,7 +84,7 @@ ByValues by_values(const std::vector<ParameterSet>& sets, const std::vector<std:
                    const Side& side) {
   ByValues all;
   for (const ParameterSet& set : sets) {
-    const auto [known, is_new] = all.emplace(values_of(set.first, columns), &set);
+    const auto [known, is_new] = all.emplace(column_values(set.first, columns), &set);
     if (is_new) continue;
     std::vector<std::string> differing;
     for (const sweep::Column* column : group_columns())

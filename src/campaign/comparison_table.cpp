@@ -13,21 +13,22 @@
 #include "clog/console/table.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/sweep/columns.hpp"
+#include "value_json.hpp"
 
 namespace clog::campaign {
 namespace {
 
-Value value_of(double number) { return std::isfinite(number) ? Value(number) : Value(); }
-Value value_of(int count) { return std::int64_t{count}; }
+Value finite_value(double number) { return std::isfinite(number) ? Value(number) : Value(); }
+Value finite_value(int count) { return std::int64_t{count}; }
 
 using NamedValues = std::vector<std::pair<std::string, Value>>;
 
 void append_length(const std::string& side, const fit::CloggingLength& length, NamedValues& fields) {
-  fields.emplace_back("runs_" + side, value_of(length.num_runs));
-  fields.emplace_back("clogs_" + side, value_of(length.num_clogs));
-  fields.emplace_back("clogging_length_" + side, value_of(length.length));
-  fields.emplace_back("clogging_length_" + side + "_lower", value_of(length.interval.lower));
-  fields.emplace_back("clogging_length_" + side + "_upper", value_of(length.interval.upper));
+  fields.emplace_back("runs_" + side, finite_value(length.num_runs));
+  fields.emplace_back("clogs_" + side, finite_value(length.num_clogs));
+  fields.emplace_back("clogging_length_" + side, finite_value(length.length));
+  fields.emplace_back("clogging_length_" + side + "_lower", finite_value(length.interval.lower));
+  fields.emplace_back("clogging_length_" + side + "_upper", finite_value(length.interval.upper));
 }
 
 NamedValues fields_of(const Comparison& one, const std::vector<std::string>& columns) {
@@ -36,29 +37,22 @@ NamedValues fields_of(const Comparison& one, const std::vector<std::string>& col
   append_length("here", one.length_here, fields);
   append_length("there", one.length_there, fields);
   const fit::LengthRatio& ratio = one.ratio;
-  fields.emplace_back("ratio", value_of(ratio.ratio));
-  fields.emplace_back("ratio_lower", value_of(ratio.interval.lower));
-  fields.emplace_back("ratio_upper", value_of(ratio.interval.upper));
+  fields.emplace_back("ratio", finite_value(ratio.ratio));
+  fields.emplace_back("ratio_lower", finite_value(ratio.interval.lower));
+  fields.emplace_back("ratio_upper", finite_value(ratio.interval.upper));
   fields.emplace_back("interval", std::string(ratio.is_paired ? "paired" : "unpaired"));
-  fields.emplace_back("unpaired_lower", value_of(ratio.unpaired.lower));
-  fields.emplace_back("unpaired_upper", value_of(ratio.unpaired.upper));
-  fields.emplace_back("pairs", value_of(ratio.num_pairs));
-  fields.emplace_back("unlike_pairs", value_of(ratio.num_unlike));
-  fields.emplace_back("paired_ratio", value_of(ratio.paired_ratio));
-  fields.emplace_back("paired_lower", value_of(ratio.paired.lower));
-  fields.emplace_back("paired_upper", value_of(ratio.paired.upper));
-  fields.emplace_back("correlation", value_of(ratio.correlation));
-  fields.emplace_back("gain", value_of(ratio.gain));
-  fields.emplace_back("both_clogged", value_of(one.num_both_clogged));
-  fields.emplace_back("same_place", value_of(one.num_same_place));
+  fields.emplace_back("unpaired_lower", finite_value(ratio.unpaired.lower));
+  fields.emplace_back("unpaired_upper", finite_value(ratio.unpaired.upper));
+  fields.emplace_back("pairs", finite_value(ratio.num_pairs));
+  fields.emplace_back("unlike_pairs", finite_value(ratio.num_unlike));
+  fields.emplace_back("paired_ratio", finite_value(ratio.paired_ratio));
+  fields.emplace_back("paired_lower", finite_value(ratio.paired.lower));
+  fields.emplace_back("paired_upper", finite_value(ratio.paired.upper));
+  fields.emplace_back("correlation", finite_value(ratio.correlation));
+  fields.emplace_back("gain", finite_value(ratio.gain));
+  fields.emplace_back("both_clogged", finite_value(one.num_both_clogged));
+  fields.emplace_back("same_place", finite_value(one.num_same_place));
   return fields;
-}
-
-nlohmann::ordered_json json_of(const Value& value) {
-  if (const auto* count = std::get_if<std::int64_t>(&value)) return *count;
-  if (const auto* number = std::get_if<double>(&value)) return *number;
-  if (const auto* word = std::get_if<std::string>(&value)) return *word;
-  return nullptr;
 }
 
 std::string short_text(const Value& value) {
@@ -67,7 +61,7 @@ std::string short_text(const Value& value) {
   return text.empty() ? "-" : text;
 }
 
-std::string length_text(const fit::CloggingLength& length) {
+std::string bounded_length(const fit::CloggingLength& length) {
   return length.num_clogs == 0
              ? "> " + console::plain(length.interval.lower)
              : console::with_interval(length.length, length.interval.lower, length.interval.upper).value;
@@ -79,8 +73,8 @@ std::string clogs_text(const Comparison& one) {
 
 std::vector<std::string> cells(const Comparison& one) {
   const fit::LengthRatio& ratio = one.ratio;
-  std::vector<std::string> all = {clogs_text(one), length_text(one.length_here),
-                                  length_text(one.length_there)};
+  std::vector<std::string> all = {clogs_text(one), bounded_length(one.length_here),
+                                  bounded_length(one.length_there)};
   if (std::isnan(ratio.interval.lower)) {
     all.insert(all.end(), {"-", "-"});
   } else {

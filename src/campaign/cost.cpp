@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "clog/fit/clogging_length.hpp"
+#include "confidence.hpp"
 
 namespace clog::campaign {
 namespace {
 
-constexpr double confidence = 0.95;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// Remaining time of unfinished runs, estimated from late ends of the sample.
@@ -33,8 +33,8 @@ class Outlook {
         times.push_back({run.seconds - begin, run.is_over});
         logarithms.push_back({std::log(run.seconds / begin), run.is_over});
       }
-    even_ = fit::fit_clogging_length(times, confidence);
-    slowing_ = fit::fit_clogging_length(logarithms, confidence);
+    even_ = fit::fit_clogging_length(times, default_confidence);
+    slowing_ = fit::fit_clogging_length(logarithms, default_confidence);
   }
 
   /// Mean time that a run still takes if nothing but max-time ends it after `longest`.
@@ -142,7 +142,7 @@ struct Expectation {
   double relative_error() const { return std::sqrt(variance) / middle; }
 };
 
-SweepCost with_interval(const Pace& pace, double bound, const Expectation& seconds) {
+SweepCost cost_with_interval(const Pace& pace, double bound, const Expectation& seconds) {
   SweepCost cost{.seconds_per_work = pace.seconds_per_work, .bound = bound};
   if (seconds.middle == 0) return cost;
   const double sampling = 1.96 * seconds.relative_error();
@@ -197,7 +197,7 @@ SweepCost sweep_cost(std::span<const RunCost> sample, double all_work, std::int6
   const Pace pace(sample);
   const double bound = pace.longest(all_work, num_runs);
   const Shares shares(sample, pace, Outlook(sample));
-  return with_interval(pace, bound, shares.of(bound, shares.error_of_all(num_runs)));
+  return cost_with_interval(pace, bound, shares.of(bound, shares.error_of_all(num_runs)));
 }
 
 SweepCost cost_left(std::span<const RunCost> begun, std::span<const WaitingRuns> waiting) {
@@ -228,7 +228,7 @@ SweepCost cost_left(std::span<const RunCost> begun, std::span<const WaitingRuns>
                                    : set->second.of(longest, set->second.error_of_others(runs.number)));
     bound += longest;
   }
-  return with_interval(pace, bound, seconds);
+  return cost_with_interval(pace, bound, seconds);
 }
 
 }  // namespace clog::campaign

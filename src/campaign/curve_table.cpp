@@ -14,6 +14,7 @@
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/number_text.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "value_json.hpp"
 
 namespace clog::campaign {
 namespace {
@@ -25,7 +26,7 @@ double value_at(const fit::CurvePlace& place, std::size_t key) {
 }
 
 /// `0.51 (0.44 to 0.6)`.
-std::string with_interval(double value, double lower, double upper) {
+std::string value_and_interval(double value, double lower, double upper) {
   if (!std::isfinite(lower) || !std::isfinite(upper)) return fmt::format("{:.3g}", value);
   const console::RoundedInterval rounded = console::with_interval(value, lower, upper);
   return fmt::format("{} ({} to {})", rounded.value, rounded.lower, rounded.upper);
@@ -46,10 +47,10 @@ std::string peak_text(const FittedCurve& curve, const CurveQuestion& question) {
   std::vector<std::string> at;
   for (std::size_t key = 0; key < question.keys.size(); ++key)
     at.push_back(fmt::format("{} {}", question.keys[key]->name,
-                             with_interval(value_at(peak.place, key), value_at(peak.place_lower, key),
-                                           value_at(peak.place_upper, key))));
+                             value_and_interval(value_at(peak.place, key), value_at(peak.place_lower, key),
+                                                value_at(peak.place_upper, key))));
   std::string text = fmt::format("highest at {}, with lambda {} sigma\n", joined(at, ", "),
-                                 with_interval(peak.length, peak.interval.lower, peak.interval.upper));
+                                 value_and_interval(peak.length, peak.interval.lower, peak.interval.upper));
   if (1 - peak.share_inside > 1 - question.confidence)
     text += fmt::format("  (with a probability of {:.0f} % it is higher at a border than anywhere between)\n",
                         100 * (1 - peak.share_inside));
@@ -67,7 +68,7 @@ std::string crossings_text(const FittedCurve& curve, const CurveQuestion& questi
       text += fmt::format(
           "crosses {} sigma {} at {} {}{}\n", length, one.is_upward ? "upwards" : "downwards",
           question.keys[0]->name,
-          with_interval(std::exp(one.place), std::exp(one.interval.lower), std::exp(one.interval.upper)),
+          value_and_interval(std::exp(one.place), std::exp(one.interval.lower), std::exp(one.interval.upper)),
           is_open ? ", or beyond the outermost values" : "");
     }
   }
@@ -100,13 +101,6 @@ std::string values_text(const FittedCurve& curve, const CurveQuestion& question)
 
 ordered_json number(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
-ordered_json json_of(const Value& value) {
-  if (const auto* count = std::get_if<std::int64_t>(&value)) return *count;
-  if (const auto* real = std::get_if<double>(&value)) return number(*real);
-  if (const auto* word = std::get_if<std::string>(&value); word && !word->empty()) return *word;
-  return nullptr;
 }
 
 /// The keys' values at a place, by the names of their columns.

@@ -21,7 +21,7 @@
 namespace clog::campaign {
 namespace {
 
-constexpr std::size_t most_keys = 2;
+constexpr std::size_t most_curve_keys = 2;
 
 /// A number that a user chooses, and that shapes what happens: not one that follows from others.
 bool may_be_key(const sweep::Column& column, std::span<const Group> groups) {
@@ -32,7 +32,7 @@ bool may_be_key(const sweep::Column& column, std::span<const Group> groups) {
   });
 }
 
-std::set<double> values_of(const sweep::Column& column, std::span<const Group> groups) {
+std::set<double> different_values(const sweep::Column& column, std::span<const Group> groups) {
   std::set<double> values;
   for (const Group& group : groups)
     if (const Value value = column.get(group.first_row); std::holds_alternative<double>(value))
@@ -43,7 +43,7 @@ std::set<double> values_of(const sweep::Column& column, std::span<const Group> g
 CurveKeys varying_keys(std::span<const Group> groups) {
   CurveKeys keys;
   for (const sweep::Column* column : group_columns())
-    if (may_be_key(*column, groups) && values_of(*column, groups).size() > 1) keys.push_back(column);
+    if (may_be_key(*column, groups) && different_values(*column, groups).size() > 1) keys.push_back(column);
   return keys;
 }
 
@@ -64,7 +64,7 @@ const sweep::Column* named_key(const std::string& name, std::span<const Group> g
 
 void require_logarithms(const CurveKeys& keys, std::span<const Group> groups) {
   for (const sweep::Column* key : keys) {
-    const std::set<double> values = values_of(*key, groups);
+    const std::set<double> values = different_values(*key, groups);
     if (values.size() < 2)
       throw Error(fmt::format("invalid --key={} (all runs have the same value of it)", key->parameter->key));
     if (!(*values.begin() > 0))
@@ -162,7 +162,7 @@ CurveKeys curve_keys(std::span<const Group> groups, const std::string& names) {
   }
   CurveKeys keys;
   for (const std::string& name : split_at_commas(names)) keys.push_back(named_key(name, groups));
-  if (keys.size() > most_keys || (keys.size() == most_keys && keys[0] == keys[1]))
+  if (keys.size() > most_curve_keys || (keys.size() == most_curve_keys && keys[0] == keys[1]))
     throw Error(
         fmt::format("invalid --key={} (a curve is drawn over one key, or over two different ones)", names));
   require_logarithms(keys, groups);

@@ -29,29 +29,23 @@
 #include "clog/sweep/value_list.hpp"
 #include "laboratory_columns.hpp"
 #include "result_columns.hpp"
+#include "value_json.hpp"
 
 namespace clog::campaign {
 namespace {
 
-std::string rounded(const Value& value) {
+std::string rounded_text(const Value& value) {
   if (const auto* number = std::get_if<double>(&value)) return fmt::format("{:.4g}", *number);
   const std::string text = sweep::text_of(value);
   return text.empty() ? "-" : text;
 }
 
 /// The same for a parameter; user-supplied circles have the name of their file, if it is known.
-std::string rounded(const sweep::RunRow& row, const Field& field) {
+std::string rounded_text(const sweep::RunRow& row, const Field& field) {
   const std::optional<OwnCircles>& own = row.parameters.obstacles.own;
   if (field.first == std::string_view("obstacles") && own && !own->source().empty())
     return console::printable(std::filesystem::path(own->source()).filename().string());
-  return rounded(field.second);
-}
-
-nlohmann::ordered_json json_of(const Value& value) {
-  if (const auto* count = std::get_if<std::int64_t>(&value)) return *count;
-  if (const auto* number = std::get_if<double>(&value); number && std::isfinite(*number)) return *number;
-  if (const auto* word = std::get_if<std::string>(&value); word && !word->empty()) return *word;
-  return nullptr;
+  return rounded_text(field.second);
 }
 
 nlohmann::ordered_json number_or_null(double number) { return json_of(Value(number)); }
@@ -242,7 +236,7 @@ std::vector<std::string> shared_words(const sweep::RunRow& row, const std::vecto
   std::vector<std::string> words;
   for (std::size_t i = 0; i < fields.size(); ++i)
     if (!shown[i] && !varies[i] && is_named[i])
-      words.push_back(fmt::format("{}={}", fields[i].first, rounded(row, fields[i])));
+      words.push_back(fmt::format("{}={}", fields[i].first, rounded_text(row, fields[i])));
   return words;
 }
 
@@ -254,7 +248,7 @@ std::vector<std::string> parameter_names(const Group& group) {
 std::vector<std::string> parameter_texts(const Group& group) {
   std::vector<std::string> texts;
   for (const Field& field : parameter_fields(group.first_row))
-    texts.push_back(rounded(group.first_row, field));
+    texts.push_back(rounded_text(group.first_row, field));
   return texts;
 }
 void append_shown(const std::vector<std::string>& texts, const std::vector<bool>& shown,

@@ -264,7 +264,7 @@ fit::Travel travel_until_arrest(const sweep::RunRow& run) {
 }
 
 /// Droplets that sank by less than half a diameter on the average have no speed, as single ones.
-fit::MeanSpeed speed_of_all(std::span<const fit::Travel> travels, double terminal_speed) {
+fit::MeanSpeed mean_speed_of_all(std::span<const fit::Travel> travels, double terminal_speed) {
   constexpr double shortest_way = 0.5;  // [sigma]
   double way = 0;
   for (const fit::Travel& travel : travels) way += travel.distance * terminal_speed;
@@ -352,7 +352,7 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
     fit_meetings(group, meetings, confidence);
     group.relative_speed = of_enough_runs(fit::fit_mean_speed(speeds));
     group.relative_speed_pooled = of_enough_runs(fit::fit_pooled_speed(travels));
-    group.relative_speed_all = speed_of_all(all_travels, group.first_row.parameters.drag.terminal_speed);
+    group.relative_speed_all = mean_speed_of_all(all_travels, group.first_row.parameters.drag.terminal_speed);
     group.migration = fit::fit_migration(displacements);
     group.doubts = doubts_about(group);
     groups.push_back(std::move(group));

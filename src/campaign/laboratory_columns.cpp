@@ -23,19 +23,19 @@ double tension_of(const Group& group, const LaboratoryScale& scale) {
                                 : std::numeric_limits<double>::quiet_NaN();
 }
 
-Value value_of(double number) { return std::isfinite(number) ? Value(number) : Value(); }
+Value scaled_value(double number) { return std::isfinite(number) ? Value(number) : Value(); }
 
 }  // namespace
 
 std::vector<Field> laboratory_fields(const Group& group, const LaboratoryScale& scale) {
   const fit::CloggingLength& clogging = group.clogging;
-  return {{"tension_mN_per_m", value_of(tension_of(group, scale))},
-          {"clogging_length_mm", value_of(clogging.length * scale.length)},
-          {"clogging_length_lower_mm", value_of(clogging.interval.lower * scale.length)},
-          {"clogging_length_upper_mm", value_of(clogging.interval.upper * scale.length)},
-          {"speed_mm_per_s", value_of(group.relative_speed_all.mean * scale.speed)},
-          {"speed_error_mm_per_s", value_of(group.relative_speed_all.standard_error * scale.speed)},
-          {"time_to_clog_s", value_of(time_to_clog(group, scale))}};
+  return {{"tension_mN_per_m", scaled_value(tension_of(group, scale))},
+          {"clogging_length_mm", scaled_value(clogging.length * scale.length)},
+          {"clogging_length_lower_mm", scaled_value(clogging.interval.lower * scale.length)},
+          {"clogging_length_upper_mm", scaled_value(clogging.interval.upper * scale.length)},
+          {"speed_mm_per_s", scaled_value(group.relative_speed_all.mean * scale.speed)},
+          {"speed_error_mm_per_s", scaled_value(group.relative_speed_all.standard_error * scale.speed)},
+          {"time_to_clog_s", scaled_value(time_to_clog(group, scale))}};
 }
 
 std::vector<ResultColumn> laboratory_columns(const std::vector<Group>& groups, const LaboratoryScale& scale) {

@@ -10,6 +10,7 @@
 #include "clog/core/tools/number_text.hpp"
 #include "clog/fit/clogging_length.hpp"
 #include "clog/fit/curve_features.hpp"
+#include "confidence.hpp"
 
 namespace clog::campaign {
 namespace {
@@ -17,8 +18,6 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 using Kind = RefinementGoal::Kind;
-
-constexpr double confidence = 0.95;
 
 /// How much each place of the curve matters. A little of it is spread over all, so that none is forgotten.
 VectorXd weights_of(const fit::Curve& curve, const RefinementGoal& goal) {
@@ -90,16 +89,16 @@ double known_precision(const fit::Curve& curve, std::span<const fit::CurvePlace>
                        const RefinementGoal& goal) {
   if (goal.kind == Kind::curve) {
     const double mean_square = curve.covariance.diagonal().cwiseMax(0).mean();
-    return std::sinh(fit::normal_deviate(confidence) * std::sqrt(mean_square));
+    return std::sinh(fit::normal_deviate(default_confidence) * std::sqrt(mean_square));
   }
   if (goal.kind == Kind::peak) {
-    const fit::CurvePeak peak = fit::find_peak(curve, places, confidence);
+    const fit::CurvePeak peak = fit::find_peak(curve, places, default_confidence);
     return std::max(half_width(peak.place_lower[0], peak.place_upper[0]),
                     half_width(peak.place_lower[1], peak.place_upper[1]));
   }
   if (goal.kind == Kind::crossing) {
     double widest = 0;
-    for (const fit::CurveCrossing& one : fit::find_crossings(curve, places, goal.length, confidence))
+    for (const fit::CurveCrossing& one : fit::find_crossings(curve, places, goal.length, default_confidence))
       widest = std::max(widest, half_width(one.interval.lower, one.interval.upper));
     if (widest > 0) return widest;
   }

@@ -20,16 +20,16 @@
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "confidence.hpp"
 
 namespace clog::campaign {
 namespace {
 
-constexpr double confidence = 0.95;
-constexpr std::size_t most_keys = 2;
+constexpr std::size_t most_refined_keys = 2;
 
 /// The values of a key in its list, in increasing order. @throws Error unless there are two, and all are
 /// positive
-std::vector<double> bounds_of(const sweep::Settings& settings, const std::string& name) {
+std::vector<double> key_bounds(const sweep::Settings& settings, const std::string& name) {
   const sweep::Key& key = sweep::find_key(name);
   if (!key.parameter || key.parameter->role != ParameterRole::physics ||
       (key.kind != ValueKind::number && key.kind != ValueKind::number_or_share))
@@ -114,7 +114,7 @@ struct Refiner::Look {
 Refiner::Refiner(const sweep::Settings& settings, RefinementOptions options)
     : options_(std::move(options)), first_(settings) {
   const std::size_t num_keys = options_.keys.size();
-  if (num_keys < 1 || num_keys > most_keys || (num_keys == 2 && options_.keys[0] == options_.keys[1]))
+  if (num_keys < 1 || num_keys > most_refined_keys || (num_keys == 2 && options_.keys[0] == options_.keys[1]))
     throw Error("invalid --refine=" + joined(options_.keys, ",") + " (names one key, or two different ones)");
   if (num_keys == 2 && options_.goal.kind == RefinementGoal::Kind::crossing)
     throw Error("invalid --until=" + options_.goal.text() +
@@ -131,7 +131,7 @@ Refiner::Refiner(const sweep::Settings& settings, RefinementOptions options)
   for (const std::string& key : options_.keys) {
     constexpr std::size_t most_of_one_key = 100;
     constexpr std::size_t most_of_two_keys = 13;
-    const std::vector<double> given = bounds_of(settings, key);
+    const std::vector<double> given = key_bounds(settings, key);
     values_.push_back(preferred_values(given, num_keys == 1 ? most_of_one_key : most_of_two_keys));
     constexpr std::size_t first_of_one_key = 7;
     constexpr std::size_t first_of_two_keys = 4;
@@ -309,7 +309,7 @@ std::vector<std::string> Refiner::rounds_in_words(double seconds_per_run) const 
     return words;
   }
   // An error e of log lambda takes 1/e^2 clogs at each of so many places that do not inform each other.
-  const double error = std::asinh(options_.goal.precision) / fit::normal_deviate(confidence);
+  const double error = std::asinh(options_.goal.precision) / fit::normal_deviate(default_confidence);
   const auto clogs = [&](std::size_t num_places) {
     return static_cast<double>(num_places) / (error * error);
   };
@@ -329,7 +329,7 @@ std::string Refiner::known(std::span<const sweep::RunRow> rows) const {
   std::string text = end_.empty() ? "" : end_ + "; ";
   if (now.points.empty()) return text + "nothing is known";
   const RefinementGoal curve{RefinementGoal::Kind::curve, 0, 0};
-  const fit::CurvePeak peak = fit::find_peak(now.curve, now.candidates.places, confidence);
+  const fit::CurvePeak peak = fit::find_peak(now.curve, now.candidates.places, default_confidence);
   std::vector<std::string> at;
   for (std::size_t key = 0; key < options_.keys.size(); ++key) {
     const auto index = static_cast<Eigen::Index>(key);
@@ -342,7 +342,7 @@ std::string Refiner::known(std::span<const sweep::RunRow> rows) const {
       peak.interval.lower, peak.interval.upper);
   if (options_.goal.kind == RefinementGoal::Kind::crossing) {
     const auto crossings =
-        fit::find_crossings(now.curve, now.candidates.places, options_.goal.length, confidence);
+        fit::find_crossings(now.curve, now.candidates.places, options_.goal.length, default_confidence);
     if (crossings.empty())
       text += fmt::format("; it does not cross {} sigma", shortest(options_.goal.length));
     for (const fit::CurveCrossing& one : crossings)

@@ -13,19 +13,18 @@
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "confidence.hpp"
 
 namespace clog::campaign {
 namespace {
 
-constexpr double confidence = 0.95;
-
 std::int64_t clogs_for(double precision) {
   std::int64_t enough = 1;
-  while (fit::relative_half_width(enough, confidence) > precision) enough *= 2;
+  while (fit::relative_half_width(enough, default_confidence) > precision) enough *= 2;
   std::int64_t too_few = enough / 2;
   while (enough - too_few > 1) {
     const std::int64_t middle = (too_few + enough) / 2;
-    (fit::relative_half_width(middle, confidence) > precision ? too_few : enough) = middle;
+    (fit::relative_half_width(middle, default_confidence) > precision ? too_few : enough) = middle;
   }
   return enough;
 }

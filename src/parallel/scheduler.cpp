@@ -54,8 +54,8 @@ class Work {
   bool advance() { return job_->advance(); }
   /// The final report of a task that has ended or is being stopped.
   Report last_report() {
-    constexpr std::chrono::seconds patience{2};
-    const Clock::time_point deadline = Clock::now() + patience;
+    constexpr std::chrono::seconds longest_wait{2};
+    const Clock::time_point deadline = Clock::now() + longest_wait;
     while (!job_->refresh() && Clock::now() < deadline) job_->advance();
     return report();
   }

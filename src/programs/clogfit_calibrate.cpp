@@ -30,8 +30,8 @@ namespace {
 using laboratory::Experiment;
 using laboratory::Trial;
 
-constexpr const char* program = "clogfit calibrate";
-constexpr const char* usage =
+constexpr const char* calibrate_program = "clogfit calibrate";
+constexpr const char* calibrate_usage =
     R"(clogfit calibrate finds the line tension Gamma and the near-wall drag b_0/b_inf of the simulated
 droplet that passes a channel most like a measured one: those that minimise Delta_v, the relative
 root-mean-square deviation of the speeds. One file per trial.
@@ -50,9 +50,9 @@ contain errors of the model or its mesh: for frames without noise they are too s
 
 using Text = std::string;
 
-cli::CommandLine parse(int argc, const char* const* argv) {
+cli::CommandLine parse_calibration(int argc, const char* const* argv) {
   namespace po = boost::program_options;
-  cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::accepted);
+  cli::CommandLine line(calibrate_program, calibrate_usage, cli::CommandLine::SweepKeys::accepted);
   const auto text = [] { return po::value<Text>(); };
   line.add_options()("profiles", po::value<std::vector<Text>>()->composing(),
                      "CSV files, or files written by clogrun channel, one per trial")(
@@ -159,10 +159,6 @@ void print_text(const std::vector<Text>& files, const std::vector<fit::Calibrati
                other->tilt * 180 / std::numbers::pi);
 }
 
-nlohmann::ordered_json number(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
 void print_json(const std::vector<Text>& files, const std::vector<fit::Calibration>& found,
                 const fit::Trials& all, const Experiment& lab, const RunParameters& run,
                 const std::optional<Experiment>& other) {
@@ -170,15 +166,15 @@ void print_json(const std::vector<Text>& files, const std::vector<fit::Calibrati
   for (std::size_t i = 0; i < files.size(); ++i)
     trials.push_back({{"profile", files[i]},
                       {"line_tension", found[i].line_tension},
-                      {"line_tension_error", number(found[i].line_tension_error)},
+                      {"line_tension_error", found[i].line_tension_error},
                       {"near_wall_drag", found[i].near_wall_drag},
-                      {"near_wall_drag_error", number(found[i].near_wall_drag_error)},
+                      {"near_wall_drag_error", found[i].near_wall_drag_error},
                       {"delta_v", found[i].deviation.speed},
-                      {"delta_a", number(found[i].deviation.shape)},
-                      {"speed_correlation", number(found[i].correlation.speed)},
-                      {"shape_correlation", number(found[i].correlation.shape)},
+                      {"delta_a", found[i].deviation.shape},
+                      {"speed_correlation", found[i].correlation.speed},
+                      {"shape_correlation", found[i].correlation.shape},
                       {"converged", found[i].is_converged},
-                      {"clogging_tension", number(found[i].clogging_tension)},
+                      {"clogging_tension", found[i].clogging_tension},
                       {"simulations", found[i].num_simulations},
                       {"warnings", laboratory::warnings(found[i])}});
   const console::BuildInfo build = console::build_info();
@@ -186,9 +182,9 @@ void print_json(const std::vector<Text>& files, const std::vector<fit::Calibrati
                                      {"git_describe", build.git_describe},
                                      {"trials", trials},
                                      {"line_tension", all.line_tension},
-                                     {"line_tension_deviation", number(all.line_tension_deviation)},
+                                     {"line_tension_deviation", all.line_tension_deviation},
                                      {"near_wall_drag", all.near_wall_drag},
-                                     {"near_wall_drag_deviation", number(all.near_wall_drag_deviation)},
+                                     {"near_wall_drag_deviation", all.near_wall_drag_deviation},
                                      {"orifice", run.channel.orifice},
                                      {"wedge_angle", run.channel.wedge_angle},
                                      {"tip_radius", run.channel.tip_radius},
@@ -202,12 +198,13 @@ void print_json(const std::vector<Text>& files, const std::vector<fit::Calibrati
 }  // namespace
 
 int clogfit_calibrate(int argc, const char* const* argv) {
-  cli::CommandLine line = parse(argc, argv);
+  cli::CommandLine line = parse_calibration(argc, argv);
   if (cli::answer_help_or_version(line, {})) return console::exit_success;
   const std::vector<Text> files = line.get_all("profiles");
   if (files.empty()) throw Error("missing profile; try clogfit calibrate trial.csv --orifice 0.7");
   for (const char* key : {"line-tension", "near-wall-drag"})
-    if (line.has(key)) throw Error(fmt::format("--{} is what {} finds; leave it out", key, program));
+    if (line.has(key))
+      throw Error(fmt::format("--{} is what {} finds; leave it out", key, calibrate_program));
   if (line.has("angle") && line.has("terminal-speed"))
     throw Error("--angle and terminal-speed contradict each other; give one of them");
   const Text format = line.get_word("format", {"text", "json"});

@@ -17,7 +17,7 @@
 namespace clog::programs {
 namespace {
 
-constexpr const char* usage =
+constexpr const char* compare_usage =
     R"(clogfit compare says how many times longer the clogging lengths of one sweep are than those
 of another.
 
@@ -53,7 +53,7 @@ void draw(const cli::CommandLine& line, const std::vector<std::string>& paths) {
 
 int clogfit_compare(int argc, const char* const* argv) {
   namespace po = boost::program_options;
-  cli::CommandLine line("clogfit compare", usage, cli::CommandLine::SweepKeys::none);
+  cli::CommandLine line("clogfit compare", compare_usage, cli::CommandLine::SweepKeys::none);
   line.add_options()("file", po::value<std::vector<std::string>>(), "sweep files")(
       "by", po::value<std::string>(), "key whose values are compared with each other")(
       "within", po::value<std::string>(),

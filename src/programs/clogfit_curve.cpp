@@ -24,7 +24,7 @@
 namespace clog::programs {
 namespace {
 
-constexpr const char* usage =
+constexpr const char* curve_usage =
     R"(clogfit curve fits a smooth curve through the clogging lengths of a sweep, as a function of a key that it varies
 (or of two), and says with intervals how long lambda is anywhere between, where it is highest, and where it crosses a
 given length.
@@ -63,7 +63,7 @@ std::vector<double> lengths_of(const cli::CommandLine& line) {
 
 int clogfit_curve(int argc, const char* const* argv) {
   namespace po = boost::program_options;
-  cli::CommandLine line("clogfit curve", usage, cli::CommandLine::SweepKeys::none);
+  cli::CommandLine line("clogfit curve", curve_usage, cli::CommandLine::SweepKeys::none);
   const auto text = [] { return po::value<std::string>(); };
   line.add_options()("file", po::value<std::vector<std::string>>(), "sweep files, fitted as one sweep")(
       "key", text(), "that the curve is drawn over, or two with a comma between")(

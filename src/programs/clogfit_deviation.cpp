@@ -16,7 +16,7 @@
 namespace clog::programs {
 namespace {
 
-constexpr const char* usage =
+constexpr const char* deviation_usage =
     R"(clogfit deviation prints Delta_v and Delta_A of a measured passage through a channel from simulated ones, as JSON:
 the relative root-mean-square deviations of speed and shape.
 
@@ -30,7 +30,7 @@ of time and interpolated to the measured h.
 
 int clogfit_deviation(int argc, const char* const* argv) {
   namespace po = boost::program_options;
-  cli::CommandLine line("clogfit deviation", usage, cli::CommandLine::SweepKeys::none);
+  cli::CommandLine line("clogfit deviation", deviation_usage, cli::CommandLine::SweepKeys::none);
   line.add_options()("profiles", po::value<std::vector<std::string>>()->composing(),
                      "CSV files or of clogrun channel, the measured one first");
   line.add_positional("profiles", -1);

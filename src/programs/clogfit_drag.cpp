@@ -20,7 +20,7 @@
 namespace clog::programs {
 namespace {
 
-constexpr const char* usage =
+constexpr const char* drag_usage =
     R"(clogfit drag finds the exponent alpha and the strength b_0/b_inf of the near-wall drag from the speeds of a droplet
 that moves along a wall: a straight line through log(v/(v_t - v)) against log d, by least squares.
 
@@ -54,7 +54,7 @@ fit::NearWallDrag fit_file(const std::string& path, const std::vector<fit::NearW
 
 int clogfit_drag(int argc, const char* const* argv) {
   namespace po = boost::program_options;
-  cli::CommandLine line("clogfit drag", usage, cli::CommandLine::SweepKeys::none);
+  cli::CommandLine line("clogfit drag", drag_usage, cli::CommandLine::SweepKeys::none);
   const auto text = [] { return po::value<std::string>(); };
   line.add_options()("file", text(), "CSV file")("diameter", text(),
                                                  "of the undeformed droplet, e.g. 0.98mm")(

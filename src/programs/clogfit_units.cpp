@@ -27,7 +27,7 @@ using laboratory::Laboratory;
 using laboratory::Scales;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* usage =
+constexpr const char* units_usage =
     R"(clogfit units converts between a laboratory's quantities and the model's numbers, in which the droplet's diameter
 sigma, the gravity g along the plates and the droplet's density rho are 1.
 
@@ -142,8 +142,6 @@ std::string advice_of(const Scales& scales) {
       console::plain(scales.wall_stiffness), console::plain(nearly_rigid_tension));
 }
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json json_of(const Laboratory& lab, const Scales& scales) {
   const console::BuildInfo build = console::build_info();
   return {{"version", build.version},
@@ -151,24 +149,24 @@ Json json_of(const Laboratory& lab, const Scales& scales) {
           {"diameter_mm", scales.length / milli},
           {"gravity_m_per_s2", scales.gravity},
           {"time_s", scales.time},
-          {"speed_mm_per_s", number(scales.speed / milli)},
-          {"tension_mN_per_m", number(lab.experiment.interfacial_tension / milli)},
+          {"speed_mm_per_s", scales.speed / milli},
+          {"tension_mN_per_m", lab.experiment.interfacial_tension / milli},
           {"tension_ratio", lab.tension_ratio},
           {"tension_mN_per_m_of_gamma_1", scales.tension / milli},
-          {"line_tension_experiment", number(scales.line_tension_experiment)},
-          {"line_tension", number(scales.line_tension)},
-          {"sag", number(scales.sag)},
-          {"wall_stiffness", number(scales.wall_stiffness)},
-          {"terminal_speed", number(scales.terminal_speed)},
-          {"capillary_number", number(scales.capillary_number)},
-          {"line_tension_of_cell_uN", number(scales.line_tension_of_cell / (milli * milli))}};
+          {"line_tension_experiment", scales.line_tension_experiment},
+          {"line_tension", scales.line_tension},
+          {"sag", scales.sag},
+          {"wall_stiffness", scales.wall_stiffness},
+          {"terminal_speed", scales.terminal_speed},
+          {"capillary_number", scales.capillary_number},
+          {"line_tension_of_cell_uN", scales.line_tension_of_cell / (milli * milli)}};
 }
 
 }  // namespace
 
 int clogfit_units(int argc, const char* const* argv) {
   namespace po = boost::program_options;
-  cli::CommandLine line("clogfit units", usage, cli::CommandLine::SweepKeys::none);
+  cli::CommandLine line("clogfit units", units_usage, cli::CommandLine::SweepKeys::none);
   const auto text = [] { return po::value<std::string>(); };
   line.add_options()("file", text(), "lab.cfg")(
       "length", text(), "of the model, such as lambda [sigma]; each of these takes a list")(
@@ -189,7 +187,7 @@ int clogfit_units(int argc, const char* const* argv) {
       const std::vector<double> models = line.get_positives(conversion.option);
       if (models.empty()) continue;
       Json& values = document["given"][conversion.name];
-      for (const double model : models) values.push_back(number(conversion.convert(model)));
+      for (const double model : models) values.push_back(conversion.convert(model));
       if (models.size() == 1) values = Json(values.front());
     }
     std::cout << document.dump(2) << '\n';

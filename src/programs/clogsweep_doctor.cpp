@@ -16,8 +16,8 @@ namespace {
 using host::Finding;
 using host::RankFacts;
 
-constexpr const char* program = "clogsweep doctor";
-constexpr const char* usage =
+constexpr const char* doctor_program = "clogsweep doctor";
+constexpr const char* doctor_usage =
     R"(clogsweep doctor looks for what spoils sweeps on this machine, and says what helps.
 
   clogsweep doctor
@@ -27,7 +27,7 @@ Exit code 1 if there is something to fix.
 )";
 
 /// Returns the exit code.
-int print(const std::vector<Finding>& findings) {
+int print_findings(const std::vector<Finding>& findings) {
   bool is_well = true;
   for (const Finding& finding : findings) {
     std::cout << (finding.remedy.empty() ? "ok    " : "MEND  ") << console::printable(finding.what) << '\n';
@@ -42,11 +42,11 @@ int print(const std::vector<Finding>& findings) {
 int clogsweep_doctor(const parallel::Communicator& ranks, int argc, const char* const* argv) {
   namespace po = boost::program_options;
   // Rank 0 reads the command line; the others wait for its word.
-  cli::CommandLine line(program, usage, cli::CommandLine::SweepKeys::none);
+  cli::CommandLine line(doctor_program, doctor_usage, cli::CommandLine::SweepKeys::none);
   bool is_answered = false;
   int exit_code = console::exit_success;
   if (ranks.rank() == 0)
-    exit_code = cli::run_program(program, [&] {
+    exit_code = cli::run_program(doctor_program, [&] {
       line.add_options()("output", po::value<std::string>()->default_value("sweep.h5"),
                          "where the sweep will write");
       line.parse(argc - 1, argv + 1);
@@ -64,7 +64,8 @@ int clogsweep_doctor(const parallel::Communicator& ranks, int argc, const char* 
   std::vector<RankFacts> facts;
   facts.reserve(texts.size());
   for (const std::string& text : texts) facts.push_back(host::rank_facts_from(text));
-  return cli::run_program(program, [&] { return print(host::examine(facts, line.get("output"))); });
+  return cli::run_program(doctor_program,
+                          [&] { return print_findings(host::examine(facts, line.get("output"))); });
 }
 
 }  // namespace clog::programs

@@ -17,7 +17,7 @@
 namespace clog::programs {
 namespace {
 
-constexpr const char* usage = R"(clogsweep merge makes one sweep file of several.
+constexpr const char* merge_usage = R"(clogsweep merge makes one sweep file of several.
 
   clogsweep merge a.h5 b.h5 c.h5 --output all.h5
 
@@ -26,8 +26,8 @@ nothing is written. The new file names its parts: their sessions, versions and h
 runs, which you can resume and enlarge like any other.
 )";
 
-void print(const std::string& output, const std::vector<std::string>& paths,
-           const campaign::MergedSweep& merged) {
+void print_merged(const std::string& output, const std::vector<std::string>& paths,
+                  const campaign::MergedSweep& merged) {
   std::cout << console::printable(output) << ": "
             << sweep::counted(static_cast<std::int64_t>(merged.table.rows.size()), "row") << " of "
             << sweep::counted(static_cast<std::int64_t>(paths.size()), "file");
@@ -47,7 +47,7 @@ void print(const std::string& output, const std::vector<std::string>& paths,
 
 int clogsweep_merge(int argc, const char* const* argv) {
   namespace po = boost::program_options;
-  cli::CommandLine line("clogsweep merge", usage, cli::CommandLine::SweepKeys::none);
+  cli::CommandLine line("clogsweep merge", merge_usage, cli::CommandLine::SweepKeys::none);
   line.add_options()("file", po::value<std::vector<std::string>>(), "sweep files")(
       "output", po::value<std::string>(), "HDF5 file to make");
   line.add_positional("file", -1);
@@ -59,7 +59,7 @@ int clogsweep_merge(int argc, const char* const* argv) {
   store::refuse_existing(output);
   const campaign::MergedSweep merged = campaign::merge(paths, origin_of_table(line));
   campaign::write(merged.table, merged.snapshots, output);
-  print(output, paths, merged);
+  print_merged(output, paths, merged);
   return console::exit_success;
 }
 

@@ -14,7 +14,7 @@
 namespace clog::programs {
 namespace {
 
-constexpr const char* usage =
+constexpr const char* salvage_usage =
     R"(clogsweep salvage copies the undamaged rows of a damaged sweep file to a new one.
 
   clogsweep salvage sweep.h5 --output whole.h5
@@ -28,7 +28,7 @@ missing runs and restores missing attributes.
 
 int clogsweep_salvage(int argc, const char* const* argv) {
   namespace po = boost::program_options;
-  cli::CommandLine line("clogsweep salvage", usage, cli::CommandLine::SweepKeys::none);
+  cli::CommandLine line("clogsweep salvage", salvage_usage, cli::CommandLine::SweepKeys::none);
   line.add_options()("file", po::value<std::string>(), "sweep file")("output", po::value<std::string>(),
                                                                      "HDF5 file to create");
   line.add_positional("file", 1);

@@ -30,9 +30,9 @@ namespace {
 
 using sweep::RunRow;
 
-constexpr const char* table_name = "runs";
+constexpr const char* runs_name = "runs";
 constexpr const char* sums_name = "row_checksums";
-constexpr const char* file_kind = "clogsweep sweep";
+constexpr const char* sweep_kind = "clogsweep sweep";
 constexpr hsize_t rows_per_chunk = 64;
 constexpr std::size_t rows_per_block = 1024;  // that are copied at once
 
@@ -72,7 +72,7 @@ Dataset make_dataset(hid_t file, const char* name, hid_t type, std::size_t num_r
 
 CheckSums write_table(hid_t file, std::span<const RunRow> rows, const std::string& path) {
   const RowLayout layout = RowLayout::present();
-  const Dataset table = make_dataset(file, table_name, layout.type(), rows.size());
+  const Dataset table = make_dataset(file, runs_name, layout.type(), rows.size());
   check(table.valid(), "create the table of runs in", path);
   layout.describe(table);
   CheckSums sums;
@@ -159,7 +159,7 @@ std::function<void(hid_t file)> writer(const Place& place, std::span<const RunRo
                                        const Provenance& provenance, std::span<const CircleFile> circles) {
   require_memory_of_file("write " + place.path(), rows.size() * RowLayout::present().size());
   return [=, &provenance, path = place.path()](hid_t file) {
-    write_runs(file, file_kind, rows, provenance, path);
+    write_runs(file, sweep_kind, rows, provenance, path);
     write_circles(file, circles, path);
   };
 }
@@ -215,8 +215,8 @@ std::string text_as_written(hid_t file, const std::string& name, const Texts& ca
 
 /// Format version of an open file. @throws Error if it is not one of our sweeps, or of an unknown version
 std::string version_of(hid_t file, const std::string& path) {
-  const std::array<std::string_view, 1> kinds = {file_kind};
-  if (text_as_written(file, "kind", kinds) != file_kind || H5Lexists(file, table_name, H5P_DEFAULT) <= 0)
+  const std::array<std::string_view, 1> kinds = {sweep_kind};
+  if (text_as_written(file, "kind", kinds) != sweep_kind || H5Lexists(file, runs_name, H5P_DEFAULT) <= 0)
     throw Error("cannot read " + path +
                 " (an HDF5 file, but not one of clogsweep's tables of runs); give a file written "
                 "by clogsweep --output");
@@ -291,7 +291,7 @@ struct PackedTable {
   }
 };
 PackedTable read_table(hid_t file, RowLayout::Columns expected, const std::string& path) {
-  const Dataset table(H5Dopen2(file, table_name, H5P_DEFAULT));
+  const Dataset table(H5Dopen2(file, runs_name, H5P_DEFAULT));
   if (!table.valid()) refuse_table(path, "its table cannot be opened");
   std::optional<RowLayout> layout = RowLayout::of(Type(H5Dget_type(table)), expected);
   if (!layout) refuse_table(path, "its columns are not those that were written");
@@ -377,7 +377,7 @@ Examination examine(std::vector<std::byte>& image, Seal seal, const std::string&
     found.whole.provenance = read_attributes(file, path);
   }
   if (seal != Seal::whole)
-    found.is_refused_by_others = is_refused(file, table_name) || is_refused(file, sums_name);
+    found.is_refused_by_others = is_refused(file, runs_name) || is_refused(file, sums_name);
   join_parts(found.whole.provenance);
   for (const char* ours : {"kind", "format_version"})
     std::erase_if(found.whole.provenance, [&](const auto& attribute) { return attribute.first == ours; });

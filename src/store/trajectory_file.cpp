@@ -16,8 +16,8 @@
 namespace clog::store {
 namespace {
 
-constexpr const char* table_name = "trajectory";
-constexpr const char* file_kind = "clogsweep trajectory";
+constexpr const char* trajectory_name = "trajectory";
+constexpr const char* trajectory_kind = "clogsweep trajectory";
 
 /// Creates and fills a dataset; attributes can be added to what is returned.
 Dataset write_dataset(hid_t file, const char* name, hid_t type, std::initializer_list<hsize_t> shape,
@@ -41,11 +41,11 @@ void write_columns(hid_t file, const std::vector<TrajectoryColumn>& columns) {
   for (std::size_t i = 0; i < columns.size(); ++i)
     H5Tinsert(type, columns[i].name.c_str(), i * sizeof(double), H5T_NATIVE_DOUBLE);
   const hsize_t size = num_samples;
-  const hsize_t rows_per_chunk = std::min<hsize_t>(1024, size);
+  const hsize_t samples_per_chunk = std::min<hsize_t>(1024, size);
   const Space space(H5Screate_simple(1, &size, nullptr));
   const PropertyList layout(H5Pcreate(H5P_DATASET_CREATE));
-  H5Pset_chunk(layout, 1, &rows_per_chunk);  // pandas reads chunked tables only
-  const Dataset table(H5Dcreate2(file, table_name, type, space, H5P_DEFAULT, layout, H5P_DEFAULT));
+  H5Pset_chunk(layout, 1, &samples_per_chunk);  // pandas reads chunked tables only
+  const Dataset table(H5Dcreate2(file, trajectory_name, type, space, H5P_DEFAULT, layout, H5P_DEFAULT));
   check(table.valid() && H5Dwrite(table, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) >= 0 &&
             H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0,
         "write", "dataset trajectory");
@@ -111,7 +111,7 @@ std::vector<TrajectoryColumn> described_columns(hid_t table, hid_t type) {
 }
 
 std::vector<TrajectoryColumn> read_columns(hid_t file, const std::string& path) {
-  const Dataset table(H5Dopen2(file, table_name, H5P_DEFAULT));
+  const Dataset table(H5Dopen2(file, trajectory_name, H5P_DEFAULT));
   const Type type(table.valid() ? H5Dget_type(table) : hid_t{-1});
   std::vector<TrajectoryColumn> columns =
       type.valid() ? described_columns(table, type) : std::vector<TrajectoryColumn>();
@@ -131,7 +131,7 @@ std::vector<TrajectoryColumn> read_columns(hid_t file, const std::string& path) 
 
 TrajectoryTable read_image(std::vector<std::byte>& image, Seal seal, const std::string& path) {
   const File file = open_image(image, path);
-  if (read_attribute(file, "kind") != file_kind || H5Lexists(file, table_name, H5P_DEFAULT) <= 0)
+  if (read_attribute(file, "kind") != trajectory_kind || H5Lexists(file, trajectory_name, H5P_DEFAULT) <= 0)
     throw Error("cannot read " + path +
                 " (an HDF5 file, but not a trajectory); give a file written by clogrun --output");
   return {read_columns(file, path), read_attributes(file, path), seal == Seal::whole};
@@ -164,7 +164,7 @@ void write_trajectory(const std::string& path, const Trajectory& trajectory) {
     if (!trajectory.polygons.empty()) write_polygons(file, trajectory.polygons);
     if (!trajectory.obstacles.empty()) write_obstacles(file, trajectory.obstacles);
     if (!trajectory.wedges.empty()) write_wedges(file, trajectory.wedges);
-    write_runs(file, file_kind, {&trajectory.row, 1}, trajectory.provenance, path);
+    write_runs(file, trajectory_kind, {&trajectory.row, 1}, trajectory.provenance, path);
   });
 }
 

@@ -9,7 +9,7 @@
 namespace clog::campaign {
 namespace {
 
-SetTimes finished(std::int64_t number, double seconds) {
+SetTimes finished_set(std::int64_t number, double seconds) {
   return {.num_finished = number, .seconds = seconds * static_cast<double>(number)};
 }
 
@@ -19,7 +19,7 @@ TEST(TimeLeft, IsNotKnownBeforeARunHasFinished) {
 }
 
 TEST(TimeLeft, IsThatOfTheParameterSetsThatWait) {
-  std::vector<SetTimes> sets = {finished(20, 1000), finished(25, 1)};
+  std::vector<SetTimes> sets = {finished_set(20, 1000), finished_set(25, 1)};
   sets[1].num_waiting = 40;
   const TimeLeft left = time_left(sets, 2);
   EXPECT_TRUE(left.is_known);
@@ -29,7 +29,7 @@ TEST(TimeLeft, IsThatOfTheParameterSetsThatWait) {
 }
 
 TEST(TimeLeft, OfASetWithoutAnEndIsTheMeanOfAll) {
-  std::vector<SetTimes> sets = {finished(20, 10), {}};
+  std::vector<SetTimes> sets = {finished_set(20, 10), {}};
   sets[1].num_waiting = 4;
   const TimeLeft left = time_left(sets, 2);
   EXPECT_LT(left.shortest, 20);
@@ -37,7 +37,7 @@ TEST(TimeLeft, OfASetWithoutAnEndIsTheMeanOfAll) {
 }
 
 TEST(TimeLeft, HasATailOfRunsUnderWay) {
-  std::vector<SetTimes> sets = {finished(100, 10), finished(100, 1000)};
+  std::vector<SetTimes> sets = {finished_set(100, 10), finished_set(100, 1000)};
   sets[0].num_running = 3;
   const double tail = 10 * (1 + 1. / 2 + 1. / 3);
   const TimeLeft left = time_left(sets, 3);

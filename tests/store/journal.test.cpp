@@ -31,7 +31,7 @@ class JournalTest : public FolderTest {
   }
 };
 
-sweep::RunRow some_row(std::int64_t task) {
+sweep::RunRow journal_row(std::int64_t task) {
   sweep::RunRow row;
   row.task = task;
   row.distance = 0.1 * static_cast<double>(task);
@@ -43,7 +43,7 @@ std::vector<std::byte> some_snapshot(std::size_t size) { return std::vector<std:
 void expect_entries(std::vector<Journal::Entry> entries, std::size_t number) {
   ASSERT_EQ(entries.size(), number);
   for (std::size_t i = 0; i < number; ++i) {
-    const sweep::RunRow expected = some_row(static_cast<std::int64_t>(i));
+    const sweep::RunRow expected = journal_row(static_cast<std::int64_t>(i));
     EXPECT_EQ(sweep::to_bytes({entries[i].row, {}}), sweep::to_bytes({expected, {}}));
     EXPECT_EQ(entries[i].snapshot, some_snapshot(100 * i));
   }
@@ -51,7 +51,7 @@ void expect_entries(std::vector<Journal::Entry> entries, std::size_t number) {
 
 void add_entries(Journal& journal, std::int64_t begin, std::int64_t end) {
   for (std::int64_t i = begin; i < end; ++i)
-    journal.add(some_row(i), some_snapshot(static_cast<std::size_t>(100 * i)));
+    journal.add(journal_row(i), some_snapshot(static_cast<std::size_t>(100 * i)));
 }
 
 TEST_F(JournalTest, GivesBackWhatWasAdded) {
@@ -172,7 +172,7 @@ TEST_F(JournalTest, RemovesItsStaleDraftsAndNoOthers) {
 }
 
 TEST_F(JournalTest, IsRewrittenOnlyWhenItHasDoubled) {
-  const Journal::Entry large{some_row(0), some_snapshot(70'000'000)};
+  const Journal::Entry large{journal_row(0), some_snapshot(70'000'000)};
   const std::vector<const Journal::Entry*> needed{&large};
   Journal journal(path());
   EXPECT_FALSE(journal.is_to_be_rewritten());
@@ -180,9 +180,9 @@ TEST_F(JournalTest, IsRewrittenOnlyWhenItHasDoubled) {
   EXPECT_TRUE(journal.is_to_be_rewritten());
   journal.rewrite(needed);
   EXPECT_FALSE(journal.is_to_be_rewritten());
-  journal.add(some_row(1), some_snapshot(60'000'000));
+  journal.add(journal_row(1), some_snapshot(60'000'000));
   EXPECT_FALSE(journal.is_to_be_rewritten());
-  journal.add(some_row(1), some_snapshot(20'000'000));
+  journal.add(journal_row(1), some_snapshot(20'000'000));
   EXPECT_TRUE(journal.is_to_be_rewritten());
 }
 
@@ -202,7 +202,7 @@ TEST_F(JournalTest, IsReadByThoseWhoMayReadItsTable) {
     Journal journal(journal_place(place), &place);
     EXPECT_EQ(fs::status(path()).permissions(), mode);
     add_entries(journal, 0, 2);
-    const Journal::Entry entry{some_row(0), {}};
+    const Journal::Entry entry{journal_row(0), {}};
     const std::vector<const Journal::Entry*> one{&entry};
     journal.rewrite(one);
     EXPECT_EQ(fs::status(path()).permissions(), mode) << "rewritten";
@@ -240,7 +240,7 @@ TEST_F(JournalTest, KeepsOnlyWhatItIsRewrittenWith) {
   {
     Journal journal(path());
     add_entries(journal, 10, 20);
-    std::vector<Journal::Entry> kept{{some_row(0), {}}, {some_row(1), some_snapshot(100)}};
+    std::vector<Journal::Entry> kept{{journal_row(0), {}}, {journal_row(1), some_snapshot(100)}};
     const std::vector<const Journal::Entry*> pointers{&kept[0], &kept[1]};
     journal.rewrite(pointers);
     EXPECT_THROW(Journal second(path()), Error) << "it is still locked";

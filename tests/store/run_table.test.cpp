@@ -41,7 +41,7 @@ sweep::RunRow some_row(std::int64_t task) {
   return row;
 }
 
-std::string refusal(const std::string& path) {
+std::string reading_refusal(const std::string& path) {
   try {
     read_sweep(path);
   } catch (const Error& error) {
@@ -201,16 +201,18 @@ TEST_F(RunTableTest, KeepsTheLastTableWhenTheDiskIsFull) {
 }
 
 TEST_F(RunTableTest, SaysWhatIsWrongWithAFile) {
-  EXPECT_NE(refusal(path("missing.h5")).find("no such file"), std::string::npos);
+  EXPECT_NE(reading_refusal(path("missing.h5")).find("no such file"), std::string::npos);
   std::ofstream(path("text.h5")) << "not a table";
-  EXPECT_NE(refusal(path("text.h5")).find("not an HDF5 file"), std::string::npos);
+  EXPECT_NE(reading_refusal(path("text.h5")).find("not an HDF5 file"), std::string::npos);
   publish_sweep(path(), some_rows(100), {});
   fs::copy_file(path(), path("torn.h5"));
   fs::resize_file(path("torn.h5"), fs::file_size(path()) / 2);
-  EXPECT_NE(refusal(path("torn.h5")).find("damaged"), std::string::npos) << refusal(path("torn.h5"));
-  EXPECT_NE(refusal(folder_.string()).find("not a regular file"), std::string::npos);
+  EXPECT_NE(reading_refusal(path("torn.h5")).find("damaged"), std::string::npos)
+      << reading_refusal(path("torn.h5"));
+  EXPECT_NE(reading_refusal(folder_.string()).find("not a regular file"), std::string::npos);
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
-  EXPECT_NE(refusal(path("pipe")).find("not a regular file"), std::string::npos) << "it does not wait";
+  EXPECT_NE(reading_refusal(path("pipe")).find("not a regular file"), std::string::npos)
+      << "it does not wait";
 }
 
 /// The same file with one bit flipped.
@@ -299,9 +301,9 @@ TEST_F(RunTableTest, TellsWholeRowsFromDamagedOnes) {
   EXPECT_NE(found.damage[1].find("attribute config"), std::string::npos) << found.damage[1];
   EXPECT_EQ(found.whole.rows.size(), 99u);
   EXPECT_EQ(found.whole.provenance, (Provenance{{"version", "1"}}));
-  EXPECT_NE(refusal(path("damaged.h5")).find("row 70 (task 70) is not as it was written, and 1 more"),
+  EXPECT_NE(reading_refusal(path("damaged.h5")).find("row 70 (task 70) is not as it was written, and 1 more"),
             std::string::npos)
-      << refusal(path("damaged.h5"));
+      << reading_refusal(path("damaged.h5"));
 }
 
 }  // namespace

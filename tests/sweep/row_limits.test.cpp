@@ -11,14 +11,14 @@ namespace {
 
 using Keys = std::vector<std::pair<const char*, const char*>>;
 
-Plan plan_of(const Keys& keys) {
+Plan limits_plan(const Keys& keys) {
   Settings settings;
   settings.set("seeds", "1..3");
   for (const auto& [name, text] : keys) settings.set(name, text);
   return Plan(settings);
 }
 
-RunRow row_of(const Keys& keys) { return describe(plan_of(keys).task(0)); }
+RunRow limits_row(const Keys& keys) { return describe(limits_plan(keys).task(0)); }
 
 TEST(UnprovenParameters, AreNoneWithinWhatWasFoundSound) {
   const Keys sound[] = {{},
@@ -30,7 +30,7 @@ TEST(UnprovenParameters, AreNoneWithinWhatWasFoundSound) {
                         {{"receding-angle", "120"}},
                         {{"preset", "elastic"}, {"friction", "0.5"}},
                         {{"model", "sp"}, {"wall-stiffness", "1"}}};
-  for (const Keys& keys : sound) EXPECT_TRUE(unproven_parameters(row_of(keys)).empty());
+  for (const Keys& keys : sound) EXPECT_TRUE(unproven_parameters(limits_row(keys)).empty());
 }
 
 TEST(UnprovenParameters, AreNamedWithTheirValueBeyondIt) {
@@ -54,21 +54,21 @@ TEST(UnprovenParameters, AreNamedWithTheirValueBeyondIt) {
        "obstacle-diameter=0.04 (obstacles thinner than two edges, 0.04909, slip into the droplet; use more "
        "vertices)"}};
   for (const auto& [keys, words] : unproven)
-    EXPECT_EQ(unproven_parameters(row_of(keys)), std::vector<std::string>{words});
+    EXPECT_EQ(unproven_parameters(limits_row(keys)), std::vector<std::string>{words});
 }
 
 TEST(UnprovenParameters, OfAPlanAreNamedOnceEach) {
-  EXPECT_EQ(unproven_parameters(plan_of({{"line-tension", "0.1,1"}})), "");
-  EXPECT_EQ(unproven_parameters(plan_of({{"line-tension", "0,1,30"}, {"obstacle-gap", "0.2,0.3"}})),
+  EXPECT_EQ(unproven_parameters(limits_plan({{"line-tension", "0.1,1"}})), "");
+  EXPECT_EQ(unproven_parameters(limits_plan({{"line-tension", "0,1,30"}, {"obstacle-gap", "0.2,0.3"}})),
             "not proved sound (handbook, Which droplets are sound): line-tension=0 (robust is sound from "
             "0.02 to 10), "
             "line-tension=30 (robust is sound from 0.02 to 10)");
   EXPECT_TRUE(
-      unproven_parameters(plan_of({{"line-tension", "11,12,13,14,15,16"}})).ends_with(", and 2 more"));
+      unproven_parameters(limits_plan({{"line-tension", "11,12,13,14,15,16"}})).ends_with(", and 2 more"));
 }
 
 TEST(Repetition, BeginsWhereADropletHasComeFartherThanTheBox) {
-  RunRow row = row_of({{"box", "20"}});
+  RunRow row = limits_row({{"box", "20"}});
   EXPECT_EQ(repetition_length(row), 20);
   row.distance = 20;
   EXPECT_FALSE(has_met_repetition(row));
@@ -83,7 +83,7 @@ TEST(Repetition, BeginsWhereADropletHasComeFartherThanTheBox) {
 }
 
 TEST(Repetition, BeginsAfterAllBoxes) {
-  RunRow row = row_of({{"box", "20"}, {"boxes", "3"}});
+  RunRow row = limits_row({{"box", "20"}, {"boxes", "3"}});
   EXPECT_EQ(repetition_length(row), 60);
   row.distance = 59;
   row.lateral_displacement = 30;
@@ -93,16 +93,16 @@ TEST(Repetition, BeginsAfterAllBoxes) {
 }
 
 TEST(Repetition, IsTheNatureOfALattice) {
-  RunRow row = row_of({{"obstacle-layout", "lattice"}, {"box", "20"}, {"obstacle-gap", "1.2"}});
+  RunRow row = limits_row({{"obstacle-layout", "lattice"}, {"box", "20"}, {"obstacle-gap", "1.2"}});
   row.distance = 1000;
   EXPECT_FALSE(has_met_repetition(row));
 }
 
 TEST(Repetition, IsForeseenFromTheLongestTime) {
-  EXPECT_EQ(possible_repetition(plan_of({{"box", "20"}, {"max-time", "600"}})), "");
-  EXPECT_EQ(possible_repetition(plan_of({{"obstacle-layout", "lattice"}, {"obstacle-gap", "1.2"}})), "");
+  EXPECT_EQ(possible_repetition(limits_plan({{"box", "20"}, {"max-time", "600"}})), "");
+  EXPECT_EQ(possible_repetition(limits_plan({{"obstacle-layout", "lattice"}, {"obstacle-gap", "1.2"}})), "");
   EXPECT_EQ(
-      possible_repetition(plan_of({{"box", "20,500"}, {"max-time", "1e3,1e4"}})),
+      possible_repetition(limits_plan({{"box", "20,500"}, {"max-time", "1e3,1e4"}})),
       "droplets of 2 of 4 parameter sets may travel farther than the length of their array and meet the same "
       "obstacles again: terminal-speed*max-time is up to 300, boxes*box 20; boxes=15 is long enough");
 }
@@ -127,7 +127,7 @@ TEST(Repetition, OfOwnCirclesIsNotMendedByMoreBoxes) {
 }
 
 TEST(LimitsOfCircles, AreThoseThatCirclesOfAFileDoNotFill) {
-  EXPECT_TRUE(limits_of_circles(plan_of({{"box", "20"}})).empty());
+  EXPECT_TRUE(limits_of_circles(limits_plan({{"box", "20"}})).empty());
   const auto bare_in = [](const char* box, const char* boxes) {
     return limits_with(
         {{1, 2, 0.5}, {4, 5, 0.5}, {7, 8, 0}},
@@ -172,14 +172,15 @@ TEST(LimitsOfCircles, AreDiametersThatAFileLacks) {
 }
 
 TEST(LimitsOfResults, AreTheLinesThatSaySomething) {
-  EXPECT_TRUE(limits_of_results(plan_of({{"box", "20"}, {"max-time", "600"}})).empty());
-  const Plan plan = plan_of({{"box", "20"}, {"max-time", "1e3"}, {"line-tension", "30"}});
+  EXPECT_TRUE(limits_of_results(limits_plan({{"box", "20"}, {"max-time", "600"}})).empty());
+  const Plan plan = limits_plan({{"box", "20"}, {"max-time", "1e3"}, {"line-tension", "30"}});
   EXPECT_EQ(limits_of_results(plan),
             (std::vector<std::string>{possible_repetition(plan), unproven_parameters(plan)}));
 }
 
 TEST(ObstacleSpacing, IsFromCentreToCentre) {
-  EXPECT_DOUBLE_EQ(obstacle_spacing(row_of({{"obstacle-gap", "0.4"}, {"obstacle-diameter", "0.5"}})), 0.9);
+  EXPECT_DOUBLE_EQ(obstacle_spacing(limits_row({{"obstacle-gap", "0.4"}, {"obstacle-diameter", "0.5"}})),
+                   0.9);
 }
 
 TEST(ObstacleSpacing, OfOwnCirclesFollowsFromHowManyThereAre) {

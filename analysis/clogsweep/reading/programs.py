@@ -16,7 +16,7 @@ try:
 except ImportError:  # the source tree
     _SOURCE = PACKAGE.parents[1]
     JOBS = _SOURCE / "jobs"
-    PROGRAMS = [_SOURCE / "build" / preset / "bin" for preset in ("release", "laptop")]
+    PROGRAMS = [_SOURCE / "build" / "release" / "bin"]
 else:
     JOBS = (PACKAGE / JOBS_FOLDER).resolve()
     PROGRAMS = [(PACKAGE / PROGRAMS_FOLDER).resolve()]

@@ -51,10 +51,10 @@ void resolve_disk(RunParameters& run, double) {
 }
 
 Eigen::ArrayXd centre_alone(const RunParameters&) { return Eigen::ArrayXd::Zero(2); }
-double radius(const RunParameters&) { return units::droplet_diameter / 2; }
+double reach(const RunParameters&) { return units::droplet_diameter / 2; }
 
 ContactReach contact_reach_of_disk(const RunParameters& run) {
-  return {.range = radius(run), .by_edges = false};
+  return {.range = reach(run), .by_edges = false};
 }
 
 /// Relaxes from the void nearest to the centre.
@@ -115,7 +115,7 @@ const DropletModel soft_disk = {.stiffness_key = "wall-stiffness",
                                 .resolve = resolve_disk,
                                 .num_points = one_point,
                                 .free_shape = centre_alone,
-                                .reach = radius,
+                                .reach = reach,
                                 .contact_reach = contact_reach_of_disk,
                                 .release = release_disk,
                                 .most_energy_at_release = energy_of_overlaps,

@@ -5,17 +5,13 @@
 #include <cstdint>
 
 namespace clog {
-namespace {
-
-constexpr std::size_t size = kernel::edges_per_group;
-
-}  // namespace
+namespace {}  // namespace
 
 double NearContacts::measure(const kernel::StepKernel& kernel, const kernel::Contact& contact,
                              const DpForces& forces, const kernel::StepArrays& arrays) {
   const auto& walls = forces.walls().items();
   const auto& self = forces.self_contacts().items();
-  wall_gaps_.resize(walls.size() * size);
+  wall_gaps_.resize(walls.size() * std::size_t{kernel::edges_per_group});
   self_gaps_.resize(self.size());
   return -std::min(kernel.circle_gaps(walls.data(), walls.size(), contact, arrays, wall_gaps_.data()),
                    kernel.pair_gaps(self.data(), self.size(), contact, arrays, self_gaps_.data()));
@@ -26,7 +22,8 @@ void NearContacts::keep(const kernel::StepKernel& kernel, const DpForces& forces
   walls_.clear();
   const auto& walls = forces.walls().items();
   for (std::size_t k = 0; k < walls.size(); ++k) {
-    const std::uint8_t edges = kernel.edges_within(&wall_gaps_[k * size], wall_way);
+    const std::uint8_t edges =
+        kernel.edges_within(&wall_gaps_[k * std::size_t{kernel::edges_per_group}], wall_way);
     if (edges == 0) continue;
     walls_.push_back(walls[k]);
     walls_.back().edges = edges;

@@ -33,9 +33,9 @@ bool leads_away(const Array2d& segment, const Array2d& edge) {
   return is_hardly_positive(dot(segment, edge), dot(segment, segment) * dot(edge, edge));
 }
 
-class Contour {
+class Outline {
  public:
-  explicit Contour(const Eigen::ArrayXd& position) : n_(position.size() / 2), position_(position) {
+  explicit Outline(const Eigen::ArrayXd& position) : n_(position.size() / 2), position_(position) {
     sectors_.reserve(n_ + 1);
     sectors_.push_back(0);
     for (Eigen::Index i = 0; i < n_; ++i)
@@ -49,7 +49,7 @@ class Contour {
   /// Edge i leads from vertex i to the next.
   Array2d edge(Eigen::Index i) const { return vertex(next(i)) - vertex(i); }
 
-  /// Is the contour concave at this vertex, or straight?
+  /// Is the outline concave at this vertex, or straight?
   bool turns_inwards(Eigen::Index i) const {
     const Array2d come = edge(before(i)), go = edge(i);
     return is_hardly_positive(cross(come, go), dot(come, come) * dot(go, go));
@@ -62,14 +62,14 @@ class Contour {
   }
   Array2d normal_at_vertex(Eigen::Index i) const { return normal_of_edge(before(i)) + normal_of_edge(i); }
 
-  /// Area between the contour from vertex `from` to a point of edge `to`, and the segment back.
+  /// Area between the outline from vertex `from` to a point of edge `to`, and the segment back.
   double area_behind(Eigen::Index from, Eigen::Index to, const Array2d& point) const {
     const double way = sectors_[to] - sectors_[from] + (to < from ? sectors_[n_] : 0);
     return way + 0.5 * (cross(vertex(to), point) + cross(point, vertex(from)));
   }
   double area() const { return sectors_[n_]; }
 
-  /// Is no other part of the contour between a vertex and a point of an edge?
+  /// Is no other part of the outline between a vertex and a point of an edge?
   bool is_clear(Eigen::Index from, Eigen::Index to, const Array2d& point) const {
     const Array2d begin = vertex(from), segment = point - begin;
     for (Eigen::Index i = 0; i < n_; ++i) {
@@ -85,7 +85,7 @@ class Contour {
  private:
   Eigen::Index n_;
   const Eigen::ArrayXd& position_;
-  std::vector<double> sectors_;  // area between the origin and the contour from vertex 0 to vertex i
+  std::vector<double> sectors_;  // area between the origin and the outline from vertex 0 to vertex i
 };
 
 /// The point of an edge that is nearest to another point.
@@ -94,40 +94,40 @@ struct Foot {
   double place;  ///< 0 at the edge's first vertex, 1 at its second
   Array2d point;
 };
-Foot foot_on(const Contour& contour, Eigen::Index edge, const Array2d& from) {
-  const Array2d begin = contour.vertex(edge), along = contour.edge(edge);
+Foot foot_on(const Outline& outline, Eigen::Index edge, const Array2d& from) {
+  const Array2d begin = outline.vertex(edge), along = outline.edge(edge);
   const double place = std::clamp(dot(from - begin, along) / dot(along, along), 0.0, 1.0);
   return {edge, place, begin + place * along};
 }
 
-/// Does the segment get no shorter when either of its ends moves along the contour?
-bool is_local_minimum(const Contour& contour, Eigen::Index vertex, const Foot& foot) {
-  const Array2d there = foot.point - contour.vertex(vertex), back = -there;
-  return leads_away(there, contour.edge(vertex)) &&
-         leads_away(there, -contour.edge(contour.before(vertex))) &&
-         (foot.place > 0 || leads_away(back, -contour.edge(contour.before(foot.edge)))) &&
-         (foot.place < 1 || leads_away(back, contour.edge(contour.next(foot.edge))));
+/// Does the segment get no shorter when either of its ends moves along the outline?
+bool is_local_minimum(const Outline& outline, Eigen::Index vertex, const Foot& foot) {
+  const Array2d there = foot.point - outline.vertex(vertex), back = -there;
+  return leads_away(there, outline.edge(vertex)) &&
+         leads_away(there, -outline.edge(outline.before(vertex))) &&
+         (foot.place > 0 || leads_away(back, -outline.edge(outline.before(foot.edge)))) &&
+         (foot.place < 1 || leads_away(back, outline.edge(outline.next(foot.edge))));
 }
 
-bool lies_inside(const Contour& contour, Eigen::Index vertex, const Foot& foot) {
-  const Array2d there = foot.point - contour.vertex(vertex);
-  const Array2d normal = foot.place <= 0   ? contour.normal_at_vertex(foot.edge)
-                         : foot.place >= 1 ? contour.normal_at_vertex(contour.next(foot.edge))
-                                           : contour.normal_of_edge(foot.edge);
-  return dot(there, contour.normal_at_vertex(vertex)) < 0 && dot(there, normal) > 0 &&
-         contour.is_clear(vertex, foot.edge, foot.point);
+bool lies_inside(const Outline& outline, Eigen::Index vertex, const Foot& foot) {
+  const Array2d there = foot.point - outline.vertex(vertex);
+  const Array2d normal = foot.place <= 0   ? outline.normal_at_vertex(foot.edge)
+                         : foot.place >= 1 ? outline.normal_at_vertex(outline.next(foot.edge))
+                                           : outline.normal_of_edge(foot.edge);
+  return dot(there, outline.normal_at_vertex(vertex)) < 0 && dot(there, normal) > 0 &&
+         outline.is_clear(vertex, foot.edge, foot.point);
 }
 
-bool parts_are_lobes(const Contour& contour, Eigen::Index vertex, const Foot& foot, double width) {
-  const double least = std::max(lobe_share * contour.area(),
+bool parts_are_lobes(const Outline& outline, Eigen::Index vertex, const Foot& foot, double width) {
+  const double least = std::max(lobe_share * outline.area(),
                                 std::numbers::pi / 4 * (lobe_width * width) * (lobe_width * width));
-  const double part = contour.area_behind(vertex, foot.edge, foot.point);
-  return part >= least && contour.area() - part >= least;
+  const double part = outline.area_behind(vertex, foot.edge, foot.point);
+  return part >= least && outline.area() - part >= least;
 }
 
 /// The widest possible neck: the one between parts of equal area.
-double widest_neck(const Contour& contour) {
-  return std::sqrt(contour.area() / 2 / (std::numbers::pi / 4)) / lobe_width;
+double widest_neck(const Outline& outline) {
+  return std::sqrt(outline.area() / 2 / (std::numbers::pi / 4)) / lobe_width;
 }
 
 /// Edges `first` to `last`, not included, and the rectangle that they are in.
@@ -148,13 +148,13 @@ struct Run {
   }
 };
 
-std::vector<Run> runs_of_edges(const Contour& contour) {
+std::vector<Run> runs_of_edges(const Outline& outline) {
   constexpr Eigen::Index most = 16;
   std::vector<Run> runs;
-  for (Eigen::Index first = 0; first < contour.size(); first += most) {
-    Run run{first, std::min(first + most, contour.size()), contour.vertex(first), contour.vertex(first)};
+  for (Eigen::Index first = 0; first < outline.size(); first += most) {
+    Run run{first, std::min(first + most, outline.size()), outline.vertex(first), outline.vertex(first)};
     for (Eigen::Index i = first; i < run.last; ++i) {
-      const Array2d end = contour.vertex(contour.next(i));
+      const Array2d end = outline.vertex(outline.next(i));
       run.low = run.low.min(end);
       run.high = run.high.max(end);
     }
@@ -164,16 +164,16 @@ std::vector<Run> runs_of_edges(const Contour& contour) {
 }
 
 /// The width of the thinnest neck from a vertex to these edges; `below` if there is none thinner.
-double thinnest_neck_to(const Contour& contour, Eigen::Index vertex, const Run& run, double below) {
-  const Array2d from = contour.vertex(vertex);
+double thinnest_neck_to(const Outline& outline, Eigen::Index vertex, const Run& run, double below) {
+  const Array2d from = outline.vertex(vertex);
   double thinnest = below;
   for (Eigen::Index edge = run.first; edge < run.last; ++edge) {
-    if (edge == vertex || contour.next(edge) == vertex) continue;
-    const Foot foot = foot_on(contour, edge, from);
+    if (edge == vertex || outline.next(edge) == vertex) continue;
+    const Foot foot = foot_on(outline, edge, from);
     const Array2d there = foot.point - from;
-    if (dot(there, there) >= thinnest * thinnest || !is_local_minimum(contour, vertex, foot)) continue;
+    if (dot(there, there) >= thinnest * thinnest || !is_local_minimum(outline, vertex, foot)) continue;
     const double width = length(there);
-    if (parts_are_lobes(contour, vertex, foot, width) && lies_inside(contour, vertex, foot)) thinnest = width;
+    if (parts_are_lobes(outline, vertex, foot, width) && lies_inside(outline, vertex, foot)) thinnest = width;
   }
   return thinnest;
 }
@@ -181,19 +181,19 @@ double thinnest_neck_to(const Contour& contour, Eigen::Index vertex, const Run& 
 }  // namespace
 
 double thinnest_neck(const Eigen::ArrayXd& position, double below) {
-  const Contour contour(position);
-  const std::vector<Run> runs = runs_of_edges(contour);
-  const double bound = std::min(below, (1 + round_off) * widest_neck(contour));
+  const Outline outline(position);
+  const std::vector<Run> runs = runs_of_edges(outline);
+  const double bound = std::min(below, (1 + round_off) * widest_neck(outline));
   double thinnest = bound;
-  for (Eigen::Index vertex = 0; vertex < contour.size(); ++vertex) {
-    if (!contour.turns_inwards(vertex)) continue;
-    const Array2d from = contour.vertex(vertex);
-    const Array2d go = contour.edge(vertex), come = -contour.edge(contour.before(vertex));
+  for (Eigen::Index vertex = 0; vertex < outline.size(); ++vertex) {
+    if (!outline.turns_inwards(vertex)) continue;
+    const Array2d from = outline.vertex(vertex);
+    const Array2d go = outline.edge(vertex), come = -outline.edge(outline.before(vertex));
     const double tolerance = round_off * std::max(length(go), length(come));
     for (const Run& run : runs)
       if (run.squared_distance(from) < thinnest * thinnest && run.reaches_behind(from, go, tolerance) &&
           run.reaches_behind(from, come, tolerance))
-        thinnest = thinnest_neck_to(contour, vertex, run, thinnest);
+        thinnest = thinnest_neck_to(outline, vertex, run, thinnest);
   }
   return thinnest < bound ? thinnest : std::numeric_limits<double>::infinity();
 }

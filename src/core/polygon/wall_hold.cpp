@@ -8,14 +8,13 @@
 namespace clog {
 namespace {
 
-constexpr int size = kernel::edges_per_group;
 // Groups before and behind the contour, and those next to them, are read.
 constexpr int before = 2, behind = 2;
 
 }  // namespace
 
 WallHold::WallHold(int num_vertices, double range)
-    : num_groups_((num_vertices + size - 1) / size), range_(range) {}
+    : num_groups_((num_vertices + kernel::edges_per_group - 1) / kernel::edges_per_group), range_(range) {}
 
 double WallHold::make(const std::vector<WallContacts::Item>& near, DropletState& droplet) {
   hand_back(droplet);
@@ -80,15 +79,16 @@ void WallHold::clear_pushes() {
       for (int array = 0; array < kernel::num_window_push_arrays; ++array)
         std::fill_n(
             circle.pushes.first + array * circle.pushes.stride + windows_[static_cast<std::size_t>(k)].first,
-            size, 0.0);
+            kernel::edges_per_group, 0.0);
 }
 
 /// First arrays of the whole contour, each as long: three for all circles, then those of each circle.
 void WallHold::arrange_memory() {
-  const std::size_t stride = (static_cast<std::size_t>(num_groups_) + before + behind) * size;
+  const std::size_t stride =
+      (static_cast<std::size_t>(num_groups_) + before + behind) * kernel::edges_per_group;
   const std::size_t needed = (3 + all_.size() * kernel::num_window_push_arrays) * stride;
   memory_.make_room(needed, 3 * stride);
-  double* next = memory_.numbers.get() + std::ptrdiff_t{before} * size;
+  double* next = memory_.numbers.get() + std::ptrdiff_t{before} * kernel::edges_per_group;
   for (double** array : {&circles_.push_x, &circles_.push_y, &circles_.wetted}) {
     *array = next;
     next += stride;
@@ -107,7 +107,7 @@ void WallHold::arrange_memory() {
 }
 
 void WallHold::arrange_anchors() {
-  const std::size_t num_entries = groups_.size() * size;
+  const std::size_t num_entries = groups_.size() * kernel::edges_per_group;
   anchors_.make_room(3 * num_entries, 3 * num_entries);
   double* next = anchors_.numbers.get();
   for (double** array : {&circles_.anchor_x, &circles_.anchor_y, &circles_.slip}) {
@@ -122,12 +122,13 @@ bool WallHold::take(const WallAnchor& anchor) {
   for (const kernel::HoldingCircle& circle : all_) {
     if (!anchor.wall.is({.x = circle.x, .y = circle.y})) continue;
     for (int k = circle.first_group; k < circle.end_group; ++k) {
-      if (groups_[static_cast<std::size_t>(k)] != vertex / size) continue;
-      const std::ptrdiff_t entry = std::ptrdiff_t{k} * size + vertex % size;
+      if (groups_[static_cast<std::size_t>(k)] != vertex / kernel::edges_per_group) continue;
+      const std::ptrdiff_t entry =
+          std::ptrdiff_t{k} * kernel::edges_per_group + vertex % kernel::edges_per_group;
       circles_.anchor_x[entry] = anchor.x;
       circles_.anchor_y[entry] = anchor.y;
       circles_.slip[entry] = anchor.slip;
-      circles_.holds[k] |= static_cast<std::uint8_t>(1U << vertex % size);
+      circles_.holds[k] |= static_cast<std::uint8_t>(1U << vertex % kernel::edges_per_group);
       return true;
     }
   }
@@ -141,12 +142,13 @@ void WallHold::hand_back(DropletState& droplet) const {
     for (int k = circle.first_group; k < circle.end_group; ++k)
       for (unsigned held = circles_.holds[k]; held != 0; held &= held - 1) {
         const int lane = std::countr_zero(held);
-        const std::ptrdiff_t entry = std::ptrdiff_t{k} * size + lane;
-        droplet.anchors.push_back({.holder = Eigen::Index{groups_[static_cast<std::size_t>(k)]} * size + lane,
-                                   .wall = {.x = circle.x, .y = circle.y, .radius = circle.radius},
-                                   .x = circles_.anchor_x[entry],
-                                   .y = circles_.anchor_y[entry],
-                                   .slip = circles_.slip[entry]});
+        const std::ptrdiff_t entry = std::ptrdiff_t{k} * kernel::edges_per_group + lane;
+        droplet.anchors.push_back(
+            {.holder = Eigen::Index{groups_[static_cast<std::size_t>(k)]} * kernel::edges_per_group + lane,
+             .wall = {.x = circle.x, .y = circle.y, .radius = circle.radius},
+             .x = circles_.anchor_x[entry],
+             .y = circles_.anchor_y[entry],
+             .slip = circles_.slip[entry]});
       }
 }
 

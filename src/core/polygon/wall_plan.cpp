@@ -9,24 +9,24 @@
 namespace clog {
 namespace {
 
-constexpr int size = kernel::edges_per_group;
 constexpr int num_arrays = kernel::num_window_push_arrays;
 
 }  // namespace
 
-WallPlan::WallPlan(int num_vertices) : num_groups_((num_vertices + size - 1) / size) {
+WallPlan::WallPlan(int num_vertices)
+    : num_groups_((num_vertices + kernel::edges_per_group - 1) / kernel::edges_per_group) {
   // Groups before and behind the contour, and those next to them, are read.
   constexpr int before = 2, behind = 2;
-  windows_.pushes.stride = std::ptrdiff_t{before + num_groups_ + behind} * size;
+  windows_.pushes.stride = std::ptrdiff_t{before + num_groups_ + behind} * kernel::edges_per_group;
   memory_ = aligned_zeros(num_arrays * static_cast<std::size_t>(windows_.pushes.stride));
-  windows_.pushes.first = memory_.get() + std::ptrdiff_t{before} * size;
+  windows_.pushes.first = memory_.get() + std::ptrdiff_t{before} * kernel::edges_per_group;
 }
 
 void WallPlan::make(const std::vector<WallContacts::Item>& near) {
   clear_pushes();
   all_.clear();
   sharing_.clear();
-  is_taken_.assign(static_cast<std::size_t>(num_groups_) * size, 0);
+  is_taken_.assign(static_cast<std::size_t>(num_groups_) * kernel::edges_per_group, 0);
   list_windows(near, num_groups_, listed_);
   for (const kernel::WallWindow& window : listed_) add(window);
   windows_.num_own = static_cast<int>(all_.size());
@@ -39,7 +39,8 @@ void WallPlan::make(const std::vector<WallContacts::Item>& near) {
 void WallPlan::clear_pushes() {
   for (const kernel::WallWindow& window : all_)
     for (int array = 0; array < num_arrays; ++array)
-      std::fill_n(windows_.pushes.first + array * windows_.pushes.stride + window.first, size, 0.0);
+      std::fill_n(windows_.pushes.first + array * windows_.pushes.stride + window.first,
+                  kernel::edges_per_group, 0.0);
 }
 
 void WallPlan::add(const kernel::WallWindow& window) {

@@ -6,8 +6,6 @@
 namespace clog {
 namespace {
 
-constexpr int size = kernel::edges_per_group;
-
 bool is_same_circle(const kernel::WallWindow& window, const WallContacts::Item& item) {
   return window.x == item.x && window.y == item.y && window.reach == item.reach;
 }
@@ -18,14 +16,16 @@ void list_windows(const std::vector<WallContacts::Item>& near, int num_groups,
                   std::vector<kernel::WallWindow>& windows) {
   windows.clear();
   for (const WallContacts::Item& item : near) {
-    const int begin = item.group * size;
+    const int begin = item.group * kernel::edges_per_group;
     for (unsigned edges = item.edges; edges != 0;) {
       const int edge = begin + std::countr_zero(edges);
       const bool is_inside = !windows.empty() && is_same_circle(windows.back(), item) &&
-                             edge >= windows.back().first && edge - windows.back().first < size;
+                             edge >= windows.back().first &&
+                             edge - windows.back().first < kernel::edges_per_group;
       if (!is_inside)
         // Nothing can be read behind the last group.
-        windows.push_back({item.x, item.y, item.reach, std::min(edge, (num_groups - 1) * size), 0});
+        windows.push_back(
+            {item.x, item.y, item.reach, std::min(edge, (num_groups - 1) * kernel::edges_per_group), 0});
       kernel::WallWindow& window = windows.back();
       const int ahead = begin - window.first;
       const unsigned inside = (ahead >= 0 ? edges << ahead : edges >> -ahead) & 0xffU;
@@ -36,8 +36,11 @@ void list_windows(const std::vector<WallContacts::Item>& near, int num_groups,
 }
 
 void mark_pushed_groups(const kernel::WallWindow& window, std::vector<std::uint8_t>& is_pushed) {
-  const auto first = is_pushed.begin() + (window.first - 1 + size) / size;
-  std::fill(first, is_pushed.begin() + (window.first + size + 1) / size + 2, std::uint8_t{1});
+  const auto first =
+      is_pushed.begin() + (window.first - 1 + kernel::edges_per_group) / kernel::edges_per_group;
+  std::fill(first,
+            is_pushed.begin() + (window.first + kernel::edges_per_group + 1) / kernel::edges_per_group + 2,
+            std::uint8_t{1});
 }
 
 }  // namespace clog

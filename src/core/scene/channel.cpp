@@ -34,7 +34,7 @@ double last_free_start(const RunParameters& run) {
 
 namespace {
 
-void nothing_to_check(const RunParameters&) {}
+void check_no_obstacles(const RunParameters&) {}
 
 void check_clearance(RunParameters& run) {
   const ChannelParameters& channel = run.channel;
@@ -96,7 +96,7 @@ const Scene channel_scene = {.finding = Finding::passage,
                              .walls_from = WallsFrom::droplet,
                              .is_random = false,
                              .gap_key = "orifice",
-                             .check = nothing_to_check,
+                             .check = check_no_obstacles,
                              .resolve = check_clearance,
                              .sharpest_bend = tip_diameter,
                              .density = no_density,

@@ -35,11 +35,11 @@ void find_period(RunParameters& run) {
   obstacles.lattice_angle = lattice->angle;
 }
 
-double density(const ObstacleParameters& obstacles) {
+double lattice_density(const ObstacleParameters& obstacles) {
   return 1 / ((obstacles.diameter + obstacles.gap) * (obstacles.diameter + obstacles.gap));
 }
 
-ObstacleArray lattice(const RunParameters& run) { return lattice_obstacles(run.obstacles, run.seed); }
+ObstacleArray lattice_walls(const RunParameters& run) { return lattice_obstacles(run.obstacles, run.seed); }
 
 /// All voids of a lattice are alike, so the seed decides where in one a droplet starts (lattice_obstacles):
 /// if it touches nothing at the box's centre it starts right there, as if there were no obstacles.
@@ -61,8 +61,8 @@ const Scene lattice_scene = {.finding = Finding::clogging_length,
                              .check = check_spacing,
                              .resolve = find_period,
                              .sharpest_bend = smallest_diameter,
-                             .density = density,
-                             .walls = lattice,
+                             .density = lattice_density,
+                             .walls = lattice_walls,
                              .release = release_in_lattice,
                              .way = endless_way};
 

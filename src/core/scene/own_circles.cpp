@@ -285,7 +285,7 @@ double way_to_exit(const RunParameters& run, const Eigen::Array2d& start) {
   return run.obstacles.exit - place_in_file(run, start)[0];
 }
 
-double density(const ObstacleParameters& obstacles) {
+double circle_density(const ObstacleParameters& obstacles) {
   return obstacles.density.per_area.value_or(std::numeric_limits<double>::quiet_NaN());
 }
 
@@ -298,7 +298,7 @@ const Scene own_circles_scene = {.finding = Finding::clogging_length,
                                  .check = check_circles,
                                  .resolve = find_gap_and_density,
                                  .sharpest_bend = smallest_circle,
-                                 .density = density,
+                                 .density = circle_density,
                                  .walls = shifted_device,
                                  .release = release_in_device,
                                  .way = way_to_exit,

@@ -33,7 +33,7 @@ void find_density(RunParameters& run) {
 
 ObstacleArray sample(const RunParameters& run) { return sample_obstacles(run.obstacles, run.seed); }
 
-double density(const ObstacleParameters& obstacles) {
+double random_density(const ObstacleParameters& obstacles) {
   constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
   if (obstacles.density.is_saturated() && obstacles.diameter_spread > 0) return not_known;
   return wanted_density(obstacles).value_or(saturated_density(obstacles.diameter, obstacles.gap));
@@ -48,7 +48,7 @@ const Scene random_array_scene = {.finding = Finding::clogging_length,
                                   .check = check_spacing,
                                   .resolve = find_density,
                                   .sharpest_bend = smallest_diameter,
-                                  .density = density,
+                                  .density = random_density,
                                   .walls = sample,
                                   .release = release_in_void,
                                   .way = endless_way};

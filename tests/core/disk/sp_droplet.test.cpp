@@ -8,7 +8,7 @@
 namespace clog {
 namespace {
 
-RunParameters soft_disk(double wall_stiffness, double time_step = 1e-3) {
+RunParameters free_disk(double wall_stiffness, double time_step = 1e-3) {
   RunParameters run;
   run.model = Model::sp;
   run.wall_stiffness = wall_stiffness;
@@ -27,7 +27,7 @@ TEST(SpDroplet, RestsOnAnObstacleAtTheAnalyticSag) {
   // k = 4 E_w/sigma^2 carries M g = pi/4 at an overlap of pi/(16 E_w).
   for (const double stiffness : {0.5, 3.0, 30.0}) {
     const ObstacleArray obstacle(20, {{2, 0, 0.15}});
-    SpDroplet droplet(soft_disk(stiffness), obstacle, disk_at(1.35, 0));
+    SpDroplet droplet(free_disk(stiffness), obstacle, disk_at(1.35, 0));
     droplet.advance(600000);  // 45 times the slowest relaxation time, M g/(k V_t)
     EXPECT_NEAR(droplet.state().position[0] + droplet.state().frame.origin[0] - 1.35,
                 std::numbers::pi / (16 * stiffness), 1e-9);
@@ -49,7 +49,7 @@ TEST(SpDroplet, FollowsTheDampedOscillatorToSecondOrder) {
       sag * (1 - std::exp(-rate * end) * (std::cos(omega * end) + rate / omega * std::sin(omega * end)));
   const auto error_at = [&](double dt) {
     const ObstacleArray obstacle(20, {{2, 0, 0.15}});
-    RunParameters run = soft_disk(stiffness, dt);
+    RunParameters run = free_disk(stiffness, dt);
     run.drag.terminal_speed = terminal_speed;
     SpDroplet droplet(run, obstacle, disk_at(1.35, 0));
     droplet.advance(static_cast<int>(std::lround(end / dt)));
@@ -65,7 +65,7 @@ TEST(SpDroplet, MeetsAnObstacleAtAnyAllowedStepAndSpeed) {
   // Head-on from afar at speed 1: the same resting place for every step.
   for (const double dt : {0.01, 0.05, 0.2}) {
     const ObstacleArray obstacle(20, {{8, 0, 0.15}});
-    RunParameters run = soft_disk(1, dt);
+    RunParameters run = free_disk(1, dt);
     run.drag.terminal_speed = 1;
     SpDroplet droplet(run, obstacle, disk_at(0, 0));
     droplet.advance(static_cast<int>(100 / dt));
@@ -76,7 +76,7 @@ TEST(SpDroplet, MeetsAnObstacleAtAnyAllowedStepAndSpeed) {
 
 TEST(SpDroplet, ForceIsTheGradientOfTheEnergy) {
   const ObstacleArray obstacles(20, {{0.3, 0.1, 0.15}, {-0.2, 0.4, 0.3}, {19.9, 19.6, 0.1}});
-  SpForces forces(soft_disk(2), obstacles);
+  SpForces forces(free_disk(2), obstacles);
   DropletState state = disk_at(0.05, -0.03);
   forces.update_contacts(state, {});
   Eigen::ArrayXd force(2);
@@ -92,7 +92,7 @@ TEST(SpDroplet, ForceIsTheGradientOfTheEnergy) {
 
 TEST(SpDroplet, ForceStaysFiniteInsideAnObstacle) {
   const ObstacleArray obstacle(20, {{0, 0, 0.15}});
-  SpForces forces(soft_disk(2), obstacle);
+  SpForces forces(free_disk(2), obstacle);
   forces.set_weight(0);
   Eigen::ArrayXd force(2);
   DropletState centre = disk_at(0, 0);

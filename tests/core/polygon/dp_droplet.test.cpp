@@ -73,7 +73,7 @@ TEST(DpDroplet, IsOfSecondOrderInTheTimeStepWithoutDrag) {
   EXPECT_NEAR(std::log2(middle / fine), 2, 0.1);
 }
 
-RunParameters robust(int vertices) {
+RunParameters robust_polygon(int vertices) {
   RunParameters run = bare_parameters(vertices);
   run.dp.perimeter_spring = PerimeterSpring::along;
   run.dp.perimeter_stiffness = 0.3;
@@ -84,7 +84,7 @@ RunParameters robust(int vertices) {
 TEST(DpDroplet, IsOfSecondOrderInTheTimeStepWithAreaDrag) {
   const ObstacleArray nothing = no_obstacles();
   const auto position_at = [&](double dt) {
-    RunParameters run = robust(64);
+    RunParameters run = robust_polygon(64);
     run.drag.terminal_speed = 0.3;
     run.dp.area_stiffness = 100;
     run.time_step = dt;
@@ -101,7 +101,7 @@ TEST(DpDroplet, IsOfSecondOrderInTheTimeStepWithAreaDrag) {
 
 TEST(DpDroplet, WithAreaDragFallsRoundAtTheTerminalSpeed) {
   // Weight and drag act on the same area, so nothing pulls along the interface: the droplet stays a circle.
-  RunParameters run = robust(64);
+  RunParameters run = robust_polygon(64);
   const ObstacleArray nothing = no_obstacles();
   DpDroplet droplet(run, nothing, state_of(regular_polygon(64, units::rest_area)));
   droplet.advance(20000);  // the vertices' spread evens out at 0.5/t0
@@ -161,7 +161,7 @@ TEST(DpDroplet, BalancesItsEnergyToSecondOrder) {
          {std::tuple{0.0, 1.0, 1.0}, {0.05, 1.0, 1.0}, {0.0, 0.5, 1.0}, {0.05, 1.0, 4.0}}) {
       const auto imbalance = [&, near_wall = near_wall, wall_tension = wall_tension,
                               inertia = inertia](double dt) {
-        RunParameters run = robust(64);
+        RunParameters run = robust_polygon(64);
         run.dp.gravity = gravity;
         run.drag.near_wall = near_wall;
         run.dp.wall_tension = wall_tension;

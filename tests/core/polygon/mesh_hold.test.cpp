@@ -17,11 +17,11 @@
 namespace clog {
 namespace {
 
-constexpr double radius = 0.15;
+constexpr double obstacle_radius = 0.15;
 constexpr double box = 60;
 constexpr double middle = box / 2;
 
-RunParameters robust(double line_tension, int vertices) {
+RunParameters robust_hanging(double line_tension, int vertices) {
   RunParameters run;
   run.dp.line_tension = line_tension;
   run.dp.vertices = vertices;
@@ -40,7 +40,7 @@ RunParameters elastic(double line_tension, int vertices) {
   return resolve(run);
 }
 
-ObstacleArray one_obstacle() { return {box, {{middle, middle, radius}}}; }
+ObstacleArray one_obstacle() { return {box, {{middle, middle, obstacle_radius}}}; }
 
 /// A circle straight upstream of the obstacle, turned so that a vertex (phase 0) or the middle of an edge
 /// (1/2) looks at it.
@@ -97,7 +97,7 @@ Hanging hang(const RunParameters& run, bool on_an_edge) {
     const int next = (i + 1) % n;
     const Eigen::Array2d begin{state.position[i], state.position[n + i]};
     const Eigen::Array2d end{state.position[next], state.position[n + next]};
-    if (((begin + end) / 2 + origin).matrix().norm() < radius + 0.02)
+    if (((begin + end) / 2 + origin).matrix().norm() < obstacle_radius + 0.02)
       hanging.longest_edge = std::max(hanging.longest_edge, (end - begin).matrix().norm());
   }
   return hanging;
@@ -128,7 +128,7 @@ TEST_P(MeshHold, IsBoundedByItsColumnAndFallsAsTheSquareOfTheEdge) {
     const double bound = vertex.geometry.mesh_hold;
     RecordProperty("held_" + std::to_string(vertices), std::to_string(held));
     EXPECT_LT(held, bound) << vertices;
-    const double x = vertex.longest_edge / radius;
+    const double x = vertex.longest_edge / obstacle_radius;
     EXPECT_NEAR(bound, x * x / 16, 0.2 * bound) << vertices;
     if (vertices > 128) {
       EXPECT_NEAR(bound / bound_before, 0.25, 0.03) << vertices;
@@ -151,7 +151,7 @@ TEST_P(MeshHold, LetsADropletSlideOffAsItHasTo) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfPresets, MeshHold,
-                         testing::Values(Case{"robust", robust, 0.24}, Case{"elastic", elastic, 0.1}),
+                         testing::Values(Case{"robust", robust_hanging, 0.24}, Case{"elastic", elastic, 0.1}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 /// A tighter bend and a longer edge hold more.

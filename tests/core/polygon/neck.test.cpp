@@ -12,7 +12,7 @@
 namespace clog {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Eigen::ArrayXd polygon_of(const std::vector<Eigen::Array2d>& points) {
   const auto n = static_cast<Eigen::Index>(points.size());

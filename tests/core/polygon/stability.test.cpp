@@ -65,7 +65,7 @@ TEST(StiffModes, BoundTwoFilmsThatTouch) {
 
 /// A droplet that hangs over a circle around the origin as a horseshoe 0.4 thick: vertices evenly spread,
 /// those inside at a distance `inner` from the centre.
-Eigen::ArrayXd horseshoe(int num_vertices, double inner) {
+Eigen::ArrayXd horseshoe_outline(int num_vertices, double inner) {
   constexpr double open = 2, thick = 0.4;  // half the angle [rad]; [sigma]
   const double outer = inner + thick;
   const double lengths[] = {2 * open * outer, thick, 2 * open * inner, thick};
@@ -101,7 +101,7 @@ TEST(StiffModes, LeaveRoomForAContactThatTurnsWithItsEdges) {
     run.dp.area_stiffness = 10;
     run.dp.perimeter_stiffness = 1e-4;
     run.dp.contact_range = 0;
-    const Eigen::ArrayXd position = horseshoe(n, radius - 0.02 * units::regular_edge_length(n));
+    const Eigen::ArrayXd position = horseshoe_outline(n, radius - 0.02 * units::regular_edge_length(n));
     const double per_vertex = auto_contact_omega_dt2 / 2;  // k_c dt^2/(M/N_v) of the automatic contact
     const double vertex_mass = units::droplet_mass / n;
     const double step2 = per_vertex * vertex_mass / 1000;

@@ -309,7 +309,7 @@ DropletRun falls_on_disc(double friction, ClogDetection detection, double clog_e
   return {run, std::make_shared<ObstacleArray>(20, std::vector<Obstacle>{{10, 10, 0.15}}), std::move(state),
           3.0};
 }
-RunResult finished(DropletRun run) {
+RunResult ended(DropletRun run) {
   while (!run.advance(100)) {
   }
   return run.result();
@@ -319,9 +319,9 @@ TEST(WallFriction, HoldsADropletThatHangsOverADisc) {
   // Without friction it slips off. Proved or waited for, it is the same rest: it is searched for once the
   // walls hardly yield any more.
   constexpr double quiet = 1e-15;
-  EXPECT_EQ(finished(falls_on_disc(0, ClogDetection::certified, quiet)).status, RunStatus::passed);
-  const RunResult certified = finished(falls_on_disc(0.1, ClogDetection::certified, quiet));
-  const RunResult waited = finished(falls_on_disc(0.1, ClogDetection::threshold, quiet));
+  EXPECT_EQ(ended(falls_on_disc(0, ClogDetection::certified, quiet)).status, RunStatus::passed);
+  const RunResult certified = ended(falls_on_disc(0.1, ClogDetection::certified, quiet));
+  const RunResult waited = ended(falls_on_disc(0.1, ClogDetection::threshold, quiet));
   ASSERT_EQ(certified.clogged_by, ClogDetection::certified);
   ASSERT_EQ(waited.clogged_by, ClogDetection::threshold);
   EXPECT_NEAR(certified.distance, waited.distance, 1e-6);

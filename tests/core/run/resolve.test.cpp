@@ -179,7 +179,7 @@ INSTANTIATE_TEST_SUITE_P(
                 [](auto& run) { run.model = Model::sp, run.wall_stiffness = 1e4, run.time_step = 0.02; }}));
 
 /// The message with which resolve() refuses these parameters; empty if it accepts them.
-std::string refusal(const RunParameters& run) {
+std::string refusal_of(const RunParameters& run) {
   try {
     resolve(run);
   } catch (const Error& error) {
@@ -218,7 +218,7 @@ TEST(Resolve, FillsInTheLargestStepThatHolds) {
         larger.wall_stiffness.reset();
         larger.time_step = *resolved.time_step * 1.1 / std::sqrt(auto_step_margin);
         EXPECT_TRUE(1.1 * *resolved.time_step > std::min(contact, 0.2 * terminal_speed) ||
-                    refusal(larger).find("omega*dt") != std::string::npos)
+                    refusal_of(larger).find("omega*dt") != std::string::npos)
             << vertices << ' ' << line_tension << ' ' << terminal_speed;
       }
 }
@@ -322,11 +322,11 @@ TEST(Resolve, GivesALatticeABoxThatIsItsPeriod) {
 
 TEST(Resolve, TakesTheBoxThatItProposesForALattice) {
   for (const double angle : {0.5, 3.0, -17.0, 44.0}) {
-    const std::string message = refusal(lattice_run(angle, 5.2));
+    const std::string message = refusal_of(lattice_run(angle, 5.2));
     ASSERT_NE(message.find("lattice-angle="), std::string::npos) << angle;
     const double box = std::stod(message.substr(message.find("use box=") + 8));
-    EXPECT_EQ(refusal(lattice_run(angle, box)), "");
-    EXPECT_NE(refusal(lattice_run(angle, box - 1.5)), "") << "no larger than needed";
+    EXPECT_EQ(refusal_of(lattice_run(angle, box)), "");
+    EXPECT_NE(refusal_of(lattice_run(angle, box - 1.5)), "") << "no larger than needed";
   }
 }
 
@@ -335,10 +335,10 @@ TEST(Resolve, TakesTheSpreadThatItProposes) {
   run.dp.vertices = 256;
   run.obstacles.gap = 0.02;
   run.obstacles.diameter_spread = 0.9;
-  const std::string message = refusal(run);
+  const std::string message = refusal_of(run);
   ASSERT_NE(message.find("obstacle-diameter-spread=0.9 (the largest two"), std::string::npos) << message;
   run.obstacles.diameter_spread = std::stod(message.substr(message.find("use ") + 4));
-  EXPECT_EQ(refusal(run), "");
+  EXPECT_EQ(refusal_of(run), "");
 }
 
 TEST(Resolve, ChangesNothingThatWasGiven) {

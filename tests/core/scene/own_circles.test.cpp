@@ -26,7 +26,7 @@ RunParameters among(std::vector<Obstacle> circles) {
   return run;
 }
 
-std::string refusal(const RunParameters& run) {
+std::string circle_refusal(const RunParameters& run) {
   try {
     resolve(run);
   } catch (const Error& error) {
@@ -61,20 +61,21 @@ TEST(OwnCircles, HaveTheGapAndTheDensityOfTheirFile) {
 }
 
 TEST(OwnCircles, AreRefusedWithTheirPlaces) {
-  EXPECT_NE(refusal(among({{2, 5, 0.5}, {2.5, 5, 0.5}}))
+  EXPECT_NE(circle_refusal(among({{2, 5, 0.5}, {2.5, 5, 0.5}}))
                 .find("posts.csv (those at x=2, y=5 and x=2.5, y=5 overlap by 0.5 sigma)"),
             std::string::npos);
-  EXPECT_NE(refusal(among({{0.1, 5, 0.5}, {9.4, 5, 0.5}})).find("periodic images"), std::string::npos);
-  EXPECT_NE(refusal(among({{11, 5, 0.5}})).find("outside the array"), std::string::npos);
-  EXPECT_NE(refusal(among({{700, 125, 60}})).find("first line such as # units=um droplet=200um"),
+  EXPECT_NE(circle_refusal(among({{0.1, 5, 0.5}, {9.4, 5, 0.5}})).find("periodic images"), std::string::npos);
+  EXPECT_NE(circle_refusal(among({{11, 5, 0.5}})).find("outside the array"), std::string::npos);
+  EXPECT_NE(circle_refusal(among({{700, 125, 60}})).find("first line such as # units=um droplet=200um"),
             std::string::npos);
-  EXPECT_NE(refusal(among({{std::nan(""), 5, 0.5}})).find("outside the array"), std::string::npos);
-  EXPECT_NE(refusal(among({{5, 5, 5}})).find("periodic image"), std::string::npos);
-  EXPECT_NE(refusal(among({{5, 5, 0.5}, {6.04, 5, 0.5}})).find("not wider than an edge"), std::string::npos);
+  EXPECT_NE(circle_refusal(among({{std::nan(""), 5, 0.5}})).find("outside the array"), std::string::npos);
+  EXPECT_NE(circle_refusal(among({{5, 5, 5}})).find("periodic image"), std::string::npos);
+  EXPECT_NE(circle_refusal(among({{5, 5, 0.5}, {6.04, 5, 0.5}})).find("not wider than an edge"),
+            std::string::npos);
   RunParameters none = among({});
-  EXPECT_NE(refusal(none).find("there are none"), std::string::npos);
+  EXPECT_NE(circle_refusal(none).find("there are none"), std::string::npos);
   none.obstacles.own.reset();
-  EXPECT_NE(refusal(none).find("obstacles=FILE.csv"), std::string::npos);
+  EXPECT_NE(circle_refusal(none).find("obstacles=FILE.csv"), std::string::npos);
 }
 
 RunParameters between_walls(std::vector<Obstacle> circles) {
@@ -94,7 +95,7 @@ TEST(OwnCircles, InARowAreOnePostThatMayGrowOutOfAWall) {
   EXPECT_NEAR(run.obstacles.gap, std::hypot(3, 3 - 1.95) - 0.5, 1e-12);
   EXPECT_DOUBLE_EQ(run.obstacles.density.per_area.value(), 2 / 235.0) << "two posts";
   for (Obstacle& circle : row) circle.y += 0.155;  // the first one's gap at the wall is 0.005
-  EXPECT_NE(refusal(between_walls(row)).find("at the wall"), std::string::npos);
+  EXPECT_NE(circle_refusal(between_walls(row)).find("at the wall"), std::string::npos);
 }
 
 TEST(OwnCircles, AreShiftedSoThatTheDropletStartsAnywhere) {
@@ -118,12 +119,12 @@ TEST(OwnCircles, AreShiftedSoThatTheDropletStartsAnywhere) {
 TEST(OwnCircles, MayBeAnyLengthAndFindEachOtherOverItsBorder) {
   RunParameters run = among({{0.2, 5, 0.25}, {23.2, 5, 0.25}});
   run.obstacles.length = 23.5;
-  EXPECT_NE(refusal(run).find("x=23.2, y=5 touch)"), std::string::npos);
+  EXPECT_NE(circle_refusal(run).find("x=23.2, y=5 touch)"), std::string::npos);
   run.obstacles.own = OwnCircles({{0.2, 5, 0.25}, {22.9, 5, 0.25}});
   EXPECT_NEAR(resolve(run).obstacles.gap, 0.8 - 0.5, 1e-12);
   EXPECT_DOUBLE_EQ(resolve(run).obstacles.density.per_area.value(), 2 / 235.0);
   run.obstacles.boxes = 2;
-  EXPECT_NE(refusal(run).find("boxes=2"), std::string::npos);
+  EXPECT_NE(circle_refusal(run).find("boxes=2"), std::string::npos);
 }
 
 TEST(OwnCircles, StandBetweenWallsWithoutImagesAcross) {
@@ -156,16 +157,17 @@ TEST(OwnCircles, AreEnteredOnALineAndLeftAtTheExit) {
 TEST(OwnCircles, RefuseWaysThatCannotBe) {
   RunParameters run = between_walls({{12, 5, 0.3}});
   run.obstacles.exit = 2;
-  EXPECT_NE(refusal(run).find("exit=2 (must lie downstream"), std::string::npos);
+  EXPECT_NE(circle_refusal(run).find("exit=2 (must lie downstream"), std::string::npos);
   run.obstacles.exit = 24;
-  EXPECT_NE(refusal(run).find("exit=24"), std::string::npos);
+  EXPECT_NE(circle_refusal(run).find("exit=24"), std::string::npos);
   run.obstacles.exit = 20;
   run.obstacles.release = Release::anywhere;
-  EXPECT_NE(refusal(run).find("entrance=2 (the droplet is not released on a line)"), std::string::npos);
+  EXPECT_NE(circle_refusal(run).find("entrance=2 (the droplet is not released on a line)"),
+            std::string::npos);
   run.obstacles.entrance = 0;
-  EXPECT_NE(refusal(run).find("exit=20"), std::string::npos);
+  EXPECT_NE(circle_refusal(run).find("exit=20"), std::string::npos);
   run = between_walls({{12, 0.34, 0.3}});
-  EXPECT_NE(refusal(run).find("at the wall"), std::string::npos);
+  EXPECT_NE(circle_refusal(run).find("at the wall"), std::string::npos);
 }
 
 TEST(OwnCircles, OfASingleOneHaveTheGapToItsPeriodicImage) {
@@ -180,13 +182,15 @@ TEST(OwnCircles, OfASingleOneHaveTheGapToItsPeriodicImage) {
 TEST(OwnCircles, AreRefusedInAPeriodInWhichTheDropletMeetsItsImage) {
   RunParameters run = among({{1, 1, 0.2}});
   run.obstacles.box = 4.9;
-  EXPECT_NE(refusal(run).find("box=4.9 (the droplet would meet its own periodic image) use at least 5"),
-            std::string::npos);
+  EXPECT_NE(
+      circle_refusal(run).find("box=4.9 (the droplet would meet its own periodic image) use at least 5"),
+      std::string::npos);
   run.obstacles.side_walls = SideWalls::on;
-  EXPECT_NE(refusal(run).find("length=4.9 (the droplet would meet its own periodic image along the flow)"),
-            std::string::npos);
+  EXPECT_NE(
+      circle_refusal(run).find("length=4.9 (the droplet would meet its own periodic image along the flow)"),
+      std::string::npos);
   run.obstacles.boxes = 2;
-  EXPECT_EQ(refusal(run), "");
+  EXPECT_EQ(circle_refusal(run), "");
 }
 
 /// A channel hardly wider than the droplet, with a bump of radius 0.4 on one wall.

@@ -18,7 +18,7 @@ namespace {
 constexpr double degree = std::numbers::pi / 180;
 
 /// Soft disks, nearly rigid, among obstacles with room to pass: spacing 1.5 sigma, obstacles of 0.3 sigma.
-RunParameters soft_disk(double angle, std::uint32_t seed = 1) {
+RunParameters lattice_disk(double angle, std::uint32_t seed = 1) {
   RunParameters run;
   run.model = Model::sp;
   run.wall_stiffness = 10;
@@ -32,7 +32,7 @@ RunParameters soft_disk(double angle, std::uint32_t seed = 1) {
   return resolve(run);
 }
 
-RunResult result_of(DropletRun run) {
+RunResult lattice_result(DropletRun run) {
   while (!run.advance(1000)) {
   }
   return run.result();
@@ -42,7 +42,7 @@ double slope(const RunResult& result) { return result.lateral / result.distance;
 
 TEST(Lattice, HasFourNeighboursAtTheExactGapAcrossItsBox) {
   for (const double angle : {-31.0, 0.0, 11.0, 45.0}) {
-    const ObstacleParameters used = soft_disk(angle).obstacles;
+    const ObstacleParameters used = lattice_disk(angle).obstacles;
     const ObstacleArray array = lattice_obstacles(used, 3);
     EXPECT_NEAR(static_cast<double>(array.obstacles().size()), used.box * used.box / 2.25, 1e-6);
     const double t = used.lattice_angle * degree;
@@ -86,7 +86,7 @@ TEST(Lattice, LeavesTheReleaseToTheSeed) {
   int num_above = 0;
   std::set<double> places;
   for (std::uint32_t seed = 1; seed <= 400; ++seed) {
-    const ObstacleParameters used = soft_disk(11).obstacles;
+    const ObstacleParameters used = lattice_disk(11).obstacles;
     const ObstacleArray array = lattice_obstacles(used, seed);
     std::vector<Obstacle> near;
     array.gather({used.box / 2, used.box / 2, 0, 0, 0, 0, 1.2}, near);
@@ -106,7 +106,7 @@ TEST(Lattice, LeavesTheReleaseToTheSeed) {
 
 TEST(Lattice, StartsAFreeDropletAtTheCentreOfTheBox) {
   for (const Model model : {Model::dp, Model::sp}) {
-    RunParameters run = soft_disk(11, 5);
+    RunParameters run = lattice_disk(11, 5);
     run.model = model;
     if (model == Model::dp) run.dp.vertices = 64;
     run.wall_stiffness = model == Model::sp ? run.wall_stiffness : std::nullopt;
@@ -125,9 +125,10 @@ TEST(Lattice, StartsAFreeDropletAtTheCentreOfTheBox) {
 // the square lattice have tilts t and spacing a, or t - 45 degrees and spacing sqrt(2) a.
 TEST(Lattice, LeadsADiskAlongItsRows) {
   for (const double angle : {-20.0, -8.0, 8.0, 20.0})
-    EXPECT_NEAR(slope(result_of(DropletRun(soft_disk(angle)))), std::tan(angle * degree), 0.02) << angle;
+    EXPECT_NEAR(slope(lattice_result(DropletRun(lattice_disk(angle)))), std::tan(angle * degree), 0.02)
+        << angle;
   for (const double angle : {35.0, 40.0})
-    EXPECT_NEAR(slope(result_of(DropletRun(soft_disk(angle)))), std::tan((angle - 45) * degree), 0.02)
+    EXPECT_NEAR(slope(lattice_result(DropletRun(lattice_disk(angle)))), std::tan((angle - 45) * degree), 0.02)
         << angle;
 }
 
@@ -136,7 +137,7 @@ TEST(Lattice, LeadsADiskStraightWhenItIsSymmetric) {
     double lateral = 0;
     double distance = 0;
     for (std::uint32_t seed = 1; seed <= 6; ++seed) {
-      const RunResult result = result_of(DropletRun(soft_disk(angle, seed)));
+      const RunResult result = lattice_result(DropletRun(lattice_disk(angle, seed)));
       EXPECT_LE(std::abs(result.lateral), 1.5) << "it stays in its lane, seed " << seed;
       lateral += result.lateral;
       distance += result.distance;
@@ -146,27 +147,27 @@ TEST(Lattice, LeadsADiskStraightWhenItIsSymmetric) {
 }
 
 TEST(Lattice, LeadsADiskThatFeelsNothingStraight) {
-  RunParameters run = soft_disk(11);
+  RunParameters run = lattice_disk(11);
   run.wall_stiffness = 1e-12;
-  const RunResult result = result_of(DropletRun(run));
+  const RunResult result = lattice_result(DropletRun(run));
   EXPECT_GT(result.distance, 100);
   EXPECT_NEAR(result.lateral, 0, 1e-8);
 }
 
 TEST(Lattice, LeadsToTheOtherSideInAMirror) {
-  const RunParameters run = soft_disk(13);
+  const RunParameters run = lattice_disk(13);
   const ObstacleArray array = lattice_obstacles(run.obstacles, run.seed);
   std::vector<Obstacle> mirrored(array.obstacles().begin(), array.obstacles().end());
   for (Obstacle& obstacle : mirrored) obstacle.y = array.period().box - obstacle.y;
-  const RunResult result = result_of(DropletRun(run));
+  const RunResult result = lattice_result(DropletRun(run));
   const RunResult mirror =
-      result_of(DropletRun(run, std::make_shared<ObstacleArray>(array.period().box, mirrored)));
+      lattice_result(DropletRun(run, std::make_shared<ObstacleArray>(array.period().box, mirrored)));
   EXPECT_GT(result.lateral, 10);
   EXPECT_NEAR(mirror.lateral, -result.lateral, 1e-6);
   EXPECT_NEAR(mirror.distance, result.distance, 1e-6);
 
   // The mirror image is the lattice of the opposite tilt, up to a shift.
-  const ObstacleArray opposite = lattice_obstacles(soft_disk(-13).obstacles, run.seed);
+  const ObstacleArray opposite = lattice_obstacles(lattice_disk(-13).obstacles, run.seed);
   ASSERT_EQ(opposite.obstacles().size(), mirrored.size());
   EXPECT_EQ(opposite.period().box, array.period().box);
   const double dx = opposite.obstacles()[0].x - mirrored[0].x;
