@@ -11,6 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -192,11 +193,28 @@ std::string read_attribute(hid_t object, const std::string& name) {
   return {text.data(), strnlen(text.data(), text.size())};
 }
 
+namespace {
+
+/// Nothing if they cannot be counted. H5Oget_info has other structures since HDF5 1.12, whose names 1.10 does
+/// not have.
+std::optional<hsize_t> count_attributes(hid_t object) {
+#if H5_VERSION_GE(1, 12, 0)
+  H5O_info2_t info;
+  if (H5Oget_info3(object, &info, H5O_INFO_NUM_ATTRS) < 0) return {};
+#else
+  H5O_info_t info;
+  if (H5Oget_info2(object, &info, H5O_INFO_NUM_ATTRS) < 0) return {};
+#endif
+  return info.num_attrs;
+}
+
+}  // namespace
+
 std::vector<std::pair<std::string, std::string>> read_attributes(hid_t file, const std::string& path) {
   std::vector<std::pair<std::string, std::string>> all;
-  H5O_info_t root;
-  check(H5Oget_info2(file, &root, H5O_INFO_NUM_ATTRS) >= 0, "read the attributes of", path);
-  for (hsize_t i = 0; i < root.num_attrs; ++i) {
+  const std::optional<hsize_t> num_attributes = count_attributes(file);
+  check(num_attributes.has_value(), "read the attributes of", path);
+  for (hsize_t i = 0; i < *num_attributes; ++i) {
     const Attribute attribute(
         H5Aopen_by_idx(file, ".", H5_INDEX_NAME, H5_ITER_INC, i, H5P_DEFAULT, H5P_DEFAULT));
     char name[256];
