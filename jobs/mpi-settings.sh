@@ -1,11 +1,19 @@
-# Sourced by the scripts that call mpirun: Open MPI settings that let them run anywhere.
+# Sourced by the scripts that call mpirun: settings of Open MPI that let them run anywhere. A variable that is already
+# set keeps its value. Since Open MPI 5 its launcher, PRRTE, has its own variables, PRTE_MCA_*; every version ignores
+# those of the others, and MPICH needs none.
 # shellcheck shell=bash
-# Containers run as root, which Open MPI refuses unless told twice that it is meant.
-export OMPI_ALLOW_RUN_AS_ROOT=1
-export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-# More ranks than cores: the ranks of a laptop or a one-core machine share what there is.
-export OMPI_MCA_rmaps_base_oversubscribe=1
-# Ranks are not tied to cores: on a shared machine they would be tied to busy ones.
-export OMPI_MCA_hwloc_base_binding_policy=none
-# Containers forbid the kernel call that copies between processes; messages here are small anyway.
-export OMPI_MCA_btl_vader_single_copy_mechanism=none
+# Containers run as root, which Open MPI refuses unless two variables allow it.
+export OMPI_ALLOW_RUN_AS_ROOT="${OMPI_ALLOW_RUN_AS_ROOT:-1}"
+export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="${OMPI_ALLOW_RUN_AS_ROOT_CONFIRM:-1}"
+# Ranks are not bound to cores: on a shared machine they would be bound to busy ones.
+export OMPI_MCA_hwloc_base_binding_policy="${OMPI_MCA_hwloc_base_binding_policy:-none}"
+export PRTE_MCA_hwloc_default_binding_policy="${PRTE_MCA_hwloc_default_binding_policy:-none}"
+# More ranks than cores: the ranks of a laptop or a one-core machine share what there is. PRRTE ignores the binding
+# policy if this is allowed, so that a user who binds ranks gets at most one per core from Open MPI 5.
+export OMPI_MCA_rmaps_base_oversubscribe="${OMPI_MCA_rmaps_base_oversubscribe:-1}"
+if [ "$PRTE_MCA_hwloc_default_binding_policy" = none ]; then
+  export PRTE_MCA_rmaps_default_mapping_policy="${PRTE_MCA_rmaps_default_mapping_policy:-:oversubscribe}"
+fi
+# Containers forbid the kernel call that copies between processes (cross-memory attach); messages here are small anyway.
+export OMPI_MCA_btl_vader_single_copy_mechanism="${OMPI_MCA_btl_vader_single_copy_mechanism:-none}"
+export OMPI_MCA_smsc="${OMPI_MCA_smsc:-^cma}"

@@ -14,6 +14,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <string_view>
 
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
@@ -30,11 +31,6 @@ std::string counted(std::size_t number, const char* noun) {
 bool is_set(const char* name) { return std::getenv(name) != nullptr; }
 
 bool is_open_mpi() { return parallel::Communicator::library_version().starts_with("Open MPI"); }
-
-/// How to unbind ranks from cores.
-std::string unbind() {
-  return is_open_mpi() ? "set OMPI_MCA_hwloc_base_binding_policy=none" : "mpirun -bind-to none";
-}
 
 /// How many processes belong together, as the launcher says; 0 if it says nothing.
 int number_in(const char* name) {
@@ -96,12 +92,13 @@ Finding cores(const std::string& host, const std::vector<const RankFacts*>& rank
     all.insert(rank->cores.begin(), rank->cores.end());
   }
   const double granted = ranks.front()->cores_granted;
+  const std::string unbind = how_to_unbind(parallel::Communicator::library_version());
   const std::string where =
       fmt::format("{}: {}, {}", host, counted(ranks.size(), "rank"), counted(all.size(), "core"));
   if (ranks.size() > all.size())
     return {where, fmt::format("one rank per core is as fast: mpirun -np {}; if there are more cores, ranks "
                                "are bound: {}",
-                               all.size(), unbind())};
+                               all.size(), unbind)};
   if (granted > 0 && granted < static_cast<double>(ranks.size()))
     return {fmt::format("{}, of which {:.3g} are granted (cpu.max of a control group)", where, granted),
             "ask for more cores, or start fewer ranks"};
@@ -110,7 +107,7 @@ Finding cores(const std::string& host, const std::vector<const RankFacts*>& rank
       return {fmt::format("{}, but {} ranks are bound to {}", where, number,
                           set.size() == 1 ? fmt::format("one core ({})", set.front())
                                           : fmt::format("{} of them", set.size())),
-              unbind() + "; core instead of none if the host is yours alone"};
+              unbind + "; core instead of none if the host is yours alone"};
   return {where};
 }
 
@@ -175,6 +172,14 @@ Finding folder(const std::string& output) {
 }
 
 }  // namespace
+
+std::string how_to_unbind(const std::string& mpi) {
+  constexpr std::string_view open_mpi = "Open MPI v";
+  if (!mpi.starts_with(open_mpi)) return "mpirun -bind-to none";
+  const int major = std::atoi(mpi.c_str() + open_mpi.size());
+  return major >= 5 ? "set PRTE_MCA_hwloc_default_binding_policy=none"
+                    : "set OMPI_MCA_hwloc_base_binding_policy=none";
+}
 
 std::vector<Finding> examine(const std::vector<RankFacts>& ranks, const std::string& output) {
   std::map<std::string, std::vector<const RankFacts*>> by_host;

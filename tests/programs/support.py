@@ -15,7 +15,9 @@ import pandas
 
 BIN = pathlib.Path(os.environ["CLOG_BIN"])
 # mpirun's own behaviour differs between Open MPI and MPICH.
-MPI = re.search(r"^MPI: (.*) v?\d", subprocess.run([BIN / "clogsweep", "--version"], check=True, capture_output=True, text=True).stdout, re.MULTILINE)[1]
+_mpi = re.search(r"^MPI: (.*) v?(\d+)",
+                 subprocess.run([BIN / "clogsweep", "--version"], check=True, capture_output=True, text=True).stdout, re.MULTILINE)
+MPI, MPI_MAJOR = _mpi[1], int(_mpi[2])
 STEPS_PER_SNAPSHOT = 2**18  # runs that were stopped go on from a snapshot
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MPIRUN = ROOT / "tests" / "mpirun.sh"

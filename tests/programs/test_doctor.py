@@ -1,15 +1,19 @@
 """clogsweep doctor: sees what spoils sweeps, and says what helps."""
 
 import os
+import pathlib
 import subprocess
 import unittest
 
-from support import BIN, LONGEST, MPI, MPIRUN, ProgramTest
+from support import BIN, LONGEST, MPI, MPI_MAJOR, MPIRUN, ProgramTest
+
+# The variable that binds ranks to cores has another name since Open MPI 5.
+BINDING = "PRTE_MCA_hwloc_default_binding_policy" if MPI_MAJOR >= 5 else "OMPI_MCA_hwloc_base_binding_policy"
 
 
 class Doctor(ProgramTest):
     def examine(self, *arguments, ranks=None, before=(), **environment):
-        variables = {key: value for key, value in os.environ.items() if not key.startswith(("SLURM_", "OMPI_"))}
+        variables = {key: value for key, value in os.environ.items() if not key.startswith(("SLURM_", "OMPI_", "PRTE_"))}
         command = [*before, *([str(MPIRUN), str(ranks)] if ranks else []), str(BIN / "clogsweep"), "doctor", *arguments]
         return subprocess.run(command, cwd=self.folder, env={**variables, **environment}, capture_output=True, text=True,
                               timeout=LONGEST)
@@ -37,7 +41,23 @@ class Doctor(ProgramTest):
         self.assertIn("2 ranks, started together", done.stdout)
         remedy = self.fault(done, "2 ranks, 1 core")
         self.assertIn("mpirun -np 1;", remedy)
-        self.assertIn({"Open MPI": "OMPI_MCA_hwloc_base_binding_policy=none", "MPICH": "-bind-to none"}[MPI], remedy)
+        self.assertIn(f"{BINDING}=none" if MPI == "Open MPI" else "-bind-to none", remedy)
+
+    @unittest.skipUnless(MPI == "Open MPI", "MPICH binds no ranks unless told by an option")
+    def test_the_users_binding_wins_over_mpi_settings(self):
+        cores = os.sched_getaffinity(0)
+        of_one_core = (pathlib.Path("/sys/devices/system/cpu") / f"cpu{min(cores)}" / "topology/thread_siblings").read_text()
+        threads = bin(int(of_one_core.replace(",", ""), 16)).count("1")
+        for policy, expected in (("none", len(cores)), ("core", threads)):
+            with self.subTest(policy):
+                found = subprocess.run([str(MPIRUN), "1", "nproc"], env={**os.environ, BINDING: policy}, check=True,
+                                       capture_output=True, text=True, timeout=LONGEST).stdout
+                self.assertEqual(int(found), expected)
+
+    def test_four_ranks_start_on_two_cores(self):
+        cores = ",".join(map(str, sorted(os.sched_getaffinity(0))[:2]))
+        done = self.examine(ranks=4, before=["taskset", "-c", cores])
+        self.assertIn("4 ranks, started together", done.stdout, done.stderr)
 
     def test_a_lonely_rank_of_many_is_seen(self):
         self.assertIn("use mpirun", self.fault(self.examine(SLURM_NTASKS="8"), "allocation of 8 tasks"))

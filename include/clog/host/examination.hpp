@@ -20,4 +20,10 @@ std::vector<Finding> examine(const std::vector<RankFacts>& ranks, const std::str
 /// @throws Error if this is one of them
 void refuse_to_be_alone(int num_ranks);
 
+/// The setting that lets ranks use every core of their host.
+/// @param mpi  name and version, as Communicator::library_version() gives them. Since Open MPI 5, its
+/// launcher PRRTE
+///             reads variables of other names.
+std::string how_to_unbind(const std::string& mpi);
+
 }  // namespace clog::host
