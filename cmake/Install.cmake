@@ -36,25 +36,32 @@ install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT programs
 
 # What a shell completes, from what the programs say of themselves
 
-set(completion "${PROJECT_BINARY_DIR}/completion")
-add_custom_command(OUTPUT "${completion}/clogsweep" "${completion}/_clogsweep"
-  # Open MPI leaves memory allocated at exit, which is nothing that a build with sanitizers has to say.
-  COMMAND "${CMAKE_COMMAND}" -E env ASAN_OPTIONS=detect_leaks=0
-    "${CLOG_PYTHON}" "${PROJECT_SOURCE_DIR}/cmake/completion.py" "$<TARGET_FILE_DIR:clogsweep>" "${completion}"
-  DEPENDS clogsweep clogrun clogfit "${PROJECT_SOURCE_DIR}/cmake/completion.py"
-    "${PROJECT_SOURCE_DIR}/cmake/completion.bash.in" "${PROJECT_SOURCE_DIR}/cmake/completion.zsh.in"
-    "${PROJECT_SOURCE_DIR}/analysis/clogsweep/commands/report.py"
-  VERBATIM)
-add_custom_target(completion ALL DEPENDS "${completion}/clogsweep" "${completion}/_clogsweep")
-# bash loads the file that is called as the command is; mpirun's own is none.
-foreach(program clogsweep clogrun clogfit mpirun mpiexec)
-  install(FILES "${completion}/clogsweep" RENAME ${program}
-    DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT programs)
-endforeach()
-# Where zsh looks below /usr in Debian, and below any other prefix.
-foreach(folder vendor-completions site-functions)
-  install(FILES "${completion}/_clogsweep" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/${folder}" COMPONENT programs)
-endforeach()
+set(has_python OFF)
+if(CLOG_PYTHON)
+  set(has_python ON)
+endif()
+option(CLOG_COMPLETION "Install completion for bash and zsh; needs python3" ${has_python})
+if(CLOG_COMPLETION)
+  set(completion "${PROJECT_BINARY_DIR}/completion")
+  add_custom_command(OUTPUT "${completion}/clogsweep" "${completion}/_clogsweep"
+    # Open MPI leaves memory allocated at exit, which is nothing that a build with sanitizers has to say.
+    COMMAND "${CMAKE_COMMAND}" -E env ASAN_OPTIONS=detect_leaks=0
+      "${CLOG_PYTHON}" "${PROJECT_SOURCE_DIR}/cmake/completion.py" "$<TARGET_FILE_DIR:clogsweep>" "${completion}"
+    DEPENDS clogsweep clogrun clogfit "${PROJECT_SOURCE_DIR}/cmake/completion.py"
+      "${PROJECT_SOURCE_DIR}/cmake/completion.bash.in" "${PROJECT_SOURCE_DIR}/cmake/completion.zsh.in"
+      "${PROJECT_SOURCE_DIR}/analysis/clogsweep/commands/report.py"
+    VERBATIM)
+  add_custom_target(completion ALL DEPENDS "${completion}/clogsweep" "${completion}/_clogsweep")
+  # bash loads the file that is called as the command is; mpirun's own is none.
+  foreach(program clogsweep clogrun clogfit mpirun mpiexec)
+    install(FILES "${completion}/clogsweep" RENAME ${program}
+      DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT programs)
+  endforeach()
+  # Where zsh looks below /usr in Debian, and below any other prefix.
+  foreach(folder vendor-completions site-functions)
+    install(FILES "${completion}/_clogsweep" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/${folder}" COMPONENT programs)
+  endforeach()
+endif()
 
 # The handbook, as man pages and as a site: for packages, since no program needs it
 

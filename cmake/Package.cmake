@@ -22,7 +22,10 @@ set(CPACK_COMPONENT_PROGRAMS_DESCRIPTION "Follows droplets that sink through a f
 one on as many cores as there are, and fits clogging lengths and speeds.")
 set(CPACK_DEBIAN_LIBRARIES_PACKAGE_NAME libclogsweep-dev)
 set(CPACK_DEBIAN_LIBRARIES_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_LIBRARIES_PACKAGE_DEPENDS
-  "libeigen3-dev, libboost-dev, nlohmann-json3-dev, libhwy-dev, libfmt-dev, libnlopt-cxx-dev, libhdf5-dev, zlib1g-dev")
+set(packages)
+foreach(library Eigen3 Boost nlohmann_json hwy fmt NLopt HDF5 ZLIB)
+  list(APPEND packages ${CLOG_${library}_DEBIAN})
+endforeach()
+list(JOIN packages ", " CPACK_DEBIAN_LIBRARIES_PACKAGE_DEPENDS)
 set(CPACK_COMPONENT_LIBRARIES_DESCRIPTION "Static libraries and headers for your own programs: find_package(clogsweep).")
 include(CPack)

@@ -41,19 +41,19 @@ void become_python(const std::string& name, const std::filesystem::path& module,
   setenv("CLOG_CALLED_AS", name.c_str(), 1);
   setenv(python_path.c_str(), with_others(module.parent_path()).c_str(), 1);
   setenv("PYTHONSAFEPATH", "1", 1);  // no modules from the folder in which the user is
-  arguments.insert(arguments.begin(), {CLOG_PYTHON, "-m", "clogsweep"});
+  arguments.insert(arguments.begin(), {CLOG_PYTHON_COMMAND, "-m", "clogsweep"});
   std::vector<char*> words;
   words.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) words.push_back(argument.data());
   words.push_back(nullptr);
-  execv(words.front(), words.data());
-  throw Error(std::string("cannot run ") + CLOG_PYTHON + " (" + std::strerror(errno) +
-              "); it needs Debian's python3 with h5py, pandas and matplotlib");
+  execvp(words.front(), words.data());
+  throw Error(std::string("cannot run ") + CLOG_PYTHON_COMMAND + " (" + std::strerror(errno) +
+              "); install Python 3 with h5py, pandas, tables and matplotlib");
 }
 
 std::string python_command(const std::filesystem::path& module, const std::vector<std::string>& arguments) {
   std::string command =
-      python_path + "=" + module.parent_path().string() + " " + CLOG_PYTHON + " -m clogsweep";
+      python_path + "=" + module.parent_path().string() + " " + CLOG_PYTHON_COMMAND + " -m clogsweep";
   for (const std::string& argument : arguments) command += " " + argument;
   return command;
 }

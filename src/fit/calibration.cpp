@@ -9,7 +9,6 @@
 #include <future>
 #include <iterator>
 #include <limits>
-#include <nlopt.hpp>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -17,6 +16,8 @@
 #include <tuple>
 #include <type_traits>
 #include <vector>
+
+#include "nelder_mead.hpp"
 
 namespace clog::fit {
 namespace {
@@ -153,40 +154,20 @@ struct LocalMinimum {
 
 /// Nelder and Mead's simplex.
 LocalMinimum minimise(Trier& trier, const Place& from, const Scale& scale, const CalibrationRange& range) {
-  struct Objective {
-    Trier& trier;
-    Trial best;
-    std::exception_ptr fault = nullptr;  // of a simulation; NLopt would swallow its message
-
-    static double call(const std::vector<double>& x, std::vector<double>&, void* data) {
-      auto& self = *static_cast<Objective*>(data);
-      try {
-        const Trial trial = self.trier({x[0], x[1]});
-        self.best = std::min(self.best, trial, is_nearer);
-        return trial.delta;
-      } catch (...) {
-        self.fault = std::current_exception();
-        throw nlopt::forced_stop();
-      }
-    }
-  } objective{trier, {from, std::numeric_limits<double>::infinity()}};
-  nlopt::opt optimiser(nlopt::LN_NELDERMEAD, 2);
-  optimiser.set_lower_bounds({std::log(range.least_tension), 0});
-  optimiser.set_upper_bounds({std::log(range.most_tension), range.most_drag});
-  optimiser.set_initial_step({scale.first_step.log_tension, scale.first_step.drag});
-  optimiser.set_xtol_abs({scale.tolerance.log_tension, scale.tolerance.drag});
-  optimiser.set_maxeval(scale.most_simulations);
-  optimiser.set_min_objective(&Objective::call, &objective);
-  std::vector<double> place{from.log_tension, from.drag};
-  double smallest = 0;
-  try {
-    const nlopt::result ending = optimiser.optimize(place, smallest);
-    return {objective.best, ending != nlopt::MAXEVAL_REACHED};
-  } catch (const nlopt::forced_stop&) {
-    std::rethrow_exception(objective.fault);
-  } catch (const nlopt::roundoff_limited&) {  // as near as it gets
-    return {objective.best, true};
-  }
+  Trial best{from, std::numeric_limits<double>::infinity()};
+  const auto delta = [&](double log_tension, double drag) {
+    const Trial trial = trier({log_tension, drag});
+    best = std::min(best, trial, is_nearer);
+    return trial.delta;
+  };
+  const bool is_converged = nelder_mead({.from = {from.log_tension, from.drag},
+                                         .lower = {std::log(range.least_tension), 0},
+                                         .upper = {std::log(range.most_tension), range.most_drag},
+                                         .first_step = {scale.first_step.log_tension, scale.first_step.drag},
+                                         .tolerance = {scale.tolerance.log_tension, scale.tolerance.drag},
+                                         .most_evaluations = scale.most_simulations},
+                                        delta);
+  return {best, is_converged};
 }
 
 constexpr int num_grid_tensions = 7;

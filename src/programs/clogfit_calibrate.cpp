@@ -200,6 +200,9 @@ void print_json(const std::vector<Text>& files, const std::vector<fit::Calibrati
 int clogfit_calibrate(int argc, const char* const* argv) {
   cli::CommandLine line = parse_calibration(argc, argv);
   if (cli::answer_help_or_version(line, {})) return console::exit_success;
+  if (!fit::can_calibrate())
+    throw Error(
+        "not in this build (NLopt was not found when clogsweep was built) install NLopt and build again");
   const std::vector<Text> files = line.get_all("profiles");
   if (files.empty()) throw Error("missing profile; try clogfit calibrate trial.csv --orifice 0.7");
   for (const char* key : {"line-tension", "near-wall-drag"})

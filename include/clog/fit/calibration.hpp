@@ -69,6 +69,9 @@ struct CalibrationAttempt {
 /// Told of every simulation, from several threads at a time.
 using CalibrationProgress = std::function<void(const CalibrationAttempt& attempt)>;
 
+/// Whether calibrate() is in this build: it needs NLopt.
+bool can_calibrate();
+
 /// Minimises Delta_v. Near a line tension at which the droplet clogs it has several minima, narrow ones. So
 /// the search begins from the best points of a coarse grid, logarithmic in Gamma; brackets the line tension
 /// at which the droplet clogs, if it does; begins again at distances from there that double; and restarts
@@ -77,7 +80,8 @@ using CalibrationProgress = std::function<void(const CalibrationAttempt& attempt
 ///
 /// Errors are those of linearised least squares with independent frames of equal relative scatter, linearised
 /// over a range like the errors themselves.
-/// @throws std::invalid_argument for fewer than three frames; what a simulation throws, which ends the search
+/// @throws std::invalid_argument for fewer than three frames; what a simulation throws, which ends the search;
+///         std::logic_error without can_calibrate()
 Calibration calibrate(const Profile& measured, const Simulation& simulate, const CalibrationRange& range = {},
                       const CalibrationProgress& progress = {});
 
