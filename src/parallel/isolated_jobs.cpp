@@ -51,15 +51,23 @@ struct Ending {
   int status = 0;      // exit code or signal
 };
 
+/// Such as SIGKILL. (sigabbrev_np() needs glibc 2.32.)
+std::string name_of(int signal) {
+  static constexpr std::pair<int, const char*> deadly[] = {
+      {SIGHUP, "HUP"},   {SIGINT, "INT"},   {SIGQUIT, "QUIT"},     {SIGILL, "ILL"},   {SIGTRAP, "TRAP"},
+      {SIGABRT, "ABRT"}, {SIGBUS, "BUS"},   {SIGFPE, "FPE"},       {SIGKILL, "KILL"}, {SIGUSR1, "USR1"},
+      {SIGSEGV, "SEGV"}, {SIGUSR2, "USR2"}, {SIGPIPE, "PIPE"},     {SIGALRM, "ALRM"}, {SIGTERM, "TERM"},
+      {SIGXCPU, "XCPU"}, {SIGXFSZ, "XFSZ"}, {SIGVTALRM, "VTALRM"}, {SIGPROF, "PROF"}, {SIGSYS, "SYS"}};
+  const auto* found = std::ranges::find(deadly, signal, &std::pair<int, const char*>::first);
+  return "SIG" + (found != std::end(deadly) ? std::string(found->second) : std::to_string(signal));
+}
+
 std::string describe(const Ending& ending) {
   if (ending.fork_error != 0)
     return fmt::format("no process could be started for it: {}", std::strerror(ending.fork_error));
   if (ending.code == CLD_EXITED) return fmt::format("its process exited with code {}", ending.status);
   const int signal = ending.status;
-  const char* name = sigabbrev_np(signal);
-  const char* meaning = sigdescr_np(signal);
-  return fmt::format("its process was ended by SIG{} ({}{})", name ? name : std::to_string(signal),
-                     meaning ? meaning : "unknown signal",
+  return fmt::format("its process was ended by {} ({}{})", name_of(signal), strsignal(signal),
                      signal == SIGKILL ? ", as the kernel does when memory runs out" : "");
 }
 
