@@ -1,4 +1,4 @@
-"""Tests an installation by cmake --install where nothing else is installed."""
+"""Tests an installation by cmake --install where nothing else is installed, and one of the Python package by pip."""
 
 import json
 import os
@@ -8,6 +8,7 @@ import re
 import select
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -210,6 +211,61 @@ class Installed(unittest.TestCase):
             ready, _, _ = select.select([terminal], [], [], LONGEST)
             self.assertTrue(ready, seen)
             seen += os.read(terminal, 4096)
+
+
+class InstalledByPip(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="clog_pip_")
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        cls.venv = cls.folder / "venv"
+        cls.tree = sorted(ROOT.glob("analysis/*"))
+        cls.called(sys.executable, "-m", "venv", "--system-site-packages", cls.venv)
+        cls.called(cls.venv / "bin/pip", "install", "--no-deps", "--no-build-isolation", "--no-index", ROOT / "analysis")
+        cls.called(BIN / "clogsweep", *KEYS[1:], "line-tension=0.4,0.5", "--output", "s.h5")
+
+    @classmethod
+    def called(cls, *command, **variables):
+        environment = {"PATH": "/usr/bin:/bin", "HOME": str(cls.folder), "ASAN_OPTIONS": os.environ.get("ASAN_OPTIONS", ""), **variables}
+        done = subprocess.run([str(word) for word in command], cwd=cls.folder, env=environment, capture_output=True, text=True, timeout=LONGEST)
+        if done.returncode != 0:
+            raise AssertionError(f"{command}: {done.stdout}{done.stderr}")
+        return done.stdout
+
+    def draw(self, name, **variables):
+        self.called(self.venv / "bin/python", "-m", "clogsweep", "clogging-length", "s.h5", "--output", name, **variables)
+        self.assertTrue((self.folder / f"{name}.png").exists())
+
+    def test_nothing_is_left_in_the_source_tree(self):
+        self.assertEqual(sorted(ROOT.glob("analysis/*")), self.tree)
+
+    def test_it_finds_the_programs_that_a_variable_names(self):
+        self.draw("by-variable", CLOG_BIN=str(BIN))
+
+    def test_it_finds_the_programs_of_the_path(self):
+        self.draw("by-path", PATH=f"{BIN}:/usr/bin:/bin")
+
+    def test_it_finds_the_programs_beside_itself(self):
+        for program in ("clogsweep", "clogrun", "clogfit"):
+            (self.venv / "bin" / program).symlink_to(BIN / program)
+            self.addCleanup((self.venv / "bin" / program).unlink)
+        self.draw("beside")
+
+    def test_without_programs_it_says_so_in_one_line(self):
+        with self.assertRaisesRegex(AssertionError, r"^.*: python3 -m clogsweep clogging-length: no clogsweep in [^\n]*/venv/bin; [^\n]*\n$"):
+            self.draw("without")
+
+    def test_it_has_the_configs_of_the_figures(self):
+        said = self.called(self.venv / "bin/python", "-c", "from clogsweep.paper import workshop; print(workshop.CONFIGS)")
+        configs = pathlib.Path(said.strip())
+        self.assertEqual(configs.parents[1].parent, next(self.venv.glob("lib/python3*")) / "site-packages")
+        names = sorted(path.name for path in (ROOT / "jobs/figures").glob("*.cfg"))
+        self.assertEqual(sorted(path.name for path in configs.iterdir()), names)
+        for name in names:
+            self.assertEqual((configs / name).read_bytes(), (ROOT / "jobs/figures" / name).read_bytes(), name)
+        self.called(BIN / "clogsweep", "--config", configs / "speed.reduced.cfg", "--output", "dry.h5", "--dry-run")
+        self.assertIn("6c", self.called(self.venv / "bin/python", "-m", "clogsweep", "figures", "list"))
 
 
 if __name__ == "__main__":

@@ -13,10 +13,14 @@ PACKAGE = pathlib.Path(__file__).resolve().parents[1]
 
 try:
     from .._installed import JOBS_FOLDER, PROGRAMS_FOLDER  # relative to this package; cmake --install writes it
-except ImportError:  # the source tree
-    _SOURCE = PACKAGE.parents[1]
-    JOBS = _SOURCE / "jobs"
-    PROGRAMS = [_SOURCE / "build" / "release" / "bin"]
+except ImportError:
+    if (PACKAGE / "jobs").is_dir():  # installed by pip, as PREFIX/lib/python3.11/site-packages/clogsweep
+        JOBS = PACKAGE / "jobs"
+        PROGRAMS = [PACKAGE.parents[3] / "bin"]
+    else:  # the source tree
+        _SOURCE = PACKAGE.parents[1]
+        JOBS = _SOURCE / "jobs"
+        PROGRAMS = [_SOURCE / "build" / "release" / "bin"]
 else:
     JOBS = (PACKAGE / JOBS_FOLDER).resolve()
     PROGRAMS = [(PACKAGE / PROGRAMS_FOLDER).resolve()]

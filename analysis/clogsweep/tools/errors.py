@@ -1,9 +1,11 @@
 """Errors that are not bugs of this package."""
 
+import sys
+
 
 def lacking(error: ImportError) -> str:
     """What to say where a machine lacks a module."""
-    return f"cannot start ({error}); it needs Debian's python3, /usr/bin/python3, with h5py, pandas, tables and matplotlib"
+    return f"cannot start ({error}); {sys.executable} needs h5py, pandas, tables and matplotlib: install them, or use another python3"
 
 
 class UserError(Exception):

@@ -1,0 +1,24 @@
+"""Adds ../jobs to the package: the configs of the figures and the settings of mpirun, of which git has one copy."""
+
+import pathlib
+import shutil
+import tempfile
+
+from setuptools import setup
+from setuptools.command.build_py import build_py
+
+JOBS = pathlib.Path(__file__).resolve().parents[1] / "jobs"
+
+
+class BuildWithJobs(build_py):
+    def run(self) -> None:
+        super().run()
+        for source in (JOBS / "mpi-settings.sh", *sorted((JOBS / "figures").glob("*.cfg"))):
+            copy = pathlib.Path(self.build_lib) / "clogsweep" / "jobs" / source.relative_to(JOBS)
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(source, copy)
+
+
+# Builds elsewhere: nothing is left in the source tree, and no file of an earlier build gets into the package.
+with tempfile.TemporaryDirectory(prefix="clogsweep_build_") as scratch:
+    setup(cmdclass={"build_py": BuildWithJobs}, options={"build": {"build_base": scratch}, "egg_info": {"egg_base": scratch}})
