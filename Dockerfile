@@ -8,6 +8,7 @@
 FROM docker.io/library/debian:12-slim AS build
 # By themselves, so that they are not installed anew when a source has changed.
 COPY jobs/install-dependencies.sh /clogsweep/jobs/
+COPY cmake/dependencies.txt /clogsweep/cmake/
 RUN /clogsweep/jobs/install-dependencies.sh docs package
 COPY . /clogsweep
 WORKDIR /clogsweep

@@ -9,15 +9,12 @@
 #   paper      docs/paper
 #   mpich      MPICH, beside Open MPI
 set -euo pipefail
-packages=(
-  g++ cmake ninja-build git                          # to build
-  libopenmpi-dev openmpi-bin                         # MPI
-  libhdf5-dev zlib1g-dev                             # the table of runs, its checksums
-  libeigen3-dev libhwy-dev                           # arrays; vector instructions
-  libboost-dev libboost-program-options-dev          # random numbers and statistics; command line
-  nlohmann-json3-dev libnlopt-cxx-dev                # JSON; the optimiser of clogfit calibrate
-  libfmt-dev                                         # text with numbers in it
-  python3 python3-h5py python3-pandas python3-tables python3-matplotlib  # the Python module
+# What the programs are built with: names from the third on of every line there.
+mapfile -t packages < <(awk '/^[A-Za-z]/ { for (i = 3; i <= NF; ++i) if ($i != "-") print $i }' \
+  "$(dirname "$0")/../cmake/dependencies.txt")
+packages+=(
+  git                                                # the version of a build
+  python3-h5py python3-pandas python3-tables python3-matplotlib       # the Python module
 )
 drawings=(python3-ezdxf python3-gdspy python3-svgelements python3-skimage python3-shapely)
 tests=(
@@ -26,6 +23,7 @@ tests=(
   procps iproute2                                    # tests that kill ranks, and join two hosts
   chromium-driver python3-selenium hdf5-tools        # a browser that reads a report; h5repack
   python3-nbclient python3-ipykernel                 # a test that runs the notebook of the gallery
+  python3-setuptools python3-wheel python3-venv      # a test that installs the Python module by pip
 )
 docs=(
   python3-sphinx python3-myst-parser python3-sphinx-copybutton furo   # man pages and site, from the handbook

@@ -1,5 +1,6 @@
 """The version is the same wherever it is written: in `CMakeLists.txt`, in `CITATION.cff`, in the Python module, in the
-recipe for Spack and, as the newest release, in `CHANGELOG.md`, which has the date of `CITATION.cff`, too.
+recipe for Spack and, as the newest release, in `CHANGELOG.md`, which has the date of `CITATION.cff`, too. The table of
+dependencies in the handbook has what `cmake/dependencies.txt` has.
 
     tests/lint/versions.py ROOT
 """
@@ -41,9 +42,30 @@ def faults(root):
             yield f"the {what} is not the same: " + ", ".join(f"{value} in {file}" for file, value in values.items())
 
 
+def table_of_dependencies(text):
+    """Rows of the handbook's table, of the lines of cmake/dependencies.txt."""
+    for line in text.splitlines():
+        if line[:1].isalpha():
+            name, minimum, *packages = line.split()
+            yield " ".join(["|", name, "|", minimum, "|", ", ".join(f"`{package}`" for package in packages if package != "-"), "|"]).replace("  ", " ")
+
+
+def faults_of_dependencies(root):
+    rows = list(table_of_dependencies((root / "cmake/dependencies.txt").read_text()))
+    page = "docs/how-to/build.md"
+    section = (root / page).read_text().partition("\n## Dependencies\n")[2]
+    written = [line for line in section.splitlines() if line.startswith("| ") and not line.startswith("| dependency ")]
+    for row in rows:
+        if row not in written:
+            yield f"{page}: cmake/dependencies.txt has, and the table has not: {row}"
+    for row in written:
+        if row not in rows:
+            yield f"{page}: the table has, and cmake/dependencies.txt has not: {row}"
+
+
 def main(root):
-    found = list(faults(pathlib.Path(root)))
-    print("\n".join(found) or "the version is the same everywhere")
+    found = [*faults(pathlib.Path(root)), *faults_of_dependencies(pathlib.Path(root))]
+    print("\n".join(found) or "versions are the same everywhere")
     return 1 if found else 0
 
 

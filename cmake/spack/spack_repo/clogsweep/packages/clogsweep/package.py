@@ -9,6 +9,8 @@ from spack.package import EnvironmentModifications, conflicts, depends_on, filte
 from spack_repo.builtin.build_systems.cmake import CMakePackage
 
 REPOSITORY = pathlib.Path(__file__).resolve().parents[6]
+_LINES = (REPOSITORY / "cmake" / "dependencies.txt").read_text().splitlines()
+MINIMUM = {line.split()[0]: line.split()[1] for line in _LINES if line[:1].isalpha()}
 
 
 class Clogsweep(CMakePackage):
@@ -24,24 +26,24 @@ class Clogsweep(CMakePackage):
 
     depends_on("c", type="build")
     depends_on("cxx", type="build")
-    depends_on("cmake@3.25:", type="build")
-    depends_on("boost@1.74: +program_options")
-    depends_on("eigen@3.4")
-    depends_on("fmt@9.1:")
-    depends_on("hdf5@1.10:1.14 ~mpi")  # one rank writes
-    depends_on("highway@1.0.3:")
-    depends_on("nlohmann-json@3.11:")
-    depends_on("nlopt@2.7: +cxx ~python")
+    depends_on(f"cmake@{MINIMUM['CMake']}:", type="build")
+    depends_on(f"boost@{MINIMUM['Boost']}: +program_options")
+    depends_on(f"eigen@{MINIMUM['Eigen3']}")
+    depends_on(f"fmt@{MINIMUM['fmt']}:")
+    depends_on(f"hdf5@{MINIMUM['HDF5']}:1.14 ~mpi")  # one rank writes
+    depends_on(f"highway@{MINIMUM['hwy']}:")
+    depends_on(f"nlohmann-json@{MINIMUM['nlohmann_json']}:")
+    depends_on(f"nlopt@{MINIMUM['NLopt']}: +cxx ~python")
     depends_on("openmpi@4.1:")
     depends_on("zlib-api")
-    # The scripts that draw need it, and so does the one that makes the completion.
-    depends_on("python@3.11:", type=("build", "run"))
+    # For figures, and for the shell completion.
+    depends_on(f"python@{MINIMUM['Python']}:", type=("build", "run"))
     depends_on("py-h5py ~mpi", type="run")
     depends_on("py-matplotlib", type="run")
     depends_on("py-pandas", type="run")
     depends_on("py-tables", type="run")
 
-    conflicts("%gcc@:11", msg="clogsweep is C++20; it is tested with g++ 12 and clang 14")
+    conflicts(f"%gcc@:{int(MINIMUM['GNU']) - 1}", msg=f"clogsweep is C++20; it is tested with g++ {MINIMUM['GNU']} and clang {MINIMUM['Clang']}")
     # Compiled for one processor, rows would have other last bits than those of the same release elsewhere. What gains
     # from vector instructions chooses them by itself when a program starts.
     requires("target=x86_64", when="target=x86_64:")
