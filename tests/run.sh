@@ -14,5 +14,6 @@ fi
 errors=OFF
 if [ "${WARNINGS:-}" = errors ]; then errors=ON; fi
 cmake --preset "$preset" -DCLOG_TESTS=ON -DCMAKE_COMPILE_WARNING_AS_ERROR=$errors
-cmake --build --preset "$preset"
-ctest --preset "$preset" --parallel "$(nproc)" "${part[@]}" "$@"
+TIMEFORMAT='%R s, processor time %U s'
+time cmake --build --preset "$preset"
+time ctest --preset "$preset" --parallel "$(nproc)" "${part[@]}" "$@"
