@@ -1,40 +1,66 @@
 """Runs commands of the Python module as a person would."""
 
+import importlib
+import io
 import multiprocessing
 import os
 import subprocess
 import sys
 
-import tables  # noqa: F401, see run_command
+import tables  # noqa: F401, see warm_up
 from matplotlib import image
 
-from support import ROOT, ProgramTest
+from support import LONGEST, ROOT, ProgramTest
 
 sys.path.insert(1, str(ROOT / "analysis"))
 import clogsweep.__main__  # noqa: E402
+from clogsweep import style  # noqa: E402
 
 
-def run_command(words, folder, out, error):
-    """python3 -m clogsweep, in a process forked for it: what takes a second to load is there already."""
+def warm_up():
+    """Loads all commands, and the fonts by drawing a small picture. A forked process that draws has it all, which costs
+    more CPU time than the picture itself."""
+    for command in clogsweep.__main__.COMMANDS:
+        importlib.import_module(f"clogsweep.commands.{command.replace('-', '_')}")
+    figure, axes = style.subplots(figsize=(2, 2))
+    axes.set_title(r"fonts: $\lambda/\sigma_\mathrm{ob}$")
+    for ending in ("png", "pdf"):
+        figure.savefig(io.BytesIO(), format=ending)
+
+
+warm_up()
+
+
+def run_in(folder, out, error, call):
     os.chdir(folder)
     for file, descriptor in [(out, 1), (error, 2)]:
         with open(file, "w") as stream:
             os.dup2(stream.fileno(), descriptor)
-    sys.argv = ["clogsweep", *words]
-    sys.exit(clogsweep.__main__.main())
+    sys.exit(call())
 
 
 class Analysis(ProgramTest):
-    def analyse(self, command, *arguments):
-        words = [command, *map(str, arguments)]
+    def fork(self, words, call):
+        """Calls in the test's folder, in a process forked for it: what warm_up() has loaded is there already.
+        @param words  what is said to be called; @param call  returns an exit code"""
         out, error = self.folder / "stdout.txt", self.folder / "stderr.txt"
-        process = multiprocessing.get_context("fork").Process(target=run_command, args=(words, self.folder, out, error))
+        process = multiprocessing.get_context("fork").Process(target=run_in, args=(self.folder, out, error, call))
         process.start()
-        process.join(300)
+        process.join(LONGEST)
         if process.exitcode is None:
             process.kill()
-            self.fail(f"{words} takes more than 300 s")
+            self.fail(f"{words} takes more than {LONGEST} s")
         return subprocess.CompletedProcess(words, process.exitcode, out.read_text(), error.read_text())
+
+    def analyse(self, command, *arguments):
+        """python3 -m clogsweep"""
+        own_argv = ["clogsweep", command, *map(str, arguments)]
+
+        def call():
+            sys.argv = own_argv
+            return clogsweep.__main__.main()
+
+        return self.fork(own_argv[1:], call)
 
     def draw(self, command, *arguments):
         done = self.analyse(command, *arguments)
