@@ -5,6 +5,7 @@ import hashlib
 import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import tempfile
@@ -28,6 +29,8 @@ LONGEST = 1500
 # Small droplets in a small box: a run takes some hundredths of a second.
 SMALL = ["vertices=64", "box=20", "obstacle-density=saturated"]
 QUICK = [*SMALL, "max-time=60"]
+# A sweep to be shared, see shared_sweep(): two parameter sets of two droplets; some clog.
+FEW = [*QUICK, "line-tension=1,3", "seeds=1..2"]
 # Long runs, each of several snapshots (four a second).
 SWEEP = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=4000", "seeds=1..6",
          "--report-seconds=0.1", "--output", "s.h5"]
@@ -107,6 +110,10 @@ class ProgramTest(unittest.TestCase):
     def write(self, name, text):
         (self.folder / name).write_text(text)
         return name
+
+    def copy_sweep(self, name, *arguments, program="clogsweep"):
+        """A shared sweep as a file of the test's own, which may be changed; another of that name is replaced."""
+        return pathlib.Path(shutil.copyfile(shared_sweep(*arguments, program=program), self.folder / name))
 
 
 def children_of(pid):

@@ -16,10 +16,10 @@ from support import BIN, ROOT, SMALL, ProgramTest
 sys.path.insert(0, str(ROOT / "analysis"))
 import clogsweep  # noqa: E402
 
-# Such droplets might get a thousand diameters far: rows of theirs can be given any distance up to that.
-FAR = ["max-time=10", "terminal-speed=100", "seeds=1..6"]
+# Such droplets might get a hundred diameters far: rows of theirs can be given any distance up to that.
+FAR = ["max-time=1", "terminal-speed=100", "seeds=1..6"]
 TENSIONS = [0.03, 0.1, 0.3, 1.0, 3.0]
-LENGTHS = [1.0, 10.0, 100.0, 10.0, 1.0]  # a peak at 0.3
+LENGTHS = [0.1, 1.0, 10.0, 1.0, 0.1]  # a peak at 0.3
 # Six runs whose distances follow the exponential law exactly.
 EXPONENTIAL = -np.log(1 - (np.arange(6) + 0.5) / 6)
 PEAKED = [*FAR, "line-tension=" + ",".join(map(str, TENSIONS))]
@@ -28,8 +28,7 @@ PEAKED = [*FAR, "line-tension=" + ",".join(map(str, TENSIONS))]
 class Curve(ProgramTest):
     def sweep(self, *settings, lengths=None):
         """@param lengths  by line tension; other runs keep what came out"""
-        self.succeed("clogsweep", *SMALL, *settings, "--output", "sweep.h5")
-        table = pandas.read_hdf(self.folder / "sweep.h5", "runs")
+        table = pandas.read_hdf(self.copy_sweep("sweep.h5", *SMALL, *settings), "runs")
         if lengths is not None:
             way = np.array([lengths[row.line_tension] * EXPONENTIAL[row.seed - 1] for row in table.itertuples()])
             stored_rows.change_columns(self.folder / "sweep.h5", distance=way, status=np.array([b"clogged"] * len(table)),
@@ -41,7 +40,7 @@ class Curve(ProgramTest):
 
     def test_it_goes_through_the_points_and_finds_peak_and_crossings(self):
         self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
-        told = self.curve("--crossing=5")
+        told = self.curve("--crossing=0.5")
         self.assertEqual(told["keys"], ["line_tension"])
         self.assertEqual(told["units"]["clogging_length"], "sigma")
         curve, = told["curves"]
@@ -58,8 +57,8 @@ class Curve(ProgramTest):
         peak = curve["peak"]
         self.assertLess(peak["line_tension_lower"], 0.3)
         self.assertGreater(peak["line_tension_upper"], 0.3)
-        self.assertLess(peak["clogging_length_lower"], 100)
-        self.assertGreater(peak["clogging_length_upper"], 100)
+        self.assertLess(peak["clogging_length_lower"], 10)
+        self.assertGreater(peak["clogging_length_upper"], 10)
         self.assertGreater(peak["probability_between_borders"], 0.99)
         up, down = curve["crossings"]
         self.assertEqual((up["direction"], down["direction"]), ("upwards", "downwards"))
@@ -68,8 +67,8 @@ class Curve(ProgramTest):
 
     def test_text_and_csv_say_the_same(self):
         self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
-        text = self.succeed("clogfit", "curve", "sweep.h5", "--crossing=5,1e5").stdout
-        for words in ("fitted; 95 % intervals", "through 5 points with 30 clogs", "highest at line_tension", "crosses 5 sigma upwards",
+        text = self.succeed("clogfit", "curve", "sweep.h5", "--crossing=0.5,1e5").stdout
+        for words in ("fitted; 95 % intervals", "through 5 points with 30 clogs", "highest at line_tension", "crosses 0.5 sigma upwards",
                       "does not cross 1e5 sigma", "lambda/sigma"):
             self.assertIn(words, text)
         lines = list(csv.DictReader(io.StringIO(self.succeed("clogfit", "curve", "sweep.h5", "--format=csv").stdout)))
@@ -100,7 +99,7 @@ class Curve(ProgramTest):
         def not_clogged(rows):
             of_peak = rows["line_tension"] == 0.3
             rows["status"][of_peak], rows["clogged_by"][of_peak], rows["mechanism"][of_peak] = b"flowing", b"none", b"none"
-            rows["distance"][of_peak] = 900
+            rows["distance"][of_peak] = 90
 
         stored_rows.change(self.folder / "sweep.h5", not_clogged)
         point = self.curve()["curves"][0]["points"][2]
@@ -110,7 +109,7 @@ class Curve(ProgramTest):
     def test_the_module_gives_and_draws_it(self):
         self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
         sweep = clogsweep.open(self.folder / "sweep.h5", programs=BIN)
-        told = sweep.fitted_curves("line_tension", crossing=[5])
+        told = sweep.fitted_curves("line_tension", crossing=[0.5])
         self.assertEqual(len(told["curves"][0]["crossings"]), 2)
         axes = sweep.fit().curve().figure.axes[0]
         fitted, = (line for line in axes.lines if line.get_label().startswith("_fitted"))

@@ -10,7 +10,7 @@ from PIL import Image
 from matplotlib.text import Text
 
 from drawing import Analysis
-from support import BIN, QUICK, SMALL
+from support import BIN, FEW, QUICK, SMALL, shared_sweep
 
 import stored_rows
 from clogsweep import labels, style
@@ -32,8 +32,8 @@ class Calls(Analysis):
         return [] if command in ("droplet", "export-vtk") else ["--programs", BIN]
 
     def test_a_run_is_no_sweep_and_a_sweep_no_run(self):
-        self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 30, "--output", "run.h5")
-        self.succeed("clogsweep", *QUICK, "seeds=1", "--output", "s.h5")
+        self.copy_sweep("run.h5", "array", *QUICK, "--polygon-interval", 10, program="clogrun")
+        self.copy_sweep("s.h5", *FEW)
         for command in self.COMMANDS:
             is_of_runs = not self.needs(command)
             with self.subTest(command=command):
@@ -47,7 +47,7 @@ class Calls(Analysis):
                 self.refuse_analysis(command, "nope.h5", "--output", "x", *self.needs(command), words=["cannot read nope.h5 (no such file); check the name"])
 
     def test_an_output_may_be_left_out_or_have_its_ending(self):
-        self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1..2", "--output", "s.h5")
+        self.copy_sweep("s.h5", *FEW)
         for command, made in [("clogging-length", "s-clogging-length.png"), ("clogs", "s-clogs.png"), ("dwell", "s-dwell.png"),
                               ("poster", "s-poster.png"), ("report", "s-report.html")]:
             self.assertIn(made, self.draw(command, "s.h5", "--programs", BIN).stdout)
@@ -58,12 +58,12 @@ class Calls(Analysis):
         self.refuse_analysis("clogging-length", "/dev/null", words=["no name", "--output"])
 
     def test_a_name_of_a_film_asks_for_one(self):
-        self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 30, "--output", "run.h5")
+        self.copy_sweep("run.h5", "array", *QUICK, "--polygon-interval", 10, program="clogrun")
         self.assertEqual(self.draw("droplet", "run.h5", "-o", "run.gif").stdout, "run.gif\n")
         self.assertEqual((self.folder / "run.gif").read_bytes()[:4], b"GIF8")
 
     def test_earlier_pictures_of_a_longer_run_do_not_stay_between_those_of_a_film(self):
-        self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 10, "--output", "run.h5")
+        self.copy_sweep("run.h5", "array", *QUICK, "--polygon-interval", 10, program="clogrun")
         for most in (4, 2):
             self.draw("droplet", "run.h5", "-o", "run", "--pictures", "--most-frames", most)
             self.assertEqual(len(list((self.folder / "run-frames").iterdir())), most)
@@ -93,7 +93,7 @@ class Calls(Analysis):
 
 class Looks(Analysis):
     def fit(self, *keys):
-        self.succeed("clogsweep", *keys, "--output", "s.h5")
+        self.copy_sweep("s.h5", *keys)
         return Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
 
     def assert_title_is_whole(self, drawing):
@@ -162,7 +162,6 @@ class Looks(Analysis):
     def test_many_curves_are_told_apart_beside_the_legend_and_off_the_frame(self):
         arrays = ["obstacle-gap=lin(0.2,0.35,4)", "obstacle-diameter=lin(0.3,0.45,4)"]
         for tensions in ("line-tension=6,8", "line-tension=3,3.3,9"):
-            (self.folder / "s.h5").unlink(missing_ok=True)
             groups = self.fit(*QUICK, tensions, *arrays, "seeds=1")
             for group in groups.members:
                 group.update(relative_speed=0.4, relative_speed_error=0.1)
@@ -219,7 +218,6 @@ class Looks(Analysis):
     def test_a_caption_names_vertices_and_density_that_were_given(self):
         density = r"$\rho_\mathrm{ob}\,\sigma^2 = 0.5$"
         for given, words in [(["vertices=64"], ["$N_v = 64$"]), (["obstacle-density=0.5"], [density]), ([], [])]:
-            (self.folder / "s.h5").unlink(missing_ok=True)
             caption = self.fit("box=20", "max-time=20", "line-tension=0.5,1", "seeds=1", *given).caption()
             for word in ("$N_v = 64$", density):
                 self.assertEqual(word in caption, word in words, caption)
@@ -250,15 +248,13 @@ class Looks(Analysis):
         self.assertEqual(explained(style.figure_of(lengths.draw_on, groups)), [bars])
 
     def test_titles_of_a_sheet_of_clogs_stay_off_its_edge(self):
-        self.succeed("clogsweep", *QUICK, "line-tension=3", "seeds=1..4", "--output", "s.h5")
-        drawing = Sweep(self.folder / "s.h5", BIN).clogs().picture().figure
+        drawing = Sweep(shared_sweep(*FEW), BIN).clogs().picture().figure
         drawing.canvas.draw()
         for axes in drawing.axes:
             self.assertLess(axes.title.get_window_extent().y1, drawing.bbox.y1 - 0.1 * drawing.dpi)
 
     def test_numbers_in_titles_have_four_figures_at_most(self):
-        self.succeed("clogsweep", *QUICK, "line-tension=3", "seeds=1", "--output", "s.h5")
-        row, = stored.read_rows(self.folder / "s.h5")
+        row = stored.read_rows(shared_sweep(*FEW))[0]
         row["obstacle_gap"] = 0.22190123
         self.assertIn(r"minimum gap $0.2219\,\sigma$", clogs.title(row))
 
@@ -274,11 +270,11 @@ class Looks(Analysis):
         self.assertEqual([labels.runs_a_point([{"runs": runs} for runs in all_runs]) for all_runs in ([1, 1], [4], [1, 3])],
                          ["1 run per point", "4 runs per point", "1 to 3 runs per point"])
         self.succeed("clogsweep", *QUICK, "seeds=1", "--output", "s.h5")
-        self.succeed("clogfit", "report", "s.h5", "--output", "s.html", "--examples", 0)
+        self.draw("report", "s.h5", "--output", "s.html", "--examples", 0)
         self.assertNotRegex((self.folder / "s.html").read_text(), r"\b1 (runs|points|clogs|gaps|contacts)\b")
 
     def test_the_last_frame_of_a_film_is_the_end_of_the_run(self):
-        self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 20, "--output", "run.h5")
+        self.copy_sweep("run.h5", "array", *QUICK, "--polygon-interval", 10, program="clogrun")
         run = trajectory.read(self.folder / "run.h5")
         # It looks like a certified clog, whose equilibrium lies beyond the last frame.
         run.row["distance"] = run.table["distance"][-1] + 0.01
@@ -288,7 +284,7 @@ class Looks(Analysis):
         self.assertTrue(any(end in text.get_text() for text in moving.figure.texts), [text.get_text() for text in moving.figure.texts])
 
     def film_of(self, **options):
-        self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 3, "--output", "run.h5")
+        self.copy_sweep("run.h5", "array", *QUICK, "--polygon-interval", 3, program="clogrun")
         run = trajectory.read(self.folder / "run.h5")
         frames = film.chosen_frames(run, 50)
         return run, frames, film.Film(run, frames, **{"colour": "speed", "rate": 20} | options)
