@@ -2,7 +2,11 @@
 
 import base64
 import json
+import pathlib
 import re
+import subprocess
+import sys
+import tempfile
 import unittest
 
 from PIL import Image
@@ -13,29 +17,43 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.support.ui import WebDriverWait
 
-from drawing import Analysis
-from support import SMALL
+from support import BIN, LONGEST, ROOT, SMALL, ProgramTest, shared_sweep
 
-from clogsweep.pages import chart
-from clogsweep.tools import rounded
+sys.path.insert(1, str(ROOT / "analysis"))
+from clogsweep.pages import chart  # noqa: E402
+from clogsweep.tools import rounded  # noqa: E402
 
 SECONDS = 120  # more than a machine with much else to do needs
 POINT = "svg.chart .point"
 
 
-class Browser(Analysis):
+def setUpModule():
     """One browser for all tests: it takes seconds to start."""
+    options = webdriver.ChromeOptions()
+    # A container has little shared memory, and root no sandbox.
+    for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1280,900"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    Browser.browser = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+    unittest.addModuleCleanup(Browser.browser.quit)
+    Browser.browser.set_page_load_timeout(SECONDS)
+
+
+class Browser(ProgramTest):
+    """One page for all tests of a class, which load it anew."""
+
+    KEYS: list[str]  # of the sweep
+    browser: webdriver.Chrome
 
     @classmethod
     def setUpClass(cls):
-        options = webdriver.ChromeOptions()
-        # A container has little shared memory, and root no sandbox.
-        for argument in ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--window-size=1280,900"):
-            options.add_argument(argument)
-        options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-        cls.browser = webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
-        cls.addClassCleanup(cls.browser.quit)
-        cls.browser.set_page_load_timeout(SECONDS)
+        folder = tempfile.TemporaryDirectory(prefix="clog_page_")
+        cls.addClassCleanup(folder.cleanup)
+        cls.page = pathlib.Path(folder.name) / "page.html"
+        sweep = shared_sweep(*cls.KEYS)
+        told = subprocess.run([BIN / "clogfit", sweep, "--format", "json"], check=True, capture_output=True, text=True, timeout=LONGEST)
+        cls.groups = json.loads(told.stdout)["groups"]
+        subprocess.run([BIN / "clogfit", "report", sweep, "--output", cls.page, "--examples", "1"], check=True, capture_output=True, timeout=LONGEST)
 
     def setUp(self):
         super().setUp()
@@ -45,13 +63,8 @@ class Browser(Analysis):
     def see(self, scheme):
         self.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
 
-    def sweep(self, *keys):
-        self.succeed("clogsweep", *keys, "--output", "s.h5")
-        return json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
-
-    def read_page(self, examples=0):
-        self.succeed("clogfit", "report", "s.h5", "--output", "page.html", "--examples", examples)
-        self.browser.get((self.folder / "page.html").as_uri())
+    def read_page(self):
+        self.browser.get(self.page.as_uri())
         self.point_at(self.find("h1"))  # the mouse is where another test left it
 
     def point_at(self, element):
@@ -84,10 +97,6 @@ class Browser(Analysis):
 class Lengths(Browser):
     KEYS = [*SMALL, "max-time=200", "line-tension=0.1,0.7,3", "obstacle-gap=0.3,0.4", "seeds=1..4"]
 
-    def setUp(self):
-        super().setUp()
-        self.groups = self.sweep(*self.KEYS)
-
     def group(self, gap, tension):
         found, = [group for group in self.groups if (group["obstacle_gap"], group["line_tension"]) == (gap, tension)]
         return found
@@ -95,11 +104,11 @@ class Lengths(Browser):
     def test_nothing_is_loaded_and_nothing_fails(self):
         for log in ("browser", "performance"):
             self.browser.get_log(log)  # of what was before
-        self.read_page(examples=1)
+        self.read_page()
         self.assertEqual(self.browser.get_log("browser"), [])
         events = [json.loads(entry["message"])["message"] for entry in self.browser.get_log("performance")]
         asked = [event["params"]["request"]["url"] for event in events if event["method"] == "Network.requestWillBeSent"]
-        self.assertEqual([url for url in asked if not url.startswith("data:")], [(self.folder / "page.html").as_uri()])
+        self.assertEqual([url for url in asked if not url.startswith("data:")], [self.page.as_uri()])
 
     def test_a_point_shows_the_numbers_of_clogfit(self):
         self.read_page()
@@ -210,15 +219,16 @@ class Lengths(Browser):
 
 
 class Passages(Browser):
+    KEYS = ["orifice=0.7", "vertices=64", "line-tension=0.3,5", "start=-1.5", "end=1", "max-time=2000"]
+
     def test_a_point_shows_its_passage(self):
-        groups = self.sweep("orifice=0.7", "vertices=64", "line-tension=0.3,5", "start=-1.5", "end=1", "max-time=2000")
         self.read_page()
         outcomes = set()
         for number, point in enumerate(self.find_all(POINT)[:2]):
             self.point_at(point)
             shown = self.shown()
-            self.assertEqual((shown["line tension"], shown["outcome"]), (f"{groups[number]['line_tension']:g}", groups[number]["status"]))
-            self.assertEqual(shown["largest A"], f"{groups[number]['largest_shape_parameter']:.4g}")
+            self.assertEqual((shown["line tension"], shown["outcome"]), (f"{self.groups[number]['line_tension']:g}", self.groups[number]["status"]))
+            self.assertEqual(shown["largest A"], f"{self.groups[number]['largest_shape_parameter']:.4g}")
             outcomes.add(shown["outcome"])
         self.assertEqual(outcomes, {"passed", "clogged"})
 
