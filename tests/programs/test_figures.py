@@ -17,7 +17,7 @@ from matplotlib import image
 
 import stored_rows
 from drawing import Analysis
-from support import BIN, QUICK, ROOT, SMALL, table
+from support import BIN, FEW, QUICK, ROOT, SMALL, table
 
 import clogsweep
 from clogsweep import style
@@ -47,6 +47,9 @@ TINY = {
 }
 SETTINGS = [f"{name}:{key}" for name, keys in TINY.items() for key in ["box=20", "seeds=1..2", *keys]]
 SET = [word for setting in [*SETTINGS, "max-time=40", "channel:vertices=64", "channel:max-time=300", "trajectory:max-time=150"] for word in ("--set", setting)]
+
+
+SINGLE_RUNS = ("1", "2", "3", "4", "7b", "A1", "B1", "B2", "C1", "D")
 
 
 class Survival(unittest.TestCase):
@@ -81,7 +84,9 @@ class Survival(unittest.TestCase):
         self.assertLess(lowest, 0.01)
 
 
-class Figures(Analysis):
+class Drawn(Analysis):
+    """Figures in the test's folder."""
+
     PLACE = "reduced"
 
     def figures(self, *arguments):
@@ -103,41 +108,20 @@ class Figures(Analysis):
         self.assertEqual(sorted([*(float(point[key]) for key in keys), float(point[quantity])] for point in points),
                          sorted([*(group[key] for key in keys), group[quantity]] for group in groups))
 
-    def test_curves_show_what_clogfit_says(self):
-        names = {"6c-saturated": ("clogging-saturated", "clogging_length"), "7a": ("clogging-sp", "clogging_length"),
-                 "7a-saturated": ("clogging-sp-saturated", "clogging_length"), "8a": ("speed", "relative_speed"),
-                 "8b": ("speed-diameter", "relative_speed"), "8ca": ("speed", "capillary_number"), "9a": ("speed-sp", "relative_speed"),
-                 "E": ("near-wall-drag", "relative_speed")}
-        more = ["6c", "6c-filling", "7c", "7c-saturated", "9b"]
-        done = self.figures(*names, *more, "--ranks", 1)
-        self.assertNotIn("Warning", done.stderr)
-        for name in [*names, *more]:
-            with self.subTest(figure=name):
-                self.assert_picture(f"{self.PLACE}/figure-{name}")
-                about = (self.folder / self.PLACE / f"figure-{name}.txt").read_text()
-                for word in ("seeds 1 to ", "git", "clogsweep"):
-                    self.assertIn(word, about)
-        for name, (sweep, quantity) in names.items():
-            with self.subTest(figure=name):
-                self.assert_groups(name, sweep, quantity)
-        # A soft disk sinks by pi/(16 E_w).
-        for point in self.drawn("7c"):
-            if point["model"] == "sp":
-                self.assertAlmostEqual(float(point["sag"]), math.pi / 16 / float(point["wall_stiffness"]), delta=1e-4)
+    def assert_drawn(self, name):
+        self.assert_picture(f"{self.PLACE}/figure-{name}")
+        about = (self.folder / self.PLACE / f"figure-{name}.txt").read_text()
+        for word in ("git", "clogsweep"):
+            self.assertIn(word, about)
+        if name not in SINGLE_RUNS:
+            self.assertIn("seeds 1 to ", about)
 
-        # Figure 6c: all families, both meshes, every point.
-        drawn = {(row["curve"].split(",")[0], row["vertices"], row["friction"], row["obstacle_gap"], row["line_tension"], row["clogging_length_lower"]) for row in self.drawn("6c")}
-        told = {(config, *(str(group[name]) for name in ("vertices", "friction", "obstacle_gap", "line_tension", "clogging_length_lower")))
-                for config in ("clogging-robust", "clogging-friction", "clogging-elastic")
-                for sweep in (config, f"{config}-mesh") for group in self.fit(sweep)}
-        self.assertEqual(len({curve for curve, *_ in told}), 3)
-        self.assertEqual(drawn, told)
-
-        file = self.folder / self.PLACE / "sweeps" / "clogging-friction.h5"
-        self.draw_clogs(file)
-        # Other settings than the file's are refused by clogsweep, in its words.
-        self.refuse_analysis("figures", "6c", "--output", ".", "--programs", BIN, *SET, "--set", "clogging-friction:box=30", words=["box"])
-        self.make_report(file)
+    def assert_sags(self, name):
+        """A soft disk sinks by pi/(16 E_w)."""
+        disks = [point for point in self.drawn(name) if point["model"] == "sp"]
+        self.assertGreater(len(disks), 0)
+        for point in disks:
+            self.assertAlmostEqual(float(point["sag"]), math.pi / 16 / float(point["wall_stiffness"]), delta=1e-4)
 
     def call_wrapped(self, sweep, number):
         """One clog of the sweep is said to be wrapped, the others to be squeezed."""
@@ -148,14 +132,14 @@ class Figures(Analysis):
 
         stored_rows.change(sweep, edit)
 
-    def draw_clogs(self, sweep):
+    def assert_clogs(self, sweep, *names):
         """Marks one clog as wrapped: so short a sweep wraps no droplet."""
         self.call_wrapped(sweep, -1)
         before = table(sweep)
         # Once more: nothing runs again.
-        self.figures("5", "6a", "6b")
+        self.figures(*names)
         pandas.testing.assert_frame_equal(table(sweep), before, check_exact=True)
-        for name in ("5", "6a", "6b"):
+        for name in names:
             self.assert_picture(f"{self.PLACE}/figure-{name}")
         wrapped, squeezed = self.drawn("6a")[0], self.drawn("6b")[0]
         self.assertEqual([wrapped["mechanism"], squeezed["mechanism"]], ["wrapped", "squeezed"])
@@ -168,8 +152,8 @@ class Figures(Analysis):
         self.call_wrapped(sweep, 0)
         self.refuse_analysis("figures", "6a", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["clogging-friction-", "leave out --draw-only"])
 
-    def make_report(self, sweep):
-        self.succeed("clogfit", "report", sweep, "--output", "report.html", "--examples", 2)
+    def assert_report(self, sweep):
+        self.draw("report", sweep, "--output", "report.html", "--examples", 0, "--programs", BIN)
         page = (self.folder / "report.html").read_text()
         self.assertNotRegex(page, r"(src|href)=\"(?!data:|#)", "nothing from elsewhere")
         fit = json.loads(self.succeed("clogfit", sweep, "--format", "json").stdout)
@@ -182,26 +166,12 @@ class Figures(Analysis):
         self.assertGreaterEqual(page.count("<svg"), 3)
         self.assertIn("command_line: clogsweep", page)
 
-    def test_the_map_shows_every_density(self):
-        self.figures("map")
-        self.assert_picture(f"{self.PLACE}/figure-map")
-        points = self.drawn("map")
-        told = [group for sweep in ("map-robust", "map-friction") for group in self.fit(sweep)]
-        for name in ("obstacle_gap", "obstacle_filling", "line_tension", "friction", "clogging_length_lower"):
-            self.assertEqual(sorted(point[name] for point in points), sorted(str(group[name]) for group in told))
-        self.assertEqual({point["obstacle_filling"] for point in points}, {"density", "saturated"})
-
-    def test_single_runs_are_drawn_as_they_were_run(self):
+    def write_profile(self):
         measured = "\n".join(["h [sigma], v [v_t], A", *(f"{h / 10},{0.5 + 0.01 * h},1.0{abs(h)}" for h in range(-9, 10))])
         self.write("measured.csv", measured)
-        names = ["1", "2", "3", "4", "7b", "A1", "B1", "B2", "C1", "C2", "D"]
-        done = self.figures(*names, "--profile", "measured.csv")
-        # 1 and 2 share it.
-        self.assertEqual(done.stdout.count("sweep channel-0.4:"), 1)
-        for name in names:
-            with self.subTest(figure=name):
-                self.assert_picture(f"{self.PLACE}/figure-{name}")
-                self.assertIn("clog", (self.folder / self.PLACE / f"figure-{name}.txt").read_text())
+
+    def assert_passage_and_survival(self):
+        """Of figures 2 and C2."""
         with h5py.File(self.folder / self.PLACE / "runs" / "channel-0.4-0.h5") as file:
             trajectory = file["trajectory"][:]
         points = self.drawn("2")
@@ -212,34 +182,57 @@ class Figures(Analysis):
             drawn = [float(point[name]) if point[name] else None for point in points[1:1 + len(group["survival"])]]
             self.assertEqual(drawn, [step[name] for step in group["survival"]])
         self.assertEqual([float(point["censored_distance"]) for point in points if point.get("censored_distance")], group["censored_distances"])
-        # Drawn from what is there, whatever the settings; nothing runs again.
-        before = {path: path.stat().st_mtime_ns for path in (self.folder / self.PLACE / "runs").iterdir() if path.suffix == ".h5"}
-        self.assertEqual(len(before), 1 + 1 + 2 + 6 + 1 + 3 + 14 + 2 + 5)  # of 1 to D; A1 needs none
-        self.figures("3", "7b", "B2", "--draw-only", "--set", "channel:max-time=200")
-        self.figures(*names, "--set", "seeds=1..3")
-        self.assertEqual({path: path.stat().st_mtime_ns for path in before}, before)
-        # Other settings than the sweep's are refused by clogsweep, in its words.
-        self.refuse_analysis("figures", "7b", "--output", ".", "--programs", BIN, *SET, "--set", "channel:max-time=200", words=["max-time"])
 
-    def test_channels_are_sweeps_and_what_their_rows_say_is_drawn(self):
-        self.figures("3", "A1", "B1", "--ranks", 2)
-        rows = {name: table(self.folder / self.PLACE / "sweeps" / f"{name}.h5") for name in ("channel-0.7", "walls", "vertices")}
-        self.assertEqual({name: len(those) for name, those in rows.items()}, {"channel-0.7": 1, "walls": 8, "vertices": 3})
-        for point, (_, row) in zip(self.drawn("A1"), rows["walls"].iterrows(), strict=True):
-            self.assertEqual(float(point["speed_ratio"]), row.mean_speed / row.terminal_speed)
-            self.assertAlmostEqual(row.orifice, 1 + 2 * float(point["distance"]))
-        for name, sweep in (("3", "channel-0.7"), ("B1", "vertices")):
-            drawn = [point for point in self.drawn(name) if point["smallest_relative_speed"]]
-            for point, (_, row) in zip(drawn[-len(rows[sweep]):], rows[sweep].iterrows(), strict=True):
-                for column in ("largest_shape_parameter", "largest_shape_parameter_at", "smallest_relative_speed", "largest_relative_speed"):
-                    self.assertEqual(float(point[column]), row[column])
-        # A way of another row than the sweep's is run again, and not drawn without that.
-        way = self.folder / self.PLACE / "runs" / "vertices-1.h5"
-        way.with_name("vertices-0.h5").replace(way)
-        self.refuse_analysis("figures", "B1", "--output", ".", "--programs", BIN, *SET, "--draw-only", words=["vertices-0.h5", "not there"])
-        self.figures("B1")
-        with h5py.File(way) as file:
-            self.assertEqual(file["runs"]["vertices"][0], 64)
+    def times_of_runs(self):
+        return {path: path.stat().st_mtime_ns for path in (self.folder / self.PLACE / "runs").iterdir() if path.suffix == ".h5"}
+
+
+class Figures(Drawn):
+    """Some figures of every kind. All of them: slow_figures."""
+
+    def test_curves_show_what_clogfit_says(self):
+        names = {"7a": ("clogging-sp", "clogging_length"), "8ca": ("speed", "capillary_number")}
+        done = self.figures(*names, "9b", "--ranks", 1)
+        self.assertNotIn("Warning", done.stderr)
+        for name in [*names, "9b"]:
+            with self.subTest(figure=name):
+                self.assert_drawn(name)
+        for name, (sweep, quantity) in names.items():
+            with self.subTest(figure=name):
+                self.assert_groups(name, sweep, quantity)
+        self.assert_sags("9b")
+
+    def test_clogs_are_those_of_the_sweep(self):
+        self.figures("6b")
+        sweep = self.folder / self.PLACE / "sweeps" / "clogging-friction.h5"
+        self.assert_clogs(sweep, "6a", "6b")
+        # Other settings than the file's are refused by clogsweep, in its words.
+        self.refuse_analysis("figures", "6b", "--output", ".", "--programs", BIN, *SET, "--set", "clogging-friction:box=30", words=["box"])
+        self.assert_report(sweep)
+
+    def test_single_runs_are_drawn_as_they_were_run(self):
+        self.write_profile()
+        names = ["1", "2", "C2"]
+        done = self.figures(*names, "--profile", "measured.csv")
+        # 1 and 2 share it.
+        self.assertEqual(done.stdout.count("sweep channel-0.4:"), 1)
+        for name in names:
+            with self.subTest(figure=name):
+                self.assert_drawn(name)
+        self.assert_passage_and_survival()
+        # Drawn from what is there, whatever the settings; nothing runs again.
+        before = self.times_of_runs()
+        self.assertEqual(len(before), 2)
+        self.figures("2", "--draw-only", "--set", "channel:max-time=200")
+        self.figures("2", "C2", "--set", "seeds=1..3")
+        self.assertEqual(self.times_of_runs(), before)
+        # Other settings than the sweep's are refused by clogsweep, in its words.
+        self.refuse_analysis("figures", "2", "--output", ".", "--programs", BIN, *SET, "--set", "channel:max-time=200", words=["max-time"])
+
+    def test_settings_of_all_figures_are_accepted(self):
+        for config in sorted((ROOT / "jobs" / "figures").glob("*.cfg")):
+            with self.subTest(config=config.name):
+                self.succeed("clogsweep", "--config", config, "--print-config")
 
     def test_mistakes_get_one_line(self):
         for arguments, words in [
@@ -333,27 +326,26 @@ class Pictures(Analysis):
             self.assertEqual(bool(done.stderr), bool(expected))
 
     def test_a_report_counts_the_runs_that_are_still_to_come(self):
-        keys = [*QUICK, "line-tension=0.3,1", "--output", "s.h5"]
-        self.succeed("clogsweep", *keys, "seeds=1..2")
-        self.assertEqual(self.run_program("clogsweep", *keys, "seeds=1..20", "--max-hours=1e-9").returncode, 75)
+        self.copy_sweep("s.h5", *FEW)
+        self.assertEqual(self.run_program("clogsweep", *FEW[:-1], "seeds=1..20", "--max-hours=1e-9", "--output", "s.h5").returncode, 75)
         status = json.loads(self.succeed("clogsweep", "status", "s.h5", "--format", "json").stdout)
-        self.succeed("clogfit", "report", "s.h5", "--output", "report.html", "--examples", 0)
         self.assertEqual(status["runs"], 40)
-        self.assertIn(f"{status['finished']} of 40 runs finished", (self.folder / "report.html").read_text())
+        self.assertIn(f"{status['finished']} of 40 runs finished", report.progress_of(status, table(self.folder / "s.h5")))
 
     def test_a_report_says_which_programs_made_it(self):
-        self.succeed("clogsweep", *QUICK, "seeds=1..2", "--output", "s.h5")
-        self.succeed("clogfit", "report", "s.h5", "--output", "report.html", "--examples", 0)
+        self.copy_sweep("s.h5", *FEW)
+        self.draw("report", "s.h5", "--output", "report.html", "--examples", 0)
         with stored.opened(self.folder / "s.h5") as file:
             about = stored.attributes(file)
         page = (self.folder / "report.html").read_text()
         self.assertIn(f"git_describe: {about['git_describe']}\n", page)
+        self.assertIn("4 of 4 runs finished", page)
         self.assertIn(f"fitted by clogfit {about['version']}, git {about['git_describe']}", page)
         older = {"version": "0.1.0", "git_hash": "0123456789ab"}
         self.assertEqual(stored.writer(older), "0.1.0, git 0123456789ab")
 
     def test_a_doubtful_length_has_a_hollow_marker_and_the_reason_below_it(self):
-        self.succeed("clogsweep", *QUICK, "line-tension=2,30", "seeds=1..5", "--output", "s.h5")
+        self.copy_sweep("s.h5", *QUICK, "line-tension=2,30", "seeds=1..5")
         groups = Groups(json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout))
         for group, doubts in zip(groups.members, (["below_spacing"], ["below_spacing", "not_proved_sound"])):
             self.assertEqual(lengths.reasons_for_hollow_marker(group), doubts)
@@ -379,14 +371,14 @@ class Pictures(Analysis):
         self.assertNotIn("fewer than 5 clogs", hollow_places()[1])
 
     def test_clogs_are_drawn_from_a_sweep(self):
-        self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1..2", "--output", "s.h5")
+        self.copy_sweep("s.h5", *FEW)
         told = self.draw("clogs", "s.h5", "--programs", BIN, "--most", 2).stdout
         self.assertEqual(told, "s-clogs.png (and .pdf)\n")
         self.assert_picture("s-clogs")
         self.refuse_analysis("clogs", "s.h5", "--programs", BIN, "--output", "clogs", "--tasks", "0,77", words=["77"])
 
     def test_the_clogging_length_comes_from_the_sweep_itself_by_the_programs_of_the_path(self):
-        self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1..2", "--output", "s.h5")
+        self.copy_sweep("s.h5", *FEW)
         self.write("fit.json", self.succeed("clogfit", "s.h5", "--format", "json").stdout)
         self.draw("clogging-length", "fit.json", "--output", "from-fit")
         (self.folder / "clogsweep").touch(mode=0o755)
@@ -434,8 +426,8 @@ class Pictures(Analysis):
                 self.refuse_analysis(command, file, "--output", "x", *where, words=["run.h5" if command == "report" else "cannot read"])
 
     def test_nothing_is_written_over_what_is_read_or_of_another_kind(self):
-        self.succeed("clogsweep", *QUICK, "line-tension=1,3", "seeds=1", "--output", "s.h5")
-        self.succeed("clogrun", "array", *QUICK, "--polygon-interval", 15, "--output", "run.h5")
+        self.copy_sweep("s.h5", *FEW)
+        self.copy_sweep("run.h5", "array", *QUICK, "--polygon-interval", 10, program="clogrun")
         self.write("fit.json", self.succeed("clogfit", "s.h5", "--format", "json").stdout)
         self.write("profile.csv", "h [sigma], v [v_t]\n0,1\n1,1\n2,1\n")
         (self.folder / "soft.h5").symlink_to("s.h5")
@@ -471,8 +463,9 @@ class Pictures(Analysis):
         after = self.snapshot()
         self.assertEqual({name: after[name] for name in before}, before)
         # An earlier page or picture of ours is replaced.
+        self.write("report.html", "<!DOCTYPE html>\n<title>an earlier one</title>\n")
+        self.draw("report", "s.h5", "--output", "report.html", "--programs", BIN, "--examples", 0)
         for _ in range(2):
-            self.draw("report", "s.h5", "--output", "report.html", "--programs", BIN, "--examples", 0)
             self.draw("clogging-length", "fit.json", "--output", "length")
             self.draw("export-vtk", "run.h5", "--output", "run")
 
@@ -486,7 +479,7 @@ class Pictures(Analysis):
             self.refuse("clogrun", "array", *QUICK, "--polygon-interval", 15, *options, words=["name the same file", "give two names"])
 
     def test_mistakes_get_one_line_from_every_command(self):
-        self.succeed("clogsweep", *QUICK, "line-tension=2", "seeds=1..2", "--output", "s.h5")
+        self.copy_sweep("s.h5", *FEW)
         self.write("text.h5", "not a table")
         (self.folder / "folder").mkdir()
         for arguments, words in [
@@ -500,7 +493,8 @@ class Pictures(Analysis):
             (["s.h5", "--output", "page.html", "--programs", "folder"], ["no clogsweep in folder"]),
         ]:
             with self.subTest(arguments=arguments):
-                self.refuse("clogfit", "report", *arguments, words=["clogfit report: ", *words])
+                self.refuse_analysis("report", *arguments, words=["python3 -m clogsweep report: ", *words])
+        self.refuse("clogfit", "report", *arguments, words=["clogfit report: ", *words])
         for command in ("clogging-length", "clogs", "droplet", "export-vtk", "figures"):
             with self.subTest(command=command):
                 self.refuse_analysis(command, "s.h5", "--colours", words=[f"python3 -m clogsweep {command}: ", "--help"])
