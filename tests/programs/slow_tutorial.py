@@ -1,0 +1,66 @@
+"""Pages of the handbook: their commands as they stand, one block after the other, in an empty folder; those of the tutorial
+in one folder, one page after the other.
+
+Blocks of `bash` and `python` are run. The first line of a block of `text` has to be among what they print, whatever its
+numbers are, and every file that a page names has to be there in the end.
+"""
+
+import re
+import unittest
+
+import pages
+from support import ROOT, ProgramTest
+
+FILE = re.compile(r"`([\w-]+\.(?:h5|csv|cfg|json|png|pdf|gif|mp4|html))`")
+
+
+def outline(line):
+    """A line without its numbers and the widths of its columns."""
+    return re.sub(r"\d[\d.]*(?:e[+-]?\d+)?", "#", " ".join(line.split()))
+
+
+class Pages(ProgramTest):
+    def follow(self, path):
+        blocks = pages.blocks(path)
+        self.assertIn("bash", [language for language, _ in blocks])
+        seen = set()
+        for language, block in blocks:
+            if language == "text":
+                self.assertIn(outline(block.splitlines()[0]), seen)
+                continue
+            done = pages.run(language, block, self.folder)
+            self.assertEqual(done.returncode, 0, f"{block}\n{done.stdout}")
+            seen.update(map(outline, done.stdout.splitlines()))
+        prose = re.sub(r"^```.*?^```$", "", (ROOT / path).read_text(), flags=re.MULTILINE | re.DOTALL)
+        files = FILE.findall(prose)
+        self.assertNotEqual(files, [])
+        for name in files:
+            self.assertTrue((self.folder / name).exists(), f"{path} names {name}, which is not there")
+
+    def test_the_tutorial(self):
+        """Its pages tell the reader to stay in one folder: what one of them writes must not be in the way of another."""
+        self.assertGreaterEqual(len(pages.tutorial()), 3)
+        for page in pages.tutorial():
+            self.follow(page)
+
+    def test_the_sweep_of_the_first_page(self):
+        self.follow("README.md")
+
+    def test_other_random_arrays(self):
+        self.follow("docs/how-to/other-arrays.md")
+
+    def test_obstacles_of_your_own(self):
+        self.follow("docs/how-to/own-obstacles.md")
+
+    def test_a_lattice(self):
+        self.follow("docs/how-to/lattice.md")
+
+    def test_two_sweeps_compared(self):
+        self.follow("docs/how-to/compare-sweeps.md")
+
+    def test_results_in_python(self):
+        self.follow("docs/how-to/python.md")
+
+
+if __name__ == "__main__":
+    unittest.main()
