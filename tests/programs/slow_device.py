@@ -1,0 +1,14 @@
+"""Devices of a user's own, in runs that take long."""
+
+import unittest
+
+import test_device
+
+
+class Devices(test_device.Walls):
+    def test_droplets_slide_along_a_steep_row_of_circles_as_along_a_flat_wall(self):
+        self.slide(75, 0.004)
+
+
+if __name__ == "__main__":
+    unittest.main()
