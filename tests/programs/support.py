@@ -34,6 +34,7 @@ FEW = [*QUICK, "line-tension=1,3", "seeds=1..2"]
 # Long runs, each of several snapshots (four a second).
 SWEEP = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05,0.5", "max-time=4000", "seeds=1..6",
          "--report-seconds=0.1", "--output", "s.h5"]
+FEW_LONG = [word.replace("1..6", "1") for word in SWEEP]
 # Two runs of seconds each: both are in progress at the first snapshot.
 SLOW = [*SMALL, "obstacle-gap=0.4,0.5", "line-tension=0.05", "max-time=2e4", "seeds=1",
         "--report-seconds=0.1", "--output", "s.h5"]
@@ -68,6 +69,11 @@ def shared_sweep(*arguments, program="clogsweep"):
             draft.chmod(0o444)
             draft.rename(path)
     return path
+
+
+def undisturbed(sweep):
+    """The file of a sweep of which the last two arguments are its --output, when nothing happens to it."""
+    return shared_sweep(*sweep[:-2])
 
 
 class ProgramTest(unittest.TestCase):

@@ -6,7 +6,7 @@ import unittest
 
 import h5py
 import pandas
-from support import QUICK, TIMING, ProgramTest, table
+from support import QUICK, TIMING, ProgramTest, shared_sweep, table
 
 # Every droplet clogs at Gamma = 2; few do at 0.3 in so short a time.
 SWEEP = [*QUICK, "obstacle-gap=0.3", "line-tension=0.3,2", "seeds=1..4", "--until-precision=75%", "--most-seeds=14"]
@@ -42,27 +42,26 @@ class Precision(ProgramTest):
         self.assertIn("the same bits", self.succeed("clogsweep", "replay", "s.h5", last).stdout)
 
     def test_the_rows_depend_neither_on_ranks_nor_on_interruptions(self):
-        self.succeed("clogsweep", *SWEEP, "--output", "one.h5")
+        whole = shared_sweep(*SWEEP)
         self.succeed("clogsweep", *SWEEP, "--output", "three.h5", ranks=3)
-        self.check_equal("one.h5", "three.h5")
+        self.check_equal("three.h5", whole)
         stopped, hours = 0, 0.00004
         while self.run_program("clogsweep", *SWEEP, "--output", "stopped.h5", f"--max-hours={hours}").returncode == 75:
             stopped += 1
             hours *= 1.05  # on a machine that is busy a session may come to nothing
             self.assertLess(stopped, 200)
         self.assertGreater(stopped, 0)
-        self.check_equal("one.h5", "stopped.h5")
-        again = self.succeed("clogsweep", *SWEEP, "--output", "one.h5")
+        self.check_equal("stopped.h5", whole)
+        again = self.succeed("clogsweep", *SWEEP, "--output", "stopped.h5")
         self.assertIn("parameter sets reached", again.stderr)
-        self.check_equal("one.h5", "three.h5")
+        self.check_equal("stopped.h5", whole)
 
     def test_a_sweep_without_it_can_go_on_with_it(self):
         plain = [word for word in SWEEP if not word.startswith("--")]
         self.succeed("clogsweep", *plain, "--output", "s.h5")
         self.assertEqual(len(table(self.folder / "s.h5")), 8)
         self.succeed("clogsweep", *SWEEP, "--output", "s.h5")
-        self.succeed("clogsweep", *SWEEP, "--output", "whole.h5")
-        self.check_equal("s.h5", "whole.h5")
+        self.check_equal("s.h5", shared_sweep(*SWEEP))
 
     def test_a_lower_precision_finishes_runs_of_a_higher_one(self):
         more = [*SWEEP[:-2], "--until-precision=30%", "--most-seeds=60"]

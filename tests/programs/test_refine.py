@@ -10,7 +10,7 @@ import unittest
 
 import h5py
 import pandas
-from support import BIN, QUICK, ROOT, TIMING, ProgramTest, table
+from support import BIN, QUICK, ROOT, TIMING, ProgramTest, shared_sweep, table
 
 SWEEP = [*QUICK, "obstacle-gap=0.3", "seeds=1..3", "line-tension=0.3,3", "--refine=line-tension", "--most-seeds=12"]
 GOAL = "--until=curve=70%"
@@ -44,16 +44,16 @@ class Refine(ProgramTest):
         self.assertEqual(len(table(self.folder / "s.h5")), len(rows))
 
     def test_the_rows_depend_neither_on_ranks_nor_on_interruptions_nor_on_isolation(self):
-        self.succeed("clogsweep", *SWEEP, GOAL, "--output", "one.h5")
+        whole = shared_sweep(*SWEEP, GOAL)
         self.succeed("clogsweep", *SWEEP, GOAL, "--isolate=no", "--output", "three.h5", ranks=3)
-        self.check_equal("one.h5", "three.h5")
+        self.check_equal("three.h5", whole)
         stopped, hours = 0, 0.0001
         while self.run_program("clogsweep", *SWEEP, GOAL, "--output", "stopped.h5", f"--max-hours={hours}").returncode == 75:
             stopped += 1
             hours *= 1.1  # on a machine that is busy a session may come to nothing
             self.assertLess(stopped, 200)
         self.assertGreater(stopped, 0)
-        self.check_equal("one.h5", "stopped.h5")
+        self.check_equal("stopped.h5", whole)
 
     def test_a_sweep_that_is_there_informs_it(self):
         self.succeed("clogsweep", *QUICK, "obstacle-gap=0.3", "line-tension=0.5,0.9,1.7", "seeds=1..10", "--output", "s.h5")
@@ -139,13 +139,13 @@ class CriticalAngle(ProgramTest):
         self.assertGreater(len(table(self.folder / "s.h5")), len(rows))
 
     def test_the_rows_depend_neither_on_ranks_nor_on_interruptions(self):
-        self.succeed("clogsweep", *LATTICE, ANGLE, "--output", "one.h5")
         stopped, hours = 0, 0.0001
         while self.run_program("clogsweep", *LATTICE, ANGLE, "--output", "stopped.h5", f"--max-hours={hours}", ranks=3).returncode == 75:
             stopped += 1
             hours *= 1.1
             self.assertLess(stopped, 200)
-        rows, others = (table(self.folder / name).drop(columns=TIMING) for name in ("one.h5", "stopped.h5"))
+        paths = (shared_sweep(*LATTICE, ANGLE), self.folder / "stopped.h5")
+        rows, others = (table(path).drop(columns=TIMING) for path in paths)
         pandas.testing.assert_frame_equal(rows, others, check_exact=True)
 
     def test_what_does_not_bracket_it_is_said(self):
