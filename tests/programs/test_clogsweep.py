@@ -27,12 +27,12 @@ class Sweep(ProgramTest):
     def test_rows_do_not_depend_on_the_number_of_ranks(self):
         sweep = [*QUICK, "line-tension=0.3,2", "obstacle-gap=0.2,0.6", "seeds=1..4"]
         tables = {}
-        for ranks in (None, 1, 2, 4):
+        for ranks in (None, 2, 4):
             self.succeed("clogsweep", *sweep, "--output", f"{ranks}.h5", ranks=ranks)
             tables[ranks] = table(self.folder / f"{ranks}.h5").drop(columns=CIRCUMSTANCES)
         self.assertEqual(len(tables[None]), 16)
         self.assertEqual(set(tables[None].status), {"clogged", "flowing"})
-        for ranks in (1, 2, 4):
+        for ranks in (2, 4):
             pandas.testing.assert_frame_equal(tables[ranks], tables[None], check_exact=True)
 
     def test_every_rank_works_and_a_serving_master_does_not(self):
@@ -231,9 +231,9 @@ class Sweep(ProgramTest):
         self.assertIn("3/3 done, 0 running", done.stderr)
 
     def test_a_task_that_cannot_run_is_a_row(self):
-        self.succeed("clogsweep", *BLOCKED, "seeds=51..70", "--output", "s.h5", ranks=2)
+        self.succeed("clogsweep", *BLOCKED, "seeds=63..66", "--output", "s.h5", ranks=2)
         rows = table(self.folder / "s.h5")
-        self.assertEqual(len(rows), 20)
+        self.assertEqual(len(rows), 4)
         failed = rows[rows.status == "failed"]
         self.assertEqual(set(failed.seed), {64})
         self.assertTrue(failed.message.str.contains("no void near the centre of the box").all())
@@ -311,7 +311,7 @@ class Isolated(ProgramTest):
                                             for name in ("yes.h5", "no.h5")), check_exact=True)
 
     def test_a_crash_fails_one_task_and_the_sweep_goes_on(self):
-        process = self.start("--attempts=1", "seeds=1..2", "max-time=2e4")
+        process = self.start("--attempts=1", "seeds=1..2", "max-time=5e3")
         os.kill(self.computing_process(process), signal.SIGSEGV)
         _, error = process.communicate(timeout=LONGEST)
         self.assertEqual(process.returncode, 0, error)
@@ -321,7 +321,7 @@ class Isolated(ProgramTest):
         self.assertRegex(error, r"(?m)^\d\d:\d\d:\d\d task 0 rank 0: failed, attempt 1: its process was ended by SIGSEGV")
 
     def test_a_task_that_crashed_is_tried_again(self):
-        process = self.start("seeds=1", "max-time=2e4")
+        process = self.start("seeds=1", "max-time=5e3")
         os.kill(self.computing_process(process), signal.SIGKILL)
         _, error = process.communicate(timeout=LONGEST)
         self.assertEqual(process.returncode, 0, error)
@@ -356,7 +356,7 @@ class Isolated(ProgramTest):
         self.assertEqual(table(self.folder / "s.h5").status[0], "flowing")
 
     def test_a_sweep_goes_on_without_the_helper(self):
-        process = self.start("seeds=1..2", "max-time=2e4")
+        process = self.start("seeds=1..2", "max-time=5e3")
         self.computing_process(process)
         os.kill(self.children_of(process.pid)[0], signal.SIGKILL)
         _, error = process.communicate(timeout=LONGEST)

@@ -131,7 +131,7 @@ class Channels(Analysis):
     def test_a_report_shows_what_came_out_of_them(self):
         self.succeed("clogsweep", *CHANNEL[:1], *CHANNEL[2:], "orifice=0.6,0.7", "line-tension=0.3,0.6,5", "--output", "s.h5")
         fit = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)
-        self.succeed("clogfit", "report", "s.h5", "--output", "r.html", "--examples", 2)
+        self.draw("report", "--programs", BIN, "s.h5", "--output", "r.html", "--examples", 2)
         page = (self.folder / "r.html").read_text()
         for group in fit["groups"]:
             cells = [f"{group['orifice']:g}", f"{group['line_tension']:g}", group["status"], *(f"{group[name]:.4g}" for name in EXTREMES)]
@@ -142,7 +142,7 @@ class Channels(Analysis):
             self.assertIn(f"<li>orifice {orifice}: {passed} of 3 passed</li>", page)
         self.assertNotIn("lambda", page)
         self.assertEqual((page.count("<svg"), page.count("<img")), (6, 0))  # one is of the busy ranks
-        self.succeed("clogfit", "report", "s.h5", "--output", "r.html", "--examples", 0)
+        self.draw("report", "--programs", BIN, "s.h5", "--output", "r.html", "--examples", 0)
         page = (self.folder / "r.html").read_text()
         self.assertEqual((page.count("<svg"), page.count("<img")), (4, 0))
 
@@ -155,7 +155,7 @@ class Channels(Analysis):
 
     def test_a_report_of_soft_disks_has_no_shapes(self):
         self.succeed("clogsweep", "model=sp", "orifice=0.7", "wall-stiffness=1,50", "start=-1.5", "end=1", "max-time=2000", "--output", "s.h5")
-        self.succeed("clogfit", "report", "s.h5", "--output", "r.html")
+        self.draw("report", "--programs", BIN, "s.h5", "--output", "r.html")
         page = (self.folder / "r.html").read_text()
         self.assertEqual((page.count("<svg"), page.count("<img")), (3, 0))
         self.assertIn("<li>1 of 2 passed</li>", page)
@@ -167,14 +167,14 @@ class Channels(Analysis):
             stored_rows.change(self.folder / "s.h5", lambda rows: rows["status"].__setitem__(list(tasks), b"interrupted"))
 
         interrupt(1)
-        self.succeed("clogfit", "report", "s.h5", "--output", "r.html")
+        self.draw("report", "--programs", BIN, "s.h5", "--output", "r.html")
         page = (self.folder / "r.html").read_text()
         self.assertIn("<li>1 of 1 passed</li>", page)
         self.assertIn("<td>0.5</td><td>passed</td>", page)
         self.assertNotIn("<td>0.6</td>", page)
         self.assertEqual((page.count("<svg"), page.count("<img")), (5, 0))
         interrupt(0, 1)
-        self.refuse("clogfit", "report", "s.h5", "--output", "s.html", words=["no finished runs"])
+        self.refuse_analysis("report", "--programs", BIN, "s.h5", "--output", "s.html", words=["no finished runs"])
 
     def test_an_outline_of_a_report_is_the_most_deformed(self):
         self.succeed("clogsweep", *CHANNEL, "line-tension=0.3,5", "--output", "s.h5")
@@ -221,7 +221,7 @@ class Walls(Analysis):
         self.assertEqual([f"{row.sag:.6g}" for row in rows], [words[3] for words in printed])
         self.assertEqual([f"{row.top_sag:.6g}" for row in rows], [words[4] for words in printed])
         self.assertIn("at rest", self.succeed("clogfit", "s.h5").stdout)
-        self.succeed("clogfit", "report", "s.h5", "--output", "r.html")
+        self.draw("report", "--programs", BIN, "s.h5", "--output", "r.html")
         page = (self.folder / "r.html").read_text()
         for row in rows:
             cells = [f"{row.line_tension:g}", "at rest", *(f"{value:.4g}" for value in (row.sag, row.top_sag, row.shape_parameter))]
@@ -235,7 +235,7 @@ class Walls(Analysis):
         for row, stiffness in zip(read_rows(self.folder / "s.h5"), [0.5, 5], strict=True):
             self.assertAlmostEqual(row.sag, np.pi / (16 * stiffness), delta=1e-5)
         # A disk has no outline to show.
-        self.succeed("clogfit", "report", "s.h5", "--output", "r.html")
+        self.draw("report", "--programs", BIN, "s.h5", "--output", "r.html")
         page = (self.folder / "r.html").read_text()
         self.assertEqual((page.count("<svg"), page.count("<img")), (3, 0))
 
@@ -301,7 +301,7 @@ class OwnCircles(ProgramTest):
 
     def test_a_run_longer_than_its_circles_asks_for_a_longer_file(self):
         keys = [key for key in OWN if not key.startswith("max-time")]
-        told = self.succeed("clogsweep", *keys, "release=anywhere", "max-time=5000", "--dry-run")
+        told = self.succeed("clogsweep", *keys, "release=anywhere", "max-time=500", "--dry-run")
         self.assertIn("give a file of circles that is as long", told.stdout + told.stderr)
         self.assertNotIn("boxes=", (told.stdout + told.stderr).split("meet the same obstacles again")[1].splitlines()[0])
 

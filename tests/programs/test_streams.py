@@ -1,13 +1,14 @@
 """Streams that are closed, full or not read, files that are none, and what messages show of odd names."""
 
 import os
+import shutil
 import signal
 import socket
 import subprocess
 import sys
 import unittest
 
-from support import BIN, ENDLESS, LONGEST, MPI, MPIRUN, QUICK, ROOT, SweepTest, table
+from support import BIN, ENDLESS, LONGEST, MPI, MPIRUN, QUICK, ROOT, SweepTest, shared_sweep, table
 
 sys.path.insert(0, str(ROOT / "analysis"))
 import clogsweep  # noqa: E402
@@ -31,7 +32,7 @@ class Streams(SweepTest):
                               text=True, timeout=LONGEST)
 
     def prepare_reports(self):
-        self.succeed("clogsweep", *QUICK, "seeds=1..3", "--output", "done.h5")
+        shutil.copyfile(shared_sweep(*QUICK, "seeds=1..3"), self.folder / "done.h5")
         self.write("speeds.csv", SPEEDS)
 
     def check_complete(self):
@@ -88,7 +89,7 @@ class Streams(SweepTest):
 
     def test_a_report_without_a_reader_ends_quietly(self):
         self.prepare_reports()
-        for report in [*REPORTS, ["clogsweep", "line-tension=lin(0.1,1,10)", "seeds=1..1000000", "--dry-run"]]:
+        for report in [*REPORTS, ["clogsweep", *QUICK, "line-tension=lin(0.1,1,10)", "seeds=1..100", "--dry-run"]]:
             with self.subTest(report):
                 self.assertEqual(self.without_reader("stdout", *report), (141, "", ""))
                 (self.folder / "run.h5").unlink(missing_ok=True)
@@ -147,7 +148,8 @@ class Files(SweepTest):
                     self.refuse(*command, words=["cannot read " + name])
         for ranks in (None, 2):
             command = [*([str(MPIRUN), str(ranks)] if ranks else []), str(BIN / "clogsweep"), "--config", "/dev/stdin", "--dry-run"]
-            done = subprocess.run(command, input="seeds = 1..7\n", cwd=self.folder, capture_output=True, text=True, timeout=LONGEST)
+            config = "seeds = 1..7\nvertices = 64\nbox = 20\nmax-time = 1\n"
+            done = subprocess.run(command, input=config, cwd=self.folder, capture_output=True, text=True, timeout=LONGEST)
             self.assertIn("# 7 tasks", done.stdout, done.stderr)
 
     def test_a_signal_ends_the_waiting_for_a_pipe(self):
