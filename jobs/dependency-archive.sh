@@ -17,6 +17,7 @@ cd "$work"
 
 # The sources of the distribution that this machine has, in lists of our own.
 mkdir -p state/lists/partial cache/archives/partial
+# shellcheck disable=SC2016 # apt-get expands the names
 apt-get indextargets --format '$(ORIGIN) $(SITE) $(RELEASE) $(COMPONENT)' "Identifier: Packages" |
   sed -n 's/^\(Debian\|Ubuntu\) /deb-src /p' | sort -u >sources.list
 apt_get() {
@@ -39,7 +40,7 @@ for source in boost*:boost eigen3:eigen fmtlib:fmt highway:highway nlohmann-json
   cp "$name/debian/copyright" "$out/$name/"
   (cd "$name" && dpkg-parsechangelog --show-field Source && dpkg-parsechangelog --show-field Version) | paste -sd ' ' >>"$out/VERSIONS"
 done
-cp -r eigen/{CMakeLists.txt,cmake,Eigen,unsupported,COPYING.*} eigen/*.in "$out/eigen"
+cp -r eigen/{Eigen,COPYING.*} "$out/eigen"
 cp -r fmt/{CMakeLists.txt,support,include,src,LICENSE*} "$out/fmt"
 cp -r highway/{CMakeLists.txt,cmake,hwy,LICENSE*} highway/*.in "$out/highway"
 cp -r nlohmann-json/{CMakeLists.txt,cmake,include,LICENSE*} nlohmann-json/*.natvis "$out/nlohmann-json"

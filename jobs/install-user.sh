@@ -6,7 +6,7 @@ set -euo pipefail
 here=$(realpath "$(dirname "$0")/..")
 usage="usage: install-user.sh --prefix DIR [--archive FILE] [CMAKE_OPTION...]"
 fail() { echo "install-user.sh: $1" >&2; exit 2; }
-prefix= archive= options=()
+prefix='' archive='' options=()
 while [ $# -gt 0 ]; do
   case $1 in
     --prefix) prefix=${2:?$usage}; shift 2 ;;
@@ -45,8 +45,8 @@ if [ -n "$missing" ]; then
   rm -rf "$build/clogsweep-dependencies"
   tar -xzf "$archive" -C "$build"
   configure_dependencies -DSOURCES="$build/clogsweep-dependencies"
-  cmake --build "$build/dependencies" --parallel "$parallel" >>"$build/dependencies.log" 2>&1 &&
-    cmake --install "$build/dependencies" >>"$build/dependencies.log" 2>&1 || fail "cannot build $missing; see $build/dependencies.log"
+  cmake --build "$build/dependencies" --parallel "$parallel" --target install >>"$build/dependencies.log" 2>&1 ||
+    fail "cannot build $missing; see $build/dependencies.log"
 fi
 
 # The installed programs find MPI and HDF5 where they were, without LD_LIBRARY_PATH.
