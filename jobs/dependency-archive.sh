@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # dependency-archive.sh ARCHIVE.tar.gz: makes the archive of dependencies that jobs/install-user.sh takes where they are
-# not installed. Run it on a Debian or Ubuntu machine with a network and dpkg-dev; root is not needed. It contains Debian's
-# sources of Eigen, Boost (headers that we need, sources of Program_options), fmt, Highway, nlohmann-json and zlib, with
+# not installed. Run it on a Debian or Ubuntu machine with a network and dpkg-dev; root is not needed. The archive contains
+# Debian's sources of Eigen, Boost (the headers that we need, Program_options), fmt, Highway, nlohmann-json and zlib, with
 # their licences.
 set -euo pipefail
 export LC_ALL=C

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# install-user.sh --prefix DIR [--archive FILE] [CMAKE_OPTION...]: builds clogsweep without root and installs it below DIR,
-# with the compiler, CMake, MPI and HDF5 of the PATH, such as those of environment modules. What is missing of the other
-# libraries comes from FILE, which jobs/dependency-archive.sh makes on a machine with a network. Builds in build/user.
+# install-user.sh --prefix DIR [--archive FILE] [CMAKE_OPTION...]: builds clogsweep without root in build/user, and
+# installs it below DIR. Takes the compiler, CMake, MPI and HDF5 of the PATH, such as those of environment modules. Other
+# libraries, if they are missing, come from FILE, which jobs/dependency-archive.sh makes on a machine with a network.
 set -euo pipefail
 here=$(realpath "$(dirname "$0")/..")
 usage="usage: install-user.sh --prefix DIR [--archive FILE] [CMAKE_OPTION...]"

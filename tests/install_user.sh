@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# tests/install_user.sh [FOLDER]: jobs/install-user.sh in an empty Debian in FOLDER (/tmp/clogsweep-user-root) that has only
-# g++, CMake, Ninja, Open MPI and HDF5, as a user without root, without Python and without a network. Runs a sweep there
-# and checks what the programs say that need more. Needs root, debootstrap and dpkg-dev, and takes half an hour: run by
-# hand, before a release. Exit code 1: something of it fails.
+# tests/install_user.sh [FOLDER]: runs jobs/install-user.sh in an empty Debian in FOLDER (/tmp/clogsweep-user-root) that
+# has only g++, CMake, Ninja, Open MPI and HDF5, as a user without root, without Python and without a network. Runs a
+# sweep there, and checks the messages of commands that need Python or NLopt. Needs root, debootstrap and dpkg-dev, and
+# takes half an hour: run by hand, before a release. Exit code 1: a check fails.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 root=${1:-/tmp/clogsweep-user-root}
