@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # dependency-archive.sh ARCHIVE.tar.gz: makes the archive of dependencies that jobs/install-user.sh takes where they are
-# not installed. Run it on a Debian or Ubuntu machine with a network and dpkg-dev; root is not needed. The archive contains
-# Debian's sources of Eigen, Boost (the headers that we need, Program_options), fmt, Highway, nlohmann-json and zlib, with
-# their licences.
+# not installed. Run it on a Debian or Ubuntu machine with a network and dpkg-dev; root is not needed. The archive
+# contains Debian's sources of Eigen, Boost (the headers that we need, Program_options), fmt, Highway, nlohmann-json and
+# zlib, with their licences.
 set -euo pipefail
 export LC_ALL=C
 [ $# -eq 1 ] || { echo "usage: dependency-archive.sh ARCHIVE.tar.gz" >&2; exit 2; }
@@ -41,7 +41,7 @@ for source in boost*:boost eigen3:eigen fmtlib:fmt highway:highway nlohmann-json
   (cd "$name" && dpkg-parsechangelog --show-field Source && dpkg-parsechangelog --show-field Version) | paste -sd ' ' >>"$out/VERSIONS"
 done
 cp -r eigen/{Eigen,COPYING.*} "$out/eigen"
-cp -r fmt/{CMakeLists.txt,support,include,src,LICENSE*} "$out/fmt"
+cp -r fmt/{CMakeLists.txt,support,include,src,LICENSE*,README.*,ChangeLog.*} "$out/fmt"
 cp -r highway/{CMakeLists.txt,cmake,hwy,LICENSE*} highway/*.in "$out/highway"
 cp -r nlohmann-json/{CMakeLists.txt,cmake,include,LICENSE*} nlohmann-json/*.natvis "$out/nlohmann-json"
 cp zlib/*.[ch] zlib/README "$out/zlib"

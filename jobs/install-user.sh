@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # install-user.sh --prefix DIR [--archive FILE] [CMAKE_OPTION...]: builds clogsweep without root in build/user, and
-# installs it below DIR. Takes the compiler, CMake, MPI and HDF5 of the PATH, such as those of environment modules. Other
-# libraries, if they are missing, come from FILE, which jobs/dependency-archive.sh makes on a machine with a network.
+# installs it below DIR. Takes the compiler, CMake, MPI and HDF5 of the PATH, such as those of environment modules.
+# Other libraries, if they are missing, come from FILE, which jobs/dependency-archive.sh makes where there is a network.
 set -euo pipefail
 here=$(realpath "$(dirname "$0")/..")
 usage="usage: install-user.sh --prefix DIR [--archive FILE] [CMAKE_OPTION...]"
