@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From a fresh Debian 12 machine to a clogging-length curve: installs what is missing, builds, runs the sweep of
+# From a fresh Debian 12 or 13 to a clogging-length curve: installs what is missing, builds, runs the sweep of
 # jobs/laptop.cfg on two ranks, fits and draws. Results go to a new folder under results/.
 set -euo pipefail
 cd "$(dirname "$0")/.."

@@ -6,14 +6,18 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 preset=${PRESET:-release}
 part=(--label-exclude slow)
+groups=(tests)
+handbook=OFF # whose man pages a slow test reads
 if [ "${1:-}" = --all ]; then
   part=()
+  groups=(tests docs)
+  handbook=ON
   shift
 fi
-./jobs/install-dependencies.sh tests
+./jobs/install-dependencies.sh "${groups[@]}"
 errors=OFF
 if [ "${WARNINGS:-}" = errors ]; then errors=ON; fi
-cmake --preset "$preset" -DCLOG_TESTS=ON -DCMAKE_COMPILE_WARNING_AS_ERROR=$errors
+cmake --preset "$preset" -DCLOG_TESTS=ON -DCLOG_HANDBOOK=$handbook -DCMAKE_COMPILE_WARNING_AS_ERROR=$errors
 TIMEFORMAT='%R s, processor time %U s'
 time cmake --build --preset "$preset"
 time ctest --preset "$preset" --parallel "$(nproc)" "${part[@]}" "$@"

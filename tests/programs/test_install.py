@@ -1,6 +1,5 @@
 """Tests an installation by cmake --install where nothing else is installed, and one of the Python package by pip."""
 
-import json
 import os
 import pathlib
 import pty
@@ -17,12 +16,6 @@ import pandas
 from support import BIN, LONGEST, ROOT
 
 KEYS = ["line-tension=0.5", "obstacle-density=saturated", "obstacle-gap=0.3", "vertices=64", "box=20", "max-time=200", "seeds=1..4"]
-
-COMMANDS = {"clogsweep": ["status", "verify", "salvage", "replay", "doctor"], "clogrun": [],
-            "clogfit": ["calibrate", "curve", "deviation", "drag", "report", "units"]}
-
-# Meanings of words without dashes.
-POSITIONAL = {"--file", "--system", "--task"}
 
 
 class Installation(unittest.TestCase):
@@ -71,57 +64,11 @@ class Installed(Installation):
         self.called("clogrun", "array", *KEYS[:-1], "seeds=1", "--polygon-interval", 20, "--output", "r.h5", "--frames", "film.gif")
         self.assertTrue((self.folder / "film.gif").exists())
 
-    def man_page(self, name, section):
-        """The page without its fonts."""
-        return re.sub(r"\\f[BIP]", "", (self.prefix / f"share/man/man{section}/{name}.{section}").read_text().replace("\\-", "-"))
-
-    def test_man_pages_have_every_option_with_its_default_and_no_other(self):
-        for program, commands in COMMANDS.items():
-            told = re.findall(r"^\.B (--[^\n]+)\n(.*?)(?=^\.)", self.man_page(program, 1), re.MULTILINE | re.DOTALL)
-            helped = self.called(program, "--help").split("\nKeys")[0]
-            for option, default in re.findall(r"^  (?:-\w \[ )?(--[a-z][a-z-]*)(?: \])?(?: arg \(=([^)]*)\))?", helped, re.MULTILINE):
-                words = f"(default: {default})" if default else ""
-                is_told = any(option in re.findall(r"--[a-z-]+", options) and words in meaning for options, meaning in told)
-                self.assertTrue(is_told or option in POSITIONAL, f"{program} {option} {words}")
-            known = helped + "".join(self.called(program, command, "--help") for command in commands)
-            for option in re.findall(r"--[a-z-]+", " ".join(options for options, _ in told)):
-                self.assertRegex(known, rf"(?m)^  .*{option}\b")
-
-    def test_man_pages_have_what_belongs_to_one_and_lead_to_others_that_are_there(self):
-        pages = {(path.stem, path.suffix[1:]) for path in self.prefix.glob("share/man/man*/*")}
-        self.assertEqual(len(pages), 8)
-        for name, section in pages:
-            page = self.man_page(name, section)
-            of_a_program = ["SYNOPSIS", "EXAMPLES", "OPTIONS", "EXIT STATUS", "SEE ALSO"] if section == "1" else []
-            for heading in ["NAME", "DESCRIPTION", *of_a_program]:
-                self.assertRegex(page, f'(?m)^\\.SH "?{heading}"?$', name)
-            self.assertLessEqual(set(re.findall(r"([a-z-]+)\((\d)\)", page)), pages, name)
-            for place in re.findall(r"docs/[^\]\s]+\.md", page):
-                self.assertTrue((self.prefix / "share/doc/clogsweep" / place).exists(), f"{name}: {place}")
-            self.assertEqual([], re.findall(r"\\(?:sigma|sqrt|rho)|^\.TS", page, re.MULTILINE), name)
-
-    def test_man_pages_have_every_key_and_column(self):
-        schema = json.loads(self.called("clogsweep", "--schema"))
-        for kind, naming in (("keys", "key"), ("columns", "name")):
-            terms = re.findall(r"^\.TP\n\.B ([\w-]+)", self.man_page(f"clogsweep-{kind}", 5), re.MULTILINE)
-            for entry in schema[kind]:
-                self.assertIn(entry[naming], terms)
-
     def test_pages_that_messages_name_are_there(self):
         said = self.called("clogsweep", *KEYS[1:], "line-tension=30", "--dry-run")
         title, = re.findall(r"not proved sound \(handbook, ([^)]+)\)", said)
         pages = (self.prefix / "share/doc/clogsweep/docs").rglob("*.md")
         self.assertEqual([page.name for page in pages if page.read_text().startswith(f"# {title}\n")], ["soundness.md"])
-
-    def test_the_handbook_opens_without_a_network(self):
-        site = self.prefix / "share/doc/clogsweep/html"
-        is_for_users = "CLOG_HANDBOOK:BOOL=ON" in (BIN.parent / "CMakeCache.txt").read_text()
-        self.assertEqual((site / "index.html").exists(), is_for_users)
-        if not is_for_users:
-            return
-        for part in ("index.html", "reference/keys.html", "tutorial/own-device.html", "_static/mathjax/MathJax.js"):
-            self.assertTrue((site / part).exists(), part)
-        self.assertNotIn("import Gumshoe", (site / "_static/scripts/furo.js").read_text())
 
     def test_a_config_that_comes_with_it(self):
         said = self.called("clogsweep", "--config", self.prefix / "share/clogsweep/jobs/laptop.cfg", "--print-config")
