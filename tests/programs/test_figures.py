@@ -171,7 +171,7 @@ class Drawn(Analysis):
         self.write("measured.csv", measured)
 
     def assert_passage_and_survival(self):
-        """Of figures 2 and C2."""
+        """Figures 2 and C2."""
         with h5py.File(self.folder / self.PLACE / "runs" / "channel-0.4-0.h5") as file:
             trajectory = file["trajectory"][:]
         points = self.drawn("2")

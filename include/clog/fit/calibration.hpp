@@ -80,7 +80,8 @@ bool can_calibrate();
 ///
 /// Errors are those of linearised least squares with independent frames of equal relative scatter, linearised
 /// over a range like the errors themselves.
-/// @throws std::invalid_argument for fewer than three frames; what a simulation throws, which ends the search;
+/// @throws std::invalid_argument for fewer than three frames; what a simulation throws, which ends the
+/// search;
 ///         std::logic_error without can_calibrate()
 Calibration calibrate(const Profile& measured, const Simulation& simulate, const CalibrationRange& range = {},
                       const CalibrationProgress& progress = {});
