@@ -223,7 +223,7 @@ class Plan::Builder {
       std::vector<std::uint32_t> seeds = part_of(*batch[i].seeds, i, shard);
       if (seeds.empty()) continue;
       groups.push_back(plan_.groups_[static_cast<std::size_t>(batch[i].group)]);
-      groups.back().parts = {{batch_, kept.size()}};
+      groups.back().parts.assign(1, {batch_, kept.size()});
       kept.push_back(
           {std::ssize(groups) - 1, std::make_shared<const std::vector<std::uint32_t>>(std::move(seeds))});
     }
