@@ -95,9 +95,8 @@ TEST(WallPlan, BeginsAWindowWhereACircleBegins) {
 }
 
 TEST(WallWindows, OfTheSameCircleTwiceAreListedTwice) {
-  const std::vector<Item> once = {{1, 2, 0.3, 0, 0x81}, {1, 2, 0.3, 3, 0x01}};
-  std::vector<Item> twice = once;
-  twice.insert(twice.end(), once.begin(), once.end());
+  const Item one{1, 2, 0.3, 0, 0x81}, other{1, 2, 0.3, 3, 0x01};
+  const std::vector<Item> once = {one, other}, twice = {one, other, one, other};
   std::vector<kernel::WallWindow> windows;
   list_windows(once, 8, windows);
   const std::size_t num_windows = windows.size();
