@@ -48,9 +48,10 @@ class Calls(Analysis):
 
     def test_an_output_may_be_left_out_or_have_its_ending(self):
         self.copy_sweep("s.h5", *FEW)
-        for command, made in [("clogging-length", "s-clogging-length.png"), ("clogs", "s-clogs.png"), ("dwell", "s-dwell.png"),
-                              ("poster", "s-poster.png"), ("report", "s-report.html")]:
-            self.assertIn(made, self.draw(command, "s.h5", "--programs", BIN).stdout)
+        for command, made, *options in [("clogging-length", "s-clogging-length.png"), ("clogs", "s-clogs.png", "--most", 1),
+                                        ("dwell", "s-dwell.png"), ("poster", "s-poster.png"),
+                                        ("report", "s-report.html", "--examples", 0)]:
+            self.assertIn(made, self.draw(command, "s.h5", "--programs", BIN, *options).stdout)
             self.assertTrue((self.folder / made).exists())
         for name in ("cl.png", "cl.pdf", "cl0.2"):
             self.draw("clogging-length", "s.h5", "-o", name, "--programs", BIN)
