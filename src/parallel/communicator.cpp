@@ -20,6 +20,7 @@ void stand_alone_without_launcher() {
     if (std::getenv(mark)) return;
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
+  setenv("HOME", "/", 0);  // Open MPI 5 does not start without one; it looks for settings there
 }
 
 }  // namespace

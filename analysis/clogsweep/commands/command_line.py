@@ -9,7 +9,7 @@ import pathlib
 import sys
 import warnings
 from collections.abc import Callable, Iterator
-from typing import NoReturn
+from typing import NoReturn, TextIO
 
 from ..reading import programs
 from ..tools import outputs
@@ -147,16 +147,40 @@ def printable(text: str) -> str:
     return "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in text)
 
 
+def _give_up(stream: TextIO) -> None:
+    """Python writes the rest of a stream at its exit, and exits with 120 if that fails."""
+    null = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null, stream.fileno())
+    os.close(null)
+
+
 def _refuse(reason: object) -> int:
-    with contextlib.suppress(OSError):  # its reader may have gone
+    try:
         print(printable(f"{name()}: {' '.join(str(reason).split())}"), file=sys.stderr, flush=True)
+    except OSError:  # its reader may have gone
+        _give_up(sys.stderr)
     return USER_FAULT
+
+
+@contextlib.contextmanager
+def _whole_output() -> Iterator[None]:
+    """Writes what was printed at its end, so that a full disk is an error of the block."""
+    try:
+        yield
+    finally:
+        if sys.stdout is not None:
+            try:
+                sys.stdout.flush()
+            except OSError:
+                _give_up(sys.stdout)
+                raise
 
 
 def run(body: Callable[[], int]) -> int:
     """@param body  what the command does, returns its exit code. @return the exit code"""
     try:
-        return body()
+        with _whole_output():
+            return body()
     except UserError as error:
         return _refuse(error)
     except OSError as error:
