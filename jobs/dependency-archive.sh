@@ -53,7 +53,7 @@ printf '%s\n' crc math program_options random | sort >wanted
 : >taken
 while [ -s wanted ]; do
   sort -o taken -u taken wanted
-  sed 's,.*,boost/libs/&/include,' wanted |
+  { echo boost/libs/program_options/src; sed 's,.*,boost/libs/&/include,' wanted; } |
     xargs -d '\n' grep -rhoE '^ *# *include *[<"]boost/[^>"]+' | sed 's/.*[<"]//' | sort -u >included
   join -1 2 -2 1 -o 1.1 headers included | sort -u | comm -23 - taken >wanted
 done
