@@ -182,8 +182,8 @@ namespace {
 /// Columns were added in 3, those of the clog's mechanism and of the speed's error, and in 4, the ranges of
 /// contact and the near-wall drag's cutoff; checksums in 5; in 6 those of channels, walls and circles of
 /// one's own.
-constexpr std::array<std::string_view, 8> readable_versions = {"2", "3", "4", "5",
-                                                               "6", "7", "8", format_version};
+constexpr std::array<std::string_view, 9> readable_versions = {"2", "3", "4", "5",           "6",
+                                                               "7", "8", "9", format_version};
 
 bool has_check_sums(std::string_view version) {
   constexpr std::array<std::string_view, 3> without = {"2", "3", "4"};

@@ -47,6 +47,10 @@ sweep::Settings settings_for(const Parameter& parameter) {
   const std::string key = parameter.key;
   if (key == "perimeter-stiffness-ratio" || key == "friction" || key == "yield-traction")
     settings.set("preset", "elastic");
+  if (key == "film-friction") {
+    settings.set("preset", "elastic");
+    settings.set("friction", "0.1");
+  }
   if (key == "advancing-angle") settings.set("wall-tension", "0.5");  // Young's is not the largest there is
   if (parameter.key == std::string("gravity")) settings.set("preset", "heavy-interface");
   if (parameter.key == std::string("model")) settings.set("wall-stiffness", "1");
@@ -58,8 +62,9 @@ std::string other_value(const Parameter& parameter, const sweep::Settings& setti
   if (parameter.kind == ValueKind::file) return "other.csv";
   const ParameterValue value = parameter.get(sweep::Plan(settings).task(0));
   if (parameter.kind == ValueKind::word)
-    return *std::ranges::find_if(parameter.words,
-                                 [&](const std::string& word) { return ParameterValue(word) != value; });
+    return *std::ranges::find_if(parameter.words, [&](const std::string& word) {
+      return word != "auto" && ParameterValue(word) != value;  // auto may stand for the same value
+    });
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer + 1);
   if (parameter.key == std::string("advancing-angle")) return "150";
   if (parameter.key == std::string("exit")) return "40";  // downstream of the release at the centre

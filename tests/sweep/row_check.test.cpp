@@ -173,7 +173,7 @@ TEST(FaultOf, NamesEveryWordThatIsUnknown) {
     EXPECT_EQ(fault_of(damaged<std::string>(column, "wrapqed")), column.name + "='wrapqed' " + what);
     ++num_tried;
   }
-  EXPECT_EQ(num_tried, 14);
+  EXPECT_EQ(num_tried, 15);
 }
 
 TEST(FaultOf, NamesEveryNumberThatIsNone) {

@@ -12,7 +12,7 @@
 namespace clog::store {
 
 /// Version of the file format; see docs/reference/files.md.
-inline constexpr const char* format_version = "9";
+inline constexpr const char* format_version = "10";
 
 /// Name and text of the attributes at the file's root: where its numbers come from.
 using Provenance = std::vector<std::pair<std::string, std::string>>;

@@ -97,6 +97,25 @@ struct Outside<Enum> {
   }
 };
 
+/// A word, or an automatic one.
+template <class Enum>
+requires std::is_enum_v<Enum>
+struct Outside<std::optional<Enum>> : Outside<Enum> {
+  static constexpr const char* automatic = "auto";
+  static std::vector<std::string> words() {
+    std::vector<std::string> all = Outside<Enum>::words();
+    all.insert(all.begin(), automatic);
+    return all;
+  }
+  static ParameterValue get(std::optional<Enum> value) {
+    return value ? ParameterValue(name(*value)) : ParameterValue();
+  }
+  static std::optional<Enum> set(const ParameterValue& value) {
+    const auto* word = std::get_if<std::string>(&value);
+    return !word || *word == automatic ? std::nullopt : std::optional(Outside<Enum>::set(value));
+  }
+};
+
 template <>
 struct Outside<ObstacleDensity> {
   static constexpr ValueKind kind = ValueKind::number_or_share;
@@ -650,6 +669,14 @@ std::vector<Parameter> self_contact_entries() {
            .scope = &polygons,
            .range = {positive, to(0.1, "thin parts of the droplet could be no thinner, and it could not fold",
                                   "use at most 0.1")}}),
+      entry(
+          "film-friction", [](auto& run) -> auto& { return run.dp.film_friction; },
+          {.column = "film_friction",
+           .meaning = "does friction of a wall also hold the interfaces that lie on the one that touches it, "
+                      "through the closed film between them; auto: on with friction and self-contact",
+           .scope = &polygons,
+           .automatic_in = &polygons,
+           .before = name(FilmFriction::off)}),
       entry("gravity", [](auto& run) -> auto& { return run.dp.gravity; },
             {.column = "gravity",
              .meaning =

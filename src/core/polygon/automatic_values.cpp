@@ -104,6 +104,22 @@ void resolve_contact_angles(DpParameters& dp) {
         *dp.receding_angle < young ? "receding-angle" : "advancing-angle", name(dp.perimeter_spring)));
 }
 
+void resolve_film_friction(DpParameters& dp) {
+  const bool repels = dp.self_contact == SelfContact::on;
+  if (!dp.film_friction) dp.film_friction = dp.friction > 0 && repels ? FilmFriction::on : FilmFriction::off;
+  if (*dp.film_friction == FilmFriction::off) return;
+  if (!repels)
+    throw Error(
+        "film-friction=on contradicts self-contact=off (no interface lies on another) use self-contact=on, "
+        "or "
+        "film-friction=auto");
+  if (!(dp.friction > 0))
+    throw Error(
+        "film-friction=on contradicts friction=0 (walls hold no interface by its push) use friction above 0, "
+        "or "
+        "film-friction=auto");
+}
+
 }  // namespace
 
 int automatic_vertices(const RunParameters& run, double obstacle_diameter) {
@@ -160,6 +176,7 @@ void resolve_polygon(RunParameters& run, double sharpest_bend) {
         "{} contradicts perimeter-spring=along (an interface of constant tension cannot balance a "
         "tangential force) use preset=elastic",
         dp.friction > 0 ? "friction" : "yield-traction"));
+  resolve_film_friction(dp);
 
   const double vertex_mass = dp.inertia * units::droplet_mass / *dp.vertices;
   const double vertex_diameter = units::regular_edge_length(*dp.vertices);

@@ -166,7 +166,7 @@ void DpForces::measure_wall_distance(const DropletState& state) {
 WallYield DpForces::let_walls_yield(DropletState& state, WallTouches& touches,
                                     std::span<const WallContacts::Item> circles, Purpose purpose) const {
   if (friction_.is_on())
-    return friction_.follow(state, touches.find(state, circles), purpose, touches.known_anchors());
+    return friction_.follow(state, touches.find(state, circles, self_), purpose, touches.known_anchors());
   return wetted_walls_.follow(state, purpose);
 }
 

@@ -129,19 +129,25 @@ HWY_INLINE void keep_pushes(const WindowPushes& push, M listed, double* p, std::
   }
 }
 
+/// Returns whether the circle touches one of the edges.
 template <bool adds>
-HWY_INLINE void push_window(const WallWindow& window, V span, V stiffness, const WindowPushArrays& pushes,
+HWY_INLINE bool push_window(const WallWindow& window, V span, V stiffness, const WindowPushArrays& pushes,
                             const StepArrays& a) {
   const V reach = all(window.reach), reach_of_second = hn::Mul(span, reach);
+  bool touches = false;
   for (int lane = 0; lane < edges_per_group; lane += lanes) {
     const int i = window.first + lane;
     const M listed = lanes_of(window.edges, lane);
     if (lanes < edges_per_group && hn::AllFalse(D(), listed)) continue;
     const HalvesAtCircle halves(RefinedEdgeVectors(i, a), all(window.x), all(window.y), span);
-    const Push first = halves.first.push(halves.first.are_nearer_than(reach), reach, stiffness);
-    const Push second = halves.second.push(halves.second.are_nearer_than(reach_of_second), reach, stiffness);
+    const M first_touches = halves.first.are_nearer_than(reach);
+    const M second_touches = halves.second.are_nearer_than(reach_of_second);
+    const Push first = halves.first.push(first_touches, reach, stiffness);
+    const Push second = halves.second.push(second_touches, reach, stiffness);
     keep_pushes<adds>(WindowPushes(halves, first, second), listed, pushes.first + i, pushes.stride);
+    touches |= !hn::AllFalse(D(), hn::And(listed, hn::Or(first_touches, second_touches)));
   }
+  return touches;
 }
 
 /// One coordinate of what windows push the vertices from p on.

@@ -200,9 +200,17 @@ void push(int n, const WallWindows& walls, const SelfContacts::Item* self, std::
 double push_and_hold(int n, const HoldingCircles& walls, const WallGrip& grip, const SelfContacts::Item* self,
                      std::size_t num_self, const Contact& contact, const StepArrays& arrays) {
   const StepArrays a = arrays;
+  const bool wets = grip.traction > 0;
   clear_pushes(n + edges_per_group - 1, a);
-  const double taken = grip.traction > 0 ? push_off_and_hold<true>(n, walls, grip, contact, a)
-                                         : push_off_and_hold<false>(n, walls, grip, contact, a);
+  // Friction through films needs to know what the droplet's parts push each other.
+  if (num_self > 0 && grip.film_reach > 0) {
+    push_off_each_other(self, num_self, contact, a);
+    add_pushes_beyond_ends(n, edges_per_group, a);
+    return wets ? push_off_and_hold_with_films<true>(n, walls, grip, contact, a)
+                : push_off_and_hold_with_films<false>(n, walls, grip, contact, a);
+  }
+  const double taken = wets ? push_off_and_hold<true>(n, walls, grip, contact, a)
+                            : push_off_and_hold<false>(n, walls, grip, contact, a);
   push_off_each_other(self, num_self, contact, a);
   if (num_self > 0) add_pushes_beyond_ends(n, edges_per_group, a);
   return taken;

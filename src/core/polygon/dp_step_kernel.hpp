@@ -127,7 +127,8 @@ struct WallWindows {
 struct HoldingCircle {
   double x, y, radius;  ///< [sigma]
   int first_window, end_window;
-  int first_group, end_group;  ///< of vertices that it may push
+  int first_group, end_group;  ///< of vertices that it may push, by itself or through films
+  int end_own_group;           ///< behind the groups that it may push by itself, which come first
   bool wraps;                  ///< does it push vertices -1, n or n + 1, which are the other end's?
   WindowPushArrays pushes;     ///< of its own
 };
@@ -143,12 +144,18 @@ struct HoldingCircles {
   std::uint8_t* holds;          ///< vertices that have an anchor, as bits
   double *push_x, *push_y;      ///< on the vertices, by one circle; memory
   double* wetted;               ///< length of the interface on one circle [sigma]; memory
+  double *added_x, *added_y;    ///< what circles add to self-contact, an entry for each anchor; memory
+  double* nearest;        ///< distance of the vertices from the nearest circle that pushes [sigma]; memory
+  std::uint8_t* touches;  ///< does a circle push the droplet? memory
+  bool are_close;         ///< may a vertex be in the film's reach of two circles?
 };
 /// What walls bear, as kicks.
 struct WallGrip {
-  double coefficient;  ///< of friction
-  double traction;     ///< for each sigma of wetted length
-  double stiffness;    ///< k_t of the springs between interface and wall
+  double coefficient;      ///< of friction
+  double traction;         ///< for each sigma of wetted length
+  double stiffness;        ///< k_t of the springs between interface and wall
+  double film_reach;       ///< of friction through films, from the surface; 0: there is none [sigma]
+  double least_film_push;  ///< less of self-contact is none
 };
 struct Contact {
   double stiffness;   ///< k_c as a kick

@@ -15,6 +15,13 @@ namespace {
 /// The rate of the drag far from walls [1/t0].
 double far_rate_of(const RunParameters& run) { return 1 / relaxation_time(run); }
 
+/// See kernel::WallGrip.
+double film_reach_of(const RunParameters& run, const DpForces& forces) {
+  return run.dp.film_friction == FilmFriction::on
+             ? film_reach(forces.walls().range(), forces.self_contacts().range())
+             : 0;
+}
+
 kernel::KickTerms with_implicit_pressure(kernel::KickTerms terms) {
   terms.implicit_pressure = true;
   return terms;
@@ -34,7 +41,7 @@ DpStepper::DpStepper(const RunParameters& run, const ObstacleArray& obstacles, c
       memory_(n_),
       arrays_(memory_.arrays()),
       plan_(n_),
-      hold_(n_, forces.walls().range()),
+      hold_(n_, forces.walls().range(), film_reach_of(run, forces)),
       touches_(run, obstacles),
       wetting_(n_),
       friction_(Eigen::ArrayXd::Zero(Eigen::Index{2} * n_)) {}
@@ -67,7 +74,8 @@ void DpStepper::look(DropletState& state, const Travel& travel, double speed, Dr
   near_.keep(kernel_, *forces_, refined_sway * (travel.absolute + unforeseen),
              2 * (travel.relative + unforeseen));
   if (holds_circles_) {
-    const double lost = forces_->friction().stiffness() * hold_.make(near_.walls(), state);
+    const WallHold::Near near{near_.walls(), near_.self(), travel.absolute + unforeseen};
+    const double lost = forces_->friction().stiffness() * hold_.make(near, arrays_.x, arrays_.y, state);
     if (work != nullptr) work->dissipated += lost;
   } else {
     plan_.make(near_.walls());
@@ -151,11 +159,14 @@ void DpStepper::push_off_circles(const kernel::Contact& touching, double impulse
     return;
   }
   const WallFriction& friction = forces_->friction();
-  const double taken = kernel_.push_and_hold(n_, hold_.circles(),
-                                             {.coefficient = friction.coefficient(),
-                                              .traction = impulse * friction.yield_traction(),
-                                              .stiffness = impulse * friction.stiffness()},
-                                             near_.self().data(), near_.self().size(), touching, arrays_);
+  const double taken =
+      kernel_.push_and_hold(n_, hold_.circles(),
+                            {.coefficient = friction.coefficient(),
+                             .traction = impulse * friction.yield_traction(),
+                             .stiffness = impulse * friction.stiffness(),
+                             .film_reach = hold_.film_reach(),
+                             .least_film_push = least_film_push * touching.stiffness * touching.self_range},
+                            near_.self().data(), near_.self().size(), touching, arrays_);
   if (work != nullptr) work->dissipated += friction.stiffness() * taken;
 }
 
@@ -224,7 +235,7 @@ void DpStepper::add_wetting(DropletState& droplet, double impulse, Droplet::Work
 /// Walls yield where they have to, and hold the vertices by what they bear.
 void DpStepper::hold_by_friction(DropletState& droplet, double impulse, Droplet::Work* work) {
   const std::vector<WallTouch>& touches =
-      touches_.find({n_, arrays_.x, arrays_.y}, droplet.frame, near_.walls());
+      touches_.find({n_, arrays_.x, arrays_.y}, droplet.frame, near_.walls(), forces_->self_contacts());
   const WallYield yield =
       forces_->friction().follow(droplet, touches, Purpose::motion, touches_.known_anchors(), &friction_);
   if (work != nullptr) work->dissipated += yield.dissipated;

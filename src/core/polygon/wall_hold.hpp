@@ -16,23 +16,32 @@ namespace clog {
 /// hand_back() copies them into the droplet.
 class WallHold {
  public:
-  /// @param range  distance from a circle's surface at which contact begins [sigma]
-  WallHold(int num_vertices, double range);
+  /// What may touch the contour until the next make().
+  struct Near {
+    const std::vector<WallContacts::Item>& walls;  ///< see list_windows()
+    const std::vector<SelfContacts::Item>& self;
+    double way;  ///< of any vertex until then [sigma]
+  };
 
-  /// Takes the anchors over. @param near  see list_windows()
+  /// @param range  distance from a circle's surface at which contact begins [sigma]
+  /// @param film_reach  see kernel::WallGrip
+  WallHold(int num_vertices, double range, double film_reach);
+
+  /// Takes the anchors over. @param x, y  of the vertices
   /// Returns half the sum of the squared slips of those anchors that none of these circles can hold
   /// [sigma^2].
-  double make(const std::vector<WallContacts::Item>& near, DropletState& droplet);
+  double make(const Near& near, const double* x, const double* y, DropletState& droplet);
   /// Copies the anchors into the droplet, if make() was called since forget().
   void hand_back(DropletState& droplet) const;
   /// Drops the anchors: the next make() takes those of its droplet.
   void forget() { has_anchors_ = false; }
+  double film_reach() const { return film_reach_; }  ///< [sigma]
   /// Valid until the next make(), and to be changed by a step.
   const kernel::HoldingCircles& circles() const { return circles_; }
 
  private:
-  int num_groups_;  // of edges
-  double range_;
+  int num_vertices_, num_groups_;  // of edges
+  double range_, film_reach_;
   bool has_anchors_ = false;
   struct Memory {
     hwy::AlignedFreeUniquePtr<double[]> numbers;
@@ -45,11 +54,14 @@ class WallHold {
   std::vector<kernel::WallWindow> windows_;
   std::vector<kernel::HoldingCircle> all_;
   std::vector<int> groups_;  // of vertices, circle after circle
-  std::vector<std::uint8_t> holds_, is_pushed_;
+  std::vector<std::uint8_t> holds_, is_pushed_, touches_;
+  std::vector<std::uint8_t> touches_itself_;  // groups of vertices that self-contact may push
   kernel::HoldingCircles circles_{};
 
-  void find_circles(int num_vertices);
-  void add_groups(kernel::HoldingCircle& circle, int num_vertices);
+  void find_circles();
+  void add_groups(kernel::HoldingCircle& circle);
+  void find_films(const Near& near);
+  void add_film_groups(kernel::HoldingCircle& circle, double reach, const double* x, const double* y);
   void clear_pushes();
   void arrange_memory();
   void arrange_anchors();

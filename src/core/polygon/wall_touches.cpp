@@ -39,7 +39,9 @@ WallTouches::WallTouches(const RunParameters& run, const ObstacleArray& obstacle
     : obstacles_(&obstacles),
       range_(run.dp.contact_range.value()),
       stiffness_(contact_stiffness(run.wall_stiffness.value(), units::regular_edge_length(*run.dp.vertices))),
-      meets_edges_(run.dp.wall_contact == WallContact::edge) {}
+      meets_edges_(run.dp.wall_contact == WallContact::edge),
+      acts_through_films_(run.dp.film_friction == FilmFriction::on),
+      films_(range_, stiffness_, obstacles.wedges()) {}
 
 int WallTouches::part(int vertex, const WallPlace& wall) {
   for (int i = first_part_[vertex]; i >= 0; i = parts_[i].next)
@@ -82,7 +84,8 @@ void WallTouches::add_vertex(const Contour& contour, int vertex, const WallPlace
 }
 
 const std::vector<WallTouch>& WallTouches::find(const DropletState& state,
-                                                std::span<const WallContacts::Item> circles) {
+                                                std::span<const WallContacts::Item> circles,
+                                                const SelfContacts& self) {
   const auto n = static_cast<std::size_t>(state.size());
   constexpr std::size_t before = 1, behind = WallContacts::edges_per_group + 2;
   closed_contour_.resize(2 * (before + n + behind));
@@ -94,11 +97,12 @@ const std::vector<WallTouch>& WallTouches::find(const DropletState& state,
   double *const x = closed_contour_.data(), *const y = x + before + n + behind;
   close(state.position.data(), x);
   close(state.position.data() + n, y);
-  return find({static_cast<int>(n), x + before, y + before}, state.frame, circles);
+  return find({static_cast<int>(n), x + before, y + before}, state.frame, circles, self);
 }
 
 const std::vector<WallTouch>& WallTouches::find(const Contour& contour, const LocalFrame& frame,
-                                                std::span<const WallContacts::Item> circles) {
+                                                std::span<const WallContacts::Item> circles,
+                                                const SelfContacts& self) {
   first_part_.assign(static_cast<std::size_t>(contour.size), -1);
   parts_.clear();
   wedges_.clear();
@@ -129,6 +133,7 @@ const std::vector<WallTouch>& WallTouches::find(const Contour& contour, const Lo
       add_vertex(contour, i, wedges_[k], distance, normal);
     }
   keep_pushed(contour);
+  if (acts_through_films_) films_.add_to(touches_, contour, self);
   return touches_;
 }
 

@@ -367,6 +367,61 @@ TEST_P(Step, MeetsCirclesThatShareEdges) {
   EXPECT_GE(num_compared, 2 * instruction_sets().size());
 }
 
+/// A circle that touches the upper side of a droplet's neck at about `x`.
+Obstacle on_neck(const DropletState& state, double x, double radius, double distance) {
+  double y = 0;
+  for (Eigen::Index i = 0; i < state.size(); ++i) {
+    const double across = state.x()[i] - x, reach = radius + distance;
+    if (state.y()[i] > 0 && std::abs(across) < reach)
+      y = std::max(y, state.y()[i] + std::sqrt(reach * reach - across * across));
+  }
+  return {x, y, radius};
+}
+
+/// Vertices that walls hold without a touch.
+int num_behind_films(const DropletState& state, double contact_range) {
+  return static_cast<int>(std::ranges::count_if(state.anchors, [&](const WallAnchor& one) {
+    return std::hypot(state.x()[one.holder] - one.wall.x, state.y()[one.holder] - one.wall.y) >
+           one.wall.radius + 2 * contact_range;
+  }));
+}
+
+TEST_P(Step, HoldsAThinNeckThroughItsFilm) {
+  // The neck touches itself, and one circle, or two that are nearer to each other than friction through the
+  // film reaches. The contour begins in the lobe, or in the neck.
+  int num_held = 0;
+  for (const int vertices : {64, 101, 256}) {
+    const RunParameters run = parameters(vertices);
+    const double diameter = units::regular_edge_length(vertices);
+    for (const bool are_two : {false, true}) {
+      DropletState initial =
+          state_of(renumbered(shaken(full_size_dumbbell(vertices, 0.95 * diameter), 0.002 * diameter),
+                              are_two ? vertices / 4 : 0));
+      initial.velocity = shaken(Eigen::ArrayXd::Zero(initial.position.size()), 0.03, 7);
+      std::vector<Obstacle> circles = {on_neck(initial, 0.01, are_two ? 0.025 : 0.1, 0.4 * diameter)};
+      if (are_two) circles.push_back(on_neck(initial, -0.05, 0.025, 0.4 * diameter));
+      const ObstacleArray walls(20, circles);
+      ReadableDroplet readable(run, walls, initial);
+      constexpr int num_steps = 10;
+      for (int step = 0; step < num_steps; ++step) {
+        readable.step();
+        if (run.dp.friction > 0) num_held += num_behind_films(readable.state(), *run.dp.contact_range);
+      }
+      for (const std::string& set : instruction_sets()) {
+        use_instruction_set(set);
+        DpDroplet droplet(run, walls, initial);
+        ASSERT_GT(droplet.potential_energy().self_contact, 0);
+        droplet.advance(num_steps);
+        ASSERT_EQ(droplet.num_integrated_steps(), num_steps) << "the reference has no sub-steps";
+        expect_same_anchors(droplet.state(), readable.state());
+        EXPECT_LT((droplet.state().position - readable.state().position).abs().maxCoeff(), 1e-13)
+            << set << ", " << vertices;
+      }
+    }
+  }
+  EXPECT_EQ(num_held > 20, parameters(64).dp.film_friction == FilmFriction::on) << num_held;
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Interfaces, Step,
     testing::Values(StepCase{"robust", [](RunParameters&) {}},
@@ -402,11 +457,18 @@ INSTANTIATE_TEST_SUITE_P(
                                make_elastic(r);
                                r.dp.friction = 0.1;
                              }},
+                    StepCase{"friction_through_films",
+                             [](RunParameters& r) {
+                               make_elastic(r);
+                               r.dp.friction = 0.1;
+                               r.dp.film_friction = FilmFriction::on;
+                             }},
                     StepCase{"friction_and_traction",
                              [](RunParameters& r) {
                                make_elastic(r);
                                r.dp.friction = 0.05;
                                r.dp.yield_traction = 0.1;
+                               r.dp.film_friction = FilmFriction::on;
                              }}),
     [](const auto& tested) { return tested.param.name; });
 

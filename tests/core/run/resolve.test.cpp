@@ -93,6 +93,15 @@ INSTANTIATE_TEST_SUITE_P(
                 [](auto& run) { run.dp.friction = 0.1; }},
         Refusal{"yield-traction contradicts perimeter-spring=along",
                 [](auto& run) { run.dp.yield_traction = 0.1; }},
+        Refusal{"film-friction=on contradicts friction=0",
+                [](auto& run) { run.dp.film_friction = FilmFriction::on; }},
+        Refusal{"film-friction=on contradicts self-contact=off",
+                [](auto& run) {
+                  run.dp.perimeter_spring = PerimeterSpring::mean;
+                  run.dp.friction = 0.1;
+                  run.dp.self_contact = SelfContact::off;
+                  run.dp.film_friction = FilmFriction::on;
+                }},
         Refusal{"receding-angle=190 (an angle between wall and interface) use 0..180, or young",
                 [](auto& run) { run.dp.receding_angle = 190; }},
         Refusal{"receding-angle=130 (above Young's angle, which wall-tension sets) use at most 120, or young",

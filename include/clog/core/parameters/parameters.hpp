@@ -31,6 +31,12 @@ template <>
 struct Words<SelfContact> {
   static constexpr Worded<SelfContact> all[] = {{SelfContact::on, "on"}, {SelfContact::off, "off"}};
 };
+/// Does the friction of a wall also hold the interfaces that lie on the one that touches it?
+enum class FilmFriction { off, on };
+template <>
+struct Words<FilmFriction> {
+  static constexpr Worded<FilmFriction> all[] = {{FilmFriction::on, "on"}, {FilmFriction::off, "off"}};
+};
 /// Where the droplet's weight and the drag on its mean motion act: shared by the vertices (the paper), or on
 /// the area, as a pressure. Then they have no part along the interface, which would pile up its vertices.
 enum class Gravity { vertex, area };
@@ -111,6 +117,8 @@ struct DpParameters {
   /// Distance below which the interface repels itself: the thickness of a film between two parts of it
   /// [sigma].
   double self_contact_range = published_vertex_diameter;
+  /// Empty: on where there is friction and self-contact.
+  std::optional<FilmFriction> film_friction = FilmFriction::off;
   Gravity gravity = Gravity::area;
   std::optional<int> vertices;  ///< N_v; empty: automatic
   /// S, inertial mass over the droplet's mass. Weight and drag remain what they are, so that it only matters

@@ -6,46 +6,26 @@
 
 #include "clog/core/droplet/droplet_state.hpp"
 #include "clog/core/parameters/parameters.hpp"
+#include "clog/core/polygon/film_touches.hpp"
+#include "clog/core/polygon/self_contacts.hpp"
 #include "clog/core/polygon/wall_contacts.hpp"
+#include "clog/core/polygon/wall_touch.hpp"
 #include "clog/core/world/obstacle_array.hpp"
 
 namespace clog {
 
-/// The point of a wall next to a vertex, from the wall's centre; it moves along `along` by `gradient` times
-/// as much as the vertex.
-struct WallFoot {
-  Eigen::Array2d point, along;
-  double gradient;
-};
-/// @param wedges  of the scene  @param from_centre  of the wall, to the vertex
-WallFoot foot_on(const WallPlace& wall, std::span<const Wedge> wedges, const Eigen::Array2d& from_centre);
-
-/// A vertex that a wall pushes.
-struct WallTouch {
-  int vertex;
-  WallPlace wall;
-  WallFoot foot;
-  double push;    ///< off the wall, as the contact hands it to the vertex [g rho sigma^2]
-  double wetted;  ///< length of the interface on the wall that is the vertex' own [sigma]
-};
-
-/// A droplet's vertices. Readable from [-1] to [size + WallContacts::edges_per_group - 1]: entries beyond the
-/// ends repeat the contour.
-struct Contour {
-  int size;
-  const double *x, *y;
-};
-
-/// Finds the vertices that walls push. Same contact as in DpForces.
+/// Finds the vertices that walls push, and hold by friction. Same contacts as in DpForces.
 class WallTouches {
  public:
   /// @param run  resolved parameters  @param obstacles  must outlive this
   WallTouches(const RunParameters& run, const ObstacleArray& obstacles);
 
-  /// @param circles  all that may touch  @return valid until the next call
+  /// @param circles  all that may touch  @param self  for friction through films  @return valid until the
+  /// next call
   const std::vector<WallTouch>& find(const Contour& contour, const LocalFrame& frame,
-                                     std::span<const WallContacts::Item> circles);
-  const std::vector<WallTouch>& find(const DropletState& state, std::span<const WallContacts::Item> circles);
+                                     std::span<const WallContacts::Item> circles, const SelfContacts& self);
+  const std::vector<WallTouch>& find(const DropletState& state, std::span<const WallContacts::Item> circles,
+                                     const SelfContacts& self);
 
   /// Memory for the queries of what walls hold.
   KnownAnchors& known_anchors() { return known_anchors_; }
@@ -61,7 +41,8 @@ class WallTouches {
   };
   const ObstacleArray* obstacles_;
   double range_, stiffness_;
-  bool meets_edges_;
+  bool meets_edges_, acts_through_films_;
+  FilmTouches films_;
   std::vector<int> first_part_;  // of each vertex
   std::vector<Part> parts_;
   std::vector<WallPlace> wedges_;

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "clog/core/droplet/wall_anchor.hpp"
+#include "clog/core/world/wedge.hpp"
+
+namespace clog {
+
+/// The point of a wall next to a vertex, from the wall's centre; it moves along `along` by `gradient` times
+/// as much as the vertex.
+struct WallFoot {
+  Eigen::Array2d point, along;
+  double gradient;
+};
+/// @param wedges  of the scene  @param from_centre  of the wall, to the vertex
+WallFoot foot_on(const WallPlace& wall, std::span<const Wedge> wedges, const Eigen::Array2d& from_centre);
+
+/// A vertex that a wall pushes, by itself or through closed films.
+struct WallTouch {
+  int vertex;
+  WallPlace wall;
+  WallFoot foot;
+  double push;    ///< off the wall, as the contacts hand it to the vertex [g rho sigma^2]
+  double wetted;  ///< length of the interface on the wall that is the vertex' own [sigma]
+};
+
+/// A droplet's vertices. Readable from [-1] to [size + WallContacts::edges_per_group - 1]: entries beyond the
+/// ends repeat the contour.
+struct Contour {
+  int size;
+  const double *x, *y;
+};
+
+}  // namespace clog
