@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 ./jobs/install-dependencies.sh
 # In the folder that tests/run.sh completes: what it has configured with tests stays so.
-[ -f build/release/CMakeCache.txt ] || cmake --preset release -DCLOG_TESTS=OFF >/dev/null
+[ -f build/release/build.ninja ] || cmake --preset release -DCLOG_TESTS=OFF >/dev/null
 cmake --build --preset release --target clogsweep clogrun clogfit
 . jobs/mpi-settings.sh
 

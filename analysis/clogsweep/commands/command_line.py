@@ -158,7 +158,8 @@ def _refuse(reason: object) -> int:
     try:
         print(printable(f"{name()}: {' '.join(str(reason).split())}"), file=sys.stderr, flush=True)
     except OSError:  # its reader may have gone
-        _give_up(sys.stderr)
+        if sys.stderr is not None:
+            _give_up(sys.stderr)
     return USER_FAULT
 
 
