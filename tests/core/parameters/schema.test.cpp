@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstring>
 #include <ostream>
-#include <ranges>
 #include <set>
 #include <string>
 
@@ -66,8 +65,8 @@ TEST_P(EveryParameter, GivesBackWhatIsSet) {
   if (parameter.kind == ValueKind::file) other = OwnCircles({{1, 2, 3}}).check_sum();
   if (parameter.kind == ValueKind::word)
     // The first of an automatic one's words is not what it gives back.
-    other = *std::ranges::find_if(parameter.words | std::views::reverse,
-                                  [&](const auto& word) { return ParameterValue(word) != value; });
+    other = *std::find_if(parameter.words.rbegin(), parameter.words.rend(),
+                          [&](const auto& word) { return ParameterValue(word) != value; });
   ASSERT_NE(other, value);
   parameter.set(run, other);
   EXPECT_EQ(parameter.get(run), other);
