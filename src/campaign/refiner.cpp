@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "clog/campaign/groups.hpp"
@@ -95,6 +96,59 @@ std::string seed_range(std::int64_t first, std::int64_t number) {
   return number == 1 ? std::to_string(first) : fmt::format("{}..{}", first, first + number - 1);
 }
 
+/// The runs of a curve over some keys: those that differ from one of them in these keys and their results only.
+class CurveRuns {
+ public:
+  CurveRuns(const sweep::Settings& settings, std::span<const std::string> keys)
+      : usual_(sweep::Plan(settings).task(0)), usual_row_(sweep::describe(usual_)) {
+    for (const std::string& name : keys)
+      for (const sweep::Column* column : group_columns())
+        if (column->parameter == sweep::find_key(name).parameter) keys_.push_back(column);
+  }
+
+  const RunParameters& usual() const { return usual_; }
+  std::size_t num_keys() const { return keys_.size(); }
+  double value(const sweep::RunRow& row, std::size_t key) const {
+    return std::get<double>(keys_[key]->get(row));
+  }
+  /// A column in which this run differs from those of the curve; null: it is one of them.
+  const sweep::Column* other(const sweep::RunRow& row) const {
+    for (const sweep::Column* column : group_columns())
+      if (std::ranges::find(keys_, column) == keys_.end() && !column->may_be_automatic(usual_) &&
+          column->get(row) != column->get(usual_row_))
+        return column;
+    return nullptr;
+  }
+
+ private:
+  RunParameters usual_;
+  sweep::RunRow usual_row_;
+  CurveKeys keys_;
+};
+
+/// @throws Error if rows of these settings do not show which values the keys had, or if something else that
+/// makes curves of its own changes with a key, as the density of a saturated array does with its gap
+void require_one_curve(const sweep::Settings& settings, const std::vector<std::string>& keys) {
+  const auto refuse = [&](const std::string& why) {
+    throw Error(fmt::format("invalid --refine={} ({}) list values without --refine", joined(keys, ","), why));
+  };
+  const CurveRuns curve(settings, keys);
+  if (curve.num_keys() != keys.size()) refuse("rows have no column of this key");
+  const sweep::Plan plan(settings);
+  const sweep::Points& points = settings.points();
+  for (std::size_t key = 0; key < keys.size(); ++key) {
+    std::set<double> given, found;
+    for (const std::vector<std::string>& point : points.rows) given.insert(sweep::to_number(point[key]));
+    for (std::int64_t task = 0; task < plan.size(); ++task) {
+      const sweep::RunRow row = sweep::describe(plan.task(task));
+      found.insert(curve.value(row, key));
+      if (const sweep::Column* other = curve.other(row))
+        refuse(fmt::format("{} changes with it: fix it, or", other->name));
+    }
+    if (found != given) refuse(fmt::format("rows have other values than {} is given", keys[key]));
+  }
+}
+
 }  // namespace
 
 /// The state of knowledge at one moment.
@@ -147,6 +201,7 @@ Refiner::Refiner(const sweep::Settings& settings, RefinementOptions options)
                                             ? static_cast<std::int64_t>(i) * block_
                                             : 0));
   first_.set_points(points_of(places, std::vector<std::int64_t>(places.size(), 1), next_seeds));
+  require_one_curve(first_, options_.keys);
 }
 
 /// All combinations of the keys' values; the first key varies fastest.
@@ -178,23 +233,9 @@ sweep::Points Refiner::points_of(const std::vector<std::vector<std::string>>& pl
 
 Refiner::Look Refiner::look(std::span<const sweep::RunRow> rows) const {
   Look found;
-  const RunParameters usual = sweep::Plan(first_).task(0);
-  const sweep::RunRow usual_row = sweep::describe(usual);
-  CurveKeys keys;
-  for (const std::string& name : options_.keys)
-    for (const sweep::Column* column : group_columns())
-      if (column->parameter == sweep::find_key(name).parameter) keys.push_back(column);
-  const auto is_of_curve = [&](const sweep::RunRow& row) {
-    return std::ranges::all_of(group_columns(), [&](const sweep::Column* column) {
-      return std::ranges::find(keys, column) != keys.end() || column->may_be_automatic(usual) ||
-             column->get(row) == column->get(usual_row);
-    });
-  };
-  const auto value_of = [&](const sweep::RunRow& row, std::size_t key) {
-    return std::get<double>(keys[key]->get(row));
-  };
+  const CurveRuns curve(first_, options_.keys);
   const auto values_at = [&](const sweep::RunRow& row) {
-    return std::pair(value_of(row, 0), keys.size() > 1 ? value_of(row, 1) : 1.0);
+    return std::pair(curve.value(row, 0), curve.num_keys() > 1 ? curve.value(row, 1) : 1.0);
   };
   struct AtPlace {
     RefinedPoint point;
@@ -205,7 +246,7 @@ Refiner::Look Refiner::look(std::span<const sweep::RunRow> rows) const {
   std::map<std::pair<double, double>, AtPlace> places;
   std::int64_t last_seed = first_seed_ - 1;
   for (const sweep::RunRow& row : rows) {
-    if (!is_of_curve(row) || !sweep::fault_of(row).empty() || sweep::is_unfinished(row.status)) continue;
+    if (curve.other(row) || !sweep::fault_of(row).empty() || sweep::is_unfinished(row.status)) continue;
     AtPlace& here = places[values_at(row)];
     ++here.num_runs;
     here.last_seed = std::max<std::int64_t>(here.last_seed, row.parameters.seed);
@@ -227,14 +268,14 @@ Refiner::Look Refiner::look(std::span<const sweep::RunRow> rows) const {
     if (here.point.distance > 0 && here.point.time > 0) found.points.push_back(here.point);
     if (here.num_failed == 0) continue;
     std::string name = fmt::format("{}={}", options_.keys[0], shortest(values.first));
-    if (keys.size() > 1) name += fmt::format(" {}={}", options_.keys[1], shortest(values.second));
+    if (curve.num_keys() > 1) name += fmt::format(" {}={}", options_.keys[1], shortest(values.second));
     found.failures.push_back(
         fmt::format("{} ({} of {})", name, here.num_failed, sweep::counted(here.num_runs, "run")));
   }
-  found.candidates.max_time = usual.max_time;
+  found.candidates.max_time = curve.usual().max_time;
   for (const std::vector<std::string>& texts : combinations(values_)) {
     const std::pair<double, double> values(sweep::to_number(texts[0]),
-                                           keys.size() > 1 ? sweep::to_number(texts[1]) : 1);
+                                           curve.num_keys() > 1 ? sweep::to_number(texts[1]) : 1);
     found.candidates.places.emplace_back(std::log(values.first), std::log(values.second));
     const auto here = places.find(values);
     const bool is_new = here == places.end();

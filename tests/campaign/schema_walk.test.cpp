@@ -1,9 +1,11 @@
 /// Two values of any parameter are two runs, everywhere: what compares, groups, lists or shares runs has no
 /// list of parameters of its own that could lack one.
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <ostream>
 #include <sstream>
 #include <string>
@@ -11,10 +13,13 @@
 
 #include "clog/campaign/groups.hpp"
 #include "clog/campaign/preview.hpp"
+#include "clog/campaign/refiner.hpp"
 #include "clog/core/parameters/schema.hpp"
+#include "clog/core/tools/error.hpp"
 #include "clog/sweep/obstacle_arrays.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/run_row.hpp"
+#include "clog/sweep/value_list.hpp"
 
 namespace clog::campaign {
 
@@ -119,6 +124,47 @@ TEST_P(EveryKey, MakesTwoLinesOfADryRun) {
   const auto without_number = [](const std::string& line) { return line.substr(line.find(' ')); };
   EXPECT_NE(without_number(one), without_number(other)) << header;
   EXPECT_GE(std::ranges::count(header, ' '), 2) << "the task's number, and what differs";
+}
+
+/// Rows of a sweep in which lambda rises with the key.
+std::vector<sweep::RunRow> rising_rows(const sweep::Settings& settings, const sweep::Column& column) {
+  std::vector<sweep::RunRow> rows;
+  const sweep::Plan plan(settings);
+  for (std::int64_t task = 0; task < plan.size(); ++task) {
+    sweep::RunRow row = sweep::describe(plan.task(task));
+    row.status = RunStatus::clogged;
+    row.distance = 10 * std::get<double>(column.get(row));
+    row.time = row.distance;
+    row.steps = 1000;
+    row.wall_seconds = 1;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+/// A key whose curve a search would not see whole is refused at its start.
+TEST_P(EveryKey, IsRefinedOverItsWholeRangeOrRefused) {
+  const Parameter& parameter = GetParam();
+  if (parameter.kind != ValueKind::number && parameter.kind != ValueKind::number_or_share) return;
+  sweep::Settings settings = settings_for(parameter);
+  const double one = sweep::to_number(other_value(parameter, settings));
+  settings.set(parameter.key, shortest(one) + "," + shortest(1.1 * one));
+  std::unique_ptr<Refiner> refiner;
+  try {
+    refiner = std::make_unique<Refiner>(
+        settings, RefinementOptions{.keys = {parameter.key},
+                                    .goal = {RefinementGoal::Kind::peak, 0, 0.01},
+                                    .most_seeds = 50});
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find(parameter.key), std::string::npos) << error.what();
+    return;
+  }
+  const auto columns = group_columns();
+  const auto column = std::ranges::find(columns, &parameter, &sweep::Column::parameter);
+  ASSERT_NE(column, columns.end());
+  const std::string known = refiner->known(rising_rows(refiner->first(), **column));
+  EXPECT_NE(known.find(fmt::format("highest at {} {:.3g} ", parameter.key, 1.1 * one)), std::string::npos)
+      << known;
 }
 
 INSTANTIATE_TEST_SUITE_P(Schema, EveryKey,

@@ -130,7 +130,7 @@ class Run(ProgramTest):
         self.assertLess(row.box, 40)
         self.assertAlmostEqual(row.lattice_angle, 10, delta=0.1)
         self.assertNotEqual(row.lattice_angle, 10)
-        self.succeed("clogrun", "array", *keys, f"lattice-angle={row.lattice_angle!r}", f"box={row.box!r}", "--output", "b.h5")
+        self.succeed("clogrun", "array", *keys, f"lattice-angle={float(row.lattice_angle)!r}", f"box={float(row.box)!r}", "--output", "b.h5")
         again = pandas.read_hdf(self.folder / "b.h5", "runs").iloc[0]
         for column in ("box", "lattice_angle", "distance", "lateral_displacement"):
             self.assertEqual(row[column], again[column], column)

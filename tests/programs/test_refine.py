@@ -97,6 +97,11 @@ class Refine(ProgramTest):
             (["line-tension=0.3,3", "seeds=1,3", GOAL], ["seeds=1,3"]),
             (["line-tension=0.3,3", GOAL, "--until-precision=20%"], ["--until-precision"]),
             (["line-tension=0.3,3", GOAL, "--refine=vertices"], ["refine"]),
+            (["line-tension=3", "obstacle-gap=0.3,0.5", GOAL, "--refine=obstacle-gap"], ["obstacle_density changes with it"]),
+            (["line-tension=3", "obstacle-gap=0.3,0.5", "obstacle-density=65%", GOAL, "--refine=obstacle-gap"], ["obstacle_density changes with it"]),
+            (["line-tension=3", "obstacle-density=0.3,1", GOAL, "--refine=obstacle-density"], ["--refine=obstacle-density"]),
+            (["line-tension=0.3,3", "obstacle-density=0.3,1", GOAL, "--refine=line-tension,obstacle-density"], ["--refine=line-tension,obstacle-density"]),
+            (["line-tension=3", "perimeter-stiffness-ratio=5,9", "preset=elastic", GOAL, "--refine=perimeter-stiffness-ratio"], ["rows have no column"]),
         ]:
             with self.subTest(settings=settings):
                 kept = [word for word in good if word.split("=")[0] not in {setting.split("=")[0] for setting in settings}]
