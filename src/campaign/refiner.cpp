@@ -96,7 +96,8 @@ std::string seed_range(std::int64_t first, std::int64_t number) {
   return number == 1 ? std::to_string(first) : fmt::format("{}..{}", first, first + number - 1);
 }
 
-/// The runs of a curve over some keys: those that differ from one of them in these keys and their results only.
+/// The runs of a curve over some keys: those that differ from one of them in these keys and their results
+/// only.
 class CurveRuns {
  public:
   CurveRuns(const sweep::Settings& settings, std::span<const std::string> keys)

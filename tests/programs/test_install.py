@@ -83,7 +83,7 @@ class Installed(Installation):
     def test_a_program_of_ones_own_finds_the_libraries(self):
         # slow_install.py builds and runs it.
         example = self.prefix / "share/doc/clogsweep/docs/examples/own-program"
-        self.called("cmake", "-S", example, "-B", self.folder / "example", f"-DCMAKE_PREFIX_PATH={self.prefix}")
+        self.called("cmake", "-G", "Ninja", "-S", example, "-B", self.folder / "example", f"-DCMAKE_PREFIX_PATH={self.prefix}")
 
     def completed(self, *words, function="_clogsweep"):
         """The words that bash offers for the last word."""
