@@ -48,15 +48,15 @@ class Stack {
   }
 
   /// The largest friction of each arc, divided by mu.
-  std::vector<double> held() {
+  /// @param wall  the disc, or what is as round
+  std::vector<double> held(const WallPlace& wall = {0, 0, disc}, std::span<const Wedge> wedges = {}) {
     std::vector<WallTouch> touches;
-    const WallPlace wall{0, 0, disc};
     for (int i = 0; i < num_; ++i) {
       const Eigen::Array2d from_centre{state_.x()[i], state_.y()[i]};
       const double r = from_centre.matrix().norm();
-      if (r < disc) touches.push_back({i, wall, foot_on(wall, {}, from_centre), stiffness * (disc - r), 0});
+      if (r < disc) touches.push_back({i, wall, foot_on(wall, wedges, from_centre), stiffness * (disc - r), 0});
     }
-    FilmTouches films(0, stiffness, {});
+    FilmTouches films(0, stiffness, wedges);
     films.add_to(touches, {num_, state_.position.data(), state_.position.data() + num_}, contacts_);
     std::vector<double> held(static_cast<std::size_t>(num_ / on_arc), 0.0);
     for (const WallTouch& touch : touches)
@@ -83,6 +83,16 @@ TEST(FilmTouches, OfAStackBearTogetherWhatTheWallBears) {
   // Every vertex is pushed by its own contact and by those of the others with its edges.
   const double unit = held[2] / third;
   EXPECT_NEAR(held[1], unit * (second - third), 0.05 * by_wall);
+}
+
+TEST(FilmTouches, OnTheTipOfAWedgeAreThoseOnADisc) {
+  const Wedge tip{.tip = {0, Stack::disc}, .axis = {0, -1}, .half_angle = 1e-9, .radius = Stack::disc};
+  const WallPlace wall{tip.centre()[0], tip.centre()[1], tip.radius, 0};
+  const std::vector<double> overlaps = {8e-3, 1e-3, 5e-4};
+  const std::vector<double> on_disc = Stack(overlaps).held();
+  const std::vector<double> on_tip = Stack(overlaps).held(wall, std::span(&tip, 1));
+  for (std::size_t arc = 0; arc < on_disc.size(); ++arc)
+    EXPECT_NEAR(on_tip[arc], on_disc[arc], 1e-6 * on_disc[0]) << arc;
 }
 
 TEST(FilmTouches, EndWhereTheWallDoesNotPushAnyInterface) {
