@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -126,6 +127,14 @@ inline double force_error(DpForces& forces, DropletState state) {
     worst = std::max(worst, std::abs(force[i] + (above - below) / (2 * h)));
   }
   return worst;
+}
+
+/// Vertices that walls hold without a touch.
+inline int num_behind_films(const DropletState& state, double contact_range) {
+  return static_cast<int>(std::ranges::count_if(state.anchors, [&](const WallAnchor& one) {
+    return std::hypot(state.x()[one.holder] - one.wall.x, state.y()[one.holder] - one.wall.y) >
+           one.wall.radius + 2 * contact_range;
+  }));
 }
 
 }  // namespace clog::test

@@ -378,14 +378,6 @@ Obstacle on_neck(const DropletState& state, double x, double radius, double dist
   return {x, y, radius};
 }
 
-/// Vertices that walls hold without a touch.
-int num_behind_films(const DropletState& state, double contact_range) {
-  return static_cast<int>(std::ranges::count_if(state.anchors, [&](const WallAnchor& one) {
-    return std::hypot(state.x()[one.holder] - one.wall.x, state.y()[one.holder] - one.wall.y) >
-           one.wall.radius + 2 * contact_range;
-  }));
-}
-
 TEST_P(Step, HoldsAThinNeckThroughItsFilm) {
   // The neck touches itself, and one circle, or two that are nearer to each other than friction through the
   // film reaches. The contour begins in the lobe, or in the neck.

@@ -4,15 +4,19 @@
 
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "clog/core/model/model.hpp"
 #include "clog/core/polygon/neck.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/byte_archive.hpp"
 #include "clog/core/tools/error.hpp"
+#include "support.hpp"
 
 namespace clog {
 namespace {
@@ -86,35 +90,58 @@ DropletRun resume_in_array(const RunParameters& run, std::span<const std::byte> 
                             snapshot);
 }
 
-/// The walls hold these interfaces, with anchors at the snapshots.
-TEST(DropletRun, GoesOnFromASnapshotWithItsAnchors) {
-  for (const bool by_friction : {true, false}) {
-    RunParameters run;
-    run.obstacles.box = 20;
-    run.obstacles.density = {};
-    run.obstacles.gap = 0.4;
-    run.time_step = 2e-3;
-    run.max_time = 600;
-    run.dp.vertices = 64;
-    run.dp.line_tension = 0.1;
-    if (by_friction) {
-      run.dp.perimeter_spring = PerimeterSpring::rest;
-      run.dp.perimeter_stiffness_ratio = 0.1;
-      run.dp.gravity = Gravity::vertex;
-      run.dp.friction = 0.02;
-    } else {
-      run.dp.receding_angle = 150;
-    }
-    run = resolve(run);
-    DropletRun whole(run);
-    while (whole.snapshot().empty()) ASSERT_FALSE(whole.advance(64)) << by_friction;
-    DropletRun resumed = resume_in_array(run, whole.snapshot());
-    EXPECT_GT(resumed.droplet().state().anchors.size(), 0u) << by_friction;
-    while (!whole.advance(64)) continue;
-    while (!resumed.advance(7)) continue;
-    expect_identical(resumed.result(), whole.result());
-    EXPECT_TRUE((resumed.droplet().state().position == whole.droplet().state().position).all());
+/// A soft droplet among walls, before anything holds it.
+RunParameters soft_among_walls() {
+  RunParameters run;
+  run.obstacles.box = 20;
+  run.obstacles.density = {};
+  run.obstacles.gap = 0.4;
+  run.time_step = 2e-3;
+  run.max_time = 600;
+  run.dp.vertices = 64;
+  run.dp.line_tension = 0.1;
+  return run;
+}
+
+RunParameters with_friction(RunParameters run, double coefficient, FilmFriction films) {
+  run.dp.perimeter_spring = PerimeterSpring::rest;
+  run.dp.perimeter_stiffness_ratio = 0.1;
+  run.dp.gravity = Gravity::vertex;
+  run.dp.friction = coefficient;
+  run.dp.film_friction = films;
+  return run;
+}
+
+/// Goes on from a snapshot in which walls hold the droplet, and compares.
+void expect_to_go_on(const RunParameters& run, const std::function<bool(const DropletState&)>& is_held) {
+  DropletRun whole(run);
+  std::vector<std::byte> snapshot;
+  while (snapshot.empty() || !is_held(resume_in_array(run, snapshot).droplet().state())) {
+    ASSERT_FALSE(whole.advance(64));
+    snapshot = whole.snapshot();
   }
+  DropletRun resumed = resume_in_array(run, snapshot);
+  while (!whole.advance(64)) continue;
+  while (!resumed.advance(7)) continue;
+  expect_identical(resumed.result(), whole.result());
+  EXPECT_TRUE((resumed.droplet().state().position == whole.droplet().state().position).all());
+}
+
+TEST(DropletRun, GoesOnFromASnapshotWithItsAnchors) {
+  const auto has_anchors = [](const DropletState& state) { return !state.anchors.empty(); };
+  expect_to_go_on(resolve(with_friction(soft_among_walls(), 0.02, FilmFriction::off)), has_anchors);
+  RunParameters wet = soft_among_walls();
+  wet.dp.receding_angle = 150;
+  expect_to_go_on(resolve(wet), has_anchors);
+}
+
+TEST(DropletRun, GoesOnFromASnapshotWithAnchorsThroughFilms) {
+  RunParameters run = with_friction(soft_among_walls(), 0.1, FilmFriction::on);
+  run.dp.line_tension = 0.05;
+  run = resolve(run);
+  expect_to_go_on(run, [&](const DropletState& state) {
+    return test::num_behind_films(state, *run.dp.contact_range) > 0;
+  });
 }
 
 TEST(DropletRun, GoesOnFromEverySnapshotBitForBit) {
