@@ -15,6 +15,7 @@ import numpy as np
 
 from ..reading import programs, replays, stored
 from ..reading.trajectory import Trajectory
+from ..tools import outputs
 from ..tools.errors import NotThere, UserError
 from ..tools.hints import Column, Group
 
@@ -27,7 +28,7 @@ CONFIGS = programs.JOBS / "figures"
 def config_keys(path: pathlib.Path) -> dict[str, str]:
     """Keys and values of a config file, as text."""
     keys = {}
-    for line in path.read_text().splitlines():
+    for line in path.read_text(encoding="utf-8").splitlines():
         line = line.split("#", 1)[0]
         if "=" in line:
             key, value = line.split("=", 1)
@@ -156,7 +157,7 @@ class Workshop:
         found = [known[values] for values in wanted]
         for row in found:
             if row["status"] == b"failed":
-                raise UserError(f"task {row['task']} of {self.sweep_file(name)} failed ({row['message'].decode()}); clogrun replay shows how far it came")
+                raise UserError(f"task {row['task']} of {self.sweep_file(name)} failed ({stored.text(row['message'])}); clogrun replay shows how far it came")
         return found
 
     def columns(self, name: str) -> dict[str, Column]:
@@ -208,7 +209,7 @@ class Workshop:
         """A CSV file that clogfit reads. @param columns  its header, e.g. ["h [sigma]", "v [v_t]"]"""
         file = self.folder / "runs" / f"{name}.csv"
         file.parent.mkdir(parents=True, exist_ok=True)
-        with open(file, "w", newline="") as out:
+        with outputs.replaced(file) as fresh, open(fresh, "w", newline="", encoding="utf-8") as out:
             csv.writer(out).writerows([columns, *rows])
         return file
 
