@@ -299,7 +299,7 @@ def write_mp4(film: Film, path: pathlib.Path, rate: int) -> None:
             pass  # ffmpeg has ended, and says why
         if process.wait() != 0:
             said.seek(0)
-            raise UserError(f"cannot write {path} (ffmpeg: {' '.join(said.read().decode(errors='replace').split())}); look at the folder and its disk")
+            raise UserError(f"cannot write {path.name} (ffmpeg: {' '.join(said.read().decode(errors='replace').split())}); look at the folder and its disk")
 
 
 def palette_of(first: Pixels) -> Image.Image:

@@ -18,6 +18,7 @@ from ..reading.trajectory import Trajectory
 from ..tools import outputs
 from ..tools.errors import NotThere, UserError
 from ..tools.hints import Column, Group
+from ..tools.texts import printable
 
 if TYPE_CHECKING:
     import pandas
@@ -125,7 +126,7 @@ class Workshop:
             raise NotThere(f"{file} is not there; leave out --draw-only, or run clogsweep {shlex.join(arguments)}")
         if not self.draw_only and name not in self._complete_sweeps:
             file.parent.mkdir(parents=True, exist_ok=True)
-            print(f"sweep {name}: {file}", flush=True)
+            print(printable(f"sweep {name}: {file}"), flush=True)
             self._call("clogsweep", "--output", file, *arguments, ranks=ranks)
             self._complete_sweeps.add(name)
         self._note_sweep(name)
@@ -188,7 +189,7 @@ class Workshop:
         """Replays of a sweep's rows, see replays.follow_all(); reused if a file has the same already."""
         folder = self.folder / "runs"
         if not self.draw_only:
-            print(f"ways of {name}: {folder}", flush=True)
+            print(printable(f"ways of {name}: {folder}"), flush=True)
             folder.mkdir(parents=True, exist_ok=True)
         clogrun = None if self.draw_only else self.programs / "clogrun"
         ways = replays.follow_all(clogrun, self.sweep_file(name), rows, folder, self.ranks, samples, outlines)

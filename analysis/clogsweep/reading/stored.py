@@ -47,7 +47,7 @@ def is_sealed(path: AnyPath) -> bool:
 
 
 def text(value: object) -> str:
-    """A word of a table, or lines of an attribute, for whoever reads them: a foreign file may hold any bytes."""
+    """A word of a table, or lines of an attribute, as they can be shown: a foreign file may hold any bytes."""
     return printable(value.decode(errors="surrogateescape") if isinstance(value, bytes) else value, "\n\t")
 
 
@@ -102,7 +102,7 @@ def check_copy(path: str, folder: str | None, *_as_it_is: float) -> None:
     if not found["is_run"]:
         ask_clogsweep(path, folder)
     elif found["format_version"] in OLD_VERSIONS:
-        print(f"{path} is of an older format without checksums: damage to it may go unnoticed", file=sys.stderr)
+        print(f"{printable(path)} is of an older format without checksums: damage to it may go unnoticed", file=sys.stderr)
     else:
         raise UserError(f"cannot trust {path} (another program copied or changed it, and outlines have no checksums of their own); "
                         "give the file that clogrun wrote, or run the droplet again")
