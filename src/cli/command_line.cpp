@@ -11,6 +11,7 @@
 #include <span>
 #include <sstream>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "clog/console/csv.hpp"
@@ -116,8 +117,9 @@ bool CommandLine::awaits_value(const std::string& word) const {
 
 void CommandLine::refuse_misspelt_command(const std::string& word) const {
   const bool is_command = std::find(commands_.begin(), commands_.end(), word) != commands_.end();
-  if (is_command || word.starts_with('-') || std::filesystem::exists(word)) return;
-  if (const std::string near = sweep::did_you_mean(word, commands_); !near.empty())
+  std::error_code none;  // a word may be too long for a file's name
+  if (is_command || word.starts_with('-') || std::filesystem::exists(word, none)) return;
+  if (const std::string near = sweep::did_you_mean(excerpt(word), commands_); !near.empty())
     throw Error(fmt::format("unknown command '{}'; did you mean {} {}?", word, program_, near));
 }
 
@@ -244,7 +246,7 @@ double CommandLine::number(const std::string& option) const {
   try {
     return sweep::to_number(get(option));
   } catch (const Error& error) {
-    throw Error(fmt::format("invalid --{}={} ({})", option, get(option), error.what()));
+    throw Error(fmt::format("invalid --{}={} ({})", option, excerpt(get(option)), error.what()));
   }
 }
 

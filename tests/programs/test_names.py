@@ -17,10 +17,11 @@ from support import BIN, LONGEST, QUICK, ROOT
 
 import clogsweep
 from clogsweep import style
+from clogsweep.labels.groups import Groups
 from clogsweep.tools import outputs, texts
 
-CIRCLES = os.fsdecode(b"a$x^2$b\xff\x1b[31m.csv")
-SHOWN = r"a$x^2$b\xff\x1b[31m.csv"
+CIRCLES = os.fsdecode("ü".encode() + b"a$x^2$b\xff\x1b[31m.csv")
+SHOWN = r"üa$x^2$b\xff\x1b[31m.csv"
 SWEEP = os.fsdecode(b"s$1$\xfe\x1b.h5")
 WORD = 'x,"y$1$\x1b['  # in the place of a preset
 
@@ -53,7 +54,7 @@ class Names(Analysis):
             with self.subTest(command):
                 self.draw(command, SWEEP, "--output", f"{SWEEP}-{command}", "--programs", BIN)
                 with Image.open(self.folder / f"{SWEEP}-{command}.png") as picture:
-                    self.assertIn(r"\xff\x1b", picture.info["Description"])
+                    self.assertRegex(picture.info["Description"], r"b(\\xff|\ufffd)\\x1b\[31m.csv")
         told = self.draw("report", SWEEP, "--examples", 0, "--programs", BIN).stdout
         self.assertEqual(told, r"s$1$\xfe\x1b-report.html" + "\n")
         page = (self.folder / f"{SWEEP[:-3]}-report.html").read_text(encoding="utf-8")
@@ -72,7 +73,7 @@ class Names(Analysis):
         done = subprocess.run([sys.executable, "-m", "clogsweep", "report", os.fsencode(self.folder / SWEEP), "--output", self.folder / "r.html", "--examples", "0",
                                "--programs", BIN], cwd=ROOT / "analysis", env={**os.environ, **locale}, capture_output=True, timeout=LONGEST)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("λ", (self.folder / "r.html").read_text(encoding="utf-8"))
+        self.assertIn(SHOWN, (self.folder / "r.html").read_text(encoding="utf-8"))
 
 
 class Words(Analysis):
@@ -80,11 +81,12 @@ class Words(Analysis):
 
     def setUp(self):
         super().setUp()
-        sweep = self.copy_sweep("s.h5", *QUICK, "line-tension=0.5,3", "seeds=1..4")
-        stored_rows.change_columns(sweep, preset=WORD.encode(), host=b"node\xff")
+        sweep = self.copy_sweep("s.h5", *QUICK, "line-tension=0.5,3", "seeds=1..4", "--until-precision=90%", "--most-seeds=4")
+        stored_rows.change_columns(sweep, host=b"node\xff\x1b[31m")
         stored_rows.change_attribute(sweep, "stopping_rule", "until\x1b[31m red")
 
     def test_terminals_get_text(self):
+        stored_rows.change_columns(self.folder / "s.h5", preset=WORD.encode())
         for command in (["clogsweep", "status", "s.h5"], ["clogsweep", "verify", "s.h5"], ["clogfit", "s.h5"], ["clogfit", "s.h5", "--format", "csv"],
                         ["clogfit", "compare", "s.h5", "--by", "line-tension"], ["clogfit", "curve", "s.h5"]):
             with self.subTest(command):
@@ -93,13 +95,17 @@ class Words(Analysis):
         self.assertIn("until\\x1b[31m red\n", self.succeed("clogsweep", "status", "s.h5").stdout)
 
     def test_a_cell_of_csv_is_one_cell(self):
+        stored_rows.change_columns(self.folder / "s.h5", preset=WORD.encode())
         (self.folder / "fit.csv").write_text(self.succeed("clogfit", "s.h5", "--format", "csv").stdout, encoding="utf-8")
         self.assertEqual(set(pandas.read_csv(self.folder / "fit.csv").preset), {'x,"y$1$\\x1b['})
 
     def test_pictures_draw_them(self):
-        self.draw("clogging-length", "s.h5", "--programs", BIN)
         self.draw("report", "s.h5", "--examples", 0, "--programs", BIN)
         self.assertNotIn("\x1b", (self.folder / "s-report.html").read_text(encoding="utf-8"))
+        told = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)
+        for group in told["groups"]:
+            group["preset"] = WORD
+        self.assertIn(r'preset x,"y\$1\$\x1b[', Groups(told).caption())
 
 
 class Outputs(Analysis):
