@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 
+#include "clog/console/json_text.hpp"
+
 namespace clog::campaign {
 namespace {
 
@@ -69,7 +71,7 @@ std::string Activity::line(const std::string& start_time, double now) const {
       {"idle_seconds", to_milliseconds(std::max(0.0, num_ranks_ * now - all.busy_seconds_))},
       {"tail_seconds",
        to_milliseconds(std::max(0.0, num_ranks_ * (now - last_start_) - all.tail_busy_seconds_))}};
-  return line.dump() + '\n';
+  return console::json_text(line, -1);
 }
 
 std::string with_session(const std::string& lines, const std::string& line) {

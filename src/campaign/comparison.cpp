@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "clog/campaign/stored_sweep.hpp"
+#include "clog/console/printable.hpp"
 #include "clog/console/rounded.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
@@ -156,7 +157,7 @@ std::vector<Side> sides_of_files(const std::vector<std::string>& paths) {
   std::vector<Side> sides;
   for (const std::string& path : paths) {
     store::SweepFile file = read_with_caution(path);
-    sides.push_back({path, std::move(file.rows), listed_columns(file.provenance)});
+    sides.push_back({console::printable(path), std::move(file.rows), listed_columns(file.provenance)});
   }
   return sides;
 }
@@ -183,7 +184,8 @@ std::vector<Side> sides_of_column(const std::string& name, const store::SweepFil
   std::vector<Side> sides;
   sides.reserve(rows.size());
   for (auto& [value, own] : rows)
-    sides.push_back({fmt::format("{}={}", column, sweep::text_of(value)), std::move(own), lists});
+    sides.push_back(
+        {fmt::format("{}={}", column, console::printable(sweep::text_of(value))), std::move(own), lists});
   return sides;
 }
 

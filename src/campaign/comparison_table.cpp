@@ -9,6 +9,7 @@
 
 #include "clog/campaign/comparison.hpp"
 #include "clog/console/build_info.hpp"
+#include "clog/console/json_text.hpp"
 #include "clog/console/rounded.hpp"
 #include "clog/console/table.hpp"
 #include "clog/core/tools/joined.hpp"
@@ -53,12 +54,6 @@ NamedValues fields_of(const Comparison& one, const std::vector<std::string>& col
   fields.emplace_back("both_clogged", finite_value(one.num_both_clogged));
   fields.emplace_back("same_place", finite_value(one.num_same_place));
   return fields;
-}
-
-std::string short_text(const Value& value) {
-  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{:.4g}", *number);
-  const std::string text = sweep::text_of(value);
-  return text.empty() ? "-" : text;
 }
 
 std::string bounded_length(const fit::CloggingLength& length) {
@@ -117,7 +112,7 @@ std::string to_csv(const Comparisons& comparisons) {
     std::vector<std::string> names, texts;
     for (const auto& [name, value] : fields_of(one, comparisons.columns)) {
       names.push_back(name);
-      texts.push_back(sweep::text_of(value));
+      texts.push_back(csv_cell(value));
     }
     if (table.empty()) table = joined(names, ",") + '\n';
     table += joined(texts, ",") + '\n';
@@ -142,7 +137,7 @@ std::string to_json(const Comparisons& comparisons, double confidence) {
       {"within",
        comparisons.within > 0 ? nlohmann::ordered_json(comparisons.within) : nlohmann::ordered_json()},
       {"comparisons", list}};
-  return document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
+  return console::json_text(document);
 }
 
 }  // namespace clog::campaign

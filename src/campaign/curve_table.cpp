@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "clog/console/build_info.hpp"
+#include "clog/console/json_text.hpp"
 #include "clog/console/rounded.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/core/tools/number_text.hpp"
@@ -34,11 +35,8 @@ std::string value_and_interval(double value, double lower, double upper) {
 
 std::string shared_text(const FittedCurve& curve) {
   std::vector<std::string> words;
-  for (const auto& [name, value] : curve.shared) {
-    const auto* number = std::get_if<double>(&value);
-    words.push_back(
-        fmt::format("{}={}", name, number ? fmt::format("{:.4g}", *number) : sweep::text_of(value)));
-  }
+  for (const auto& [name, value] : curve.shared)
+    words.push_back(fmt::format("{}={}", name, short_text(value)));
   return joined(words, " ");
 }
 
@@ -209,7 +207,7 @@ std::string curves_to_csv(const std::vector<FittedCurve>& curves, const CurveQue
   table += '\n';
   for (const FittedCurve& curve : curves)
     for (std::size_t i = 0; i < curve.places.size(); ++i) {
-      for (const Field& field : curve.shared) table += sweep::text_of(field.second) + ',';
+      for (const Field& field : curve.shared) table += csv_cell(field.second) + ',';
       for (std::size_t key = 0; key < question.keys.size(); ++key)
         table += shortest(value_at(curve.places[i], key)) + ',';
       const fit::CurveValue& value = curve.values[i];
@@ -244,7 +242,7 @@ std::string curves_to_json(const std::vector<FittedCurve>& curves, std::span<con
                                  {"keys", keys},
                                  {"units", units},
                                  {"curves", list}};
-  return document.dump(2) + "\n";
+  return console::json_text(document);
 }
 
 }  // namespace clog::campaign

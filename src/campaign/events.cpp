@@ -7,6 +7,7 @@
 
 #include "clog/campaign/stored_sweep.hpp"
 #include "clog/console/clock.hpp"
+#include "clog/console/json_text.hpp"
 #include "clog/sweep/columns.hpp"
 #include "clog/sweep/plan.hpp"
 
@@ -18,9 +19,7 @@ using sweep::RunRow;
 
 Json event(const char* name) { return {{"event", name}, {"seen", console::utc_now()}}; }
 
-std::string line(const Json& event) {
-  return event.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
-}
+std::string line(const Json& event) { return console::json_text(event, -1); }
 
 void add_columns(const RunRow& row, const std::vector<std::string>& columns, Json& event) {
   for (const std::string& name : columns) {

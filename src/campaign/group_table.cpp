@@ -16,6 +16,7 @@
 #include "clog/campaign/stored_sweep.hpp"
 #include "clog/campaign/usual_parameters.hpp"
 #include "clog/console/build_info.hpp"
+#include "clog/console/json_text.hpp"
 #include "clog/console/printable.hpp"
 #include "clog/console/rounded.hpp"
 #include "clog/console/table.hpp"
@@ -34,18 +35,12 @@
 namespace clog::campaign {
 namespace {
 
-std::string rounded_text(const Value& value) {
-  if (const auto* number = std::get_if<double>(&value)) return fmt::format("{:.4g}", *number);
-  const std::string text = sweep::text_of(value);
-  return text.empty() ? "-" : text;
-}
-
-/// The same for a parameter; user-supplied circles have the name of their file, if it is known.
+/// A parameter's value; user-supplied circles have the name of their file, if it is known.
 std::string rounded_text(const sweep::RunRow& row, const Field& field) {
   const std::optional<OwnCircles>& own = row.parameters.obstacles.own;
   if (field.first == std::string_view("obstacles") && own && !own->source().empty())
     return console::printable(std::filesystem::path(own->source()).filename().string());
-  return rounded_text(field.second);
+  return short_text(field.second);
 }
 
 nlohmann::ordered_json number_or_null(double number) { return json_of(Value(number)); }
@@ -317,7 +312,7 @@ std::string to_csv(const std::vector<Group>& groups, const std::optional<Laborat
     std::vector<std::string> names, cells;
     for (const auto& [name, value] : all_fields(group, lab)) {
       names.emplace_back(name);
-      cells.push_back(sweep::text_of(value));
+      cells.push_back(csv_cell(value));
     }
     if (table.empty()) table = joined(names, ",") + '\n';
     table += joined(cells, ",") + '\n';
@@ -376,7 +371,7 @@ std::string to_json(const std::vector<Group>& groups, double confidence, const s
                               {"time_s", lab->time},
                               {"speed_mm_per_s", number_or_null(lab->speed)},
                               {"tension_mN_per_m_of_gamma_1", lab->tension}};
-  return document.dump(2) + "\n";
+  return console::json_text(document);
 }
 
 }  // namespace clog::campaign

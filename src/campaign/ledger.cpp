@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <sstream>
@@ -423,7 +425,7 @@ void Ledger::rewrite_journal(bool with_all) {
   journal_.rewrite(needed);
 }
 
-void Ledger::finish() {
+std::string Ledger::finish() {
   publish();
   if (place_.stamp() != stamp_) publish();  // somebody has moved or removed it meanwhile
   const bool is_complete =
@@ -431,10 +433,13 @@ void Ledger::finish() {
       std::all_of(runs_.begin(), runs_.end(), [this](const auto& run) { return is_over(run.second.row); }) &&
       std::all_of(other_runs_.begin(), other_runs_.end(),
                   [this](const Entry& run) { return is_over(run.row); });
-  if (is_complete)
-    journal_.remove();
-  else
+  if (!is_complete) {
     rewrite_journal(false);
+    return "";
+  }
+  if (journal_.remove()) return "";
+  return fmt::format("cannot remove {} ({}); the sweep is complete without it: remove it", journal_.path(),
+                     std::strerror(errno));
 }
 
 }  // namespace clog::campaign

@@ -15,6 +15,7 @@
 #include "clog/campaign/run_list.hpp"
 #include "clog/campaign/salvage.hpp"
 #include "clog/campaign/stored_sweep.hpp"
+#include "clog/console/json_text.hpp"
 #include "clog/console/printable.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
@@ -182,8 +183,7 @@ std::string part_line(const std::string& path, const store::SweepFile& file, con
   std::set<std::string> hosts;
   for (const RunRow& row : file.rows) hosts.insert(row.host);
   part["hosts"] = hosts;
-  const auto replace = nlohmann::json::error_handler_t::replace;
-  return part.dump(-1, ' ', false, replace) + '\n' + attribute(file.provenance, "parts");
+  return console::json_text(part, -1) + attribute(file.provenance, "parts");
 }
 
 /// Attributes about the program's call: a new file has its own, which summarise those of its parts.

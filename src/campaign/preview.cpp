@@ -310,7 +310,8 @@ void print_tasks(const sweep::Plan& plan) {
 }
 
 void print_limits(const sweep::Plan& plan) {
-  for (const std::string& words : sweep::limits_of_results(plan)) std::cout << "# " << words << '\n';
+  for (const std::string& words : sweep::limits_of_results(plan))
+    std::cout << "# " << console::printable(words) << '\n';
 }
 
 int print_cost(const sweep::Plan& plan, const std::string& output, const RoundsToCome& rounds) {

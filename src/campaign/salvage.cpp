@@ -3,12 +3,15 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <optional>
 #include <unordered_map>
 #include <utility>
 
 #include "clog/campaign/growth.hpp"
 #include "clog/campaign/stored_sweep.hpp"
+#include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -82,11 +85,42 @@ Salvage salvage(const std::string& path) {
   return found;
 }
 
+std::vector<std::string> drop_faulty(std::vector<sweep::RunRow>& rows) {
+  std::vector<std::string> faults;
+  std::unordered_map<std::string, std::int64_t> seen;  // tasks, by what runs are
+  std::erase_if(rows, [&](const sweep::RunRow& row) {
+    std::string fault = sweep::fault_of(row);
+    if (fault.empty())
+      if (const auto [first, is_new] = seen.emplace(sweep::identity(row), row.task); !is_new)
+        fault = fmt::format("the same run as task {}", first->second);
+    if (!fault.empty()) faults.push_back(fmt::format("task {}: {}", row.task, fault));
+    return !fault.empty();
+  });
+  return faults;
+}
+
+void drop_what_verify_refuses(const std::string& path, Salvage& found) {
+  for (std::string& fault : drop_faulty(found.table.rows)) found.damage.push_back(std::move(fault));
+  store::Provenance& provenance = found.table.provenance;
+  if (attribute(provenance, "config").empty()) return;
+  try {
+    stored_num_runs(path, found.table, stored_plan(path, found.table));
+  } catch (const Error& error) {
+    std::erase_if(provenance,
+                  [](const auto& one) { return one.first == "config" || one.first == "num_wanted"; });
+    found.damage.emplace_back(error.what());
+  }
+}
+
 void write(const store::SweepFile& table, const std::vector<store::Journal::Entry>& snapshots,
            const std::string& path) {
   store::refuse_existing(path);
   const store::Place place(path);
-  store::publish_sweep(place, table.rows, table.provenance, table.circles);
+  if (!store::publish_sweep(place, table.rows, table.provenance, table.circles))
+    console::say(
+        fmt::format("{} is complete, but its folder cannot be synced ({}): a power cut may lose it; copy it "
+                    "elsewhere, too",
+                    path, std::strerror(errno)));
   if (snapshots.empty()) return;
   store::Journal journal(store::journal_place(place), &place);
   for (const auto& [row, snapshot] : snapshots) journal.add(row, snapshot);

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <nlohmann/json.hpp>
 
+#include "clog/console/json_text.hpp"
 #include "clog/console/printable.hpp"
 #include "clog/store/journal.hpp"
 #include "clog/sweep/plan.hpp"
@@ -74,7 +75,7 @@ std::string to_text(const std::string& path, const Status& status, double confid
   else
     text += ", " + status.left.text();
   text += '\n';
-  if (!status.stopping_rule.empty()) text += status.stopping_rule + '\n';
+  if (!status.stopping_rule.empty()) text += console::printable(status.stopping_rule) + '\n';
   if (!status.groups.empty()) text += '\n' + to_text(status.groups, confidence, shared);
   return text;
 }
@@ -97,7 +98,7 @@ std::string to_json(const Status& status, double confidence) {
   all["groups"] = status.groups.empty()
                       ? nlohmann::ordered_json::array()
                       : nlohmann::ordered_json::parse(to_json(status.groups, confidence, {})).at("groups");
-  return all.dump(2) + '\n';
+  return console::json_text(all);
 }
 
 }  // namespace clog::campaign

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "clog/sweep/columns.hpp"
 
@@ -8,5 +9,9 @@ namespace clog::campaign {
 
 /// @returns null for an unset value and for a number that is not finite
 nlohmann::ordered_json json_of(const sweep::Value& value);
+/// For a table: four figures; `-` for an unset value. A foreign file's words may hold control characters.
+std::string short_text(const sweep::Value& value);
+/// For CSV: all digits; in quotes where a word holds a comma or a quote.
+std::string csv_cell(const sweep::Value& value);
 
 }  // namespace clog::campaign

@@ -3,12 +3,11 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <unordered_map>
 
+#include "clog/campaign/salvage.hpp"
 #include "clog/campaign/stored_sweep.hpp"
 #include "clog/store/journal.hpp"
 #include "clog/store/run_table.hpp"
-#include "clog/sweep/row_check.hpp"
 #include "clog/sweep/value_list.hpp"
 
 namespace clog::campaign {
@@ -25,29 +24,16 @@ std::string to_text(const store::Journal::Contents& journal, bool is_alive) {
   return text + (journal.has_torn_end ? "; the last one is torn, as after a kill, and will be dropped" : "");
 }
 
-/// Faults of the rows themselves, a line for each.
-std::vector<std::string> faults_of(const std::vector<sweep::RunRow>& rows) {
-  std::vector<std::string> faults;
-  std::unordered_map<std::string, std::int64_t> seen;
-  for (const sweep::RunRow& row : rows) {
-    std::string fault = sweep::fault_of(row);
-    const auto [first, is_new] = seen.emplace(sweep::identity(row), row.task);
-    if (fault.empty() && !is_new) fault = fmt::format("the same run as task {}", first->second);
-    if (!fault.empty()) faults.push_back(fmt::format("task {}: {}", row.task, fault));
-  }
-  return faults;
-}
-
 }  // namespace
 
 Verification verify(const std::string& path) {
-  const store::Examination found = store::examine_sweep(path);
-  const store::SweepFile& file = found.whole;
+  store::Examination found = store::examine_sweep(path);
+  store::SweepFile& file = found.whole;
   const bool has_config = !attribute(file.provenance, "config").empty();
   RunCount runs;  // not asked for where the file is damaged
   if (found.damage.empty() && has_config) runs = stored_num_runs(path, file, stored_plan(path, file));
   Verification result{.findings = found.damage};
-  for (std::string& fault : faults_of(file.rows)) result.findings.push_back(std::move(fault));
+  for (std::string& fault : drop_faulty(file.rows)) result.findings.push_back(std::move(fault));
   if (found.is_refused_by_others && found.damage.empty())
     result.findings.emplace_back(
         "a checksum of HDF5 is damaged: h5py, pandas and other readers refuse the file; `clogsweep salvage` "

@@ -11,11 +11,13 @@
 #include <span>
 #include <sstream>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "clog/console/csv.hpp"
 #include "clog/console/text_file.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/excerpt.hpp"
 #include "clog/core/tools/instruction_set.hpp"
 #include "clog/core/tools/joined.hpp"
 
@@ -115,8 +117,9 @@ bool CommandLine::awaits_value(const std::string& word) const {
 
 void CommandLine::refuse_misspelt_command(const std::string& word) const {
   const bool is_command = std::find(commands_.begin(), commands_.end(), word) != commands_.end();
-  if (is_command || word.starts_with('-') || std::filesystem::exists(word)) return;
-  if (const std::string near = sweep::did_you_mean(word, commands_); !near.empty())
+  std::error_code none;  // a word may be too long for a file's name
+  if (is_command || word.starts_with('-') || std::filesystem::exists(word, none)) return;
+  if (const std::string near = sweep::did_you_mean(excerpt(word), commands_); !near.empty())
     throw Error(fmt::format("unknown command '{}'; did you mean {} {}?", word, program_, near));
 }
 
@@ -133,7 +136,7 @@ void CommandLine::refuse_surplus_words() const {
     if (sweep_keys_ == SweepKeys::accepted && begins_like_key(word)) refuse_unknown(word, {});
     if (sweep_keys_ == SweepKeys::accepted && word.ends_with(".cfg") && !has("config"))
       throw Error(fmt::format("no place for '{0}'; a config needs its option, --config {0}", word));
-    all += (all.empty() ? "'" : ", '") + word + "'";
+    all += (all.empty() ? "'" : ", '") + excerpt(word) + "'";
   }
   throw Error(fmt::format("no place for {} ({}); see {} --help", all, surplus_remedy_, program_));
 }
@@ -142,11 +145,11 @@ void CommandLine::refuse_unknown(const std::string& word, std::span<const char* 
   std::vector<std::string> names;
   for (const auto* group : {&own_, &usual_keys_, &keys_})
     for (const auto& known : group->options()) names.push_back(known->long_name());
-  const std::string option = word.substr(0, word.find('='));
+  const std::string option = excerpt(word.substr(0, word.find('=')));
   const std::string bare = option.substr(std::min(option.find_first_not_of('-'), option.size()));
   // The dashes of `key=value` are not the user's.
   const bool has_dashes =
-      std::any_of(typed.begin(), typed.end(), [&](std::string_view one) { return one.starts_with(option); });
+      std::any_of(typed.begin(), typed.end(), [&](std::string_view one) { return one.starts_with(word); });
   std::vector<std::string> meant = sweep::meant_names(bare, names);
   if (has_dashes)
     for (std::string& name : meant) name.insert(0, "--");
@@ -166,7 +169,7 @@ static void refuse_lines_without_value(const std::string& path, const std::strin
     const bool is_section = words.starts_with('[') && words.ends_with(']');
     if (!words.empty() && !is_section && words.find('=') == std::string::npos)
       throw Error(fmt::format("{} line {}: '{}' is not key = value; comments start with #", path, number,
-                              words.substr(0, 60)));
+                              excerpt(words)));
   }
 }
 
@@ -243,7 +246,7 @@ double CommandLine::number(const std::string& option) const {
   try {
     return sweep::to_number(get(option));
   } catch (const Error& error) {
-    throw Error(fmt::format("invalid --{}={} ({})", option, get(option), error.what()));
+    throw Error(fmt::format("invalid --{}={} ({})", option, excerpt(get(option)), error.what()));
   }
 }
 

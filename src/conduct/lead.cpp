@@ -67,7 +67,7 @@ class Lead {
   }
 
   void finish() {
-    ledger_.finish();
+    if (const std::string fault = ledger_.finish(); !fault.empty()) progress_.say("clogsweep: " + fault);
     if (is_expecting_) progress_.finish();
   }
   bool was_interrupted() const { return was_interrupted_; }

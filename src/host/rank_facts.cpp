@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clog/console/build_info.hpp"
+#include "clog/console/json_text.hpp"
 #include "clog/core/run/droplet_run.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/instruction_set.hpp"
@@ -54,11 +55,15 @@ RankFacts find_rank_facts(int rank, double seconds) {
 }
 
 std::string to_text(const RankFacts& facts) {
-  return nlohmann::json{{"rank", facts.rank},       {"host", facts.host},
-                        {"version", facts.version}, {"instruction_set", facts.instruction_set},
-                        {"cores", facts.cores},     {"cores_granted", facts.cores_granted},
-                        {"memory", facts.memory},   {"nanoseconds_per_step", facts.nanoseconds_per_step}}
-      .dump();
+  return console::json_text({{"rank", facts.rank},
+                             {"host", facts.host},
+                             {"version", facts.version},
+                             {"instruction_set", facts.instruction_set},
+                             {"cores", facts.cores},
+                             {"cores_granted", facts.cores_granted},
+                             {"memory", facts.memory},
+                             {"nanoseconds_per_step", facts.nanoseconds_per_step}},
+                            -1);
 }
 
 RankFacts rank_facts_from(const std::string& text) {

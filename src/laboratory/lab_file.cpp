@@ -10,6 +10,7 @@
 #include "clog/console/csv.hpp"
 #include "clog/console/text_file.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/excerpt.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/sweep/value_list.hpp"
 
@@ -43,11 +44,11 @@ Entries entries_of(const std::string& text) {
     if (words.empty()) continue;
     const auto equals = words.find('=');
     if (equals == std::string::npos)
-      throw Error(fmt::format("line {}: '{}' is not key = value", number, words.substr(0, 60)));
+      throw Error(fmt::format("line {}: '{}' is not key = value", number, excerpt(words)));
     const std::string key = console::trimmed(words.substr(0, equals));
     if (!known_keys().contains(key))
       throw Error(
-          fmt::format("line {}: unknown key '{}' (known: {})", number, key.substr(0, 60), names_of_keys()));
+          fmt::format("line {}: unknown key '{}' (known: {})", number, excerpt(key), names_of_keys()));
     if (!entries.emplace(key, console::trimmed(words.substr(equals + 1))).second)
       throw Error(fmt::format("line {}: {} stands there twice", number, key));
   }

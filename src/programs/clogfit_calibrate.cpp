@@ -16,6 +16,8 @@
 #include "clog/cli/program.hpp"
 #include "clog/console/build_info.hpp"
 #include "clog/console/exit_codes.hpp"
+#include "clog/console/json_text.hpp"
+#include "clog/console/printable.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/fit/calibration.hpp"
@@ -128,10 +130,13 @@ void require_channel(const std::vector<Trial>& trials, const sweep::Settings& se
       "diameters, e.g. orifice=0.8, and wedge-angle, tip-radius unless they are those of --help");
 }
 
-void print_text(const std::vector<Text>& files, const std::vector<fit::Calibration>& found,
-                const fit::Trials& all, const Experiment& lab, const std::optional<Experiment>& other) {
+void print_text(std::vector<Text> files, const std::vector<fit::Calibration>& found, const fit::Trials& all,
+                const Experiment& lab, const std::optional<Experiment>& other) {
   std::size_t width = 7;
-  for (const Text& file : files) width = std::max(width, file.size());
+  for (Text& file : files) {
+    file = console::printable(file);
+    width = std::max(width, file.size());
+  }
   fmt::print(std::cout, "{:{}}    Gamma*        +-  b_0/b_inf        +-   Delta_v   Delta_A\n", "profile",
              width);
   for (std::size_t i = 0; i < files.size(); ++i)
@@ -192,7 +197,7 @@ void print_json(const std::vector<Text>& files, const std::vector<fit::Calibrati
   if (lab.tilt > 0) document["gravity"] = lab.gravity();
   if (!std::isnan(lab.interfacial_tension)) document["line_tension_experiment"] = lab.line_tension();
   if (other) document["line_tension_scaled"] = laboratory::scaled_line_tension(all.line_tension, lab, *other);
-  std::cout << document.dump(2) << '\n';
+  std::cout << console::json_text(document);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "clog/cli/program.hpp"
 #include "clog/console/build_info.hpp"
 #include "clog/console/exit_codes.hpp"
+#include "clog/console/json_text.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/laboratory/profile_file.hpp"
 
@@ -53,7 +54,7 @@ int clogfit_deviation(int argc, const char* const* argv) {
                                            {"git_describe", build.git_describe},
                                            {"measured", files[0]},
                                            {"deviations", list}};
-  std::cout << document.dump(2) << '\n';
+  std::cout << console::json_text(document);
   return console::exit_success;
 }
 

@@ -12,6 +12,7 @@
 #include "clog/cli/program.hpp"
 #include "clog/console/build_info.hpp"
 #include "clog/console/exit_codes.hpp"
+#include "clog/console/json_text.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/fit/near_wall_drag.hpp"
 #include "clog/laboratory/experiment.hpp"
@@ -86,7 +87,7 @@ int clogfit_drag(int argc, const char* const* argv) {
                                            {"near_wall_drag", fit.drag},
                                            {"near_wall_drag_error", number(fit.drag_error)},
                                            {"speeds", speeds.size()}};
-  std::cout << document.dump(2) << '\n';
+  std::cout << console::json_text(document);
   return console::exit_success;
 }
 

@@ -15,6 +15,7 @@
 #include "clog/cli/program.hpp"
 #include "clog/console/build_info.hpp"
 #include "clog/console/exit_codes.hpp"
+#include "clog/console/json_text.hpp"
 #include "clog/console/rounded.hpp"
 #include "clog/core/polygon/automatic_values.hpp"
 #include "clog/core/tools/error.hpp"
@@ -190,7 +191,7 @@ int clogfit_units(int argc, const char* const* argv) {
       for (const double model : models) values.push_back(conversion.convert(model));
       if (models.size() == 1) values = Json(values.front());
     }
-    std::cout << document.dump(2) << '\n';
+    std::cout << console::json_text(document);
     return console::exit_success;
   }
   std::vector<Line> lines = lines_of(lab, scales);

@@ -19,6 +19,7 @@
 #include "clog/conduct/assignment.hpp"
 #include "clog/conduct/lead.hpp"
 #include "clog/console/exit_codes.hpp"
+#include "clog/console/json_text.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
@@ -85,7 +86,7 @@ std::optional<int> prepare(const cli::CommandLine& line) {
           line, {{"MPI", parallel::Communicator::library_version()}, {"HDF5", store::library_version()}}))
     return console::exit_success;
   if (line.has("schema")) {
-    std::cout << sweep::schema_json().dump(2) << '\n';
+    std::cout << console::json_text(sweep::schema_json());
     return console::exit_success;
   }
   lead_options(line);

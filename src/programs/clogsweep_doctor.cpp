@@ -31,7 +31,7 @@ int print_findings(const std::vector<Finding>& findings) {
   bool is_well = true;
   for (const Finding& finding : findings) {
     std::cout << (finding.remedy.empty() ? "ok    " : "MEND  ") << console::printable(finding.what) << '\n';
-    if (!finding.remedy.empty()) std::cout << "      " << finding.remedy << '\n';
+    if (!finding.remedy.empty()) std::cout << "      " << console::printable(finding.remedy) << '\n';
     is_well = is_well && finding.remedy.empty();
   }
   return is_well ? console::exit_success : console::exit_internal_fault;

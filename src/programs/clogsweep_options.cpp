@@ -44,10 +44,12 @@ conduct::Log::Level log_level(const cli::CommandLine& line) {
 }
 
 std::chrono::milliseconds report_interval(const cli::CommandLine& line) {
-  const std::chrono::milliseconds interval(std::llround(1000 * sweep::to_number(line.get("report-seconds"))));
-  if (interval.count() < 1)
-    throw Error("invalid --report-seconds=" + line.get("report-seconds") + " (must be 0.001 or more) try 10");
-  return interval;
+  constexpr double shortest = 0.001, longest = 1e9;
+  const double seconds = line.get_positive("report-seconds");
+  if (seconds < shortest || seconds > longest)
+    throw Error(fmt::format("invalid --report-seconds={} (must be {} to {}) try 10",
+                            line.get("report-seconds"), shortest, longest));
+  return std::chrono::milliseconds(std::llround(1000 * seconds));
 }
 
 double max_hours(const cli::CommandLine& line) {

@@ -19,7 +19,7 @@ constexpr const char* salvage_usage =
 
   clogsweep salvage sweep.h5 --output whole.h5
 
-Rows and attributes that are not as they were written are excluded and named. Results and snapshots that only the
+Rows and attributes that are not as they were written, or that nobody can use, are excluded and named. Results and snapshots that only the
 journal beside the file has are copied, too. The sweep's own command, with --output whole.h5, then recomputes the
 missing runs and restores missing attributes.
 )";
@@ -37,7 +37,8 @@ int clogsweep_salvage(int argc, const char* const* argv) {
   if (!line.has("file")) throw Error("missing sweep file; try clogsweep salvage sweep.h5 --output whole.h5");
   const std::string output = line.require("output");
   store::refuse_existing(output);
-  const campaign::Salvage found = campaign::salvage(line.get("file"));
+  campaign::Salvage found = campaign::salvage(line.get("file"));
+  campaign::drop_what_verify_refuses(line.get("file"), found);
   for (const std::string& damage : found.damage) std::cout << console::printable(damage) << '\n';
   campaign::write(found.table, found.snapshots, output);
   const auto num_rows = static_cast<std::int64_t>(found.table.rows.size());

@@ -3,10 +3,10 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <iostream>
 #include <string>
 
 #include "clog/campaign/stored_sweep.hpp"
+#include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/laboratory/lab_file.hpp"
 #include "clog/laboratory/scales.hpp"
@@ -35,9 +35,9 @@ std::optional<campaign::LaboratoryScale> laboratory_scale(const cli::CommandLine
   const laboratory::Laboratory lab =
       line.has("lab") ? laboratory::read_laboratory(line.get("lab"))
                       : laboratory::parse_laboratory(stored, path + ", attribute laboratory,");
-  if (!stored.empty() && lab.text != stored)
-    std::cerr << "clogfit: " << line.get("lab") << " replaces the laboratory that is stored in " << path
-              << '\n';
+  if (line.has("lab") && !stored.empty() && lab.text != stored)
+    console::say(
+        fmt::format("clogfit: {} replaces the laboratory that is stored in {}", line.get("lab"), path));
   constexpr double milli = 1e-3;
   const laboratory::Scales scales = laboratory::scales_of(lab);
   return campaign::LaboratoryScale{.length = scales.length / milli,

@@ -71,11 +71,11 @@ void Draft::write(std::span<const std::byte> bytes) {
 
 void Draft::unlock() { flock(descriptor_, LOCK_UN); }
 
-void Draft::publish() {
+bool Draft::publish() {
   place_.lend_access_to(descriptor_);
   check(sync(descriptor_) && place_.take_from(draft_), "write", place_.path());
   is_published_ = true;
-  check(place_.sync_folder(), "write", place_.path());
+  return place_.sync_folder();
 }
 
 std::optional<std::string> Draft::publish_over(const std::string& stamp) {

@@ -38,8 +38,9 @@ class Draft {
   /// reads, and fails where somebody else has.
   void unlock();
   /// Gives it the place's name, and the disk both; a file that is there is replaced, and hands on its mode,
-  /// owner, group and access list. @throws Error
-  void publish();
+  /// owner, group and access list. Returns whether a power cut leaves the name as it is now. @throws Error if
+  /// the file could not be put there
+  bool publish();
   /// The same, but only in place of the file with this Place::stamp(), or of none. Returns the stamp of what
   /// was published, which somebody may have replaced meanwhile; nothing if a different file is there, which
   /// stays. @throws Error

@@ -57,8 +57,8 @@ void require_memory_of_file(const std::string& purpose, std::size_t size, int co
 /// Has a file of the earliest format filled in memory, writes it as a draft with a seal at its end and
 /// publishes it: the path never holds half a file. @throws Error if the path exists or cannot be written
 void create_whole(const std::string& path, const std::function<void(hid_t file)>& fill);
-/// The same, replacing a file that is there. One process at a time.
-void replace_whole(const Place& place, const std::function<void(hid_t file)>& fill);
+/// The same, replacing a file that is there: Draft::publish(). One process at a time.
+bool replace_whole(const Place& place, const std::function<void(hid_t file)>& fill);
 /// The same, but only in place of the file with this Place::stamp(), or of none: Draft::publish_over().
 std::optional<std::string> replace_whole(const Place& place, const std::string& stamp,
                                          const std::function<void(hid_t file)>& fill);

@@ -200,7 +200,8 @@ void Journal::begin() {
   if (contents_.num_bytes < sizeof(FileHeader)) {
     write_header(descriptor_, place_.path());
     contents_.num_bytes = sizeof(FileHeader);
-    check(sync(descriptor_) && place_.sync_folder(), "write", place_.path());
+    check(sync(descriptor_), "write", place_.path());
+    place_.sync_folder();  // the table of the same folder tells whether that succeeds
   }
   check(ftruncate(descriptor_, static_cast<off_t>(contents_.num_bytes)) == 0, "write", place_.path());
   has_begun_ = true;
@@ -264,16 +265,18 @@ void Journal::rewrite(std::span<const Entry* const> entries) {
   std::uint64_t size = sizeof(FileHeader);
   for (const Entry* entry : entries)
     size = write_record(draft.descriptor(), entry->row, entry->snapshot, size, place_.path());
-  draft.publish();
+  check(draft.publish(), "write", place_.path());
   close(std::exchange(descriptor_, draft.release()));
   contents_.num_bytes = num_rewritten_bytes_ = size;
   has_begun_ = true;
 }
 
-void Journal::remove() {
-  if (is_there()) place_.remove();
+bool Journal::remove() {
+  const int reason = is_there() && !place_.remove() ? errno : 0;
   place_.sync_folder();  // if a power cut restores the file, it holds nothing that is not in the table
   close(std::exchange(descriptor_, -1));
+  errno = reason;
+  return reason == 0;
 }
 
 /// Removes an empty file.

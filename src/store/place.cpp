@@ -117,7 +117,9 @@ bool Place::holds(int descriptor) const {
          ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
 }
 
-void Place::remove() const { unlinkat(folder_->descriptor(), name_.c_str(), 0); }
+bool Place::remove() const {
+  return unlinkat(folder_->descriptor(), name_.c_str(), 0) == 0 || errno == ENOENT;
+}
 
 bool Place::take_from(const Place& other) const {
   return renameat(other.folder_->descriptor(), other.name_.c_str(), folder_->descriptor(), name_.c_str()) ==

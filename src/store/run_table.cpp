@@ -166,9 +166,9 @@ std::function<void(hid_t file)> writer(const Place& place, std::span<const RunRo
 
 }  // namespace
 
-void publish_sweep(const Place& place, std::span<const RunRow> rows, const Provenance& provenance,
+bool publish_sweep(const Place& place, std::span<const RunRow> rows, const Provenance& provenance,
                    std::span<const CircleFile> circles) {
-  replace_whole(place, writer(place, rows, provenance, circles));
+  return replace_whole(place, writer(place, rows, provenance, circles));
 }
 
 std::optional<std::string> publish_sweep_over(const std::string& stamp, const Place& place,

@@ -11,6 +11,7 @@
 #include "clog/core/polygon/automatic_values.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
+#include "clog/core/tools/excerpt.hpp"
 #include "clog/core/tools/joined.hpp"
 
 namespace clog::sweep {
@@ -190,9 +191,10 @@ const Key& find_key(std::string_view name) {
   std::vector<std::string> names;
   names.reserve(keys().size());
   for (const Key& k : keys()) names.push_back(k.name);
-  const std::vector<std::string> meant = meant_names(name, names);
-  throw Error(meant.empty() ? fmt::format("unknown key '{}'; --help lists the keys", name)
-                            : fmt::format("unknown key '{}'; did you mean {}?", name, joined(meant, " or ")));
+  const std::string word = excerpt(name);
+  const std::vector<std::string> meant = meant_names(word, names);
+  throw Error(meant.empty() ? fmt::format("unknown key '{}'; --help lists the keys", word)
+                            : fmt::format("unknown key '{}'; did you mean {}?", word, joined(meant, " or ")));
 }
 
 bool is_same_value(const std::string& a, const std::string& b) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "clog/console/exit_codes.hpp"
+#include "clog/console/printable.hpp"
 #include "clog/console/signals.hpp"
 #include "clog/core/tools/units.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -200,7 +201,7 @@ int WatchedRun::report() const {
   fmt::print(std::cout, "{} after r = {:.4f} sigma, t = {:.4g} t0, E_k/E_t = {:.2g}, A = {:.4f}\n",
              name(result.status), result.distance, result.time, result.kinetic_energy_ratio,
              result.shape_parameter);
-  if (!result.message.empty()) std::cout << result.message << '\n';
+  if (!result.message.empty()) std::cout << console::printable(result.message) << '\n';
   const double vertex_steps =
       static_cast<double>(result.steps) * static_cast<double>(run_.droplet().state().size());
   fmt::print(std::cout, "{}, {:.3f} s, {:.2f} ns per vertex-step\n", sweep::counted(result.steps, "step"),

@@ -450,6 +450,8 @@ class Refusals(ProgramTest):
             (["--max-hours=soon", *out], ["max-hours"]),
             (["--attempts=0", *out], ["--attempts=0", "1..1000"]),
             (["--report-seconds=0", *out], ["--report-seconds=0"]),
+            (["--report-seconds=nan", *out], ["invalid --report-seconds=nan"]),
+            (["--report-seconds=1e300", *out], ["invalid --report-seconds=1e300"]),
             (["--isolate=perhaps", *out], ["--isolate=perhaps", "yes, no"]),
             (["--verbose", "--quiet", *out], ["--verbose and --quiet"]),
             (["--output", "no/such/folder/s.h5"], ["no/such/folder"]),

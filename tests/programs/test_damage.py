@@ -104,6 +104,25 @@ class Damage(ProgramTest):
             (self.folder / "whole.h5").unlink(missing_ok=True)
             self.file.write_bytes(undamaged)
 
+    def test_what_verify_refuses_is_not_salvaged(self):
+        """A foreign file may be written as its checksums say, and still hold what cannot be."""
+        def repeat_a_run(rows):
+            rows[2] = rows[1]
+            rows["task"][2] = 2
+
+        undamaged = self.file.read_bytes()
+        for edit, number, words in [(lambda path: stored_rows.change(path, repeat_a_run), 5, "task 2: the same run as task 1"),
+                                    (lambda path: stored_rows.change_columns(path, wall_seconds=-1), 0, "task 0: wall_seconds=-1 is no time"),
+                                    (lambda path: stored_rows.change_attribute(path, "config", "line-tension = many\n"), 6, "its attribute config")]:
+            with self.subTest(words):
+                edit(self.file)
+                self.assertNotEqual(self.run_program("clogsweep", "verify", "s.h5").returncode, 0)
+                self.assertIn(words, self.succeed("clogsweep", "salvage", "s.h5", "--output", "whole.h5").stdout)
+                self.succeed("clogsweep", "verify", "whole.h5")
+                self.assertEqual(len(table(self.folder / "whole.h5")), number)
+            (self.folder / "whole.h5").unlink(missing_ok=True)
+            self.file.write_bytes(undamaged)
+
     def test_a_salvaged_file_without_config_is_not_taken_over_by_another_sweep(self):
         with h5py.File(self.file, "r+") as file:
             file.attrs.modify("config", "line-tension = 3\n")

@@ -216,5 +216,52 @@ class LinksOfOthers(SweepTest):
         self.assertFalse((self.folder / "elsewhere").exists())
 
 
+SHIM = """
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static int is_to_fail(const char* what, int reason) {
+  const char* named = getenv("FAILS");
+  if (!named || strcmp(named, what) != 0) return 0;
+  errno = reason;
+  return 1;
+}
+int fsync(int file) {
+  struct stat status;
+  if (fstat(file, &status) == 0 && S_ISDIR(status.st_mode) && is_to_fail("folder", EIO)) return -1;
+  return ((int (*)(int))dlsym(RTLD_NEXT, "fsync"))(file);
+}
+int unlinkat(int folder, const char* name, int flags) {
+  if (strstr(name, ".journal") && is_to_fail("journal", EPERM)) return -1;
+  return ((int (*)(int, const char*, int))dlsym(RTLD_NEXT, "unlinkat"))(folder, name, flags);
+}
+"""
+
+
+class Refusals(SweepTest):
+    """A file system that refuses what comes after the rows are there."""
+
+    def succeed_where(self, fails, *arguments):
+        self.write("shim.c", SHIM)
+        subprocess.run(["cc", "-shared", "-fPIC", "-o", "shim.so", "shim.c", "-ldl"], cwd=self.folder, check=True)
+        return self.succeed("clogsweep", *arguments, env={**os.environ, "LD_PRELOAD": str(self.folder / "shim.so"), "FAILS": fails, "ASAN_OPTIONS": "verify_asan_link_order=0"})
+
+    def test_a_merge_is_there_though_its_folder_cannot_be_synced(self):
+        self.succeed("clogsweep", *FINISHED, "--output", "a.h5")
+        self.succeed("clogsweep", *FINISHED[:-1], "seeds=104..105", "--output", "b.h5")
+        done = self.succeed_where("folder", "merge", "a.h5", "b.h5", "--output", "c.h5")
+        self.assertEqual(done.stderr, "c.h5 is complete, but its folder cannot be synced (Input/output error): a power cut may lose it; copy it elsewhere, too\n")
+        self.assertIn("6 rows", self.succeed("clogsweep", "verify", "c.h5").stdout)
+
+    def test_a_journal_that_cannot_be_removed_is_named(self):
+        done = self.succeed_where("journal", *FINISHED, "--output", "s.h5")
+        self.assertIn("clogsweep: cannot remove s.h5.journal (Operation not permitted); the sweep is complete without it: remove it\n", done.stderr)
+        self.assertIn("4 rows of 4 runs, all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
+
+
 if __name__ == "__main__":
     unittest.main()

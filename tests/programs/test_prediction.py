@@ -1,15 +1,17 @@
 """Clogging lengths that are predicted from droplets on two obstacles, where the answer is known on paper."""
 
 import math
+import os
 import pathlib
 import unittest
+from unittest import mock
 
 import numpy as np
 
 from drawing import Analysis
 from support import BIN, table
 
-from clogsweep.collisions import prediction
+from clogsweep.collisions import collision, prediction
 from clogsweep.reading import stored
 
 SLACK = 1e-9
@@ -80,6 +82,13 @@ class Predicted(Analysis):
         soft, stiff = self.predict("obstacles=pair.csv", "box=20", "line-tension=0.1,3")
         self.assertEqual(soft, ["0.1", "", "soft"])
         self.assertAlmostEqual(float(stiff[1]), 20 * 20 / 0.8 / math.cos(math.radians(20)), delta=0.1)
+
+    def test_an_allocation_of_several_tasks_is_no_hindrance(self):
+        self.pair("pair.csv", 80)
+        with mock.patch.dict(os.environ, {"SLURM_NTASKS": "8"}):
+            self.assertEqual(self.predict("obstacles=pair.csv", "box=20", "line-tension=3"), [["3", "", ""]])
+            thrown = collision.Collisions(BIN / "clogsweep", self.folder, {"vertices": "64"})
+            self.assertEqual(thrown.break_up(0.3, [0.5]), [False])
 
     def test_a_pair_along_the_flow_catches_nothing(self):
         self.pair("pair.csv", 80)

@@ -109,6 +109,14 @@ class Streams(SweepTest):
             self.assertIn("\\x1b", told)
             self.assertNotIn("\x1b", told)
 
+    def test_long_words_are_cut(self):
+        self.write("long.cfg", "k" * 5_000_000 + " = 3\n")
+        self.refuse("clogsweep", "--config", "long.cfg", words=["unknown key '" + "k" * 80 + "...'"])
+        self.write("no.cfg", "k" * 5_000_000 + "\n")
+        self.refuse("clogsweep", "--config", "no.cfg", words=["'" + "k" * 80 + "...' is not key = value"])
+        for word in ("k" * 100_000, "K" * 100_000 + "=3", "--" + "k" * 100_000):
+            self.assertLess(len(self.run_program("clogsweep", word).stderr), 300)
+
 
 class Files(SweepTest):
     def make_others(self):

@@ -9,6 +9,7 @@ import unittest
 
 import h5py
 import numpy as np
+import stored_rows
 from support import BIN, FEW, QUICK, ROOT, ProgramTest, table
 
 sys.path.insert(0, str(ROOT / "analysis"))
@@ -141,6 +142,15 @@ class Units(ProgramTest):
         self.copy_sweep("plain.h5", *FEW)
         self.assertNotIn("lambda/mm", self.succeed("clogfit", "plain.h5").stdout)
         self.assertIn("lambda/mm", self.succeed("clogfit", "plain.h5", "--lab", lab).stdout)
+
+    def test_a_comment_in_a_laboratory_of_a_foreign_file_says_nothing(self):
+        self.succeed("clogsweep", "--lab", self.lab(), *QUICK, "seeds=1..2", "--output", "s.h5")
+        before = self.succeed("clogfit", "s.h5", "--format", "json").stdout
+        with h5py.File(self.folder / "s.h5") as file:
+            text = file.attrs["laboratory"].decode()
+        stored_rows.change_attribute(self.folder / "s.h5", "laboratory", text + "# measured in May\n")
+        done = self.succeed("clogfit", "s.h5", "--format", "json")
+        self.assertEqual((done.stdout, done.stderr), (before, ""))
 
     def test_a_report_has_bounds_in_laboratory_units(self):
         self.succeed("clogsweep", "--lab", self.lab(), "vertices=64", "box=20", "max-time=20", "seeds=1..4", "--output", "s.h5")

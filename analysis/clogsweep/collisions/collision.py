@@ -38,7 +38,7 @@ class Collisions:
     def break_up(self, offset: float, tensions: Sequence[float]) -> list[bool]:
         """Whether each of the droplets breaks up."""
         circles, sweep = self.folder / "circle.csv", self.folder / "collisions.h5"
-        circles.write_text(f"x,y,diameter\n{BOX / 2 + FALL},{BOX / 2 + offset},{DIAMETER}\n")
+        circles.write_text(f"x,y,diameter\n{BOX / 2 + FALL},{BOX / 2 + offset},{DIAMETER}\n", encoding="utf-8")
         programs.run_program(self.clogsweep, f"obstacles={circles}", f"box={BOX}", "seeds=1", *(f"{key}={value}" for key, value in self.keys.items()),
                              "line-tension=" + ",".join(f"{tension:.6g}" for tension in tensions), "--output", sweep, "--quiet")
         ends = [row["status"] for row in sorted(stored.read_rows(sweep), key=lambda row: row["line_tension"])]

@@ -70,7 +70,7 @@ class Pairs:
         for file, angle in zip(files, angles):
             half_x, half_y = ((gap + diameter) / 2 * part(math.radians(angle)) for part in (math.sin, math.cos))
             x, y = BOX / 2 + FALL + half_x, BOX / 2
-            file.write_text(f"x,y,diameter\n{x - half_x},{y - half_y},{diameter}\n{x + half_x},{y + half_y},{diameter}\n")
+            file.write_text(f"x,y,diameter\n{x - half_x},{y - half_y},{diameter}\n{x + half_x},{y + half_y},{diameter}\n", encoding="utf-8")
         sweep = self.folder / "pairs.h5"
         programs.run_program(self.clogsweep, "obstacles=" + ",".join(map(str, files)), f"box={BOX}", "seeds=1",
                              *(f"{key}={value}" for key, value in self.keys.items()), "--output", sweep, "--quiet")
@@ -141,7 +141,7 @@ def read_array(clogrun: pathlib.Path, folder: pathlib.Path, keys: dict[str, str]
                              "--output", run, "--write-obstacles", circle_file)
         row = stored.read_rows(run)[0]
         run.unlink()
-        circles = np.loadtxt(circle_file, delimiter=",", skiprows=1, ndmin=2)
+        circles = np.loadtxt(circle_file, delimiter=",", skiprows=1, ndmin=2, encoding="utf-8")
         circle_file.unlink()
         diameter = float(circles[0, 2])
         if not np.allclose(circles[:, 2], diameter):

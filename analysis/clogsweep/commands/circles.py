@@ -22,6 +22,7 @@ from ..drawing import device_plan
 from ..style import Picture
 from ..tools import outputs, rounded
 from ..tools.errors import UserError
+from ..tools.texts import printable
 from . import command_line
 
 TURNS = {"right": 0, "down": 1, "left": 2, "up": 3}
@@ -144,8 +145,8 @@ def body() -> int:
     if arguments.as_circles:
         device = shapes.as_circles(device)
     picture = Picture(device_plan.understood(device, arguments.drawing.name), f"python3 -m clogsweep circles {arguments.drawing}")
-    print(f"{picture.save(arguments.output)} (and .pdf)")
-    print("\n".join(told(device, drawing) + made))
+    command_line.tell(f"{picture.save(arguments.output)} (and .pdf)")
+    command_line.tell("\n".join(told(device, drawing) + made))
     if device.others:
         raise UserError(f"{rounded.counted(len(device.others), 'post')} of {len(device.others) + len(device.circles)} not round, red in the picture; no {table} "
                         "was written. Use --as-rows for rows of circles along their outlines, --as-circles for circles of the same area, or a larger --tolerance")
@@ -158,6 +159,7 @@ def body() -> int:
     outside = device.circles[np.any((device.circles[:, :2] < 0) | (device.circles[:, :2] >= (device.length, device.width)), axis=1)]
     if len(outside):
         raise UserError(f"{rounded.counted(len(outside), 'post')} with the centre outside the edge of the device; no {table} was written. Draw a wider edge, or cut these posts away")
-    table.write_text(shapes.csv_of(device, f"{arguments.drawing.name}, by clogsweep"))
-    print(f"{table}\n{call_of(device, arguments.output)}")
+    with outputs.replaced(table) as fresh:
+        fresh.write_text(shapes.csv_of(device, printable(f"{arguments.drawing.name}, by clogsweep")), encoding="utf-8")
+    command_line.tell(f"{table}\n{call_of(device, arguments.output)}")
     return 0

@@ -20,5 +20,5 @@ def body() -> int:
     arguments = command_line.sweep_to_draw(__doc__, "clogging-length", "file of clogsweep --output, or output of clogfit --format json", command_line.add_lab)
     fitted = fit.read(arguments.sweep, arguments.programs, *command_line.lab_options(arguments))
     picture = style.Picture(style.figure_of(curve.draw_on, fitted.known.with_lengths(arguments.sweep)), fitted.source)
-    print(f"{picture.save(arguments.output)} (and .pdf)")
+    command_line.tell(f"{picture.save(arguments.output)} (and .pdf)")
     return 0

@@ -2,6 +2,7 @@
 
 import argparse
 import contextlib
+import io
 import logging
 import math
 import os
@@ -14,6 +15,7 @@ from typing import NoReturn, TextIO
 from ..reading import programs
 from ..tools import outputs
 from ..tools.errors import ProgramFailed, UserError, lacking
+from ..tools.texts import printable
 
 USER_FAULT = 2
 INTERRUPTED = 75
@@ -142,9 +144,9 @@ def needs_modules() -> Iterator[None]:
         sys.exit(_refuse(lacking(error)))
 
 
-def printable(text: str) -> str:
-    """Control characters escaped: names and values that are shown may hold what turns a terminal's colours."""
-    return "".join(letter if letter.isprintable() else letter.encode("unicode_escape").decode() for letter in text)
+def tell(text: object) -> None:
+    """Prints lines with names from outside, which may hold what turns a terminal's colours."""
+    print(printable(text, "\n"))
 
 
 def _give_up(stream: TextIO) -> None:
@@ -166,6 +168,8 @@ def _refuse(reason: object) -> int:
 @contextlib.contextmanager
 def _whole_output() -> Iterator[None]:
     """Writes what was printed at its end, so that a full disk is an error of the block."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")  # a locale may lack letters
     try:
         yield
     finally:

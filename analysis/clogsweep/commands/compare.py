@@ -15,7 +15,7 @@ from .. import style
 from ..drawing import ratios
 from ..reading import programs
 from ..tools import outputs
-from .command_line import Parser, add_output, beside
+from .command_line import Parser, add_output, beside, tell
 
 
 def body() -> int:
@@ -33,5 +33,5 @@ def body() -> int:
     clogfit = programs.programs_in(arguments.programs) / "clogfit"
     told = json.loads(programs.run_program(clogfit, "compare", *arguments.sweeps, *options, "--format", "json"))
     source = f"clogfit compare {' '.join(map(str, [*arguments.sweeps, *options]))}"
-    print(f"{style.Picture(style.figure_of(ratios.draw_on, told), source).save(output)} (and .pdf)")
+    tell(f"{style.Picture(style.figure_of(ratios.draw_on, told), source).save(output)} (and .pdf)")
     return 0

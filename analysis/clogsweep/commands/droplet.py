@@ -49,7 +49,7 @@ def body() -> int:
 def draw_picture(arguments: argparse.Namespace) -> int:
     outputs.refuse_unwritable_picture(arguments.output, arguments.run)
     run = trajectory.read(arguments.run)
-    print(f"{Picture(way.draw(run, arguments.outlines), stored.source(run.attributes)).save(arguments.output)} (and .pdf)")
+    command_line.tell(f"{Picture(way.draw(run, arguments.outlines), stored.source(run.attributes)).save(arguments.output)} (and .pdf)")
     return 0
 
 
@@ -61,7 +61,7 @@ def draw_film(arguments: argparse.Namespace) -> int:
     if frames[0] > 0:
         print(f"{command_line.name()}: the film begins at t = {run.times[frames[0]]:.4g} t0; --most-frames shows more", file=sys.stderr)
     if path:
-        print(film.write_film(moving, path, arguments.rate))
+        command_line.tell(film.write_film(moving, path, arguments.rate))
     if arguments.pictures:
-        print(film.write_pictures(moving, f"{arguments.output}-frames"))
+        command_line.tell(film.write_pictures(moving, f"{arguments.output}-frames"))
     return 0

@@ -25,5 +25,5 @@ def body() -> int:
     fit = Fit(*fits.fitted(clogfit, arguments.sweep, *lab))
     times = dwell.times_of(fit.known.with_lengths(arguments.sweep))
     known = [Groups(*fits.fitted(clogfit, arguments.sweep, "--dwell", repr(time), *lab)).with_lengths(arguments.sweep) for time in times]
-    print(f"{Picture(dwell.draw(times, known), fit.source).save(arguments.output)} (and .pdf)")
+    command_line.tell(f"{Picture(dwell.draw(times, known), fit.source).save(arguments.output)} (and .pdf)")
     return 0

@@ -22,5 +22,5 @@ def body() -> int:
     parser.add_argument("run", type=pathlib.Path, help="output of clogrun with --polygon-interval")
     command_line.add_output(parser, "name of the files; their endings are given", ".pvd", required=True)
     arguments = parser.parse_args()
-    print(vtk.export(trajectory.read(arguments.run), arguments.output))
+    command_line.tell(vtk.export(trajectory.read(arguments.run), arguments.output))
     return 0

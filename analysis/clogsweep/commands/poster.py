@@ -13,5 +13,5 @@ from . import command_line
 
 def body() -> int:
     arguments = command_line.sweep_to_draw(__doc__, "poster", more=command_line.add_lab)
-    print(f"{Sweep(arguments.sweep, arguments.programs).poster(lab=arguments.lab).save(arguments.output)} (and .pdf)")
+    command_line.tell(f"{Sweep(arguments.sweep, arguments.programs).poster(lab=arguments.lab).save(arguments.output)} (and .pdf)")
     return 0

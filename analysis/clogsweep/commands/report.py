@@ -22,5 +22,5 @@ def body() -> int:
     programs.add_option(parser)
     arguments = parser.parse_args()
     output = arguments.output or command_line.beside(arguments.sweep, "report.html")
-    print(report.write(arguments.sweep, output, arguments.examples, programs.programs_in(arguments.programs), *command_line.lab_options(arguments)))
+    command_line.tell(report.write(arguments.sweep, output, arguments.examples, programs.programs_in(arguments.programs), *command_line.lab_options(arguments)))
     return 0

@@ -34,8 +34,8 @@ def of_polygons(rows: Records, path: object) -> list[np.void]:
 
 def mechanism_of(row: np.void) -> str:
     """The mechanism by clogfit's name: `other`, if it is none of the three."""
-    name = row["mechanism"].decode()
-    return "other" if name == "none" else name
+    name = stored.text(row["mechanism"])
+    return name if name in MECHANISMS else "other"
 
 
 def chosen(rows: list[np.void], path: object, *, mechanism: str | None, tasks: Collection[int] | None, most: int) -> list[np.void]:

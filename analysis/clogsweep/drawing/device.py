@@ -20,6 +20,7 @@ from ..reading import replays, stored
 from ..tools import progress, rounded
 from ..tools.errors import UserError
 from ..tools.hints import AnyPath, Group, Numbers, Records
+from ..tools.texts import literal
 from . import device_plan
 
 T = TypeVar("T")
@@ -99,7 +100,7 @@ def places(path: AnyPath, folder: AnyPath | None = None) -> list[Place]:
         raise UserError(f"{path} does not say where droplets were released (an older version ran them, or none has begun); sweep anew, or wait")
     found = []
     for kind in np.unique(own[DEVICE_COLUMNS]):
-        check_sum = kind["obstacles"].decode()
+        check_sum = stored.text(kind["obstacles"])
         radii = circles[check_sum][:, 2]
         table = circles[check_sum].copy()
         table[:, 2] = np.where(radii > 0, 2 * radii, kind["obstacle_diameter"])
@@ -282,7 +283,7 @@ def draw(parts: Sequence[Part], num_parts: int, droplet_mm: float | None = None)
     below.set_xlabel(r"$x/\sigma$, along the flow" + (rf"; $\sigma$ = {droplet_mm:.4g} mm" if droplet_mm else ""))
     walls = "between walls" if place.has_walls else "periodic across the flow"
     some = f"; {len(parts)} of {num_parts} parameter sets" if len(parts) < num_parts else ""
-    figure.suptitle(f"{place.name}: {place.length:.4g} x {place.width:.4g} droplet diameters, {walls}{some}", fontsize=9)
+    figure.suptitle(f"{literal(place.name)}: {place.length:.4g} x {place.width:.4g} droplet diameters, {walls}{some}", fontsize=9)
     align(below, panels[-1])
     return figure
 

@@ -15,6 +15,7 @@ from .. import style
 from ..device.shapes import Device
 from ..tools import rounded
 from ..tools.hints import Numbers
+from ..tools.texts import literal
 from . import surroundings
 
 WIDEST, NARROWEST = 14.0, 5.0  # figures [inches]
@@ -93,6 +94,6 @@ def understood(device: Device, source: str) -> Figure:
     axes.set_xlabel(r"$x/\sigma$, along the flow")
     micrometres = device.droplet_micrometres
     red = f", {len(device.others)} not round (red)" if device.others else ""
-    style.caption(axes, rf"{source}: {rounded.counted(device.num_posts(), 'post')}{red}, "
+    style.caption(axes, rf"{literal(source)}: {rounded.counted(device.num_posts(), 'post')}{red}, "
                         rf"$\sigma$ = {micrometres:.4g} µm, device {device.length * micrometres:.5g} µm x {device.width * micrometres:.5g} µm")
     return figure

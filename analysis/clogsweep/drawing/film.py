@@ -278,12 +278,8 @@ def path_of(output: pathlib.Path) -> pathlib.Path:
 
 def write_film(film: Film, path: pathlib.Path, rate: int) -> pathlib.Path:
     """The path leads to a whole film, or to nothing. @param path  see path_of(). @return the file written"""
-    part = path.with_name(f"{path.stem}.part{path.suffix}")
-    try:
-        (write_mp4 if path.suffix == ".mp4" else write_gif)(film, part, rate)
-        part.rename(path)
-    finally:
-        part.unlink(missing_ok=True)
+    with outputs.replaced(path) as fresh:
+        (write_mp4 if path.suffix == ".mp4" else write_gif)(film, fresh, rate)
     return path
 
 
@@ -303,7 +299,7 @@ def write_mp4(film: Film, path: pathlib.Path, rate: int) -> None:
             pass  # ffmpeg has ended, and says why
         if process.wait() != 0:
             said.seek(0)
-            raise UserError(f"cannot write {path} (ffmpeg: {' '.join(said.read().decode(errors='replace').split())}); look at the folder and its disk")
+            raise UserError(f"cannot write {path.name} (ffmpeg: {' '.join(said.read().decode(errors='replace').split())}); look at the folder and its disk")
 
 
 def palette_of(first: Pixels) -> Image.Image:
@@ -332,7 +328,8 @@ def write_pictures(film: Film, output: str) -> pathlib.Path:
     folder = pathlib.Path(output)
     folder.mkdir(parents=True, exist_ok=True)
     for index, pixels in enumerate(film.play()):
-        Image.fromarray(pixels[..., :3]).save(folder / f"{index:05d}.png")
+        with outputs.replaced(folder / f"{index:05d}.png") as fresh:
+            Image.fromarray(pixels[..., :3]).save(fresh)
     # Frames left from an earlier, longer run are no part of this one.
     for earlier in folder.glob("[0-9]" * 5 + ".png"):
         if int(earlier.stem) >= len(film):

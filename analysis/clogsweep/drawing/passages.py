@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from .. import style
 from ..labels import AXES
 from ..labels.groups import FINISHED, Groups
-from ..reading import replays
+from ..reading import replays, stored
 from ..reading.trajectory import Trajectory
 from ..tools.hints import Group
 from . import lengths, surroundings
@@ -95,7 +95,7 @@ def shares(groups: Groups, value: Callable[[Any], str]) -> list[tuple[str, str]]
 
 def examples(rows: npt.NDArray[np.void], count: int) -> list[np.void]:
     """Rows that are spread over the sweep, the first and the last among them."""
-    over = [row for row in rows if row["status"].decode() in FINISHED and row["model"] == b"dp"]
+    over = [row for row in rows if stored.text(row["status"]) in FINISHED and row["model"] == b"dp"]
     return [over[place] for place in sorted({round(place) for place in np.linspace(0, len(over) - 1, min(count, len(over)))})]
 
 

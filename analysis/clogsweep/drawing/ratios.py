@@ -11,6 +11,7 @@ from .. import style
 from ..labels import AXES, is_number
 from ..tools.errors import UserError
 from ..tools.rounded import counted
+from ..tools.texts import literal
 
 Comparison = dict[str, Any]
 
@@ -29,8 +30,8 @@ def curves_of(told: dict[str, Any], abscissa: str) -> list[tuple[str, list[Compa
     for one in told["comparisons"]:
         curves.setdefault((one["here"], *(one[name] for name in others)), []).append(one)
     told_apart = {key[0] for key in curves}
-    labels = [", ".join([*([key[0]] if len(told_apart) > 1 or not others else []),
-                         *(f"{name.replace('_', ' ')} {value:g}" if isinstance(value, int | float) else str(value) for name, value in zip(others, key[1:]))])
+    labels = [", ".join([*([literal(key[0])] if len(told_apart) > 1 or not others else []),
+                         *(f"{name.replace('_', ' ')} {value:g}" if isinstance(value, int | float) else literal(value) for name, value in zip(others, key[1:]))])
               for key in curves]
     return list(zip(labels, curves.values()))
 
@@ -83,8 +84,8 @@ def draw_on(axes: Axes, told: dict[str, Any]) -> None:
         axes.set_xlabel(AXES.get(abscissa, abscissa.replace("_", " ")))
     else:
         axes.set_xticks([])
-    reference = comparisons[0]["there"]
-    names = {one["here"] for one in comparisons}
+    reference = literal(comparisons[0]["there"])
+    names = {literal(one["here"]) for one in comparisons}
     axes.set_ylabel(rf"$\lambda$ of {names.pop()} / $\lambda$ of {reference}" if len(names) == 1 else rf"$\lambda$ / $\lambda$ of {reference}")
     style.grid(axes)
     if len(curves) > 1 or not abscissa:

@@ -1,7 +1,6 @@
 """A run for ParaView: the droplet's outline over time, and what it moves among. All files are VTK's XML PolyData, as text."""
 
 import math
-import os
 import pathlib
 import xml.etree.ElementTree as xml
 from collections.abc import Iterable, Mapping, Sequence
@@ -59,11 +58,9 @@ def collection(files: Iterable[str], times: Iterable[float]) -> xml.ElementTree:
 
 
 def write(tree: xml.ElementTree, path: pathlib.Path) -> None:
-    """Writes under another name first, so that readers see complete files."""
     outputs.refuse_unwritable(path, "vtk")
-    fresh = path.with_name(path.name + ".new")
-    tree.write(fresh, encoding="utf-8", xml_declaration=True)
-    os.replace(fresh, path)
+    with outputs.replaced(path) as fresh:
+        tree.write(fresh, encoding="utf-8", xml_declaration=True)
 
 
 def surroundings(run: trajectory.Trajectory) -> xml.ElementTree:

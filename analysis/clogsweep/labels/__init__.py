@@ -6,6 +6,7 @@ from collections.abc import Collection
 
 from ..tools import rounded
 from ..tools.hints import Column, Group
+from ..tools.texts import literal
 
 AXES = {
     "line_tension": r"line tension $\Gamma = \gamma/(g\rho\sigma^2)$",
@@ -63,7 +64,7 @@ def symbol(column: Column) -> str:
 def said(column: Column, value: float | str | None) -> str:
     """A parameter and its value in words, e.g. $N_v = 128$."""
     if isinstance(value, str):
-        return f"{column['name'].replace('_', ' ')} {value}"
+        return f"{column['name'].replace('_', ' ')} {literal(value)}"
     return f"${symbol(column)} = {number(value)}$"
 
 

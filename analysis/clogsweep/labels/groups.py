@@ -10,6 +10,7 @@ from typing import Any
 from ..reading import fits, stored
 from ..tools.errors import UserError
 from ..tools.hints import AnyPath, Column, Group
+from ..tools.texts import literal
 from . import AXES, is_number, runs_a_point, said, symbol
 
 FEWEST_POINTS = 3  # that a fitted curve is drawn through
@@ -183,11 +184,11 @@ class Groups:
         if first["obstacle_filling"] == "lattice":
             words.append("square lattice")
         if first["obstacle_filling"] == "file":
-            words.append(f"circles of {self._circle_file()}")
+            words.append(f"circles of {literal(self._circle_file())}")
         if not self.are_passages:
             words.append(runs_a_point(self.members))
         if self.are_polygons and not self.varies("preset"):
-            words.append(f"preset {first['preset']}")
+            words.append(f"preset {literal(first['preset'])}")
         return ", ".join(words)
 
     def _only_circle_file(self) -> dict[str, str]:

@@ -18,6 +18,7 @@ from ..reading import fits, replays, stored
 from ..reading.trajectory import Trajectory
 from ..tools import rounded
 from ..tools.hints import Group
+from ..tools.texts import literal
 from . import report
 
 if TYPE_CHECKING:
@@ -143,4 +144,4 @@ def draw(sweep: pathlib.Path, folder: pathlib.Path, *options: object) -> Figure:
         rows = of_lengths(groups, sweep, folder / "clogrun")
     head = f"{groups.caption()}\n{of_laboratory(groups)}{counted(stored.read_table(sweep, folder), words)}"
     groups.tells_what_all_share = False  # the head does, panels need not
-    return page(title, head, rows, cut(stored.source(about)))
+    return page(title, head, rows, literal(cut(stored.source(about))))

@@ -22,6 +22,7 @@ from ..reading import fits, programs, stored
 from ..tools import outputs, rounded
 from ..tools.errors import UserError
 from ..tools.hints import Group
+from ..tools.texts import printable
 from .chart import Charts
 
 if TYPE_CHECKING:
@@ -145,7 +146,7 @@ def slope(group: Group) -> str:
 
 def value(cell: float | str | None, digits: int = 6) -> str:
     """A parameter's value as a table shows it."""
-    return "-" if cell is None else cell if isinstance(cell, str) else f"{cell:.{digits}g}"
+    return "-" if cell is None else printable(cell) if isinstance(cell, str) else f"{cell:.{digits}g}"
 
 
 def cell(groups: Groups, group: Group, name: str) -> str:
@@ -372,11 +373,11 @@ def laboratory_of(groups: Groups, about: dict[str, str]) -> list[str]:
 def page(name: str, groups: Groups, sections: dict[str, str], progress: str, about: dict[str, str], charts: Charts, fitted_by: str) -> str:
     """@param sections  contents by title; @param charts  that they hold; @param fitted_by  version of clogfit"""
     def part(ending: str) -> str:
-        return pathlib.Path(__file__).with_name(f"page.{ending}").read_text()
+        return pathlib.Path(__file__).with_name(f"page.{ending}").read_text(encoding="utf-8")
 
     light, dark = charts.colours()
     return string.Template(part("html")).substitute(
-        name=html.escape(name), style=part("css"), light=light, dark=dark, script=part("js"),
+        name=html.escape(printable(name)), style=part("css"), light=light, dark=dark, script=part("js"),
         progress=html.escape(f"{progress}, {rounded.counted(len(groups.members), 'point')}"),
         meaning=passages.kind_of(groups).about if groups.are_passages else LENGTHS,
         sections="\n".join(f"<h2>{title}</h2>{content}" for title, content in sections.items() if content),
@@ -405,8 +406,6 @@ def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: path
                      ("What may spoil these numbers", doubts(groups.members, sentences, rows)),
                      *pictures,
                      ("How busy the ranks were", busy_ranks(about, charts))])
-    try:
-        output.write_text(page(sweep.name, groups, sections, progress_of(status, rows), about, charts, stored.writer(told)))
-    except OSError as error:
-        raise UserError(f"cannot write {output} ({error.strerror}); give another --output") from error
+    with outputs.replaced(output) as fresh:
+        fresh.write_text(page(sweep.name, groups, sections, progress_of(status, rows), about, charts, stored.writer(told)), encoding="utf-8")
     return output

@@ -7,6 +7,7 @@ import pathlib
 from .. import style
 from ..reading import programs
 from ..tools import outputs
+from ..tools.texts import printable
 from . import arrays, channels, density, dilute, hanging  # noqa: F401, they fill the catalogue
 from .plate import CATALOGUE, Entry, Plate
 from .workshop import Workshop
@@ -44,9 +45,10 @@ def write(plate: Plate, entry: Entry, shop: Workshop, command: str) -> None:
                        f"{version}, {datetime.datetime.now(datetime.timezone.utc):%Y-%m-%dT%H:%M:%SZ}", "from", *sources]) + "\n"
     style.save(plate.figure, output, {"Title": f"Figure {entry.name}: {entry.caption}", "Description": about, "Software": "clogsweep"})
     columns = list(dict.fromkeys(name for row in plate.data for name in row))
-    with open(f"{output}.csv", "w", newline="") as out:
+    with outputs.replaced(f"{output}.csv") as fresh, open(fresh, "w", newline="", encoding="utf-8") as out:
         table = csv.DictWriter(out, columns)
         table.writeheader()
         table.writerows(plate.data)
-    pathlib.Path(f"{output}.txt").write_text(about)
-    print(f"{output}.png (and .pdf, .csv, .txt)", flush=True)
+    with outputs.replaced(f"{output}.txt") as fresh:
+        fresh.write_text(printable(about, "\n"), encoding="utf-8")
+    print(printable(f"{output}.png (and .pdf, .csv, .txt)"), flush=True)

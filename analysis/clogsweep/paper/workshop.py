@@ -15,8 +15,10 @@ import numpy as np
 
 from ..reading import programs, replays, stored
 from ..reading.trajectory import Trajectory
+from ..tools import outputs
 from ..tools.errors import NotThere, UserError
 from ..tools.hints import Column, Group
+from ..tools.texts import printable
 
 if TYPE_CHECKING:
     import pandas
@@ -27,7 +29,7 @@ CONFIGS = programs.JOBS / "figures"
 def config_keys(path: pathlib.Path) -> dict[str, str]:
     """Keys and values of a config file, as text."""
     keys = {}
-    for line in path.read_text().splitlines():
+    for line in path.read_text(encoding="utf-8").splitlines():
         line = line.split("#", 1)[0]
         if "=" in line:
             key, value = line.split("=", 1)
@@ -124,7 +126,7 @@ class Workshop:
             raise NotThere(f"{file} is not there; leave out --draw-only, or run clogsweep {shlex.join(arguments)}")
         if not self.draw_only and name not in self._complete_sweeps:
             file.parent.mkdir(parents=True, exist_ok=True)
-            print(f"sweep {name}: {file}", flush=True)
+            print(printable(f"sweep {name}: {file}"), flush=True)
             self._call("clogsweep", "--output", file, *arguments, ranks=ranks)
             self._complete_sweeps.add(name)
         self._note_sweep(name)
@@ -156,7 +158,7 @@ class Workshop:
         found = [known[values] for values in wanted]
         for row in found:
             if row["status"] == b"failed":
-                raise UserError(f"task {row['task']} of {self.sweep_file(name)} failed ({row['message'].decode()}); clogrun replay shows how far it came")
+                raise UserError(f"task {row['task']} of {self.sweep_file(name)} failed ({stored.text(row['message'])}); clogrun replay shows how far it came")
         return found
 
     def columns(self, name: str) -> dict[str, Column]:
@@ -187,7 +189,7 @@ class Workshop:
         """Replays of a sweep's rows, see replays.follow_all(); reused if a file has the same already."""
         folder = self.folder / "runs"
         if not self.draw_only:
-            print(f"ways of {name}: {folder}", flush=True)
+            print(printable(f"ways of {name}: {folder}"), flush=True)
             folder.mkdir(parents=True, exist_ok=True)
         clogrun = None if self.draw_only else self.programs / "clogrun"
         ways = replays.follow_all(clogrun, self.sweep_file(name), rows, folder, self.ranks, samples, outlines)
@@ -208,7 +210,7 @@ class Workshop:
         """A CSV file that clogfit reads. @param columns  its header, e.g. ["h [sigma]", "v [v_t]"]"""
         file = self.folder / "runs" / f"{name}.csv"
         file.parent.mkdir(parents=True, exist_ok=True)
-        with open(file, "w", newline="") as out:
+        with outputs.replaced(file) as fresh, open(fresh, "w", newline="", encoding="utf-8") as out:
             csv.writer(out).writerows([columns, *rows])
         return file
 

@@ -66,10 +66,15 @@ def warnings_of(program: str | os.PathLike[str], *arguments: object) -> str:
 
 def _outputs(program: str | os.PathLike[str], *arguments: object, ranks: int = 1) -> tuple[str, str]:
     command = [str(program), *map(str, arguments)]
-    if ranks > 1:
+    environment = dict(os.environ)
+    if ranks == 1:
+        # In an allocation of several tasks clogsweep takes a single rank for a mistake; here it is meant.
+        environment.pop("SLURM_NTASKS", None)
+    else:
         settings = shlex.quote(str(JOBS / "mpi-settings.sh"))
         command = ["bash", "-c", f'. {settings} && exec mpirun -np {ranks} "$@"', "mpirun", *command]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment,
+                          encoding="utf-8", errors="backslashreplace") as process:
         while True:
             try:
                 out, error = process.communicate()

@@ -42,7 +42,7 @@ def rehearse(path: str) -> None:
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
     with h5py.File(path, "r") as file:
         version = file.attrs.get("format_version", "")
-        found = {"is_ours": is_ours(file), "is_run": is_run(file), "format_version": version.decode() if isinstance(version, bytes) else str(version)}
+        found = {"is_ours": is_ours(file), "is_run": is_run(file), "format_version": version.decode(errors="backslashreplace") if isinstance(version, bytes) else str(version)}
         if found["is_ours"]:
             dict(file.attrs)
             dict(file["runs"].attrs)

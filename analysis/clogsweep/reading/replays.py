@@ -1,14 +1,13 @@
 """Replays rows of a sweep with clogrun, for quantities that the rows lack: h, v and A along the path, outlines."""
 
 import concurrent.futures
-import os
 import pathlib
 import shlex
-import tempfile
 from collections.abc import Iterable
 
 import numpy as np
 
+from ..tools import outputs
 from ..tools.errors import NotThere
 from ..tools.hints import AnyPath
 from . import stored, trajectory
@@ -41,11 +40,9 @@ def follow(clogrun: pathlib.Path | None, sweep: pathlib.Path, row: np.void, fold
         return known
     if clogrun is None:
         raise NotThere(f"{file} is {'not there' if known is None else 'another run'}; leave out --draw-only")
-    # clogrun never overwrites; the old one goes when the new one is whole. Another script may do the same run.
-    with tempfile.TemporaryDirectory(prefix=f"{file.stem}-", dir=folder) as place:
-        fresh = pathlib.Path(place) / file.name
+    # Another script may do the same run.
+    with outputs.replaced(file) as fresh:
         replay(clogrun, sweep, row["task"], fresh, *options)
-        os.replace(fresh, file)
     return trajectory.read(file, needs_frames=False)
 
 

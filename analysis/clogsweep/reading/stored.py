@@ -19,6 +19,7 @@ import numpy as np
 
 from ..tools.errors import Damaged, ProgramFailed, UserError
 from ..tools.hints import AnyPath, Numbers, Records
+from ..tools.texts import printable
 from . import programs
 from .rehearsal import is_ours, is_run
 
@@ -46,7 +47,8 @@ def is_sealed(path: AnyPath) -> bool:
 
 
 def text(value: object) -> str:
-    return value.decode(errors="backslashreplace") if isinstance(value, bytes) else str(value)
+    """A word of a table, or lines of an attribute, as they can be shown: a foreign file may hold any bytes."""
+    return printable(value.decode(errors="surrogateescape") if isinstance(value, bytes) else value, "\n\t")
 
 
 def unreadable(path: AnyPath, reason: object, kind: str | None = None) -> UserError:
@@ -72,7 +74,7 @@ def kind_of(path: AnyPath, folder: AnyPath | None = None) -> str:
 
 def look(path: AnyPath) -> dict[str, str | bool]:
     """Kind of the file, determined by reading all of it in a separate process. @throws Damaged  if that process crashes"""
-    done = subprocess.run([sys.executable, pathlib.Path(__file__).with_name("rehearsal.py"), path], capture_output=True, text=True)
+    done = subprocess.run([sys.executable, pathlib.Path(__file__).with_name("rehearsal.py"), path], capture_output=True, encoding="utf-8", errors="backslashreplace")
     if done.returncode != 0:
         raise Damaged(f"cannot trust {path} (damaged: reading it fails); restore it from a copy")
     return json.loads(done.stdout)
@@ -100,7 +102,7 @@ def check_copy(path: str, folder: str | None, *_as_it_is: float) -> None:
     if not found["is_run"]:
         ask_clogsweep(path, folder)
     elif found["format_version"] in OLD_VERSIONS:
-        print(f"{path} is of an older format without checksums: damage to it may go unnoticed", file=sys.stderr)
+        print(f"{printable(path)} is of an older format without checksums: damage to it may go unnoticed", file=sys.stderr)
     else:
         raise UserError(f"cannot trust {path} (another program copied or changed it, and outlines have no checksums of their own); "
                         "give the file that clogrun wrote, or run the droplet again")

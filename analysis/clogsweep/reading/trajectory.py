@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..tools.hints import AnyPath, Numbers, Records
+from ..tools.texts import literal
 from . import stored
 
 POINTS_OF_DISK = 128
@@ -28,7 +29,7 @@ class Trajectory:
     wedges: Numbers
 
     def word(self, column: str) -> str:
-        return self.row[column].decode()
+        return stored.text(self.row[column])
 
     def frame_at(self, column: str, value: float) -> int:
         """Index of the frame at which a column of the trajectory first comes nearest to a value."""
@@ -132,7 +133,7 @@ def end_of(trajectory: Trajectory) -> str:
 
 def verdict(trajectory: Trajectory) -> str:
     """The same with how far it came, for a picture."""
-    return rf"{end_of(trajectory)} after $r = {trajectory.row['distance']:.2f}\,\sigma$"
+    return rf"{literal(end_of(trajectory))} after $r = {trajectory.row['distance']:.2f}\,\sigma$"
 
 
 def centroids(polygons: Numbers) -> Numbers:

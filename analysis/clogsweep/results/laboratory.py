@@ -35,5 +35,5 @@ def units(lab: str | os.PathLike[str] | Mapping[str, str], *, length: OneOrMore 
         raise UserError("invalid laboratory (a line break in a key or a value); give one quantity for each key")
     with tempfile.TemporaryDirectory(prefix="clogsweep-units-") as place:
         file = pathlib.Path(place) / "lab.cfg"
-        file.write_text("".join(f"{key} = {value}\n" for key, value in lab.items()))
+        file.write_text("".join(f"{key} = {value}\n" for key, value in lab.items()), encoding="utf-8")
         return units(file, length=length, time=time, line_tension=line_tension, terminal_speed=terminal_speed, wall_stiffness=wall_stiffness, folder=folder)

@@ -12,6 +12,7 @@ import pandas
 from ..reading import stored, trajectory
 from ..tools import checked
 from ..tools.errors import UserError
+from ..tools.texts import printable
 
 if TYPE_CHECKING:
     from ..style import Picture
@@ -24,7 +25,7 @@ class Film:
         self.path = path
 
     def __repr__(self) -> str:
-        return f"<film {self.path}>"
+        return f"<film {printable(self.path)}>"
 
     def _repr_html_(self) -> str:
         data = base64.b64encode(self.path.read_bytes()).decode()
@@ -98,4 +99,4 @@ class Run:
         raise UserError("a run has no fit; give a sweep")
 
     def __repr__(self) -> str:
-        return f"<run {self.path.name}: {trajectory.end_of(self.trajectory)}>"
+        return f"<run {printable(self.path.name)}: {trajectory.end_of(self.trajectory)}>"

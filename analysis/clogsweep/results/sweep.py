@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from ..reading import fits, programs, replays, stored
 from ..tools import checked
 from ..tools.errors import ProgramFailed, UserError
+from ..tools.texts import printable
 from .fit import Fit
 from .run import Run
 
@@ -155,7 +156,7 @@ class Sweep:
     def __repr__(self) -> str:
         """Names all files, if the sweep has several."""
         counts = ", ".join(f"{number} {status}" for status, number in self.rows.status.value_counts().items())
-        return f"<sweep {self._name or self.path}: {len(self.rows)} runs ({counts})>"
+        return f"<sweep {printable(self._name or self.path)}: {len(self.rows)} runs ({counts})>"
 
     def _repr_html_(self) -> str:
         return f"<p>{html.escape(repr(self)[1:-1])}; the first rows:</p>{self.rows.head()._repr_html_()}"

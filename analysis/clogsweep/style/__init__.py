@@ -22,6 +22,7 @@ from matplotlib.lines import Line2D
 
 from ..tools import outputs, rounded
 from ..tools.hints import AnyPath, Group
+from ..tools.texts import printable
 
 # Okabe and Ito's palette, safe for colour-blind readers; a marker of its own for every curve besides.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000"]
@@ -234,12 +235,14 @@ def notes_of_panels(figure: Figure, lines: Sequence[str]) -> None:
 def save(figure: Figure, output: AnyPath, metadata: dict[str, str] | None = None) -> None:
     """Writes OUTPUT.png and OUTPUT.pdf. @param output  path without ending"""
     # Not with_suffix(): a name may hold a dot.
-    metadata = metadata or {}
-    figure.savefig(f"{output}.png", dpi=160, metadata=metadata)
+    metadata = {key: printable(value, "\n") for key, value in (metadata or {}).items()}
+    with outputs.replaced(f"{output}.png") as fresh:
+        figure.savefig(fresh, dpi=160, metadata=metadata)
     # Laid out once.
     figure.set_layout_engine("none")
     subject = {"Title": metadata.get("Title"), "Subject": metadata.get("Description")}
-    figure.savefig(f"{output}.pdf", metadata={key: value for key, value in subject.items() if value})
+    with outputs.replaced(f"{output}.pdf") as fresh:
+        figure.savefig(fresh, metadata={key: value for key, value in subject.items() if value})
 
 
 @contextlib.contextmanager

@@ -1,7 +1,11 @@
-"""Files that are made: where one may be written, and what it may replace."""
+"""Files that are made: where one may be written, what it may replace, and that it does so as a whole."""
 
+import contextlib
 import os
 import pathlib
+import shutil
+import tempfile
+from collections.abc import Iterator
 
 from .errors import UserError
 
@@ -20,7 +24,8 @@ def refuse_unwritable(path: pathlib.Path, kind: str, *inputs: pathlib.Path) -> N
         raise UserError(f"cannot write {path} (it is a folder); give the name of a file")
     if path.exists() and not path.is_file():
         raise UserError(f"cannot write {path} (not a regular file: a pipe, device or socket); give another name, or move it away")
-    if not os.access(path if path.exists() else path.parent, os.W_OK):
+    target = path.resolve()
+    if not (os.access(target.parent, os.W_OK) and os.access(target if target.exists() else target.parent, os.W_OK)):
         raise UserError(f"cannot write {path} (permission denied); give another --output")
     if any(path.exists() and source.exists() and path.samefile(source) for source in inputs):
         raise UserError(f"will not overwrite {path} (it is an input); give another --output")
@@ -34,6 +39,22 @@ def is_of_kind(path: pathlib.Path, kind: str) -> bool:
     with open(path, "rb") as file:
         beginning = file.read(len(BEGINNINGS[kind]))
     return not beginning or beginning == BEGINNINGS[kind]
+
+
+@contextlib.contextmanager
+def replaced(path: str | os.PathLike[str]) -> Iterator[pathlib.Path]:
+    """Where to write a file that takes the path's place when the block ends. If the block fails, what was there stays.
+    @throws UserError  if it cannot be written"""
+    target = pathlib.Path(path).resolve()  # a link stays, and leads to the new file
+    try:
+        with tempfile.TemporaryDirectory(prefix=".clogsweep-", dir=target.parent) as folder:
+            fresh = pathlib.Path(folder) / target.name
+            yield fresh
+            if target.exists():
+                shutil.copymode(target, fresh)
+            os.replace(fresh, target)
+    except OSError as error:
+        raise UserError(f"cannot write {path} ({error.strerror or error}); look at the folder and its disk, or give another --output") from error
 
 
 # Endings of pictures and films. Others may be a part of the name, as in gap-0.3.

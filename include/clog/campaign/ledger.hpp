@@ -74,8 +74,8 @@ class Ledger {
   bool tries_again(const sweep::RunRow& failed) const { return failed.attempt < attempts_; }
   /// Publishes the table if it is time to.
   void tick();
-  /// Publishes the table, and removes the journal of a complete sweep.
-  void finish();
+  /// Publishes the table, and removes the journal of a complete sweep. Returns a message if that fails.
+  std::string finish();
 
  private:
   using Clock = std::chrono::steady_clock;

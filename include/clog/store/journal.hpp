@@ -66,7 +66,8 @@ class Journal {
   /// Replaces the file by one that holds these entries only.
   void rewrite(std::span<const Entry* const> entries);
   /// Removes the file, unless it is no longer the one at the path; nothing may be added afterwards.
-  void remove();
+  /// Returns whether that succeeded; otherwise see errno.
+  bool remove();
 
  private:
   Place place_;

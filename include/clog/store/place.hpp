@@ -26,7 +26,8 @@ class Place {
   bool exists() const;
   /// Is this open file still the one here? Somebody may have replaced or removed it meanwhile.
   bool holds(int descriptor) const;
-  void remove() const;
+  /// Returns whether nothing is there now; otherwise see errno.
+  bool remove() const;
   /// Renames a file of the same folder to this name. Returns whether it succeeded; otherwise see errno.
   bool take_from(const Place& other) const;
   /// The same, but never onto a file that is there.

@@ -1,0 +1,16 @@
+"""Text from outside, such as names of files, attributes and words of a table: what terminals, pages and pictures show of it."""
+
+
+def escaped(letter: str) -> str:
+    """A byte that is not UTF-8 reaches Python as a lone surrogate."""
+    return f"\\x{ord(letter) - 0xdc00:02x}" if "\udc80" <= letter <= "\udcff" else letter.encode("unicode_escape").decode()
+
+
+def printable(text: object, kept: str = "") -> str:
+    """Control characters, and bytes that are not UTF-8, as escapes. @param kept  such as line breaks"""
+    return "".join(letter if letter.isprintable() or letter in kept else escaped(letter) for letter in str(text))
+
+
+def literal(text: object) -> str:
+    """The same for matplotlib, to which text between two dollars is a formula."""
+    return printable(text, "\n").replace("$", r"\$")
