@@ -3,6 +3,7 @@
 import contextlib
 import io
 import json
+import struct
 import sys
 import unittest
 from unittest import mock
@@ -11,7 +12,8 @@ import h5py
 import matplotlib
 import numpy as np
 from matplotlib import image
-from PIL import Image, ImageDraw
+from matplotlib.figure import Figure
+from PIL import Image, ImageDraw, TiffImagePlugin
 
 import stored_rows
 from drawing import Analysis
@@ -19,9 +21,10 @@ from support import BIN, table
 
 import clogsweep
 from clogsweep import style
-from clogsweep.device import shapes
+from clogsweep.device import areas, lines, readers, shapes
 from clogsweep.drawing import device as drawn
 from clogsweep.drawing import device_plan
+from clogsweep.tools.errors import UserError
 
 ROW = [(4 + 3 * i, 0.9 + 1.7 * j + 0.6 * (i % 2)) for i in range(4) for j in range(3)]  # posts, in droplet diameters
 KEYS = ["box=6", "length=18", "side-walls=on", "release=entrance", "entrance=1", "exit=16", "vertices=64", "line-tension=0.05",
@@ -511,6 +514,86 @@ class WrongDrawings(Analysis):
         grey = (abs(pixels - np.array(matplotlib.colors.to_rgb(style.OBSTACLE))) < 0.02).all(axis=2)
         rows, columns = (np.flatnonzero(self.red().any(axis=axis)) for axis in (1, 0))
         self.assertGreater(grey[rows[0]:rows[-1], columns[0]:columns[-1]].mean(), 0.9)
+
+
+def record(kind, form=0, data=b""):
+    """A record of a GDSII file."""
+    return struct.pack(">HBB", len(data) + 4, kind, form) + data
+
+
+def real(value):
+    """In GDSII: a sign, a power of 16, and 56 bits."""
+    power = 0
+    while value < 1 / 16:
+        value, power = value * 16, power - 1
+    return struct.pack(">Q", (power + 64) << 56 | int(value * 2**56))
+
+
+def gdsii(outlines, metres, more=b"", in_user_units=0.001):
+    """A GDSII file by hand. @param outlines  of layer 1, in user units; @param metres  in one"""
+    date = struct.pack(">12h", *[0] * 12)
+    begin = [record(0, 2, struct.pack(">h", 600)), record(1, 2, date), record(2, 6, b"LIB "), record(3, 5, real(in_user_units) + real(in_user_units * metres)),
+             record(5, 2, date), record(6, 6, b"TOP ")]
+    shapes_of_it = [record(8) + record(13, 2, struct.pack(">h", 1)) + record(14, 2, struct.pack(">h", 0))
+                    + record(16, 3, b"".join(struct.pack(">2i", *(round(value / in_user_units) for value in corner)) for corner in [*outline, outline[0]])) + record(17)
+                    for outline in outlines]
+    return b"".join([*begin, *shapes_of_it, more, record(7), record(4)])
+
+
+class OtherTools(Analysis):
+    """Drawings as other programs write them."""
+
+    def device(self, name, *, layer=None, region=None, posts=None, droplet=200e-6, unit=None, tolerance=0.04):
+        self.drawing = readers.read(self.folder / name, layer, posts)
+        lines.join(self.drawing)
+        areas.tidy(self.drawing, None if region is None else np.reshape(region, (2, 2)), tolerance)
+        return shapes.understood(self.drawing, unit or self.drawing.metres, droplet, tolerance, 0)
+
+    def circles_of(self, name, **options):
+        """In micrometres, from the device's lower left corner."""
+        device = self.device(name, **options)
+        self.assertEqual([outline.tolist() for outline in device.others], [])
+        circles = device.circles * device.droplet_micrometres
+        return circles[np.lexsort((circles[:, 1], circles[:, 0]))]
+
+    def refused(self, name, *words, **options):
+        with self.assertRaises(UserError) as told:
+            self.device(name, **options)
+        self.assertEqual(len(str(told.exception).splitlines()), 1)
+        for word in words:
+            self.assertIn(word, str(told.exception))
+
+    def dxf(self, unit=13):
+        import ezdxf
+
+        drawing = ezdxf.new("R2010")
+        drawing.header["$INSUNITS"] = unit
+        drawing.modelspace().add_lwpolyline(box(0, 0, 3600, 1200), close=True, dxfattribs={"layer": "EDGE"})
+        drawing.layers.add("EDGE")
+        return drawing, drawing.modelspace()
+
+    def saved(self, drawing, **options):
+        drawing.saveas(self.folder / "device.dxf")
+        return self.circles_of("device.dxf", **options)
+
+    # A part of a drawing
+
+    def test_a_region_of_a_drawing_with_ports_and_marks(self):
+        drawing, space = self.dxf()
+        for x, y in [(800, 300), (1600, 900), (3300, 600), (1000, 290)]:
+            space.add_circle((x, y), 50)
+        space.add_circle((200, 600), 150)  # a port
+        space.add_lwpolyline(box(300, 250, 3300, 950), close=True)  # the channel
+        space.add_lwpolyline([(3590, 10), (3580, 10), (3580, 30)], close=True)  # a mark
+        space.add_line((3400, 0), (3400, 1200))
+        device = self.saved(drawing, region=(500, 1200, 2000, 0))
+        np.testing.assert_allclose(device, [(300, 50, 100), (500, 40, 100), (1100, 650, 100)], atol=1e-9)
+        self.assertEqual(self.drawing.outside, 4)
+        told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "posts", "--region", "500,1200,2000,0").stdout
+        self.assertIn("device 7.5 x 3.5 droplet diameters (the region)", told)
+        self.assertIn("4 outside the region", told)
+        self.refuse_analysis("circles", "device.dxf", "--droplet", "200um", "--output", "x", "--region", "500,0,500,9", words=["--region", "x0,y0,x1,y1"])
+        self.refuse_analysis("circles", "device.dxf", "--droplet", "200um", "--output", "x", "--region", "2500,300,3100,800", words=["no posts", "--region"])
 
 
 NEW = ["length", "side_walls", "entrance", "entrance_from", "entrance_to", "exit", "release_x", "release_y"]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import collections
-import importlib
 import pathlib
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -11,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..tools.errors import UserError
+from .libraries import library
 from .shapes import Drawing
 from .walls import area
 
@@ -19,14 +19,6 @@ UNITS_OF_DXF = {1: 25.4e-3, 4: 1e-3, 5: 1e-2, 6: 1.0, 12: 1e-9, 13: 1e-6}  # $IN
 METRES_IN_PIXEL_OF_SVG = 25.4e-3 / 96
 LENGTHS_OF_SVG = ("mm", "cm", "in", "pt", "pc", "Q")
 FLATNESS = 1e-3  # of a curve's size, that straight pieces may be off
-
-
-def library(name: str, package: str) -> Any:
-    """@throws UserError  that names the package of Debian"""
-    try:
-        return importlib.import_module(name)
-    except ImportError as error:
-        raise UserError(f"cannot read such a drawing ({error}); apt install {package}, and start /usr/bin/python3") from error
 
 
 def read(path: pathlib.Path, layer: str | None = None, posts: str = "dark") -> Drawing:
@@ -39,7 +31,9 @@ def read(path: pathlib.Path, layer: str | None = None, posts: str = "dark") -> D
     if not path.is_file():
         raise UserError(f"cannot read {path} (no such file); check the name")
     try:
-        return reader()
+        found = reader()
+        found.objects = len(found.circles) + len(found.outlines) + len(found.pieces)
+        return found
     except UserError:
         raise
     except Exception as error:  # of many libraries
@@ -131,7 +125,7 @@ def read_picture(path: pathlib.Path, posts: str) -> Drawing:
     level = (image[image <= threshold].mean() + image[image > threshold].mean()) / 2  # half-way, so that edges lie between pixels
     sign = 1 if posts == "bright" else -1
     high = image.shape[0]
-    found = Drawing([], [], None, frame=(0.0, 0.0, float(image.shape[1]), float(high)), skipped=collections.Counter())
+    found = Drawing([], [], None, frame=(0.0, 0.0, float(image.shape[1]), float(high)), is_picture=True, skipped=collections.Counter())
     fewest = 12  # corners of an outline: a speck of three pixels has so many
     for contour in measure.find_contours(sign * image, sign * level, positive_orientation="high"):
         outline = np.column_stack([contour[:, 1] + 0.5, high - contour[:, 0] - 0.5])
