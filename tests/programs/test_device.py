@@ -576,6 +576,155 @@ class OtherTools(Analysis):
         drawing.saveas(self.folder / "device.dxf")
         return self.circles_of("device.dxf", **options)
 
+    # SVG
+
+    def svg(self, body, **options):
+        self.write("device.svg", SVG.format(body))
+        return self.circles_of("device.svg", **options)
+
+    def test_svg_shapes_in_transformed_groups(self):
+        for transform, circle, expected in [("rotate(30 1000 600)", (1000, 600, 250), (1000, 600, 500)), ("translate(3600 0) scale(-1 1)", (800, 300, 50), (2800, 900, 100)),
+                                            ("scale(1 -1) translate(0 -1200)", (800, 300, 50), (800, 300, 100)), ("matrix(0 1 -1 0 1200 0)", (400, 300, 50), (900, 800, 100)),
+                                            ("rotate(90 600 600) scale(2)", (400, 200, 50), (800, 400, 200))]:
+            for shape in ('<circle cx="{0}" cy="{1}" r="{2}"/>', '<ellipse cx="{0}" cy="{1}" rx="{2}" ry="{2}"/>'):
+                with self.subTest(transform):
+                    body = f'<g transform="{transform}">{shape.format(*circle)}</g>'
+                    np.testing.assert_allclose(self.svg(body), [expected], rtol=1e-4, atol=1e-2)
+        self.write("device.svg", SVG.format('<g transform="translate(1000 600) skewX(45)"><rect width="100" height="200"/></g>'))
+        device = self.device("device.svg")
+        np.testing.assert_allclose(np.array(device.others) * 200, [[(1000, 600), (1100, 600), (1300, 400), (1200, 400)]], atol=0.01)
+
+    def test_svg_symbols_are_drawn_only_where_they_are_used(self):
+        post = '<symbol id="post" viewBox="0 0 10 10"><circle cx="5" cy="5" r="5"/></symbol>'
+        uses = '<use href="#post" x="300" y="200" width="100" height="100"/><use href="#later"/><g id="later"><circle cx="900" cy="500" r="30"/></g>'
+        np.testing.assert_allclose(self.svg(f"<g>{post}</g><marker><circle r='5'/></marker>{uses}"), [(350, 950, 100), (900, 700, 60)], atol=0.01)
+        self.assertEqual(self.drawing.duplicates, 1)
+        self.write("device.svg", SVG.format('<use href="#none"/>'))
+        self.refused("device.svg", "'#none', which is not in the file")
+
+    def test_svg_has_exact_corners(self):
+        edge = '<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="1.2mm" viewBox="0 0 60000 1200">{}</svg>'
+        self.write("device.svg", edge.format('<path d="M0 0 L60000 0 L60000 1200 L0 1200 Z"/><path d="M8000 300 a50 50 0 1 0 0.001 0 z"/>'))
+        device = self.device("device.svg")
+        self.assertAlmostEqual(device.length, 300, places=3)
+
+    def test_svg_of_matplotlib(self):
+        figure = Figure(figsize=(3.6, 1.2))
+        axes = figure.add_axes([0, 0, 1, 1], xlim=(0, 3600), ylim=(0, 1200))
+        axes.set_axis_off()
+        for x, y in [(800, 300), (1600, 900)]:
+            axes.add_patch(matplotlib.patches.Circle((x, y), 50))
+        axes.scatter([2400], [600], s=(0.1 * 72)**2, linewidths=0)  # a circle of 0.1 inch
+        figure.savefig(self.folder / "device.svg")
+        np.testing.assert_allclose(self.circles_of("device.svg", droplet=0.2 * 25.4e-3) / 25.4, [(800, 300, 100), (1600, 900, 100), (2400, 600, 100)], rtol=1e-3)
+
+    def test_svg_in_the_style_of_inkscape(self):
+        self.write("device.svg", """<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" width="3.6mm" height="1.2mm" viewBox="0 0 3.6 1.2"
+ xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"><g inkscape:groupmode="layer" transform="translate(1,-1)">
+<rect style="fill:none;stroke:#000000" width="3.6" height="1.2" x="-1" y="1"/>
+<g id="g1" transform="matrix(0.8,0.6,-0.6,0.8,0,1)"><circle style="fill:#00ff00" id="c1" cx="0.1" cy="0.1" r="0.05"/></g>
+<use x="0" y="0" xlink:href="#g1" transform="translate(1)"/></g>
+<g style="display:none"><circle cx="2" cy="0.5" r="0.2"/></g><text x="1" y="1">note</text></svg>""")
+        np.testing.assert_allclose(self.circles_of("device.svg"), [(1020, 1060, 100), (2020, 1060, 100)], atol=0.02)
+        self.assertEqual(dict(self.drawing.skipped), {"text": 1})
+
+    # DXF
+
+    def test_dxf_arrays_of_blocks(self):
+        drawing, space = self.dxf()
+        drawing.blocks.new("POST").add_circle((0, 0), 50)
+        space.add_blockref("POST", (100, 100), dxfattribs={"row_count": 5, "column_count": 8, "row_spacing": 200, "column_spacing": 300})
+        np.testing.assert_allclose(self.saved(drawing), [(100 + 300 * i, 100 + 200 * j, 100) for i in range(8) for j in range(5)], atol=1e-9)
+
+    def test_dxf_circles_in_mirrored_blocks_and_with_an_extrusion(self):
+        drawing, space = self.dxf()
+        drawing.blocks.new("POST").add_circle((10, 0), 50)
+        space.add_blockref("POST", (800, 300), dxfattribs={"xscale": -1})
+        space.add_blockref("POST", (1200, 300), dxfattribs={"yscale": -2, "xscale": 2, "rotation": 90})
+        space.add_circle((-1600, 900), 50, dxfattribs={"extrusion": (0, 0, -1)})
+        space.add_lwpolyline([(-1950, 300, 1), (-2050, 300, 1)], format="xyb", close=True, dxfattribs={"extrusion": (0, 0, -1)})
+        np.testing.assert_allclose(self.saved(drawing), [(790, 300, 100), (1200, 320, 200), (1600, 900, 100), (2000, 300, 100)], atol=0.01)
+
+    def test_dxf_polylines_with_a_width(self):
+        drawing, space = self.dxf()
+        donut = [(475, 600, 50, 50, 1), (525, 600, 50, 50, 1)]  # a disc of 100, as DONUT draws it
+        space.add_lwpolyline(donut, format="xyseb", close=True)
+        space.add_lwpolyline([(950, 600, 1), (1050, 600, 1)], format="xyb", close=True, dxfattribs={"const_width": 20})
+        np.testing.assert_allclose(self.saved(drawing), [(500, 600, 100), (1000, 600, 120)], atol=0.02)
+        space.add_lwpolyline([(2000, 600), (2300, 600)], dxfattribs={"const_width": 40})
+        drawing.saveas(self.folder / "device.dxf")
+        bar, = self.device("device.dxf").others
+        np.testing.assert_allclose([*bar.min(axis=0) * 200, *bar.max(axis=0) * 200], [2000, 580, 2300, 620], atol=0.01)
+
+    def test_dxf_edge_with_a_width_ends_at_its_inner_side(self):
+        drawing, space = self.dxf()
+        space.add_lwpolyline(box(1000, 100, 2000, 700), close=True, dxfattribs={"const_width": 20})
+        space.add_circle((1500, 400), 50)
+        np.testing.assert_allclose(self.saved(drawing), [(490, 290, 100)], atol=0.01)
+
+    def test_dxf_shows_what_the_drawing_program_shows(self):
+        drawing, space = self.dxf()
+        drawing.layers.add("OFF").off()
+        drawing.layers.add("FROZEN").freeze()
+        drawing.layers.add("Posts")
+        block = drawing.blocks.new("POST")
+        block.add_circle((0, 0), 40)
+        block.add_circle((0, 300), 60, dxfattribs={"layer": "Posts"})
+        for x, layer in [(500, "OFF"), (1000, "FROZEN"), (1500, "Posts")]:
+            space.add_circle((x, 900), 50, dxfattribs={"layer": layer})
+            space.add_blockref("POST", (x, 300), dxfattribs={"layer": layer})
+        space.add_circle((2000, 300), 50, dxfattribs={"layer": "HIDE"})
+        drawing.saveas(self.folder / "device.dxf")
+        text = (self.folder / "device.dxf").read_text()
+        self.write("device.dxf", text.replace("\nHIDE\n100\n", "\n0\n 60\n1\n100\n"))
+        expected = [(500, 600, 120), (1500, 300, 80), (1500, 600, 120), (1500, 900, 100)]
+        np.testing.assert_allclose(self.circles_of("device.dxf"), expected, atol=1e-9)
+        self.assertEqual(dict(self.drawing.skipped), {"CIRCLE on layer OFF, which is off": 2, "CIRCLE on frozen layer FROZEN": 1, "INSERT on frozen layer FROZEN": 1, "invisible CIRCLE": 1})
+        self.assertEqual(len(self.saved(drawing, layer="POSTS")), 4)
+        space.add_blockref("LIBRARY", (0, 0))
+        drawing.saveas(self.folder / "device.dxf")
+        self.refused("device.dxf", "inserts 'LIBRARY', which is not in the file", "external references")
+
+    def test_dxf_hatches(self):
+        drawing, space = self.dxf()
+        space.add_hatch().paths.add_edge_path().add_arc((500, 600), 50, 0, 360)
+        space.add_hatch().paths.add_polyline_path([(950, 600, 1), (1050, 600, 1)], is_closed=True)
+        space.add_circle((500, 600), 50)
+        np.testing.assert_allclose(self.saved(drawing), [(500, 600, 100), (1000, 600, 100)], atol=0.02)
+        self.assertEqual(self.drawing.duplicates, 1)
+        frame = space.add_hatch()
+        for edge in (box(-100, -100, 3700, 1300), box(100, 100, 3500, 1100)):
+            frame.paths.add_polyline_path(edge, is_closed=True)
+        np.testing.assert_allclose(self.saved(drawing), [(400, 500, 100), (900, 500, 100)], atol=0.02)
+        crossing = space.add_hatch()
+        for edge in (box(2000, 300, 2100, 400), [(2000, 300), (2100, 400), (2100, 300), (2000, 400)]):
+            crossing.paths.add_polyline_path(edge, is_closed=True)
+        drawing.saveas(self.folder / "device.dxf")
+        self.refused("device.dxf", "x=2040, y=340", "crosses itself")
+
+    def test_dxf_units(self):
+        for unit, metres in [(9, 25.4e-6), (1, 25.4e-3), (8, 25.4e-9), (14, 0.1)]:
+            drawing, space = self.dxf(unit)
+            space.add_circle((500, 600), 50)
+            drawing.saveas(self.folder / "device.dxf")
+            self.assertAlmostEqual(self.device("device.dxf").droplet_metres, 200e-6)
+            self.assertAlmostEqual(self.drawing.metres / metres, 1)
+        drawing, _ = self.dxf(19)
+        drawing.saveas(self.folder / "device.dxf")
+        self.refused("device.dxf", "$INSUNITS=19", "13 for um")
+        self.assertEqual(shapes.length_in_metres("8mil", "--droplet"), 8 * 25.4e-6)
+
+    def test_dxf_in_the_style_of_librecad(self):
+        pairs = ["0", "SECTION", "2", "HEADER", "9", "$ACADVER", "1", "AC1009", "0", "ENDSEC", "0", "SECTION", "2", "ENTITIES"]
+        for x, y in ROW:
+            pairs += ["0", "CIRCLE", "8", "0", "62", "256", "10", f"{200 * x:g}", "20", f"{200 * y:g}", "30", "0.0", "40", "50"]
+        corners = box(0, 0, 3600, 1200)
+        for (x, y), (end_x, end_y) in zip(corners, corners[1:] + corners[:1]):
+            pairs += ["0", "LINE", "8", "0", "10", str(x), "20", str(y), "30", "0.0", "11", str(end_x), "21", str(end_y), "31", "0.0"]
+        self.write("device.dxf", "".join(f"{word}\r\n" for word in [*pairs, "0", "ENDSEC", "0", "EOF"]))
+        self.assertIsNone(readers.read(self.folder / "device.dxf").metres)
+        np.testing.assert_allclose(self.circles_of("device.dxf", unit=1e-6), sorted((200 * x, 200 * y, 100) for x, y in ROW), atol=1e-6)
+
     # A part of a drawing
 
     def test_a_region_of_a_drawing_with_ports_and_marks(self):

@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import collections
 import pathlib
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Callable
 
 import numpy as np
 
 from ..tools.errors import UserError
+from .dxf import read_dxf
 from .libraries import library
 from .shapes import Drawing
+from .svg import read_svg
 from .walls import area
 
 PICTURES = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg")
-UNITS_OF_DXF = {1: 25.4e-3, 4: 1e-3, 5: 1e-2, 6: 1.0, 12: 1e-9, 13: 1e-6}  # $INSUNITS
-METRES_IN_PIXEL_OF_SVG = 25.4e-3 / 96
-LENGTHS_OF_SVG = ("mm", "cm", "in", "pt", "pc", "Q")
-FLATNESS = 1e-3  # of a curve's size, that straight pieces may be off
 
 
 def read(path: pathlib.Path, layer: str | None = None, posts: str = "dark") -> Drawing:
@@ -40,44 +37,6 @@ def read(path: pathlib.Path, layer: str | None = None, posts: str = "dark") -> D
         raise UserError(f"cannot read {path} ({type(error).__name__}: {error}); is it really of this kind?") from error
 
 
-def read_dxf(path: pathlib.Path, layer: str | None) -> Drawing:
-    """Circles and closed outlines of the model space, those in blocks, too."""
-    ezdxf = library("ezdxf", "python3-ezdxf")
-    paths = library("ezdxf.path", "python3-ezdxf")
-    document = ezdxf.readfile(path)
-    found = Drawing([], [], UNITS_OF_DXF.get(document.header.get("$INSUNITS", 0)), skipped=collections.Counter())
-
-    def simple(entities: Any) -> Iterator[Any]:
-        for entity in entities:
-            if entity.dxftype() == "INSERT":
-                yield from simple(entity.virtual_entities())
-            else:
-                yield entity
-
-    for entity in simple(document.modelspace()):
-        kind = entity.dxftype()
-        if layer is not None and entity.dxf.layer != layer:
-            found.skipped[f"{kind} on layer {entity.dxf.layer}"] += 1
-        elif kind == "CIRCLE":
-            found.circles.append((entity.dxf.center.x, entity.dxf.center.y, 2 * entity.dxf.radius))
-        elif kind in ("LINE", "ARC", "LWPOLYLINE", "POLYLINE", "ELLIPSE", "SPLINE"):
-            curve = paths.make_path(entity)
-            corners = np.array([(point.x, point.y) for point in curve.flattening(FLATNESS * size_of(curve))])
-            if curve.is_closed or getattr(entity, "is_closed", False):
-                found.outlines.append(corners)
-            else:
-                found.pieces.append((kind if kind in ("LINE", "ARC") else f"open {kind}", corners))
-        else:
-            found.skipped[kind] += 1
-    return found
-
-
-def size_of(curve: Any) -> float:
-    """The longer edge of the box around a curve's control points; 1 if they coincide."""
-    points = np.array([(point.x, point.y) for point in curve.control_vertices()])
-    return float(np.ptp(points, axis=0).max()) or 1.0
-
-
 def read_gds(path: pathlib.Path, layer: str | None) -> Drawing:
     """Polygons of the top cells, with all that they refer to."""
     gdspy = library("gdspy", "python3-gdspy")
@@ -89,27 +48,6 @@ def read_gds(path: pathlib.Path, layer: str | None) -> Drawing:
                 found.skipped[f"polygons on layer {of_layer}"] += len(polygons)
             else:
                 found.outlines += [np.asarray(polygon, dtype=float) for polygon in polygons]
-    return found
-
-
-def read_svg(path: pathlib.Path) -> Drawing:
-    """Circles, and closed outlines with their curves."""
-    svgelements = library("svgelements", "python3-svgelements")
-    content = svgelements.SVG.parse(str(path), reify=True)
-    width = str(content.values.get("width", "")).strip()
-    found = Drawing([], [], METRES_IN_PIXEL_OF_SVG, unit_is_assumed=not width.endswith(LENGTHS_OF_SVG), skipped=collections.Counter())
-    found.unit_in_words = "px, 96 in an inch" if found.unit_is_assumed else width.lstrip("0123456789.eE+- ")
-    for element in content.elements():
-        if not isinstance(element, svgelements.Shape) or element.values.get("visibility") == "hidden":
-            continue
-        for part in svgelements.Path(element).as_subpaths():
-            outline = svgelements.Path(part)
-            number = max(64, 16 * len(outline))
-            corners = np.array([(float(point.x), -float(point.y)) for point in (outline.point(at) for at in np.linspace(0, 1, number))])
-            if len(corners) < 3 or not np.allclose(corners[0], corners[-1], atol=1e-3 * float(np.ptp(corners, axis=0).max())):
-                found.pieces.append(("open outline", corners))
-            else:
-                found.outlines.append(corners[:-1])
     return found
 
 
