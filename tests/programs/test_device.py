@@ -725,6 +725,48 @@ class OtherTools(Analysis):
         self.assertIsNone(readers.read(self.folder / "device.dxf").metres)
         np.testing.assert_allclose(self.circles_of("device.dxf", unit=1e-6), sorted((200 * x, 200 * y, 100) for x, y in ROW), atol=1e-6)
 
+    # GDSII
+
+    def test_gdsii_units(self):
+        (self.folder / "device.gds").write_bytes(gdsii([box(0, 0, 4000, 1000), box(500, 500, 600, 600)], 25.4e-6))
+        device = self.device("device.gds")
+        self.assertAlmostEqual(device.length * 0.2, 101.6, places=6)
+        self.assertEqual(self.drawing.unit, "mil")
+        self.refuse_analysis("circles", "device.gds", "--droplet", "200um", "--output", "posts", "--unit", "um", words=["--unit um contradicts", "the drawing says mil"])
+
+    def test_gdsii_circles_that_the_writer_cut(self):
+        import gdspy
+
+        cell = gdspy.Cell("DEVICE", exclude_from_current=True)
+        for x in (500, 800):
+            cell.add(gdspy.Round((x, 600), 50, number_of_points=360, max_points=60))
+        cell.add([gdspy.Rectangle((0, 0), (3600, 1200)), gdspy.Rectangle((0, 0), (3600, 1200)), gdspy.Rectangle((0, 0), (3600, 20))])
+        library = gdspy.GdsLibrary()
+        library.add([cell])
+        library.write_gds(str(self.folder / "device.gds"))
+        self.assertGreater(len(readers.read(self.folder / "device.gds").outlines), 10)
+        np.testing.assert_allclose(self.circles_of("device.gds"), [(500, 580, 100), (800, 580, 100)], atol=0.02)
+        self.assertEqual((self.drawing.united[1], self.drawing.duplicates), (2, 1))
+        told = self.draw("circles", "device.gds", "--droplet", "200um", "--output", "posts").stdout
+        self.assertRegex(told, r"read \d+ objects; \d+ outlines that touch united into 2 outlines; 1 duplicate ignored; 1 unit is 1 um, 0.005 droplet diameters")
+        third = [(500 + 50 * np.cos(angle), 600 + 50 * np.sin(angle)) for angle in np.linspace(0, 2 * np.pi / 3, 41)]
+        turned = [[((x - 500) * c - (y - 600) * s + 500, (x - 500) * s + (y - 600) * c + 600) for x, y in [(500, 600), *third]]
+                  for c, s in [(np.cos(angle), np.sin(angle)) for angle in 2 * np.pi / 3 * np.arange(3)]]
+        (self.folder / "thirds.gds").write_bytes(gdsii([box(0, 0, 3600, 1200), *turned], 1e-6))
+        np.testing.assert_allclose(self.circles_of("thirds.gds"), [(500, 600, 100)], atol=0.1)
+
+    def test_gdsii_that_gdspy_would_read_in_part_is_refused(self):
+        a_box = record(0x2D) + record(13, 2, struct.pack(">h", 1)) + record(0x2E, 2, struct.pack(">h", 0)) + record(16, 3, struct.pack(">10i", *[0] * 10)) + record(17)
+        reference = record(10) + record(0x12, 6, b"NONE") + record(16, 3, struct.pack(">2i", 0, 0)) + record(17)
+        for more, words in [(a_box, ["BOX", "polygons"]), (reference, ["lacks the cells NONE"])]:
+            (self.folder / "device.gds").write_bytes(gdsii([box(0, 0, 100, 100)], 1e-6, more))
+            self.refused("device.gds", *words)
+
+    def test_a_post_of_uneven_corners_becomes_a_circle_around_its_centroid(self):
+        corners = [(500, 500), *((500 + i, 500) for i in range(1, 100)), (600, 500), (600, 600), (500, 600)]
+        (self.folder / "device.gds").write_bytes(gdsii([box(0, 0, 3600, 1200), corners], 1e-6))
+        np.testing.assert_allclose(shapes.as_circles(self.device("device.gds")).circles * 200, [(550, 550, 2 * np.sqrt(1e4 / np.pi))], rtol=1e-6)
+
     # A part of a drawing
 
     def test_a_region_of_a_drawing_with_ports_and_marks(self):
@@ -743,6 +785,73 @@ class OtherTools(Analysis):
         self.assertIn("4 outside the region", told)
         self.refuse_analysis("circles", "device.dxf", "--droplet", "200um", "--output", "x", "--region", "500,0,500,9", words=["--region", "x0,y0,x1,y1"])
         self.refuse_analysis("circles", "device.dxf", "--droplet", "200um", "--output", "x", "--region", "2500,300,3100,800", words=["no posts", "--region"])
+
+    def test_a_region_is_given_as_the_program_shows_it(self):
+        np.testing.assert_allclose(self.svg('<circle cx="800" cy="300" r="50"/><circle cx="800" cy="900" r="50"/>', region=(700, 200, 1000, 400)), [(100, 100, 100)], atol=0.01)
+        self.picture("L", 255, 0, "mask.png", extra=[(100, 50)])
+        np.testing.assert_allclose(self.circles_of("mask.png", unit=1e-6, region=(0, 0, 300, 110)), [(100.5, 59.5, 61)], atol=0.5)
+
+    # Pictures
+
+    def picture(self, mode, ground, post, name, extra=(), **options):
+        image = Image.new(mode, (900, 300), ground)
+        pen = ImageDraw.Draw(image)
+        for x, y in [(200, 150), (600, 150), *extra]:
+            pen.ellipse([x - 30, y - 30, x + 30, y + 30], fill=post)
+        image.save(self.folder / name, **options)
+
+    def assert_two(self, name, **options):
+        np.testing.assert_allclose(self.circles_of(name, unit=1e-6, **options), [(200.5, 149.5, 61), (600.5, 149.5, 61)], atol=0.5)
+
+    def test_pictures_in_either_contrast_and_with_a_transparent_ground(self):
+        for mode, ground, post in [("L", 255, 0), ("L", 0, 255), ("RGBA", (0, 0, 0, 0), (0, 0, 0, 255)), ("RGBA", (255, 255, 255, 0), (255, 255, 255, 255)), ("LA", (0, 0), (0, 255)),
+                                   ("1", 1, 0), ("1", 0, 1)]:
+            with self.subTest(mode=mode, ground=ground):
+                self.picture(mode, ground, post, "mask.png")
+                self.assert_two("mask.png")
+        self.picture("L", 0, 255, "mask.png")
+        self.assertIn("the posts are bright (--posts)", self.draw("circles", "mask.png", "--pixel", "2um", "--droplet", "200um", "--output", "posts").stdout)
+        self.assertEqual(len(self.device("mask.png", unit=1e-6, posts="bright").circles), 2)
+        framed = Image.new("L", (900, 300), 255)
+        pen = ImageDraw.Draw(framed)
+        pen.rectangle([0, 0, 899, 299], outline=0, width=5)
+        pen.ellipse([170, 120, 230, 180], fill=0)
+        framed.save(self.folder / "framed.png")
+        self.device("framed.png", unit=1e-6)
+        self.assertEqual(self.drawing.notes, ["the posts are dark (--posts)"])
+
+    def test_pixels_of_tiff_files(self):
+        info = TiffImagePlugin.ImageFileDirectory_v2()
+        for unit, number, metres in [("micron", 0.4, 2.5e-6), ("\\u00B5m", 0.4, 2.5e-6), ("mm", 400, 2.5e-6), ("um", 2, 0.5e-6)]:
+            info[270], info[282], info[283], info[296] = f"ImageJ=1.53t\nunit={unit}\n", number, number, 1
+            self.picture("L", 255, 0, "mask.tif", tiffinfo=info)
+            self.assert_two("mask.tif")
+            self.assertAlmostEqual(self.drawing.metres / metres, 1)
+        self.refuse_analysis("circles", "mask.tif", "--droplet", "200um", "--output", "posts", "--pixel", "2um", words=["--pixel 2um contradicts"])
+        info[283] = 4
+        self.picture("L", 255, 0, "mask.tif", tiffinfo=info)
+        self.refused("mask.tif", "not square")
+        self.picture("L", 255, 0, "mask.tif", dpi=(254, 254))
+        self.refuse_analysis("circles", "mask.tif", "--droplet", "200um", "--output", "posts", words=["--pixel, such as --pixel 2.5um", "would mean 100um, if that is not a printer's"])
+
+    def test_tiff_files_of_another_library(self):
+        import tifffile
+
+        mask = np.full((300, 900), 60000, np.uint16)
+        for x in (200, 600):
+            mask[120:180, x - 30:x + 30] = 100
+        tifffile.imwrite(self.folder / "mask.tif", mask, imagej=True, resolution=(2, 2), metadata={"unit": "um"})
+        self.assertEqual((len(self.device("mask.tif").others), self.drawing.metres), (2, 0.5e-6))
+        tifffile.imwrite(self.folder / "white.tif", np.where(mask > 1000, 0, 255).astype(np.uint8), photometric="miniswhite")
+        self.assertEqual(len(self.device("white.tif", unit=1e-6).others), 2)
+        tifffile.imwrite(self.folder / "stack.tif", np.stack([mask] * 7))
+        self.refused("stack.tif", "several slices", "7 x 300 x 900")
+
+    def test_a_photograph_that_is_stored_turned(self):
+        turned = Image.Exif()
+        turned[274] = 6
+        self.picture("L", 255, 0, "photo.jpg", exif=turned)
+        self.refused("photo.jpg", "upright")
 
 
 NEW = ["length", "side_walls", "entrance", "entrance_from", "entrance_to", "exit", "release_x", "release_y"]
