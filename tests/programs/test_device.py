@@ -11,6 +11,7 @@ from unittest import mock
 import h5py
 import matplotlib
 import numpy as np
+import pandas
 from matplotlib import image
 from matplotlib.figure import Figure
 from PIL import Image, ImageDraw, TiffImagePlugin
@@ -79,6 +80,43 @@ class Devices(Walls):
                 rows = self.rows_of(text, name)
                 for column in ("obstacles", "distance", "lateral_displacement", "release_x", "release_y", "steps"):
                     self.assertEqual(rows[column].tolist(), expected[column].tolist(), column)
+
+    def test_tables_of_other_programs_are_the_same_device(self):
+        expected = self.rows_of("x,y,diameter\n" + csv())
+        um = "# units=um droplet=200um\n"
+        rows = [(i + 1, 200 * x, 200 * y) for i, (x, y) in enumerate(ROW)]
+        tsv = "".join(f"{i}\t{x:.10g}\t{y:.10g}\t100\t\n" for i, x, y in rows)
+        excel = "".join(f"{x:.10g};{y:.10g};100\n".replace(".", ",") for _, x, y in rows)
+        tables = {
+            "index.tsv": um + "\tx\ty\tdiameter\tlabel\n" + tsv,
+            "imagej.tsv": um + " \tX\tY\tFeret\tLabel\n" + tsv,
+            "excel.csv": "sep=;\n" + um.replace("\n", ";;\n") + '"X [µm]";"Y [µm]";"Durchmesser";"Diameter [µm]"\n' + excel.replace(";100", ";;100"),
+            "old.csv": (um + "x (um),y (um),d (um)\n" + "".join(f"{x:.10g},{y:.10g},100\n" for _, x, y in rows)).replace("\n", "\r"),
+            "blanks.csv": um + "x\u00a0[um],y_um,r/um\n" + "".join(f'"{x:.10g}\u00a0",\u202f{y:.10g},50\n' for _, x, y in rows),
+            "quoted.csv": um + "x,y,d\n" + "".join(f'"{x:g}","{y:.1f}","100,0"\n'.replace(".", ",") for _, x, y in rows),
+            "numpy.txt": "# y x d\n" + "".join(f"{y:.10g} {x:.10g} 0.5\n" for x, y in ROW),
+            "pandas.csv": um + pandas.DataFrame(rows, columns=["id", "x", "y"]).assign(diameter=100.0).to_csv(),
+            "pandas.tsv": um + pandas.DataFrame(rows, columns=["id", "x", "y"]).assign(diameter=100.0).to_csv(sep="\t", decimal=",", quoting=1),
+        }
+        for name, text in tables.items():
+            for encoding in ("utf-8", "utf-16", "cp1252") if name == "excel.csv" else ("utf-8",):
+                with self.subTest(name, encoding=encoding):
+                    (self.folder / name).write_bytes(text.encode(encoding))
+                    self.succeed("clogsweep", f"obstacles={name}", *KEYS[:-3], "line-tension=1", "max-time=20", "seeds=1..2", "--output", f"{name}.{encoding}.h5")
+                    read = table(self.folder / f"{name}.{encoding}.h5")
+                    self.assertEqual(read["obstacles"].tolist(), expected["obstacles"].tolist())
+
+    def test_tables_that_may_be_read_in_two_ways_are_refused(self):
+        um = "# units=um droplet=200um\n"
+        for text, words in [("x [um],y [um],d [um]\n1,2,3\n", ["line 2", "# units=um droplet=200um", "your droplet's diameter"]),
+                            (um + "x [mm],y [mm],d [mm]\n1,2,3\n", ["line 3", "in mm", "units=um"]), (um + "x [mm],y [um],d\n1,2,3\n", ["line 2", "y [um]", "one unit"]),
+                            (um + "x [sigma],y,d\n1,2,3\n", ["line 3", "in sigma", "units=um"]), ("x;y;d\n1;2;0,5\n1.5;2;0,5\n", ["line 3", "x: '1.5'"]),
+                            ("x [px],y [px],d [px]\n1,2,3\n", ["line 1", "'px' is no unit"]), ('x,y,d\n"1,234","2,345","0,100"\n', ["line 2", "x: '1,234'", "thousands"]),
+                            ("x;y;d\n1.5;2.5;0,5\n", ["line 2", "d: '0,5'"]), ("x,y,d\n1,2,\n", ["line 2", "d: is empty"]), ('x,y,d\n1,"2,3\n', ["line 2", "quote"]),
+                            ("x y d\n1 2 3 4\n", ["line 2", "has 4 cells", "line of names has 3"]), ("x,y,d\n1,2\n", ["line 2", "has 2 cells"]), ("x,y,d\n1,2m,3\n", ["line 2", "y: '2m'"])]:
+            with self.subTest(text):
+                self.write("bad.csv", text)
+                self.refuse("clogsweep", "obstacles=bad.csv", "box=6", "--output", "x.h5", words=["bad.csv", *words])
 
     def test_files_that_say_too_little_are_refused(self):
         for text, words in [("a,b\n1,2\n", ["columns have to be x, y"]), ("x,y,width\n1,2,3\n", ["columns have to be", "width"]),
