@@ -7,14 +7,15 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "clog/console/csv.hpp"
-#include "clog/console/text_file.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -32,14 +33,31 @@ std::string in_lower_case(std::string text) {
   return text;
 }
 
+constexpr const char* droplet_diameters = "sigma";  ///< as a unit of a column
+
+const std::map<std::string, double>& metres_of_units() {
+  static const std::map<std::string, double> units = {{"nm", 1e-9}, {"um", 1e-6},     {"µm", 1e-6},
+                                                      {"μm", 1e-6}, {"micron", 1e-6}, {"microns", 1e-6},
+                                                      {"mm", 1e-3}, {"cm", 1e-2},     {"m", 1}};
+  return units;
+}
+
 /// Metres in a unit of length. @throws Error
 double metres_in(const std::string& unit) {
-  static const std::map<std::string, double> units = {{"nm", 1e-9}, {"um", 1e-6}, {"µm", 1e-6}, {"μm", 1e-6},
-                                                      {"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}};
-  const auto found = units.find(unit);
-  if (found == units.end())
+  const auto found = metres_of_units().find(unit);
+  if (found == metres_of_units().end())
     throw Error(fmt::format("'{}' is no unit of length; use nm, um, mm, cm or m", shortened(unit)));
   return found->second;
+}
+
+bool is_unit(const std::string& unit) {
+  return unit == droplet_diameters || metres_of_units().contains(unit);
+}
+
+/// @throws Error  if one of them is no unit of length
+bool is_same_unit(const std::string& unit, const std::string& other) {
+  if (unit == droplet_diameters || other == droplet_diameters) return unit == other;
+  return metres_in(unit) == metres_in(other);
 }
 
 /// Lengths of the file in droplet diameters: one of them is `value` units long.
@@ -57,9 +75,10 @@ struct Scale {
 
 /// `units=um droplet=200um`, which a comment may say; anything else in a comment is skipped. @throws Error
 void read_scale(const std::string& comment, Scale& scale) {
-  std::istringstream words(comment.substr(1));
+  std::istringstream words(comment);
   std::optional<std::string> unit, droplet;
   for (std::string word; words >> word;) {
+    word.erase(word.find_last_not_of(";,\"") + 1);  // of empty cells that a spreadsheet adds
     if (word.starts_with("units=")) unit = word.substr(6);
     if (word.starts_with("droplet=")) droplet = word.substr(8);
   }
@@ -76,69 +95,145 @@ void read_scale(const std::string& comment, Scale& scale) {
     throw Error("droplet must be a diameter above 0, as in '# units=um droplet=200um'");
 }
 
-/// Splits a line at semicolons, tabs or commas, whichever comes first in this list, or else at blanks. A
-/// comma beside semicolons or tabs is a decimal comma.
-std::vector<std::string> cells_of(std::string line) {
-  const char separator = line.find(';') != std::string::npos    ? ';'
-                         : line.find('\t') != std::string::npos ? '\t'
-                         : line.find(',') != std::string::npos  ? ','
-                                                                : ' ';
-  if (separator == ';' || separator == '\t') std::replace(line.begin(), line.end(), ',', '.');
-  std::vector<std::string> cells;
-  std::istringstream in(line);
-  for (std::string cell; std::getline(in, cell, separator);)
-    if (separator != ' ' || !console::trimmed(cell).empty()) cells.push_back(console::trimmed(cell));
-  return cells;
-}
-
 /// Places of the columns in a line; -1: there is none.
 struct Columns {
   int x = 0, y = 1, diameter = 2, radius = -1;
-  std::size_t number = 3;  ///< most cells in a line
-  bool have_header = false;
+  std::vector<std::string> header;  ///< empty: there is none
+  std::string unit;                 ///< that the header names
 };
 
-/// The names of the columns, if the first line has any. @throws Error  if x or y is missing, or sizes may be
-std::optional<Columns> columns_named(const std::vector<std::string>& cells) {
-  if (cells.empty() || cells[0].empty()) return {};
-  if (std::ranges::none_of(cells, [](const std::string& cell) {
-        return !cell.empty() && std::isalpha(static_cast<unsigned char>(cell[0])) && cell != "nan" &&
-               cell != "inf";
-      }))
-    return {};
-  Columns columns{
-      .x = -1, .y = -1, .diameter = -1, .radius = -1, .number = cells.size(), .have_header = true};
-  std::vector<std::string> others;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const std::string name = in_lower_case(cells[i]);
-    int* const column = name == "x"                         ? &columns.x
-                        : name == "y"                       ? &columns.y
-                        : name == "diameter" || name == "d" ? &columns.diameter
-                        : name == "radius" || name == "r"   ? &columns.radius
-                                                            : nullptr;
-    if (!column)
-      others.push_back(cells[i]);
-    else if (std::exchange(*column, static_cast<int>(i)) >= 0)
-      throw Error(fmt::format("there are two columns '{}'", shortened(cells[i])));
-  }
+/// "x [um]", "x (um)", "x/um" and "x_um" are the name x, in lower case, and the unit um.
+std::pair<std::string, std::string> name_and_unit(const std::string& cell) {
+  const auto end = cell.find_first_of(" [(/_,");
+  const std::string name = in_lower_case(cell.substr(0, end));
+  if (end == std::string::npos) return {name, ""};
+  const auto begin_of_unit = cell.find_first_not_of(" [(/_,", end);
+  if (begin_of_unit == std::string::npos) return {name, ""};
+  const std::string rest = cell.substr(begin_of_unit);
+  return {name, rest.substr(0, rest.find_last_not_of(" ])") + 1)};
+}
+
+/// Remembers where a cell of the header says a column is. @return whether it is one of those wanted
+/// @throws Error  if it is there twice, or in another unit than the others
+bool take_column(Columns& columns, int place, const std::string& cell) {
+  const auto [name, unit] = name_and_unit(cell);
+  int* const column = name == "x"                                            ? &columns.x
+                      : name == "y"                                          ? &columns.y
+                      : name == "diameter" || name == "d" || name == "feret" ? &columns.diameter
+                      : name == "radius" || name == "r"                      ? &columns.radius
+                                                                             : nullptr;
+  const bool is_in_brackets = cell.find_first_of("[(") != std::string::npos;
+  if (!column || (!is_in_brackets && !unit.empty() && !is_unit(unit))) return false;
+  if (std::exchange(*column, place) >= 0)
+    throw Error(fmt::format("there are two columns '{}'", shortened(cell)));
+  if (unit.empty()) return true;
+  if (columns.unit.empty()) columns.unit = unit;
+  if (!is_same_unit(columns.unit, unit))
+    throw Error(
+        fmt::format("'{}' is not in {} as another column is; use one unit", shortened(cell), columns.unit));
+  return true;
+}
+
+/// Whether a line names columns: a cell begins with a letter.
+bool is_header(const std::vector<std::string>& cells) {
+  return std::ranges::any_of(cells, [](const std::string& cell) {
+    return !cell.empty() && std::isalpha(static_cast<unsigned char>(cell[0])) && cell != "nan" &&
+           cell != "inf";
+  });
+}
+
+/// @throws Error  if x or y is missing, or sizes may be
+Columns columns_named(std::vector<std::string> cells) {
+  Columns columns{.x = -1, .y = -1, .diameter = -1, .radius = -1, .header = {}, .unit = ""};
+  while (!cells.empty() && cells.back().empty()) cells.pop_back();
+  bool are_all = true;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (!take_column(columns, static_cast<int>(i), cells[i]) && !cells[i].empty()) are_all = false;
   const bool has_size = columns.diameter >= 0 || columns.radius >= 0;
-  if (columns.x < 0 || columns.y < 0 || (!has_size && !others.empty()) ||
+  if (columns.x < 0 || columns.y < 0 || (!has_size && !are_all) ||
       (columns.diameter >= 0 && columns.radius >= 0))
     throw Error(fmt::format(
         "the columns have to be x, y and one of diameter and radius, in any order, with or without others; "
         "or x and y alone, if all diameters are obstacle-diameter; here they are '{}'",
         shortened(joined(cells, ","))));
+  columns.header = std::move(cells);
   return columns;
 }
 
-Obstacle parse_circle(const std::vector<std::string>& cells, const Columns& columns, const Scale& scale) {
-  const auto has = [&](int column) { return column >= 0 && static_cast<std::size_t>(column) < cells.size(); };
-  if (!has(columns.x) || !has(columns.y) || cells.size() > columns.number)
-    throw Error(columns.have_header ? "has not as many cells as there are columns"
-                                    : "needs x,y or x,y,diameter, separated by commas");
-  const auto number = [&](int column) {
-    return scale.in_diameters(sweep::to_number(cells[static_cast<std::size_t>(column)]));
-  };
+/// The columns that a comment names, as NumPy writes them; nothing if it says anything else.
+std::optional<Columns> columns_in(std::string comment) {
+  for (char& letter : comment)
+    if (std::string_view("#,;\t\"").find(letter) != std::string_view::npos) letter = ' ';
+  std::istringstream words(comment);
+  Columns columns{.x = -1, .y = -1, .diameter = -1, .radius = -1, .header = {}, .unit = ""};
+  for (std::string word; words >> word; columns.header.push_back(word))
+    if (!take_column(columns, static_cast<int>(columns.header.size()), word)) return {};
+  return columns.x >= 0 && columns.y >= 0 ? std::optional(columns) : std::nullopt;
+}
+
+/// Reads numbers of a table, and refuses those whose comma may mean two things.
+class Numbers {
+ public:
+  /// @param place  of the cell, from 0. @throws Error
+  double read(const console::TableLine& line, const Columns& columns, int place) {
+    const std::string& cell = line.cells[static_cast<std::size_t>(place)];
+    const std::string name = columns.header.empty() ? fmt::format("cell {}", place + 1)
+                                                    : columns.header[static_cast<std::size_t>(place)];
+    try {
+      if (cell.empty()) throw Error("is empty");
+      return sweep::to_number(with_point(cell, line.separator));
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: {}", shortened(name), error.what()));
+    }
+  }
+
+ private:
+  bool have_comma_ = false, have_point_ = false;
+
+  std::string with_point(std::string cell, char separator) {
+    if (cell.find('.') != std::string::npos) have_point_ = true;
+    if (cell.find(',') != std::string::npos) have_comma_ = true;
+    constexpr std::size_t thousands = 4;  // characters of ",234", which are decimals or thousands
+    const bool is_ambiguous =
+        separator == ',' && cell.size() > thousands && cell[cell.size() - thousands] == ',';
+    if (is_ambiguous || (have_comma_ && have_point_))
+      throw Error(
+          fmt::format("'{}' may have a decimal comma or separated thousands; write all numbers with "
+                      "decimal points and without commas",
+                      shortened(cell)));
+    std::ranges::replace(cell, ',', '.');
+    return cell;
+  }
+};
+
+/// @throws Error  if the file does not say how long the header's unit is, or says something else
+void check_unit(const Columns& columns, const Scale& scale) {
+  const std::string unit = scale.unit.empty() ? droplet_diameters : scale.unit;
+  if (columns.unit.empty() || is_same_unit(columns.unit, unit)) return;
+  if (scale.unit.empty())
+    throw Error(
+        fmt::format("the columns are in {0}; put a line '# units={0} droplet=200um' with your droplet's "
+                    "diameter above them",
+                    columns.unit));
+  throw Error(fmt::format("the columns are in {}, but the file says units={}; correct one of them",
+                          columns.unit, scale.unit));
+}
+
+void check_number_of_cells(const std::vector<std::string>& cells, const Columns& columns) {
+  if (columns.header.empty() && (cells.size() < 2 || cells.size() > 3))
+    throw Error("needs x,y or x,y,diameter, separated by commas");
+  if (!columns.header.empty() && cells.size() != columns.header.size())
+    throw Error(fmt::format("has {}, but the line of names has {}; give each column a name, such as id",
+                            sweep::counted(std::ssize(cells), "cell"), columns.header.size()));
+}
+
+Obstacle parse_circle(console::TableLine line, const Columns& columns, const Scale& scale, Numbers& numbers) {
+  while (line.cells.size() > std::max<std::size_t>(columns.header.size(), 1) && line.cells.back().empty())
+    line.cells.pop_back();
+  check_number_of_cells(line.cells, columns);
+  check_unit(columns, scale);
+  const auto has = [&](int column) { return column >= 0 && column < std::ssize(line.cells); };
+  const auto number = [&](int column) { return scale.in_diameters(numbers.read(line, columns, column)); };
   Obstacle circle{number(columns.x), number(columns.y)};
   if (has(columns.diameter)) circle.radius = number(columns.diameter) / 2;
   if (has(columns.radius)) circle.radius = number(columns.radius);
@@ -158,32 +253,22 @@ OwnCircles read_circles(const std::string& path) {
   if (drawings.contains(in_lower_case(std::filesystem::path(path).extension())))
     throw Error(path + " is a drawing; python3 -m clogsweep circles converts it to a file of circles");
   std::vector<Obstacle> circles;
-  std::istringstream file(console::read_text(path));
   Columns columns;
   Scale scale;
+  Numbers numbers;
   bool is_first = true;
-  int number = 0;
-  for (std::string line; std::getline(file, line);) {
-    ++number;
-    if (number == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3);  // with which spreadsheets begin
-    const std::string text = console::trimmed(line);
-    if (text.empty()) continue;
-    try {
-      if (text.starts_with('#')) {
-        read_scale(text, scale);
-        continue;
-      }
-      const std::vector<std::string> cells = cells_of(text);
-      const std::optional<Columns> named =
-          std::exchange(is_first, false) ? columns_named(cells) : std::nullopt;
-      if (named)
-        columns = *named;
-      else
-        circles.push_back(parse_circle(cells, columns, scale));
-    } catch (const Error& error) {
-      throw Error(fmt::format("{} line {}: {}", path, number, error.what()));
-    }
-  }
+  console::read_table(
+      path,
+      [&](const console::TableLine& line) {
+        if (std::exchange(is_first, false) && is_header(line.cells))
+          columns = columns_named(line.cells);
+        else
+          circles.push_back(parse_circle(line, columns, scale, numbers));
+      },
+      [&](const std::string& comment) {
+        read_scale(comment, scale);
+        if (is_first) columns = columns_in(comment).value_or(columns);
+      });
   if (circles.empty()) throw Error(path + " holds no obstacles; lines are x,y[,diameter]");
   const std::optional droplet = scale.unit.empty() ? std::nullopt : std::optional(scale.droplet_metres);
   return OwnCircles(std::move(circles), path, droplet);

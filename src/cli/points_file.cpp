@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <string>
 #include <vector>
 
 #include "clog/console/csv.hpp"
@@ -12,43 +14,76 @@
 namespace clog::cli {
 namespace {
 
-void check_header(const std::vector<std::string>& cells) {
-  for (const std::string& cell : cells) try {
-      sweep::find_key(cell);
+/// The columns that name keys. One without a name, as pandas writes its index, is none of them.
+std::vector<std::size_t> columns_of(const std::vector<std::string>& header) {
+  std::vector<std::size_t> columns;
+  for (std::size_t i = 0; i < header.size(); ++i) try {
+      if (header[i].empty()) continue;
+      sweep::find_key(header[i]);
+      columns.push_back(i);
     } catch (const Error& error) {
-      const bool has_unit = cell.find_first_of(" [(") != std::string::npos;
+      const bool has_unit = header[i].find_first_of(" [(") != std::string::npos;
       throw Error(std::string(error.what()) + (has_unit ? "; the first line names keys alone, without units"
                                                         : "; the first line names keys"));
     }
+  return columns;
 }
 
-void check_row(const std::vector<std::string>& keys, const std::vector<std::string>& cells) {
-  if (cells.size() != keys.size())
+/// A cell as a key's value. Where commas do not separate cells, a comma is decimal; pandas writes integers as
+/// 64.0 or 64,0 in a column with an empty cell. @throws Error  if a comma may be decimal or part of a list
+std::string value_of(const sweep::Key& key, std::string cell, char separator) {
+  const bool is_integer = key.kind == ValueKind::integer;
+  const bool is_number = key.kind == ValueKind::number || key.kind == ValueKind::number_or_share;
+  const auto commas = std::ranges::count(cell, ',');
+  // A list of seeds may end with 0.
+  const bool may_be_decimal = separator != ',' && commas == 1 && key.name != "seeds";
+  if (is_integer && (cell.ends_with(".0") || (may_be_decimal && cell.ends_with(",0"))))
+    return cell.substr(0, cell.size() - 2);
+  const bool is_plain = cell.find_first_not_of("0123456789+-.,eE%") == std::string::npos;
+  if (commas == 0 || !is_plain || !(is_number || (is_integer && cell.ends_with(",0")))) return cell;
+  if (is_integer || separator == ',' || commas > 1 || cell.find('.') != std::string::npos)
+    throw Error(fmt::format(
+        "{}: '{}' may be a list or have a decimal comma; write decimal points, and a line for each value",
+        key.name, cell));
+  std::ranges::replace(cell, ',', '.');
+  return cell;
+}
+
+/// @param num_columns  of the first line. @throws Error  if a value is invalid
+std::vector<std::string> values_of(const console::TableLine& line, const std::vector<std::string>& keys,
+                                   const std::vector<std::size_t>& columns, std::size_t num_columns) {
+  std::vector<std::string> cells = line.cells;
+  while (cells.size() > num_columns && cells.back().empty()) cells.pop_back();
+  if (cells.size() != num_columns)
     throw Error(fmt::format("has {}, but the first line names {}",
                             sweep::counted(static_cast<std::int64_t>(cells.size()), "cell"),
-                            sweep::counted(static_cast<std::int64_t>(keys.size()), "key")));
+                            sweep::counted(static_cast<std::int64_t>(num_columns), "key")));
   static const sweep::Settings defaults;
   sweep::Settings scratch = defaults;
-  for (std::size_t i = 0; i < keys.size(); ++i)
-    if (!cells[i].empty()) scratch.set(keys[i], cells[i]);
+  std::vector<std::string> values;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    values.push_back(value_of(sweep::find_key(keys[i]), cells[columns[i]], line.separator));
+    if (!values.back().empty()) scratch.set(keys[i], values.back());
+  }
+  return values;
 }
 
 }  // namespace
 
 sweep::Points read_points(const std::string& path) {
   sweep::Points points;
-  console::read_csv(
-      path,
-      [&](int, const std::vector<std::string>& cells) {
-        if (points.keys.empty()) {
-          check_header(cells);
-          points.keys = cells;
-        } else {
-          check_row(points.keys, cells);
-          points.rows.push_back(cells);
-        }
-      },
-      console::EmptyEnd::kept);
+  std::vector<std::size_t> columns;
+  std::size_t num_columns = 0;
+  console::read_table(path, [&](const console::TableLine& line) {
+    if (num_columns == 0) {
+      columns = columns_of(line.cells);
+      for (const std::size_t column : columns) points.keys.push_back(line.cells[column]);
+      num_columns = line.cells.size();
+      while (num_columns > 0 && line.cells[num_columns - 1].empty()) --num_columns;
+    } else {
+      points.rows.push_back(values_of(line, points.keys, columns, num_columns));
+    }
+  });
   if (points.rows.empty())
     throw Error(path +
                 " holds no points; its first line names keys, each line that follows has a value for each");

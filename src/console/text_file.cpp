@@ -1,6 +1,7 @@
 #include "clog/console/text_file.hpp"
 
 #include <fcntl.h>
+#include <iconv.h>
 #include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -9,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 #include <string_view>
+#include <utility>
 
 #include "clog/console/signals.hpp"
 #include "clog/core/tools/error.hpp"
@@ -64,6 +66,31 @@ class OpenText {
   }
 };
 
+/// Text in UTF-16 with a byte-order mark, as spreadsheets write it. @throws Error  if it is damaged
+std::string from_utf16(const std::string& path, std::string text) {
+  const iconv_t converter = iconv_open("UTF-8", "UTF-16");
+  std::string converted(2 * text.size(), '\0');  // two bytes become three at most
+  char* from = text.data();
+  char* to = converted.data();
+  std::size_t from_left = text.size(), to_left = converted.size();
+  const bool has_failed = iconv(converter, &from, &from_left, &to, &to_left) == static_cast<std::size_t>(-1);
+  iconv_close(converter);
+  if (has_failed) refuse(path, "it is damaged UTF-16");
+  converted.resize(converted.size() - to_left);
+  return converted;
+}
+
+/// Lines of Windows and of old Macs end as those of others.
+void unify_line_ends(std::string& text) {
+  std::size_t length = 0;
+  for (std::size_t i = 0; i < text.size(); ++i)
+    if (text[i] != '\r')
+      text[length++] = text[i];
+    else if (i + 1 == text.size() || text[i + 1] != '\n')
+      text[length++] = '\n';
+  text.resize(length);
+}
+
 }  // namespace
 
 std::string read_text(const std::string& path) {
@@ -74,7 +101,9 @@ std::string read_text(const std::string& path) {
   OpenText file(path);
   std::string text;
   while (file.read_some(text)) continue;
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) text = from_utf16(path, std::move(text));
   if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
+  unify_line_ends(text);
   return text;
 }
 

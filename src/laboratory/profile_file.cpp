@@ -84,11 +84,11 @@ template <typename Add>
 void read_lines(const std::string& path, const std::string& length_name, const ProfileScales& scales,
                 Add add) {
   std::optional<Columns> columns;
-  console::read_csv(path, [&](int, const std::vector<std::string>& cells) {
+  console::read_table(path, [&](const console::TableLine& line) {
     if (columns)
-      add(*columns, cells);
+      add(*columns, line.cells);
     else
-      columns.emplace(length_name, cells, scales);
+      columns.emplace(length_name, line.cells, scales);
   });
 }
 

@@ -38,6 +38,25 @@ TEST_F(TextFile, MayBeginWithAByteOrderMark) {
   EXPECT_EQ(read_text(path("a.cfg")), "seeds = 1");
 }
 
+TEST_F(TextFile, MayBeInUtf16) {
+  const std::string text = "a=\xc2\xb5\xf0\x9f\x92\xa7\n";  // of two, and of four bytes
+  write(path("a.cfg"), std::string("\xff\xfe"
+                                   "a\0=\0\xb5\0\x3d\xd8\xa7\xdc\n\0",
+                                   14));
+  EXPECT_EQ(read_text(path("a.cfg")), text);
+  write(path("a.cfg"), std::string("\xfe\xff\0a\0=\0\xb5\xd8\x3d\xdc\xa7\0\n", 14));
+  EXPECT_EQ(read_text(path("a.cfg")), text);
+  write(path("a.cfg"),
+        "\xff\xfe"
+        "a");
+  EXPECT_THROW(read_text(path("a.cfg")), Error);
+}
+
+TEST_F(TextFile, MayHaveTheLineEndsOfWindowsAndOldMacs) {
+  write(path("a.cfg"), "a\r\nb\rc\r");
+  EXPECT_EQ(read_text(path("a.cfg")), "a\nb\nc\n");
+}
+
 TEST_F(TextFile, MayBeAPipe) {
   ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
   const std::string text(200'000, '#');  // more than the pipe holds

@@ -3,6 +3,7 @@
 import contextlib
 import io
 import json
+import struct
 import sys
 import unittest
 from unittest import mock
@@ -10,8 +11,10 @@ from unittest import mock
 import h5py
 import matplotlib
 import numpy as np
+import pandas
 from matplotlib import image
-from PIL import Image, ImageDraw
+from matplotlib.figure import Figure
+from PIL import Image, ImageDraw, TiffImagePlugin
 
 import stored_rows
 from drawing import Analysis
@@ -19,9 +22,10 @@ from support import BIN, table
 
 import clogsweep
 from clogsweep import style
-from clogsweep.device import shapes
+from clogsweep.device import areas, lines, readers, shapes
 from clogsweep.drawing import device as drawn
 from clogsweep.drawing import device_plan
+from clogsweep.tools.errors import UserError
 
 ROW = [(4 + 3 * i, 0.9 + 1.7 * j + 0.6 * (i % 2)) for i in range(4) for j in range(3)]  # posts, in droplet diameters
 KEYS = ["box=6", "length=18", "side-walls=on", "release=entrance", "entrance=1", "exit=16", "vertices=64", "line-tension=0.05",
@@ -76,6 +80,43 @@ class Devices(Walls):
                 rows = self.rows_of(text, name)
                 for column in ("obstacles", "distance", "lateral_displacement", "release_x", "release_y", "steps"):
                     self.assertEqual(rows[column].tolist(), expected[column].tolist(), column)
+
+    def test_tables_of_other_programs_are_the_same_device(self):
+        expected = self.rows_of("x,y,diameter\n" + csv())
+        um = "# units=um droplet=200um\n"
+        rows = [(i + 1, 200 * x, 200 * y) for i, (x, y) in enumerate(ROW)]
+        tsv = "".join(f"{i}\t{x:.10g}\t{y:.10g}\t100\t\n" for i, x, y in rows)
+        excel = "".join(f"{x:.10g};{y:.10g};100\n".replace(".", ",") for _, x, y in rows)
+        tables = {
+            "index.tsv": um + "\tx\ty\tdiameter\tlabel\n" + tsv,
+            "imagej.tsv": um + " \tX\tY\tFeret\tLabel\n" + tsv,
+            "excel.csv": "sep=;\n" + um.replace("\n", ";;\n") + '"X [µm]";"Y [µm]";"Durchmesser";"Diameter [µm]"\n' + excel.replace(";100", ";;100"),
+            "old.csv": (um + "x (um),y (um),d (um)\n" + "".join(f"{x:.10g},{y:.10g},100\n" for _, x, y in rows)).replace("\n", "\r"),
+            "blanks.csv": um + "x\u00a0[um],y_um,r/um\n" + "".join(f'"{x:.10g}\u00a0",\u202f{y:.10g},50\n' for _, x, y in rows),
+            "quoted.csv": um + "x,y,d\n" + "".join(f'"{x:g}","{y:.1f}","100,0"\n'.replace(".", ",") for _, x, y in rows),
+            "numpy.txt": "# y x d\n" + "".join(f"{y:.10g} {x:.10g} 0.5\n" for x, y in ROW),
+            "pandas.csv": um + pandas.DataFrame(rows, columns=["id", "x", "y"]).assign(diameter=100.0).to_csv(),
+            "pandas.tsv": um + pandas.DataFrame(rows, columns=["id", "x", "y"]).assign(diameter=100.0).to_csv(sep="\t", decimal=",", quoting=1),
+        }
+        for name, text in tables.items():
+            for encoding in ("utf-8", "utf-16", "cp1252") if name == "excel.csv" else ("utf-8",):
+                with self.subTest(name, encoding=encoding):
+                    (self.folder / name).write_bytes(text.encode(encoding))
+                    self.succeed("clogsweep", f"obstacles={name}", *KEYS[:-3], "line-tension=1", "max-time=20", "seeds=1..2", "--output", f"{name}.{encoding}.h5")
+                    read = table(self.folder / f"{name}.{encoding}.h5")
+                    self.assertEqual(read["obstacles"].tolist(), expected["obstacles"].tolist())
+
+    def test_tables_that_may_be_read_in_two_ways_are_refused(self):
+        um = "# units=um droplet=200um\n"
+        for text, words in [("x [um],y [um],d [um]\n1,2,3\n", ["line 2", "# units=um droplet=200um", "your droplet's diameter"]),
+                            (um + "x [mm],y [mm],d [mm]\n1,2,3\n", ["line 3", "in mm", "units=um"]), (um + "x [mm],y [um],d\n1,2,3\n", ["line 2", "y [um]", "one unit"]),
+                            (um + "x [sigma],y,d\n1,2,3\n", ["line 3", "in sigma", "units=um"]), ("x;y;d\n1;2;0,5\n1.5;2;0,5\n", ["line 3", "x: '1.5'"]),
+                            ("x [px],y [px],d [px]\n1,2,3\n", ["line 1", "'px' is no unit"]), ('x,y,d\n"1,234","2,345","0,100"\n', ["line 2", "x: '1,234'", "thousands"]),
+                            ("x;y;d\n1.5;2.5;0,5\n", ["line 2", "d: '0,5'"]), ("x,y,d\n1,2,\n", ["line 2", "d: is empty"]), ('x,y,d\n1,"2,3\n', ["line 2", "quote"]),
+                            ("x y d\n1 2 3 4\n", ["line 2", "has 4 cells", "line of names has 3"]), ("x,y,d\n1,2\n", ["line 2", "has 2 cells"]), ("x,y,d\n1,2m,3\n", ["line 2", "y: '2m'"])]:
+            with self.subTest(text):
+                self.write("bad.csv", text)
+                self.refuse("clogsweep", "obstacles=bad.csv", "box=6", "--output", "x.h5", words=["bad.csv", *words])
 
     def test_files_that_say_too_little_are_refused(self):
         for text, words in [("a,b\n1,2\n", ["columns have to be x, y"]), ("x,y,width\n1,2,3\n", ["columns have to be", "width"]),
@@ -511,6 +552,344 @@ class WrongDrawings(Analysis):
         grey = (abs(pixels - np.array(matplotlib.colors.to_rgb(style.OBSTACLE))) < 0.02).all(axis=2)
         rows, columns = (np.flatnonzero(self.red().any(axis=axis)) for axis in (1, 0))
         self.assertGreater(grey[rows[0]:rows[-1], columns[0]:columns[-1]].mean(), 0.9)
+
+
+def record(kind, form=0, data=b""):
+    """A record of a GDSII file."""
+    return struct.pack(">HBB", len(data) + 4, kind, form) + data
+
+
+def real(value):
+    """In GDSII: a sign, a power of 16, and 56 bits."""
+    power = 0
+    while value < 1 / 16:
+        value, power = value * 16, power - 1
+    return struct.pack(">Q", (power + 64) << 56 | int(value * 2**56))
+
+
+def gdsii(outlines, metres, more=b"", in_user_units=0.001):
+    """A GDSII file by hand. @param outlines  of layer 1, in user units; @param metres  in one"""
+    date = struct.pack(">12h", *[0] * 12)
+    begin = [record(0, 2, struct.pack(">h", 600)), record(1, 2, date), record(2, 6, b"LIB "), record(3, 5, real(in_user_units) + real(in_user_units * metres)),
+             record(5, 2, date), record(6, 6, b"TOP ")]
+    shapes_of_it = [record(8) + record(13, 2, struct.pack(">h", 1)) + record(14, 2, struct.pack(">h", 0))
+                    + record(16, 3, b"".join(struct.pack(">2i", *(round(value / in_user_units) for value in corner)) for corner in [*outline, outline[0]])) + record(17)
+                    for outline in outlines]
+    return b"".join([*begin, *shapes_of_it, more, record(7), record(4)])
+
+
+class OtherTools(Analysis):
+    """Drawings as other programs write them."""
+
+    def device(self, name, *, layer=None, region=None, posts=None, droplet=200e-6, unit=None, tolerance=0.04):
+        self.drawing = readers.read(self.folder / name, layer, posts)
+        lines.join(self.drawing)
+        areas.tidy(self.drawing, None if region is None else np.reshape(region, (2, 2)), tolerance)
+        return shapes.understood(self.drawing, unit or self.drawing.metres, droplet, tolerance, 0)
+
+    def circles_of(self, name, **options):
+        """In micrometres, from the device's lower left corner."""
+        device = self.device(name, **options)
+        self.assertEqual([outline.tolist() for outline in device.others], [])
+        circles = device.circles * device.droplet_micrometres
+        return circles[np.lexsort((circles[:, 1], circles[:, 0]))]
+
+    def refused(self, name, *words, **options):
+        with self.assertRaises(UserError) as told:
+            self.device(name, **options)
+        self.assertEqual(len(str(told.exception).splitlines()), 1)
+        for word in words:
+            self.assertIn(word, str(told.exception))
+
+    def dxf(self, unit=13):
+        import ezdxf
+
+        drawing = ezdxf.new("R2010")
+        drawing.header["$INSUNITS"] = unit
+        drawing.modelspace().add_lwpolyline(box(0, 0, 3600, 1200), close=True, dxfattribs={"layer": "EDGE"})
+        drawing.layers.add("EDGE")
+        return drawing, drawing.modelspace()
+
+    def saved(self, drawing, **options):
+        drawing.saveas(self.folder / "device.dxf")
+        return self.circles_of("device.dxf", **options)
+
+    # SVG
+
+    def svg(self, body, **options):
+        self.write("device.svg", SVG.format(body))
+        return self.circles_of("device.svg", **options)
+
+    def test_svg_shapes_in_transformed_groups(self):
+        for transform, circle, expected in [("rotate(30 1000 600)", (1000, 600, 250), (1000, 600, 500)), ("translate(3600 0) scale(-1 1)", (800, 300, 50), (2800, 900, 100)),
+                                            ("scale(1 -1) translate(0 -1200)", (800, 300, 50), (800, 300, 100)), ("matrix(0 1 -1 0 1200 0)", (400, 300, 50), (900, 800, 100)),
+                                            ("rotate(90 600 600) scale(2)", (400, 200, 50), (800, 400, 200))]:
+            for shape in ('<circle cx="{0}" cy="{1}" r="{2}"/>', '<ellipse cx="{0}" cy="{1}" rx="{2}" ry="{2}"/>'):
+                with self.subTest(transform):
+                    body = f'<g transform="{transform}">{shape.format(*circle)}</g>'
+                    np.testing.assert_allclose(self.svg(body), [expected], rtol=1e-4, atol=1e-2)
+        self.write("device.svg", SVG.format('<g transform="translate(1000 600) skewX(45)"><rect width="100" height="200"/></g>'))
+        device = self.device("device.svg")
+        np.testing.assert_allclose(np.array(device.others) * 200, [[(1000, 600), (1100, 600), (1300, 400), (1200, 400)]], atol=0.01)
+
+    def test_svg_symbols_are_drawn_only_where_they_are_used(self):
+        post = '<symbol id="post" viewBox="0 0 10 10"><circle cx="5" cy="5" r="5"/></symbol>'
+        uses = '<use href="#post" x="300" y="200" width="100" height="100"/><use href="#later"/><g id="later"><circle cx="900" cy="500" r="30"/></g>'
+        np.testing.assert_allclose(self.svg(f"<g>{post}</g><marker><circle r='5'/></marker>{uses}"), [(350, 950, 100), (900, 700, 60)], atol=0.01)
+        self.assertEqual(self.drawing.duplicates, 1)
+        self.write("device.svg", SVG.format('<use href="#none"/>'))
+        self.refused("device.svg", "'#none', which is not in the file")
+
+    def test_svg_has_exact_corners(self):
+        edge = '<svg xmlns="http://www.w3.org/2000/svg" width="60mm" height="1.2mm" viewBox="0 0 60000 1200">{}</svg>'
+        self.write("device.svg", edge.format('<path d="M0 0 L60000 0 L60000 1200 L0 1200 Z"/><path d="M8000 300 a50 50 0 1 0 0.001 0 z"/>'))
+        device = self.device("device.svg")
+        self.assertAlmostEqual(device.length, 300, places=3)
+
+    def test_svg_of_matplotlib(self):
+        figure = Figure(figsize=(3.6, 1.2))
+        axes = figure.add_axes([0, 0, 1, 1], xlim=(0, 3600), ylim=(0, 1200))
+        axes.set_axis_off()
+        for x, y in [(800, 300), (1600, 900)]:
+            axes.add_patch(matplotlib.patches.Circle((x, y), 50))
+        axes.scatter([2400], [600], s=(0.1 * 72)**2, linewidths=0)  # a circle of 0.1 inch
+        figure.savefig(self.folder / "device.svg")
+        np.testing.assert_allclose(self.circles_of("device.svg", droplet=0.2 * 25.4e-3) / 25.4, [(800, 300, 100), (1600, 900, 100), (2400, 600, 100)], rtol=1e-3)
+
+    def test_svg_in_the_style_of_inkscape(self):
+        self.write("device.svg", """<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" width="3.6mm" height="1.2mm" viewBox="0 0 3.6 1.2"
+ xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"><g inkscape:groupmode="layer" transform="translate(1,-1)">
+<rect style="fill:none;stroke:#000000" width="3.6" height="1.2" x="-1" y="1"/>
+<g id="g1" transform="matrix(0.8,0.6,-0.6,0.8,0,1)"><circle style="fill:#00ff00" id="c1" cx="0.1" cy="0.1" r="0.05"/></g>
+<use x="0" y="0" xlink:href="#g1" transform="translate(1)"/></g>
+<g style="display:none"><circle cx="2" cy="0.5" r="0.2"/></g><text x="1" y="1">note</text></svg>""")
+        np.testing.assert_allclose(self.circles_of("device.svg"), [(1020, 1060, 100), (2020, 1060, 100)], atol=0.02)
+        self.assertEqual(dict(self.drawing.skipped), {"text": 1})
+
+    # DXF
+
+    def test_dxf_arrays_of_blocks(self):
+        drawing, space = self.dxf()
+        drawing.blocks.new("POST").add_circle((0, 0), 50)
+        space.add_blockref("POST", (100, 100), dxfattribs={"row_count": 5, "column_count": 8, "row_spacing": 200, "column_spacing": 300})
+        np.testing.assert_allclose(self.saved(drawing), [(100 + 300 * i, 100 + 200 * j, 100) for i in range(8) for j in range(5)], atol=1e-9)
+
+    def test_dxf_circles_in_mirrored_blocks_and_with_an_extrusion(self):
+        drawing, space = self.dxf()
+        drawing.blocks.new("POST").add_circle((10, 0), 50)
+        space.add_blockref("POST", (800, 300), dxfattribs={"xscale": -1})
+        space.add_blockref("POST", (1200, 300), dxfattribs={"yscale": -2, "xscale": 2, "rotation": 90})
+        space.add_circle((-1600, 900), 50, dxfattribs={"extrusion": (0, 0, -1)})
+        space.add_lwpolyline([(-1950, 300, 1), (-2050, 300, 1)], format="xyb", close=True, dxfattribs={"extrusion": (0, 0, -1)})
+        np.testing.assert_allclose(self.saved(drawing), [(790, 300, 100), (1200, 320, 200), (1600, 900, 100), (2000, 300, 100)], atol=0.01)
+
+    def test_dxf_polylines_with_a_width(self):
+        drawing, space = self.dxf()
+        donut = [(475, 600, 50, 50, 1), (525, 600, 50, 50, 1)]  # a disc of 100, as DONUT draws it
+        space.add_lwpolyline(donut, format="xyseb", close=True)
+        space.add_lwpolyline([(950, 600, 1), (1050, 600, 1)], format="xyb", close=True, dxfattribs={"const_width": 20})
+        np.testing.assert_allclose(self.saved(drawing), [(500, 600, 100), (1000, 600, 120)], atol=0.02)
+        space.add_lwpolyline([(2000, 600), (2300, 600)], dxfattribs={"const_width": 40})
+        drawing.saveas(self.folder / "device.dxf")
+        bar, = self.device("device.dxf").others
+        np.testing.assert_allclose([*bar.min(axis=0) * 200, *bar.max(axis=0) * 200], [2000, 580, 2300, 620], atol=0.01)
+
+    def test_dxf_edge_with_a_width_ends_at_its_inner_side(self):
+        drawing, space = self.dxf()
+        space.add_lwpolyline(box(1000, 100, 2000, 700), close=True, dxfattribs={"const_width": 20})
+        space.add_circle((1500, 400), 50)
+        np.testing.assert_allclose(self.saved(drawing), [(490, 290, 100)], atol=0.01)
+
+    def test_dxf_shows_what_the_drawing_program_shows(self):
+        drawing, space = self.dxf()
+        drawing.layers.add("OFF").off()
+        drawing.layers.add("FROZEN").freeze()
+        drawing.layers.add("Posts")
+        block = drawing.blocks.new("POST")
+        block.add_circle((0, 0), 40)
+        block.add_circle((0, 300), 60, dxfattribs={"layer": "Posts"})
+        for x, layer in [(500, "OFF"), (1000, "FROZEN"), (1500, "Posts")]:
+            space.add_circle((x, 900), 50, dxfattribs={"layer": layer})
+            space.add_blockref("POST", (x, 300), dxfattribs={"layer": layer})
+        space.add_circle((2000, 300), 50, dxfattribs={"layer": "HIDE"})
+        drawing.saveas(self.folder / "device.dxf")
+        text = (self.folder / "device.dxf").read_text()
+        self.write("device.dxf", text.replace("\nHIDE\n100\n", "\n0\n 60\n1\n100\n"))
+        expected = [(500, 600, 120), (1500, 300, 80), (1500, 600, 120), (1500, 900, 100)]
+        np.testing.assert_allclose(self.circles_of("device.dxf"), expected, atol=1e-9)
+        self.assertEqual(dict(self.drawing.skipped), {"CIRCLE on layer OFF, which is off": 2, "CIRCLE on frozen layer FROZEN": 1, "INSERT on frozen layer FROZEN": 1, "invisible CIRCLE": 1})
+        self.assertEqual(len(self.saved(drawing, layer="POSTS")), 4)
+        space.add_blockref("LIBRARY", (0, 0))
+        drawing.saveas(self.folder / "device.dxf")
+        self.refused("device.dxf", "inserts 'LIBRARY', which is not in the file", "external references")
+
+    def test_dxf_hatches(self):
+        drawing, space = self.dxf()
+        space.add_hatch().paths.add_edge_path().add_arc((500, 600), 50, 0, 360)
+        space.add_hatch().paths.add_polyline_path([(950, 600, 1), (1050, 600, 1)], is_closed=True)
+        space.add_circle((500, 600), 50)
+        np.testing.assert_allclose(self.saved(drawing), [(500, 600, 100), (1000, 600, 100)], atol=0.02)
+        self.assertEqual(self.drawing.duplicates, 1)
+        frame = space.add_hatch()
+        for edge in (box(-100, -100, 3700, 1300), box(100, 100, 3500, 1100)):
+            frame.paths.add_polyline_path(edge, is_closed=True)
+        np.testing.assert_allclose(self.saved(drawing), [(400, 500, 100), (900, 500, 100)], atol=0.02)
+        crossing = space.add_hatch()
+        for edge in (box(2000, 300, 2100, 400), [(2000, 300), (2100, 400), (2100, 300), (2000, 400)]):
+            crossing.paths.add_polyline_path(edge, is_closed=True)
+        drawing.saveas(self.folder / "device.dxf")
+        self.refused("device.dxf", "x=2040, y=340", "crosses itself")
+
+    def test_dxf_units(self):
+        for unit, metres in [(9, 25.4e-6), (1, 25.4e-3), (8, 25.4e-9), (14, 0.1)]:
+            drawing, space = self.dxf(unit)
+            space.add_circle((500, 600), 50)
+            drawing.saveas(self.folder / "device.dxf")
+            self.assertAlmostEqual(self.device("device.dxf").droplet_metres, 200e-6)
+            self.assertAlmostEqual(self.drawing.metres / metres, 1)
+        drawing, _ = self.dxf(19)
+        drawing.saveas(self.folder / "device.dxf")
+        self.refused("device.dxf", "$INSUNITS=19", "13 for um")
+        self.assertEqual(shapes.length_in_metres("8mil", "--droplet"), 8 * 25.4e-6)
+
+    def test_dxf_in_the_style_of_librecad(self):
+        pairs = ["0", "SECTION", "2", "HEADER", "9", "$ACADVER", "1", "AC1009", "0", "ENDSEC", "0", "SECTION", "2", "ENTITIES"]
+        for x, y in ROW:
+            pairs += ["0", "CIRCLE", "8", "0", "62", "256", "10", f"{200 * x:g}", "20", f"{200 * y:g}", "30", "0.0", "40", "50"]
+        corners = box(0, 0, 3600, 1200)
+        for (x, y), (end_x, end_y) in zip(corners, corners[1:] + corners[:1]):
+            pairs += ["0", "LINE", "8", "0", "10", str(x), "20", str(y), "30", "0.0", "11", str(end_x), "21", str(end_y), "31", "0.0"]
+        self.write("device.dxf", "".join(f"{word}\r\n" for word in [*pairs, "0", "ENDSEC", "0", "EOF"]))
+        self.assertIsNone(readers.read(self.folder / "device.dxf").metres)
+        np.testing.assert_allclose(self.circles_of("device.dxf", unit=1e-6), sorted((200 * x, 200 * y, 100) for x, y in ROW), atol=1e-6)
+
+    # GDSII
+
+    def test_gdsii_units(self):
+        (self.folder / "device.gds").write_bytes(gdsii([box(0, 0, 4000, 1000), box(500, 500, 600, 600)], 25.4e-6))
+        device = self.device("device.gds")
+        self.assertAlmostEqual(device.length * 0.2, 101.6, places=6)
+        self.assertEqual(self.drawing.unit, "mil")
+        self.refuse_analysis("circles", "device.gds", "--droplet", "200um", "--output", "posts", "--unit", "um", words=["--unit um contradicts", "the drawing says mil"])
+
+    def test_gdsii_circles_that_the_writer_cut(self):
+        import gdspy
+
+        cell = gdspy.Cell("DEVICE", exclude_from_current=True)
+        for x in (500, 800):
+            cell.add(gdspy.Round((x, 600), 50, number_of_points=360, max_points=60))
+        cell.add([gdspy.Rectangle((0, 0), (3600, 1200)), gdspy.Rectangle((0, 0), (3600, 1200)), gdspy.Rectangle((0, 0), (3600, 20))])
+        library = gdspy.GdsLibrary()
+        library.add([cell])
+        library.write_gds(str(self.folder / "device.gds"))
+        self.assertGreater(len(readers.read(self.folder / "device.gds").outlines), 10)
+        np.testing.assert_allclose(self.circles_of("device.gds"), [(500, 580, 100), (800, 580, 100)], atol=0.02)
+        self.assertEqual((self.drawing.united[1], self.drawing.duplicates), (2, 1))
+        told = self.draw("circles", "device.gds", "--droplet", "200um", "--output", "posts").stdout
+        self.assertRegex(told, r"read \d+ objects; \d+ outlines that touch united into 2 outlines; 1 duplicate ignored; 1 unit is 1 um, 0.005 droplet diameters")
+        third = [(500 + 50 * np.cos(angle), 600 + 50 * np.sin(angle)) for angle in np.linspace(0, 2 * np.pi / 3, 41)]
+        turned = [[((x - 500) * c - (y - 600) * s + 500, (x - 500) * s + (y - 600) * c + 600) for x, y in [(500, 600), *third]]
+                  for c, s in [(np.cos(angle), np.sin(angle)) for angle in 2 * np.pi / 3 * np.arange(3)]]
+        (self.folder / "thirds.gds").write_bytes(gdsii([box(0, 0, 3600, 1200), *turned], 1e-6))
+        np.testing.assert_allclose(self.circles_of("thirds.gds"), [(500, 600, 100)], atol=0.1)
+
+    def test_gdsii_that_gdspy_would_read_in_part_is_refused(self):
+        a_box = record(0x2D) + record(13, 2, struct.pack(">h", 1)) + record(0x2E, 2, struct.pack(">h", 0)) + record(16, 3, struct.pack(">10i", *[0] * 10)) + record(17)
+        reference = record(10) + record(0x12, 6, b"NONE") + record(16, 3, struct.pack(">2i", 0, 0)) + record(17)
+        for more, words in [(a_box, ["BOX", "polygons"]), (reference, ["lacks the cells NONE"])]:
+            (self.folder / "device.gds").write_bytes(gdsii([box(0, 0, 100, 100)], 1e-6, more))
+            self.refused("device.gds", *words)
+
+    def test_a_post_of_uneven_corners_becomes_a_circle_around_its_centroid(self):
+        corners = [(500, 500), *((500 + i, 500) for i in range(1, 100)), (600, 500), (600, 600), (500, 600)]
+        (self.folder / "device.gds").write_bytes(gdsii([box(0, 0, 3600, 1200), corners], 1e-6))
+        np.testing.assert_allclose(shapes.as_circles(self.device("device.gds")).circles * 200, [(550, 550, 2 * np.sqrt(1e4 / np.pi))], rtol=1e-6)
+
+    # A part of a drawing
+
+    def test_a_region_of_a_drawing_with_ports_and_marks(self):
+        drawing, space = self.dxf()
+        for x, y in [(800, 300), (1600, 900), (3300, 600), (1000, 290)]:
+            space.add_circle((x, y), 50)
+        space.add_circle((200, 600), 150)  # a port
+        space.add_lwpolyline(box(300, 250, 3300, 950), close=True)  # the channel
+        space.add_lwpolyline([(3590, 10), (3580, 10), (3580, 30)], close=True)  # a mark
+        space.add_line((3400, 0), (3400, 1200))
+        device = self.saved(drawing, region=(500, 1200, 2000, 0))
+        np.testing.assert_allclose(device, [(300, 50, 100), (500, 40, 100), (1100, 650, 100)], atol=1e-9)
+        self.assertEqual(self.drawing.outside, 4)
+        told = self.draw("circles", "device.dxf", "--droplet", "200um", "--output", "posts", "--region", "500,1200,2000,0").stdout
+        self.assertIn("device 7.5 x 3.5 droplet diameters (the region)", told)
+        self.assertIn("4 outside the region", told)
+        self.refuse_analysis("circles", "device.dxf", "--droplet", "200um", "--output", "x", "--region", "500,0,500,9", words=["--region", "x0,y0,x1,y1"])
+        self.refuse_analysis("circles", "device.dxf", "--droplet", "200um", "--output", "x", "--region", "2500,300,3100,800", words=["no posts", "--region"])
+
+    def test_a_region_is_given_as_the_program_shows_it(self):
+        np.testing.assert_allclose(self.svg('<circle cx="800" cy="300" r="50"/><circle cx="800" cy="900" r="50"/>', region=(700, 200, 1000, 400)), [(100, 100, 100)], atol=0.01)
+        self.picture("L", 255, 0, "mask.png", extra=[(100, 50)])
+        np.testing.assert_allclose(self.circles_of("mask.png", unit=1e-6, region=(0, 0, 300, 110)), [(100.5, 59.5, 61)], atol=0.5)
+
+    # Pictures
+
+    def picture(self, mode, ground, post, name, extra=(), **options):
+        image = Image.new(mode, (900, 300), ground)
+        pen = ImageDraw.Draw(image)
+        for x, y in [(200, 150), (600, 150), *extra]:
+            pen.ellipse([x - 30, y - 30, x + 30, y + 30], fill=post)
+        image.save(self.folder / name, **options)
+
+    def assert_two(self, name, **options):
+        np.testing.assert_allclose(self.circles_of(name, unit=1e-6, **options), [(200.5, 149.5, 61), (600.5, 149.5, 61)], atol=0.5)
+
+    def test_pictures_in_either_contrast_and_with_a_transparent_ground(self):
+        for mode, ground, post in [("L", 255, 0), ("L", 0, 255), ("RGBA", (0, 0, 0, 0), (0, 0, 0, 255)), ("RGBA", (255, 255, 255, 0), (255, 255, 255, 255)), ("LA", (0, 0), (0, 255)),
+                                   ("1", 1, 0), ("1", 0, 1)]:
+            with self.subTest(mode=mode, ground=ground):
+                self.picture(mode, ground, post, "mask.png")
+                self.assert_two("mask.png")
+        self.picture("L", 0, 255, "mask.png")
+        self.assertIn("the posts are bright (--posts)", self.draw("circles", "mask.png", "--pixel", "2um", "--droplet", "200um", "--output", "posts").stdout)
+        self.assertEqual(len(self.device("mask.png", unit=1e-6, posts="bright").circles), 2)
+        framed = Image.new("L", (900, 300), 255)
+        pen = ImageDraw.Draw(framed)
+        pen.rectangle([0, 0, 899, 299], outline=0, width=5)
+        pen.ellipse([170, 120, 230, 180], fill=0)
+        framed.save(self.folder / "framed.png")
+        self.device("framed.png", unit=1e-6)
+        self.assertEqual(self.drawing.notes, ["the posts are dark (--posts)"])
+
+    def test_pixels_of_tiff_files(self):
+        info = TiffImagePlugin.ImageFileDirectory_v2()
+        for unit, number, metres in [("micron", 0.4, 2.5e-6), ("\\u00B5m", 0.4, 2.5e-6), ("mm", 400, 2.5e-6), ("um", 2, 0.5e-6)]:
+            info[270], info[282], info[283], info[296] = f"ImageJ=1.53t\nunit={unit}\n", number, number, 1
+            self.picture("L", 255, 0, "mask.tif", tiffinfo=info)
+            self.assert_two("mask.tif")
+            self.assertAlmostEqual(self.drawing.metres / metres, 1)
+        self.refuse_analysis("circles", "mask.tif", "--droplet", "200um", "--output", "posts", "--pixel", "2um", words=["--pixel 2um contradicts"])
+        info[283] = 4
+        self.picture("L", 255, 0, "mask.tif", tiffinfo=info)
+        self.refused("mask.tif", "not square")
+        self.picture("L", 255, 0, "mask.tif", dpi=(254, 254))
+        self.refuse_analysis("circles", "mask.tif", "--droplet", "200um", "--output", "posts", words=["--pixel, such as --pixel 2.5um", "would mean 100um, if that is not a printer's"])
+
+    def test_tiff_files_of_another_library(self):
+        import tifffile
+
+        mask = np.full((300, 900), 60000, np.uint16)
+        for x in (200, 600):
+            mask[120:180, x - 30:x + 30] = 100
+        tifffile.imwrite(self.folder / "mask.tif", mask, imagej=True, resolution=(2, 2), metadata={"unit": "um"})
+        self.assertEqual((len(self.device("mask.tif").others), self.drawing.metres), (2, 0.5e-6))
+        tifffile.imwrite(self.folder / "white.tif", np.where(mask > 1000, 0, 255).astype(np.uint8), photometric="miniswhite")
+        self.assertEqual(len(self.device("white.tif", unit=1e-6).others), 2)
+        tifffile.imwrite(self.folder / "stack.tif", np.stack([mask] * 7))
+        self.refused("stack.tif", "several slices", "7 x 300 x 900")
+
+    def test_a_photograph_that_is_stored_turned(self):
+        turned = Image.Exif()
+        turned[274] = 6
+        self.picture("L", 255, 0, "photo.jpg", exif=turned)
+        self.refused("photo.jpg", "upright")
 
 
 NEW = ["length", "side_walls", "entrance", "entrance_from", "entrance_to", "exit", "release_x", "release_y"]

@@ -4,6 +4,7 @@ import json
 import unittest
 
 import h5py
+import pandas
 import stored_rows
 from support import QUICK, SMALL, ProgramTest, table
 
@@ -36,6 +37,17 @@ class Points(PointsTest):
         rows = self.sweep("s.h5", "--points", "p.csv", "seeds=7..8", ranks=2)
         runs = sorted(zip(rows.line_tension, rows.obstacle_gap, rows.seed))
         self.assertEqual(runs, [(0.5, 0.4, 1), (0.5, 0.4, 2), (0.5, 0.4, 3), (2, 0.4, 1), (2, 0.5, 7), (2, 0.5, 8)])
+
+    def test_points_of_spreadsheets_and_pandas(self):
+        frame = pandas.DataFrame({"line-tension": [0.5, 2, 2], "obstacle-gap": [0.4, 0.4, 0.5], "seeds": [1, 2, 3], "vertices": [32, None, 32]})
+        german = "line-tension;obstacle-gap;seeds;vertices;\r\n0,5;0,4;1;32;\r\n2;0,4;2;;\r\n2,0E+00;0,5;3;32;\r\n"
+        texts = {"excel": ("sep=;\r\n" + german).encode("utf-16"), "windows": german.encode("cp1252"), "mac": german.replace("\r\n", "\r").encode("utf-8-sig"),
+                 "pandas": frame.to_csv().encode(), "quoted": frame.to_csv(quoting=1).encode(), "tsv": frame.to_csv(sep="\t", decimal=",").encode()}
+        for name, text in texts.items():
+            with self.subTest(name):
+                (self.folder / "q.csv").write_bytes(text)
+                rows = self.sweep(f"{name}.h5", "--points", "q.csv")
+                self.assertEqual(sorted(zip(rows.line_tension, rows.obstacle_gap, rows.seed)), [(0.5, 0.4, 1), (2, 0.4, 2), (2, 0.5, 3)])
 
     def test_dry_run_status_and_config_know_of_them(self):
         arguments = [*QUICK, "--points", "p.csv"]
@@ -91,6 +103,9 @@ class Points(PointsTest):
                 ("lime-tension\n1\n", ["p.csv line 1", "did you mean line-tension?"]),
                 ("line-tension,line-tension\n1,2\n", ["line-tension", "twice"]),
                 ("line-tension,obstacle-gap\n1\n", ["p.csv line 2", "1 cell", "2 keys"]),
+                ("line-tension;seeds\n1;2,0\n", ["p.csv line 2", "seeds: '2,0'", "decimal comma"]),
+                ("line-tension\n1.234,5\n", ["p.csv line 2", "line-tension: '1.234,5'", "decimal comma"]),
+                ("line-tension,seeds\n\"0,5\",1\n", ["p.csv line 2", "line-tension: '0,5'", "decimal comma"]),
                 ("line-tension\n1\nx\n", ["p.csv line 3", "invalid line-tension=x"]),
                 ("line-tension\n1\n-1\n", ["point 2", "invalid line-tension=-1"]),
                 ("line-tension\n1\n1.0\n", ["point 1 and point 2", "the same run"]),

@@ -17,11 +17,12 @@ import pathlib
 
 import numpy as np
 
-from ..device import lines, readers, rows, shapes
+from ..device import areas, lines, readers, rows, shapes
 from ..drawing import device_plan
 from ..style import Picture
 from ..tools import outputs, rounded
 from ..tools.errors import UserError
+from ..tools.hints import Numbers
 from ..tools.texts import printable
 from . import command_line
 
@@ -37,7 +38,8 @@ def options() -> argparse.Namespace:
     scale.add_argument("--unit", choices=shapes.METRES, help="of a drawing that does not say it")
     scale.add_argument("--pixel", help="size of a pixel of a picture with its unit, such as 2.5um")
     parser.add_argument("--layer", help="of a DXF or GDSII file; without it all count")
-    parser.add_argument("--posts", choices=("dark", "bright"), default="dark", help="of a picture (dark)")
+    parser.add_argument("--posts", choices=("dark", "bright"), help="of a picture (dark, unless border and most of it are dark)")
+    parser.add_argument("--region", type=region_of, help="x0,y0,x1,y1: only this part, in the unit and coordinates that the drawing program shows")
     parser.add_argument("--flow", choices=TURNS, default="right", help="where it goes in the drawing (right)")
     parser.add_argument("--tolerance", type=command_line.between(0.001, 0.5, "a part of the radius"), default=0.04, help="largest deviation of a post from a circle, as a part of its radius (0.04)")
     others = parser.add_mutually_exclusive_group()
@@ -45,6 +47,17 @@ def options() -> argparse.Namespace:
     others.add_argument("--as-circles", action="store_true", help="replace other posts by circles of the same area")
     parser.add_argument("--corner", type=command_line.between(0.01, 1, "a radius in droplet diameters"), default=0.05, help="with --as-rows: radius of rounded corners, in droplet diameters (0.05)")
     return parser.parse_args()
+
+
+def region_of(text: str) -> Numbers:
+    """Two corners, from x0,y0,x1,y1."""
+    try:
+        corners = np.array([float(number) for number in text.split(",")]).reshape(2, 2)
+    except ValueError:
+        corners = np.zeros((2, 2))
+    if not np.isfinite(corners).all() or (corners[0] == corners[1]).any():
+        raise argparse.ArgumentTypeError(f"invalid value: {text} (must be x0,y0,x1,y1: two opposite corners)")
+    return corners
 
 
 def metres_of(arguments: argparse.Namespace, drawing: shapes.Drawing) -> float:
@@ -56,8 +69,8 @@ def metres_of(arguments: argparse.Namespace, drawing: shapes.Drawing) -> float:
         refuse_other_unit(arguments, drawing, metres)
         return metres
     if drawing.metres is None:
-        what = "--pixel, such as --pixel 2.5um" if drawing.frame else "--unit, such as --unit um"
-        raise UserError(f"{arguments.drawing} does not say how long its unit is; give {what}")
+        what = "--pixel, such as --pixel 2.5um" if drawing.is_picture else "--unit, such as --unit um"
+        raise UserError(f"{arguments.drawing} does not say how long its unit is; give {what}{drawing.unit_hint}")
     return drawing.metres
 
 
@@ -86,9 +99,9 @@ def call_of(device: shapes.Device, output: pathlib.Path) -> str:
             f"release=entrance exit={device.length:.6g} ...")
 
 
-def told(device: shapes.Device, drawing: shapes.Drawing) -> list[str]:
+def told(device: shapes.Device, drawing: shapes.Drawing, metres: float) -> list[str]:
     """Describes in words what was read from the drawing."""
-    edge = "its own edge" if device.has_frame else "between its walls" if len(device.walls) == 2 else "no edge is drawn"
+    edge = "the region" if drawing.frame and not drawing.is_picture else "its own edge" if device.has_frame else "between its walls" if len(device.walls) == 2 else "no edge is drawn"
     micrometres = device.droplet_micrometres
     words = [f"{rounded.counted(device.num_posts(), 'post')}, device {device.length:.4g} x {device.width:.4g} droplet diameters ({edge})"]
     if len(device.circles):
@@ -101,9 +114,20 @@ def told(device: shapes.Device, drawing: shapes.Drawing) -> list[str]:
     if number := len(device.walls):
         are = "outline or line as long as the device is taken for a wall" if number == 1 else "outlines or lines as long as the device are taken for walls"
         words.append(f"{number} {are}: side-walls=on")
-    if drawing.joined[0]:
-        words.append(f"{rounded.counted(drawing.joined[0], 'line')} closed into {rounded.counted(drawing.joined[1], 'outline')}")
-    return words + skipped(device, drawing)
+    return [*words, summary(device, drawing, metres)]
+
+
+def summary(device: shapes.Device, drawing: shapes.Drawing, metres: float) -> str:
+    """One line: what was read, joined, united, ignored, skipped and scaled."""
+    words = [f"read {rounded.counted(drawing.objects, 'object')}", *drawing.notes]
+    for (number, result), verb in ((drawing.joined, "closed"), (drawing.united, "that touch united")):
+        what = rounded.counted(number, "line" if verb == "closed" else "outline")
+        words += [f"{what} {verb} into {rounded.counted(result, 'outline')}"] if number else []
+    words += [f"{rounded.counted(drawing.duplicates, 'duplicate')} ignored"] if drawing.duplicates else []
+    words += [f"{drawing.outside} outside the region"] if drawing.outside else []
+    own = metres * float(np.hypot(*np.diff(drawing.from_own([(0, 0), (1, 0)]), axis=0)[0]))
+    scale = f"1 {'pixel' if drawing.is_picture else 'unit'} is {own / shapes.METRES['um']:.6g} um, {own / device.droplet_metres:.6g} droplet diameters"
+    return "; ".join([*words, *skipped(device, drawing), scale])
 
 
 def skipped(device: shapes.Device, drawing: shapes.Drawing) -> list[str]:
@@ -114,7 +138,7 @@ def skipped(device: shapes.Device, drawing: shapes.Drawing) -> list[str]:
         return []
     names = ", ".join(f"{count} {kind}" for kind, count in sorted(counts.items()))
     install = "" if drawing.can_join else ", or install python3-shapely, which joins lines"
-    remedy = f" (lines red in the picture); draw closed outlines{install}; straight walls at both sides are side-walls=on" if device.lines else ""
+    remedy = f" (lines red in the picture; draw closed outlines{install}; straight walls at both sides are side-walls=on)" if device.lines else ""
     return [f"skipped: {names}{remedy}"]
 
 
@@ -136,9 +160,10 @@ def body() -> int:
     outputs.refuse_unwritable(table, "csv", arguments.drawing)
     drawing = readers.read(arguments.drawing, arguments.layer, arguments.posts)
     lines.join(drawing)
+    areas.tidy(drawing, arguments.region, arguments.tolerance)
     metres = metres_of(arguments, drawing)
     device = shapes.understood(drawing, metres, droplet, arguments.tolerance, TURNS[arguments.flow])
-    shapes.refuse_unlikely(device, unit_in_words(arguments, drawing), metres, remedy_of_unit(arguments, drawing), drawing.frame is not None)
+    shapes.refuse_unlikely(device, unit_in_words(arguments, drawing), metres, remedy_of_unit(arguments, drawing), drawing.is_picture)
     made: list[str] = []
     if arguments.as_rows and device.others:
         device, made = in_rows(device, arguments.corner)
@@ -146,7 +171,7 @@ def body() -> int:
         device = shapes.as_circles(device)
     picture = Picture(device_plan.understood(device, arguments.drawing.name), f"python3 -m clogsweep circles {arguments.drawing}")
     command_line.tell(f"{picture.save(arguments.output)} (and .pdf)")
-    command_line.tell("\n".join(told(device, drawing) + made))
+    command_line.tell("\n".join(told(device, drawing, metres) + made))
     if device.others:
         raise UserError(f"{rounded.counted(len(device.others), 'post')} of {len(device.others) + len(device.circles)} not round, red in the picture; no {table} "
                         "was written. Use --as-rows for rows of circles along their outlines, --as-circles for circles of the same area, or a larger --tolerance")
@@ -158,7 +183,7 @@ def body() -> int:
                         "Separate them in the drawing")
     outside = device.circles[np.any((device.circles[:, :2] < 0) | (device.circles[:, :2] >= (device.length, device.width)), axis=1)]
     if len(outside):
-        raise UserError(f"{rounded.counted(len(outside), 'post')} with the centre outside the edge of the device; no {table} was written. Draw a wider edge, or cut these posts away")
+        raise UserError(f"{rounded.counted(len(outside), 'post')} with the centre outside the edge of the device; no {table} was written. Draw a wider edge, cut these posts away, or choose another --region")
     with outputs.replaced(table) as fresh:
         fresh.write_text(shapes.csv_of(device, printable(f"{arguments.drawing.name}, by clogsweep")), encoding="utf-8")
     command_line.tell(f"{table}\n{call_of(device, arguments.output)}")

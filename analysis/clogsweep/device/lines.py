@@ -8,7 +8,7 @@ import numpy as np
 
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
-from .readers import library
+from .libraries import library
 from .shapes import Drawing
 
 MISSED = 1e-5  # of the size of all lines, by which ends may miss each other

@@ -3,142 +3,60 @@
 from __future__ import annotations
 
 import collections
-import importlib
 import pathlib
-from collections.abc import Callable, Iterator
-from typing import Any
+import warnings
+from collections.abc import Callable
 
 import numpy as np
 
 from ..tools.errors import UserError
+from .dxf import read_dxf
+from .libraries import library
 from .shapes import Drawing
-from .walls import area
-
-PICTURES = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg")
-UNITS_OF_DXF = {1: 25.4e-3, 4: 1e-3, 5: 1e-2, 6: 1.0, 12: 1e-9, 13: 1e-6}  # $INSUNITS
-METRES_IN_PIXEL_OF_SVG = 25.4e-3 / 96
-LENGTHS_OF_SVG = ("mm", "cm", "in", "pt", "pc", "Q")
-FLATNESS = 1e-3  # of a curve's size, that straight pieces may be off
+from .pictures import ENDINGS, read_picture
+from .svg import read_svg
 
 
-def library(name: str, package: str) -> Any:
-    """@throws UserError  that names the package of Debian"""
-    try:
-        return importlib.import_module(name)
-    except ImportError as error:
-        raise UserError(f"cannot read such a drawing ({error}); apt install {package}, and start /usr/bin/python3") from error
-
-
-def read(path: pathlib.Path, layer: str | None = None, posts: str = "dark") -> Drawing:
-    """@param layer  of a DXF or GDSII file, if only that one counts; @param posts  of a picture: dark or bright. @throws UserError"""
+def read(path: pathlib.Path, layer: str | None = None, posts: str | None = None) -> Drawing:
+    """@param layer  of a DXF or GDSII file, if only that one counts; @param posts  of a picture: dark or bright; None: found out. @throws UserError"""
     readers: dict[str, Callable[[], Drawing]] = {".dxf": lambda: read_dxf(path, layer), ".gds": lambda: read_gds(path, layer), ".gdsii": lambda: read_gds(path, layer),
-                                                 ".svg": lambda: read_svg(path), **{ending: lambda: read_picture(path, posts) for ending in PICTURES}}
+                                                 ".svg": lambda: read_svg(path), **{ending: lambda: read_picture(path, posts) for ending in ENDINGS}}
     reader = readers.get(path.suffix.lower())
     if reader is None:
         raise UserError(f"cannot read {path} (its ending is none of {', '.join(readers)}); save the drawing as one of these")
     if not path.is_file():
         raise UserError(f"cannot read {path} (no such file); check the name")
     try:
-        return reader()
+        found = reader()
+        found.objects = len(found.circles) + len(found.outlines) + len(found.pieces)
+        return found
     except UserError:
         raise
     except Exception as error:  # of many libraries
         raise UserError(f"cannot read {path} ({type(error).__name__}: {error}); is it really of this kind?") from error
 
 
-def read_dxf(path: pathlib.Path, layer: str | None) -> Drawing:
-    """Circles and closed outlines of the model space, those in blocks, too."""
-    ezdxf = library("ezdxf", "python3-ezdxf")
-    paths = library("ezdxf.path", "python3-ezdxf")
-    document = ezdxf.readfile(path)
-    found = Drawing([], [], UNITS_OF_DXF.get(document.header.get("$INSUNITS", 0)), skipped=collections.Counter())
-
-    def simple(entities: Any) -> Iterator[Any]:
-        for entity in entities:
-            if entity.dxftype() == "INSERT":
-                yield from simple(entity.virtual_entities())
-            else:
-                yield entity
-
-    for entity in simple(document.modelspace()):
-        kind = entity.dxftype()
-        if layer is not None and entity.dxf.layer != layer:
-            found.skipped[f"{kind} on layer {entity.dxf.layer}"] += 1
-        elif kind == "CIRCLE":
-            found.circles.append((entity.dxf.center.x, entity.dxf.center.y, 2 * entity.dxf.radius))
-        elif kind in ("LINE", "ARC", "LWPOLYLINE", "POLYLINE", "ELLIPSE", "SPLINE"):
-            curve = paths.make_path(entity)
-            corners = np.array([(point.x, point.y) for point in curve.flattening(FLATNESS * size_of(curve))])
-            if curve.is_closed or getattr(entity, "is_closed", False):
-                found.outlines.append(corners)
-            else:
-                found.pieces.append((kind if kind in ("LINE", "ARC") else f"open {kind}", corners))
-        else:
-            found.skipped[kind] += 1
-    return found
-
-
-def size_of(curve: Any) -> float:
-    """The longer edge of the box around a curve's control points; 1 if they coincide."""
-    points = np.array([(point.x, point.y) for point in curve.control_vertices()])
-    return float(np.ptp(points, axis=0).max()) or 1.0
-
-
 def read_gds(path: pathlib.Path, layer: str | None) -> Drawing:
     """Polygons of the top cells, with all that they refer to."""
     gdspy = library("gdspy", "python3-gdspy")
-    content = gdspy.GdsLibrary(infile=str(path))
-    found = Drawing([], [], content.unit, skipped=collections.Counter())
-    for cell in content.top_level():
-        for (of_layer, _), polygons in cell.get_polygons(by_spec=True).items():
-            if layer is not None and str(of_layer) != layer:
-                found.skipped[f"polygons on layer {of_layer}"] += len(polygons)
-            else:
-                found.outlines += [np.asarray(polygon, dtype=float) for polygon in polygons]
-    return found
-
-
-def read_svg(path: pathlib.Path) -> Drawing:
-    """Circles, and closed outlines with their curves."""
-    svgelements = library("svgelements", "python3-svgelements")
-    content = svgelements.SVG.parse(str(path), reify=True)
-    width = str(content.values.get("width", "")).strip()
-    found = Drawing([], [], METRES_IN_PIXEL_OF_SVG, unit_is_assumed=not width.endswith(LENGTHS_OF_SVG), skipped=collections.Counter())
-    found.unit_in_words = "px, 96 in an inch" if found.unit_is_assumed else width.lstrip("0123456789.eE+- ")
-    for element in content.elements():
-        if not isinstance(element, svgelements.Shape) or element.values.get("visibility") == "hidden":
-            continue
-        for part in svgelements.Path(element).as_subpaths():
-            outline = svgelements.Path(part)
-            number = max(64, 16 * len(outline))
-            corners = np.array([(float(point.x), -float(point.y)) for point in (outline.point(at) for at in np.linspace(0, 1, number))])
-            if len(corners) < 3 or not np.allclose(corners[0], corners[-1], atol=1e-3 * float(np.ptp(corners, axis=0).max())):
-                found.pieces.append(("open outline", corners))
-            else:
-                found.outlines.append(corners[:-1])
-    return found
-
-
-def read_picture(path: pathlib.Path, posts: str) -> Drawing:
-    """Outlines of the dark or bright parts, between pixels; the unit is a pixel. Specks of a few pixels do not count."""
-    io, measure, filters, colour = (library(f"skimage.{name}", "python3-skimage") for name in ("io", "measure", "filters", "color"))
-    image = np.asarray(io.imread(path), dtype=float)
-    if image.ndim == 3:
-        image = colour.rgb2gray(image[..., :3] / max(image[..., :3].max(), 1)) if image.shape[2] >= 3 else image[..., 0]
-    if image.ndim != 2 or np.ptp(image) == 0:
-        raise UserError(f"cannot read {path} (a picture of one colour, or of several slices); give a mask in black and white")
-    threshold = filters.threshold_otsu(image)
-    level = (image[image <= threshold].mean() + image[image > threshold].mean()) / 2  # half-way, so that edges lie between pixels
-    sign = 1 if posts == "bright" else -1
-    high = image.shape[0]
-    found = Drawing([], [], None, frame=(0.0, 0.0, float(image.shape[1]), float(high)), skipped=collections.Counter())
-    fewest = 12  # corners of an outline: a speck of three pixels has so many
-    for contour in measure.find_contours(sign * image, sign * level, positive_orientation="high"):
-        outline = np.column_stack([contour[:, 1] + 0.5, high - contour[:, 0] - 0.5])
-        if len(outline) < fewest:
-            found.skipped["speck"] += 1
-        elif np.allclose(outline[0], outline[-1]) and area(outline) < 0:
-            found.skipped["hole"] += 1
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", UserWarning)  # for records that gdspy would ignore
+            content = gdspy.GdsLibrary(infile=str(path), units="import")
+    except UserWarning as warning:
+        raise UserError(f"cannot read {path} ({warning}); convert everything to polygons in the layout program") from warning
+    missing = {str(part.ref_cell) for cell in content.cell_dict.values() for part in cell.references if not isinstance(part.ref_cell, gdspy.Cell)}
+    if missing:
+        raise UserError(f"cannot read {path} (it lacks the cells {', '.join(sorted(missing))}, to which it refers); save it with these")
+    cells = content.top_level()
+    drawn = [item for cell in cells for item in cell.get_polygons(by_spec=True).items()]
+    texts = sum(len(cell.get_labels()) for cell in cells)
+    found = Drawing([], [], float(f"{content.unit:.12g}"), skipped=collections.Counter({"text": texts} if texts else {}))
+    if len(cells) > 1:
+        found.notes.append(f"{len(cells)} top cells, drawn together: {', '.join(cell.name for cell in cells)}")
+    for (of_layer, _), polygons in drawn:
+        if layer is not None and str(of_layer) != layer:
+            found.skipped[f"polygons on layer {of_layer}"] += len(polygons)
         else:
-            found.outlines.append(outline)
+            found.outlines += [np.asarray(polygon, dtype=float) for polygon in polygons]
     return found

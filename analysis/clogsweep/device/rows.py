@@ -10,7 +10,7 @@ import numpy as np
 
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
-from .readers import library
+from .libraries import library
 from .shapes import Device
 
 SPACING = 1 / 3  # of a row's circles, over their radius: the wall is rough by 1.4 % of the radius

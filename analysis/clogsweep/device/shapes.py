@@ -5,17 +5,21 @@ from __future__ import annotations
 import dataclasses
 import functools
 import re
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
 from . import walls
-from .walls import area
+from .walls import area, centroid
 
-METRES = {"nm": 1e-9, "um": 1e-6, "µm": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 25.4e-3}
+METRES = {"nm": 1e-9, "um": 1e-6, "µm": 1e-6, "mm": 1e-3, "cm": 1e-2, "m": 1.0, "in": 25.4e-3, "mil": 25.4e-6}
 MARGIN = 0.5  # between the posts and the edge of a device without a drawn one [sigma]
 NEAR = 0.01  # by which a line may be beyond the edge that it is part of [sigma]
+SAME = 1e-3  # of a circle's diameter, by which two may differ that are one
+WINDOW = 1000  # circles along x, among which a circle that is drawn twice is looked for
 LONGEST = 10000  # side of a device that is not taken for a mistake of the unit [sigma]
 Line = tuple[str, Numbers]  # kind of an object in a drawing, and its points (n, 2)
 
@@ -27,13 +31,22 @@ class Drawing:
     circles: list[tuple[float, float, float]]  # x, y, diameter
     outlines: list[Numbers]  # corners (n, 2); the last one is joined to the first unless the border of a picture cuts it
     metres: float | None  # in one unit; None if the drawing does not say
-    frame: tuple[float, float, float, float] | None = None  # left, bottom, right, top, if the drawing has edges of its own
+    frame: tuple[float, float, float, float] | None = None  # left, bottom, right, top: of a picture, or of the region that the user gave
+    is_picture: bool = False  # of pixels
     unit_is_assumed: bool = False
+    holes: list[Numbers] = dataclasses.field(default_factory=list)  # in outlines: none is a post, but one may be the device's edge
     pieces: list[Line] = dataclasses.field(default_factory=list)  # open lines, before they are joined
     lines: list[Line] = dataclasses.field(default_factory=list)  # the pieces that do not form a closed outline
+    objects: int = 0  # circles, outlines and lines that were read
     joined: tuple[int, int] = (0, 0)  # how many pieces were joined, and into how many outlines
+    united: tuple[int, int] = (0, 0)  # how many outlines touched, and how many they became
+    duplicates: int = 0  # outlines and circles that were drawn twice
+    unit_hint: str = ""  # on a unit that the drawing may mean
+    notes: list[str] = dataclasses.field(default_factory=list)  # on how it was read
+    outside: int = 0  # outlines, circles and lines out of the region that the user gave
     can_join: bool = True
     unit_in_words: str | None = None  # its name, if that is not the length `metres`
+    from_own: Callable[[Any], Numbers] = np.asarray  # points (n, 2) as a drawing program shows them, into coordinates of this
     skipped: dict[str, int] = dataclasses.field(default_factory=dict)  # kinds of objects that are no posts, lines apart, with their numbers
 
     @property
@@ -108,13 +121,13 @@ class Device:
 
 def length_in_metres(text: str, option: str) -> float:
     """A length in metres from text such as 200um. @throws UserError"""
-    found = re.fullmatch(r"([0-9.]+(?:e[+-]?[0-9]+)?)(nm|um|µm|mm|cm|m|in)", text)
+    found = re.fullmatch(r"([0-9.]+(?:e[+-]?[0-9]+)?)(nm|um|µm|mm|cm|mil|m|in)", text)
     try:
         value = float(found[1]) * METRES[found[2]] if found else 0.0
     except ValueError:
         value = 0.0
     if value <= 0:
-        raise UserError(f"invalid {option}: {text} (must be a length with its unit, nm, um, mm, cm, m or in) try 200um")
+        raise UserError(f"invalid {option}: {text} (must be a length with its unit, nm, um, mm, cm, m, in or mil) try 200um")
     return value
 
 
@@ -168,36 +181,59 @@ def fitted_circle(outline: Numbers, is_closed: bool, tolerance: float) -> tuple[
     return float(middle[0] + centre[0]), float(middle[1] + centre[1]), 2 * radius
 
 
-def frame_among(outlines: list[Numbers], circles: list[tuple[float, float, float]]) -> int | None:
-    """Index of the outline that holds everything else: the edge of the device."""
-    if len(outlines) + len(circles) < 2:
+def edges_among(outlines: list[Numbers], holes: list[Numbers], centres: Numbers) -> tuple[Numbers | None, list[Numbers]]:
+    """The edge of the device, and the outlines that are none: an outline that holds everything else, or a rectangle or hole in it that
+    holds the rest. @param centres  of circles"""
+    edge: Numbers | None = None
+    while (index := holder_among(outlines, centres)) is not None and (edge is None or walls.is_rectangle(outlines[index])):
+        edge, outlines = outlines[index], outlines[:index] + outlines[index + 1:]
+    for hole in sorted(holes, key=lambda hole: abs(area(hole))):
+        if (outlines or len(centres)) and holds(hole, [*outlines, centres]):
+            return hole, outlines
+    return edge, outlines
+
+
+def holder_among(outlines: list[Numbers], centres: Numbers) -> int | None:
+    """Index of the outline that holds everything else."""
+    if len(outlines) + len(centres) < 2:
         return None
-    lows = np.array([outline.min(axis=0) for outline in outlines] or np.empty((0, 2)))
-    highs = np.array([outline.max(axis=0) for outline in outlines] or np.empty((0, 2)))
-    for index in range(len(outlines)):
-        holds_outlines = (lows[index] <= lows).all() and (highs[index] >= highs).all()
-        centres = np.array([circle[:2] for circle in circles] or np.empty((0, 2)))
-        if holds_outlines and (lows[index] <= centres).all() and (centres <= highs[index]).all():
-            return index
-    return None
+    return next((index for index, outline in enumerate(outlines) if holds(outline, [*outlines, centres])), None)
+
+
+def holds(outline: Numbers, others: list[Numbers]) -> bool:
+    """Whether all points are in the box around an outline."""
+    points = np.vstack(others)
+    return bool((outline.min(axis=0) <= points.min(axis=0)).all() and (outline.max(axis=0) >= points.max(axis=0)).all())
+
+
+def distinct(circles: Numbers) -> Numbers:
+    """Without circles that are drawn twice, which may differ by what curves lose in a drawing."""
+    kept: list[int] = []
+    for index in np.argsort(circles[:, 0], kind="stable"):
+        near = np.array(kept[-WINDOW:], dtype=int)
+        if not (np.abs(circles[near] - circles[index]) <= SAME * circles[index, 2]).all(axis=1).any():
+            kept.append(int(index))
+    return circles[sorted(kept)]
 
 
 def understood(drawing: Drawing, metres: float, droplet: float, tolerance: float, turns: int) -> Device:
     """@param metres  in a unit of the drawing; @param droplet  its diameter [m]; @param turns  by 90 degrees counter-clockwise,
     until the flow goes along +x. @throws UserError  if nothing is there"""
-    outlines = list(drawing.outlines)
-    frame: tuple[float, ...] | None = drawing.frame
-    if frame is None and (index := frame_among(outlines, drawing.circles)) is not None:
-        edge = outlines.pop(index)
-        frame = (*edge.min(axis=0), *edge.max(axis=0))
-    circles, others = list(drawing.circles), []
+    found, others = list(drawing.circles), []
+    outlines = drawing.outlines
+    edge: Numbers | None = None
+    if not drawing.is_picture:
+        edge, outlines = edges_among(outlines, drawing.holes, np.reshape([circle[:2] for circle in found], (-1, 2)))
     for outline in outlines:
-        is_closed = drawing.frame is None or bool(np.allclose(outline[0], outline[-1]))
+        is_closed = not drawing.is_picture or bool(np.allclose(outline[0], outline[-1]))
         circle = fitted_circle(outline, is_closed, tolerance)
-        circles.append(circle) if circle else others.append(outline)
-    if not circles and not others:
-        raise UserError("the drawing holds no posts; choose another --layer, or close the outlines")
-    return placed(drawing, np.array(circles or np.empty((0, 3))), others, frame, metres / droplet, droplet, turns)
+        found.append(circle) if circle else others.append(outline)
+    if not found and not others:
+        raise UserError("the drawing holds no posts; choose another --layer or --region, or close the outlines")
+    circles = distinct(np.reshape(found, (-1, 3))) if found else np.empty((0, 3))
+    drawing.duplicates += len(found) - len(circles)
+    frame = drawing.frame if edge is None else (*edge.min(axis=0), *edge.max(axis=0))
+    return placed(drawing, circles, others, frame, metres / droplet, droplet, turns)
 
 
 def placed(drawing: Drawing, circles: Numbers, others: list[Numbers], frame: tuple[float, ...] | None, scale: float, droplet: float, turns: int) -> Device:
@@ -238,7 +274,7 @@ def surroundings(circles: Numbers, others: list[Numbers]) -> Numbers:
 
 def as_circles(device: Device) -> Device:
     """With a circle of the same area in place of each outline that is not round."""
-    made = [(*outline.mean(axis=0), 2 * np.sqrt(abs(area(outline)) / np.pi)) for outline in device.others]
+    made = [(*centroid(outline), 2 * np.sqrt(abs(area(outline)) / np.pi)) for outline in device.others]
     return dataclasses.replace(device, circles=np.vstack([device.circles, np.array(made or np.empty((0, 3)))]), others=[])
 
 

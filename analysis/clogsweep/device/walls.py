@@ -34,10 +34,23 @@ def is_wall(outline: Numbers, length: float) -> bool:
     if along < SHARE * length or along < SLENDER * across:
         return False
     off = np.minimum(outline - low, high - outline).min(axis=1).max()
-    return bool(across <= 2 * FLAT or off <= FLAT and abs(area(outline)) >= 0.98 * along * across)
+    return bool(across <= 2 * FLAT or off <= FLAT and is_rectangle(outline))
 
 
 def area(outline: Numbers) -> float:
     """Within a closed outline, positive if it is counter-clockwise."""
     x, y = outline.T
     return float(0.5 * (x * np.roll(y, -1) - np.roll(x, -1) * y).sum())
+
+
+def centroid(outline: Numbers) -> Numbers:
+    """The centre of the area within a closed outline."""
+    near = outline - outline.mean(axis=0)
+    following = np.roll(near, -1, axis=0)
+    cross = near[:, 0] * following[:, 1] - following[:, 0] * near[:, 1]
+    return outline.mean(axis=0) + ((near + following) * cross[:, None]).sum(axis=0) / (3 * cross.sum())
+
+
+def is_rectangle(outline: Numbers) -> bool:
+    """Along the axes."""
+    return abs(area(outline)) >= 0.98 * float(np.ptp(outline, axis=0).prod())

@@ -10,14 +10,21 @@ namespace clog::console {
 /// The text without blanks at its ends.
 std::string trimmed(std::string_view text);
 
-enum class EmptyEnd { dropped, kept };
-/// Goes through a CSV file line by line; blank lines and those that begin with # say nothing. Cells are
-/// without the blanks around them; an empty one at a line's end counts only if it is kept.
-/// @param each  called with the number of the line, from 1, and its cells; an Error from there gets path and
-/// number
-/// @throws Error as read_text()
-void read_csv(const std::string& path,
-              const std::function<void(int number, const std::vector<std::string>& cells)>& each,
-              EmptyEnd end = EmptyEnd::dropped);
+/// A line of a table.
+struct TableLine {
+  int number;                      ///< from 1
+  std::vector<std::string> cells;  ///< without quotes and blanks around them; empty ones count
+  char separator;                  ///< a blank stands for any number of blanks
+};
+
+/// Goes through a table line by line. Spreadsheets, pandas, R and ImageJ write such files: the first line
+/// tells whether semicolons, tabs, commas or blanks separate the cells, unless `sep=;` comes before it; cells
+/// may be quoted. Text that is not UTF-8 is taken for Latin-1. Non-breaking blanks are blanks. Blank lines
+/// and those that begin with # count for nothing.
+/// @param each  an Error from there gets path and number
+/// @param comment  called with lines that begin with #
+/// @throws Error as read_text(), or for a quote that does not end
+void read_table(const std::string& path, const std::function<void(const TableLine& line)>& each,
+                const std::function<void(const std::string& text)>& comment = {});
 
 }  // namespace clog::console

@@ -1,0 +1,149 @@
+"""Areas in a drawing: outlines that are drawn twice, that touch, or of which one is a hole in another."""
+
+from __future__ import annotations
+
+import functools
+from typing import Any
+
+import numpy as np
+
+from ..tools.errors import UserError
+from ..tools.hints import Numbers
+from .libraries import library
+from .shapes import Drawing, fitted_circle, holds
+from .walls import SHARE, is_rectangle
+
+NEAR = 1e-6  # of the size of all outlines, by which those that touch may miss each other: corners are rounded in files
+SAME = 1e-8  # of the largest coordinate, up to which corners are the same
+
+
+def tidy(drawing: Drawing, region: Numbers | None, tolerance: float) -> None:
+    """Drops duplicates, unites outlines that touch, and leaves a region. @param region  two corners, as a drawing program shows them;
+    @param tolerance  as in fitted_circle()"""
+    if not drawing.is_picture:
+        drop_duplicates(drawing)
+        unite(drawing)
+    if region is not None:
+        corners = drawing.from_own(region)
+        (left, bottom), (right, top) = corners.min(axis=0), corners.max(axis=0)
+        cut(drawing, (left, bottom, right, top), tolerance)
+
+
+def polygon(corners: Numbers) -> Any:
+    """@throws UserError  if the outline crosses itself"""
+    found = library("shapely.geometry", "python3-shapely").Polygon(corners)
+    if not found.is_valid:
+        x, y = corners.mean(axis=0)
+        raise UserError(f"an outline around x={x:.6g}, y={y:.6g} in the drawing crosses itself; correct it there")
+    return found
+
+
+def union(shapes: list[Any], tolerance: float | None = None) -> Any:
+    """The union of polygons, with gaps up to twice the tolerance closed."""
+    ops = library("shapely.ops", "python3-shapely")
+    if tolerance is None:
+        tolerance = NEAR * max(np.ptp(np.reshape(shape.bounds, (2, 2)), axis=0).max() for shape in shapes)
+    return ops.unary_union([shape.buffer(tolerance, join_style=2) for shape in shapes]).buffer(-tolerance, join_style=2)
+
+
+def add(drawing: Drawing, area: Any) -> None:
+    """The outlines and holes of an area of shapely."""
+    for part in getattr(area, "geoms", [area]):
+        if part.geom_type == "Polygon" and not part.is_empty:
+            drawing.outlines.append(np.asarray(part.exterior.coords)[:-1])
+            drawing.holes += [np.asarray(ring.coords)[:-1] for ring in part.interiors]
+
+
+def fill(drawing: Drawing, boundaries: list[Numbers], is_even_odd: bool) -> None:
+    """Adds what a hatch fills. @param is_even_odd  a boundary in another is that of a hole"""
+    boundaries = [corners for corners in boundaries if len(corners) > 2]
+    if len(boundaries) == 1:
+        drawing.outlines += boundaries
+    elif boundaries:
+        shapes = [polygon(corners) for corners in boundaries]
+        add(drawing, functools.reduce(lambda area, shape: area.symmetric_difference(shape), shapes) if is_even_odd else union(shapes))
+
+
+def drop_duplicates(drawing: Drawing) -> None:
+    """Outlines that are drawn twice, and counts them."""
+    outlines = drawing.outlines
+    step = SAME * max((float(np.abs(outline).max()) for outline in outlines), default=0.0) or 1.0
+    kept = {frozenset(map(tuple, np.round(outline / step).astype(np.int64))): outline for outline in outlines}
+    drawing.duplicates += len(outlines) - len(kept)
+    drawing.outlines = list(kept.values())
+
+
+def unite(drawing: Drawing) -> None:
+    """Outlines that touch are one: writers of GDSII cut circles into slices. An outline within another one is not united with
+    it, nor is the edge of the device or a wall."""
+    outlines = drawing.outlines
+    pairs = meeting(outlines)
+    if not pairs:
+        return
+    geometry = library("shapely.geometry", "python3-shapely")
+    shapes = {i: geometry.Polygon(outlines[i]) for i in {one for pair in pairs for one in pair}}
+    tolerance = NEAR * float(np.ptp(np.vstack(outlines), axis=0).max())
+    root = list(range(len(outlines)))  # of each outline: another one that it touches
+
+    def group_of(i: int) -> int:
+        while root[i] != i:
+            i = root[i]
+        return i
+
+    for i, j in pairs:
+        one, other = shapes[i], shapes[j]
+        if one.is_valid and other.is_valid and one.distance(other) <= tolerance and not one.contains(other) and not other.contains(one):
+            root[max(group_of(i), group_of(j))] = min(group_of(i), group_of(j))
+    groups: dict[int, list[int]] = {}
+    for i in range(len(outlines)):
+        groups.setdefault(group_of(i), []).append(i)
+    touching = [members for members in groups.values() if len(members) > 1]
+    drawing.outlines = [outlines[members[0]] for members in groups.values() if len(members) == 1]
+    for members in touching:
+        add(drawing, union([shapes[i] for i in members], tolerance))
+    drawing.united = sum(map(len, touching)), len(touching)
+
+
+def meeting(outlines: list[Numbers]) -> list[tuple[int, int]]:
+    """Pairs whose bounding boxes touch, without edges of the device and walls: what is as long as the drawing, and rectangular or as
+    wide as well."""
+    if len(outlines) < 2:
+        return []
+    lows, highs = (np.array([end(outline, axis=0) for outline in outlines]) for end in (np.min, np.max))
+    is_long = highs - lows >= SHARE * np.ptp(np.vstack(outlines), axis=0)
+    is_post = ~is_long.all(axis=1) & ~(is_long.any(axis=1) & [is_rectangle(outline) for outline in outlines])
+    near = NEAR * np.abs(np.ptp(np.vstack(outlines), axis=0)).max()
+    return [(i, int(j)) for i in np.flatnonzero(is_post).tolist()
+            for j in np.flatnonzero(is_post[:i] & (lows[:i] <= highs[i] + near).all(axis=1) & (highs[:i] >= lows[i] - near).all(axis=1))]
+
+
+def cut(drawing: Drawing, region: tuple[float, float, float, float], tolerance: float) -> None:
+    """Leaves what is in a region, which becomes the frame: round posts as a whole, and parts of other outlines and of lines.
+    @param region  left, bottom, right, top; @param tolerance  as in fitted_circle()"""
+    geometry = library("shapely.geometry", "python3-shapely")
+    box = geometry.box(*region)
+    number = len(drawing.circles) + len(drawing.outlines) + len(drawing.lines)
+    drawing.circles = [circle for circle in drawing.circles if box.distance(geometry.Point(circle[:2])) < circle[2] / 2]
+    inside, cuts, around = [], [], 0
+    for outline in drawing.outlines:
+        common = box.intersection(polygon(outline)) if is_near(outline, region) else None
+        if common is not None and common.area > 0:
+            is_whole = fitted_circle(outline, True, tolerance) or holds(np.reshape(region, (2, 2)), [outline])
+            if is_whole:
+                inside.append(outline)
+            elif common.area < (1 - NEAR) * box.area:
+                cuts.append(common)
+            else:
+                around += 1
+    drawing.outlines = inside
+    lines = [(kind, box.intersection(geometry.LineString(line))) for kind, line in drawing.lines]
+    drawing.lines = [(kind, np.asarray(part.coords)) for kind, line in lines for part in getattr(line, "geoms", [line]) if part.length > 0]
+    drawing.outside = number - len(drawing.circles) - len(inside) - len(cuts) - around - sum(line.length > 0 for _, line in lines)
+    for common in cuts:
+        add(drawing, common)
+    drawing.frame = region
+
+
+def is_near(outline: Numbers, region: tuple[float, float, float, float]) -> bool:
+    """Whether the box around an outline meets a region."""
+    return bool((outline.min(axis=0) < region[2:]).all() and (outline.max(axis=0) > region[:2]).all())

@@ -1,0 +1,102 @@
+"""Outlines in pictures in black and white, such as masks."""
+
+from __future__ import annotations
+
+import collections
+import pathlib
+import re
+from typing import Any
+
+import numpy as np
+
+from ..tools.errors import UserError
+from ..tools.hints import Numbers
+from .libraries import library
+from .shapes import METRES, Drawing
+from .walls import area
+
+ENDINGS = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg")
+FEWEST_CORNERS = 12  # of an outline: a speck of three pixels has so many
+MOST_OF_BORDER = 0.95  # of a picture, dark where posts are bright
+X_RESOLUTION, Y_RESOLUTION, RESOLUTION_UNIT, DESCRIPTION, PHOTOMETRIC = 282, 283, 296, 270, 262  # tags of TIFF
+ORIENTATION = 274  # tag of EXIF and TIFF
+METRES_IN_TIFF = {2: METRES["in"], 3: METRES["cm"]}
+UNITS_OF_IMAGEJ = {"micron": "um", "microns": "um", "\\u00b5m": "um", "inch": "in", "centimeter": "cm", "millimeter": "mm"}
+
+
+def read_picture(path: pathlib.Path, posts: str | None) -> Drawing:
+    """Outlines of the dark or bright parts, between pixels; the unit is a pixel. Specks of a few pixels do not count.
+    @param posts  dark or bright; None: bright if the border and most of the picture are dark, or if they are on a transparent ground"""
+    measure, filters = (library(f"skimage.{name}", "python3-skimage") for name in ("measure", "filters"))
+    tags = tags_of(path)
+    image = grey(path, tags)
+    threshold = filters.threshold_otsu(image)
+    is_dark = image <= threshold
+    level = (image[is_dark].mean() + image[~is_dark].mean()) / 2  # half-way, so that edges lie between pixels
+    found = Drawing([], [], metres_of(path, tags), frame=(0.0, 0.0, float(image.shape[1]), float(image.shape[0])), is_picture=True, skipped=collections.Counter())
+    found.unit_hint = printed(tags)
+    high = image.shape[0]
+    found.from_own = lambda points: np.array([0, high]) + np.asarray(points) * (1, -1)
+    if posts is None:
+        posts = "bright" if are_bright(is_dark) else "dark"
+        found.notes.append(f"the posts are {posts} (--posts)")
+    sign = 1 if posts == "bright" else -1
+    for contour in measure.find_contours(sign * image, sign * level, positive_orientation="high"):
+        outline = np.column_stack([contour[:, 1] + 0.5, high - contour[:, 0] - 0.5])
+        if len(outline) < FEWEST_CORNERS:
+            found.skipped["speck"] += 1
+        elif np.allclose(outline[0], outline[-1]) and area(outline) < 0:
+            found.skipped["hole"] += 1
+        else:
+            found.outlines.append(outline)
+    return found
+
+
+def are_bright(is_dark: Any) -> bool:
+    """Whether the posts are, on a dark ground. A dark frame around a bright channel is none."""
+    border = np.concatenate([is_dark[0], is_dark[-1], is_dark[:, 0], is_dark[:, -1]])
+    return bool(border.mean() >= MOST_OF_BORDER and is_dark.mean() > 0.5)
+
+
+def tags_of(path: pathlib.Path) -> dict[int, Any]:
+    """Those of TIFF and EXIF."""
+    with library("PIL.Image", "python3-pil").open(path) as file:
+        return {**file.getexif(), **getattr(file, "tag_v2", {})}
+
+
+def grey(path: pathlib.Path, tags: dict[int, Any]) -> Numbers:
+    """Brightness from 0 to 1. @throws UserError"""
+    io, colour = (library(f"skimage.{name}", "python3-skimage") for name in ("io", "color"))
+    image = np.asarray(io.imread(path))
+    if tags.get(ORIENTATION, 1) != 1:
+        raise UserError(f"cannot read {path} (it is stored turned, and shown upright by its EXIF data); save it upright")
+    if image.ndim not in (2, 3) or image.ndim == 3 and image.shape[2] > 4:
+        raise UserError(f"cannot read {path} (it has several slices or channels, {' x '.join(map(str, image.shape))}); save one slice as a picture of its own")
+    full = 1.0 if image.dtype == bool else float(np.iinfo(image.dtype).max) if image.dtype.kind in "ui" else max(float(image.max()), 1e-300)
+    image = np.asarray(image, dtype=float) / full
+    if image.ndim == 3:
+        opacity = image[..., -1] if image.shape[2] in (2, 4) else np.ones(image.shape[:2])
+        image = colour.rgb2gray(image[..., :3]) if image.shape[2] >= 3 else image[..., 0]
+        ground = 1.0 if opacity.any() and image[opacity > 0].mean() < 0.5 else 0.0  # behind transparent parts: unlike the posts
+        image = opacity * image + (1 - opacity) * ground
+    if np.ptp(image) == 0:
+        raise UserError(f"cannot read {path} (it is of one colour); give a mask in black and white")
+    return 1 - image if tags.get(PHOTOMETRIC) == 0 else image
+
+
+def metres_of(path: pathlib.Path, tags: dict[int, Any]) -> float | None:
+    """Size of a pixel as ImageJ writes it. @throws UserError  if pixels are not square"""
+    found = re.search(r"^unit=(\S+)", str(tags.get(DESCRIPTION, "")), re.MULTILINE)
+    unit = UNITS_OF_IMAGEJ.get(found[1].lower(), found[1]) if found else ""
+    horizontal, vertical = (float(tags.get(tag, 0)) for tag in (X_RESOLUTION, Y_RESOLUTION))
+    if unit not in METRES or horizontal <= 0:
+        return None
+    if not np.isclose(horizontal, vertical, rtol=1e-4):
+        raise UserError(f"cannot read {path} (its pixels are not square); scale it")
+    return METRES[unit] / horizontal
+
+
+def printed(tags: dict[int, Any]) -> str:
+    """The size of a pixel by the resolution of a TIFF, which is often a printer's."""
+    metres, number = METRES_IN_TIFF.get(tags.get(RESOLUTION_UNIT, 0), 0.0), float(tags.get(X_RESOLUTION, 0))
+    return f" (its resolution would mean {metres / number * 1e6:.6g}um, if that is not a printer's)" if metres and number else ""
