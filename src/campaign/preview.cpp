@@ -91,8 +91,8 @@ struct Sample {
 RunCost cost_of(const sweep::RunRow& row, const sweep::RunRow& first, const RunParameters& run,
                 std::int64_t parameter_set) {
   return {.parameter_set = parameter_set,
-          .begin_seconds = first.wall_seconds,
-          .seconds = row.wall_seconds - first.wall_seconds,
+          .begin_seconds = sweep::cost_seconds(first),
+          .seconds = sweep::cost_seconds(row) - sweep::cost_seconds(first),
           .work = static_cast<double>(row.steps - first.steps) * work_per_step(run),
           .longest_work = longest_work(run),
           .is_over = !sweep::is_unfinished(row.status)};
@@ -125,9 +125,9 @@ Stored stored_runs(const sweep::Plan& plan, const std::string& path) {
     const sweep::RunRow& row = found.mapped();
     const std::int64_t set = plan.group_of(task);
     const bool is_over = !sweep::is_unfinished(row.status);
-    const bool has_moved = row.steps > 0 && row.wall_seconds > 0;
+    const bool has_moved = row.steps > 0 && sweep::cost_seconds(row) > 0;
     stored.num_done += is_over;
-    stored.seconds += row.wall_seconds;
+    stored.seconds += sweep::cost_seconds(row);
     if (has_moved) stored.sample.costs.push_back(cost_of(row, {}, run, set));
     stored.sample.count(row);
     if (is_over || has_moved) --stored.waiting[set].number;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <iostream>
 #include <limits>
 #include <utility>
@@ -135,6 +136,7 @@ void WatchedRun::take_polygon() {
 
 void WatchedRun::follow() {
   const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t processor_begin = std::clock();
   RunProgress progress;
   bool over = false;
   for (std::int64_t checks = 0;; ++checks) {
@@ -147,6 +149,7 @@ void WatchedRun::follow() {
   }
   progress.finish();
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  processor_seconds_ = static_cast<double>(std::clock() - processor_begin) / CLOCKS_PER_SEC;
 }
 
 MostCost WatchedRun::measure_cost() {
@@ -187,6 +190,7 @@ store::Trajectory WatchedRun::trajectory(sweep::RunRow row, store::Provenance or
   }
   row.task = 0;
   row.wall_seconds = seconds_;
+  row.processor_seconds = processor_seconds_;
   sweep::record(result(), row);
   trajectory.row = row;
   trajectory.provenance = std::move(origin);

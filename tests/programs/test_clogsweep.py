@@ -16,7 +16,7 @@ import stored_rows
 from support import BIN, BLOCKED, LONGEST, MPI, MPIRUN, QUICK, ROOT, SMALL, STEPS_PER_SNAPSHOT, ProgramTest, SweepTest
 
 # Columns that tell where and how fast a row was made, not its results.
-CIRCUMSTANCES = ["wall_seconds", "rank", "host"]
+CIRCUMSTANCES = ["wall_seconds", "processor_seconds", "rank", "host"]
 
 
 def table(path):
@@ -124,7 +124,7 @@ class Sweep(ProgramTest):
         expected, left = self.succeed("clogsweep", *sweep, "seeds=1..30", "--dry-run").stdout.splitlines()[-2:]
         self.assertRegex(expected, self.EXPECTED + "in s.h5, 6 of them ended$")
         self.assertEqual(self.snapshot(), before)
-        hours = table(self.folder / "s.h5").wall_seconds.sum() / 3600
+        hours = table(self.folder / "s.h5").processor_seconds.sum() / 3600
         self.assertRegex(left, r"^# s.h5 has 6 of 60 tasks; 54 to go: expected \S+ core-hours more \(95 %: \S+ to \S+\)$")
         of_all, more = (float(re.search("expected ([^ ]+) ", line)[1]) for line in (expected, left))
         self.assertAlmostEqual(more / of_all, 1 - hours / of_all, delta=0.1)
@@ -138,7 +138,7 @@ class Sweep(ProgramTest):
         self.succeed("clogsweep", *sweep, "line-tension=1", "seeds=1..3")
 
         def edit(rows):
-            rows["wall_seconds"] = np.where(rows["line_tension"] == 0.5, 1000, 1)
+            rows["processor_seconds"] = np.where(rows["line_tension"] == 0.5, 1000, 1)
 
         stored_rows.change(self.folder / "s.h5", edit)
         told = self.succeed("clogsweep", *sweep, "line-tension=0.5,1", "seeds=1..6", "--dry-run").stdout.splitlines()[-1]

@@ -7,7 +7,7 @@ import h5py
 import stored_rows
 from support import QUICK, SMALL, ProgramTest, table
 
-TIMING = ["wall_seconds", "rank", "host"]
+TIMING = ["wall_seconds", "processor_seconds", "rank", "host"]
 
 
 class PointsTest(ProgramTest):
