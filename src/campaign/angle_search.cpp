@@ -150,7 +150,7 @@ AngleSearch::Look AngleSearch::look(std::span<const sweep::RunRow> rows) const {
   std::map<double, TriedAngle> angles;
   for (const sweep::RunRow& row : rows) {
     if (!is_of_search(row) || !sweep::fault_of(row).empty() || sweep::is_unfinished(row.status)) continue;
-    found.seconds += row.wall_seconds;
+    found.seconds += sweep::cost_seconds(row);
     const double angle = row.parameters.obstacles.lattice_angle;
     TriedAngle& here = angles[angle];
     here.angle = angle;

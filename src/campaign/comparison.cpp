@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "clog/campaign/stored_sweep.hpp"
+#include "clog/campaign/usual_parameters.hpp"
 #include "clog/console/printable.hpp"
 #include "clog/console/rounded.hpp"
 #include "clog/core/tools/error.hpp"
@@ -137,8 +138,7 @@ std::vector<std::string> differing_columns(
   std::vector<std::string> columns;
   for (const sweep::Column* column : group_columns())
     if (std::ranges::all_of(pairs, [&](const auto& pair) {
-          return column->get(*pair.first) != column->get(*pair.second) &&
-                 !column->may_be_automatic(pair.first->parameters);
+          return separating_value(*column, *pair.first) != separating_value(*column, *pair.second);
         }))
       columns.push_back(column->name);
   return columns;

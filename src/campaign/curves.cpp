@@ -11,6 +11,7 @@
 #include <utility>
 #include <variant>
 
+#include "clog/campaign/usual_parameters.hpp"
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
@@ -28,7 +29,7 @@ bool may_be_key(const sweep::Column& column, std::span<const Group> groups) {
   if (!column.parameter || column.parameter->role != ParameterRole::physics) return false;
   return std::ranges::all_of(groups, [&](const Group& group) {
     return std::holds_alternative<double>(column.get(group.first_row)) &&
-           !column.may_be_automatic(group.first_row.parameters);
+           !is_automatic(column, group.first_row);
   });
 }
 
@@ -177,18 +178,13 @@ fit::CurvePlace curve_place(const Group& group, const CurveKeys& keys) {
 }
 
 std::vector<FittedCurve> fit_curves(std::span<const Group> groups, const CurveQuestion& question) {
-  // Automatic values follow from the keys, so they tell no curves apart.
   std::map<std::vector<Field>, std::vector<std::size_t>> members;
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (!(groups[i].clogging.total_distance > 0)) continue;
-    const std::vector<Field> all = parameter_fields(groups[i].first_row);
     std::vector<Field> others;
-    for (std::size_t j = 0; j < all.size(); ++j) {
-      const sweep::Column* column = group_columns()[j];
-      if (std::ranges::find(question.keys, column) == question.keys.end() &&
-          !column->may_be_automatic(groups[i].first_row.parameters))
-        others.push_back(all[j]);
-    }
+    for (const sweep::Column* column : group_columns())
+      if (std::ranges::find(question.keys, column) == question.keys.end())
+        others.emplace_back(column->name.c_str(), separating_value(*column, groups[i].first_row));
     members[std::move(others)].push_back(i);
   }
   std::vector<FittedCurve> curves;

@@ -170,7 +170,10 @@ std::vector<bool> shown_fields(const std::vector<Group>& groups, const std::vect
       return key && std::string_view(first[i].first) == parameter(key).column;
     };
     const bool is_there = !std::holds_alternative<std::monostate>(first[i].second);
-    shown[i] = (varies[i] && !group_columns()[i]->may_be_automatic(run)) ||
+    const bool is_automatic_everywhere = std::ranges::all_of(groups, [&](const Group& group) {
+      return separating_value(*group_columns()[i], group.first_row) == Value();
+    });
+    shown[i] = (varies[i] && !is_automatic_everywhere && !group_columns()[i]->may_be_automatic(run)) ||
                (is_there && is_of(scene_of(run).gap_key)) || is_of(model_of(run).stiffness_key);
   }
   // A given automatic value that others follow from comes before these.
@@ -327,6 +330,11 @@ std::string to_json(const std::vector<Group>& groups, double confidence, const s
     nlohmann::ordered_json entry;
     const std::vector<Field> fields = all_fields(group, lab);
     for (const auto& [name, value] : fields) entry[name] = json_of(value);
+    // For who draws them: such values separate no curves and need no mention.
+    entry["automatic"] = nlohmann::ordered_json::array();
+    for (const sweep::Column* column : group_columns())
+      if (separating_value(*column, group.first_row) == Value() && column->get(group.first_row) != Value())
+        entry["automatic"].push_back(column->name);
     entry["survival"] = nlohmann::ordered_json::array();
     for (const fit::SurvivalStep& step : group.survival)
       entry["survival"].push_back({{"distance", step.distance},

@@ -218,7 +218,7 @@ void Ledger::find_tasks(std::unordered_map<std::string, Entry> known, std::int64
         entry.row.task = task;
         if (is_over(entry.row)) continue;
         if (entry.row.status == RunStatus::running) entry.row.status = RunStatus::interrupted;
-        past_[task].seconds = entry.row.wall_seconds;
+        past_[task].take_costs(entry.row);
       }
     if (task < num_wanted_) tasks_left_.push_back(task);
   }
@@ -317,12 +317,13 @@ void Ledger::report(const sweep::Report& report) {
   Entry& entry = run->second;
   entry = {report.row, report.snapshot};
   if (const auto past = past_.find(report.row.task); past != past_.end()) {
-    entry.row.wall_seconds += past->second.seconds;
+    entry.row.wall_seconds += past->second.wall_seconds;
+    entry.row.processor_seconds += past->second.processor_seconds;
     const std::string& before = past->second.instruction_set;
     if (!before.empty() && before != entry.row.instruction_set)
       entry.row.instruction_set = sweep::mixed_instruction_sets;
   }
-  if (entry.row.status == RunStatus::failed) past_[entry.row.task].seconds = entry.row.wall_seconds;
+  if (entry.row.status == RunStatus::failed) past_[entry.row.task].take_costs(entry.row);
   write_down(entry);
   is_published_ = false;
 }

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <iostream>
 #include <memory>
-#include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -23,10 +22,8 @@
 #include "clog/sweep/obstacle_arrays.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/row_limits.hpp"
-#include "clog/sweep/run_job.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/value_list.hpp"
-#include "trial_process.hpp"
 
 namespace clog::campaign {
 namespace {
@@ -91,8 +88,8 @@ struct Sample {
 RunCost cost_of(const sweep::RunRow& row, const sweep::RunRow& first, const RunParameters& run,
                 std::int64_t parameter_set) {
   return {.parameter_set = parameter_set,
-          .begin_seconds = first.wall_seconds,
-          .seconds = row.wall_seconds - first.wall_seconds,
+          .begin_seconds = sweep::cost_seconds(first),
+          .seconds = sweep::cost_seconds(row) - sweep::cost_seconds(first),
           .work = static_cast<double>(row.steps - first.steps) * work_per_step(run),
           .longest_work = longest_work(run),
           .is_over = !sweep::is_unfinished(row.status)};
@@ -125,9 +122,9 @@ Stored stored_runs(const sweep::Plan& plan, const std::string& path) {
     const sweep::RunRow& row = found.mapped();
     const std::int64_t set = plan.group_of(task);
     const bool is_over = !sweep::is_unfinished(row.status);
-    const bool has_moved = row.steps > 0 && row.wall_seconds > 0;
+    const bool has_moved = row.steps > 0 && sweep::cost_seconds(row) > 0;
     stored.num_done += is_over;
-    stored.seconds += row.wall_seconds;
+    stored.seconds += sweep::cost_seconds(row);
     if (has_moved) stored.sample.costs.push_back(cost_of(row, {}, run, set));
     stored.sample.count(row);
     if (is_over || has_moved) --stored.waiting[set].number;
@@ -159,49 +156,40 @@ std::vector<std::int64_t> tasks_to_try(const sweep::Plan& plan) {
 
 constexpr double seconds_to_try = 10;
 
-/// Short pieces of real runs, told as they end: of each the row when it had just begun, and the last.
-void try_tasks(const sweep::Plan& plan, const std::vector<std::int64_t>& tasks, const Tell& tell) {
+/// Runs short pieces of these tasks. The jobs may be those of another process, which answers between slices of
+/// its work; one that takes too long, as a release that does not come to rest, is dropped.
+Sample tried_sample(const sweep::Plan& plan, const sweep::JobFactory& jobs) {
   constexpr double fewest_seconds = 0.1;  // for a run whose array took all of its share
+  constexpr double grace = 0.5;           // for the last answer
   const Clock::time_point begin = Clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
-  const auto arrays = std::make_shared<sweep::ObstacleArrays>();
-  std::vector<std::byte> record(2 * sweep::packed_size());
+  const auto advance_until = [&](sweep::Job& job, double end, const auto& is_enough) {
+    while (!job.advance())
+      if (is_enough() || elapsed() >= end || console::stop_signalled()) return;
+  };
+  Sample sample;
+  const std::vector<std::int64_t> tasks = tasks_to_try(plan);
   for (std::size_t i = 0; i < tasks.size() && elapsed() < seconds_to_try && !console::stop_signalled(); ++i) {
     const double share = (seconds_to_try - elapsed()) / static_cast<double>(tasks.size() - i);
     const double end = elapsed() + share;
-    sweep::RunJob job(plan.task(tasks[i]), tasks[i], {}, arrays);
-    bool is_over = job.advance();
-    const std::span<std::byte> whole = record;
-    sweep::pack(is_over ? sweep::RunRow() : job.row(), whole.first(sweep::packed_size()));
-    const double least_end = elapsed() + fewest_seconds;
-    while (!is_over && elapsed() < std::max(end, least_end) && !console::stop_signalled())
-      is_over = job.advance();
-    sweep::pack(job.row(), whole.last(sweep::packed_size()));
-    tell(record);
-  }
-}
-
-Sample tried_sample(const sweep::Plan& plan) {
-  constexpr double grace = 0.5;  // for the last run to tell
-  const Clock::time_point begin = Clock::now();
-  const std::vector<std::int64_t> tasks = tasks_to_try(plan);
-  const std::vector<Record> told = told_within(seconds_to_try + grace, 2 * sweep::packed_size(),
-                                               [&](const Tell& tell) { try_tasks(plan, tasks, tell); });
-  Sample sample;
-  for (std::size_t i = 0; i < told.size(); ++i) {
-    const std::span<const std::byte> whole = told[i];
-    const sweep::RunRow first = sweep::unpack(whole.first(sweep::packed_size()));
-    const sweep::RunRow row = sweep::unpack(whole.last(sweep::packed_size()));
+    const auto job = jobs(tasks[i], {});
+    const auto answers = [&] { return job->refresh(); };
+    advance_until(*job, seconds_to_try + grace, answers);  // its array and its release
+    const sweep::RunRow first = job->row();
+    advance_until(*job, std::max(end, elapsed() + fewest_seconds), [] { return false; });
+    advance_until(*job, seconds_to_try + grace, answers);
+    const sweep::RunRow row = job->row();
+    const bool is_short = !sweep::is_unfinished(row.status) && !sweep::is_unfinished(first.status);
     sample.count(row);
     if (row.steps > 0)
-      sample.costs.push_back(cost_of(row, first, plan.task(tasks[i]), plan.group_of(tasks[i])));
+      sample.costs.push_back(
+          cost_of(row, is_short ? sweep::RunRow() : first, plan.task(tasks[i]), plan.group_of(tasks[i])));
     else if (sample.failure.empty())
       sample.failure = row.message;
   }
   if (sample.failure.empty())
     sample.failure = fmt::format("its release takes longer than {:.2g} s", seconds_to_try);
-  sample.source =
-      fmt::format("tried for {:.2g} s in total", std::chrono::duration<double>(Clock::now() - begin).count());
+  sample.source = fmt::format("tried for {:.2g} s in total", elapsed());
   return sample;
 }
 
@@ -314,7 +302,8 @@ void print_limits(const sweep::Plan& plan) {
     std::cout << "# " << console::printable(words) << '\n';
 }
 
-int print_cost(const sweep::Plan& plan, const std::string& output, const RoundsToCome& rounds) {
+int print_cost(const sweep::Plan& plan, const std::string& output, const RoundsToCome& rounds,
+               const sweep::JobFactory& jobs) {
   const bool has_rounds = rounds.rule || rounds.refiner;
   const Stored stored = stored_runs(plan, output);
   const bool is_done = stored.num_done == plan.size();
@@ -323,7 +312,7 @@ int print_cost(const sweep::Plan& plan, const std::string& output, const RoundsT
                sweep::counted(plan.size(), "task"), stored.seconds / hour,
                has_rounds ? "" : "; nothing is left to do");
   if (is_done && !has_rounds) return console::exit_success;
-  const Sample sample = stored.knows_enough() ? stored.sample : tried_sample(plan);
+  const Sample sample = stored.knows_enough() ? stored.sample : tried_sample(plan, jobs);
   if (console::stop_signalled()) return console::exit_incomplete;
   if (sample.costs.empty()) {
     console::say("clogsweep: no trial run can start; the first one: " + sample.failure);

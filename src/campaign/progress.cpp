@@ -43,7 +43,7 @@ void Progress::ended(const sweep::RunRow& row) {
   SetTimes& set = set_of(row.task);
   ++set.num_finished;
   --set.num_waiting;
-  set.seconds += row.wall_seconds;
+  set.seconds += sweep::cost_seconds(row);
 }
 
 void Progress::not_ended(const sweep::RunRow& failed) {

@@ -252,7 +252,7 @@ Refiner::Look Refiner::look(std::span<const sweep::RunRow> rows) const {
     ++here.num_runs;
     here.last_seed = std::max<std::int64_t>(here.last_seed, row.parameters.seed);
     last_seed = std::max<std::int64_t>(last_seed, row.parameters.seed);
-    found.seconds += row.wall_seconds;
+    found.seconds += sweep::cost_seconds(row);
     if (row.status == RunStatus::failed) {
       ++here.num_failed;
       continue;

@@ -26,7 +26,7 @@ std::vector<SetTimes> times_of_sets(const std::vector<RunRow>& rows, const sweep
     if (row.task < 0 || row.task >= plan.size()) continue;
     SetTimes& set = sets[static_cast<std::size_t>(plan.group_of(row.task))];
     ++(sweep::is_unfinished(row.status) ? set.num_running : set.num_finished);
-    set.seconds += row.wall_seconds;
+    set.seconds += sweep::cost_seconds(row);
   }
   for (std::int64_t group = 0; group < plan.num_groups(); ++group) {
     SetTimes& set = sets[static_cast<std::size_t>(group)];
@@ -47,7 +47,7 @@ Status status_of(const std::string& path, const store::SweepFile& file, double c
   status.is_alive = store::Journal::is_open(store::journal_path(path));
   for (const RunRow& row : file.rows) {
     ++status.by_status[row.status];
-    status.core_hours += row.wall_seconds / 3600;
+    status.core_hours += sweep::cost_seconds(row) / 3600;
   }
   const std::int64_t num_wanted = status.runs.num_runs - status.runs.num_beyond;
   status.left = time_left(times_of_sets(file.rows, plan, num_wanted),

@@ -1,5 +1,6 @@
 #include "clog/campaign/usual_parameters.hpp"
 
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,7 +51,36 @@ bool is_of_own_circles(const sweep::Column& column, const RunParameters& run) {
          column.parameter->applies_to(run) && !column.parameter->applies_to(RunParameters());
 }
 
+/// The density of these arrays follows from gaps, diameters or circles.
+bool has_derived_density(const sweep::RunRow& row) {
+  const ObstacleParameters& obstacles = row.parameters.obstacles;
+  return obstacles.layout != ObstacleLayout::random || (!obstacles.density.per_area && !obstacles.density.share);
+}
+
 }  // namespace
+
+bool is_automatic(const sweep::Column& column, const sweep::RunRow& row) try {
+  if (!column.may_be_automatic(row.parameters)) return false;
+  RunParameters run = defaults_for(row);
+  for (const Parameter& parameter : parameter_schema())
+    if (&parameter != column.parameter && (parameter.shapes_array || parameter.has_own_column))
+      parameter.set(run, parameter.get(row.parameters));
+  return column.get(sweep::describe(resolved_in_any_layout(run))) == column.get(row);
+} catch (const Error&) {
+  return false;
+}
+
+Value separating_value(const sweep::Column& column, const sweep::RunRow& row) {
+  if (column.name == "obstacle_density" && has_derived_density(row)) return {};
+  if (is_automatic(column, row)) return {};
+  const DpParameters& dp = row.parameters.dp;
+  if (column.name == "perimeter_stiffness" && dp.perimeter_spring == PerimeterSpring::rest &&
+      dp.perimeter_stiffness && dp.line_tension > 0) {
+    constexpr double figures = 1e9;  // the ratio is known to round-off only
+    return std::round(figures * *dp.perimeter_stiffness / dp.line_tension) / figures;
+  }
+  return column.get(row);
+}
 
 std::vector<Field> usual_parameters(const sweep::RunRow& row) try {
   const auto fields_of = [](RunParameters run) {

@@ -100,7 +100,7 @@ class Lead {
     if (report.row.status == RunStatus::interrupted && report.row.steps == 0 && !report.snapshot.empty()) {
       report.row = ledger_.row(report.row.task);
       report.row.status = RunStatus::interrupted;
-      report.row.wall_seconds = 0;  // the ledger adds what was before
+      report.row.wall_seconds = report.row.processor_seconds = 0;  // the ledger adds what was before
     }
     ledger_.report(report);
     if (report.row.status == RunStatus::failed && ledger_.tries_again(report.row)) {

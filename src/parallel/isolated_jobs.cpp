@@ -291,6 +291,7 @@ class IsolatedJobs::IsolatedJob final : public Job {
     last_.row.status = RunStatus::failed;
     last_.row.message = reason;
     last_.row.wall_seconds = std::max(0.0, std::chrono::duration<double>(Clock::now() - begin_).count());
+    last_.row.processor_seconds = sweep::RunRow::not_known;
   }
 };
 

@@ -81,7 +81,7 @@ store::Provenance provenance(const cli::CommandLine& line,
 
 /// What rank 0 does before the sweep: everything a user can get wrong is found here, before any rank
 /// computes. Returns the exit code if there is nothing to run.
-std::optional<int> prepare(const cli::CommandLine& line) {
+std::optional<int> prepare(const cli::CommandLine& line, parallel::IsolatedJobs& isolated) {
   if (cli::answer_help_or_version(
           line, {{"MPI", parallel::Communicator::library_version()}, {"HDF5", store::library_version()}}))
     return console::exit_success;
@@ -102,9 +102,12 @@ std::optional<int> prepare(const cli::CommandLine& line) {
     console::flush_output();
     if (console::stop_signalled()) return console::exit_incomplete;
     campaign::print_limits(plan);
+    // In the process that was forked before MPI began.
+    const sweep::JobFactory jobs =
+        isolated.jobs(assignment(line, refined ? refined->settings() : line.settings()).text());
     return campaign::print_cost(
         plan, lead_options(line).output,
-        {growing ? &growing->rule : nullptr, refined ? &refined->refiner() : nullptr});
+        {growing ? &growing->rule : nullptr, refined ? &refined->refiner() : nullptr}, jobs);
   }
   if (line.has("print-config")) return console::exit_success;
   line.require("output");
@@ -148,7 +151,7 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, parallel::IsolatedJo
   if (ranks.rank() == 0) {
     const int exit_code = cli::run_program(program, [&] {
       parse_sweep_options(line, argc, argv);
-      if (const auto over = prepare(line)) return *over;
+      if (const auto over = prepare(line, isolated)) return *over;
       host::refuse_to_be_alone(ranks.size());
       led.emplace(line, ranks.size());
       word = assignment(line, led->settings(line)).text();

@@ -336,7 +336,9 @@ std::vector<Column> make_columns() {
       member("release_y", &RunRow::release_y, result, "sigma", "the same across the flow"),
       member("steps", &RunRow::steps, result, "", "integrated steps, sub-steps counted singly"),
       member("wall_seconds", &RunRow::wall_seconds, circumstance, "s",
-             "computing time, all sessions together"),
+             "wall-clock time of the run, all sessions together"),
+      member("processor_seconds", &RunRow::processor_seconds, circumstance, "s",
+             "processor time of the run, all sessions together; NaN: not known"),
       member("rank", &RunRow::rank, circumstance, "", "MPI rank that did the run"),
       member("instruction_set", &RunRow::instruction_set, circumstance, "",
              "of the polygon's step; mixed: interrupted under one, it went on under another, so that no "

@@ -80,6 +80,9 @@ std::string bookkeeping_fault(const RunRow& row) {
   if (row.model_version < 1) return fmt::format("model_version={} is none", row.model_version);
   if (!(row.wall_seconds >= 0 && row.wall_seconds <= longest_patience))
     return named("wall_seconds", row.wall_seconds) + " is no time";
+  if (!std::isnan(row.processor_seconds) &&
+      !(row.processor_seconds >= 0 && row.processor_seconds <= longest_patience))
+    return named("processor_seconds", row.processor_seconds) + " is no time";
   return "";
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <exception>
 #include <utility>
 
@@ -14,6 +15,8 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds slice{5};
 constexpr int checks_per_look_at_the_clock = 8;
+
+double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// Fills in the results of a run that goes on.
 void record_interrupted(const DropletRun& run, RunRow& row) {
@@ -50,6 +53,7 @@ RunJob::RunJob(RunParameters run, std::int64_t task, std::span<const std::byte> 
 
 bool RunJob::advance() {
   const Clock::time_point begin = Clock::now();
+  const double processor_begin = processor_seconds();
   try {
     if (!run_) run_ = std::make_unique<DropletRun>(start(run_parameters_, row_, snapshot_, *arrays_));
     while (!over_ && Clock::now() - begin < slice) over_ = run_->advance(checks_per_look_at_the_clock);
@@ -64,6 +68,7 @@ bool RunJob::advance() {
   }
   // Clocks of simulated time, and of some virtual machines, go back.
   wall_seconds_ += std::max(0.0, std::chrono::duration<double>(Clock::now() - begin).count());
+  processor_seconds_ += std::max(0.0, processor_seconds() - processor_begin);
   return over_;
 }
 
@@ -76,6 +81,7 @@ RunRow RunJob::row() const {
     record(result, row);
   }
   row.wall_seconds = wall_seconds_;
+  row.processor_seconds = processor_seconds_;
   return row;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <iostream>
 #include <limits>
 #include <utility>
@@ -136,6 +137,7 @@ void WatchedRun::take_polygon() {
 
 void WatchedRun::follow() {
   const auto begin = std::chrono::steady_clock::now();
+  const std::clock_t processor_begin = std::clock();
   RunProgress progress;
   bool over = false;
   for (std::int64_t checks = 0;; ++checks) {
@@ -148,6 +150,7 @@ void WatchedRun::follow() {
   }
   progress.finish();
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  processor_seconds_ = static_cast<double>(std::clock() - processor_begin) / CLOCKS_PER_SEC;
 }
 
 MostCost WatchedRun::measure_cost() {
@@ -188,6 +191,7 @@ store::Trajectory WatchedRun::trajectory(sweep::RunRow row, store::Provenance or
   }
   row.task = 0;
   row.wall_seconds = seconds_;
+  row.processor_seconds = processor_seconds_;
   sweep::record(result(), row);
   trajectory.row = row;
   trajectory.provenance = std::move(origin);

@@ -12,9 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "clog/campaign/comparison.hpp"
 #include "clog/campaign/groups.hpp"
 #include "clog/campaign/preview.hpp"
 #include "clog/campaign/refiner.hpp"
+#include "clog/campaign/usual_parameters.hpp"
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/sweep/obstacle_arrays.hpp"
@@ -106,6 +108,33 @@ TEST_P(EveryKey, MakesTwoGroups) {
   std::vector<sweep::RunRow> rows;
   for (const RunParameters& run : both_runs(GetParam())) rows.push_back(sweep::describe(run));
   EXPECT_EQ(group_runs(rows, 0.95).size(), GetParam().role == ParameterRole::ensemble ? 1u : 2u);
+}
+
+/// Four values of another number, each with two values of this parameter: two curves, and a comparison that
+/// names what differs.
+TEST_P(EveryKey, MakesTwoCurvesAndAComparisonIfItIsPhysics) {
+  const Parameter& parameter = GetParam();
+  if (parameter.role != ParameterRole::physics || parameter.key == std::string("line-tension")) return;
+  std::vector<std::vector<sweep::RunRow>> sides;
+  for (RunParameters run : both_runs(parameter)) {
+    if (run.model != Model::dp || !has_clogging_length(sweep::describe(run))) return;
+    auto& rows = sides.emplace_back();
+    for (const double factor : {1.0, 1.1, 1.2, 1.3}) {
+      RunParameters softer = run;
+      softer.dp.line_tension = run.dp.line_tension * factor;
+      sweep::RunRow row = sweep::describe(softer);
+      row.status = RunStatus::clogged;
+      row.distance = 5;
+      rows.push_back(row);
+    }
+  }
+  const auto column = std::ranges::find_if(group_columns(), [&](const sweep::Column* one) {
+    return one->parameter && one->parameter->key == std::string(parameter.key);
+  });
+  if (column == group_columns().end()) return;  // another column shows it
+  EXPECT_NE(separating_value(**column, sides[0].front()), separating_value(**column, sides[1].front()));
+  const Comparisons found = compare({{"one", sides[0], {"line_tension"}}, {"other", sides[1], {"line_tension"}}}, 0.95, {});
+  EXPECT_NE(std::ranges::find(found.differing, (*column)->name), found.differing.end());
 }
 
 TEST_P(EveryKey, MakesTwoArraysIfItShapesThem) {

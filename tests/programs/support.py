@@ -43,7 +43,7 @@ ENDLESS = [word.replace("max-time=2e4", "max-time=1e9") for word in SLOW]
 # Obstacles so near to each other that some seeds (53 and 64 of 51..70) leave no void to release the droplet in.
 BLOCKED = ["vertices=64", "box=13", "obstacle-density=saturated", "max-time=5", "obstacle-diameter=3", "obstacle-gap=0.06", "self-contact-range=0.1"]
 # Columns that differ when the same run is recomputed: who did it, and how long it took.
-TIMING = ["wall_seconds", "rank", "host"]
+TIMING = ["wall_seconds", "processor_seconds", "rank", "host"]
 
 
 # Sweeps that several suites read. CTest empties the folder before the first suite that uses it.

@@ -16,7 +16,30 @@ import stored_rows
 from support import BIN, BLOCKED, LONGEST, MPI, MPIRUN, QUICK, ROOT, SMALL, STEPS_PER_SNAPSHOT, ProgramTest, SweepTest
 
 # Columns that tell where and how fast a row was made, not its results.
-CIRCUMSTANCES = ["wall_seconds", "rank", "host"]
+CIRCUMSTANCES = ["wall_seconds", "processor_seconds", "rank", "host"]
+# Writes which process has forked, and which has begun MPI, to the file FORK_LOG.
+FORK_LOGGER = r"""
+#define _GNU_SOURCE
+#include <dlfcn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+static void note(const char *what) {
+  FILE *log = fopen(getenv("FORK_LOG"), "a");
+  fprintf(log, "%d %s\n", (int)getpid(), what);
+  fclose(log);
+}
+pid_t fork(void) {
+  note("forks");
+  return ((pid_t(*)(void))dlsym(RTLD_NEXT, "fork"))();
+}
+int MPI_Init(int *argc, char ***argv) {
+  int code = ((int (*)(int *, char ***))dlsym(RTLD_NEXT, "MPI_Init"))(argc, argv);
+  note("has begun MPI");
+  return code;
+}
+"""
 
 
 def table(path):
@@ -24,6 +47,25 @@ def table(path):
 
 
 class Sweep(ProgramTest):
+    def test_no_process_forks_once_it_has_begun_mpi(self):
+        (self.folder / "logger.c").write_text(FORK_LOGGER)
+        subprocess.run(["cc", "-shared", "-fPIC", "-o", "logger.so", "logger.c", "-ldl"], cwd=self.folder, check=True)
+        log = self.folder / "log.txt"
+        env = {**os.environ, "LD_PRELOAD": str(self.folder / "logger.so"), "FORK_LOG": str(log), "ASAN_OPTIONS": "verify_asan_link_order=0"}
+        for more in (["--dry-run"], ["--output", "s.h5"], ["--output", "s.h5", "--dry-run"]):
+            with self.subTest(more=more):
+                log.unlink(missing_ok=True)
+                self.succeed("clogsweep", *QUICK, "line-tension=0.5", "seeds=1..6", *more, env=env)
+                begun, forks = set(), 0
+                for line in log.read_text().splitlines():
+                    process, what = line.split(" ", 1)
+                    forks += what == "forks"
+                    self.assertFalse(what == "forks" and process in begun, line)
+                    if what != "forks":
+                        begun.add(process)
+                self.assertGreaterEqual(forks, 1, "the helper")
+                self.assertEqual(len(begun), 1)
+
     def test_rows_do_not_depend_on_the_number_of_ranks(self):
         sweep = [*QUICK, "line-tension=0.3,2", "obstacle-gap=0.2,0.6", "seeds=1..4"]
         tables = {}
@@ -124,7 +166,7 @@ class Sweep(ProgramTest):
         expected, left = self.succeed("clogsweep", *sweep, "seeds=1..30", "--dry-run").stdout.splitlines()[-2:]
         self.assertRegex(expected, self.EXPECTED + "in s.h5, 6 of them ended$")
         self.assertEqual(self.snapshot(), before)
-        hours = table(self.folder / "s.h5").wall_seconds.sum() / 3600
+        hours = table(self.folder / "s.h5").processor_seconds.sum() / 3600
         self.assertRegex(left, r"^# s.h5 has 6 of 60 tasks; 54 to go: expected \S+ core-hours more \(95 %: \S+ to \S+\)$")
         of_all, more = (float(re.search("expected ([^ ]+) ", line)[1]) for line in (expected, left))
         self.assertAlmostEqual(more / of_all, 1 - hours / of_all, delta=0.1)
@@ -138,7 +180,7 @@ class Sweep(ProgramTest):
         self.succeed("clogsweep", *sweep, "line-tension=1", "seeds=1..3")
 
         def edit(rows):
-            rows["wall_seconds"] = np.where(rows["line_tension"] == 0.5, 1000, 1)
+            rows["processor_seconds"] = np.where(rows["line_tension"] == 0.5, 1000, 1)
 
         stored_rows.change(self.folder / "s.h5", edit)
         told = self.succeed("clogsweep", *sweep, "line-tension=0.5,1", "seeds=1..6", "--dry-run").stdout.splitlines()[-1]

@@ -77,7 +77,7 @@ class Damage(ProgramTest):
         self.succeed("clogsweep", *SETTINGS[:-1], "whole.h5")
         for name in ("whole.h5", "undamaged.h5"):
             self.succeed("clogsweep", "verify", name)
-        again, before = (table(self.folder / name).drop(columns=["wall_seconds", "rank", "host"])
+        again, before = (table(self.folder / name).drop(columns=["wall_seconds", "processor_seconds", "rank", "host"])
                          for name in ("whole.h5", "undamaged.h5"))
         pandas.testing.assert_frame_equal(again, before, check_exact=True)
 

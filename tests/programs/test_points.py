@@ -8,7 +8,7 @@ import pandas
 import stored_rows
 from support import QUICK, SMALL, ProgramTest, table
 
-TIMING = ["wall_seconds", "rank", "host"]
+TIMING = ["wall_seconds", "processor_seconds", "rank", "host"]
 
 
 class PointsTest(ProgramTest):

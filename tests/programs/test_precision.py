@@ -117,7 +117,7 @@ class Precision(ProgramTest):
         self.succeed("clogsweep", *SWEEP[:-2], "--output", "s.h5")
         told = self.succeed("clogsweep", *SWEEP, "--output", "s.h5", "--dry-run").stdout
         self.assertNotIn("nothing is left", told)
-        hours = table(self.folder / "s.h5").wall_seconds.sum() / 3600
+        hours = table(self.folder / "s.h5").processor_seconds.sum() / 3600
         self.assertIn(f"# s.h5 has all 8 tasks, which took {hours:.2g} core-hours\n", told)
         self.assertIn(f"14 seeds each (--most-seeds) if few do, expected {hours * 14 / 4:.2g}, ", told)
 

@@ -18,7 +18,7 @@ import time
 
 import h5py
 
-CIRCUMSTANCES = {"wall_seconds", "rank", "host", "attempt"}
+CIRCUMSTANCES = {"wall_seconds", "processor_seconds", "rank", "host", "attempt"}
 SATURATED = "obstacle-density=saturated"  # the default of versions to compare with differs
 DILUTE = ["box=20", "max-time=40", "vertices=64", "seeds=3..4"]
 SMALL = [*DILUTE, SATURATED]

@@ -109,7 +109,7 @@ class Groups:
             return False
         of_filling = fillings <= {"saturated", "lattice"} or bool(self._share_of_saturated())
         from_array = (name == "obstacle_density" and of_filling) or (name == "box" and fillings == {"lattice"})
-        return from_array or self.columns[name].get("automatic_in") in ("all", self.members[0]["model"])
+        return from_array or all(name in group["automatic"] for group in self.members)
 
     def _share_of_saturated(self) -> str:
         """The filling of all random arrays, such as `12%`; empty if they differ."""

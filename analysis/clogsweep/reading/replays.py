@@ -15,7 +15,7 @@ from .programs import run_program
 from .trajectory import Trajectory
 
 # Columns that may differ between a row and its replay.
-CIRCUMSTANCES = {"task", "wall_seconds", "rank", "host", "attempt"}
+CIRCUMSTANCES = {"task", "wall_seconds", "processor_seconds", "rank", "host", "attempt"}
 
 
 def replay(clogrun: pathlib.Path, sweep: AnyPath, task: int, output: AnyPath, *options: str) -> None:

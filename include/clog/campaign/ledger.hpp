@@ -96,8 +96,12 @@ class Ledger {
   std::vector<std::int64_t> tasks_left_;
   /// Known results of a task, from earlier sessions or attempts.
   struct Past {
-    double seconds = 0;           // spent on it
+    double wall_seconds = 0, processor_seconds = 0;  // spent on it
     std::string instruction_set;  // of the snapshot that it resumes from; empty if it restarts
+    void take_costs(const sweep::RunRow& row) {
+      wall_seconds = row.wall_seconds;
+      processor_seconds = row.processor_seconds;
+    }
   };
   std::unordered_map<std::int64_t, Past> past_;
   std::string caution_;

@@ -4,6 +4,7 @@
 
 #include "clog/campaign/round_rule.hpp"
 #include "clog/campaign/seed_rule.hpp"
+#include "clog/sweep/job.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/settings.hpp"
 
@@ -26,7 +27,9 @@ void print_limits(const sweep::Plan& plan);
 /// much of the sweep `output` has, and the rest. Returns the exit code: a fault if no run can begin.
 /// @param output  the sweep's file, which need not exist; empty: no file
 /// @param rounds  if `plan` is the first of several: then also prints what the others may add
-int print_cost(const sweep::Plan& plan, const std::string& output, const RoundsToCome& rounds);
+/// @param jobs  make the trial runs
+int print_cost(const sweep::Plan& plan, const std::string& output, const RoundsToCome& rounds,
+               const sweep::JobFactory& jobs);
 /// Every key with its value, and the values of `auto` for the first task.
 void print_config(const sweep::Settings& settings, const sweep::Plan& plan);
 

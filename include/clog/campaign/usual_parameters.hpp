@@ -11,4 +11,11 @@ namespace clog::campaign {
 /// impossible.
 std::vector<Field> usual_parameters(const sweep::RunRow& row);
 
+/// Is this value what `auto` gives for the row's other parameters, or what its preset sets?
+bool is_automatic(const sweep::Column& column, const sweep::RunRow& row);
+
+/// The value by which a column separates curves and comparisons: unset where it is automatic or follows from
+/// the array; for springs to the rest length the ratio K_l/Gamma, which `perimeter-stiffness-ratio` sets.
+Value separating_value(const sweep::Column& column, const sweep::RunRow& row);
+
 }  // namespace clog::campaign

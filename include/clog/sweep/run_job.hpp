@@ -28,7 +28,7 @@ class RunJob final : public Job {
   std::shared_ptr<ObstacleArrays> arrays_;
   std::unique_ptr<DropletRun> run_;  // made at the first advance(): the release may fail
   RunRow row_;
-  double wall_seconds_ = 0;
+  double wall_seconds_ = 0, processor_seconds_ = 0;
   bool over_ = false;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <bitset>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -78,6 +79,7 @@ struct RunRow {
   std::int64_t steps = 0;
 
   double wall_seconds = 0;
+  double processor_seconds = not_known;
   std::int64_t rank = 0;
   std::string instruction_set;  ///< of the polygon's step; "none" for sp; or mixed_instruction_sets
   std::string host;
@@ -95,6 +97,11 @@ inline bool is_result(RunStatus status) {
 /// Is the run in progress, or was it interrupted?
 inline bool is_unfinished(RunStatus status) {
   return status == RunStatus::running || status == RunStatus::interrupted;
+}
+
+/// Cost of a run so far [s]: its processor time, or its wall-clock time if that is not known.
+inline double cost_seconds(const RunRow& row) {
+  return std::isnan(row.processor_seconds) ? row.wall_seconds : row.processor_seconds;
 }
 
 /// What was run, seed included, as bytes: equal for equal runs, whatever their place in a sweep.

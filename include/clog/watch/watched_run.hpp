@@ -50,7 +50,7 @@ class WatchedRun {
   std::vector<Column> columns_;
   std::vector<store::PolygonFrame> polygons_;
   bool interrupted_ = false;
-  double seconds_ = 0;
+  double seconds_ = 0, processor_seconds_ = 0;
 
   void add_column(std::string name, std::string meaning, std::function<double(const DropletRun&)> measure) {
     columns_.push_back({{std::move(name), std::move(meaning), {}}, std::move(measure)});
