@@ -54,7 +54,8 @@ bool is_of_own_circles(const sweep::Column& column, const RunParameters& run) {
 /// The density of these arrays follows from gaps, diameters or circles.
 bool has_derived_density(const sweep::RunRow& row) {
   const ObstacleParameters& obstacles = row.parameters.obstacles;
-  return obstacles.layout != ObstacleLayout::random || (!obstacles.density.per_area && !obstacles.density.share);
+  return obstacles.layout != ObstacleLayout::random ||
+         (!obstacles.density.per_area && !obstacles.density.share);
 }
 
 }  // namespace

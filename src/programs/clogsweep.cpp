@@ -105,9 +105,9 @@ std::optional<int> prepare(const cli::CommandLine& line, parallel::IsolatedJobs&
     // In the process that was forked before MPI began.
     const sweep::JobFactory jobs =
         isolated.jobs(assignment(line, refined ? refined->settings() : line.settings()).text());
-    return campaign::print_cost(
-        plan, lead_options(line).output,
-        {growing ? &growing->rule : nullptr, refined ? &refined->refiner() : nullptr}, jobs);
+    return campaign::print_cost(plan, lead_options(line).output,
+                                {growing ? &growing->rule : nullptr, refined ? &refined->refiner() : nullptr},
+                                jobs);
   }
   if (line.has("print-config")) return console::exit_success;
   line.require("output");

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <set>
 #include <string_view>
 #include <tuple>
@@ -220,6 +221,11 @@ std::vector<std::string> limits_of_circles(const Plan& plan) {
   return all;
 }
 
+double weight_borne_by_friction(const DpParameters& dp) {
+  if (dp.film_friction != FilmFriction::on) return 0;
+  return std::tanh(std::numbers::pi / 2 * dp.friction);
+}
+
 std::vector<std::string> limits_of_results(const Plan& plan) {
   std::vector<std::string> all = plan.possible_decimals();
   all.push_back(possible_repetition(plan));
@@ -231,8 +237,11 @@ std::vector<std::string> limits_of_results(const Plan& plan) {
 
 bool may_hang_on_mesh(const RunRow& row) {
   if (row.status != RunStatus::clogged || row.parameters.model != Model::dp) return false;
-  if (!std::isnan(row.mesh_hold)) return row.mesh_hold > tolerated_mesh_hold;
-  return row.mechanism == ClogMechanism::wrapped || row.mechanism == ClogMechanism::hybrid;
+  const DpParameters& dp = row.parameters.dp;
+  const bool hangs = row.mechanism == ClogMechanism::wrapped || row.mechanism == ClogMechanism::hybrid;
+  if (std::isnan(row.mesh_hold)) return hangs;
+  if (dp.friction > 0 && dp.film_friction == FilmFriction::off && hangs) return true;
+  return row.mesh_hold > std::max(tolerated_mesh_hold, weight_borne_by_friction(dp));
 }
 
 double obstacle_spacing(const RunRow& row) {

@@ -133,7 +133,8 @@ TEST_P(EveryKey, MakesTwoCurvesAndAComparisonIfItIsPhysics) {
   });
   if (column == group_columns().end()) return;  // another column shows it
   EXPECT_NE(separating_value(**column, sides[0].front()), separating_value(**column, sides[1].front()));
-  const Comparisons found = compare({{"one", sides[0], {"line_tension"}}, {"other", sides[1], {"line_tension"}}}, 0.95, {});
+  const Comparisons found =
+      compare({{"one", sides[0], {"line_tension"}}, {"other", sides[1], {"line_tension"}}}, 0.95, {});
   EXPECT_NE(std::ranges::find(found.differing, (*column)->name), found.differing.end());
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -193,6 +195,37 @@ TEST(ObstacleSpacing, OfOwnCirclesFollowsFromHowManyThereAre) {
   EXPECT_DOUBLE_EQ(obstacle_spacing(row), 4);
   row.obstacle_density = RunRow::not_known;
   EXPECT_DOUBLE_EQ(obstacle_spacing(row), row.parameters.obstacles.diameter + row.parameters.obstacles.gap);
+}
+
+RunRow wrapped_clog(double friction, FilmFriction films, double mesh_hold) {
+  RunRow row;
+  row.parameters.dp.friction = friction;
+  row.parameters.dp.film_friction = films;
+  row.status = RunStatus::clogged;
+  row.mechanism = ClogMechanism::wrapped;
+  row.mesh_hold = mesh_hold;
+  return row;
+}
+
+TEST(MayHangOnMesh, WhereCornersBearMoreThanFriction) {
+  // A rope over half of a disc: its ends have the ratio exp(pi mu).
+  const double ratio = std::exp(std::numbers::pi * 0.1);
+  const double borne = (ratio - 1) / (ratio + 1);
+  EXPECT_NEAR(weight_borne_by_friction(wrapped_clog(0.1, FilmFriction::on, 0).parameters.dp), borne, 1e-12);
+  EXPECT_FALSE(may_hang_on_mesh(wrapped_clog(0.1, FilmFriction::on, 0.99 * borne)));
+  EXPECT_TRUE(may_hang_on_mesh(wrapped_clog(0.1, FilmFriction::on, 1.01 * borne)));
+}
+
+TEST(MayHangOnMesh, WithoutFrictionAboveOnePercent) {
+  EXPECT_FALSE(may_hang_on_mesh(wrapped_clog(0, FilmFriction::off, 0.0099)));
+  EXPECT_TRUE(may_hang_on_mesh(wrapped_clog(0, FilmFriction::off, 0.0101)));
+}
+
+TEST(MayHangOnMesh, IfFrictionActsOnOneInterfaceOnly) {
+  RunRow row = wrapped_clog(1, FilmFriction::off, 0.001);
+  EXPECT_TRUE(may_hang_on_mesh(row));
+  row.mechanism = ClogMechanism::squeezed;
+  EXPECT_FALSE(may_hang_on_mesh(row));
 }
 
 }  // namespace

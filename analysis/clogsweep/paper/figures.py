@@ -14,7 +14,7 @@ from .workshop import Workshop
 
 ORDER = [
     "1", "2", "3", "4", "5", "6a", "6b", "6c", "6c-filling", "6c-saturated", "7a", "7a-saturated", "7b", "7c", "7c-saturated", "map", "density",
-    "8a", "8b", "8ca", "9a", "9b", "A1", "B1", "B2", "C1", "C2", "D", "E", "W1", "W2"]
+    "8a", "8b", "8ca", "9a", "9b", "A1", "B1", "B2", "C1", "C2", "D", "E", "W1", "W2", "W3"]
 
 
 def print_list() -> None:

@@ -1,18 +1,29 @@
 """Figures of droplets that hang over obstacles: what holds them, the mesh or a law of walls."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
 
+import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from matplotlib.patches import Circle
 
 from .. import style
+from ..drawing import surroundings
 from ..drawing.lengths import draw_lengths, length_notes
 from ..labels import AXES, said
-from ..tools.hints import Group
+from ..reading.trajectory import Trajectory
+from ..tools.hints import Group, Numbers
 from .arrays import HOLDS, by, numbers, of_each
 from .captions import describe
 from .plate import Plate, figure, interface_of
 from .workshop import Workshop
+
+# x, y, diameter [sigma]: a droplet falls on it from 7 sigma above, beside its centre by 0.08.
+POST = (47.0, 5.08, 0.3)
+# That touch the post or lie on the interface that does [sigma].
+NEAR = 0.12
 
 
 def explain(drawing: Figure, shop: Workshop, config: str, groups: Sequence[Group]) -> None:
@@ -81,4 +92,59 @@ def lengths_by_friction(shop: Workshop) -> Plate:
         axes.set_xlabel(AXES["line_tension"])
     panels[0][0].set_ylabel(AXES["length"])
     explain(drawing, shop, config, groups)
+    return Plate(drawing, data)
+
+
+def over_a_post(shop: Workshop, films: str) -> Trajectory:
+    """A droplet of two lobes of unequal weight over a post. @param films  value of film-friction"""
+    obstacles = shop.table("post", ["x", "y", "diameter"], [POST])
+    row, = shop.runs(f"post-{films}", None, {
+        "obstacles": obstacles, "box": 10, "boxes": 8, "preset": "elastic", "line-tension": 0.05, "friction": 0.3, "film-friction": films,
+        "vertices": 512, "max-time": 2600, "seeds": 1})
+    return shop.ways(f"post-{films}", [row], 20, 20)[0]
+
+
+def tensions(vertices: Numbers, row: np.void) -> Numbers:
+    """Tensions of the edges of a polygon whose springs pull them to their length at rest [g rho sigma^2].
+    @param vertices  2 x N_v [sigma]"""
+    number = vertices.shape[1]
+    lengths = np.hypot(*(np.roll(vertices, -1, axis=1) - vertices))
+    at_rest = math.sqrt(math.pi * math.tan(math.pi / number) / number)  # of a regular polygon as large as the droplet
+    return row["line_tension"] + row["perimeter_stiffness"] * number * (lengths - at_rest)
+
+
+def interfaces(vertices: Numbers) -> Iterator[Numbers]:
+    """Indices of the parts of a contour over the post, the one that touches it first."""
+    apart = np.hypot(vertices[0] - POST[0], vertices[1] - POST[1])
+    begin = int(np.argmax(apart))  # in a lobe, so that no part is cut in two
+    around = np.roll(np.arange(apart.size), -begin)
+    near = around[apart[around] < POST[2] / 2 + NEAR]
+    breaks = np.flatnonzero(np.diff((near - begin) % apart.size) > 1) + 1
+    yield from sorted(np.split(near, breaks), key=lambda part: apart[part].min())
+
+
+@figure("W3", "a droplet over a post: the tensions of its two interfaces, with friction on both of them and on the lower one alone", [], "1 min")
+def tensions_over_a_post(shop: Workshop) -> Plate:
+    held, slides = over_a_post(shop, "on"), over_a_post(shop, "off")
+    drawing, (left, right) = style.subplots(1, 2, figsize=(9.6, 3.8), width_ratios=[1.3, 1])
+    last = held.polygons[-1][:, ::2]  # without the middles of edges
+    # The other one passes here on its way.
+    passing = slides.polygons[int(np.argmin(np.abs(slides.polygons[:, 0].mean(axis=1) - held.polygons[-1][0].mean())))][:, ::2]
+    edges = np.stack([last.T, np.roll(last, -1, axis=1).T], axis=1) - POST[:2]
+    line = left.add_collection(LineCollection(edges, array=tensions(last, held.row) / held.row["line_tension"], cmap="viridis", linewidth=1.8))
+    drawing.colorbar(line, ax=left, label=r"tension/$\Gamma$")
+    left.add_patch(Circle((0, 0), POST[2] / 2, color="0.8"))
+    surroundings.frame_limits(left, (-0.4, -0.9), (4.2, 0.9))
+    left.set_xlabel(r"$x/\sigma$ from the post, along gravity")
+    data = []
+    for label, run, vertices, dashes in (("both", held, last, "-"), ("the lower one", slides, passing, "--")):
+        for interface, part, colour in zip(("lower", "upper"), interfaces(vertices), style.COLOURS):
+            angles = np.degrees(np.arctan2(vertices[1, part] - POST[1], POST[0] - vertices[0, part]))
+            values = tensions(vertices, run.row)[part] / run.row["line_tension"]
+            right.plot(angles, values, dashes, color=colour, label=f"{interface} interface, friction on {label}")
+            data += [{"friction on": label, "interface": interface, "angle": angle, "tension": value} for angle, value in zip(angles, values)]
+    right.set_xlabel("angle around the post from its top [degrees]")
+    right.set_ylabel(r"tension/$\Gamma$")
+    style.grid(right)
+    right.legend(frameon=False, fontsize=7)
     return Plate(drawing, data)

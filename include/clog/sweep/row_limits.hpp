@@ -33,8 +33,13 @@ std::vector<std::string> limits_of_results(const Plan& plan);
 /// Largest share of the droplet's weight that the polygon's corners may carry; beyond it, a clog is
 /// attributed to the corners, not to the obstacles.
 inline constexpr double tolerated_mesh_hold = 0.01;
-/// May the corners be what holds this clog? If mesh_hold is unknown: true for every droplet that hangs over
-/// obstacles.
+/// Largest difference of the weights of two lobes, as a share of the droplet's weight, that friction of both
+/// interfaces bears on half of a round obstacle: their tensions have a ratio of at most exp(pi mu) (capstan).
+/// Zero if friction does not act on both.
+double weight_borne_by_friction(const DpParameters& dp);
+/// May the corners be what holds this clog? True if they can bear more than friction, and for every droplet
+/// that hangs over obstacles if mesh_hold is unknown, or if friction acts on one of its interfaces only
+/// (docs/explanation/wrapped.md).
 bool may_hang_on_mesh(const RunRow& row);
 
 /// Smallest possible centre-to-centre distance of two obstacles; the mean of these if diameters vary [sigma].

@@ -76,7 +76,7 @@ void validate_compression(const DpParameters& dp, bool automatic_area) {
 }
 
 /// N_v l of the longest edges l that a droplet has on an obstacle [sigma], as measured
-/// (docs/explanation/mesh.md).
+/// (docs/explanation/wrapped.md).
 double length_over_obstacles(const RunParameters& run) {
   // The whole interface, if the mesh is even.
   const double even = std::numbers::pi * units::droplet_diameter + 0.33 / run.dp.line_tension;

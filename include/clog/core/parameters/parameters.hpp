@@ -10,7 +10,7 @@ namespace clog {
 
 /// To be raised whenever the same parameters begin to give other results: runs of different versions do not
 /// belong in one table.
-inline constexpr int model_version = 10;
+inline constexpr int model_version = 11;
 
 enum class Model { dp, sp };
 template <>
@@ -118,7 +118,7 @@ struct DpParameters {
   /// [sigma].
   double self_contact_range = published_vertex_diameter;
   /// Empty: on where there is friction and self-contact.
-  std::optional<FilmFriction> film_friction = FilmFriction::off;
+  std::optional<FilmFriction> film_friction;
   Gravity gravity = Gravity::area;
   std::optional<int> vertices;  ///< N_v; empty: automatic
   /// S, inertial mass over the droplet's mass. Weight and drag remain what they are, so that it only matters
