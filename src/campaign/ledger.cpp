@@ -123,6 +123,10 @@ Ledger::Ledger(std::string path, const sweep::Plan& plan, const sweep::Settings&
   set_attribute(provenance_, "sessions", latest_lines(attribute(provenance_, "sessions") + session));
   find_tasks(std::move(known), 0);
   publish();
+  if (const std::string& fault = place_.sync_fault(); !fault.empty())
+    caution_ += fmt::format(
+        "{}the folder of {} cannot be synchronised ({}): after a power cut the newest rows may be lost",
+        caution_.empty() ? "" : "\n", path_, fault);
   last_publication_ = Clock::now();
 }
 

@@ -155,6 +155,9 @@ Finding folder(const std::string& output) {
   const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - begin;
   const bool is_locked = flock(file, LOCK_EX | LOCK_NB) == 0;
   const bool is_renamed = rename(name.c_str(), renamed.c_str()) == 0;
+  const int directory = open(place.c_str(), O_RDONLY | O_DIRECTORY);
+  const bool is_synced = directory < 0 || fsync(directory) == 0 || errno == EINVAL;
+  if (directory >= 0) close(directory);
   close(file);
   unlink(is_renamed ? renamed.c_str() : name.c_str());
   std::error_code ignored;
@@ -165,7 +168,10 @@ Finding folder(const std::string& output) {
   if (!is_written) return {what + ", cannot be written to", "make room, or give another --output"};
   if (!is_locked)
     return {what + ", files cannot be locked (flock)",
-            "give an --output on another file system, or mount this one with locks"};
+            "give an --output on another file system, or mount this one with locks; if no other sweep writes "
+            "there: export HDF5_USE_FILE_LOCKING=FALSE"};
+  if (!is_synced)
+    return {what + ", the folder cannot be synchronised (fsync)", "results are safe but in a power cut"};
   if (!is_renamed) return {what + ", files cannot be renamed", "give an --output on another file system"};
   if (free < 1e8) return {what, "make room, or give another --output"};
   return {what + ", locks work"};

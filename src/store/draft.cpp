@@ -85,7 +85,7 @@ std::optional<std::string> Draft::publish_over(const std::string& stamp) {
   is_published_ = place_.replace(stamp, draft_);
   if (!is_published_ && errno == EEXIST) return std::nullopt;
   check(is_published_, "write", place_.path());
-  check(place_.sync_folder(), "write", place_.path());
+  place_.sync_folder();
   return published;
 }
 
@@ -95,7 +95,7 @@ void Draft::publish_new() {
   if (!is_renamed && errno == EEXIST) refuse_existing(place_.path());
   check(is_renamed, "create", place_.path());
   is_published_ = true;
-  check(place_.sync_folder(), "write", place_.path());
+  place_.sync_folder();
 }
 
 int Draft::release() { return std::exchange(descriptor_, -1); }

@@ -1,12 +1,15 @@
 #include "file_io.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <string_view>
 
 #include "clog/core/tools/error.hpp"
 
@@ -38,6 +41,17 @@ bool sync(int descriptor) {
   while (fsync(descriptor) != 0)
     if (errno != EINTR) return false;  // a signal is no fault of the disk
   return true;
+}
+
+bool try_lock(int descriptor, const std::string& path) {
+  if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) return true;
+  if (errno == EWOULDBLOCK) return false;
+  const std::string reason = std::strerror(errno);
+  const char* use = std::getenv("HDF5_USE_FILE_LOCKING");
+  if (use && std::string_view(use) == "FALSE") return true;
+  throw Error("cannot lock " + path + " (" + reason +
+              "); use a folder whose file system has locks (flock), or, if no other sweep writes to this "
+              "file, set HDF5_USE_FILE_LOCKING=FALSE");
 }
 
 void read_at(int descriptor, std::span<std::byte> bytes, std::uint64_t place, const std::string& path) {

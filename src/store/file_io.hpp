@@ -14,6 +14,12 @@ void check(bool succeeded, const std::string& what, const std::string& path);
 /// Brings a file to the disk, whatever signals come. Returns whether that succeeded.
 bool sync(int descriptor);
 
+/// Locks an open file for this process alone, until it is closed. Returns false if another process holds the
+/// lock.
+/// @throws Error if the file system has no locks, unless HDF5_USE_FILE_LOCKING=FALSE, the variable of HDF5,
+/// allows files without
+bool try_lock(int descriptor, const std::string& path);
+
 /// Fills the bytes from this place of the file on. @throws Error naming the path, also if the file ends
 /// before
 void read_at(int descriptor, std::span<std::byte> bytes, std::uint64_t place, const std::string& path);

@@ -168,29 +168,31 @@ Journal::Journal(Place place, const Place* table) : place_(std::move(place)) {
 Journal::~Journal() { close_file(); }
 
 void Journal::open_and_lock(const Place* table) {
-  while (true) {
+  // is_open() of another process holds the lock for a moment, and the file may be removed in between: retry.
+  constexpr int most_attempts = 10;
+  bool is_busy = false;
+  std::string reason = "it is removed or replaced again and again";
+  for (int attempt = 0; attempt < most_attempts; ++attempt) {
+    if (attempt > 0) usleep(20'000);
     // A user who may not read the table may not read its journal either.
     descriptor_ = place_.open(O_RDWR | O_CREAT | O_EXCL, table && table->exists() ? 0600 : 0666);
     if (descriptor_ >= 0 && table) table->lend_access_to(descriptor_);
     if (descriptor_ < 0 && errno == EEXIST) {
       descriptor_ = place_.open(O_RDWR);
-      if (descriptor_ < 0 && errno == ENOENT) continue;  // removed in between
+      if (descriptor_ < 0 && errno == ENOENT) continue;
     }
     check(descriptor_ >= 0, "write", place_.path());
-    // is_open() of another process holds the lock for a moment: retry.
-    int locked = -1;
-    for (int attempt = 0; attempt < 10; ++attempt) {
-      locked = flock(descriptor_, LOCK_EX | LOCK_NB);
-      if (locked == 0 || errno != EWOULDBLOCK) break;
-      usleep(20'000);
-    }
-    if (locked == 0 && place_.holds(descriptor_)) return;
-    check(locked == 0 || errno == EWOULDBLOCK, "lock", place_.path());
+    is_busy = !try_lock(descriptor_, place_.path());
+    errno = 0;
+    if (!is_busy && place_.holds(descriptor_)) return;
+    if (errno != 0 && !is_busy) reason = std::string("its state cannot be read: ") + std::strerror(errno);
     close(std::exchange(descriptor_, -1));
-    if (locked != 0)
-      throw Error("cannot use " + place_.path() +
-                  " (another sweep is writing to it); wait for it to end, or give another --output");
   }
+  if (is_busy)
+    throw Error("cannot use " + place_.path() +
+                " (another sweep is writing to it); wait for it to end, or give another --output");
+  throw Error("cannot use " + place_.path() + " (" + reason +
+              "); check the file system, or give another --output");
 }
 
 /// The first write removes an incomplete end and writes the header of a new file, so a sweep that reads the
@@ -228,9 +230,7 @@ bool Journal::make_anew(const Place& table) {
   if (descriptor_ < 0 && errno == EEXIST) return false;
   check(descriptor_ >= 0, "write", place_.path());
   table.lend_access_to(descriptor_);
-  const bool is_locked = flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
-  check(is_locked || errno == EWOULDBLOCK, "lock", place_.path());
-  if (!is_locked || !is_there()) {
+  if (!try_lock(descriptor_, place_.path()) || !is_there()) {
     close(std::exchange(descriptor_, -1));
     return false;
   }
@@ -260,12 +260,13 @@ void Journal::rewrite(std::span<const Entry* const> entries) {
   check_place();
   Draft draft(place_, journal_mark);
   // Locking a draft is optional; here it must succeed before the rename.
-  check(flock(draft.descriptor(), LOCK_EX | LOCK_NB) == 0, "lock", place_.path());
+  errno = EWOULDBLOCK;
+  check(try_lock(draft.descriptor(), place_.path()), "lock", place_.path());
   write_header(draft.descriptor(), place_.path());
   std::uint64_t size = sizeof(FileHeader);
   for (const Entry* entry : entries)
     size = write_record(draft.descriptor(), entry->row, entry->snapshot, size, place_.path());
-  check(draft.publish(), "write", place_.path());
+  draft.publish();  // the table of the same folder tells whether the folder can be synchronised
   close(std::exchange(descriptor_, draft.release()));
   contents_.num_bytes = num_rewritten_bytes_ = size;
   has_begun_ = true;

@@ -9,11 +9,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <vector>
 
 #include "clog/core/tools/error.hpp"
 #include "file_io.hpp"
+#include "seal.hpp"
 
 namespace clog::store {
 
@@ -38,6 +40,15 @@ void refuse_link_of_others(const fs::path& link) {
     throw Error(
         "cannot follow the link " + link.string() +
         " (it belongs to another user, in a folder that everybody can write to); give the path itself");
+}
+
+/// The seal of a file of this size; empty if it has none or cannot be read. Closes the file.
+std::string seal_at_end(int descriptor, off_t size) {
+  if (descriptor < 0) return "";
+  std::string end(std::min<std::size_t>(seal_size, static_cast<std::size_t>(size)), '\0');
+  const ssize_t got = pread(descriptor, end.data(), end.size(), size - static_cast<off_t>(end.size()));
+  close(descriptor);
+  return got == static_cast<ssize_t>(seal_size) && has_seal_mark(end) ? end : "";
 }
 
 constexpr const char* access_list = "system.posix_acl_access";
@@ -73,6 +84,7 @@ class Place::Folder {
   Folder(Folder&&) = delete;
   ~Folder() { close(descriptor_); }
   int descriptor() const { return descriptor_; }
+  mutable std::string sync_fault;  // why it could not be synchronised
 
  private:
   int descriptor_;
@@ -166,9 +178,12 @@ bool Place::sync_folder() const {
   const int descriptor = openat(folder_->descriptor(), ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return errno == EACCES;                  // a folder that is writable but not readable
   const bool is_synced = sync(descriptor) || errno == EINVAL;  // some file systems cannot
+  if (!is_synced) folder_->sync_fault = std::strerror(errno);
   close(descriptor);
   return is_synced;
 }
+
+const std::string& Place::sync_fault() const { return folder_->sync_fault; }
 
 bool Place::lend_access_to(int descriptor) const {
   struct stat status {};
@@ -193,6 +208,8 @@ bool Place::lend_access_to(int descriptor) const {
 std::string Place::stamp() const {
   struct stat there {};
   if (fstatat(folder_->descriptor(), name_.c_str(), &there, AT_SYMLINK_NOFOLLOW) != 0) return "";
+  if (const std::string seal = seal_at_end(open(O_RDONLY | O_NONBLOCK), there.st_size); !seal.empty())
+    return fmt::format("{} {}", there.st_size, seal);
   return fmt::format("{} {} {}", there.st_dev, there.st_ino, there.st_size);
 }
 

@@ -222,6 +222,7 @@ SHIM = """
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 
 static int is_to_fail(const char* what, int reason) {
@@ -235,6 +236,14 @@ int fsync(int file) {
   if (fstat(file, &status) == 0 && S_ISDIR(status.st_mode) && is_to_fail("folder", EIO)) return -1;
   return ((int (*)(int))dlsym(RTLD_NEXT, "fsync"))(file);
 }
+int flock(int file, int what) {
+  if (what != LOCK_UN && is_to_fail("locks", ENOLCK)) return -1;
+  return ((int (*)(int, int))dlsym(RTLD_NEXT, "flock"))(file, what);
+}
+int fstatat(int folder, const char* name, struct stat* status, int flags) {
+  if (strstr(name, ".journal") && is_to_fail("state", ESTALE)) return -1;
+  return ((int (*)(int, const char*, struct stat*, int))dlsym(RTLD_NEXT, "fstatat"))(folder, name, status, flags);
+}
 int unlinkat(int folder, const char* name, int flags) {
   if (strstr(name, ".journal") && is_to_fail("journal", EPERM)) return -1;
   return ((int (*)(int, const char*, int))dlsym(RTLD_NEXT, "unlinkat"))(folder, name, flags);
@@ -245,10 +254,33 @@ int unlinkat(int folder, const char* name, int flags) {
 class Refusals(SweepTest):
     """A file system that refuses what comes after the rows are there."""
 
-    def succeed_where(self, fails, *arguments):
+    def where(self, fails, **more):
+        """The environment of a program for which these calls fail."""
         self.write("shim.c", SHIM)
         subprocess.run(["cc", "-shared", "-fPIC", "-o", "shim.so", "shim.c", "-ldl"], cwd=self.folder, check=True)
-        return self.succeed("clogsweep", *arguments, env={**os.environ, "LD_PRELOAD": str(self.folder / "shim.so"), "FAILS": fails, "ASAN_OPTIONS": "verify_asan_link_order=0"})
+        return {**os.environ, "LD_PRELOAD": str(self.folder / "shim.so"), "FAILS": fails, "ASAN_OPTIONS": "verify_asan_link_order=0", **more}
+
+    def succeed_where(self, fails, *arguments, **more):
+        return self.succeed("clogsweep", *arguments, env=self.where(fails, **more))
+
+    def test_a_sweep_goes_on_though_its_folder_cannot_be_synced(self):
+        done = self.succeed_where("folder", *FINISHED, "--output", "s.h5")
+        self.assertEqual(done.stderr.count("the folder of s.h5 cannot be synchronised (Input/output error): after a power cut the newest rows may be lost"), 1)
+        self.assertIn("4 rows of 4 runs, all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
+
+    def test_a_sweep_without_locks_is_for_users_who_ask_for_it(self):
+        done = self.run_program("clogsweep", *FINISHED, "--output", "s.h5", env=self.where("locks"))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("cannot lock s.h5.journal (No locks available); use a folder whose file system has locks", done.stderr)
+        self.assertIn("HDF5_USE_FILE_LOCKING=FALSE", done.stderr)
+        self.assertFalse((self.folder / "s.h5").exists())
+        self.succeed_where("locks", *FINISHED, "--output", "s.h5", HDF5_USE_FILE_LOCKING="FALSE")
+        self.assertIn("4 rows of 4 runs, all undamaged", self.succeed("clogsweep", "verify", "s.h5").stdout)
+
+    def test_a_journal_whose_state_cannot_be_read_ends_the_sweep(self):
+        done = self.run_program("clogsweep", *FINISHED, "--output", "s.h5", env=self.where("state"))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("cannot use s.h5.journal (its state cannot be read: Stale file handle)", done.stderr)
 
     def test_a_merge_is_there_though_its_folder_cannot_be_synced(self):
         self.succeed("clogsweep", *FINISHED, "--output", "a.h5")

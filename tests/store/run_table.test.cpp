@@ -117,6 +117,20 @@ TEST_F(RunTableTest, IsPublishedOnlyInPlaceOfTheFileThatIsKnown) {
   EXPECT_EQ(num_files(), 1) << "no draft is left";
 }
 
+TEST_F(RunTableTest, IsTheSameUnderAnotherInode) {
+  // As some network file systems show it after a while.
+  publish_sweep(path(), some_rows(2), {});
+  const std::string stamp = Place(path()).stamp();
+  fs::rename(path(), path("earlier.h5"));
+  fs::copy_file(path("earlier.h5"), path());
+  EXPECT_EQ(Place(path()).stamp(), stamp);
+  EXPECT_TRUE(publish_sweep_over(stamp, Place(path()), some_rows(3), {}).has_value());
+  publish_sweep(path(), some_rows(2), {});
+  EXPECT_EQ(Place(path()).stamp(), stamp) << "the same rows again";
+  publish_sweep(path(), some_rows(3), {});
+  EXPECT_NE(Place(path()).stamp(), stamp);
+}
+
 TEST_F(RunTableTest, RemovesItsStaleDraftsAndNoOthers) {
   write_text("sweep.h5.new", "a user's");
   write_text("sweep.h5.clogsweep-draft1", "also a user's");

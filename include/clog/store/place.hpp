@@ -38,11 +38,15 @@ class Place {
   bool replace(const std::string& stamp, const Place& other) const;
   /// Synchronises the folder to disk, so that renames survive a power cut. Returns whether it succeeded.
   bool sync_folder() const;
+  /// Why the last failed sync_folder() of this place, its copies and those beside() it failed; empty: none
+  /// has.
+  const std::string& sync_fault() const;
   /// Copies mode, owner, group and access list of the file here to an open file, as far as permitted. Returns
   /// whether there is a file here.
   bool lend_access_to(int descriptor) const;
-  /// The file's identity (device, inode, size), which differs from that of any file moved here and does not
-  /// depend on mode and times; empty if there is no file.
+  /// The file's identity: size and seal, or, of a file without a seal, device, inode and size. It differs
+  /// from that of any other file moved here and does not depend on mode and times; some network file systems
+  /// change the inode. Empty if there is no file.
   std::string stamp() const;
 
  private:
