@@ -119,12 +119,13 @@ std::string note_of_rest(const std::vector<Group>& groups) {
 
 /// Names the runs that are missing from the table, or from some of its columns.
 std::string left_out(const std::vector<Group>& groups) {
-  int num_failed = 0, num_damaged = 0, num_interrupted = 0, num_left_out = 0;
+  int num_failed = 0, num_damaged = 0, num_interrupted = 0, num_left_out = 0, num_repeated = 0;
   for (const Group& group : groups) {
     num_failed += group.num_failed;
     num_damaged += group.num_damaged;
     num_interrupted += group.num_interrupted;
     num_left_out += group.num_left_out;
+    num_repeated += group.num_repeated;
   }
   std::string text;
   if (num_left_out > 0)
@@ -137,6 +138,9 @@ std::string left_out(const std::vector<Group>& groups) {
         "   {} {} unfinished: lambda holds for the distances reached so far, and the clogs so far are the "
         "early ones\n",
         sweep::counted(num_interrupted, "run"), num_interrupted == 1 ? "is" : "are");
+  if (num_repeated > 0)
+    text += fmt::format("   {} repeat droplets of longer runs and do not count (--pool)\n",
+                        sweep::counted(num_repeated, "run"));
   if (num_failed > 0) text += fmt::format("   {} failed; the column `message` says why\n", num_failed);
   if (num_damaged > 0) text += fmt::format("   {} damaged; clogsweep verify tells which\n", num_damaged);
   return text;

@@ -8,12 +8,16 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/number_text.hpp"
+#include "clog/core/tools/split.hpp"
 #include "clog/core/tools/units.hpp"
+#include "clog/sweep/obstacle_arrays.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/row_limits.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -272,6 +276,20 @@ fit::MeanSpeed mean_speed_of_all(std::span<const fit::Travel> travels, double te
   return of_enough_runs(is_far ? fit::fit_pooled_speed(travels) : fit::fit_pooled_speed({}));
 }
 
+/// Of the runs of each droplet, that is, of one seed in one array, leaves the one with the largest max-time,
+/// and these in the order of max-time, the largest first.
+void keep_longest(std::vector<const sweep::RunRow*>& runs) {
+  const auto longer = [](const sweep::RunRow* a, const sweep::RunRow* b) {
+    return a->parameters.max_time > b->parameters.max_time;
+  };
+  std::stable_sort(runs.begin(), runs.end(), longer);
+  std::set<std::pair<std::uint32_t, std::string>> known;
+  std::erase_if(runs, [&](const sweep::RunRow* run) {
+    if (run->status == RunStatus::failed || !sweep::fault_of(*run).empty()) return false;
+    return !known.emplace(run->parameters.seed, sweep::array_key(run->parameters)).second;
+  });
+}
+
 constexpr std::pair<std::string_view, std::string_view> units_of_results[] = {
     {"dwell", "t0"},
     {"total_distance", "sigma"},
@@ -305,17 +323,36 @@ const DoubtText& text_of(Doubt doubt) {
 
 bool is_dwell_possible(const Group& group) { return group.dwell < group.first_row.parameters.max_time; }
 
+std::vector<const sweep::Column*> pooled_columns(const std::string& keys) {
+  std::vector<const sweep::Column*> columns;
+  for (const std::string& key : split_at_commas(keys)) {
+    if (key != "max-time" && key != "boxes")
+      throw Error(fmt::format(
+          "invalid --pool={} (runs that differ in {} are runs of another droplet or another array) pool "
+          "max-time and boxes only",
+          keys, key));
+    columns.push_back(&sweep::column(parameter(key).column));
+  }
+  return columns;
+}
+
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence, double from_distance,
-                              double dwell) {
+                              double dwell, std::span<const sweep::Column* const> pooled) {
   require_dwells(rows, dwell);
   std::map<std::vector<Field>, std::vector<const sweep::RunRow*>> members;
   for (const sweep::RunRow& row : rows) {
     std::vector<Field> fields = parameter_fields(row);
+    for (const sweep::Column* column : pooled)
+      for (auto& [name, value] : fields)
+        if (column->name == name) value = Value();
     members[std::move(fields)].push_back(&row);
   }
   std::vector<Group> groups;
-  for (const auto& [fields, runs] : members) {
+  for (auto& [fields, runs] : members) {
     Group group;
+    const std::size_t num_all = runs.size();
+    if (!pooled.empty()) keep_longest(runs);
+    group.num_repeated = static_cast<int>(num_all - runs.size());
     group.first_row = *runs.front();
     group.dwell = dwell;
     std::vector<Ending> counted;
@@ -400,6 +437,7 @@ std::vector<Field> result_fields(const Group& group) {
       {"failed", value_of(group.num_failed)},
       {"damaged", value_of(group.num_damaged)},
       {"left_out", value_of(group.num_left_out)},
+      {"repeated", value_of(group.num_repeated)},
       {"dwell", is_dwell_possible(group) ? value_of(group.dwell) : Value()},
       {"dwells_known_from", value_of(group.dwells_known_from)},
       {"repeating", value_of(group.num_repeating)},

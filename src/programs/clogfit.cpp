@@ -77,6 +77,8 @@ int body(int argc, char** argv) {
       "count lambda from this distance on; runs that ended before are left out [sigma]")(
       "lab", po::value<std::string>(),
       "file that describes the laboratory, see clogfit units: lengths, speeds and times in its units, too")(
+      "pool", po::value<std::string>(),
+      "max-time, boxes or both, with a comma between: join groups that differ in these keys only")(
       "dwell", po::value<std::string>(), "droplets that have not moved for so long count as clogged [t0]");
   line.add_positional("file", -1);
   line.add_commands({"calibrate", "compare", "curve", "deviation", "drag", "report", "units"});
@@ -101,14 +103,18 @@ int body(int argc, char** argv) {
   if (line.has("dwell") && !campaign::has_clogging_length(sweep.rows.front()))
     throw Error(
         "no place for --dwell (droplets in a channel or on a wall have no clogging length) leave it out");
+  const std::vector<const sweep::Column*> pooled =
+      line.has("pool") ? campaign::pooled_columns(line.get("pool")) : std::vector<const sweep::Column*>();
   const std::vector<campaign::Group> groups =
-      campaign::group_runs(sweep.rows, confidence, from_distance, dwell);
+      campaign::group_runs(sweep.rows, confidence, from_distance, dwell, pooled);
   const std::optional<campaign::LaboratoryScale> lab = laboratory_scale(line, sweep, paths.front());
   const SharedParameters shared =
       line.has("all-parameters") ? SharedParameters::all : SharedParameters::unusual;
   std::cout << (format == "csv"    ? campaign::to_csv(groups, lab)
                 : format == "json" ? campaign::to_json(groups, confidence, sweep.provenance, lab)
                                    : campaign::to_text(groups, confidence, shared, lab));
+  if (format == "text" && line.has("pool"))
+    std::cout << fmt::format("   groups that differ only in {} are joined (--pool)\n", line.get("pool"));
   return console::exit_success;
 }
 

@@ -81,6 +81,24 @@ class Fit(ProgramTest):
     def fit(self, *arguments):
         return json.loads(self.succeed("clogfit", "sweep.h5", "--format", "json", *arguments).stdout)
 
+    def test_the_same_droplet_counts_once_in_a_pool(self):
+        keys = [*SMALL, "line-tension=0.5", "obstacle-gap=0.4", "seeds=1..4"]
+        for name, more in (("short", ["max-time=60"]), ("long", ["max-time=120"]), ("wide", ["max-time=60", "boxes=3"])):
+            self.succeed("clogsweep", *keys, *more, "--output", f"{name}.h5")
+        self.succeed("clogsweep", "merge", "short.h5", "long.h5", "--output", "sweep.h5")
+        long = json.loads(self.succeed("clogfit", "long.h5", "--format", "json").stdout)["groups"]
+        self.assertEqual(len(self.fit()["groups"]), 2)
+        group, = self.fit("--pool=max-time")["groups"]
+        self.assertEqual((group["runs"], group["repeated"], group["total_distance"]), (4, 4, long[0]["total_distance"]))
+        told = self.succeed("clogfit", "sweep.h5", "--pool", "max-time").stdout
+        self.assertIn("4 runs repeat droplets of longer runs and do not count (--pool)\n", told)
+        self.assertIn("groups that differ only in max-time are joined (--pool)\n", told)
+        # Another number of boxes is another array.
+        self.succeed("clogsweep", "merge", "short.h5", "wide.h5", "--output", "boxes.h5")
+        group, = json.loads(self.succeed("clogfit", "boxes.h5", "--format", "json", "--pool=boxes,max-time").stdout)["groups"]
+        self.assertEqual((group["runs"], group["repeated"]), (8, 0))
+        self.refuse("clogfit", "sweep.h5", "--pool=max-time,seeds", words=["invalid --pool=max-time,seeds", "runs that differ in seeds"])
+
     def test_it_gives_the_reference_answer(self):
         # Sum of 359 over 21 runs with 9 ends: the classic leukaemia trial.
         self.sweep("seeds=1..21", *FAR)

@@ -121,6 +121,7 @@ struct Group {
   int num_resting = 0;
   double shortest_rest = std::numeric_limits<double>::infinity();
   int num_interrupted = 0;
+  int num_repeated = 0;   ///< shorter runs of a droplet that counts with a longer one (pooled)
   int num_failed = 0;     ///< left out of all fits
   int num_damaged = 0;    ///< likewise
   int num_left_out = 0;   ///< ended before distances are counted, see group_runs(); likewise
@@ -136,10 +137,15 @@ struct Group {
 /// @param dwell  a droplet that has stood for longer than this counts as clogged where it did so first [t0].
 /// One that has neither stood so long nor clogged is censored where its last dwell began, because the full
 /// length of that dwell is not known. A value of max-time or more changes nothing.
+/// @param pooled  columns of max-time and boxes that do not separate groups. Of the runs of one seed in the
+/// same array the one with the largest max-time counts; with other boxes the array is another one
 /// @throws Error if the rows do not tell which droplets stood for so long
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence,
                               double from_distance = 0,
-                              double dwell = std::numeric_limits<double>::infinity());
+                              double dwell = std::numeric_limits<double>::infinity(),
+                              std::span<const sweep::Column* const> pooled = {});
+/// The columns of keys such as `max-time,boxes`. @throws Error for any other key
+std::vector<const sweep::Column*> pooled_columns(const std::string& keys);
 /// Can a droplet of this group have stood for so long?
 bool is_dwell_possible(const Group& group);
 
