@@ -103,5 +103,5 @@ def bands_by_cause(groups: Sequence[Group], known: model.Points, places: Numbers
 
 
 def _crossing(one: features.Crossing, length: float, name: str) -> dict[str, Any]:
-    return {"clogging_length": length, name: float(np.exp(one.place)), f"{name}_lower": _finite(np.exp(one.lower)) if one.lower > -np.inf else None,
-            f"{name}_upper": _finite(np.exp(one.upper)), "direction": "upwards" if one.is_upward else "downwards"}
+    return {"clogging_length": length, name: float(np.exp(one.place)), f"{name}_lower": float(np.exp(one.lower)), f"{name}_upper": _finite(np.exp(one.upper)),
+            "direction": "upwards" if one.is_upward else "downwards"}

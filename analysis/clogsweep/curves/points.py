@@ -15,7 +15,6 @@ from typing import Any
 
 import numpy as np
 
-from ..labels import is_number
 from ..reading import stored
 from ..tools.errors import UserError
 from ..tools.hints import Column, Group, Numbers, Records
@@ -174,7 +173,7 @@ def split(fit: Fit, keys: Sequence[Column]) -> tuple[list[Members], list[Exclude
             excluded += [Excluded(index, reason) for index in shown.groups]
         else:
             curves.append(shown)
-    curves.sort(key=lambda members: [(value is None, not is_number(value), value) for value in members.shared.values()])
+    curves.sort(key=lambda members: [(value is None, isinstance(value, str), value) for value in members.shared.values()])
     return curves, sorted(excluded, key=lambda one: one.group)
 
 

@@ -63,7 +63,7 @@ def _crossings(answer: dict[str, Any], curve: dict[str, Any], crossing: list[flo
         if not found:
             lines.append(f"does not cross {length:g} sigma between these values")
         for one in found:
-            beyond = ", or beyond the outermost values" if None in (one[f"{key}_lower"], one[f"{key}_upper"]) else ""
+            beyond = ", or beyond the outermost values" if one[f"{key}_lower"] == 0 or one[f"{key}_upper"] is None else ""
             lines.append(f"crosses {length:g} sigma {one['direction']} at {key} {with_interval(one, key)}{beyond}")
     return lines
 
