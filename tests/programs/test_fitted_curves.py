@@ -43,12 +43,12 @@ class Records(unittest.TestCase):
     def test_mean_band_crossings_and_mechanisms_agree_with_the_recorded_ones(self):
         for told, recorded, known, places, curve in self.fits():
             step = recorded["curve"]["step"]
-            band = features.band(curve, told["confidence"])[:, ::step]
+            whole = features.band(curve, told["confidence"])
             shown = recorded["curve"]["places"]
-            np.testing.assert_allclose(band, [[place[name] for place in shown] for name in LENGTH], rtol=1e-6)
+            np.testing.assert_allclose(whole[:, ::step], [[place[name] for place in shown] for name in LENGTH], rtol=1e-6)
             for i, key in enumerate(told["keys"]):
                 np.testing.assert_allclose(np.exp(places[::step, i]), [place[key] for place in shown], rtol=1e-12)
-            by_cause = answer.bands_by_cause([point["causes"] | {"clogs": point["clogs"]} for point in recorded["points"]], known, places, told["confidence"])
+            by_cause = answer.bands_by_cause([point["causes"] | {"clogs": point["clogs"]} for point in recorded["points"]], known, places, told["confidence"], whole)
             for names, band in by_cause.items():
                 np.testing.assert_allclose(band[:, ::step], [[place[name] for place in shown] for name in names], rtol=1e-6)
             self.assertEqual(len(by_cause), sum(names[0] in shown[0] for names in answer.CAUSES.values()))
@@ -145,7 +145,8 @@ TENSIONS = (0.1, 0.3, 1.0, 3.0)
 def group(line_tension, **more):
     usual = {"model": "dp", "obstacle_filling": "saturated", "obstacle_density": 1.0, "obstacle_gap": 0.2, "obstacle_diameter": 0.3, "friction": 0.0,
              "inertia": 1.0, "time_step": line_tension, "preset": "robust", "exit": 0.0, "runs": 6, "clogs": 6, "total_distance": 12.0,
-             "clogging_length": 2.0, "clogging_length_lower": 1.0, "clogging_length_upper": 4.0, "wrapped": 6, "squeezed": 0, "hybrid": 0, "other": 0, "broken": 0}
+             "clogging_length": 2.0, "clogging_length_lower": 1.0, "clogging_length_upper": 4.0, "wrapped": 6, "squeezed": 0,
+             "hybrid": 0, "other": 0, "broken": 0}
     return usual | {"line_tension": line_tension} | more
 
 

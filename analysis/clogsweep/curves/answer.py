@@ -75,7 +75,8 @@ def _curve(fit: points.Fit, members: points.Members, keys: Sequence[Column], cro
     known = model.Points(np.array([points.place_of(group, keys) for group in groups]), _column(groups, "clogs"), _column(groups, "total_distance"))
     places = points.grid_over(known.places)
     fitted = model.fit_curve(known, places)
-    bands = {ALL: features.band(fitted, confidence)} | bands_by_cause(groups, known, places, confidence)
+    whole = features.band(fitted, confidence)
+    bands = {ALL: whole} | bands_by_cause(groups, known, places, confidence, whole)
     peak = features.find_peak(fitted, places, confidence)
     return {
         "shared": members.shared,
@@ -93,12 +94,15 @@ def _column(groups: Sequence[Group], name: str) -> Numbers:
     return np.array([group[name] for group in groups], dtype=float)
 
 
-def bands_by_cause(groups: Sequence[Group], known: model.Points, places: Numbers, confidence: float) -> dict[tuple[str, ...], Numbers]:
-    """The curve of the clogs by each mechanism that occurs, all others being censored; none if some are of unknown mechanism."""
+def bands_by_cause(groups: Sequence[Group], known: model.Points, places: Numbers, confidence: float,
+                   whole: Numbers) -> dict[tuple[str, ...], Numbers]:
+    """The curve of the clogs by each mechanism that occurs, all others being censored; none if some are of unknown mechanism.
+    @param whole  the band of all clogs, which is that of a mechanism to which all belong"""
     if any(group[cause] is None for group in groups for cause in CAUSES):
         return {}
     counts = {names: _column(groups, cause) for cause, names in CAUSES.items() if any(group[cause] > 0 for group in groups)}
-    return {names: features.band(model.fit_curve(model.Points(known.places, clogs, known.distances), places), confidence)
+    return {names: whole if np.array_equal(clogs, known.clogs) else
+            features.band(model.fit_curve(model.Points(known.places, clogs, known.distances), places), confidence)
             for names, clogs in counts.items()}
 
 

@@ -97,7 +97,10 @@ def matern(distance: Numbers) -> Numbers:
 def kernel(rows: Numbers, columns: Numbers, scales: Scales) -> Numbers:
     product = np.full((len(rows), len(columns)), float(scales.amplitude**2))
     for key, length in enumerate(scales.lengths):
-        product *= matern((rows[:, None, key] - columns[None, :, key]) / length)
+        # A grid has few values of each key.
+        first, row = np.unique(rows[:, key], return_inverse=True)
+        second, column = np.unique(columns[:, key], return_inverse=True)
+        product *= matern((first[:, None] - second) / length)[np.ix_(row, column)]
     return product + LEVEL_VARIANCE
 
 
@@ -128,7 +131,7 @@ def find_mode(points: Points, scales: Scales) -> Mode:
                 slopes, f = tried, covariance @ tried
                 break
         gain, best = reached - best, max(best, reached)
-        if gain < SETTLED:
+        if not gain >= SETTLED:  # NaN, too
             break
     roots, factor = curvature(f)
     return Mode(scales, slopes, roots, factor, float(best - np.log(np.diagonal(factor)).sum()))
