@@ -79,7 +79,10 @@ class Groups:
         """Points through which no fitted curve goes although there are others, each with the reason."""
         if not self._fitted["curves"]:
             return []
-        return [f"{self.said(self.abscissa, one[self.abscissa])}: {one['reason']}" for one in self._fitted["excluded"]]
+        points: dict[str, list[str]] = {}
+        for one in self._fitted["excluded"]:
+            points.setdefault(one["reason"], []).append(self.said(self.abscissa, one[self.abscissa]))
+        return [f"{', '.join(dict.fromkeys(places))} ({reason})" for reason, places in points.items()]
 
     @property
     def are_polygons(self) -> bool:
