@@ -55,7 +55,7 @@ def band(curve: Curve, confidence: float) -> Numbers:
 
 def drawn_curves(curve: Curve, number: int = NUM_DRAWS) -> Numbers:
     """Curves of log lambda drawn from the distribution, the same ones in every call: one in every row."""
-    variance = max(float(np.max(np.diagonal(curve.covariance))), np.finfo(float).tiny)
+    variance = max(float(np.max(np.diagonal(curve.covariance))), float(np.finfo(float).tiny))
     jitter = FIRST_JITTER
     while True:
         try:

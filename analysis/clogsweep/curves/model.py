@@ -84,7 +84,7 @@ class Mode:
     scales: Scales
     slopes: Numbers  # of the log likelihood: K^-1 f
     roots: Numbers  # of the expected clogs W = S exp(-f), the likelihood's curvature
-    factor: Numbers  # lower triangle of Cholesky's factor of 1 + W^1/2 K W^1/2
+    factor: Numbers  # lower triangular factor of 1 + W^1/2 K W^1/2
     log_evidence: float
 
 
