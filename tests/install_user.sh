@@ -65,7 +65,7 @@ clogrun array $keys line-tension=0.5 seeds=1 --polygon-interval 20 --output run.
 refused "clogfit calibrate: not in this build (NLopt was not found" clogfit calibrate run.h5
 clogfit calibrate --help >/dev/null
 refused "clogfit report: cannot run python3 (No such file or directory)" clogfit report sweep.h5
-cmake -S ~/installed/share/doc/clogsweep/docs/examples/own-program -B own -DCMAKE_BUILD_TYPE=Release \
+cmake -G Ninja -S ~/installed/share/doc/clogsweep/docs/examples/own-program -B own -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_PREFIX_PATH="$HOME/installed;$HOME/installed/lib/clogsweep/dependencies"
 cmake --build own
 own/own-program

@@ -78,6 +78,12 @@ void depend_on_parent(pid_t parent) {
   for (const int signal : {SIGINT, SIGTERM, SIGUSR1}) std::signal(signal, SIG_IGN);
 }
 
+/// Libraries of MPI, such as UCX, handle a crash as soon as they are loaded, and may wait for ever in their
+/// handlers. The processes forked from now on die of a crash.
+void let_crashes_kill() {
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGILL}) std::signal(signal, SIG_DFL);
+}
+
 /// When memory runs out, the kernel is to take this process, and neither the helper nor the rank, without
 /// which the sweep is over.
 void be_first_when_memory_runs_out() { std::ofstream("/proc/self/oom_score_adj") << 1000; }
@@ -298,6 +304,7 @@ class IsolatedJobs::IsolatedJob final : public Job {
 IsolatedJobs::IsolatedJobs(const Describe& describe) : describe_(describe) {
   auto [mine, theirs] = Socket::pair();
   const pid_t self = getpid();
+  let_crashes_kill();
   helper_ = fork();
   if (helper_ < 0)
     throw Error(std::string("cannot start a process (") + std::strerror(errno) +

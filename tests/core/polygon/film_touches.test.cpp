@@ -54,7 +54,8 @@ class Stack {
     for (int i = 0; i < num_; ++i) {
       const Eigen::Array2d from_centre{state_.x()[i], state_.y()[i]};
       const double r = from_centre.matrix().norm();
-      if (r < disc) touches.push_back({i, wall, foot_on(wall, wedges, from_centre), stiffness * (disc - r), 0});
+      if (r < disc)
+        touches.push_back({i, wall, foot_on(wall, wedges, from_centre), stiffness * (disc - r), 0});
     }
     FilmTouches films(0, stiffness, wedges);
     films.add_to(touches, {num_, state_.position.data(), state_.position.data() + num_}, contacts_);

@@ -188,18 +188,8 @@ TEST(DropletRun, RefusesASnapshotThatIsTornOrOfAnotherRun) {
 /// Snapshots whose checksum is right and whose content is not: any of their numbers may be anything. Either
 /// they are refused, or the run goes on to its end without a crash, and it does not spin.
 TEST(DropletRun, EndsWhateverItsSnapshotHolds) {
-  RunParameters run;
-  run.obstacles.box = 20;
-  run.obstacles.density = {};
-  run.obstacles.gap = 0.4;
-  run.time_step = 2e-3;
-  run.max_time = 600;
+  RunParameters run = with_friction(soft_among_walls(), 0.02, FilmFriction::off);
   run.dp.vertices = 32;
-  run.dp.line_tension = 0.1;
-  run.dp.perimeter_spring = PerimeterSpring::rest;
-  run.dp.perimeter_stiffness_ratio = 0.1;
-  run.dp.gravity = Gravity::vertex;
-  run.dp.friction = 0.02;
   run = resolve(run);
   const auto obstacles = std::make_shared<ObstacleArray>(sample_obstacles(run.obstacles, run.seed));
   DropletRun whole(run);
