@@ -2,6 +2,7 @@
 
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -23,6 +24,35 @@ def tutorial():
 def blocks(path):
     """@return pairs of a language and a text"""
     return BLOCK.findall((ROOT / path).read_text())
+
+
+def code(text):
+    """@return the lines of a page that are indented or in a block of bash; others are empty"""
+    fence = None
+    for line in text.splitlines():
+        if line.startswith("```"):
+            fence = line[3:] if fence is None else None
+            yield ""
+        elif fence is None:
+            yield line[4:] if line.startswith("    ") else ""
+        else:
+            yield line if fence == "bash" else ""
+
+
+def commands(path):
+    """@return the words of every command in the code of a page, in order; redirections are left out"""
+    found = []
+    for line in "\n".join(code((ROOT / path).read_text())).replace("\\\n", " ").splitlines():
+        words = shlex.shlex(line, posix=True, punctuation_chars="|&;>")
+        words.whitespace_split = True
+        command = []
+        for word in [*words, ";"] if line.count("'") % 2 == 0 else []:
+            if set(word) <= set("|&;"):
+                found.append(command[:command.index(">")] if ">" in command else command)
+                command = []
+            else:
+                command.append(word)
+    return [command for command in found if command]
 
 
 def run(language, block, folder):

@@ -35,14 +35,18 @@ def offsets(word: str) -> list[float]:
     return numbers
 
 
-def body() -> int:
+def parse() -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
     parser.add_argument("keys", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUE", help="of clogsweep; vertices, terminal-speed, break-up-neck, max-time have values "
                         "of their own here")
     command_line.add_output(parser, "name of the picture; .png and .pdf are made", ".png", ".pdf", required=True)
     parser.add_argument("--offsets", type=offsets, default="0,0.01,0.02,0.05,0.1,0.15,0.2,0.25,0.3,0.35", help="of the droplet's way from the obstacle's centre [sigma]")
     programs.add_option(parser)
-    arguments = parser.parse_args()
+    return parser.parse_args()
+
+
+def body() -> int:
+    arguments = parse()
     outputs.refuse_unwritable_picture(arguments.output)
     found: dict[float, collision.Threshold] = {}
     print("offset,symmetry,breaks_up_to,whole_from,capillary_number")

@@ -9,6 +9,7 @@ CSV, with the reasons to doubt it: soft (line tension below 1: many droplets han
 fifth off at 0.5, ten times too long at 0.3), crowded (below 4 sigma: too long, other obstacles come between). docs/explanation/predicted.md says how far it holds.
 """
 
+import argparse
 import math
 import pathlib
 import tempfile
@@ -19,11 +20,15 @@ from ..tools.errors import UserError
 from . import command_line
 
 
-def body() -> int:
+def parse() -> argparse.Namespace:
     parser = command_line.Parser(__doc__)
     parser.add_argument("keys", type=command_line.key_and_value, nargs="*", metavar="KEY=VALUE", help="of clogsweep, line-tension with a list if you like")
     programs.add_option(parser)
-    arguments = parser.parse_args()
+    return parser.parse_args()
+
+
+def body() -> int:
+    arguments = parse()
     keys = dict(arguments.keys)
     for key, reason in prediction.REFUSED.items():
         if key in keys:

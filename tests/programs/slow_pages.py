@@ -1,0 +1,156 @@
+"""Commands of the handbook. slow_tutorial runs tutorial, README and some how-to pages as they stand. Here every command of
+the other pages is run in a folder that has the files it names; what takes longer than seconds is cut down or only parsed.
+"""
+
+import pathlib
+import re
+import sys
+import unittest
+
+import numpy as np
+from PIL import Image, ImageDraw
+
+import pages
+from drawing import Analysis
+from test_device import gdsii
+from support import FEW, ROOT, SMALL
+
+from clogsweep.commands import agreement, collision, figures, predict
+from clogsweep.paper.plate import CATALOGUE
+from clogsweep.paper.workshop import Override
+
+FOLLOWED = {*pages.PAGES, *pages.tutorial()}
+PAGES = sorted({str(path.relative_to(ROOT)) for part in ("how-to", "reference", "gallery", "explanation")
+                for path in (ROOT / "docs" / part).glob("*.md")} - FOLLOWED)
+PROGRAMS = ("clogsweep", "clogrun", "clogfit")
+LAUNCHERS = {"mpirun": 3, "srun": 1}  # how many words each takes
+# Commands that name a program of ours, and are not run here because of what they need.
+NOT_RUN = {"docker", "spack", "sbatch", "qsub", "git", "sudo"}
+# Options and keys that make a run short, by the first words of a command.
+SHORT = {"clogrun array": ["max-time=20", "seeds=1"], "clogrun replay": [], "clogrun channel": ["vertices=64", "start=-1.2", "end=-1"]}
+# Commands of python3 -m clogsweep that take longer.
+LONG = {"agreement": agreement, "collision": collision, "predict": predict}
+SWEEP = ["preset=elastic", "friction=0,0.1", "line-tension=0.5,1,2,4", "seeds=1..2", *SMALL, "max-time=60"]
+
+
+def own_program(words):
+    """@return the call of a program of ours in a command, without what launches it, or nothing"""
+    while words and re.match(r"[A-Z_]+=", words[0]):
+        words = words[1:]
+    if words and words[0] in LAUNCHERS:
+        words = words[LAUNCHERS[words[0]]:]
+    if [pathlib.Path(word).name for word in words[:1]] == ["python3"] and words[1:3] == ["-m", "clogsweep"]:
+        return words[1:]
+    return words if words and words[0] in PROGRAMS else []
+
+
+def is_synopsis(words):
+    return any("..." in word or word.isupper() for word in words)
+
+
+def longer(words, options):
+    """The words, with options in place of the keys of the same name."""
+    keys = {word.split("=")[0] for word in options}
+    return [word for word in words if word.split("=")[0] not in keys] + options
+
+
+class Commands(Analysis):
+    def setUp(self):
+        super().setUp()
+        self.write("sweep.cfg", "".join(word.replace("=", " = ") + "\n" for word in SWEEP))
+        self.write("posts.csv", "x,y\n" + "".join(f"{x},{y}\n" for x in range(20) for y in range(20)))
+        self.write("points.csv", "line-tension,obstacle-density\n0.5,0.4\n1,0.5\n")
+        self.copy_sweep("sweep.h5", *SWEEP)
+        for name, keys in {"robust": ["preset=robust"], "elastic": ["preset=elastic"], "monday": ["preset=robust"], "tuesday": ["friction=0.1", "preset=elastic"],}.items():
+            self.copy_sweep(f"{name}.h5", *FEW, *keys)
+        for shard, name in enumerate(["here", "there"], 1):
+            self.copy_sweep(f"{name}.h5", *SWEEP, "--shard", f"{shard}/2")
+        self.write("fit.json", self.succeed("clogfit", "sweep.h5", "--format", "json").stdout)
+        self.succeed("clogsweep", "obstacles=posts.csv", "box=20", "release=anywhere", "vertices=64", "max-time=20", "seeds=1..2", "--output", "device.h5")
+        angles = 2 * np.pi * np.arange(48) / 48
+        post = 30 * np.column_stack([np.cos(angles), np.sin(angles)])
+        (self.folder / "mask.gds").write_bytes(gdsii([post + [200 * x, 200 * y] for x in range(4) for y in range(4)], 1e-6))
+        picture = Image.new("L", (900, 900), 255)
+        for x in range(100, 900, 200):
+            for y in range(100, 900, 200):
+                ImageDraw.Draw(picture).ellipse((x - 40, y - 40, x + 40, y + 40), fill=0)
+        picture.save(self.folder / "scan.png")
+
+    def check_figures(self, words):
+        sys.argv[1:] = words
+        arguments = figures.parse()
+        for name in arguments.names:
+            self.assertIn(name, {*CATALOGUE, "list", "all"})
+        for text in getattr(arguments, "set"):
+            Override.parse(text)
+
+    def check(self, words):
+        program, *rest = words
+        if program == "-m":
+            self.check_python(rest[1:])
+        elif program == "clogsweep" and (not rest or "=" in rest[0] or rest[0].startswith("--")):
+            self.succeed(program, *rest, "--print-config")
+        elif program == "clogfit" and rest[0] == "calibrate":  # takes minutes
+            self.refuse(program, *rest, words=["cannot read trial.csv"])
+        else:
+            output = rest[rest.index("--output") + 1] if "--output" in rest else None
+            if output:
+                (self.folder / output).unlink(missing_ok=True)
+            if "--watch" in rest:
+                rest.remove("--watch")  # goes on until the sweep is over
+            self.succeed(program, *longer(rest, SHORT.get(f"{program} {rest[0]}", [])))
+
+    def check_python(self, words):
+        command, *rest = words
+        if command == "figures":
+            self.check_figures(rest)
+        elif command in LONG:
+            sys.argv[1:] = rest
+            LONG[command].parse()
+        else:
+            stand_ins = {"/dev/stdin": "fit.json", **({"sweep.h5": "device.h5"} if command == "device" else {})}
+            done = self.analyse(command, *(stand_ins.get(word, word) for word in rest))
+            self.assertEqual(done.returncode, 0, done.stderr)
+
+    def test_every_command_of_the_other_pages(self):
+        for page in PAGES:
+            for words in pages.commands(page):
+                own = own_program(words)
+                if not own and {*words} & {*PROGRAMS}:
+                    self.assertIn(words[0], NOT_RUN, f"{page}: {words}")
+                elif own and not is_synopsis(own):
+                    with self.subTest(page=page, words=" ".join(words)):
+                        self.check(own)
+
+
+class Pictures(Analysis):
+    def stored(self, path):
+        """@return the call of the program that made the rows of a picture, or nothing for those of figures"""
+        about = Image.open(path).info.get("Description", "")
+        for line in about.splitlines():
+            words = line.split()
+            if words[:1] and words[0] in PROGRAMS and "--version" not in words and any("=" in word for word in words):
+                return words
+        return []
+
+    def keys(self, words):
+        return {word for word in words if re.match(r"[a-z-]+=", word) and not word.startswith("--")}
+
+    def test_a_picture_s_command_is_the_one_on_its_page(self):
+        compared = 0
+        for path in sorted((ROOT / "docs/pictures").glob("*.png")):
+            shown = [page for page in (ROOT / "docs").glob("*/*.md") if f"pictures/{path.name}" in page.read_text()]
+            words = self.stored(path)
+            if not words or path.name.startswith("figure-") or not self.keys(words):
+                continue
+            with self.subTest(picture=path.name):
+                calls = [self.keys(own_program(call)) for page in shown for call in pages.commands(page.relative_to(ROOT))]
+                self.assertIn(self.keys(words), calls)
+                compared += 1
+        self.assertGreater(compared, 1)
+
+
+del Analysis
+
+if __name__ == "__main__":
+    unittest.main()
