@@ -11,6 +11,7 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <sstream>
 #include <variant>
 
 #include "clog/campaign/stored_sweep.hpp"
@@ -35,15 +36,45 @@
 namespace clog::campaign {
 namespace {
 
+/// The parts `key = value` of a laboratory's description.
+std::vector<std::string> parts_of(const std::optional<LaboratoryText>& laboratory) {
+  std::istringstream text(laboratory ? laboratory->text() : "");
+  std::vector<std::string> parts;
+  for (std::string part; std::getline(text >> std::ws, part, ';');) parts.push_back(console::printable(part));
+  return parts;
+}
+
+/// What distinguishes each group's laboratory from those of the others; of a single one all its parts.
+std::string laboratory_label(const Group& group, const std::vector<Group>& groups) {
+  std::vector<std::string> own = parts_of(group.first_row.parameters.laboratory);
+  const auto is_everywhere = [&](const std::string& part) {
+    return std::ranges::all_of(groups, [&](const Group& other) {
+      const std::vector<std::string> parts = parts_of(other.first_row.parameters.laboratory);
+      return std::ranges::find(parts, part) != parts.end();
+    });
+  };
+  std::vector<std::string> label = own;
+  std::erase_if(label, is_everywhere);
+  return joined(label.empty() ? own : label, "; ");
+}
+
 /// A parameter's value; user-supplied circles have the name of their file, if it is known.
-std::string rounded_text(const sweep::RunRow& row, const Field& field) {
+std::string rounded_text(const Group& group, const std::vector<Group>& groups, const Field& field) {
+  const sweep::RunRow& row = group.first_row;
+  if (field.first == std::string_view("laboratory"))
+    if (const std::string label = laboratory_label(group, groups); !label.empty()) return label;
   const std::optional<OwnCircles>& own = row.parameters.obstacles.own;
   if (field.first == std::string_view("obstacles") && own && !own->source().empty())
     return console::printable(std::filesystem::path(own->source()).filename().string());
   return short_text(field.second);
 }
 
-nlohmann::ordered_json number_or_null(double number) { return json_of(Value(number)); }
+nlohmann::ordered_json scale_json(const LaboratoryScale& scale) {
+  return {{"length_mm", json_of(Value(scale.length))},
+          {"time_s", json_of(Value(scale.time))},
+          {"speed_mm_per_s", json_of(Value(scale.speed))},
+          {"tension_mN_per_m_of_gamma_1", json_of(Value(scale.tension))}};
+}
 
 std::string letters(const std::vector<Doubt>& doubts) {
   std::string all;
@@ -62,11 +93,11 @@ std::string legend(const std::vector<Group>& groups) {
   return text;
 }
 
-std::vector<ResultColumn> result_columns(const std::vector<Group>& groups, double confidence,
-                                         const std::optional<LaboratoryScale>& lab) {
-  std::vector<ResultColumn> columns = columns_of_findings(groups, confidence, lab.has_value());
-  if (lab && has_clogging_length(groups.front().first_row))
-    for (ResultColumn& column : laboratory_columns(groups, *lab)) columns.push_back(std::move(column));
+std::vector<ResultColumn> result_columns(const std::vector<Group>& groups, double confidence) {
+  const bool has_laboratory = have_laboratory(groups);
+  std::vector<ResultColumn> columns = columns_of_findings(groups, confidence, has_laboratory);
+  if (has_laboratory)
+    for (ResultColumn& column : laboratory_columns(groups)) columns.push_back(std::move(column));
   if (std::any_of(groups.begin(), groups.end(), [](const Group& group) { return !group.doubts.empty(); }))
     columns.push_back({"note", [](const Group& group) { return letters(group.doubts); }});
   return columns;
@@ -146,11 +177,12 @@ std::string left_out(const std::vector<Group>& groups) {
   return text;
 }
 
-std::vector<Field> all_fields(const Group& group, const std::optional<LaboratoryScale>& lab) {
+/// @param with_laboratory  if any of the groups has one
+std::vector<Field> all_fields(const Group& group, bool with_laboratory) {
   std::vector<Field> fields = parameter_fields(group.first_row);
   for (Field& field : result_fields(group)) fields.push_back(std::move(field));
-  if (lab && has_clogging_length(group.first_row))
-    for (Field& field : laboratory_fields(group, *lab)) fields.push_back(std::move(field));
+  if (with_laboratory)
+    for (Field& field : laboratory_fields(group)) fields.push_back(std::move(field));
   return fields;
 }
 
@@ -205,9 +237,9 @@ std::vector<bool> shown_fields(const std::vector<Group>& groups, const std::vect
 }
 
 /// Units of a group's fields, where they have one, and of the entries of its lists.
-nlohmann::ordered_json field_units(const Group& group, const std::optional<LaboratoryScale>& lab) {
+nlohmann::ordered_json field_units(const std::vector<Group>& groups) {
   nlohmann::ordered_json all;
-  for (const auto& [name, value] : all_fields(group, lab))
+  for (const auto& [name, value] : all_fields(groups.front(), have_laboratory(groups)))
     if (const std::string_view unit = unit_of(name); !unit.empty()) all[name] = unit;
   all["survival"] = all["incidence"] = {{"distance", "sigma"}};
   all["censored_distances"] = "sigma";
@@ -231,14 +263,15 @@ std::vector<bool> named_if_shared(const sweep::RunRow& row, SharedParameters sha
 }
 
 /// The shared parameters that are worth a word.
-std::vector<std::string> shared_words(const sweep::RunRow& row, const std::vector<bool>& varies,
+std::vector<std::string> shared_words(const std::vector<Group>& groups, const std::vector<bool>& varies,
                                       const std::vector<bool>& shown, SharedParameters shared) {
+  const sweep::RunRow& row = groups.front().first_row;
   const std::vector<Field> fields = parameter_fields(row);
   const std::vector<bool> is_named = named_if_shared(row, shared);
   std::vector<std::string> words;
   for (std::size_t i = 0; i < fields.size(); ++i)
     if (!shown[i] && !varies[i] && is_named[i])
-      words.push_back(fmt::format("{}={}", fields[i].first, rounded_text(row, fields[i])));
+      words.push_back(fmt::format("{}={}", fields[i].first, rounded_text(groups.front(), groups, fields[i])));
   return words;
 }
 
@@ -247,10 +280,10 @@ std::vector<std::string> parameter_names(const Group& group) {
   for (const Field& field : parameter_fields(group.first_row)) names.emplace_back(field.first);
   return names;
 }
-std::vector<std::string> parameter_texts(const Group& group) {
+std::vector<std::string> parameter_texts(const Group& group, const std::vector<Group>& groups) {
   std::vector<std::string> texts;
   for (const Field& field : parameter_fields(group.first_row))
-    texts.push_back(rounded_text(group.first_row, field));
+    texts.push_back(rounded_text(group, groups, field));
   return texts;
 }
 void append_shown(const std::vector<std::string>& texts, const std::vector<bool>& shown,
@@ -293,31 +326,31 @@ std::string definition_of_clogs(const std::vector<Group>& groups) {
 
 }  // namespace
 
-std::string to_text(const std::vector<Group>& groups, double confidence, SharedParameters shared,
-                    const std::optional<LaboratoryScale>& lab) {
+std::string to_text(const std::vector<Group>& groups, double confidence, SharedParameters shared) {
   const std::vector<bool> varies = varying_fields(groups);
   const std::vector<bool> shown = shown_fields(groups, varies);
-  std::string text = "all runs:" + wrapped(shared_words(groups.front().first_row, varies, shown, shared));
+  std::string text = "all runs:" + wrapped(shared_words(groups, varies, shown, shared));
   if (shared == SharedParameters::unusual) text += "\n(the rest as by default; --all-parameters names it)";
   text += definition_of_clogs(groups);
-  const std::vector<ResultColumn> columns = result_columns(groups, confidence, lab);
+  const std::vector<ResultColumn> columns = result_columns(groups, confidence);
   std::vector<std::vector<std::string>> lines(1);
   append_shown(parameter_names(groups.front()), shown, lines[0]);
   for (const ResultColumn& column : columns) lines[0].push_back(column.name);
   for (const Group& group : groups) {
     std::vector<std::string>& line = lines.emplace_back();
-    append_shown(parameter_texts(group), shown, line);
+    append_shown(parameter_texts(group, groups), shown, line);
     for (const ResultColumn& column : columns) line.push_back(column.cell(group));
   }
   return text + "\n\n" + console::aligned(lines) + legend(groups) + column_notes(groups) +
          note_of_rest(groups) + left_out(groups);
 }
 
-std::string to_csv(const std::vector<Group>& groups, const std::optional<LaboratoryScale>& lab) {
+std::string to_csv(const std::vector<Group>& groups) {
+  const bool with_laboratory = have_laboratory(groups);
   std::string table;
   for (const Group& group : groups) {
     std::vector<std::string> names, cells;
-    for (const auto& [name, value] : all_fields(group, lab)) {
+    for (const auto& [name, value] : all_fields(group, with_laboratory)) {
       names.emplace_back(name);
       cells.push_back(csv_cell(value));
     }
@@ -327,18 +360,19 @@ std::string to_csv(const std::vector<Group>& groups, const std::optional<Laborat
   return table;
 }
 
-std::string to_json(const std::vector<Group>& groups, double confidence, const store::Provenance& provenance,
-                    const std::optional<LaboratoryScale>& lab) {
+std::string to_json(const std::vector<Group>& groups, double confidence, const store::Provenance& provenance) {
+  const bool with_laboratory = have_laboratory(groups);
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Group& group : groups) {
     nlohmann::ordered_json entry;
-    const std::vector<Field> fields = all_fields(group, lab);
+    const std::vector<Field> fields = all_fields(group, with_laboratory);
     for (const auto& [name, value] : fields) entry[name] = json_of(value);
     // For who draws them: such values separate no curves and need no mention.
     entry["automatic"] = nlohmann::ordered_json::array();
     for (const sweep::Column* column : group_columns())
       if (separating_value(*column, group.first_row) == Value() && column->get(group.first_row) != Value())
         entry["automatic"].push_back(column->name);
+    if (group.laboratory) entry["laboratory_scale"] = scale_json(*group.laboratory);
     entry["survival"] = nlohmann::ordered_json::array();
     for (const fit::SurvivalStep& step : group.survival)
       entry["survival"].push_back({{"distance", step.distance},
@@ -373,16 +407,20 @@ std::string to_json(const std::vector<Group>& groups, double confidence, const s
                                      {"git_describe", build.git_describe},
                                      {"confidence", confidence},
                                      {"doubts", sentences},
-                                     {"units", field_units(groups.front(), lab)},
+                                     {"units", field_units(groups)},
                                      {"columns", columns},
                                      {"lists", listed_columns(provenance)},
                                      {"sweep", origin},
                                      {"groups", list}};
-  if (lab)
-    document["laboratory"] = {{"length_mm", lab->length},
-                              {"time_s", lab->time},
-                              {"speed_mm_per_s", number_or_null(lab->speed)},
-                              {"tension_mN_per_m_of_gamma_1", lab->tension}};
+  // One scale for all groups, or for each its own.
+  for (const Group& group : groups)
+    if (const std::optional<LaboratoryText>& own = group.first_row.parameters.laboratory)
+      document["laboratories"][own->check_sum()] = console::printable(own->text());
+  const std::optional<LaboratoryScale>& first = groups.front().laboratory;
+  if (first && std::ranges::all_of(groups, [&](const Group& group) {
+        return group.laboratory && scale_json(*group.laboratory) == scale_json(*first);
+      }))
+    document["laboratory"] = scale_json(*first);
   return console::json_text(document);
 }
 

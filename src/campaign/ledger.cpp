@@ -6,8 +6,6 @@
 #include <cerrno>
 #include <cstring>
 #include <limits>
-#include <map>
-#include <sstream>
 #include <string>
 #include <unordered_set>
 #include <utility>
@@ -16,7 +14,6 @@
 #include "clog/campaign/growth.hpp"
 #include "clog/campaign/stored_sweep.hpp"
 #include "clog/core/tools/error.hpp"
-#include "clog/core/tools/joined.hpp"
 #include "clog/store/regular_file.hpp"
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/run_row.hpp"
@@ -25,31 +22,6 @@
 
 namespace clog::campaign {
 namespace {
-
-/// Lines `key = value` by key, without what converts no row.
-std::map<std::string, std::string> lines_of_laboratory(const std::string& text) {
-  std::map<std::string, std::string> lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);)
-    if (const std::string key = line.substr(0, line.find(' ')); key != "tension" && key != "thickness")
-      lines[key] = line;
-  return lines;
-}
-
-/// What differs between two laboratories, of which rows can have one only; nothing if one is not known.
-std::string other_laboratory(const std::string& there, const std::string& here) {
-  if (there.empty() || here.empty()) return "";
-  auto lines_there = lines_of_laboratory(there);
-  auto lines_here = lines_of_laboratory(here);
-  std::vector<std::string> differing;
-  for (const auto& [key, line] : lines_here)
-    if (lines_there[key] != line)
-      differing.push_back(
-          fmt::format("{} (file: {})", line, lines_there[key].empty() ? "none" : lines_there[key]));
-  for (const auto& [key, line] : lines_there)
-    if (!lines_here.contains(key)) differing.push_back(fmt::format("no {} (file: {})", key, line));
-  return joined(differing);
-}
 
 void set_attribute(store::Provenance& provenance, const std::string& name, const std::string& text) {
   std::erase_if(provenance, [&](const auto& attribute) { return attribute.first == name; });
@@ -161,11 +133,6 @@ void Ledger::adopt(const store::SweepFile& file, const sweep::Settings& settings
           fmt::format("cannot resume {} (its runs are of model version {}, this program's is {}: the "
                       "same parameters would give other results){}",
                       path_, row.model_version, model_version, remedy));
-  const std::string laboratory = attribute(provenance_, "laboratory");
-  if (const std::string other = other_laboratory(attribute(file.provenance, "laboratory"), laboratory);
-      !other.empty())
-    throw Error(
-        fmt::format("cannot resume {} (its runs are of another laboratory: {}){}", path_, other, remedy));
   const std::string differing = settings_that_differ(file, settings);
   if (!differing.empty())
     throw Error(
@@ -175,7 +142,6 @@ void Ledger::adopt(const store::SweepFile& file, const sweep::Settings& settings
     std::erase_if(all, [&](const auto& attribute) { return attribute.first == name; });
     if (const std::string text = attribute(provenance_, name); !text.empty()) all.emplace_back(name, text);
   }
-  if (!laboratory.empty()) set_attribute(all, "laboratory", laboratory);
   provenance_ = std::move(all);
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <map>
 #include <numbers>
 #include <sstream>
@@ -36,7 +37,9 @@ std::string names_of_keys() {
 
 Entries entries_of(const std::string& text) {
   Entries entries;
-  std::istringstream lines(text);
+  std::string in_lines = text;
+  std::ranges::replace(in_lines, ';', '\n');
+  std::istringstream lines(in_lines);
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
@@ -98,7 +101,8 @@ Laboratory laboratory_of(const Entries& entries) {
     throw Error(
         fmt::format("invalid speed={} (V_t = {:.3g}, of such a droplet, is above {}; is the unit right?)",
                     entries.at("speed"), speed, fastest));
-  for (const auto& [key, value] : entries) lab.text += fmt::format("{} = {}\n", key, value);
+  for (const auto& [key, value] : entries)
+    lab.text += fmt::format("{}{} = {}", lab.text.empty() ? "" : "; ", key, value);
   return lab;
 }
 

@@ -104,14 +104,14 @@ int body(int argc, char** argv) {
         "no place for --dwell (droplets in a channel or on a wall have no clogging length) leave it out");
   const std::vector<const sweep::Column*> pooled =
       line.has("pool") ? campaign::pooled_columns(line.get("pool")) : std::vector<const sweep::Column*>();
-  const std::vector<campaign::Group> groups =
+  std::vector<campaign::Group> groups =
       campaign::group_runs(sweep.rows, confidence, from_distance, dwell, pooled);
-  const std::optional<campaign::LaboratoryScale> lab = laboratory_scale(line, sweep, paths.front());
+  set_scales(line, groups);
   const SharedParameters shared =
       line.has("all-parameters") ? SharedParameters::all : SharedParameters::unusual;
-  std::cout << (format == "csv"    ? campaign::to_csv(groups, lab)
-                : format == "json" ? campaign::to_json(groups, confidence, sweep.provenance, lab)
-                                   : campaign::to_text(groups, confidence, shared, lab));
+  std::cout << (format == "csv"    ? campaign::to_csv(groups)
+                : format == "json" ? campaign::to_json(groups, confidence, sweep.provenance)
+                                   : campaign::to_text(groups, confidence, shared));
   if (format == "text" && line.has("pool"))
     std::cout << fmt::format("   groups that differ only in {} are joined (--pool)\n", line.get("pool"));
   return console::exit_success;

@@ -30,7 +30,7 @@ int clogrun_array(cli::CommandLine& line) {
   console::catch_stop_signals();
   watched.follow();
 
-  store::write_trajectory(output, watched.trajectory(sweep::describe(parameters), provenance(line)));
+  store::write_trajectory(output, watched.trajectory(sweep::describe(parameters), cli::origin(line)));
   return report(line, watched);
 }
 

@@ -34,7 +34,7 @@ int clogrun_channel(cli::CommandLine& line) {
   say_what_is_coarse(parameters);
   console::catch_stop_signals();
   watched.follow();
-  store::write_trajectory(output, watched.trajectory(sweep::describe(parameters), provenance(line)));
+  store::write_trajectory(output, watched.trajectory(sweep::describe(parameters), cli::origin(line)));
   return report(line, watched);
 }
 

@@ -29,12 +29,6 @@ watch::WatchedRun::Intervals intervals(const cli::CommandLine& line, double time
   return watch::WatchedRun::every(line.get_positive("sample-interval"), polygons, time_step);
 }
 
-store::Provenance provenance(const cli::CommandLine& line) {
-  store::Provenance all = cli::origin(line);
-  if (line.has("lab")) all.emplace_back("laboratory", laboratory::read_laboratory(line.get("lab")).text);
-  return all;
-}
-
 int report(const cli::CommandLine& line, const watch::WatchedRun& watched) {
   const int exit_code = watched.report();
   if (!line.has("lab")) return exit_code;

@@ -38,7 +38,7 @@ int clogrun_replay(cli::CommandLine& line) {
   if (line.has("dry-run")) return watch::print_preview("", watched.measure_cost());
   console::catch_stop_signals();
   watched.follow();
-  store::write_trajectory(output, watched.trajectory(sweep::describe(row.parameters), provenance(line)));
+  store::write_trajectory(output, watched.trajectory(sweep::describe(row.parameters), cli::origin(line)));
   return report(line, watched);
 }
 

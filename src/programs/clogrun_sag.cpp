@@ -51,7 +51,7 @@ int clogrun_sag(cli::CommandLine& line) {
     if (result.status == RunStatus::failed) throw Error(result.message);
     if (line.has("output"))
       store::write_trajectory(line.get("output"),
-                              watched.trajectory(sweep::describe(parameters), provenance(line)));
+                              watched.trajectory(sweep::describe(parameters), cli::origin(line)));
     if (result.status == RunStatus::interrupted) return console::exit_incomplete;
     all_at_rest &= result.status == RunStatus::clogged;
   }

@@ -26,7 +26,6 @@
 #include "clog/core/tools/memory.hpp"
 #include "clog/host/examination.hpp"
 #include "clog/host/limits.hpp"
-#include "clog/laboratory/lab_file.hpp"
 #include "clog/parallel/communicator.hpp"
 #include "clog/parallel/isolated_jobs.hpp"
 #include "clog/store/run_table.hpp"
@@ -68,7 +67,6 @@ store::Provenance provenance(const cli::CommandLine& line,
   all.emplace_back("mpi_version", parallel::Communicator::library_version());
   all.emplace_back("hdf5_version", store::library_version());
   all.emplace_back("num_ranks", std::to_string(num_ranks));
-  if (line.has("lab")) all.emplace_back("laboratory", laboratory::read_laboratory(line.get("lab")).text);
   if (!growing && !refined) return all;
   for (auto& [name, text] : all)
     if (name == "config") text = (growing ? growing->settings : refined->settings()).to_config(false);

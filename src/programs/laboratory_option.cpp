@@ -3,18 +3,32 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <string>
+#include <optional>
 
-#include "clog/campaign/stored_sweep.hpp"
 #include "clog/console/streams.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/laboratory/lab_file.hpp"
 #include "clog/laboratory/scales.hpp"
 
 namespace clog::programs {
+namespace {
+
+campaign::LaboratoryScale scale_of(const laboratory::Laboratory& lab) {
+  constexpr double milli = 1e-3;
+  const laboratory::Scales scales = laboratory::scales_of(lab);
+  return {.length = scales.length / milli,
+          .time = scales.time,
+          .speed = scales.speed / milli,
+          .tension = scales.tension / milli};
+}
+
+}  // namespace
 
 void use_laboratory(cli::CommandLine& line) {
-  if (line.has("lab")) laboratory::set_droplet(laboratory::read_laboratory(line.get("lab")), line.settings());
+  if (!line.has("lab")) return;
+  const laboratory::Laboratory lab = laboratory::read_laboratory(line.get("lab"));
+  line.settings().set("laboratory", lab.text);
+  laboratory::set_droplet(lab, line.settings());
 }
 
 void refuse_other_droplets(const cli::CommandLine& line) {
@@ -27,23 +41,24 @@ void refuse_other_droplets(const cli::CommandLine& line) {
                               line.get("lab"), diameter / micro, file, *circles.droplet() / micro));
 }
 
-std::optional<campaign::LaboratoryScale> laboratory_scale(const cli::CommandLine& line,
-                                                          const store::SweepFile& sweep,
-                                                          const std::string& path) {
-  const std::string stored = campaign::attribute(sweep.provenance, "laboratory");
-  if (!line.has("lab") && stored.empty()) return std::nullopt;
-  const laboratory::Laboratory lab =
-      line.has("lab") ? laboratory::read_laboratory(line.get("lab"))
-                      : laboratory::parse_laboratory(stored, path + ", attribute laboratory,");
-  if (line.has("lab") && !stored.empty() && lab.text != stored)
-    console::say(
-        fmt::format("clogfit: {} replaces the laboratory that is stored in {}", line.get("lab"), path));
-  constexpr double milli = 1e-3;
-  const laboratory::Scales scales = laboratory::scales_of(lab);
-  return campaign::LaboratoryScale{.length = scales.length / milli,
-                                   .time = scales.time,
-                                   .speed = scales.speed / milli,
-                                   .tension = scales.tension / milli};
+void set_scales(const cli::CommandLine& line, std::vector<campaign::Group>& groups) {
+  std::optional<laboratory::Laboratory> of_all;
+  if (line.has("lab")) of_all = laboratory::read_laboratory(line.get("lab"));
+  bool replaces = false;
+  for (campaign::Group& group : groups) {
+    const std::optional<LaboratoryText>& own = group.first_row.parameters.laboratory;
+    if (of_all) {
+      group.laboratory = scale_of(*of_all);
+      replaces |= own && own->text() != of_all->text;
+    } else if (own) {
+      if (own->text().empty())
+        throw Error("the laboratory " + own->check_sum() +
+                    " of some rows is not in the file (another program changed it); give it by --lab");
+      group.laboratory = scale_of(laboratory::parse_laboratory(own->text(), "the laboratory of some rows"));
+    }
+  }
+  if (replaces)
+    console::say(fmt::format("clogfit: {} replaces the laboratory that rows have", line.get("lab")));
 }
 
 }  // namespace clog::programs

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <optional>
-#include <string>
+#include <vector>
 
-#include "clog/campaign/group_table.hpp"
+#include "clog/campaign/groups.hpp"
 #include "clog/cli/command_line.hpp"
-#include "clog/store/run_table.hpp"
 
 namespace clog::programs {
 
@@ -15,10 +13,7 @@ void use_laboratory(cli::CommandLine& line);
 /// @throws Error  if there is a file of --lab, and circles are drawn for a droplet of another diameter
 void refuse_other_droplets(const cli::CommandLine& line);
 
-/// The scale from --lab, or else from the sweep's own laboratory; nothing without either.
-/// @param path  of the sweep
-std::optional<campaign::LaboratoryScale> laboratory_scale(const cli::CommandLine& line,
-                                                          const store::SweepFile& sweep,
-                                                          const std::string& path);
+/// Gives each group the scale of --lab, or else of its own laboratory. @throws Error
+void set_scales(const cli::CommandLine& line, std::vector<campaign::Group>& groups);
 
 }  // namespace clog::programs

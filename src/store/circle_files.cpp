@@ -10,7 +10,6 @@ namespace clog::store {
 namespace {
 
 constexpr const char* group_name = "obstacles";
-using Group = Handle<H5Gclose>;
 
 Type circle_type() {
   Type type(H5Tcreate(H5T_COMPOUND, sizeof(Obstacle)));
@@ -62,18 +61,6 @@ std::optional<CircleFile> read_one(hid_t group, const std::string& name) {
   CircleFile file{read_attribute(table, "file"), OwnCircles(std::move(circles))};
   if (file.circles.check_sum() != name) return std::nullopt;
   return file;
-}
-
-std::vector<std::string> names_in(hid_t group) {
-  std::vector<std::string> names;
-  H5Literate(
-      group, H5_INDEX_NAME, H5_ITER_INC, nullptr,
-      [](hid_t, const char* name, const H5L_info_t*, void* all) {
-        static_cast<std::vector<std::string>*>(all)->emplace_back(name);
-        return herr_t{0};
-      },
-      &names);
-  return names;
 }
 
 }  // namespace

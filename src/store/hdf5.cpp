@@ -161,6 +161,18 @@ Type text_type(std::size_t length) {
   return type;
 }
 
+std::vector<std::string> names_in(hid_t group) {
+  std::vector<std::string> names;
+  H5Literate(
+      group, H5_INDEX_NAME, H5_ITER_INC, nullptr,
+      [](hid_t, const char* name, const H5L_info_t*, void* all) {
+        static_cast<std::vector<std::string>*>(all)->emplace_back(name);
+        return herr_t{0};
+      },
+      &names);
+  return names;
+}
+
 std::string member_name(hid_t type, unsigned index) {
   char* name = H5Tget_member_name(type, index);
   if (!name) return {};

@@ -40,6 +40,7 @@ using Space = Handle<H5Sclose>;
 using Type = Handle<H5Tclose>;
 using Attribute = Handle<H5Aclose>;
 using PropertyList = Handle<H5Pclose>;
+using Group = Handle<H5Gclose>;
 
 /// Must come before the first use of the library: no clean-up of its own at exit, which crashes after a write
 /// that failed; no error stack on the screen (we print one line of our own); and no file locks (a reader that
@@ -71,6 +72,8 @@ File open_image(std::vector<std::byte>& image, const std::string& path);
 
 /// Fixed-length, zero-padded text; the length is at least 1.
 Type text_type(std::size_t length);
+/// Names of what is in a group.
+std::vector<std::string> names_in(hid_t group);
 /// Name of a member of a compound type; empty if there is none.
 std::string member_name(hid_t type, unsigned index);
 void write_attribute(hid_t object, const std::string& name, const std::string& text);

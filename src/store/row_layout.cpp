@@ -20,6 +20,7 @@ Type hdf5_type(const Column& column) {
       return Type(H5Tcopy(H5T_NATIVE_INT64));
     case ValueKind::word:
     case ValueKind::file:
+    case ValueKind::text:
       break;
   }
   return text_type(column.size);

@@ -20,6 +20,7 @@
 #include "clog/sweep/value_list.hpp"
 #include "file_io.hpp"
 #include "hdf5.hpp"
+#include "laboratory_texts.hpp"
 #include "rehearsal.hpp"
 #include "row_layout.hpp"
 #include "run_rows.hpp"
@@ -144,6 +145,7 @@ void write_runs(hid_t file, const std::string& kind, std::span<const RunRow> row
     for (std::size_t part = 0; part == 0 || part * longest_part < text.size(); ++part)
       write(name_of_part(name, part), text.substr(part * longest_part, longest_part));
   write_attribute(file, list_name, lines);
+  write_laboratories(file, rows, path);
 }
 
 std::string library_version() {
@@ -371,6 +373,7 @@ Examination examine(std::vector<std::byte>& image, Seal seal, const std::string&
     compare_rows(table, sums, found);
     compare_attributes(file, sums, found);
     read_circles(file, found.whole.circles, found.damage);
+    read_laboratories(file, found.damage);
   } else {
     for (std::size_t i = 0; i < table.num_rows; ++i)
       found.whole.rows.push_back(table.layout.unpack(table.row(i).data()));
@@ -379,6 +382,7 @@ Examination examine(std::vector<std::byte>& image, Seal seal, const std::string&
   if (seal != Seal::whole)
     found.is_refused_by_others = is_refused(file, runs_name) || is_refused(file, sums_name);
   join_parts(found.whole.provenance);
+  adopt_laboratory_of_all(found.whole);
   for (const char* ours : {"kind", "format_version"})
     std::erase_if(found.whole.provenance, [&](const auto& attribute) { return attribute.first == ours; });
   if (seal == Seal::broken && found.damage.empty())

@@ -106,11 +106,15 @@ Column number_in(const std::string& name, Place place, const char* unit, const s
           .set_unknown = [=](RunRow& row) { place(row) = RunRow::not_known; }};
 }
 
+bool is_text(const Parameter& parameter) {
+  return parameter.kind == ValueKind::word || parameter.kind == ValueKind::file ||
+         parameter.kind == ValueKind::text;
+}
+
 Value value_of(const Parameter& parameter, std::size_t place, const RunRow& row) {
   if (!parameter.applies_to(row.parameters)) {
     const bool has_none = std::holds_alternative<std::monostate>(parameter.elsewhere);
-    const bool is_text = parameter.kind == ValueKind::word || parameter.kind == ValueKind::file;
-    return has_none && is_text ? Value("none") : parameter.elsewhere;
+    return has_none && is_text(parameter) ? Value("none") : parameter.elsewhere;
   }
   return row.unknown[place] ? Value() : parameter.get(row.parameters);
 }
@@ -122,20 +126,19 @@ void set_parameter(const Parameter& parameter, std::size_t place, RunRow& row, c
   if (!row.unknown[place]) parameter.set(row.parameters, value);
 }
 
-/// Digits of a check sum stand for what is in a file.
+/// Digits of a check sum stand for what is in a file or text.
 constexpr std::size_t check_sum_size = 16;
 
 Column parameter_column(const Parameter& parameter, std::size_t place) {
-  const bool is_text = parameter.kind == ValueKind::word || parameter.kind == ValueKind::file;
-  const std::size_t size = parameter.kind == ValueKind::file ? check_sum_size
-                           : is_text                         ? text_size(longest(parameter.words))
-                                                             : number_size;
+  const std::size_t size = !is_text(parameter)                  ? number_size
+                           : parameter.kind == ValueKind::word ? text_size(longest(parameter.words))
+                                                               : check_sum_size;
   return {.name = parameter.column,
           .symbol = parameter.symbol,
           .unit = parameter.unit,
           .meaning = parameter.meaning,
           .role = ColumnRole::parameter,
-          .kind = is_text ? ValueKind::word : parameter.kind,
+          .kind = is_text(parameter) ? ValueKind::word : parameter.kind,
           .size = size,
           .parameter = &parameter,
           .shapes_array = parameter.shapes_array,

@@ -19,6 +19,8 @@ const char* name_of(ValueKind kind) {
       return "integer";
     case ValueKind::file:
       return "file";
+    case ValueKind::text:
+      return "text";
     case ValueKind::word:
       break;
   }

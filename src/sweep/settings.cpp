@@ -152,7 +152,11 @@ std::string key_of_symbol(std::string_view symbol) {
 std::string written(const ParameterValue& value, const Parameter& parameter) {
   if (const auto* number = std::get_if<double>(&value)) return shortest(*number);
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);
-  if (const auto* word = std::get_if<std::string>(&value)) return *word;
+  if (const auto* word = std::get_if<std::string>(&value)) {
+    const bool is_check_sum = parameter.kind == ValueKind::text && *word != parameter.words.front();
+    const std::string text = is_check_sum ? LaboratoryText::from_check_sum(*word).text() : "";
+    return text.empty() ? *word : text;
+  }
   return parameter.words.front();  // automatic
 }
 
@@ -164,7 +168,7 @@ const std::vector<Key>& keys() {
 void Key::apply(RunParameters& run, const std::string& value) const {
   if (!parameter || kind == ValueKind::file) return;  // Settings::set has set the keys behind a preset
   const auto parsed = [&]() -> ParameterValue {
-    if (kind == ValueKind::word) return value;
+    if (kind == ValueKind::word || kind == ValueKind::text) return value;
     if (std::find(words.begin(), words.end(), value) != words.end()) return {};
     if (kind == ValueKind::integer) return std::int64_t{to_integer(value)};
     if (value.ends_with('%')) return value;

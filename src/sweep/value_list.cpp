@@ -98,7 +98,7 @@ std::vector<std::string> expand_item(std::string_view item, ValueKind kind,
   if (item.empty()) throw Error("has an empty value");
   if (std::find(words.begin(), words.end(), item) != words.end()) return {std::string(item)};
   if (kind == ValueKind::word) refuse(item, "is not one of " + joined(words));
-  if (kind == ValueKind::file) return {std::string(item)};
+  if (kind == ValueKind::file || kind == ValueKind::text) return {std::string(item)};
   if (item.starts_with("lin(") || item.starts_with("log(")) return expand_spaced(item, kind);
   if (const auto dots = item.find(".."); dots != std::string_view::npos) {
     if (kind == ValueKind::integer) return expand_range(item, dots);

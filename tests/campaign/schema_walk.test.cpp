@@ -69,6 +69,7 @@ sweep::Settings settings_for(const Parameter& parameter) {
 /// Another value than that of the settings, in the text of a config.
 std::string other_value(const Parameter& parameter, const sweep::Settings& settings) {
   if (parameter.kind == ValueKind::file) return "other.csv";
+  if (parameter.kind == ValueKind::text) return "angle = 20 deg; diameter = 1 mm";
   const ParameterValue value = parameter.get(sweep::Plan(settings).task(0));
   if (parameter.kind == ValueKind::word)
     return *std::ranges::find_if(parameter.words, [&](const std::string& word) {

@@ -48,7 +48,7 @@ def is_synopsis(words):
     return any("..." in word or word.isupper() for word in words)
 
 
-def longer(words, options):
+def replaced(words, options):
     """The words, with options in place of the keys of the same name."""
     keys = {word.split("=")[0] for word in options}
     return [word for word in words if word.split("=")[0] not in keys] + options
@@ -61,7 +61,7 @@ class Commands(Analysis):
         self.write("posts.csv", "x,y\n" + "".join(f"{x},{y}\n" for x in range(20) for y in range(20)))
         self.write("points.csv", "line-tension,obstacle-density\n0.5,0.4\n1,0.5\n")
         self.copy_sweep("sweep.h5", *SWEEP)
-        for name, keys in {"robust": ["preset=robust"], "elastic": ["preset=elastic"], "monday": ["preset=robust"], "tuesday": ["friction=0.1", "preset=elastic"],}.items():
+        for name, keys in {"robust": ["preset=robust"], "elastic": ["preset=elastic"], "monday": ["preset=robust"], "tuesday": ["friction=0.1", "preset=elastic"]}.items():
             self.copy_sweep(f"{name}.h5", *FEW, *keys)
         for shard, name in enumerate(["here", "there"], 1):
             self.copy_sweep(f"{name}.h5", *SWEEP, "--shard", f"{shard}/2")
@@ -98,7 +98,7 @@ class Commands(Analysis):
                 (self.folder / output).unlink(missing_ok=True)
             if "--watch" in rest:
                 rest.remove("--watch")  # goes on until the sweep is over
-            self.succeed(program, *longer(rest, SHORT.get(f"{program} {rest[0]}", [])))
+            self.succeed(program, *replaced(rest, SHORT.get(f"{program} {rest[0]}", [])))
 
     def check_python(self, words):
         command, *rest = words
@@ -149,8 +149,6 @@ class Pictures(Analysis):
                 compared += 1
         self.assertGreater(compared, 1)
 
-
-del Analysis
 
 if __name__ == "__main__":
     unittest.main()

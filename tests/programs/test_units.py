@@ -124,13 +124,13 @@ class Units(ProgramTest):
         known = self.units(lab)
         self.succeed("clogsweep", "--lab", lab, *QUICK, "seeds=1..4", "--output", "s.h5")
         with h5py.File(self.folder / "s.h5") as file:
-            self.assertIn("tension = 9.6 mN/m\n", file.attrs["laboratory"].decode())
+            text, = (text[()].decode() for text in file["laboratories"].values())
+            self.assertIn("tension = 9.6 mN/m", text.split("; "))
+            self.assertEqual([stored.decode() for stored in set(file["runs"]["laboratory"])], list(file["laboratories"]))
             self.assertAlmostEqual(file["runs"]["line_tension"][0] / known["line_tension"], 1, places=3)
             self.assertAlmostEqual(file["runs"]["terminal_speed"][0] / known["terminal_speed"], 1, places=3)
         self.succeed("clogsweep", "--lab", lab, *QUICK, "seeds=1..5", "--output", "s.h5")  # grows
         self.succeed("clogsweep", "verify", "s.h5")
-        self.refuse("clogsweep", "--lab", self.lab(angle="90 deg", name="upright.cfg"), *QUICK, "seeds=1..6", f"terminal-speed={known['terminal_speed']:.4g}",
-                    f"line-tension={known['line_tension']:.4g}", "--output", "s.h5", words=["another laboratory: angle = 90 deg (file: angle = 28 deg)", "--output"])
         fit = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)
         group, = fit["groups"]
         self.assertAlmostEqual(fit["laboratory"]["length_mm"], 3.5)
@@ -143,14 +143,61 @@ class Units(ProgramTest):
         self.assertNotIn("lambda/mm", self.succeed("clogfit", "plain.h5").stdout)
         self.assertIn("lambda/mm", self.succeed("clogfit", "plain.h5", "--lab", lab).stdout)
 
-    def test_a_comment_in_a_laboratory_of_a_foreign_file_says_nothing(self):
-        self.succeed("clogsweep", "--lab", self.lab(), *QUICK, "seeds=1..2", "--output", "s.h5")
-        before = self.succeed("clogfit", "s.h5", "--format", "json").stdout
-        with h5py.File(self.folder / "s.h5") as file:
-            text = file.attrs["laboratory"].decode()
-        stored_rows.change_attribute(self.folder / "s.h5", "laboratory", text + "# measured in May\n")
+    def test_a_comment_in_a_laboratory_of_an_older_file_says_nothing(self):
+        self.succeed("clogsweep", *QUICK, "seeds=1..2", "--output", "s.h5")
+        before = json.loads(self.succeed("clogfit", "s.h5", "--format", "json", "--lab", self.lab()).stdout)
+        stored_rows.change_attribute(self.folder / "s.h5", "laboratory", (self.folder / "lab.cfg").read_text() + "# measured in May\n")
         done = self.succeed("clogfit", "s.h5", "--format", "json")
-        self.assertEqual((done.stdout, done.stderr), (before, ""))
+        self.assertEqual((json.loads(done.stdout)["laboratory"], done.stderr), (before["laboratory"], ""))
+
+    def sweeps_of_two_droplets(self):
+        """Files of droplets of 0.8 and 1.2 mm in the same cell, in which they have the same interfacial tension."""
+        for diameter in ("0.8", "1.2"):
+            lab = self.lab(f"{diameter} mm", "20 deg", "1.2 mm/s", tension="10 mN/m", name=f"{diameter}.cfg")
+            self.succeed("clogsweep", "--lab", lab, "vertices=64", "box=20", "max-time=40", "seeds=1..2", "--output", f"s{diameter}.h5")
+        return ["s0.8.h5", "s1.2.h5"]
+
+    def check_two_droplets(self, *files):
+        groups = json.loads(self.succeed("clogfit", *files, "--format", "json").stdout)["groups"]
+        self.assertEqual(len(groups), 2)
+        for group in groups:
+            diameter = group["clogging_length_lower_mm"] / group["clogging_length_lower"]
+            self.assertAlmostEqual(min(abs(diameter - 0.8), abs(diameter - 1.2)), 0)
+            self.assertAlmostEqual(group["tension_mN_per_m"], 10, delta=0.01)
+        self.assertEqual(len({group["laboratory"] for group in groups}), 2)
+
+    def test_droplets_of_two_laboratories_are_told_each_in_its_own_units(self):
+        files = self.sweeps_of_two_droplets()
+        self.check_two_droplets(*files)
+        told = self.succeed("clogfit", *files).stdout
+        self.assertIn("diameter = 0.8 mm", told)
+        self.assertIn("diameter = 1.2 mm", told)
+        self.assertNotIn("diameter = 0.8 mm; ", told)  # the other parts are the same
+        self.succeed("clogsweep", "merge", *files, "--output", "both.h5")
+        self.check_two_droplets("both.h5")
+        self.succeed("clogsweep", "verify", "both.h5")
+        rows = table(self.folder / "both.h5")
+        sums = rows.laboratory.map(bytes.decode).unique()
+        self.succeed("clogsweep", "select", "both.h5", f"laboratory={sums[1]}", "--output", "one.h5")
+        self.assertEqual(set(table(self.folder / "one.h5").laboratory), {sums[1].encode()})
+        self.succeed("clogsweep", "salvage", "both.h5", "--output", "salvaged.h5")
+        self.check_two_droplets("salvaged.h5")
+        groups = clogsweep.open([self.folder / name for name in files], BIN).fit().known
+        self.assertEqual({groups.said("laboratory", group["laboratory"]) for group in groups.members}, {"diameter = 0.8 mm", "diameter = 1.2 mm"})
+        self.succeed("clogfit", "report", "both.h5", "--output", "r.html")
+        self.assertIn("diameter = 0.8 mm", (self.folder / "r.html").read_text())
+
+    def test_a_sweep_grows_by_another_laboratory(self):
+        first, second = self.sweeps_of_two_droplets()
+        self.succeed("clogsweep", "--lab", "1.2.cfg", "vertices=64", "box=20", "max-time=40", "seeds=1..2", "--output", first)
+        self.check_two_droplets(first)
+
+    def test_rows_of_a_lost_laboratory_are_told_with_another_or_refused(self):
+        first, _ = self.sweeps_of_two_droplets()
+        with h5py.File(self.folder / first, "a") as file:
+            del file["laboratories"]
+        self.refuse("clogfit", first, words=["laboratory", "--lab"])
+        self.assertIn("lambda/mm", self.succeed("clogfit", first, "--lab", "0.8.cfg").stdout)
 
     def test_a_report_has_bounds_in_laboratory_units(self):
         self.succeed("clogsweep", "--lab", self.lab(), "vertices=64", "box=20", "max-time=20", "seeds=1..4", "--output", "s.h5")
@@ -187,7 +234,8 @@ class Units(ProgramTest):
         self.assertAlmostEqual(far, 3.5 * distance, places=2)
         self.assertAlmostEqual(long / (time * known["time_s"]), 1, places=3)
         with h5py.File(self.folder / "r.h5") as file:
-            self.assertIn("tension = 9.6 mN/m", file.attrs["laboratory"].decode())
+            text, = (text[()].decode() for text in file["laboratories"].values())
+            self.assertIn("tension = 9.6 mN/m", text)
             self.assertAlmostEqual(float(re.search(r"line-tension = (.*)", file.attrs["config"].decode())[1]) / known["line_tension"], 1, places=3)
         given = self.succeed("clogrun", "array", "--lab", lab, *QUICK, "seeds=1", "line-tension=1", "--dry-run", "--output", "x.h5").stdout
         self.assertIn("line-tension = 1\n", given)

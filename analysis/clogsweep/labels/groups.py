@@ -28,7 +28,8 @@ class Groups:
         self._fit = fit
         self._told: list[Group] = fit["groups"]
         self.confidence: float = fit["confidence"]
-        self.laboratory: dict[str, float | None] = fit.get("laboratory", {})  # what the model's units are there
+        self.laboratory: dict[str, float | None] = fit.get("laboratory", {})  # what the model's units are there, if all have one
+        self.laboratories: dict[str, str] = fit.get("laboratories", {})  # descriptions, by their check sums
         self.columns: dict[str, Column] = {column["name"]: column for column in fit["columns"]}
         self.lists: Collection[str] = fit["lists"]
         self.settings = stored.settings(fit.get("sweep", {}).get("config", ""))  # none of older programs
@@ -139,8 +140,10 @@ class Groups:
 
     def curve_parameters(self) -> list[str]:
         """Names of what tells the curves apart."""
-        told = [name for name in self.columns if self.varies(name) and name != self.abscissa and self._is_number(name)
-                and not self._is_automatic(name)]
+        # A laboratory says more than what follows from it.
+        told = ["laboratory"] if self.varies("laboratory") else []
+        told += [name for name in self.columns if self.varies(name) and name != self.abscissa and self._is_number(name)
+                 and not self._is_automatic(name) and not (told and self.follows(name, told))]
         # Words and automatic values that follow from what is told say nothing new. A preset says more than its parts.
         rest = [name for name in self.columns if name not in told and name != self.abscissa]
         for name in sorted(rest, key=lambda name: (name != "preset", self._is_number(name))):
@@ -152,11 +155,19 @@ class Groups:
         return symbol(self.columns[name])
 
     def said(self, name: str, value: float | str | None) -> str:
+        if name == "laboratory" and value in self.laboratories:
+            return literal(self.laboratory_label(str(value)))
         return said(self.columns[name], self.named(name, value))
 
     def named(self, name: str, value: Any) -> Any:
         """A parameter's value, and for the check sum of circles the name of their file, if it is known."""
         return self._circle_files.get(value, value) if name == "obstacles" else value
+
+    def laboratory_label(self, check_sum: str) -> str:
+        """What distinguishes a laboratory from the others; of a single one all its parts."""
+        parts = {one: text.split("; ") for one, text in self.laboratories.items()}
+        own = [part for part in parts[check_sum] if not all(part in other for other in parts.values())]
+        return "; ".join(own or parts[check_sum])
 
     def distinguishing(self) -> list[str]:
         """Names of the parameters that tell the groups apart. What only one model has, the model tells."""

@@ -128,7 +128,7 @@ def speed(group: Group) -> str:
 def laboratory_columns(groups: Groups) -> dict[str, str]:
     """Headings of what a table has in laboratory units, by column."""
     named = {"tension_mN_per_m": "tension [mN/m]", "clogging_length_mm": "&lambda; [mm]", "speed_mm_per_s": "v<sub>g</sub> [mm/s]", "time_to_clog_s": "time to clog [s]"}
-    if not groups.laboratory:
+    if not any("laboratory_scale" in group for group in groups.members):
         return {}
     return {column: title for column, title in named.items() if column != "tension_mN_per_m" or groups.are_polygons}
 
@@ -361,13 +361,14 @@ def settings(config: str) -> str:
     return "\n".join(line for line in config.split("\n") if not (own_circles and line.partition(" = ")[0] in RANDOM_ARRAYS))
 
 
-def laboratory_of(groups: Groups, about: dict[str, str]) -> list[str]:
-    """What the laboratory's units are, and the stored file that describes it."""
-    if not groups.laboratory:
-        return []
-    units = ", ".join(f"{name.replace('_', ' ')} {rounded.plain(value)}" for name, value in groups.laboratory.items() if value is not None)
-    lines = about.get("laboratory", "of --lab").splitlines()
-    return [f"laboratory: {'; '.join(lines)} ({units})"]
+def laboratories_of(groups: Groups) -> list[str]:
+    """What the units of each laboratory are, and its description."""
+    lines = {}
+    for group in groups.members:
+        if scale := group.get("laboratory_scale"):
+            units = ", ".join(f"{name.replace('_', ' ')} {rounded.plain(value)}" for name, value in scale.items() if value is not None)
+            lines[f"laboratory: {groups.laboratories.get(group['laboratory'], 'of --lab')} ({units})"] = None
+    return list(lines)
 
 
 def page(name: str, groups: Groups, sections: dict[str, str], progress: str, about: dict[str, str], charts: Charts, fitted_by: str) -> str:
@@ -381,7 +382,7 @@ def page(name: str, groups: Groups, sections: dict[str, str], progress: str, abo
         progress=html.escape(f"{progress}, {rounded.counted(len(groups.members), 'point')}"),
         meaning=passages.kind_of(groups).about if groups.are_passages else LENGTHS,
         sections="\n".join(f"<h2>{title}</h2>{content}" for title, content in sections.items() if content),
-        provenance=html.escape("\n".join([*(f"{key}: {about[key]}" for key in PROVENANCE if key in about), *laboratory_of(groups, about), f"fitted by clogfit {fitted_by}"])),
+        provenance=html.escape("\n".join([*(f"{key}: {about[key]}" for key in PROVENANCE if key in about), *laboratories_of(groups), f"fitted by clogfit {fitted_by}"])),
         config=html.escape(settings(about.get("config", ""))))
 
 

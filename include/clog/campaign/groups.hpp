@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -86,6 +87,14 @@ inline constexpr CauseText cause_texts[] = {
      "clogging_length_other_upper"},
     {Cause::broken, false, "broken", "break_up_length", "break_up_length_lower", "break_up_length_upper"}};
 
+/// The model's units in a laboratory; NaN where they are not known.
+struct LaboratoryScale {
+  double length = std::numeric_limits<double>::quiet_NaN();   ///< of sigma [mm]
+  double time = std::numeric_limits<double>::quiet_NaN();     ///< of t0 [s]
+  double speed = std::numeric_limits<double>::quiet_NaN();    ///< of v_t [mm/s]
+  double tension = std::numeric_limits<double>::quiet_NaN();  ///< of a droplet with Gamma = 1 [mN/m]
+};
+
 /// The runs of a sweep that differ in their seed only, and what they say together.
 struct Group {
   sweep::RunRow first_row;                                 ///< its parameters are those of all
@@ -129,6 +138,7 @@ struct Group {
   int num_free = 0;       ///< met no obstacle
   int num_repeating = 0;  ///< went farther than their array's period
   std::vector<Doubt> doubts;
+  std::optional<LaboratoryScale> laboratory = {};  ///< in whose units results are wanted, too
 };
 
 /// Groups rows by everything but the seed, in the order of their parameters.

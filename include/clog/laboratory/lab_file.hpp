@@ -15,10 +15,10 @@ struct Laboratory {
   /// fact that we compare values of the dimensionless line tension in 2D to values of the dimensionless
   /// surface tension in 3D".
   double tension_ratio = 0.3;
-  std::string text;  ///< its lines, without comments
+  std::string text;  ///< `key = value; key = value`
 };
 
-/// Lines `key = value`; `#` begins a comment. @throws Error naming file and key
+/// Lines, or parts between semicolons, `key = value`; `#` begins a comment. @throws Error naming file and key
 Laboratory read_laboratory(const std::string& path);
 /// @param source  what the text is called in messages
 Laboratory parse_laboratory(const std::string& text, const std::string& source);

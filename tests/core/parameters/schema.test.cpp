@@ -43,7 +43,7 @@ TEST_P(EveryParameter, IsDescribed) {
   EXPECT_TRUE(parameter.applies_to(run_with(parameter)));
   if (parameter.kind == ValueKind::word) {
     EXPECT_GE(parameter.words.size(), 2u);
-  } else if (parameter.kind == ValueKind::file) {
+  } else if (parameter.kind == ValueKind::file || parameter.kind == ValueKind::text) {
     EXPECT_EQ(parameter.words, std::vector<std::string>{"none"});
   } else if (parameter.role != ParameterRole::ensemble) {
     EXPECT_GT(std::strlen(parameter.symbol), 0u);
@@ -63,6 +63,7 @@ TEST_P(EveryParameter, GivesBackWhatIsSet) {
   if (std::holds_alternative<std::monostate>(other) || parameter.kind == ValueKind::number_or_share)
     other = parameter.kind == ValueKind::integer ? ParameterValue(std::int64_t{20}) : ParameterValue(0.25);
   if (parameter.kind == ValueKind::file) other = OwnCircles({{1, 2, 3}}).check_sum();
+  if (parameter.kind == ValueKind::text) other = LaboratoryText("angle = 1 deg").check_sum();
   if (parameter.kind == ValueKind::word)
     // The first of an automatic one's words is not what it gives back.
     other = *std::find_if(parameter.words.rbegin(), parameter.words.rend(),
@@ -76,7 +77,8 @@ TEST_P(EveryParameter, GivesBackWhatIsSet) {
 
 TEST_P(EveryParameter, IsRefusedBeyondItsRange) {
   const Parameter& parameter = GetParam();
-  if (parameter.kind == ValueKind::word || parameter.kind == ValueKind::file) {
+  if (parameter.kind == ValueKind::word || parameter.kind == ValueKind::file ||
+      parameter.kind == ValueKind::text) {
     RunParameters run;
     EXPECT_THROW(parameter.set(run, "no such word"), Error);
     return;

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "clog/core/parameters/circles.hpp"
+#include "clog/core/parameters/laboratory_text.hpp"
 #include "clog/core/tools/words.hpp"
 
 namespace clog {
@@ -234,6 +235,7 @@ struct RunParameters {
   double dwell_length = 0.05;       ///< a droplet that comes no farther stands [sigma]
   double clog_energy = 1e-17;       ///< E_k/E_t below which a droplet counts as clogged
   ClogDetection clog_detection = ClogDetection::certified;
+  std::optional<LaboratoryText> laboratory = {};
   std::uint32_t seed = 1;
 };
 

@@ -19,8 +19,8 @@ namespace clog {
 using ParameterValue = std::variant<std::monostate, double, std::int64_t, std::string>;
 
 /// `number_or_share`: a number, or a share of the largest one, as text like `12.5%`. `file`: the key has the
-/// name of a file, the parameter what stands in it.
-enum class ValueKind { number, number_or_share, integer, word, file };
+/// name of a file, the parameter what stands in it. `text`: a description; results have its checksum.
+enum class ValueKind { number, number_or_share, integer, word, file, text };
 
 /// The purpose of a parameter.
 enum class ParameterRole {

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace clog {
+
+/// The description of a run's laboratory, `key = value; key = value`, in whose units results are wanted. It
+/// changes no run. A row of a result has only its checksum; a process knows the texts that it has read.
+class LaboratoryText {
+ public:
+  /// @throws Error if nothing in the text is `key = value`
+  explicit LaboratoryText(const std::string& text);
+  /// @throws Error if it does not have the form of check_sum()
+  static LaboratoryText from_check_sum(std::string_view check_sum);
+
+  /// CRC-64/XZ of the text: 16 hexadecimal digits.
+  std::string check_sum() const;
+  /// Empty if this process has read no text of this checksum.
+  std::string text() const;
+
+  bool operator==(const LaboratoryText&) const = default;
+
+ private:
+  std::uint64_t check_sum_;
+
+  explicit LaboratoryText(std::uint64_t check_sum) : check_sum_(check_sum) {}
+};
+
+}  // namespace clog

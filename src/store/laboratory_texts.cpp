@@ -1,0 +1,82 @@
+#include "laboratory_texts.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+#include "clog/core/tools/error.hpp"
+#include "file_io.hpp"
+#include "hdf5.hpp"
+
+namespace clog::store {
+namespace {
+
+constexpr const char* group_name = "laboratories";
+
+void write_one(hid_t group, const LaboratoryText& laboratory, const std::string& path) {
+  const std::string text = laboratory.text();
+  const Type type = text_type(text.size());
+  const Dataset dataset(H5Dcreate2(group, laboratory.check_sum().c_str(), type, Space(H5Screate(H5S_SCALAR)),
+                                   H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  check(dataset.valid() && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) >= 0,
+        "write a laboratory to", path);
+}
+
+/// Empty if it is not a text of fixed length.
+std::string read_one(hid_t group, const std::string& name) {
+  const Dataset dataset(H5Dopen2(group, name.c_str(), H5P_DEFAULT));
+  if (!dataset.valid()) return "";
+  const Type stored(H5Dget_type(dataset));
+  if (H5Tget_class(stored) != H5T_STRING || H5Tis_variable_str(stored) > 0 ||
+      H5Sget_simple_extent_npoints(Space(H5Dget_space(dataset))) != 1)
+    return "";
+  std::string text(H5Tget_size(stored), '\0');
+  if (H5Dread(dataset, stored, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0) return "";
+  return text.substr(0, text.find('\0'));
+}
+
+bool is_as_written(const std::string& name, const std::string& text) try {
+  return LaboratoryText(text).check_sum() == name;
+} catch (const Error&) {
+  return false;
+}
+
+}  // namespace
+
+void write_laboratories(hid_t file, std::span<const sweep::RunRow> rows, const std::string& path) {
+  std::set<std::string> check_sums;
+  for (const sweep::RunRow& row : rows)
+    if (const std::optional<LaboratoryText>& one = row.parameters.laboratory; one && !one->text().empty())
+      check_sums.insert(one->check_sum());
+  if (check_sums.empty()) return;
+  const Group group(H5Gcreate2(file, group_name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  check(group.valid(), "create the laboratories in", path);
+  for (const std::string& name : check_sums) write_one(group, LaboratoryText::from_check_sum(name), path);
+}
+
+void read_laboratories(hid_t file, std::vector<std::string>& damage) {
+  if (H5Lexists(file, group_name, H5P_DEFAULT) <= 0) return;
+  const Group group(H5Gopen2(file, group_name, H5P_DEFAULT));
+  if (!group.valid()) {
+    damage.emplace_back("its laboratories cannot be opened");
+    return;
+  }
+  for (const std::string& name : names_in(group))
+    if (!is_as_written(name, read_one(group, name)))
+      damage.push_back("its laboratory " + name + " is not as it was written");
+}
+
+void adopt_laboratory_of_all(SweepFile& file) {
+  const auto stored =
+      std::ranges::find(file.provenance, "laboratory", [](const auto& attribute) { return attribute.first; });
+  if (stored == file.provenance.end() || stored->second.find('=') == std::string::npos) return;
+  std::string text = stored->second;
+  while (text.ends_with('\n')) text.pop_back();
+  for (auto end = text.find('\n'); end != std::string::npos; end = text.find('\n', end))
+    text.replace(end, 1, "; ");
+  const LaboratoryText laboratory(text);
+  for (sweep::RunRow& row : file.rows)
+    if (!row.parameters.laboratory) row.parameters.laboratory = laboratory;
+}
+
+}  // namespace clog::store
