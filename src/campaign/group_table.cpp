@@ -36,6 +36,17 @@
 namespace clog::campaign {
 namespace {
 
+nlohmann::ordered_json json_of(const std::vector<Passage>& passages) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Passage& one : passages)
+    list.push_back({{"x", one.x},
+                    {"passed", one.num_passed},
+                    {"stopped", one.num_stopped},
+                    {"lower", one.share.lower},
+                    {"upper", one.share.upper}});
+  return list;
+}
+
 /// The parts `key = value` of a laboratory's description.
 std::vector<std::string> parts_of(const std::optional<LaboratoryText>& laboratory) {
   std::istringstream text(laboratory ? laboratory->text() : "");
@@ -120,6 +131,9 @@ std::string column_notes(const std::vector<Group>& groups) {
         "passed: droplets that reached the exit. They count as not clogged on their way, so lambda may "
         "exceed "
         "the device's length\n";
+  if (std::ranges::all_of(groups, [](const Group& group) { return is_device(group.first_row.parameters); }))
+    text +=
+        "lambda_met: from the first obstacle that a droplet met; those that met none are in no other column\n";
   return text;
 }
 
@@ -307,6 +321,44 @@ std::string wrapped(const std::vector<std::string>& words) {
   return text;
 }
 
+/// `0.85 (0.62 .. 0.97)`
+std::string text_of(const Passage& passage) {
+  const int num_known = passage.num_passed + passage.num_stopped;
+  if (num_known == 0) return "-";
+  return fmt::format("{:.2f} ({:.2f} .. {:.2f})", static_cast<double>(passage.num_passed) / num_known,
+                     passage.share.lower, passage.share.upper);
+}
+
+/// Which shares of the droplets came past the lines of their devices, a column each. Of many lines only the
+/// exit is shown.
+std::string table_of_passages(const std::vector<Group>& groups, const std::vector<bool>& shown) {
+  constexpr std::size_t most_lines = 8;
+  std::set<double> places;
+  for (const Group& group : groups)
+    for (const Passage& one : group.passages) places.insert(one.x);
+  if (places.empty()) return "";
+  const bool are_many = places.size() > most_lines;
+  if (are_many) {
+    places.clear();
+    for (const Group& group : groups)
+      if (const double exit = group.first_row.parameters.obstacles.exit; exit > 0) places.insert(exit);
+  }
+  std::string text = "\nshare of the droplets that came past x";
+  if (are_many) text += " (--lines x1,x2,... names other lines than the exit)";
+  std::vector<std::vector<std::string>> lines(1);
+  append_shown(parameter_names(groups.front()), shown, lines[0]);
+  for (const double x : places) lines[0].push_back("x=" + console::plain(x));
+  for (const Group& group : groups) {
+    std::vector<std::string>& line = lines.emplace_back();
+    append_shown(parameter_texts(group, groups), shown, line);
+    for (const double x : places) {
+      const auto passage = std::ranges::find(group.passages, x, &Passage::x);
+      line.push_back(passage == group.passages.end() ? "-" : text_of(*passage));
+    }
+  }
+  return places.empty() ? text + '\n' : text + '\n' + console::aligned(lines);
+}
+
 /// Defines a clog, if droplets that stood still count, too.
 std::string definition_of_clogs(const std::vector<Group>& groups) {
   const double dwell = groups.front().dwell;
@@ -341,7 +393,7 @@ std::string to_text(const std::vector<Group>& groups, double confidence, SharedP
     append_shown(parameter_texts(group, groups), shown, line);
     for (const ResultColumn& column : columns) line.push_back(column.cell(group));
   }
-  return text + "\n\n" + console::aligned(lines) + legend(groups) + column_notes(groups) +
+  return text + "\n\n" + console::aligned(lines) + table_of_passages(groups, shown) + legend(groups) + column_notes(groups) +
          note_of_rest(groups) + left_out(groups);
 }
 
@@ -392,6 +444,7 @@ std::string to_json(const std::vector<Group>& groups, double confidence, const s
                                                          {"standard_error", step.standard_error},
                                                          {"lower", step.interval.lower},
                                                          {"upper", step.interval.upper}});
+    if (is_device(group.first_row.parameters)) entry["passages"] = json_of(group.passages);
     entry["censored_distances"] = group.censored_distances;
     list.push_back(std::move(entry));
   }

@@ -21,6 +21,7 @@
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/row_limits.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "passages.hpp"
 
 namespace clog::campaign {
 namespace {
@@ -60,7 +61,7 @@ std::vector<Doubt> doubts_about(const Group& group) {
   if (group.num_damaged > 0) doubts.push_back(Doubt::damaged);
   if (hangs_on_mesh(group)) doubts.push_back(Doubt::held_by_mesh);
   if (group.num_repeating > 0) doubts.push_back(Doubt::array_repeats);
-  if (group.num_free > 0) doubts.push_back(Doubt::met_none);
+  if (group.num_free > 0 && !is_device(group.first_row.parameters)) doubts.push_back(Doubt::met_none);
   if (group.clogging.length < sweep::obstacle_spacing(group.first_row))
     doubts.push_back(Doubt::below_spacing);
   if (!sweep::unproven_parameters(group.first_row).empty()) doubts.push_back(Doubt::not_proved_sound);
@@ -140,6 +141,16 @@ Ending ending_of(const sweep::RunRow& run, double dwell) {
   // The mechanism of a droplet that moved on is not known: it counts among the others.
   if (const Dwell* first = run.dwells.first_longer(dwell)) return {first->distance, true, Cause::other};
   return is_clogged || last.cause ? last : Ending{run.dwells.last_distance, false, {}};
+}
+
+/// The distance from the first obstacle on; below 0 if the droplet met none.
+double distance_from_contact(const sweep::RunRow& run, double distance) {
+  if (run.contacts == 0) return -1;
+  return run.contacts < 0 ? distance : distance - run.first_contact_at;
+}
+
+Arrival arrival_of(const sweep::RunRow& run, const Ending& ending) {
+  return {run.release_x + ending.distance, ending.is_clog || ending.cause.has_value()};
 }
 
 /// The later of two times; not known if one of them is not.
@@ -321,6 +332,11 @@ const DoubtText& text_of(Doubt doubt) {
                        [=](const DoubtText& text) { return text.doubt == doubt; });
 }
 
+bool is_device(const RunParameters& run) {
+  return scene_of(run).walls_from == WallsFrom::circles &&
+         (run.obstacles.release == Release::entrance || run.obstacles.exit > 0);
+}
+
 bool is_dwell_possible(const Group& group) { return group.dwell < group.first_row.parameters.max_time; }
 
 std::vector<const sweep::Column*> pooled_columns(const std::string& keys) {
@@ -337,7 +353,8 @@ std::vector<const sweep::Column*> pooled_columns(const std::string& keys) {
 }
 
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence, double from_distance,
-                              double dwell, std::span<const sweep::Column* const> pooled) {
+                              double dwell, std::span<const sweep::Column* const> pooled,
+                              std::span<const double> lines) {
   require_dwells(rows, dwell);
   std::map<std::vector<Field>, std::vector<const sweep::RunRow*>> members;
   for (const sweep::RunRow& row : rows) {
@@ -355,7 +372,9 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
     group.num_repeated = static_cast<int>(num_all - runs.size());
     group.first_row = *runs.front();
     group.dwell = dwell;
+    const bool is_of_device = is_device(group.first_row.parameters);
     std::vector<Ending> counted;
+    std::vector<Arrival> arrivals;
     Meetings meetings;
     std::vector<double> speeds;
     std::vector<fit::Travel> travels, all_travels;
@@ -366,15 +385,21 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
       group.num_damaged += is_damaged;
       group.num_failed += is_failed;
       if (is_damaged || is_failed) continue;
-      const Ending ending = ending_of(*run, dwell);
+      Ending ending = ending_of(*run, dwell);
       group.num_interrupted += sweep::is_unfinished(run->status) && !ending.is_clog;
       if (run->steps > 0) group.dwells_known_from = later(group.dwells_known_from, run->dwells.known_from);
       group.num_repeating += sweep::has_met_repetition(*run);
-      const bool is_left_out = std::max(ending.distance, 0.0) < from_distance;
-      group.num_left_out += is_left_out;
+      const Ending from_release = ending;
+      if (is_of_device) {
+        arrivals.push_back(arrival_of(*run, ending));
+        ending.distance = distance_from_contact(*run, ending.distance);
+      }
+      const bool has_met_none = is_of_device && run->contacts == 0;
+      const bool is_left_out = has_met_none || std::max(ending.distance, 0.0) < from_distance;
+      group.num_left_out += is_left_out && !has_met_none;
       if (!is_left_out) counted.push_back(ending);
       if (!is_left_out) group.seeds.push_back(run->parameters.seed);
-      if (!is_left_out) meetings.count(*run, ending, from_distance);
+      if (!is_left_out || has_met_none) meetings.count(*run, from_release, from_distance);
       group.num_on_mesh += !is_left_out && sweep::may_hang_on_mesh(*run);
       group.num_passed += !is_left_out && !ending.is_clog && run->status == RunStatus::passed;
       group.num_flowing += !is_left_out && !ending.is_clog && run->status == RunStatus::flowing;
@@ -387,6 +412,7 @@ std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confid
     }
     fit_clogging(group, counted, confidence, from_distance);
     fit_meetings(group, meetings, confidence);
+    if (is_of_device) group.passages = passages_of(group.first_row.parameters, arrivals, lines, confidence);
     group.relative_speed = of_enough_runs(fit::fit_mean_speed(speeds));
     group.relative_speed_pooled = of_enough_runs(fit::fit_pooled_speed(travels));
     group.relative_speed_all = mean_speed_of_all(all_travels, group.first_row.parameters.drag.terminal_speed);

@@ -207,6 +207,14 @@ SweepCost plus(SweepCost cost, double seconds) {
   return cost;
 }
 
+/// What is known better than its interval, which stays as wide as it is.
+SweepCost with_expected(SweepCost cost, double expected) {
+  cost.lower *= expected / cost.expected;
+  cost.upper *= expected / cost.expected;
+  cost.expected = expected;
+  return cost;
+}
+
 void print_expected(const sweep::Plan& plan, const Sample& sample, const SweepCost& cost) {
   const double us_per_step = 1e6 * cost.seconds_per_work * work_per_step(plan.task(0));
   fmt::print(
@@ -246,8 +254,8 @@ void print_short_lengths(const Sample& sample) {
 }
 
 /// Limits of the cost of a sweep that adds seeds.
-/// @param expected, bound  of its first round [s]
-void print_rounds(const SeedRule& rule, std::int64_t first_seeds, double expected, double bound) {
+/// @param cost  of its first round
+void print_rounds(const SeedRule& rule, std::int64_t first_seeds, const SweepCost& cost) {
   const std::int64_t needed = rule.clogs_needed();
   fmt::print(std::cout, "# this is the first round: +-{} % needs {} per parameter set\n",
              sweep::shortest(100 * rule.precision()), sweep::counted(needed, "clog"));
@@ -257,13 +265,14 @@ void print_rounds(const SeedRule& rule, std::int64_t first_seeds, double expecte
   const auto hours = [&](double seconds, std::int64_t num_seeds) {
     return seconds / hour * static_cast<double>(num_seeds) / static_cast<double>(first_seeds);
   };
+  const auto expected = [&](std::int64_t num_seeds) {
+    return fmt::format("expected {:.2g} core-hours (95 %: {:.2g} to {:.2g})", hours(cost.expected, num_seeds),
+                       hours(cost.lower, num_seeds), hours(cost.upper, num_seeds));
+  };
   const std::int64_t fewest = std::clamp(needed, first_seeds, rule.most_seeds());
-  fmt::print(std::cout,
-             "# all rounds: {} each if every run clogs, expected {:.2g} core-hours; {} each (--most-seeds) "
-             "if few do, expected {:.2g}, at most {:.3g}\n",
-             sweep::counted(fewest, "seed"), hours(expected, fewest),
-             sweep::counted(rule.most_seeds(), "seed"), hours(expected, rule.most_seeds()),
-             hours(bound, rule.most_seeds()));
+  fmt::print(std::cout, "# all rounds: {} each if every run clogs, {}; {} each (--most-seeds) if few do, {}, at most {:.3g}\n",
+             sweep::counted(fewest, "seed"), expected(fewest), sweep::counted(rule.most_seeds(), "seed"),
+             expected(rule.most_seeds()), hours(cost.bound, rule.most_seeds()));
 }
 
 std::string seeds_in_words(const sweep::Plan& plan) {
@@ -324,7 +333,7 @@ int print_cost(const sweep::Plan& plan, const std::string& output, const RoundsT
   if (!is_done) print_short_lengths(sample);
   if (!is_done) print_expected(plan, sample, cost);
   if (!is_done && stored.seconds > 0) print_left(plan, output, stored, cost);
-  if (rounds.rule) print_rounds(*rounds.rule, plan.size() / plan.num_groups(), cost.expected, alike.bound);
+  if (rounds.rule) print_rounds(*rounds.rule, plan.size() / plan.num_groups(), with_expected(alike, cost.expected));
   if (rounds.refiner)
     for (const std::string& words :
          rounds.refiner->rounds_in_words(cost.expected / static_cast<double>(plan.size())))

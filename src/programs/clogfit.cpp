@@ -78,6 +78,8 @@ int body(int argc, char** argv) {
       "file that describes the laboratory, see clogfit units: lengths, speeds and times in its units, too")(
       "pool", po::value<std::string>(),
       "max-time, boxes or both, with a comma between: join groups that differ in these keys only")(
+      "lines", po::value<std::string>(),
+      "x1,x2,...: lines across a device that droplets pass, in place of the rows of its posts [sigma]")(
       "dwell", po::value<std::string>(), "droplets that have not moved for so long count as clogged [t0]");
   line.add_positional("file", -1);
   line.add_commands({"calibrate", "compare", "curve", "deviation", "drag", "report", "units"});
@@ -104,8 +106,9 @@ int body(int argc, char** argv) {
         "no place for --dwell (droplets in a channel or on a wall have no clogging length) leave it out");
   const std::vector<const sweep::Column*> pooled =
       line.has("pool") ? campaign::pooled_columns(line.get("pool")) : std::vector<const sweep::Column*>();
+  const std::vector<double> lines = line.has("lines") ? line.get_positives("lines") : std::vector<double>();
   std::vector<campaign::Group> groups =
-      campaign::group_runs(sweep.rows, confidence, from_distance, dwell, pooled);
+      campaign::group_runs(sweep.rows, confidence, from_distance, dwell, pooled, lines);
   set_scales(line, groups);
   const SharedParameters shared =
       line.has("all-parameters") ? SharedParameters::all : SharedParameters::unusual;

@@ -105,9 +105,13 @@ class Precision(ProgramTest):
         self.assertEqual(first, "# this is the first round: +-20 % needs 100 clogs per parameter set")
         bound = float(re.search("at most ([^ ]+) core-hours", bound)[1])
         expected = float(re.search("expected ([^ ]+) core-hours", expected)[1])
-        found = re.fullmatch(r"# all rounds: 100 seeds each if every run clogs, expected (\S+) core-hours; "
-                             r"400 seeds each \(--most-seeds\) if few do, expected (\S+), at most (\S+)", rounds)
-        fewest, most, longest = map(float, found.groups())
+        found = re.fullmatch(r"# all rounds: 100 seeds each if every run clogs, expected (\S+) core-hours \(95 %: (\S+) to (\S+)\); "
+                             r"400 seeds each \(--most-seeds\) if few do, expected (\S+) core-hours \(95 %: (\S+) to (\S+)\), at most (\S+)", rounds)
+        fewest, *of_fewest, most, low, high, longest = map(float, found.groups())
+        self.assertLessEqual(low, most)
+        self.assertLessEqual(most, high)
+        for end, of_most in zip(of_fewest, (low, high)):
+            self.assertAlmostEqual(of_most / end / 4, 1, delta=0.11)
         self.assertAlmostEqual(fewest / expected / 25, 1, delta=0.11)  # of two figures
         self.assertAlmostEqual(most / expected / 100, 1, delta=0.11)
         self.assertAlmostEqual(longest / bound / 100, 1, delta=0.02)
@@ -119,7 +123,7 @@ class Precision(ProgramTest):
         self.assertNotIn("nothing is left", told)
         hours = table(self.folder / "s.h5").processor_seconds.sum() / 3600
         self.assertIn(f"# s.h5 has all 8 tasks, which took {hours:.2g} core-hours\n", told)
-        self.assertIn(f"14 seeds each (--most-seeds) if few do, expected {hours * 14 / 4:.2g}, ", told)
+        self.assertIn(f"14 seeds each (--most-seeds) if few do, expected {hours * 14 / 4:.2g} core-hours", told)
 
     def test_mistakes_get_one_line_and_exit_code_2(self):
         plain = [*QUICK, "--output", "s.h5"]

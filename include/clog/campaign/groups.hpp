@@ -96,6 +96,14 @@ struct LaboratoryScale {
 };
 
 /// The runs of a sweep that differ in their seed only, and what they say together.
+/// Droplets of a device and a line across the flow.
+struct Passage {
+  double x;  ///< of the line, in the coordinates of the circles [sigma]
+  int num_passed;
+  int num_stopped;      ///< clogged or broke up before it; others were still on their way
+  fit::Interval share;  ///< of num_passed in both
+};
+
 struct Group {
   sweep::RunRow first_row;                                 ///< its parameters are those of all
   double dwell = std::numeric_limits<double>::infinity();  ///< see group_runs() [t0]
@@ -137,11 +145,16 @@ struct Group {
   int num_on_mesh = 0;    ///< clogs that the corners of the polygon may hold (sweep::may_hang_on_mesh)
   int num_free = 0;       ///< met no obstacle
   int num_repeating = 0;  ///< went farther than their array's period
+  std::vector<Passage> passages;  ///< of a device, downstream; the exit is the last
   std::vector<Doubt> doubts;
   std::optional<LaboratoryScale> laboratory = {};  ///< in whose units results are wanted, too
 };
 
-/// Groups rows by everything but the seed, in the order of their parameters.
+/// Are there user-supplied circles that droplets enter on a line, or leave at an exit?
+bool is_device(const RunParameters& run);
+
+/// Groups rows by everything but the seed, in the order of their parameters. In a device distances count from
+/// the first obstacle that a droplet met; one that met none does not count.
 /// @param from_distance  distances are measured from here [sigma]: runs that ended earlier are excluded, the
 /// others count with the distance beyond it (left truncation)
 /// @param dwell  a droplet that has stood for longer than this counts as clogged where it did so first [t0].
@@ -149,11 +162,13 @@ struct Group {
 /// length of that dwell is not known. A value of max-time or more changes nothing.
 /// @param pooled  columns of max-time and boxes that do not separate groups. Of the runs of one seed in the
 /// same array the one with the largest max-time counts; with other boxes the array is another one
+/// @param lines  x of the passages in devices; by default those of the rows of posts [sigma]
 /// @throws Error if the rows do not tell which droplets stood for so long
 std::vector<Group> group_runs(std::span<const sweep::RunRow> rows, double confidence,
                               double from_distance = 0,
                               double dwell = std::numeric_limits<double>::infinity(),
-                              std::span<const sweep::Column* const> pooled = {});
+                              std::span<const sweep::Column* const> pooled = {},
+                              std::span<const double> lines = {});
 /// The columns of keys such as `max-time,boxes`. @throws Error for any other key
 std::vector<const sweep::Column*> pooled_columns(const std::string& keys);
 /// Can a droplet of this group have stood for so long?
