@@ -95,7 +95,6 @@ struct LaboratoryScale {
   double tension = std::numeric_limits<double>::quiet_NaN();  ///< of a droplet with Gamma = 1 [mN/m]
 };
 
-/// The runs of a sweep that differ in their seed only, and what they say together.
 /// Droplets of a device and a line across the flow.
 struct Passage {
   double x;  ///< of the line, in the coordinates of the circles [sigma]
@@ -104,6 +103,7 @@ struct Passage {
   fit::Interval share;  ///< of num_passed in both
 };
 
+/// The runs of a sweep that differ in their seed only, and what they say together.
 struct Group {
   sweep::RunRow first_row;                                 ///< its parameters are those of all
   double dwell = std::numeric_limits<double>::infinity();  ///< see group_runs() [t0]
