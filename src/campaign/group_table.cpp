@@ -36,7 +36,7 @@
 namespace clog::campaign {
 namespace {
 
-nlohmann::ordered_json json_of(const std::vector<Passage>& passages) {
+nlohmann::ordered_json passages_json(const std::vector<Passage>& passages) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Passage& one : passages)
     list.push_back({{"x", one.x},
@@ -322,7 +322,7 @@ std::string wrapped(const std::vector<std::string>& words) {
 }
 
 /// `0.85 (0.62 .. 0.97)`
-std::string text_of(const Passage& passage) {
+std::string share_text(const Passage& passage) {
   const int num_known = passage.num_passed + passage.num_stopped;
   if (num_known == 0) return "-";
   return fmt::format("{:.2f} ({:.2f} .. {:.2f})", static_cast<double>(passage.num_passed) / num_known,
@@ -353,7 +353,7 @@ std::string table_of_passages(const std::vector<Group>& groups, const std::vecto
     append_shown(parameter_texts(group, groups), shown, line);
     for (const double x : places) {
       const auto passage = std::ranges::find(group.passages, x, &Passage::x);
-      line.push_back(passage == group.passages.end() ? "-" : text_of(*passage));
+      line.push_back(passage == group.passages.end() ? "-" : share_text(*passage));
     }
   }
   return places.empty() ? text + '\n' : text + '\n' + console::aligned(lines);
@@ -444,7 +444,7 @@ std::string to_json(const std::vector<Group>& groups, double confidence, const s
                                                          {"standard_error", step.standard_error},
                                                          {"lower", step.interval.lower},
                                                          {"upper", step.interval.upper}});
-    if (is_device(group.first_row.parameters)) entry["passages"] = json_of(group.passages);
+    if (is_device(group.first_row.parameters)) entry["passages"] = passages_json(group.passages);
     entry["censored_distances"] = group.censored_distances;
     list.push_back(std::move(entry));
   }

@@ -68,7 +68,8 @@ void read_laboratories(hid_t file, std::vector<std::string>& damage) {
 
 void adopt_laboratory_of_all(SweepFile& file) {
   const auto stored =
-      std::ranges::find(file.provenance, "laboratory", [](const auto& attribute) { return attribute.first; });
+      std::ranges::find_if(
+      file.provenance, [](const auto& attribute) { return attribute.first == "laboratory"; });
   if (stored == file.provenance.end() || stored->second.find('=') == std::string::npos) return;
   std::string text = stored->second;
   while (text.ends_with('\n')) text.pop_back();

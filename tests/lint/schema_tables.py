@@ -20,6 +20,8 @@ def range_of(key):
     if key["kind"] == "word":
         return ", ".join(f"`{word}`" for word in key["words"])
     words = "".join(f"`{word}` or " for word in key["words"])
+    if key["kind"] == "text":
+        return words + "a description, as of `--lab`"
     if key["kind"] == "file":
         return words + "a file's name"
     share = ", or a share such as `50%`" if key["kind"] == "number or share" else ""
