@@ -1,0 +1,100 @@
+/// Does a finer polygon rest where a coarser one clogged?
+///
+///     build/release/tests/holds_finer sweep.h5 [PART PARTS]
+///
+/// Repeats each run that clogged, puts a vertex into the middle of each edge of the droplet at rest, forgets where
+/// walls hold it, and lets it go. A line of CSV for each run: how far it has come after 600 t0, or where it rests
+/// for certain. PART of PARTS divides the runs among processes.
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "clog/campaign/stored_sweep.hpp"
+#include "clog/core/model/model.hpp"
+#include "clog/core/run/droplet_run.hpp"
+#include "clog/core/run/resolve.hpp"
+#include "clog/core/tools/error.hpp"
+
+namespace {
+
+using namespace clog;
+
+constexpr double time_given = 600;  // [t0]
+constexpr int checks_at_once = 1000;
+
+void finish(DropletRun& run) {
+  while (!run.advance(checks_at_once)) {
+  }
+}
+
+/// Each edge's middle on the cubic through its ends and their other neighbours.
+Eigen::ArrayXd with_middles(const Eigen::Ref<const Eigen::ArrayXd>& coarse) {
+  const Eigen::Index n = coarse.size();
+  Eigen::ArrayXd fine(2 * n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::Index before = (i + n - 1) % n, next = (i + 1) % n, after = (i + 2) % n;
+    fine[2 * i] = coarse[i];
+    fine[2 * i + 1] = (9 * (coarse[i] + coarse[next]) - coarse[before] - coarse[after]) / 16;
+  }
+  return fine;
+}
+
+DropletState refined(const DropletState& coarse) {
+  const Eigen::Index n = coarse.size();
+  DropletState fine = coarse;
+  fine.position.resize(4 * n);
+  fine.position << with_middles(coarse.position.head(n)), with_middles(coarse.position.tail(n));
+  fine.velocity = Eigen::ArrayXd::Zero(4 * n);
+  fine.anchors.clear();
+  return fine;
+}
+
+/// The same droplet with twice the vertices; numerics that are automatic follow.
+RunParameters finer(RunParameters run) {
+  run.dp.vertices = 2 * run.dp.vertices.value();
+  run.wall_stiffness.reset();
+  run.dp.area_stiffness.reset();
+  run.time_step.reset();
+  run.max_time = time_given;
+  return resolve(run);
+}
+
+void try_finer(const sweep::RunRow& row) {
+  const RunParameters& run = row.parameters;
+  DropletRun coarse(run);
+  finish(coarse);
+  const DropletState last = coarse.droplet().state();
+  const std::optional<DropletState> rest = model_of(run).equilibrium(run, coarse.obstacles(), last);
+  const auto obstacles = std::make_shared<const ObstacleArray>(coarse.obstacles());
+  DropletRun fine(finer(run), obstacles, refined(rest.value_or(last)));
+  finish(fine);
+  const RunResult result = fine.result();
+  fmt::print("{},{},{:g},{:g},{:g},{},{:.4g},{:.4g},{},{:.4g}\n", row.task, *run.dp.vertices, run.dp.line_tension,
+             run.dp.friction, row.distance, name(row.mechanism.value_or(ClogMechanism::none)),
+             row.mesh_hold, std::hypot(result.distance, result.lateral), name(result.status), result.time);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  if (argc != 2 && argc != 4) throw Error("give a sweep file");
+  const std::int64_t part = argc == 4 ? std::atoi(argv[2]) : 0, parts = argc == 4 ? std::atoi(argv[3]) : 1;
+  const store::SweepFile file = campaign::read_with_caution(argv[1]);
+  fmt::print("task,vertices,line_tension,friction,distance,mechanism,mesh_hold,moved,status,time\n");
+  for (const sweep::RunRow& row : file.rows)
+    if (row.status == RunStatus::clogged && row.task % parts == part)
+      try_finer(campaign::replayable_row(file, std::to_string(row.task)));
+  return EXIT_SUCCESS;
+} catch (const std::exception& error) {
+  fmt::print(stderr, "holds_finer: {}\n", error.what());
+  return 2;
+}
