@@ -20,7 +20,7 @@ int steps_between_checks(double time_step) {
 }
 
 /// Whether the drag on vertices that move relative to their mean damps what an implicit pressure feeds into
-/// the motion of a droplet that swings (docs/notes/2026-11-26-implicit-pressure.md).
+/// the motion of a droplet that swings (docs/notes/2026-11-26-time-step.md).
 bool is_damped(const RunParameters& run) {
   constexpr double most_steps = 32;
   return relaxation_time(run) <= most_steps * run.time_step.value() * std::min(1.0, run.drag.relative);

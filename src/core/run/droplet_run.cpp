@@ -25,7 +25,7 @@ constexpr double relaxation_times_before_a_clog = 10;
 double first_search(const RunParameters& run) {
   constexpr double slow = 1e-4;
   // While walls with friction yield, a droplet may creep, come free and continue, which no search foresees
-  // (docs/notes/2026-11-25-later-searches-with-friction.md).
+  // (docs/notes/2026-11-25-searches-with-friction.md).
   constexpr double slow_with_friction = 1e-10;
   const bool has_friction = run.dp.friction > 0 || run.dp.yield_traction > 0;
   const double coasting = farthest_rest / (relaxation_time(run) * run.drag.terminal_speed);  // over V_t

@@ -35,7 +35,7 @@ inline constexpr double max_total_omega_dt2 = 3.0;
 /// than StiffModes::self_contact assumes.
 inline constexpr double max_total_with_self_omega_dt2 = 3.9;
 /// The area mode is anharmonic in the perimeter; it gets its own bound. With 1.25, three times as many
-/// droplets without drag diverged (docs/notes/2026-11-25-longer-steps.md).
+/// droplets without drag diverged (docs/notes/2026-11-26-time-step.md).
 inline constexpr double max_area_omega_dt2 = 1.0;
 
 /// The share of every bound that the modes of a circle take with the automatic step.
