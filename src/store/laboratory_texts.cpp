@@ -11,9 +11,9 @@
 namespace clog::store {
 namespace {
 
-constexpr const char* group_name = "laboratories";
+constexpr const char* laboratories_name = "laboratories";
 
-void write_one(hid_t group, const LaboratoryText& laboratory, const std::string& path) {
+void write_text(hid_t group, const LaboratoryText& laboratory, const std::string& path) {
   const std::string text = laboratory.text();
   const Type type = text_type(text.size());
   const Dataset dataset(H5Dcreate2(group, laboratory.check_sum().c_str(), type, Space(H5Screate(H5S_SCALAR)),
@@ -23,7 +23,7 @@ void write_one(hid_t group, const LaboratoryText& laboratory, const std::string&
 }
 
 /// Empty if it is not a text of fixed length.
-std::string read_one(hid_t group, const std::string& name) {
+std::string read_text(hid_t group, const std::string& name) {
   const Dataset dataset(H5Dopen2(group, name.c_str(), H5P_DEFAULT));
   if (!dataset.valid()) return "";
   const Type stored(H5Dget_type(dataset));
@@ -49,20 +49,20 @@ void write_laboratories(hid_t file, std::span<const sweep::RunRow> rows, const s
     if (const std::optional<LaboratoryText>& one = row.parameters.laboratory; one && !one->text().empty())
       check_sums.insert(one->check_sum());
   if (check_sums.empty()) return;
-  const Group group(H5Gcreate2(file, group_name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  const Group group(H5Gcreate2(file, laboratories_name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
   check(group.valid(), "create the laboratories in", path);
-  for (const std::string& name : check_sums) write_one(group, LaboratoryText::from_check_sum(name), path);
+  for (const std::string& name : check_sums) write_text(group, LaboratoryText::from_check_sum(name), path);
 }
 
 void read_laboratories(hid_t file, std::vector<std::string>& damage) {
-  if (H5Lexists(file, group_name, H5P_DEFAULT) <= 0) return;
-  const Group group(H5Gopen2(file, group_name, H5P_DEFAULT));
+  if (H5Lexists(file, laboratories_name, H5P_DEFAULT) <= 0) return;
+  const Group group(H5Gopen2(file, laboratories_name, H5P_DEFAULT));
   if (!group.valid()) {
     damage.emplace_back("its laboratories cannot be opened");
     return;
   }
   for (const std::string& name : names_in(group))
-    if (!is_as_written(name, read_one(group, name)))
+    if (!is_as_written(name, read_text(group, name)))
       damage.push_back("its laboratory " + name + " is not as it was written");
 }
 
