@@ -287,8 +287,8 @@ fit::MeanSpeed mean_speed_of_all(std::span<const fit::Travel> travels, double te
   return of_enough_runs(is_far ? fit::fit_pooled_speed(travels) : fit::fit_pooled_speed({}));
 }
 
-/// Of the runs of each droplet, that is, of one seed in one array, leaves the one with the largest max-time,
-/// and these in the order of max-time, the largest first.
+/// Keeps the run with the largest max-time of each droplet (one seed in one array), sorted by max-time, the
+/// largest first.
 void keep_longest(std::vector<const sweep::RunRow*>& runs) {
   const auto longer = [](const sweep::RunRow* a, const sweep::RunRow* b) {
     return a->parameters.max_time > b->parameters.max_time;

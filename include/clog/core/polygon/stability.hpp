@@ -57,8 +57,7 @@ inline constexpr int most_substeps = 1000;
 struct StableSteps {
   int num;  ///< of equal length
   /// Does the pressure follow the area that the droplet would have if its present acceleration lasted for a
-  /// step (docs/explanation/model.md, Integration)? Then (omega dt)^2 of the area mode is below 1 for every
-  /// step.
+  /// step (docs/explanation/numerics.md)? Then (omega dt)^2 of the area mode is below 1 for every step.
   bool implicit_pressure;
 };
 /// As few steps as possible for `steps` time steps: as many if they keep the bounds themselves, at most

@@ -9,7 +9,7 @@ namespace clog {
 /// avx512, avx2, baseline. (On processors other than x86 the names are those of the Highway library.)
 std::vector<std::string> instruction_sets();
 /// The one that is used for droplets made from now on and for their release. Results of two sets differ by
-/// round-off; docs/explanation/model.md ("Bits of a row") says what those of one depend on.
+/// round-off; docs/explanation/numerics.md ("Reproducibility") says what those of one depend on.
 std::string instruction_set();
 /// Pins it; `auto` goes back to the widest. To be called before droplets and threads are made.
 /// @throws Error if this processor has no such set
