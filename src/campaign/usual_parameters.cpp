@@ -1,7 +1,10 @@
 #include "clog/campaign/usual_parameters.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -58,21 +61,35 @@ bool has_derived_density(const sweep::RunRow& row) {
          (!obstacles.density.per_area && !obstacles.density.share);
 }
 
+/// Do automatic values of the one parameter follow from the other? The step follows from the vertices, the
+/// stiffness of walls from both.
+bool follows(const Parameter& one, const Parameter& other) {
+  constexpr std::string_view chain[] = {"vertices", "time-step", "wall-stiffness"};
+  const auto* place = std::ranges::find(chain, std::string_view(one.key));
+  return std::find(std::begin(chain), place, std::string_view(other.key)) != place && place != std::end(chain);
+}
+
 }  // namespace
 
 bool is_automatic(const sweep::Column& column, const sweep::RunRow& row) try {
   if (!column.may_be_automatic(row.parameters)) return false;
-  RunParameters run = defaults_for(row);
-  for (const Parameter& parameter : parameter_schema())
-    if (&parameter != column.parameter && (parameter.shapes_array || parameter.has_own_column))
-      parameter.set(run, parameter.get(row.parameters));
-  return column.get(sweep::describe(resolved_in_any_layout(run))) == column.get(row);
+  const auto is_automatic_with = [&](const auto& are_given) {
+    RunParameters run = defaults_for(row);
+    for (const Parameter& parameter : parameter_schema())
+      if (&parameter != column.parameter && (parameter.shapes_array || parameter.has_own_column) &&
+          are_given(parameter))
+        parameter.set(run, parameter.get(row.parameters));
+    return column.get(sweep::describe(resolved_in_any_layout(run))) == column.get(row);
+  };
+  return is_automatic_with([](const Parameter&) { return true; }) ||
+         is_automatic_with([&](const Parameter& other) { return !follows(other, *column.parameter); });
 } catch (const Error&) {
   return false;
 }
 
 Value separating_value(const sweep::Column& column, const sweep::RunRow& row) {
   if (column.name == "obstacle_density" && has_derived_density(row)) return {};
+  if (column.parameter && !column.parameter->applies_to(row.parameters)) return {};
   if (is_automatic(column, row)) return {};
   const DpParameters& dp = row.parameters.dp;
   if (column.name == "perimeter_stiffness" && dp.perimeter_spring == PerimeterSpring::rest &&

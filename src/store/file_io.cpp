@@ -43,13 +43,17 @@ bool sync(int descriptor) {
   return true;
 }
 
+/// As the user has set the variable: prepare_library() changes it.
+static const bool are_locks_optional = [] {
+  const char* use = std::getenv("HDF5_USE_FILE_LOCKING");
+  return use && std::string_view(use) == "FALSE";
+}();
+
 bool try_lock(int descriptor, const std::string& path) {
   if (flock(descriptor, LOCK_EX | LOCK_NB) == 0) return true;
   if (errno == EWOULDBLOCK) return false;
-  const std::string reason = std::strerror(errno);
-  const char* use = std::getenv("HDF5_USE_FILE_LOCKING");
-  if (use && std::string_view(use) == "FALSE") return true;
-  throw Error("cannot lock " + path + " (" + reason +
+  if (are_locks_optional) return true;
+  throw Error("cannot lock " + path + " (" + std::strerror(errno) +
               "); use a folder whose file system has locks (flock), or, if no other sweep writes to this "
               "file, set HDF5_USE_FILE_LOCKING=FALSE");
 }

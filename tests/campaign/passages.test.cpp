@@ -6,7 +6,10 @@
 #include <vector>
 
 #include "clog/campaign/groups.hpp"
+#include "clog/core/run/resolve.hpp"
+#include "clog/sweep/row_check.hpp"
 #include "clog/sweep/run_row.hpp"
+#include "ended_row.hpp"
 
 namespace clog::campaign {
 namespace {
@@ -22,7 +25,8 @@ RunParameters device() {
   run.obstacles.release = Release::entrance;
   run.obstacles.entrance = entrance;
   run.obstacles.exit = device_exit;
-  return run;
+  run.max_time = 400;
+  return resolve(run);
 }
 
 /// @param first_contact_at  nothing: the droplet met no obstacle
@@ -30,13 +34,13 @@ sweep::RunRow row(std::uint32_t seed, RunStatus status, double distance, std::op
   RunParameters run = device();
   run.seed = seed;
   sweep::RunRow row = sweep::describe(run);
-  row.status = status;
-  row.distance = distance;
-  row.time = 2000;
+  end_run(row, status, distance);
+  row.task = seed;
   row.release_x = entrance;
   row.release_y = 5;
   row.contacts = first_contact_at ? 1 : 0;
   if (first_contact_at) row.first_contact_at = *first_contact_at;
+  EXPECT_EQ(sweep::fault_of(row), "");
   return row;
 }
 
@@ -87,7 +91,7 @@ TEST(Passages, AreNotAskedForWithoutADevice) {
   for (sweep::RunRow& row : rows) {
     row.parameters.obstacles.release = Release::anywhere;
     row.parameters.obstacles.entrance = row.parameters.obstacles.exit = 0;
-    if (row.status == RunStatus::passed) row.status = RunStatus::flowing;
+    if (row.status == RunStatus::passed) end_run(row, RunStatus::flowing, row.distance);
   }
   const Group group = group_runs(rows, 0.95).at(0);
   EXPECT_TRUE(group.passages.empty());

@@ -24,6 +24,7 @@
 #include "clog/sweep/row_check.hpp"
 #include "clog/sweep/run_row.hpp"
 #include "clog/sweep/value_list.hpp"
+#include "ended_row.hpp"
 
 namespace clog::campaign {
 
@@ -124,8 +125,8 @@ TEST_P(EveryKey, MakesTwoCurvesAndAComparisonIfItIsPhysics) {
       RunParameters softer = run;
       softer.dp.line_tension = run.dp.line_tension * factor;
       sweep::RunRow row = sweep::describe(softer);
-      row.status = RunStatus::clogged;
-      row.distance = 5;
+      row.task = 0;
+      end_run(row, RunStatus::clogged, 5);
       rows.push_back(row);
     }
   }
@@ -167,13 +168,7 @@ std::vector<sweep::RunRow> rising_rows(const sweep::Settings& settings, const sw
   for (std::int64_t task = 0; task < plan.size(); ++task) {
     sweep::RunRow row = sweep::describe(plan.task(task));
     row.task = task;
-    row.status = RunStatus::clogged;
-    row.distance = std::get<double>(column.get(row)) / least;
-    row.time = row.distance / row.parameters.drag.terminal_speed;
-    row.steps = std::llround(row.time / row.parameters.time_step.value());
-    row.wall_seconds = 1;
-    row.kinetic_energy_ratio = 0;
-    row.shape_parameter = 1;
+    end_run(row, RunStatus::clogged, std::get<double>(column.get(row)) / least);
     EXPECT_EQ(sweep::fault_of(row), "");
     rows.push_back(row);
   }

@@ -47,7 +47,7 @@ TEST(TiltOf, IsThatOfTheLaboratoryForItsOwnGamma) {
 
 TEST(Laboratory, KeepsItsLinesWithoutComments) {
   const Laboratory lab = parse_laboratory("# mine\nangle = 90 deg # upright\n\ndiameter=200um\n", "text");
-  EXPECT_EQ(lab.text, "angle = 90 deg\ndiameter = 200um\n");
+  EXPECT_EQ(lab.text, "angle = 90 deg; diameter = 200um");
   EXPECT_EQ(parse_laboratory(lab.text, "text").text, lab.text);
   EXPECT_THROW(parse_laboratory("angle = 90 deg\n", "text"), Error);
 }

@@ -500,7 +500,7 @@ class Fit(ProgramTest):
         groups = self.fit()["groups"]
         self.assertEqual(len(lines), 2)
         for line, group in zip(lines, groups):
-            self.assertEqual(list(line), [name for name in group if name not in ("survival", "incidence", "censored_distances")])
+            self.assertEqual(list(line), [name for name in group if name not in ("automatic", "survival", "incidence", "censored_distances")])
             self.assertEqual(float(line["total_distance"]), group["total_distance"])
 
     def test_numbers_have_the_figures_that_their_interval_allows(self):

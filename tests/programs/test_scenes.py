@@ -19,7 +19,7 @@ from clogsweep.labels.groups import Groups
 
 EXTREMES = [f"{extreme}{at}" for extreme in ("largest_shape_parameter", "smallest_relative_speed", "largest_relative_speed") for at in ("", "_at")]
 CHANNEL = ["obstacle-layout=channel", "orifice=0.7", "near-wall-drag=0.07", "terminal-speed=0.05", "start=-1.5", "end=1", "vertices=64"]
-CIRCLES = "# posts\nx,y,diameter\n2,5,0.5\n3.2,4.4\n3.4,5.9,0.4\n5,5.1,0.6\n7,4.2,0.3\n8.5,6.4,1\n"
+CIRCLES = "# posts\nx,y,diameter\n2,5,0.5\n3.2,4.4,0.3\n3.4,5.9,0.4\n5,5.1,0.6\n7,4.2,0.3\n8.5,6.4,1\n"
 OWN = ["obstacles=posts.csv", "box=10", "vertices=64", "max-time=60"]
 
 
@@ -255,7 +255,7 @@ class OwnCircles(ProgramTest):
         (key, (name, table)), = self.circles("s.h5").items()
         self.assertEqual({row.obstacles for row in rows}, {key})
         self.assertEqual((name, len(table)), ("posts.csv", 6))
-        self.assertEqual(table["radius"].tolist(), [0.25, 0, 0.2, 0.3, 0.15, 0.5])  # 0: obstacle-diameter
+        self.assertEqual(table["radius"].tolist(), [0.25, 0.15, 0.2, 0.3, 0.15, 0.5])  # 0: obstacle-diameter
         self.assertEqual({row.obstacle_filling for row in rows}, {"file"})
         self.assertEqual({row.obstacle_density for row in rows}, {0.06})
         self.assertAlmostEqual(rows[0].obstacle_gap, np.hypot(1.2, 0.6) - 0.4)

@@ -37,7 +37,8 @@ VALUES = {"line-tension": "1,3", "wall-stiffness": "0.05,0.08", "obstacle-gap": 
           "receding-angle": "120,150", "advancing-angle": "130,150", "friction": "0.1,0.2", "yield-traction": "0.05,0.1",
           "self-contact-range": "0.01,0.012", "clog-energy": "1e-17,1e-16", "dwell-length": "0.04,0.05", "break-up-neck": "0,0.05",
           "obstacles": "one.csv,other.csv", "length": "12,15", "entrance": "2,3", "entrance-from": "1,2", "entrance-to": "8,9",
-          "exit": "8,9"}
+          "exit": "8,9",
+          "laboratory": "angle = 20 deg; diameter = 1 mm; speed = 1 mm/s,angle = 20 deg; diameter = 2 mm; speed = 1 mm/s"}
 
 
 class Sweeps(Analysis):
@@ -70,7 +71,7 @@ class EveryKey(Sweeps):
                 self.sweep(key["key"])
                 groups = self.fit()
                 if key["role"] != "ensemble":
-                    if key["kind"] == "file":  # no axis: a curve each
+                    if key["kind"] in ("file", "text"):  # no axis: a curve each
                         self.assertEqual([len(members) for _, members in groups.curves()], [1, 1])
                     else:
                         self.assertEqual(groups.abscissa, key["column"])

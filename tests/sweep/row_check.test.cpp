@@ -169,11 +169,13 @@ TEST(FaultOf, NamesEveryWordThatIsUnknown) {
   int num_tried = 0;
   for (const Column& column : columns()) {
     if (column.kind != ValueKind::word || column.role == ColumnRole::circumstance) continue;
-    const char* what = column.name == "obstacles" ? "is no checksum of circles" : "is unknown";
+    const char* what = column.name == "obstacles"    ? "is no checksum of circles"
+                       : column.name == "laboratory" ? "is no description of a laboratory; give a file by --lab"
+                                                     : "is unknown";
     EXPECT_EQ(fault_of(damaged<std::string>(column, "wrapqed")), column.name + "='wrapqed' " + what);
     ++num_tried;
   }
-  EXPECT_EQ(num_tried, 15);
+  EXPECT_EQ(num_tried, 16);
 }
 
 TEST(FaultOf, NamesEveryNumberThatIsNone) {
@@ -195,7 +197,8 @@ TEST(FaultOf, NamesEveryNumberThatIsNone) {
                                           "thinnest_neck_at",
                                           "first_contact_at",
                                           "release_x",
-                                          "release_y"};
+                                          "release_y",
+                                          "processor_seconds"};
   for (std::size_t i = 0; i < Dwells::most; ++i)
     for (const char* part : {"", "_at", "_from"}) may_be_unknown.insert(dwell_column(i) + part);
   for (const Column& column : columns()) {
