@@ -37,9 +37,14 @@ RunParameters with_usual_values(const sweep::RunRow& row) {
   return run;
 }
 
-/// A row has only the checksum of user-supplied circles; automatic values hardly depend on them.
+bool are_circles_missing(const RunParameters& run) {
+  return scene_of(run).walls_from == WallsFrom::circles &&
+         !(run.obstacles.own && run.obstacles.own->are_known());
+}
+
+/// A row may have only the checksum of user-supplied circles; automatic values hardly depend on them.
 RunParameters resolved_in_any_layout(RunParameters run) {
-  if (scene_of(run).walls_from != WallsFrom::circles) return resolve(run);
+  if (!are_circles_missing(run)) return resolve(run);
   const ObstacleParameters own = run.obstacles;
   // Resolved in a generated array, which the box and the gap of the device might not allow.
   run.obstacles = {.diameter = own.diameter};
@@ -73,12 +78,14 @@ bool follows(const Parameter& one, const Parameter& other) {
 
 bool is_automatic(const sweep::Column& column, const sweep::RunRow& row) try {
   if (!column.may_be_automatic(row.parameters)) return false;
+  if (are_circles_missing(row.parameters)) return true;  // as far as anybody can tell
   const auto is_automatic_with = [&](const auto& are_given) {
     RunParameters run = defaults_for(row);
     for (const Parameter& parameter : parameter_schema())
       if (&parameter != column.parameter && (parameter.shapes_array || parameter.has_own_column) &&
           are_given(parameter))
         parameter.set(run, parameter.get(row.parameters));
+    run.obstacles.own = row.parameters.obstacles.own;  // the circles, too
     return column.get(sweep::describe(resolved_in_any_layout(run))) == column.get(row);
   };
   return is_automatic_with([](const Parameter&) { return true; }) ||

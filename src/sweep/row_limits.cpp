@@ -14,6 +14,7 @@
 
 #include "clog/core/scene/scene.hpp"
 #include "clog/core/tools/joined.hpp"
+#include "clog/core/tools/portable_math.hpp"
 #include "clog/core/tools/units.hpp"
 #include "clog/core/world/bare_stretch.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -223,7 +224,8 @@ std::vector<std::string> limits_of_circles(const Plan& plan) {
 
 double weight_borne_by_friction(const DpParameters& dp) {
   if (dp.film_friction != FilmFriction::on) return 0;
-  return std::tanh(std::numbers::pi / 2 * dp.friction);
+  const double tension_ratio = portable::exp(std::numbers::pi * dp.friction);
+  return (tension_ratio - 1) / (tension_ratio + 1);
 }
 
 std::vector<std::string> limits_of_results(const Plan& plan) {

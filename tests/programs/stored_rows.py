@@ -13,6 +13,7 @@ def edited(path, edit):
     with h5py.File(path, "r+") as file:
         edit(file)
         names = [line.split(" ", 1)[1] for line in file.attrs["checksums"].decode().splitlines()[1:]]
+        names += [name for name in file.attrs if name not in {"checksums", *names}]
         rows = file["runs"][:]
         sums = np.array([zlib.crc32(row.tobytes()) for row in rows], dtype=np.uint32)
         file["row_checksums"][:] = sums

@@ -69,7 +69,7 @@ class Curve(ProgramTest):
         self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))
         text = self.succeed("clogfit", "curve", "sweep.h5", "--crossing=0.5,1e5").stdout
         for words in ("fitted; 95 % intervals", "through 5 points with 30 clogs", "highest at line_tension", "crosses 0.5 sigma upwards",
-                      "does not cross 1e5 sigma", "lambda/sigma"):
+                      "does not cross 100000 sigma", "lambda/sigma"):
             self.assertIn(words, text)
         lines = list(csv.DictReader(io.StringIO(self.succeed("clogfit", "curve", "sweep.h5", "--format=csv").stdout)))
         curve, = self.curve()["curves"]

@@ -208,7 +208,7 @@ class Devices(Walls):
 
     def test_each_line_tension_has_a_panel(self):
         self.write("posts.csv", "x,y,diameter\n" + csv())
-        self.succeed("clogsweep", "obstacles=posts.csv", *KEYS[:-3], "line-tension=0.5,1,1.5,2,3,4,5", "max-time=20", "seeds=1", "--output", "s.h5")
+        self.succeed("clogsweep", "obstacles=posts.csv", *KEYS[:-3], "line-tension=0.5,1,1.5,2,3,4,5", "max-time=150", "seeds=1", "--output", "s.h5")
         sweep = clogsweep.Sweep(self.folder / "s.h5", BIN)
         groups, place = sweep.fit().known, drawn.the_place(self.folder / "s.h5", BIN)
         self.assertEqual([part.label for part in place.parts(groups)], [rf"$\Gamma = {value:g}$" for value in (0.5, 1, 1.5, 2, 3, 4, 5)])

@@ -59,13 +59,12 @@ def _crossings(answer: dict[str, Any], curve: dict[str, Any], crossing: list[flo
     key = answer["keys"][0]
     lines = []
     for length in crossing:
-        shown = f"{length:g}".replace("e+0", "e").replace("e+", "e")
         found = [one for one in curve["crossings"] if one["clogging_length"] == length]
         if not found:
-            lines.append(f"does not cross {shown} sigma between these values")
+            lines.append(f"does not cross {length:g} sigma between these values")
         for one in found:
             beyond = ", or beyond the outermost values" if one[f"{key}_lower"] == 0 or one[f"{key}_upper"] is None else ""
-            lines.append(f"crosses {shown} sigma {one['direction']} at {key} {with_interval(one, key)}{beyond}")
+            lines.append(f"crosses {length:g} sigma {one['direction']} at {key} {with_interval(one, key)}{beyond}")
     return lines
 
 
