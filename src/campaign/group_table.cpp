@@ -133,7 +133,8 @@ std::string column_notes(const std::vector<Group>& groups) {
         "the device's length\n";
   if (std::ranges::all_of(groups, [](const Group& group) { return is_device(group.first_row.parameters); }))
     text +=
-        "lambda_met: from the first obstacle that a droplet met; those that met none are in no other column\n";
+        "lambda_met: from the first obstacle that a droplet met; those that met none are in no other "
+        "column\n";
   return text;
 }
 
@@ -393,8 +394,8 @@ std::string to_text(const std::vector<Group>& groups, double confidence, SharedP
     append_shown(parameter_texts(group, groups), shown, line);
     for (const ResultColumn& column : columns) line.push_back(column.cell(group));
   }
-  return text + "\n\n" + console::aligned(lines) + table_of_passages(groups, shown) + legend(groups) + column_notes(groups) +
-         note_of_rest(groups) + left_out(groups);
+  return text + "\n\n" + console::aligned(lines) + table_of_passages(groups, shown) + legend(groups) +
+         column_notes(groups) + note_of_rest(groups) + left_out(groups);
 }
 
 std::string to_csv(const std::vector<Group>& groups) {
@@ -412,7 +413,8 @@ std::string to_csv(const std::vector<Group>& groups) {
   return table;
 }
 
-std::string to_json(const std::vector<Group>& groups, double confidence, const store::Provenance& provenance) {
+std::string to_json(const std::vector<Group>& groups, double confidence,
+                    const store::Provenance& provenance) {
   const bool with_laboratory = have_laboratory(groups);
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Group& group : groups) {

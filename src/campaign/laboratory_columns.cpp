@@ -69,9 +69,8 @@ std::vector<ResultColumn> laboratory_columns(const std::vector<Group>& groups) {
       {"time to clog/s", [](const Group& group) { return console::plain(time_to_clog(group)); }}};
   if (std::ranges::any_of(groups,
                           [](const Group& group) { return group.first_row.parameters.model == Model::dp; }))
-    columns.insert(columns.begin(), {"tension/(mN/m)", [](const Group& group) {
-                                       return console::plain(tension_of(group));
-                                     }});
+    columns.insert(columns.begin(),
+                   {"tension/(mN/m)", [](const Group& group) { return console::plain(tension_of(group)); }});
   return columns;
 }
 

@@ -270,9 +270,11 @@ void print_rounds(const SeedRule& rule, std::int64_t first_seeds, const SweepCos
                        hours(cost.lower, num_seeds), hours(cost.upper, num_seeds));
   };
   const std::int64_t fewest = std::clamp(needed, first_seeds, rule.most_seeds());
-  fmt::print(std::cout, "# all rounds: {} each if every run clogs, {}; {} each (--most-seeds) if few do, {}, at most {:.3g}\n",
-             sweep::counted(fewest, "seed"), expected(fewest), sweep::counted(rule.most_seeds(), "seed"),
-             expected(rule.most_seeds()), hours(cost.bound, rule.most_seeds()));
+  fmt::print(
+      std::cout,
+      "# all rounds: {} each if every run clogs, {}; {} each (--most-seeds) if few do, {}, at most {:.3g}\n",
+      sweep::counted(fewest, "seed"), expected(fewest), sweep::counted(rule.most_seeds(), "seed"),
+      expected(rule.most_seeds()), hours(cost.bound, rule.most_seeds()));
 }
 
 std::string seeds_in_words(const sweep::Plan& plan) {
@@ -333,7 +335,8 @@ int print_cost(const sweep::Plan& plan, const std::string& output, const RoundsT
   if (!is_done) print_short_lengths(sample);
   if (!is_done) print_expected(plan, sample, cost);
   if (!is_done && stored.seconds > 0) print_left(plan, output, stored, cost);
-  if (rounds.rule) print_rounds(*rounds.rule, plan.size() / plan.num_groups(), with_expected(alike, cost.expected));
+  if (rounds.rule)
+    print_rounds(*rounds.rule, plan.size() / plan.num_groups(), with_expected(alike, cost.expected));
   if (rounds.refiner)
     for (const std::string& words :
          rounds.refiner->rounds_in_words(cost.expected / static_cast<double>(plan.size())))

@@ -106,8 +106,8 @@ console::RoundedError slope_of(const Group& group) {
 
 std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, double confidence,
                                             bool has_laboratory) {
-  const bool is_of_device = std::ranges::all_of(
-      groups, [](const Group& group) { return is_device(group.first_row.parameters); });
+  const bool is_of_device =
+      std::ranges::all_of(groups, [](const Group& group) { return is_device(group.first_row.parameters); });
   std::vector<ResultColumn> columns = {
       {"runs", [](const Group& group) { return std::to_string(group.clogging.num_runs); }},
       {"clogs", [](const Group& group) { return std::to_string(group.clogging.num_clogs); }}};
@@ -117,10 +117,9 @@ std::vector<ResultColumn> columns_of_arrays(const std::vector<Group>& groups, do
                     {"flowing", [](const Group& group) { return std::to_string(group.num_flowing); }}});
   if (are_mechanisms_shown(groups)) columns.push_back({"w/s/h/o", mechanism_counts});
   const std::string level = fmt::format("{:g} %", 100 * confidence);
-  columns.insert(columns.end(),
-                 {{is_of_device ? "lambda_met/sigma" : "lambda/sigma",
-                   [](const Group& group) { return length_text(group.clogging); }},
-                  {level, [](const Group& group) { return interval_text(group.clogging); }}});
+  columns.insert(columns.end(), {{is_of_device ? "lambda_met/sigma" : "lambda/sigma",
+                                  [](const Group& group) { return length_text(group.clogging); }},
+                                 {level, [](const Group& group) { return interval_text(group.clogging); }}});
   if (is_of_device)
     columns.push_back({"met none", [](const Group& group) { return std::to_string(group.num_free); }});
   else if (std::ranges::any_of(groups, [](const Group& group) { return group.num_free > 0; }))

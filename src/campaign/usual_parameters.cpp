@@ -71,7 +71,8 @@ bool has_derived_density(const sweep::RunRow& row) {
 bool follows(const Parameter& one, const Parameter& other) {
   constexpr std::string_view chain[] = {"vertices", "time-step", "wall-stiffness"};
   const auto* place = std::ranges::find(chain, std::string_view(one.key));
-  return std::find(std::begin(chain), place, std::string_view(other.key)) != place && place != std::end(chain);
+  return std::find(std::begin(chain), place, std::string_view(other.key)) != place &&
+         place != std::end(chain);
 }
 
 }  // namespace

@@ -171,7 +171,7 @@ Finding folder(const std::string& output) {
             "give an --output on another file system, or mount this one with locks; if no other sweep writes "
             "there: export HDF5_USE_FILE_LOCKING=FALSE"};
   if (!is_synced)
-    return {what + ", the folder cannot be synchronised (fsync)", "results are safe but in a power cut"};
+    return {what + ", the folder cannot be synchronised (sync fails)", "results are safe but in a power cut"};
   if (!is_renamed) return {what + ", files cannot be renamed", "give an --output on another file system"};
   if (free < 1e8) return {what, "make room, or give another --output"};
   return {what + ", locks work"};

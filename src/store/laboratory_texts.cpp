@@ -67,8 +67,7 @@ void read_laboratories(hid_t file, std::vector<std::string>& damage) {
 }
 
 void adopt_laboratory_of_all(SweepFile& file) {
-  const auto stored =
-      std::ranges::find_if(
+  const auto stored = std::ranges::find_if(
       file.provenance, [](const auto& attribute) { return attribute.first == "laboratory"; });
   if (stored == file.provenance.end() || stored->second.find('=') == std::string::npos) return;
   std::string text = stored->second;

@@ -130,7 +130,7 @@ void set_parameter(const Parameter& parameter, std::size_t place, RunRow& row, c
 constexpr std::size_t check_sum_size = 16;
 
 Column parameter_column(const Parameter& parameter, std::size_t place) {
-  const std::size_t size = !is_text(parameter)                  ? number_size
+  const std::size_t size = !is_text(parameter)                 ? number_size
                            : parameter.kind == ValueKind::word ? text_size(longest(parameter.words))
                                                                : check_sum_size;
   return {.name = parameter.column,

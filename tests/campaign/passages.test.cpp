@@ -30,7 +30,8 @@ RunParameters device() {
 }
 
 /// @param first_contact_at  nothing: the droplet met no obstacle
-sweep::RunRow row(std::uint32_t seed, RunStatus status, double distance, std::optional<double> first_contact_at) {
+sweep::RunRow row(std::uint32_t seed, RunStatus status, double distance,
+                  std::optional<double> first_contact_at) {
   RunParameters run = device();
   run.seed = seed;
   sweep::RunRow row = sweep::describe(run);

@@ -2,9 +2,9 @@
 ///
 ///     build/release/tests/holds_finer sweep.h5 [PART PARTS]
 ///
-/// Repeats each run that clogged, puts a vertex into the middle of each edge of the droplet at rest, forgets where
-/// walls hold it, and lets it go. A line of CSV for each run: how far it has come after 600 t0, or where it rests
-/// for certain. PART of PARTS divides the runs among processes.
+/// Repeats each run that clogged, puts a vertex into the middle of each edge of the droplet at rest, forgets
+/// where walls hold it, and lets it go. A line of CSV for each run: how far it has come after 600 t0, or
+/// where it rests for certain. PART of PARTS divides the runs among processes.
 
 #include <fmt/core.h>
 
@@ -77,9 +77,10 @@ void try_finer(const sweep::RunRow& row) {
   DropletRun fine(finer(run), obstacles, refined(rest.value_or(last)));
   finish(fine);
   const RunResult result = fine.result();
-  fmt::print("{},{},{:g},{:g},{:g},{},{:.4g},{:.4g},{},{:.4g}\n", row.task, *run.dp.vertices, run.dp.line_tension,
-             run.dp.friction, row.distance, name(row.mechanism.value_or(ClogMechanism::none)),
-             row.mesh_hold, std::hypot(result.distance, result.lateral), name(result.status), result.time);
+  fmt::print("{},{},{:g},{:g},{:g},{},{:.4g},{:.4g},{},{:.4g}\n", row.task, *run.dp.vertices,
+             run.dp.line_tension, run.dp.friction, row.distance,
+             name(row.mechanism.value_or(ClogMechanism::none)), row.mesh_hold,
+             std::hypot(result.distance, result.lateral), name(result.status), result.time);
   std::fflush(stdout);
 }
 

@@ -40,7 +40,7 @@ def code(text):
 
 
 def commands(path):
-    """@return the words of every command in the code of a page, in order; redirections are left out"""
+    """@return the words of every command in the code of a page, in order; what follows ">" is left out"""
     found = []
     for line in "\n".join(code((ROOT / path).read_text())).replace("\\\n", " ").splitlines():
         words = shlex.shlex(line, posix=True, punctuation_chars="|&;>")

@@ -169,9 +169,10 @@ TEST(FaultOf, NamesEveryWordThatIsUnknown) {
   int num_tried = 0;
   for (const Column& column : columns()) {
     if (column.kind != ValueKind::word || column.role == ColumnRole::circumstance) continue;
-    const char* what = column.name == "obstacles"    ? "is no checksum of circles"
-                       : column.name == "laboratory" ? "is no description of a laboratory; give a file by --lab"
-                                                     : "is unknown";
+    const char* what = column.name == "obstacles" ? "is no checksum of circles"
+                       : column.name == "laboratory"
+                           ? "is no description of a laboratory; give a file by --lab"
+                           : "is unknown";
     EXPECT_EQ(fault_of(damaged<std::string>(column, "wrapqed")), column.name + "='wrapqed' " + what);
     ++num_tried;
   }

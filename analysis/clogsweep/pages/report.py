@@ -363,7 +363,7 @@ def settings(config: str) -> str:
 
 def laboratories_of(groups: Groups) -> list[str]:
     """What the units of each laboratory are, and its description."""
-    lines = {}
+    lines: dict[str, None] = {}
     for group in groups.members:
         if scale := group.get("laboratory_scale"):
             units = ", ".join(f"{name.replace('_', ' ')} {rounded.plain(value)}" for name, value in scale.items() if value is not None)

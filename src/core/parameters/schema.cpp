@@ -157,7 +157,8 @@ struct Outside<std::optional<LaboratoryText>> {
   static std::optional<LaboratoryText> set(const ParameterValue& value) {
     const auto* text = std::get_if<std::string>(&value);
     if (!text || *text == none) return std::nullopt;
-    return text->find('=') == std::string::npos ? LaboratoryText::from_check_sum(*text) : LaboratoryText(*text);
+    return text->find('=') == std::string::npos ? LaboratoryText::from_check_sum(*text)
+                                                : LaboratoryText(*text);
   }
 };
 
@@ -746,19 +747,20 @@ std::vector<Parameter> verdict_entries() {
 
 /// Whose units results are wanted in.
 std::vector<Parameter> laboratory_entries() {
-  return {entry("laboratory", [](auto& run) -> auto& { return run.laboratory; },
-                {.column = "laboratory",
-                 .meaning = "description of the laboratory, as --lab FILE sets it; the result file stores it, "
-                            "each row its checksum",
-                 .before = "none"})};
+  return {
+      entry("laboratory", [](auto& run) -> auto& { return run.laboratory; },
+            {.column = "laboratory",
+             .meaning = "description of the laboratory, as --lab FILE sets it; the result file stores it, "
+                        "each row its checksum",
+             .before = "none"})};
 }
 
 /// All entries, in the order of the table's columns.
 std::vector<Parameter> make_schema() {
   std::vector<Parameter> all;
-  for (const auto& entries :
-       {droplet_entries(), array_entries(), own_circle_entries(), channel_entries(), period_entries(),
-        motion_entries(), interface_entries(), wall_entries(), self_contact_entries(), verdict_entries(), laboratory_entries()})
+  for (const auto& entries : {droplet_entries(), array_entries(), own_circle_entries(), channel_entries(),
+                              period_entries(), motion_entries(), interface_entries(), wall_entries(),
+                              self_contact_entries(), verdict_entries(), laboratory_entries()})
     all.insert(all.end(), entries.begin(), entries.end());
   return all;
 }

@@ -233,8 +233,8 @@ struct RunParameters {
   std::optional<double> time_step;  ///< [t0]; empty: automatic
   double max_time = 2e5;            ///< [t0]
   std::optional<LaboratoryText> laboratory = {};
-  double dwell_length = 0.05;       ///< a droplet that comes no farther stands [sigma]
-  double clog_energy = 1e-17;       ///< E_k/E_t below which a droplet counts as clogged
+  double dwell_length = 0.05;  ///< a droplet that comes no farther stands [sigma]
+  double clog_energy = 1e-17;  ///< E_k/E_t below which a droplet counts as clogged
   ClogDetection clog_detection = ClogDetection::certified;
   std::uint32_t seed = 1;
 };
