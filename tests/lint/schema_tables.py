@@ -43,8 +43,11 @@ def type_of(column):
 def columns(schema):
     yield "| column | unit | meaning |"
     yield "|---|---|---|"
+    key_of = {(key.get("column"), key.get("meaning")): key["key"] for key in schema["keys"]}
     for column in schema["columns"]:
-        yield f"| `{column['name']}`{type_of(column)} | {column['unit']} | {cell(column['meaning'])} |"
+        key = key_of.get((column["name"], column["meaning"]))
+        meaning = f"key `{key}`" if key else cell(column["meaning"])
+        yield f"| `{column['name']}`{type_of(column)} | {column['unit']} | {meaning} |"
 
 
 TABLES = [("docs/reference/keys.md", "keys", keys), ("docs/reference/columns.md", "columns", columns)]

@@ -40,13 +40,14 @@ def code(text):
 
 
 def commands(path):
-    """@return the words of every command in the code of a page, in order; what follows ">" is left out"""
+    """@return the words of every command in the code of a page, in order, without what follows ">", and without synopses"""
     found = []
     for line in "\n".join(code((ROOT / path).read_text())).replace("\\\n", " ").splitlines():
         words = shlex.shlex(line, posix=True, punctuation_chars="|&;>")
         words.whitespace_split = True
         command = []
-        for word in [*words, ";"] if line.count("'") % 2 == 0 else []:
+        is_synopsis = "]..." in line or "..." in line.split()
+        for word in [*words, ";"] if line.count("'") % 2 == 0 and not is_synopsis else []:
             if set(word) <= set("|&;"):
                 found.append(command[:command.index(">")] if ">" in command else command)
                 command = []

@@ -4,7 +4,9 @@ the other pages is run in a folder that has the files it names; what takes longe
 
 import pathlib
 import re
+import shutil
 import sys
+import tempfile
 import unittest
 
 import numpy as np
@@ -25,12 +27,12 @@ PAGES = sorted({str(path.relative_to(ROOT)) for part in ("how-to", "reference", 
 PROGRAMS = ("clogsweep", "clogrun", "clogfit")
 LAUNCHERS = {"mpirun": 3, "srun": 1}  # how many words each takes
 # Commands that name a program of ours, and are not run here because of what they need.
-NOT_RUN = {"docker", "spack", "sbatch", "qsub", "git", "sudo"}
+NOT_RUN = {"docker", "spack", "sbatch", "qsub", "git", "sudo", "pydoc"}
 # Options and keys that make a run short, by the first words of a command.
 SHORT = {"clogrun array": ["max-time=20", "seeds=1"], "clogrun replay": [], "clogrun channel": ["vertices=64", "start=-1.2", "end=-1"]}
 # Commands of python3 -m clogsweep that take longer.
 LONG = {"agreement": agreement, "collision": collision, "predict": predict}
-SWEEP = ["preset=elastic", "friction=0,0.1", "line-tension=0.5,1,2,4", "seeds=1..2", *SMALL, "max-time=60"]
+SWEEP = ["preset=elastic", "line-tension=0.5,1,2,4", "seeds=1..4", *SMALL, "max-time=60"]
 
 
 def own_program(words):
@@ -42,10 +44,6 @@ def own_program(words):
     if [pathlib.Path(word).name for word in words[:1]] == ["python3"] and words[1:3] == ["-m", "clogsweep"]:
         return words[1:]
     return words if words and words[0] in PROGRAMS else []
-
-
-def is_synopsis(words):
-    return any("..." in word or word.isupper() for word in words)
 
 
 def replaced(words, options):
@@ -60,11 +58,11 @@ class Commands(Analysis):
         self.write("sweep.cfg", "".join(word.replace("=", " = ") + "\n" for word in SWEEP))
         self.write("posts.csv", "x,y\n" + "".join(f"{x},{y}\n" for x in range(20) for y in range(20)))
         self.write("points.csv", "line-tension,obstacle-density\n0.5,0.4\n1,0.5\n")
-        self.copy_sweep("sweep.h5", *SWEEP)
-        for name, keys in {"robust": ["preset=robust"], "elastic": ["preset=elastic"], "monday": ["preset=robust"], "tuesday": ["friction=0.1", "preset=elastic"]}.items():
-            self.copy_sweep(f"{name}.h5", *FEW, *keys)
-        for shard, name in enumerate(["here", "there"], 1):
-            self.copy_sweep(f"{name}.h5", *SWEEP, "--shard", f"{shard}/2")
+        for name, keys in {"robust": [*FEW, "preset=robust"], "elastic": [*FEW, "preset=elastic"], "monday": [*FEW, "inertia=1"],
+                           "tuesday": [*FEW, "inertia=2"], "sweep": SWEEP, "frictions": [*SWEEP, "friction=0,0.1"],
+                           "here": [*SWEEP, "--shard", "1/2"], "there": [*SWEEP, "--shard", "2/2"],
+                           "wrapped": [*SMALL, "preset=elastic", "friction=0.2", "line-tension=0.05", "obstacle-gap=0.3", "max-time=3000", "seeds=1..2"]}.items():
+            self.copy_sweep(f"{name}.h5", *keys)
         self.write("fit.json", self.succeed("clogfit", "sweep.h5", "--format", "json").stdout)
         self.succeed("clogsweep", "obstacles=posts.csv", "box=20", "release=anywhere", "vertices=64", "max-time=20", "seeds=1..2", "--output", "device.h5")
         angles = 2 * np.pi * np.arange(48) / 48
@@ -76,6 +74,35 @@ class Commands(Analysis):
                 ImageDraw.Draw(picture).ellipse((x - 40, y - 40, x + 40, y + 40), fill=0)
         picture.save(self.folder / "scan.png")
 
+    def provide(self, words):
+        """Removes what the command is to make, and makes what it needs and the page does not make."""
+        made = [words[words.index(option) + 1] for option in ("--output", "--frames") if option in words]
+        for name in made:
+            for path in self.folder.glob(f"{name.removesuffix('.h5')}*"):
+                if path.is_file() and (path.name == name or not name.endswith(".h5")):
+                    path.unlink()
+        for word in words:
+            name = word.removeprefix("obstacles=")
+            source = {".h5": "sweep.h5", ".csv": "posts.csv"}.get(pathlib.Path(name).suffix)
+            if source and name not in made and "/" not in name and not (self.folder / name).exists():
+                shutil.copyfile(self.folder / source, self.folder / name)
+
+    def check(self, words):
+        program, *rest = ["frictions.h5" if word == "sweep.h5" and "--by" in words else word for word in words]
+        self.provide(rest)
+        if program == "-m":
+            self.check_python(rest[1:])
+        elif program == "clogsweep" and ("=" in rest[0] or rest[0].startswith("--")):
+            self.succeed(program, *rest, "--print-config")
+        elif program == "clogsweep" and rest[0] == "doctor":  # who may find something
+            self.assertIn(self.run_program(program, *rest).returncode, (0, 1))
+        elif program == "clogfit" and rest[0] == "calibrate":  # takes minutes
+            (self.folder / "trial.csv").unlink()
+            self.refuse(program, *rest, words=["cannot read trial.csv"])
+        else:
+            short = SHORT.get(f"{program} {rest[0]}", [])
+            self.succeed(program, *replaced([word for word in rest if word != "--watch"], short))  # --watch goes on until the sweep is over
+
     def check_figures(self, words):
         sys.argv[1:] = words
         arguments = figures.parse()
@@ -83,22 +110,6 @@ class Commands(Analysis):
             self.assertIn(name, {*CATALOGUE, "list", "all"})
         for text in getattr(arguments, "set"):
             Override.parse(text)
-
-    def check(self, words):
-        program, *rest = words
-        if program == "-m":
-            self.check_python(rest[1:])
-        elif program == "clogsweep" and (not rest or "=" in rest[0] or rest[0].startswith("--")):
-            self.succeed(program, *rest, "--print-config")
-        elif program == "clogfit" and rest[0] == "calibrate":  # takes minutes
-            self.refuse(program, *rest, words=["cannot read trial.csv"])
-        else:
-            output = rest[rest.index("--output") + 1] if "--output" in rest else None
-            if output:
-                (self.folder / output).unlink(missing_ok=True)
-            if "--watch" in rest:
-                rest.remove("--watch")  # goes on until the sweep is over
-            self.succeed(program, *replaced(rest, SHORT.get(f"{program} {rest[0]}", [])))
 
     def check_python(self, words):
         command, *rest = words
@@ -108,19 +119,24 @@ class Commands(Analysis):
             sys.argv[1:] = rest
             LONG[command].parse()
         else:
-            stand_ins = {"/dev/stdin": "fit.json", **({"sweep.h5": "device.h5"} if command == "device" else {})}
+            sweep = {"device": "device.h5", "clogs": "wrapped.h5"}.get(command, "sweep.h5")
+            stand_ins = {"/dev/stdin": "fit.json", "sweep.h5": sweep}
             done = self.analyse(command, *(stand_ins.get(word, word) for word in rest))
             self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_every_command_of_the_other_pages(self):
         for page in PAGES:
-            for words in pages.commands(page):
-                own = own_program(words)
-                if not own and {*words} & {*PROGRAMS}:
-                    self.assertIn(words[0], NOT_RUN, f"{page}: {words}")
-                elif own and not is_synopsis(own):
-                    with self.subTest(page=page, words=" ".join(words)):
-                        self.check(own)
+            with tempfile.TemporaryDirectory(prefix="clog_page_") as name:
+                prepared, self.folder = self.folder, pathlib.Path(name)
+                shutil.copytree(prepared, self.folder, dirs_exist_ok=True)
+                for words in pages.commands(page):
+                    own = own_program(words)
+                    if not own and {*words} & {*PROGRAMS}:
+                        self.assertTrue({*words[:3]} & NOT_RUN, f"{page}: {words}")
+                    elif own:
+                        with self.subTest(page=page, words=" ".join(words)):
+                            self.check(own)
+                self.folder = prepared
 
 
 class Pictures(Analysis):
