@@ -15,7 +15,7 @@ bin=build/release/bin
 sweep=(mpirun -np 2 "$bin/clogsweep" --config jobs/laptop.cfg --output "$results/sweep.h5")
 "${sweep[@]}"
 # Stiff droplets among walls without friction; softer ones would not clog in this time.
-"${sweep[@]}" friction=0 line-tension=0.35,0.4,0.6
+"${sweep[@]}" friction=0 line-tension=0.35,0.4,0.5,0.6
 "$bin/clogfit" "$results/sweep.h5" --format json >"$results/fit.json"
 # Debian's own Python has the packages; another one may come first in the path.
 PYTHONPATH=analysis /usr/bin/python3 -m clogsweep clogging-length "$results/fit.json" --output "$results/clogging-length"

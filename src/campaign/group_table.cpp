@@ -322,42 +322,54 @@ std::string wrapped(const std::vector<std::string>& words) {
   return text;
 }
 
-/// `0.85 (0.62 .. 0.97)`
-std::string share_text(const Passage& passage) {
+/// The cells of one line across a device: where, how many droplets came past it, of how many, share, interval.
+void append_passage(const Passage& passage, std::vector<std::string>& line) {
   const int num_known = passage.num_passed + passage.num_stopped;
-  if (num_known == 0) return "-";
-  return fmt::format("{:.2f} ({:.2f} .. {:.2f})", static_cast<double>(passage.num_passed) / num_known,
-                     passage.share.lower, passage.share.upper);
+  line.push_back(fmt::format("{:.4g}", passage.x));
+  line.push_back(fmt::format("{}", passage.num_passed));
+  line.push_back(fmt::format("{}", num_known));
+  line.push_back(num_known == 0
+                     ? "-"
+                     : fmt::format("{:.2f}", static_cast<double>(passage.num_passed) / num_known));
+  line.push_back(num_known == 0 ? "-"
+                                : fmt::format("{:.2f} .. {:.2f}", passage.share.lower, passage.share.upper));
 }
 
-/// Which shares of the droplets came past the lines of their devices, a column each. Of many lines only the
-/// exit is shown.
-std::string table_of_passages(const std::vector<Group>& groups, const std::vector<bool>& shown) {
+bool are_counts_equal(const Passage& one, const Passage& other) {
+  return one.num_passed == other.num_passed && one.num_stopped == other.num_stopped;
+}
+
+/// Of many lines those at which the counts change, and the last.
+std::vector<Passage> shown_passages(const std::vector<Passage>& all) {
   constexpr std::size_t most_lines = 8;
-  std::set<double> places;
-  for (const Group& group : groups)
-    for (const Passage& one : group.passages) places.insert(one.x);
-  if (places.empty()) return "";
-  const bool are_many = places.size() > most_lines;
-  if (are_many) {
-    places.clear();
-    for (const Group& group : groups)
-      if (const double exit = group.first_row.parameters.obstacles.exit; exit > 0) places.insert(exit);
-  }
-  std::string text = "\nshare of the droplets that came past x";
-  if (are_many) text += " (--lines x1,x2,... names other lines than the exit)";
+  if (all.size() <= most_lines) return all;
+  std::vector<Passage> shown;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (i == 0 || i + 1 == all.size() || !are_counts_equal(all[i], all[i - 1])) shown.push_back(all[i]);
+  return shown;
+}
+
+/// Which shares of the droplets came past the lines of their devices.
+std::string table_of_passages(const std::vector<Group>& groups, const std::vector<bool>& shown,
+                              double confidence) {
   std::vector<std::vector<std::string>> lines(1);
   append_shown(parameter_names(groups.front()), shown, lines[0]);
-  for (const double x : places) lines[0].push_back("x=" + console::plain(x));
+  for (const char* name : {"x/sigma", "came past", "of", "share"}) lines[0].emplace_back(name);
+  lines[0].push_back(fmt::format("{:g} %", 100 * confidence));
+  bool are_all_shown = true;
   for (const Group& group : groups) {
-    std::vector<std::string>& line = lines.emplace_back();
-    append_shown(parameter_texts(group, groups), shown, line);
-    for (const double x : places) {
-      const auto passage = std::ranges::find(group.passages, x, &Passage::x);
-      line.push_back(passage == group.passages.end() ? "-" : share_text(*passage));
+    const std::vector<Passage> passages = shown_passages(group.passages);
+    are_all_shown = are_all_shown && passages.size() == group.passages.size();
+    for (const Passage& passage : passages) {
+      std::vector<std::string>& line = lines.emplace_back();
+      append_shown(parameter_texts(group, groups), shown, line);
+      append_passage(passage, line);
     }
   }
-  return places.empty() ? text + '\n' : text + '\n' + console::aligned(lines);
+  if (lines.size() == 1) return "";
+  return fmt::format("\ndroplets that came past x{}\n{}",
+                     are_all_shown ? "" : " (lines with the counts of the line before are left out)",
+                     console::aligned(lines));
 }
 
 /// Defines a clog, if droplets that stood still count, too.
@@ -394,7 +406,7 @@ std::string to_text(const std::vector<Group>& groups, double confidence, SharedP
     append_shown(parameter_texts(group, groups), shown, line);
     for (const ResultColumn& column : columns) line.push_back(column.cell(group));
   }
-  return text + "\n\n" + console::aligned(lines) + table_of_passages(groups, shown) + legend(groups) +
+  return text + "\n\n" + console::aligned(lines) + table_of_passages(groups, shown, confidence) + legend(groups) +
          column_notes(groups) + note_of_rest(groups) + left_out(groups);
 }
 

@@ -67,11 +67,10 @@ RowLayout::RowLayout(std::vector<const Column*> columns)
 
 RowLayout RowLayout::present() { return RowLayout(all_columns()); }
 
-std::optional<RowLayout> RowLayout::of(hid_t stored, Columns expected) {
+std::optional<RowLayout> RowLayout::of(hid_t stored, std::size_t least) {
   if (H5Tget_class(stored) != H5T_COMPOUND) return std::nullopt;
   std::vector<const Column*> found = columns_of(stored);
-  if (found.empty() || (expected == Columns::all && found.size() < sweep::columns().size()))
-    return std::nullopt;
+  if (found.empty() || found.size() < least) return std::nullopt;
   RowLayout layout(std::move(found));
   if (H5Tequal(layout.type_, stored) <= 0) return std::nullopt;
   return layout;

@@ -15,12 +15,11 @@ namespace clog::store {
 /// another order.
 class RowLayout {
  public:
-  enum class Columns { all, some };
-
   /// The layout that this version writes.
   static RowLayout present();
-  /// The layout of a stored table; nothing unless each member is one of our columns.
-  static std::optional<RowLayout> of(hid_t stored, Columns expected);
+  /// The layout of a stored table; nothing unless each member is one of our columns, and there are at least
+  /// `least` of them.
+  static std::optional<RowLayout> of(hid_t stored, std::size_t least);
 
   hid_t type() const { return type_; }
   std::size_t size() const { return size_; }

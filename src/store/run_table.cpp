@@ -100,6 +100,9 @@ void write_check_sums(hid_t file, const CheckSums& sums, const std::string& path
           path);
 }
 
+/// A damaged table may lack a column that was written; one of an older program lacks what is new.
+constexpr const char* num_columns_name = "num_columns";
+
 /// The attribute that has a line for every other one, and for the table: checksum and name.
 constexpr const char* list_name = "checksums";
 
@@ -141,6 +144,7 @@ void write_runs(hid_t file, const std::string& kind, std::span<const RunRow> row
   };
   write("kind", kind);
   write("format_version", format_version);
+  write(num_columns_name, fmt::format("{}", sweep::columns().size()));
   for (const auto& [name, text] : provenance)
     for (std::size_t part = 0; part == 0 || part * longest_part < text.size(); ++part)
       write(name_of_part(name, part), text.substr(part * longest_part, longest_part));
@@ -200,6 +204,14 @@ std::optional<std::pair<std::string, std::uint32_t>> check_sum_line(const std::s
   const char* end = line.data() + num_digits;
   if (std::from_chars(line.data(), end, sum, 16).ptr != end) return std::nullopt;
   return std::pair(line.substr(num_digits + 1), sum);
+}
+
+bool is_as_written(hid_t file, const std::string& name, const std::string& text) {
+  std::istringstream lines(read_attribute(file, list_name));
+  for (std::string line; std::getline(lines, line);)
+    if (const auto listed = check_sum_line(line); listed && listed->first == name)
+      return listed->second == check_sum(text);
+  return false;
 }
 
 /// An attribute's text: of these the one that was written, as its checksum says, if it is damaged now.
@@ -292,10 +304,20 @@ struct PackedTable {
     return std::span(bytes).subspan(i * layout.size(), layout.size());
   }
 };
-PackedTable read_table(hid_t file, RowLayout::Columns expected, const std::string& path) {
+
+/// Zero if the attribute is missing, as in files of format 9, or damaged.
+std::size_t num_columns_written(hid_t file) {
+  const std::string text = read_attribute(file, num_columns_name);
+  std::size_t number = 0;
+  if (is_as_written(file, num_columns_name, text))
+    std::from_chars(text.data(), text.data() + text.size(), number);
+  return number;
+}
+
+PackedTable read_table(hid_t file, const std::string& path) {
   const Dataset table(H5Dopen2(file, runs_name, H5P_DEFAULT));
   if (!table.valid()) refuse_table(path, "its table cannot be opened");
-  std::optional<RowLayout> layout = RowLayout::of(Type(H5Dget_type(table)), expected);
+  std::optional<RowLayout> layout = RowLayout::of(Type(H5Dget_type(table)), num_columns_written(file));
   if (!layout) refuse_table(path, "its columns are not those that were written");
   const std::size_t num_rows = size_of(table, layout->size(), path);
   std::vector<std::byte> bytes = packed_rows(table, *layout, num_rows, path);
@@ -364,8 +386,7 @@ Examination examine(std::vector<std::byte>& image, Seal seal, const std::string&
   const File file = open_image(image, path);
   const std::string version = version_of(file, path);
   const bool has_sums = has_check_sums(version);
-  const PackedTable table =
-      read_table(file, version == format_version ? RowLayout::Columns::all : RowLayout::Columns::some, path);
+  const PackedTable table = read_table(file, path);
   Examination found;
   found.whole.checked = extent_of_check(has_sums, seal);
   if (has_sums) {
@@ -383,7 +404,7 @@ Examination examine(std::vector<std::byte>& image, Seal seal, const std::string&
     found.is_refused_by_others = is_refused(file, runs_name) || is_refused(file, sums_name);
   join_parts(found.whole.provenance);
   adopt_laboratory_of_all(found.whole);
-  for (const char* ours : {"kind", "format_version"})
+  for (const char* ours : {"kind", "format_version", num_columns_name})
     std::erase_if(found.whole.provenance, [&](const auto& attribute) { return attribute.first == ours; });
   if (seal == Seal::broken && found.damage.empty())
     found.damage.emplace_back(

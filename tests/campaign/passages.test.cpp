@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "clog/campaign/group_table.hpp"
 #include "clog/campaign/groups.hpp"
 #include "clog/core/run/resolve.hpp"
 #include "clog/sweep/row_check.hpp"
@@ -76,6 +78,13 @@ TEST(Passages, AreThoseOfTheUsersLines) {
   const std::vector<Group> groups =
       group_runs(five_rows(), 0.95, 0, std::numeric_limits<double>::infinity(), {}, lines);
   expect_passages(groups[0], {{2, 5, 0}, {4.5, 4, 1}, {device_exit, 2, 2}});
+}
+
+TEST(Passages, ArePrintedALineEach) {
+  const std::string text = to_text(group_runs(five_rows(), 0.95), 0.95, SharedParameters::unusual);
+  // 2 of 4: exact limits of Clopper and Pearson, as R's binom.test(2, 4) prints them.
+  EXPECT_NE(text.find("        9          2   4   0.50  0.07 .. 0.93\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("       12          2   4   0.50  0.07 .. 0.93\n"), std::string::npos) << text;
 }
 
 TEST(Passages, LengthsOfADeviceCountFromTheFirstObstacle) {

@@ -13,6 +13,7 @@ def edited(path, edit):
     with h5py.File(path, "r+") as file:
         edit(file)
         names = [line.split(" ", 1)[1] for line in file.attrs["checksums"].decode().splitlines()[1:]]
+        names = [name for name in names if name in file.attrs]
         names += [name for name in file.attrs if name not in {"checksums", *names}]
         rows = file["runs"][:]
         sums = np.array([zlib.crc32(row.tobytes()) for row in rows], dtype=np.uint32)
@@ -58,6 +59,7 @@ def make_older(path, version, without=()):
         kept = [(name, table.dtype[name]) for name in table.dtype.names if name not in without]
         file.create_dataset("runs", data=table[[name for name, _ in kept]].astype(kept), chunks=(64,), maxshape=(None,))
         file.attrs["format_version"] = np.bytes_(version)
+        del file.attrs["num_columns"]
 
     edited(path, edit)
     if int(version) < 5:
