@@ -17,9 +17,8 @@ std::vector<double> rows_of_posts(const ObstacleParameters& obstacles) {
     if (circle.x > obstacles.entrance && (obstacles.exit == 0 || circle.x < obstacles.exit))
       rows.push_back(circle.x);
   std::ranges::sort(rows);
-  const auto repeated =
-      std::ranges::unique(rows, [](double one, double other) { return other - one < same_row; });
-  rows.erase(repeated.begin(), repeated.end());
+  const auto is_same_row = [](double one, double other) { return other - one < same_row; };
+  rows.erase(std::unique(rows.begin(), rows.end(), is_same_row), rows.end());
   return rows;
 }
 
