@@ -73,7 +73,7 @@ std::string laboratory_label(const Group& group, const std::vector<Group>& group
 std::string rounded_text(const Group& group, const std::vector<Group>& groups, const Field& field) {
   const sweep::RunRow& row = group.first_row;
   if (field.first == std::string_view("laboratory"))
-    if (const std::string label = laboratory_label(group, groups); !label.empty()) return label;
+    if (std::string label = laboratory_label(group, groups); !label.empty()) return label;
   const std::optional<OwnCircles>& own = row.parameters.obstacles.own;
   if (field.first == std::string_view("obstacles") && own && !own->source().empty())
     return console::printable(std::filesystem::path(own->source()).filename().string());
