@@ -150,11 +150,13 @@ Columns columns_named(std::vector<std::string> cells) {
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (!take_column(columns, static_cast<int>(i), cells[i]) && !cells[i].empty()) are_all = false;
   const bool has_size = columns.diameter >= 0 || columns.radius >= 0;
-  if (columns.x < 0 || columns.y < 0 || (!has_size && !are_all) ||
-      (columns.diameter >= 0 && columns.radius >= 0))
+  if (columns.diameter >= 0 && columns.radius >= 0)
+    throw Error("there are columns of diameters and of radii; leave one of them out");
+  if (columns.x < 0 || columns.y < 0 || (!has_size && !are_all))
     throw Error(fmt::format(
         "the columns have to be x, y and one of diameter and radius, in any order, with or without others; "
-        "or x and y alone, if all diameters are obstacle-diameter; here they are '{}'",
+        "or x and y alone, if all diameters are obstacle-diameter, below comments, which begin with #; here "
+        "they are '{}'",
         shortened(joined(cells, ","))));
   columns.header = std::move(cells);
   return columns;
@@ -180,27 +182,58 @@ class Numbers {
     const std::string name = columns.header.empty() ? fmt::format("cell {}", place + 1)
                                                     : columns.header[static_cast<std::size_t>(place)];
     try {
-      if (cell.empty()) throw Error("is empty");
-      return sweep::to_number(with_point(cell, line.separator));
+      if (cell.empty()) throw Error("is empty; fill it, or remove the line");
+      return number_in(cell, line.separator);
     } catch (const Error& error) {
       throw Error(fmt::format("{}: {}", shortened(name), error.what()));
     }
   }
+  /// A number whose comma separates thousands, as far as all numbers so far tell; empty if there is none.
+  std::string ambiguous() const { return have_decimal_comma_ ? "" : perhaps_thousands_; }
+  [[noreturn]] static void refuse(const std::string& where, const std::string& cell) {
+    throw Error(
+        fmt::format("{}'{}' may have a decimal comma or separated thousands; write all numbers with "
+                    "decimal points and without commas",
+                    where, shortened(cell)));
+  }
 
  private:
-  bool have_comma_ = false, have_point_ = false;
+  bool have_comma_ = false, have_point_ = false, have_decimal_comma_ = false;
+  std::string perhaps_thousands_;  // the first number such as 1,350
+
+  double number_in(const std::string& cell, char separator) {
+    const std::string with_points = with_point(cell, separator);
+    try {
+      return sweep::to_number(with_points);
+    } catch (const Error&) {
+      throw Error(fmt::format(
+          "'{}' is not a finite number; correct it, or put # before a line that is none of the table",
+          shortened(cell)));
+    }
+  }
+
+  /// 1,350 or 12,345,678, which 0,350 and 1,35 are not.
+  static bool may_have_thousands(std::string_view cell) {
+    if (!cell.empty() && (cell.front() == '-' || cell.front() == '+')) cell.remove_prefix(1);
+    const std::size_t first = cell.find(',');
+    if (first == 0 || first > 3 || cell.front() == '0') return false;
+    for (std::size_t comma = first; comma < cell.size(); comma += 4)
+      if (cell[comma] != ',' || cell.size() - comma < 4) return false;
+    return true;
+  }
 
   std::string with_point(std::string cell, char separator) {
     if (cell.find('.') != std::string::npos) have_point_ = true;
-    if (cell.find(',') != std::string::npos) have_comma_ = true;
-    constexpr std::size_t thousands = 4;  // characters of ",234", which are decimals or thousands
-    const bool is_ambiguous =
-        separator == ',' && cell.size() > thousands && cell[cell.size() - thousands] == ',';
-    if (is_ambiguous || (have_comma_ && have_point_))
-      throw Error(
-          fmt::format("'{}' may have a decimal comma or separated thousands; write all numbers with "
-                      "decimal points and without commas",
-                      shortened(cell)));
+    if (cell.find(',') != std::string::npos) {
+      have_comma_ = true;
+      if (!may_have_thousands(cell))
+        have_decimal_comma_ = true;
+      else if (separator == ',')
+        refuse("", cell);
+      else if (perhaps_thousands_.empty())
+        perhaps_thousands_ = cell;
+    }
+    if (have_comma_ && have_point_) refuse("", cell);
     std::ranges::replace(cell, ',', '.');
     return cell;
   }
@@ -269,6 +302,7 @@ OwnCircles read_circles(const std::string& path) {
         read_scale(comment, scale);
         if (is_first) columns = columns_in(comment).value_or(columns);
       });
+  if (const std::string cell = numbers.ambiguous(); !cell.empty()) Numbers::refuse(path + ": ", cell);
   if (circles.empty()) throw Error(path + " holds no obstacles; lines are x,y[,diameter]");
   const std::optional droplet = scale.unit.empty() ? std::nullopt : std::optional(scale.droplet_metres);
   return OwnCircles(std::move(circles), path, droplet);

@@ -112,6 +112,8 @@ class Devices(Walls):
                             (um + "x [mm],y [mm],d [mm]\n1,2,3\n", ["line 3", "in mm", "units=um"]), (um + "x [mm],y [um],d\n1,2,3\n", ["line 2", "y [um]", "one unit"]),
                             (um + "x [sigma],y,d\n1,2,3\n", ["line 3", "in sigma", "units=um"]), ("x;y;d\n1;2;0,5\n1.5;2;0,5\n", ["line 3", "x: '1.5'"]),
                             ("x [px],y [px],d [px]\n1,2,3\n", ["line 1", "'px' is no unit"]), ('x,y,d\n"1,234","2,345","0,100"\n', ["line 2", "x: '1,234'", "thousands"]),
+                            ("x;y;d\n1,350;6;1\n2,050;3;1\n", ["'1,350'", "thousands"]),
+                            ("x;y;d\num;um;um\n1;2;3\n", ["line 2", "'um' is not a finite number", "#"]),
                             ("x;y;d\n1.5;2.5;0,5\n", ["line 2", "d: '0,5'"]), ("x,y,d\n1,2,\n", ["line 2", "d: is empty"]), ('x,y,d\n1,"2,3\n', ["line 2", "quote"]),
                             ("x y d\n1 2 3 4\n", ["line 2", "has 4 cells", "line of names has 3"]), ("x,y,d\n1,2\n", ["line 2", "has 2 cells"]), ("x,y,d\n1,2m,3\n", ["line 2", "y: '2m'"])]:
             with self.subTest(text):
@@ -120,7 +122,7 @@ class Devices(Walls):
 
     def test_files_that_say_too_little_are_refused(self):
         for text, words in [("a,b\n1,2\n", ["columns have to be x, y"]), ("x,y,width\n1,2,3\n", ["columns have to be", "width"]),
-                            ("x,y,d,r\n1,2,1,1\n", ["columns have to be"]), ("x,x,y\n1,2,1\n", ["two columns 'x'"]),
+                            ("x,y,d,r\n1,2,1,1\n", ["leave one"]), ("x,x,y\n1,2,1\n", ["two columns 'x'"]),
                             ("# units=um\nx,y\n1,2\n", ["line 1", "droplet=200um"]), ("# units=foot droplet=2foot\n1,2\n", ["'foot' is no unit"]),
                             ("# units=um droplet=-2um\n1,2\n", ["droplet must be"]), ("x,y,diameter\n1\n", ["line 2"]),
                             ("# units=um droplet=200um\nx,y\n100,200\n", ["line 3", "needs a diameter", "in um"])]:
