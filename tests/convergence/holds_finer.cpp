@@ -4,7 +4,8 @@
 ///
 /// Repeats each run that clogged, puts a vertex into the middle of each edge of the droplet at rest, forgets
 /// where walls hold it, and lets it go. A line of CSV for each run: how far it has come after 600 t0, or
-/// where it rests for certain. PART of PARTS divides the runs among processes.
+/// where it rests for certain; and the same without more vertices, since a droplet may need the memory of its
+/// walls. PART of PARTS divides the runs among processes.
 
 #include <fmt/core.h>
 
@@ -57,15 +58,23 @@ DropletState refined(const DropletState& coarse) {
   return fine;
 }
 
-/// The same droplet with twice the vertices; numerics that are automatic follow.
-RunParameters finer(RunParameters run) {
-  run.dp.vertices = 2 * run.dp.vertices.value();
+DropletState without_memory(DropletState state) {
+  state.velocity.setZero();
+  state.anchors.clear();
+  return state;
+}
+
+/// The same droplet with other vertices; numerics that are automatic follow.
+RunParameters with_vertices(RunParameters run, int vertices) {
+  run.dp.vertices = vertices;
   run.wall_stiffness.reset();
   run.dp.area_stiffness.reset();
   run.time_step.reset();
   run.max_time = time_given;
   return resolve(run);
 }
+
+double way(const RunResult& result) { return std::hypot(result.distance, result.lateral); }
 
 void try_finer(const sweep::RunRow& row) {
   const RunParameters& run = row.parameters;
@@ -74,13 +83,16 @@ void try_finer(const sweep::RunRow& row) {
   const DropletState last = coarse.droplet().state();
   const std::optional<DropletState> rest = model_of(run).equilibrium(run, coarse.obstacles(), last);
   const auto obstacles = std::make_shared<const ObstacleArray>(coarse.obstacles());
-  DropletRun fine(finer(run), obstacles, refined(rest.value_or(last)));
+  const int vertices = *run.dp.vertices;
+  DropletRun fine(with_vertices(run, 2 * vertices), obstacles, refined(rest.value_or(last)));
   finish(fine);
+  DropletRun same(with_vertices(run, vertices), obstacles, without_memory(rest.value_or(last)));
+  finish(same);
   const RunResult result = fine.result();
-  fmt::print("{},{},{:g},{:g},{:g},{},{:.4g},{:.4g},{},{:.4g}\n", row.task, *run.dp.vertices,
+  fmt::print("{},{},{:g},{:g},{:g},{},{:.4g},{:.4g},{},{:.4g},{:.4g}\n", row.task, vertices,
              run.dp.line_tension, run.dp.friction, row.distance,
-             name(row.mechanism.value_or(ClogMechanism::none)), row.mesh_hold,
-             std::hypot(result.distance, result.lateral), name(result.status), result.time);
+             name(row.mechanism.value_or(ClogMechanism::none)), row.mesh_hold, way(result),
+             name(result.status), result.time, way(same.result()));
   std::fflush(stdout);
 }
 
@@ -90,7 +102,9 @@ int main(int argc, char** argv) try {
   if (argc != 2 && argc != 4) throw Error("give a sweep file");
   const std::int64_t part = argc == 4 ? std::atoi(argv[2]) : 0, parts = argc == 4 ? std::atoi(argv[3]) : 1;
   const store::SweepFile file = campaign::read_with_caution(argv[1]);
-  fmt::print("task,vertices,line_tension,friction,distance,mechanism,mesh_hold,moved,status,time\n");
+  fmt::print(
+      "task,vertices,line_tension,friction,distance,mechanism,mesh_hold,moved,status,time,"
+      "moved_without_more_vertices\n");
   for (const sweep::RunRow& row : file.rows)
     if (row.status == RunStatus::clogged && row.task % parts == part)
       try_finer(campaign::replayable_row(file, std::to_string(row.task)));
