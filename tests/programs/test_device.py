@@ -22,7 +22,7 @@ from support import BIN, table
 
 import clogsweep
 from clogsweep import style
-from clogsweep.device import areas, lines, readers, shapes
+from clogsweep.device import areas, gds, lines, readers, shapes
 from clogsweep.drawing import device as drawn
 from clogsweep.drawing import device_plan
 from clogsweep.tools.errors import UserError
@@ -564,8 +564,12 @@ def record(kind, form=0, data=b""):
 def real(value):
     """In GDSII: a sign, a power of 16, and 56 bits."""
     power = 0
+    if value == 0:
+        return bytes(8)
     while value < 1 / 16:
         value, power = value * 16, power - 1
+    while value >= 1:
+        value, power = value / 16, power + 1
     return struct.pack(">Q", (power + 64) << 56 | int(value * 2**56))
 
 
@@ -801,6 +805,35 @@ class OtherTools(Analysis):
         for more, words in [(a_box, ["BOX", "polygons"]), (reference, ["lacks the cells NONE"])]:
             (self.folder / "device.gds").write_bytes(gdsii([box(0, 0, 100, 100)], 1e-6, more))
             self.refused("device.gds", *words)
+
+    def test_gdsii_arrays_are_those_of_explicit_references(self):
+        def reference(kind, name, corners, angle=0.0, mirrored=False, magnified=1.0, counts=()):
+            name = name.encode() + b"\0" * (len(name) % 2)
+            transform = record(0x1A, 1, struct.pack(">H", 0x8000 * mirrored)) + record(0x1B, 5, real(magnified)) + record(0x1C, 5, real(angle))
+            size = record(0x13, 2, struct.pack(">2h", *counts)) if counts else b""
+            return record(kind) + record(0x12, 6, name) + transform + size + record(16, 3, struct.pack(f">{2 * len(corners)}i", *(1000 * value for corner in corners for value in corner))) + record(17)
+
+        def polygons(references):
+            """@param references  in TOP, to MID, which is an oblique array of POST"""
+            date = record(5, 2, struct.pack(">12h", *[0] * 12))
+            post = record(8) + record(13, 2, struct.pack(">h", 1)) + record(14, 2, struct.pack(">h", 0)) + record(16, 3, struct.pack(">8i", 0, 0, 30000, 0, 0, 20000, 0, 0)) + record(17)
+            cells = record(7) + date + record(6, 6, b"POST") + post + record(7) + date + record(6, 6, b"MID\0")
+            inner = reference(11, "POST", [(5, 7), (5 + 2 * 60, 7 + 2 * 10), (5 - 3 * 20, 7 + 3 * 50)], counts=(2, 3))
+            (self.folder / "device.gds").write_bytes(gdsii([], 1e-6, references + cells + inner))
+            return sorted(outline.round(6).tolist() for outline in readers.read(self.folder / "device.gds").outlines)
+
+        corners = {tuple(outline[0]) for outline in polygons(reference(10, "MID", [(600, 150)]))}
+        self.assertEqual(corners, {(605 + 60 * i - 20 * j, 157 + 10 * i + 50 * j) for i in range(2) for j in range(3)})
+        for transform in [{}, {"angle": 30.0}, {"angle": 90.0}, {"mirrored": True}, {"angle": 90.0, "mirrored": True, "magnified": 0.5}]:
+            for along, across in [((300, 150), (0, 300)), ((300, 0), (0, 300)), ((0, 300), (-300, 0)), ((300, 0), (0, -300)), ((300, 0), (100, 260))]:
+                with self.subTest(along=along, across=across, **transform):
+                    ends = [(600, 150), (600 + 3 * along[0], 150 + 3 * along[1]), (600 + 2 * across[0], 150 + 2 * across[1])]
+                    places = [(600 + i * along[0] + j * across[0], 150 + i * along[1] + j * across[1]) for i in range(3) for j in range(2)]
+                    expected = polygons(b"".join(reference(10, "MID", [place], **transform) for place in places))
+                    self.assertEqual(len(expected), 36)
+                    np.testing.assert_allclose(polygons(reference(11, "MID", ends, counts=(3, 2), **transform)), expected, atol=1e-6)
+        with mock.patch.object(gds, "exact_library", lambda gdspy: gdspy.GdsLibrary):
+            self.refused("device.gds", "arrays of cells", "flatten them")
 
     def test_a_post_of_uneven_corners_becomes_a_circle_around_its_centroid(self):
         corners = [(500, 500), *((500 + i, 500) for i in range(1, 100)), (600, 500), (600, 600), (500, 600)]

@@ -1,0 +1,56 @@
+"""Outlines of GDSII drawings, with all cells that the top cells refer to."""
+
+from __future__ import annotations
+
+import collections
+import pathlib
+import warnings
+from typing import Any
+
+import numpy as np
+
+from ..tools.errors import UserError
+from .libraries import library
+from .shapes import Drawing
+
+
+def read_gds(path: pathlib.Path, layer: str | None) -> Drawing:
+    """Polygons of the top cells, with all that they refer to."""
+    gdspy = library("gdspy", "python3-gdspy")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", UserWarning)  # for records that gdspy would ignore
+            content = exact_library(gdspy)(infile=str(path), units="import")
+    except UserWarning as warning:
+        raise UserError(f"cannot read {path} ({warning}); convert everything to polygons in the layout program") from warning
+    references = [part for cell in content.cell_dict.values() for part in cell.references]
+    missing = {str(part.ref_cell) for part in references if not isinstance(part.ref_cell, gdspy.Cell)}
+    if missing:
+        raise UserError(f"cannot read {path} (it lacks the cells {', '.join(sorted(missing))}, to which it refers); save it with these")
+    if any(isinstance(part, gdspy.CellArray) for part in references):  # of a version of gdspy that calls no _create_array()
+        raise UserError(f"cannot read {path} (gdspy {gdspy.__version__} may misplace its arrays of cells); flatten them in the layout program")
+    cells = content.top_level()
+    drawn = [item for cell in cells for item in cell.get_polygons(by_spec=True).items()]
+    texts = sum(len(cell.get_labels()) for cell in cells)
+    found = Drawing([], [], float(f"{content.unit:.12g}"), skipped=collections.Counter({"text": texts} if texts else {}))
+    if len(cells) > 1:
+        found.notes.append(f"{len(cells)} top cells, drawn together: {', '.join(cell.name for cell in cells)}")
+    for (of_layer, _), polygons in drawn:
+        if layer is not None and str(of_layer) != layer:
+            found.skipped[f"polygons on layer {of_layer}"] += len(polygons)
+        else:
+            found.outlines += [np.asarray(polygon, dtype=float) for polygon in polygons]
+    return found
+
+
+def exact_library(gdspy: Any) -> Any:
+    """gdspy's reader, but with arrays as references, one for each place. gdspy's own arrays have only two spacings along the axes of the
+    cell: it misplaces those whose lattice is oblique, or turned by another angle than the cell."""
+    class Library(gdspy.GdsLibrary):  # type: ignore[misc]
+        def _create_array(self, *, columns: int, rows: int, xy: Any, **reference: Any) -> list[Any]:
+            """@param xy  the origin, and the places `columns` columns and `rows` rows from it"""
+            origin, end_of_columns, end_of_rows = np.reshape(xy, (3, 2))
+            along, across = (end_of_columns - origin) / columns, (end_of_rows - origin) / rows
+            return [self._create_reference(xy=origin + i * along + j * across, **reference) for i in range(columns) for j in range(rows)]
+
+    return Library
