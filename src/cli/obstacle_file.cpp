@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "clog/console/csv.hpp"
+#include "clog/console/decimal_commas.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -188,18 +189,12 @@ class Numbers {
       throw Error(fmt::format("{}: {}", shortened(name), error.what()));
     }
   }
-  /// A number whose comma separates thousands, as far as all numbers so far tell; empty if there is none.
-  std::string ambiguous() const { return have_decimal_comma_ ? "" : perhaps_thousands_; }
-  [[noreturn]] static void refuse(const std::string& where, const std::string& cell) {
-    throw Error(
-        fmt::format("{}'{}' may have a decimal comma or separated thousands; write all numbers with "
-                    "decimal points and without commas",
-                    where, shortened(cell)));
-  }
+  /// To be called behind the last line. @throws Error  if each comma may separate thousands
+  void check(const std::string& path) const { commas_.check(path); }
 
  private:
-  bool have_comma_ = false, have_point_ = false, have_decimal_comma_ = false;
-  std::string perhaps_thousands_;  // the first number such as 1,350
+  bool have_comma_ = false, have_point_ = false;
+  console::DecimalCommas commas_;
 
   double number_in(const std::string& cell, char separator) {
     const std::string with_points = with_point(cell, separator);
@@ -212,30 +207,13 @@ class Numbers {
     }
   }
 
-  /// 1,350 or 12,345,678, which 0,350 and 1,35 are not.
-  static bool may_have_thousands(std::string_view cell) {
-    if (!cell.empty() && (cell.front() == '-' || cell.front() == '+')) cell.remove_prefix(1);
-    const std::size_t first = cell.find(',');
-    if (first == 0 || first > 3 || cell.front() == '0') return false;
-    for (std::size_t comma = first; comma < cell.size(); comma += 4)
-      if (cell[comma] != ',' || cell.size() - comma < 4) return false;
-    return true;
-  }
-
-  std::string with_point(std::string cell, char separator) {
-    if (cell.find('.') != std::string::npos) have_point_ = true;
-    if (cell.find(',') != std::string::npos) {
-      have_comma_ = true;
-      if (!may_have_thousands(cell))
-        have_decimal_comma_ = true;
-      else if (separator == ',')
-        refuse("", cell);
-      else if (perhaps_thousands_.empty())
-        perhaps_thousands_ = cell;
-    }
-    if (have_comma_ && have_point_) refuse("", cell);
-    std::ranges::replace(cell, ',', '.');
-    return cell;
+  std::string with_point(const std::string& cell, char separator) {
+    have_point_ = have_point_ || cell.find('.') != std::string::npos;
+    const bool has_comma = cell.find(',') != std::string::npos;
+    have_comma_ = have_comma_ || has_comma;
+    const bool is_ambiguous = has_comma && separator == ',' && console::may_have_thousands(cell);
+    if (is_ambiguous || (have_comma_ && have_point_)) console::DecimalCommas::refuse("", cell);
+    return commas_.with_point(cell);
   }
 };
 
@@ -302,7 +280,7 @@ OwnCircles read_circles(const std::string& path) {
         read_scale(comment, scale);
         if (is_first) columns = columns_in(comment).value_or(columns);
       });
-  if (const std::string cell = numbers.ambiguous(); !cell.empty()) Numbers::refuse(path + ": ", cell);
+  numbers.check(path);
   if (circles.empty()) throw Error(path + " holds no obstacles; lines are x,y[,diameter]");
   const std::optional droplet = scale.unit.empty() ? std::nullopt : std::optional(scale.droplet_metres);
   return OwnCircles(std::move(circles), path, droplet);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "clog/console/csv.hpp"
+#include "clog/console/decimal_commas.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/sweep/settings.hpp"
 #include "clog/sweep/value_list.hpp"
@@ -31,7 +32,8 @@ std::vector<std::size_t> columns_of(const std::vector<std::string>& header) {
 
 /// A cell as a key's value. Where commas do not separate cells, a comma is decimal; pandas writes integers as
 /// 64.0 or 64,0 in a column with an empty cell. @throws Error  if a comma may be decimal or part of a list
-std::string value_of(const sweep::Key& key, std::string cell, char separator) {
+std::string value_of(const sweep::Key& key, const std::string& cell, char separator,
+                     console::DecimalCommas& decimal_commas) {
   const bool is_integer = key.kind == ValueKind::integer;
   const bool is_number = key.kind == ValueKind::number || key.kind == ValueKind::number_or_share;
   const auto commas = std::ranges::count(cell, ',');
@@ -45,13 +47,13 @@ std::string value_of(const sweep::Key& key, std::string cell, char separator) {
     throw Error(fmt::format(
         "{}: '{}' may be a list or have a decimal comma; write decimal points, and a line for each value",
         key.name, cell));
-  std::ranges::replace(cell, ',', '.');
-  return cell;
+  return decimal_commas.with_point(cell);
 }
 
 /// @param num_columns  of the first line. @throws Error  if a value is invalid
 std::vector<std::string> values_of(const console::TableLine& line, const std::vector<std::string>& keys,
-                                   const std::vector<std::size_t>& columns, std::size_t num_columns) {
+                                   const std::vector<std::size_t>& columns, std::size_t num_columns,
+                                   console::DecimalCommas& commas) {
   std::vector<std::string> cells = line.cells;
   while (cells.size() > num_columns && cells.back().empty()) cells.pop_back();
   if (cells.size() != num_columns)
@@ -62,7 +64,7 @@ std::vector<std::string> values_of(const console::TableLine& line, const std::ve
   sweep::Settings scratch = defaults;
   std::vector<std::string> values;
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    values.push_back(value_of(sweep::find_key(keys[i]), cells[columns[i]], line.separator));
+    values.push_back(value_of(sweep::find_key(keys[i]), cells[columns[i]], line.separator, commas));
     if (!values.back().empty()) scratch.set(keys[i], values.back());
   }
   return values;
@@ -74,6 +76,7 @@ sweep::Points read_points(const std::string& path) {
   sweep::Points points;
   std::vector<std::size_t> columns;
   std::size_t num_columns = 0;
+  console::DecimalCommas commas;
   console::read_table(path, [&](const console::TableLine& line) {
     if (num_columns == 0) {
       columns = columns_of(line.cells);
@@ -81,9 +84,10 @@ sweep::Points read_points(const std::string& path) {
       num_columns = line.cells.size();
       while (num_columns > 0 && line.cells[num_columns - 1].empty()) --num_columns;
     } else {
-      points.rows.push_back(values_of(line, points.keys, columns, num_columns));
+      points.rows.push_back(values_of(line, points.keys, columns, num_columns, commas));
     }
   });
+  commas.check(path);
   if (points.rows.empty())
     throw Error(path +
                 " holds no points; its first line names keys, each line that follows has a value for each");

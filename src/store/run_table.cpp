@@ -206,12 +206,12 @@ std::optional<std::pair<std::string, std::uint32_t>> check_sum_line(const std::s
   return std::pair(line.substr(num_digits + 1), sum);
 }
 
-bool is_as_written(hid_t file, const std::string& name, const std::string& text) {
+/// What the list of checksums has for an attribute.
+std::optional<std::uint32_t> listed_check_sum(hid_t file, const std::string& name) {
   std::istringstream lines(read_attribute(file, list_name));
   for (std::string line; std::getline(lines, line);)
-    if (const auto listed = check_sum_line(line); listed && listed->first == name)
-      return listed->second == check_sum(text);
-  return false;
+    if (const auto listed = check_sum_line(line); listed && listed->first == name) return listed->second;
+  return std::nullopt;
 }
 
 /// An attribute's text: of these the one that was written, as its checksum says, if it is damaged now.
@@ -219,11 +219,9 @@ template <class Texts>
 std::string text_as_written(hid_t file, const std::string& name, const Texts& candidates) {
   std::string text = read_attribute(file, name);
   if (std::ranges::find(candidates, text) != candidates.end()) return text;
-  std::istringstream lines(read_attribute(file, list_name));
-  for (std::string line; std::getline(lines, line);)
-    if (const auto listed = check_sum_line(line); listed && listed->first == name)
-      for (const std::string_view candidate : candidates)
-        if (check_sum(candidate) == listed->second) return std::string(candidate);
+  const std::optional<std::uint32_t> listed = listed_check_sum(file, name);
+  for (const std::string_view candidate : candidates)
+    if (listed == check_sum(candidate)) return std::string(candidate);
   return text;
 }
 
@@ -309,7 +307,7 @@ struct PackedTable {
 std::size_t num_columns_written(hid_t file) {
   const std::string text = read_attribute(file, num_columns_name);
   std::size_t number = 0;
-  if (is_as_written(file, num_columns_name, text))
+  if (listed_check_sum(file, num_columns_name) == check_sum(text))
     std::from_chars(text.data(), text.data() + text.size(), number);
   return number;
 }

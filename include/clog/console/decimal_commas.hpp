@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace clog::console {
+
+/// 1,350 or 12,345,678, which 0,350 and 1,35 are not.
+bool may_have_thousands(std::string_view number);
+
+/// Numbers of one table, whose commas are decimal, or separate thousands.
+class DecimalCommas {
+ public:
+  /// The number with a decimal point in place of its comma.
+  std::string with_point(std::string number);
+  /// @throws Error  if each comma so far may separate thousands. @param path  of the table
+  void check(const std::string& path) const;
+  /// @throws Error  that names a number which can be read in two ways. @param where  what precedes it
+  [[noreturn]] static void refuse(std::string_view where, const std::string& number);
+
+ private:
+  bool is_one_decimal_ = false;
+  std::string perhaps_thousands_;  // the first of them
+};
+
+}  // namespace clog::console

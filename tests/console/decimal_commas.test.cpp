@@ -1,0 +1,35 @@
+#include "clog/console/decimal_commas.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "clog/core/tools/error.hpp"
+
+namespace clog::console {
+namespace {
+
+TEST(DecimalCommas, MaySeparateThousandsOnlyInFullGroupsOfDigits) {
+  for (const char* number : {"1,350", "-12,345", "+999,000", "12,345,678"})
+    EXPECT_TRUE(may_have_thousands(number)) << number;
+  for (const char* number : {"0,350", "-0,350", "1,35", "1,3500", "1350,000", ",350", "1,350,1", "1350"})
+    EXPECT_FALSE(may_have_thousands(number)) << number;
+}
+
+TEST(DecimalCommas, AreRefusedWhileEachMaySeparateThousands) {
+  DecimalCommas commas;
+  EXPECT_EQ(commas.with_point("600"), "600");
+  EXPECT_NO_THROW(commas.check("posts.csv"));
+  EXPECT_EQ(commas.with_point("1,350"), "1.350");
+  try {
+    commas.check("posts.csv");
+    FAIL() << "not refused";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("posts.csv: '1,350'"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(commas.with_point("0,5"), "0.5");
+  EXPECT_NO_THROW(commas.check("posts.csv"));
+}
+
+}  // namespace
+}  // namespace clog::console
