@@ -437,7 +437,7 @@ class WrongDrawings(Analysis):
         self.refuse("--as-rows", "--corner", "0.01", words=["circles (at most 200000)", "--corner"])
         self.write("device.svg", SVG.format('<circle cx="800" cy="300" r="50"/>').replace('width="3.6mm" height="1.2mm"', ""))
         self.refuse_analysis("circles", "device.svg", "--droplet", "10mm", "--output", "other", "--unit", "um", words=["unit is um"])
-        self.refuse_analysis("circles", "device.svg", "--droplet", "10um", "--output", "other", words=["px", "give --unit"])
+        self.refuse_analysis("circles", "device.svg", "--droplet", "10um", "--output", "other", words=["how long its unit is", "--unit, such as", "--pixel 0.2645833mm"])
 
     def test_a_unit_other_than_the_drawing_states(self):
         self.dxf(circles=[(800, 300), (1600, 300)], outlines=[box(0, 0, 3600, 1200)])
@@ -652,6 +652,51 @@ class OtherTools(Analysis):
         device = self.device("device.svg")
         self.assertAlmostEqual(device.length, 300, places=3)
 
+    def test_svg_without_a_unit_asks_for_it(self):
+        for size in ("", 'width="3600" height="1200"', 'width="3600px" height="1200px"', 'width="100%"'):
+            with self.subTest(size):
+                self.write("device.svg", SVG.format('<circle cx="800" cy="300" r="50"/>').replace('width="3.6mm" height="1.2mm"', size))
+                np.testing.assert_allclose(self.circles_of("device.svg", unit=1e-6), [(800, 900, 100)], rtol=1e-3)
+                self.assertIsNone(self.drawing.metres)
+
+    def test_svg_shapes_that_are_not_seen_are_no_posts(self):
+        styles = "<style>.none{fill:none} .clear{opacity:0.0}</style>"
+        hidden = ['opacity="0"', 'style="opacity:0%"', 'class="none"', 'fill="none" stroke="none"', 'fill-opacity="0"', 'fill="none" stroke="black" stroke-width="0"', 'class="clear"',
+                  'fill="none" stroke="black" stroke-opacity="0"', 'visibility="hidden"']
+        body = "".join(f'<circle cx="{300 * i + 200}" cy="300" r="50" {attributes}/>' for i, attributes in enumerate(hidden))
+        seen = '<circle cx="800" cy="900" r="50" fill="none" stroke="red"/><g opacity="0"><circle cx="500" cy="900" r="50"/></g>'
+        np.testing.assert_allclose(self.svg(styles + body + seen), [(800, 300, 100)], rtol=1e-3)
+        self.assertEqual(dict(self.drawing.skipped), {"transparent circle": 4, "unpainted circle": 5, "hidden circle": 1})
+
+    def test_svg_shows_what_its_clips_leave(self):
+        circles = "".join(f'<circle cx="{x}" cy="300" r="50"/>' for x in (400, 800, 1200))
+        left = '<clipPath id="left"><rect width="600" height="1200"/></clipPath>'
+        turned = '<clipPath id="turned" transform="rotate(45)"><rect y="-200" width="1000" height="700"/></clipPath>'  # holds (400, 300)
+        styles = "<style>.left, .other {fill:red; clip-path:url(#left)}</style>"
+        moved = circles.replace("cx", 'transform="translate(500 0)" cx')
+        for body in [f'{left}<g clip-path="url(#left)">{circles}</g>', f'<defs>{left}</defs><g style="clip-path: url(&quot;#left&quot;)">{circles}</g>', f'{styles}{left}<g class="post left">{circles}</g>',
+                     f'{left}<g clip-path="url(#left)"><g transform="translate(-500 0)">{moved}</g></g>',
+                     f'{left}<g transform="translate(-100 0)" clip-path="url(#left)"><g transform="translate(100 0)">{circles}</g></g>',
+                     f'{turned}<g clip-path="url(#turned)">{circles}</g>']:
+            with self.subTest(body):
+                np.testing.assert_allclose(self.svg(body), [(400, 900, 100)], rtol=1e-3)
+                self.assertEqual(dict(self.drawing.skipped), {"clipped circle": 2})
+        both = f'{left}<clipPath id="right"><rect x="450" width="3000" height="1200"/></clipPath><g clip-path="url(#left)"><rect x="300" y="300" width="400" height="200" clip-path="url(#right)"/></g>'
+        self.write("device.svg", SVG.format(both))
+        np.testing.assert_allclose(np.ptp(self.device("device.svg").others[0] * 200, axis=0), [150, 200], rtol=1e-4)
+        box_units = left.replace("<clipPath", '<clipPath clipPathUnits="objectBoundingBox"')
+        self.assertEqual(len(self.svg(f'{box_units}<g clip-path="url(#left)">{circles}</g>')), 3)
+        self.assertIn("1 clips or masks ignored", self.drawing.notes[0])
+
+    def test_svg_strokes_are_not_counted_and_that_is_said(self):
+        post = '<g transform="scale(2)"><circle cx="400" cy="150" r="25" stroke="black" stroke-width="5"/></g><path d="M 900 600 h 0" stroke="black" stroke-width="100" stroke-linecap="round"/>'
+        np.testing.assert_allclose(self.svg(post), [(800, 900, 100)], rtol=1e-3)
+        told = self.draw("circles", "device.svg", "--droplet", "200um", "--output", "posts").stdout
+        self.assertIn("strokes not counted (of filled shapes at most 10 wide)", told)
+        self.assertIn("skipped: 1 dot", told)
+        self.write("device.svg", SVG.format('<circle cx="500" cy="500" r="50"/>'))
+        self.assertNotIn("dot", self.draw("circles", "device.svg", "--droplet", "200um", "--output", "posts").stdout)
+
     def test_svg_of_matplotlib(self):
         figure = Figure(figsize=(3.6, 1.2))
         axes = figure.add_axes([0, 0, 1, 1], xlim=(0, 3600), ylim=(0, 1200))
@@ -659,6 +704,7 @@ class OtherTools(Analysis):
         for x, y in [(800, 300), (1600, 900)]:
             axes.add_patch(matplotlib.patches.Circle((x, y), 50))
         axes.scatter([2400], [600], s=(0.1 * 72)**2, linewidths=0)  # a circle of 0.1 inch
+        axes.add_patch(matplotlib.patches.Circle((-500, 600), 50))  # which the axes clip
         figure.savefig(self.folder / "device.svg")
         np.testing.assert_allclose(self.circles_of("device.svg", droplet=0.2 * 25.4e-3) / 25.4, [(800, 300, 100), (1600, 900, 100), (2400, 600, 100)], rtol=1e-3)
 
@@ -835,6 +881,17 @@ class OtherTools(Analysis):
         with mock.patch.object(gds, "exact_library", lambda gdspy: gdspy.GdsLibrary):
             self.refused("device.gds", "arrays of cells", "flatten them")
 
+    def test_gdsii_paths_without_length_are_discs_if_their_ends_are_round(self):
+        def path(ends, *corners):
+            return (record(9) + record(13, 2, struct.pack(">h", 1)) + record(14, 2, struct.pack(">h", 0)) + record(0x21, 2, struct.pack(">h", ends)) + record(15, 3, struct.pack(">i", 100000))
+                    + record(16, 3, struct.pack(f">{2 * len(corners)}i", *(1000 * value for corner in corners for value in corner))) + record(17))
+
+        more = path(1, (500, 600)) + path(1, (900, 300), (900, 300))
+        (self.folder / "device.gds").write_bytes(gdsii([box(0, 0, 3600, 1200)], 1e-6, more))
+        np.testing.assert_allclose(self.circles_of("device.gds"), [(500, 600, 100), (900, 300, 100)], atol=0.05)
+        (self.folder / "device.gds").write_bytes(gdsii([box(0, 0, 3600, 1200)], 1e-6, path(0, (500, 600))))
+        self.refused("device.gds", "a path of layer 1 has no length", "convert everything to polygons")
+
     def test_a_post_of_uneven_corners_becomes_a_circle_around_its_centroid(self):
         corners = [(500, 500), *((500 + i, 500) for i in range(1, 100)), (600, 500), (600, 600), (500, 600)]
         (self.folder / "device.gds").write_bytes(gdsii([box(0, 0, 3600, 1200), corners], 1e-6))
@@ -907,6 +964,12 @@ class OtherTools(Analysis):
         self.picture("L", 255, 0, "mask.tif", dpi=(254, 254))
         self.refuse_analysis("circles", "mask.tif", "--droplet", "200um", "--output", "posts", words=["--pixel, such as --pixel 2.5um", "would mean 100um, if that is not a printer's"])
 
+    def test_uneven_light_is_named_as_a_reason(self):
+        image = Image.new("L", (300, 300), 255)
+        ImageDraw.Draw(image).polygon([(60, 60), (200, 90), (90, 220)], fill=0)
+        image.save(self.folder / "mask.png")
+        self.refuse_analysis("circles", "mask.png", "--droplet", "200um", "--pixel", "2um", "--output", "posts", words=["1 post of 1 not round", "lit unevenly"])
+
     def test_tiff_files_of_another_library(self):
         import tifffile
 
@@ -919,6 +982,17 @@ class OtherTools(Analysis):
         self.assertEqual(len(self.device("white.tif", unit=1e-6).others), 2)
         tifffile.imwrite(self.folder / "stack.tif", np.stack([mask] * 7))
         self.refused("stack.tif", "several slices", "7 x 300 x 900")
+
+    def test_tiff_files_in_the_compressions_of_scanners(self):
+        for mode, compression in [("L", "tiff_lzw"), ("1", "group4"), ("1", "tiff_lzw"), ("L", "tiff_adobe_deflate"), ("1", "packbits")]:
+            for ground, post in [(1, 0), (0, 1)]:
+                with self.subTest(compression, mode=mode, ground=ground):
+                    self.picture(mode, ground * (255 if mode == "L" else 1), post * (255 if mode == "L" else 1), "mask.tif", compression=compression)
+                    self.assert_two("mask.tif")
+                    self.assertEqual(self.drawing.notes, ["the posts are bright (--posts)" if post else "the posts are dark (--posts)"])
+        image = Image.new("CMYK", (900, 300))
+        image.save(self.folder / "mask.tif", compression="tiff_lzw")
+        self.refused("mask.tif", "save it as PNG")
 
     def test_a_photograph_that_is_stored_turned(self):
         turned = Image.Exif()

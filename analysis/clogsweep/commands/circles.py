@@ -62,7 +62,7 @@ def region_of(text: str) -> Numbers:
 
 def metres_of(arguments: argparse.Namespace, drawing: shapes.Drawing) -> float:
     """Metres per unit of the drawing. @throws UserError"""
-    if drawing.metres and not drawing.unit_is_assumed and arguments.unit == drawing.unit:
+    if drawing.metres and arguments.unit == drawing.unit:
         return drawing.metres
     if arguments.pixel or arguments.unit:
         metres = shapes.length_in_metres(arguments.pixel, "--pixel") if arguments.pixel else shapes.METRES[arguments.unit]
@@ -76,17 +76,17 @@ def metres_of(arguments: argparse.Namespace, drawing: shapes.Drawing) -> float:
 
 def refuse_other_unit(arguments: argparse.Namespace, drawing: shapes.Drawing, metres: float) -> None:
     """@param metres  of the unit that the user gave. @throws UserError  if the drawing states another"""
-    if drawing.metres is None or drawing.unit_is_assumed or np.isclose(metres, drawing.metres, rtol=1e-6, atol=0):
+    if drawing.metres is None or np.isclose(metres, drawing.metres, rtol=1e-6, atol=0):
         return
     option = f"--pixel {arguments.pixel}" if arguments.pixel else f"--unit {arguments.unit}"
     raise UserError(f"{option} contradicts {arguments.drawing} (the drawing says {drawing.unit}); run without {option}, or correct the unit in the drawing")
 
 
-def remedy_of_unit(arguments: argparse.Namespace, drawing: shapes.Drawing) -> str:
+def remedy_of_unit(arguments: argparse.Namespace) -> str:
     """What to do if lengths are wrong."""
     if arguments.pixel or arguments.unit:
         return f"check {'--pixel' if arguments.pixel else '--unit'}"
-    return "give --unit" if drawing.unit_is_assumed else "correct the unit in the drawing (of DXF $INSUNITS)"
+    return "correct the unit in the drawing (of DXF $INSUNITS)"
 
 
 def unit_in_words(arguments: argparse.Namespace, drawing: shapes.Drawing) -> str:
@@ -163,7 +163,7 @@ def body() -> int:
     areas.tidy(drawing, arguments.region, arguments.tolerance)
     metres = metres_of(arguments, drawing)
     device = shapes.understood(drawing, metres, droplet, arguments.tolerance, TURNS[arguments.flow])
-    shapes.refuse_unlikely(device, unit_in_words(arguments, drawing), metres, remedy_of_unit(arguments, drawing), drawing.is_picture)
+    shapes.refuse_unlikely(device, unit_in_words(arguments, drawing), metres, remedy_of_unit(arguments), drawing.is_picture)
     made: list[str] = []
     if arguments.as_rows and device.others:
         device, made = in_rows(device, arguments.corner)
@@ -173,8 +173,9 @@ def body() -> int:
     command_line.tell(f"{picture.save(arguments.output)} (and .pdf)")
     command_line.tell("\n".join(told(device, drawing, metres) + made))
     if device.others:
+        light = "; if the picture is lit unevenly, even it out and make it black and white first" if drawing.is_picture else ""
         raise UserError(f"{rounded.counted(len(device.others), 'post')} of {len(device.others) + len(device.circles)} not round, red in the picture; no {table} "
-                        "was written. Use --as-rows for rows of circles along their outlines, --as-circles for circles of the same area, or a larger --tolerance")
+                        f"was written. Use --as-rows for rows of circles along their outlines, --as-circles for circles of the same area, or a larger --tolerance{light}")
     if touching := device.overlaps():
         x, y, _ = device.circles[touching[0][0]]
         micrometres = device.droplet_micrometres

@@ -34,7 +34,7 @@ def polygon(corners: Numbers) -> Any:
     found = library("shapely.geometry", "python3-shapely").Polygon(corners)
     if not found.is_valid:
         x, y = corners.mean(axis=0)
-        raise UserError(f"an outline around x={x:.6g}, y={y:.6g} in the drawing crosses itself; correct it there")
+        raise UserError(f"an outline around x={x:.6g}, y={y:.6g} in the drawing crosses itself; correct it there (a picture: even out its light, and make it black and white)")
     return found
 
 

@@ -13,6 +13,8 @@ from ..tools.errors import UserError
 from .libraries import library
 from .shapes import Drawing
 
+CORNERS_OF_DISC = 128  # which is wider than a circle of its area by 1e-4
+
 
 def read_gds(path: pathlib.Path, layer: str | None) -> Drawing:
     """Polygons of the top cells, with all that they refer to."""
@@ -44,9 +46,18 @@ def read_gds(path: pathlib.Path, layer: str | None) -> Drawing:
 
 
 def exact_library(gdspy: Any) -> Any:
-    """gdspy's reader, but with arrays as references, one for each place. gdspy's own arrays have only two spacings along the axes of the
-    cell: it misplaces those whose lattice is oblique, or turned by another angle than the cell."""
+    """gdspy's reader, but with arrays as references, one for each place, and with discs for round paths without length. gdspy's own
+    arrays have only two spacings along the axes of the cell: it misplaces those whose lattice is oblique, or turned by another angle
+    than the cell."""
     class Library(gdspy.GdsLibrary):  # type: ignore[misc]
+        def _create_path(self, *, xy: Any, **path: Any) -> Any:
+            """@throws UserWarning  if it has no length and no round ends"""
+            if np.ptp(np.reshape(xy, (-1, 2)), axis=0).any():
+                return super()._create_path(xy=xy, **path)
+            if path.get("ends") != "round":
+                raise UserWarning(f"a path of layer {path.get('layer', 0)} has no length")
+            return gdspy.Round(xy[:2], abs(path["width"]) / 2, number_of_points=CORNERS_OF_DISC, layer=path["layer"], datatype=path["datatype"])
+
         def _create_array(self, *, columns: int, rows: int, xy: Any, **reference: Any) -> list[Any]:
             """@param xy  the origin, and the places `columns` columns and `rows` rows from it"""
             origin, end_of_columns, end_of_rows = np.reshape(xy, (3, 2))

@@ -19,6 +19,7 @@ ENDINGS = (".png", ".tif", ".tiff", ".bmp", ".jpg", ".jpeg")
 FEWEST_CORNERS = 12  # of an outline: a speck of three pixels has so many
 MOST_OF_BORDER = 0.95  # of a picture, dark where posts are bright
 X_RESOLUTION, Y_RESOLUTION, RESOLUTION_UNIT, DESCRIPTION, PHOTOMETRIC = 282, 283, 296, 270, 262  # tags of TIFF
+MODES = ("1", "L", "RGB", "RGBA")  # of Pillow, up to 8 bits
 ORIENTATION = 274  # tag of EXIF and TIFF
 METRES_IN_TIFF = {2: METRES["in"], 3: METRES["cm"]}
 UNITS_OF_IMAGEJ = {"micron": "um", "microns": "um", "\\u00b5m": "um", "inch": "in", "centimeter": "cm", "millimeter": "mm"}
@@ -66,8 +67,8 @@ def tags_of(path: pathlib.Path) -> dict[int, Any]:
 
 def grey(path: pathlib.Path, tags: dict[int, Any]) -> Numbers:
     """Brightness from 0 to 1. @throws UserError"""
-    io, colour = (library(f"skimage.{name}", "python3-skimage") for name in ("io", "color"))
-    image = np.asarray(io.imread(path))
+    colour = library("skimage.color", "python3-skimage")
+    image, is_inverted = pixels(path, tags)
     if tags.get(ORIENTATION, 1) != 1:
         raise UserError(f"cannot read {path} (it is stored turned, and shown upright by its EXIF data); save it upright")
     if image.ndim not in (2, 3) or image.ndim == 3 and image.shape[2] > 4:
@@ -81,7 +82,19 @@ def grey(path: pathlib.Path, tags: dict[int, Any]) -> Numbers:
         image = opacity * image + (1 - opacity) * ground
     if np.ptp(image) == 0:
         raise UserError(f"cannot read {path} (it is of one colour); give a mask in black and white")
-    return 1 - image if tags.get(PHOTOMETRIC) == 0 else image
+    return 1 - image if is_inverted else image
+
+
+def pixels(path: pathlib.Path, tags: dict[int, Any]) -> tuple[Any, bool]:
+    """Those of a picture, and whether 0 is white. Pillow reads what scikit-image needs another library for: TIFF with LZW or fax
+    compression; it turns 0 to black itself. @throws UserError"""
+    try:
+        return np.asarray(library("skimage.io", "python3-skimage").imread(path)), tags.get(PHOTOMETRIC) == 0
+    except ValueError as error:
+        with library("PIL.Image", "python3-pil").open(path) as file:
+            if file.mode not in MODES or getattr(file, "n_frames", 1) > 1:
+                raise UserError(f"cannot read {path} ({error}); save it as PNG") from error
+            return np.asarray(file), False
 
 
 def metres_of(path: pathlib.Path, tags: dict[int, Any]) -> float | None:

@@ -33,7 +33,6 @@ class Drawing:
     metres: float | None  # in one unit; None if the drawing does not say
     frame: tuple[float, float, float, float] | None = None  # left, bottom, right, top: of a picture, or of the region that the user gave
     is_picture: bool = False  # of pixels
-    unit_is_assumed: bool = False
     holes: list[Numbers] = dataclasses.field(default_factory=list)  # in outlines: none is a post, but one may be the device's edge
     pieces: list[Line] = dataclasses.field(default_factory=list)  # open lines, before they are joined
     lines: list[Line] = dataclasses.field(default_factory=list)  # the pieces that do not form a closed outline

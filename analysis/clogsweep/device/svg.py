@@ -6,6 +6,7 @@ import collections
 import copy
 import io
 import pathlib
+import re
 from typing import Any
 from xml.etree import ElementTree
 
@@ -13,8 +14,9 @@ import numpy as np
 
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
+from . import areas, walls
 from .libraries import library
-from .shapes import Drawing
+from .shapes import Drawing, holds
 
 METRES_IN_PIXEL = 25.4e-3 / 96
 LENGTHS = ("mm", "cm", "in", "pt", "pc", "Q")
@@ -25,27 +27,68 @@ LINKS = ("href", "{http://www.w3.org/1999/xlink}href")
 
 
 def read_svg(path: pathlib.Path) -> Drawing:
-    """Circles, and closed outlines with their curves."""
+    """Circles, and closed outlines with their curves, as far as they are visible."""
     svgelements = library("svgelements", "python3-svgelements")
     root = ElementTree.parse(path).getroot()
-    by_id = {element.get("id"): element for element in root.iter()}
-    expand(root, by_id, path)
+    expand(root, {element.get("id"): element for element in root.iter()}, path)
+    clips = Clips(root)
     content = svgelements.SVG.parse(io.BytesIO(ElementTree.tostring(root)), reify=False)
     width = str(root.get("width", "")).strip()
-    found = Drawing([], [], METRES_IN_PIXEL, unit_is_assumed=not width.endswith(LENGTHS), skipped=collections.Counter())
-    found.unit_in_words = "px, 96 in an inch" if found.unit_is_assumed else width.lstrip("0123456789.eE+- ")
+    has_unit = width.endswith(LENGTHS)
+    found = Drawing([], [], METRES_IN_PIXEL if has_unit else None, skipped=collections.Counter())
+    found.unit_in_words = width.lstrip("0123456789.eE+- ") if has_unit else "px"
+    found.unit_hint = "" if has_unit else f" (--pixel {METRES_IN_PIXEL * 1e3:.7g}mm, if 96 of them are an inch)"
     viewport = svgelements.Matrix(content.viewbox_transform) if content.viewbox else svgelements.Matrix()
     found.from_own = applied(viewport)
+    widest = 0.0
     for element in content.elements():
         if not isinstance(element, svgelements.Shape):
             if isinstance(element, (svgelements.Text, svgelements.Image)):
                 found.skipped[type(element).__name__.lower()] += 1
-        elif element.values.get("visibility") in ("hidden", "collapse"):
-            found.skipped[f"hidden {element.values.get('tag')}"] += 1
-        else:
-            for part in svgelements.Path(element).as_subpaths():
-                add(found, applied(element.transform)(corners_of(svgelements, svgelements.Path(part))))
+            continue
+        transform = applied(element.transform)
+        parts = [transform(corners_of(svgelements, svgelements.Path(part))) for part in svgelements.Path(element).as_subpaths()]
+        tag = element.values.get("tag")
+        if not clips.define(element.values, parts):
+            if kind := invisible(element):
+                found.skipped[f"{kind} {tag}"] += 1
+                continue
+            for part in parts:
+                clips.cut(found, element.values, tag, part)
+            if is_painted(element.fill) and is_painted(element.stroke) and any(map(is_closed, parts)):
+                widest = max(widest, float(element.stroke_width) * transform_length(element.transform))
+    if widest:
+        found.notes.append(f"strokes not counted (of filled shapes at most {widest / transform_length(viewport):.4g} wide); if a post includes its stroke, convert strokes to paths")
+    if clips.unknown:
+        found.notes.append(f"{clips.unknown} clips or masks ignored, which are not of plain shapes")
     return found
+
+
+def transform_length(matrix: Any) -> float:
+    """By which a matrix of the library scales lengths, on average."""
+    return float(np.sqrt(abs(matrix.determinant)))
+
+
+def is_painted(colour: Any) -> bool:
+    """@param colour  fill or stroke, as the library reads it"""
+    return colour is not None and colour.value is not None and colour.opacity > 0
+
+
+def invisible(element: Any) -> str:
+    """Why a shape is not seen; empty if it is."""
+    if element.values.get("visibility") in ("hidden", "collapse"):
+        return "hidden"
+    if number(element.values.get("opacity", "1")) == 0:
+        return "transparent"
+    return "" if is_painted(element.fill) or is_painted(element.stroke) and element.stroke_width > 0 else "unpainted"
+
+
+def number(text: Any) -> float:
+    """An opacity; 1 if it is none."""
+    try:
+        return float(str(text).rstrip("%"))
+    except ValueError:
+        return 1.0
 
 
 def expand(element: Any, by_id: dict[str | None, Any], path: pathlib.Path) -> None:
@@ -72,6 +115,76 @@ def group_of(use: Any, by_id: dict[str | None, Any], path: pathlib.Path) -> Any:
     return group
 
 
+class Clips:
+    """What the clip-path of a shape, or of a group around it, leaves. The library ignores them, so each is drawn as shapes of the
+    group that it clips, where they get its transform; attributes that the library hands on tell which shapes they are and clip."""
+
+    SHAPE, USED = "clip-shape", "clipped-by"
+
+    def __init__(self, root: Any) -> None:
+        self._by_id = {element.get("id"): element for element in root.iter(NAMESPACE + "clipPath")}
+        styles = " ".join(element.text or "" for element in root.iter(NAMESPACE + "style"))
+        self._by_class = {name: link for names, link in re.findall(r"([^{}]*)\{[^{}]*clip-path\s*:\s*url\(([^)]*)\)", styles) for name in re.findall(r"\.([\w-]+)", names)}
+        self._areas: dict[str, list[Numbers]] = {}
+        self.unknown = 0
+        self._draw(root, "")
+
+    def _link(self, element: Any) -> str:
+        styled = re.search(r"clip-path\s*:\s*url\(([^)]*)\)", element.get("style", ""))
+        own = re.search(r"url\(([^)]*)\)", element.get("clip-path", ""))
+        classes = [self._by_class[name] for name in element.get("class", "").split() if name in self._by_class]
+        self.unknown += "mask" in element.attrib or "mask:" in element.get("style", "")
+        return next((link.strip(" '\"#") for link in [*(found[1] for found in (styled, own) if found), *classes]), "")
+
+    def _draw(self, element: Any, outer: str) -> None:
+        """@param outer  numbers of the clips around the element"""
+        for index, child in enumerate(list(element)):
+            if child.tag in (NAMESPACE + "clipPath", NAMESPACE + "defs"):
+                continue
+            link, clips = self._link(child), outer
+            clip = self._by_id.get(link)
+            if clip is not None and clip.get("clipPathUnits") != "objectBoundingBox":
+                name = str(len(self._areas))
+                self._areas[name] = []
+                clips = f"{outer} {name}"
+                shapes = ElementTree.Element(NAMESPACE + "g", {self.SHAPE: name, "visibility": "visible", "transform": clip.get("transform", "")})
+                shapes.extend(copy.deepcopy(list(clip)))
+                group = ElementTree.Element(NAMESPACE + "g", {"transform": child.attrib.pop("transform", "")})
+                group.extend([shapes, child])
+                element[index] = group
+            elif link:
+                self.unknown += 1
+            child.set(self.USED, clips)
+            self._draw(child, clips)
+
+    def define(self, values: dict[str, Any], parts: list[Numbers]) -> bool:
+        """Whether a shape is part of a clip."""
+        name = values.get(self.SHAPE)
+        if name is not None:
+            self._areas[name] += [part for part in parts if len(part) > 2]
+        return name is not None
+
+    def cut(self, found: Drawing, values: dict[str, Any], tag: Any, corners: Numbers) -> None:
+        """Adds what the clips leave of an outline or line."""
+        clips = [self._areas[name] for name in values.get(self.USED, "").split()]
+        if len(corners) == 0 or all(len(clip) == 1 and walls.is_rectangle(clip[0][:-1]) and holds(clip[0], [corners]) for clip in clips):
+            add(found, corners)
+            return
+        geometry = library("shapely.geometry", "python3-shapely")
+        shape = areas.polygon(corners) if is_closed(corners) else geometry.LineString(corners)
+        left = shape
+        for clip in clips:
+            left = left.intersection(areas.union([areas.polygon(part) for part in clip], 0.0) if clip else geometry.Polygon())
+        if left.is_empty:
+            found.skipped[f"clipped {tag}"] += 1
+        elif left.equals(shape):
+            add(found, corners)
+        elif is_closed(corners):
+            areas.add(found, left)
+        else:
+            found.pieces += [("open outline", np.asarray(part.coords)) for part in getattr(left, "geoms", [left]) if part.length > 0]
+
+
 def corners_of(svgelements: Any, outline: Any) -> Numbers:
     """Corners of straight parts, and points along curves, before any transform."""
     points: list[tuple[float, float]] = []
@@ -91,10 +204,17 @@ def applied(matrix: Any) -> Any:
 
 def add(found: Drawing, corners: Numbers) -> None:
     """As an outline, if its ends meet; otherwise as a line."""
-    if len(corners) < 2:
-        return
-    size = float(np.ptp(corners, axis=0).max())
-    if len(corners) < 4 or not np.allclose(corners[0], corners[-1], rtol=0, atol=1e-3 * size):
-        found.pieces.append(("open outline", corners))
-    else:
+    size = float(np.ptp(corners, axis=0).max()) if len(corners) else 0.0
+    if size == 0:
+        if len(corners) > 1:
+            found.skipped["dot"] = found.skipped.get("dot", 0) + 1
+    elif is_closed(corners):
         found.outlines.append(corners[:-1])
+    else:
+        found.pieces.append(("open outline", corners))
+
+
+def is_closed(corners: Numbers) -> bool:
+    """Whether the ends of an outline meet."""
+    size = float(np.ptp(corners, axis=0).max()) if len(corners) else 0.0
+    return len(corners) >= 4 and size > 0 and bool(np.allclose(corners[0], corners[-1], rtol=0, atol=1e-3 * size))
