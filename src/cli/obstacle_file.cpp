@@ -125,8 +125,13 @@ bool take_column(Columns& columns, int place, const std::string& cell) {
                                                                              : nullptr;
   const bool is_in_brackets = cell.find_first_of("[(") != std::string::npos;
   if (!column || (!is_in_brackets && !unit.empty() && !is_unit(unit))) return false;
-  if (std::exchange(*column, place) >= 0)
-    throw Error(fmt::format("there are two columns '{}'", shortened(cell)));
+  if (std::exchange(*column, place) >= 0) {
+    const std::string_view what = column == &columns.diameter ? "the diameter"
+                                  : column == &columns.radius ? "the radius"
+                                                              : std::string_view{name};
+    throw Error(
+        fmt::format("there are two columns for {}, the second is '{}'; leave one", what, shortened(cell)));
+  }
   if (unit.empty()) return true;
   if (columns.unit.empty()) columns.unit = unit;
   if (!is_same_unit(columns.unit, unit))

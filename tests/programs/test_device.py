@@ -122,7 +122,7 @@ class Devices(Walls):
 
     def test_files_that_say_too_little_are_refused(self):
         for text, words in [("a,b\n1,2\n", ["columns have to be x, y"]), ("x,y,width\n1,2,3\n", ["columns have to be", "width"]),
-                            ("x,y,d,r\n1,2,1,1\n", ["leave one"]), ("x,x,y\n1,2,1\n", ["two columns 'x'"]),
+                            ("x,y,d,r\n1,2,1,1\n", ["leave one"]), ("x,X,y\n1,2,1\n", ["two columns for x, the second is 'X'"]), ("x,y,d,diameter\n1,2,1,1\n", ["two columns for the diameter, the second is 'diameter'", "leave one"]),
                             ("# units=um\nx,y\n1,2\n", ["line 1", "droplet=200um"]), ("# units=foot droplet=2foot\n1,2\n", ["'foot' is no unit"]),
                             ("# units=um droplet=-2um\n1,2\n", ["droplet must be"]), ("x,y,diameter\n1\n", ["line 2"]),
                             ("# units=um droplet=200um\nx,y\n100,200\n", ["line 3", "needs a diameter", "in um"])]:
@@ -207,6 +207,17 @@ class Devices(Walls):
         self.assertLess(page.index("<h2>Devices"), page.index("<h2>How busy"))
         self.assertIn("passed: droplets that reached the exit", self.succeed("clogfit", "s.h5").stdout)
         self.assertNotIn("few_clogs", group["doubts"] or [], "more seeds of droplets that all pass tell nothing new")
+
+    def test_droplets_that_met_no_post_are_drawn(self):
+        self.write("posts.csv", "x,y,diameter\n2,5,0.5\n4,5,0.5\n")
+        self.succeed("clogsweep", "obstacles=posts.csv", "box=6", "length=6", "side-walls=on", "release=entrance", "entrance-from=1", "entrance-to=2", "exit=6",
+                     "line-tension=1", "vertices=64", "max-time=500", "seeds=1..2", "--output", "s.h5")
+        group, = json.loads(self.succeed("clogfit", "s.h5", "--format", "json").stdout)["groups"]
+        self.assertEqual((group["runs"], group["met_none"]), (0, 2))
+        self.refuse_analysis("clogging-length", "s.h5", "--output", "c", "--programs", BIN, words=["no droplet of s.h5 met an obstacle"])
+        for command, output in [("device", "device"), ("report", "report.html"), ("poster", "poster")]:
+            self.draw(command, "s.h5", "--output", output, "--programs", BIN)
+        self.assertTrue("2 of 2 runs finished (2 passed)" in (self.folder / "report.html").read_text())
 
     def test_each_line_tension_has_a_panel(self):
         self.write("posts.csv", "x,y,diameter\n" + csv())

@@ -24,7 +24,7 @@ class Groups:
         """@param fit  the JSON of clogfit; @param circle_files  see stored.circle_files()"""
         # Nothing is random in a channel or on a wall: a group is one run, which has a status.
         self.are_passages = any("status" in group for group in fit["groups"])
-        self.members: list[Group] = [group for group in fit["groups"] if (group["status"] in FINISHED if self.are_passages else group["runs"] > 0)]
+        self.members: list[Group] = [group for group in fit["groups"] if (group["status"] in FINISHED if self.are_passages else group["runs"] + group["met_none"] > 0)]
         self._fit = fit
         self._told: list[Group] = fit["groups"]
         self.confidence: float = fit["confidence"]
@@ -48,7 +48,9 @@ class Groups:
         """The same. @throws UserError  for a sweep of channels or walls, too, which has no clogging lengths"""
         if self.are_passages:
             raise UserError("cannot draw clogging lengths (these droplets were in a channel or on a wall); clogfit report draws their results")
-        return self.finished(source)
+        if self.finished(source).members and not any(group["runs"] for group in self.members):
+            raise UserError(f"no droplet of {source} met an obstacle, so there is no clogging length; python3 -m clogsweep device or report shows their paths")
+        return self
 
     def fit_curves(self, sweep: AnyPath, folder: pathlib.Path) -> Groups:
         """The same, whose pictures have smooth curves over the abscissa, where these can be drawn.

@@ -86,13 +86,18 @@ def incidence(groups: Groups, label: str, members: Sequence[Group]) -> Figure:
     return figure
 
 
+def share_of(number: float, group: Group) -> float:
+    """Of the runs of a group; 0 if it has none, because its droplets met no obstacle."""
+    return number / group["runs"] if group["runs"] else 0.0
+
+
 def draw_causes(axes: Axes, groups: Groups, label: str, members: Sequence[Group]) -> None:
     """How the runs of one curve ended, as shares."""
     ranks, base = np.arange(len(members)), np.zeros(len(members))
-    shares = {name if name == "broken" else f"clogged, {name}": (colour, [(group[name] or 0) / group["runs"] for group in members])
+    shares = {name if name == "broken" else f"clogged, {name}": (colour, [share_of(group[name] or 0, group) for group in members])
               for name, colour in style.CAUSE_COLOURS.items()}
-    passed = [(group["passed"] or 0) / group["runs"] for group in members]
-    ended = [(group["clogs"] + (group["broken"] or 0)) / group["runs"] for group in members]
+    passed = [share_of(group["passed"] or 0, group) for group in members]
+    ended = [share_of(group["clogs"] + (group["broken"] or 0), group) for group in members]
     shares["passed"] = (style.PASSED_COLOUR, passed)
     shares["still going"] = ("0.88", [1 - one - other for one, other in zip(ended, passed)])
     for name, (colour, share) in shares.items():
