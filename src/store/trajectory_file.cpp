@@ -134,6 +134,7 @@ TrajectoryTable read_image(std::vector<std::byte>& image, Seal seal, const std::
   if (read_attribute(file, "kind") != trajectory_kind || H5Lexists(file, trajectory_name, H5P_DEFAULT) <= 0)
     throw Error("cannot read " + path +
                 " (an HDF5 file, but not a trajectory); give a file written by clogrun --output");
+  require_readable_version(file, path);
   return {read_columns(file, path), read_attributes(file, path), seal == Seal::whole};
 }
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 SEAL = re.compile(rb"\nclogsweep seal 1: crc32 ([0-9a-f]{8}) of ([0-9]{20}) bytes\n")
 SEAL_SIZE = 64
-OLD_VERSIONS = ("2", "3", "4")  # had no checksums
+READABLE_VERSIONS = ("9", "10")
 SWEEP, RUN = "sweep", "run"
 WRITERS: dict[str | None, str] = {
     SWEEP: "the output of clogsweep", RUN: "the output of clogrun with --polygon-interval", None: "a file of clogsweep or clogrun"}
@@ -60,6 +60,10 @@ def check_kind(path: AnyPath, file: h5py.File, kind: str | None) -> None:
     """@throws UserError"""
     if not is_ours(file):
         raise unreadable(path, "an HDF5 file, but not one of clogsweep or clogrun", kind)
+    version = text(file.attrs["format_version"])
+    if version not in READABLE_VERSIONS:
+        raise UserError(f"cannot read {path} (format version {version}, this program reads {' and '.join(READABLE_VERSIONS)}); "
+                        "use the program that wrote it, or compute the rows anew")
     if kind == SWEEP and is_run(file):
         raise unreadable(path, "holds one run of clogrun, not a sweep", kind)
     if kind == RUN and not is_run(file):
@@ -101,9 +105,7 @@ def check_copy(path: str, folder: str | None, *_as_it_is: float) -> None:
         return  # for check_kind()
     if not found["is_run"]:
         ask_clogsweep(path, folder)
-    elif found["format_version"] in OLD_VERSIONS:
-        print(f"{printable(path)} is of an older format without checksums: damage to it may go unnoticed", file=sys.stderr)
-    else:
+    elif found["format_version"] in READABLE_VERSIONS:
         raise UserError(f"cannot trust {path} (another program copied or changed it, and outlines have no checksums of their own); "
                         "give the file that clogrun wrote, or run the droplet again")
 
@@ -152,9 +154,8 @@ def attributes(file: h5py.File) -> dict[str, str]:
 
 
 def writer(attributes: dict[str, str]) -> str:
-    """Version and commit of the program that wrote a file, in words. Older files have the commit's hash alone, or less."""
-    commit = attributes.get("git_describe") or attributes.get("git_hash") or "unknown"
-    return f"{attributes.get('version', 'of unknown version')}, git {commit}"
+    """Version and commit of the program that wrote a file, in words. A salvaged file may lack them."""
+    return f"{attributes.get('version', 'of unknown version')}, git {attributes.get('git_describe', 'unknown')}"
 
 
 def source(attributes: dict[str, str]) -> str:
