@@ -21,10 +21,10 @@
 #include "file_io.hpp"
 #include "hdf5.hpp"
 #include "laboratory_texts.hpp"
-#include "rehearsal.hpp"
 #include "row_layout.hpp"
 #include "run_rows.hpp"
 #include "seal.hpp"
+#include "trial_read.hpp"
 
 namespace clog::store {
 namespace {
@@ -234,7 +234,11 @@ namespace {
 /// @throws Error if an open file is not one of our sweeps, or of a version that is not read
 void require_sweep(hid_t file, const std::string& path) {
   const std::array<std::string_view, 1> kinds = {sweep_kind};
-  if (text_as_written(file, "kind", kinds) != sweep_kind || H5Lexists(file, runs_name, H5P_DEFAULT) <= 0)
+  const std::string kind = text_as_written(file, "kind", kinds);
+  if (kind == trajectory_kind)
+    throw Error("cannot read " + path +
+                " (one run of clogrun, not a sweep); give a file written by clogsweep --output");
+  if (kind != sweep_kind || H5Lexists(file, runs_name, H5P_DEFAULT) <= 0)
     throw Error("cannot read " + path +
                 " (an HDF5 file, but not one of clogsweep's tables of runs); give a file written "
                 "by clogsweep --output");
@@ -398,13 +402,27 @@ Examination examine(std::vector<std::byte>& image, Seal seal, const std::string&
   return found;
 }
 
+/// Returns the seal of the file, which can be read in this process then.
+Seal try_unless_whole(std::vector<std::byte>& image, const std::string& path) {
+  const Seal seal = look_at_seal(image);
+  if (seal != Seal::whole) try_in_child(image, path, [&] { examine(image, seal, path); });
+  return seal;
+}
+
 }  // namespace
 
 Examination examine_sweep(const std::string& path) {
   std::vector<std::byte> image = read_file(path);
-  const Seal seal = look_at_seal(image);
-  if (seal != Seal::whole) rehearse(path, [&] { examine(image, seal, path); });
+  const Seal seal = try_unless_whole(image, path);
   return examine(image, seal, path);
+}
+
+void try_before_mpi(const std::string& path) try {
+  if (!looks_like_hdf5(path)) return;
+  std::vector<std::byte> image = read_file(path);
+  try_unless_whole(image, path);
+} catch (const std::exception&) {
+  // the reading itself throws it again
 }
 
 SweepFile read_sweep(const std::string& path) {

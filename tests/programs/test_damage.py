@@ -214,7 +214,7 @@ class Damage(ProgramTest):
         with self.assertRaises(clogsweep.Damaged):
             clogsweep.open(copy)
 
-    def test_python_reads_unsealed_runs_only_of_formats_without_checksums(self):
+    def test_python_refuses_an_unsealed_run(self):
         self.succeed("clogrun", "array", *QUICK, "seeds=1", "--output", "r.h5", "--polygon-interval", 5)
         run = self.folder / "r.h5"
         content = run.read_bytes()
@@ -253,6 +253,9 @@ class Damage(ProgramTest):
         self.assertIn("copied or changed by another program", said.stderr)
         self.assertEqual(said.stdout, self.succeed("clogfit", "s.h5").stdout)
         pandas.testing.assert_frame_equal(clogsweep.open(self.folder / "packed.h5").rows, clogsweep.open(self.file).rows)
+        self.assertIn("copied or changed by another program", self.succeed("clogsweep", *SETTINGS[:-1], "packed.h5").stderr)
+        self.assertIs(stored.is_sealed(self.folder / "packed.h5"), True, "the sweep has written it anew")
+        pandas.testing.assert_frame_equal(table(self.folder / "packed.h5"), self.rows)
 
     def test_a_table_of_another_description_is_not_read(self):
         """What a description says is compared with what is written here before a row is read."""
