@@ -95,9 +95,7 @@ void read_lines(const std::string& path, const std::string& length_name, const P
 store::TrajectoryTable read_passage(const std::string& path) {
   store::TrajectoryTable table = store::read_trajectory(path);
   if (!table.is_checked)
-    console::say(
-        path +
-        " was copied or changed by another program, or is of an older format: damage to it may go unnoticed");
+    console::say(path + " was copied or changed by another program: damage to it may go unnoticed");
   return table;
 }
 

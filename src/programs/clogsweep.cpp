@@ -171,6 +171,17 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, parallel::IsolatedJo
   return console::exit_success;
 }
 
+/// The file that a sweep may resume, before its command line is checked; empty if none is named.
+std::string named_output(int argc, const char* const* argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word == "--output" && i + 1 < argc) return argv[i + 1];
+    for (const std::string_view form : {"--output=", "output="})
+      if (word.starts_with(form)) return std::string(word.substr(form.size()));
+  }
+  return "";
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -184,7 +195,9 @@ int main(int argc, char** argv) {
   const int exit_code = cli::run_program(program, [&] {
     require_memory("start MPI", memory_of_mpi);
     host::require_open_files();
-    isolated.emplace(conduct::assigned_jobs);  // before MPI begins
+    // Before MPI begins.
+    isolated.emplace(conduct::assigned_jobs);
+    if (parallel::Communicator::may_be_rank_0()) store::try_before_mpi(named_output(argc, argv));
     return console::exit_success;
   });
   if (exit_code != console::exit_success) return exit_code;

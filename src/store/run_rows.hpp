@@ -10,9 +10,14 @@
 
 namespace clog::store {
 
+inline constexpr const char* trajectory_kind = "clogsweep trajectory";
+
 /// Makes the dataset /runs with these rows in an open file, and the root attributes: kind, format version,
 /// provenance, and the checksums of all of them. @throws Error naming the path that it is to have
 void write_runs(hid_t file, const std::string& kind, std::span<const sweep::RunRow> rows,
                 const Provenance& provenance, const std::string& path);
+
+/// @throws Error if the open file has a format version that this program does not read
+void require_readable_version(hid_t file, const std::string& path);
 
 }  // namespace clog::store

@@ -9,15 +9,14 @@
 #include "clog/sweep/value_list.hpp"
 #include "file_io.hpp"
 #include "hdf5.hpp"
-#include "rehearsal.hpp"
 #include "run_rows.hpp"
 #include "seal.hpp"
+#include "trial_read.hpp"
 
 namespace clog::store {
 namespace {
 
 constexpr const char* trajectory_name = "trajectory";
-constexpr const char* trajectory_kind = "clogsweep trajectory";
 
 /// Creates and fills a dataset; attributes can be added to what is returned.
 Dataset write_dataset(hid_t file, const char* name, hid_t type, std::initializer_list<hsize_t> shape,
@@ -134,6 +133,7 @@ TrajectoryTable read_image(std::vector<std::byte>& image, Seal seal, const std::
   if (read_attribute(file, "kind") != trajectory_kind || H5Lexists(file, trajectory_name, H5P_DEFAULT) <= 0)
     throw Error("cannot read " + path +
                 " (an HDF5 file, but not a trajectory); give a file written by clogrun --output");
+  require_readable_version(file, path);
   return {read_columns(file, path), read_attributes(file, path), seal == Seal::whole};
 }
 
@@ -150,7 +150,7 @@ TrajectoryTable read_trajectory(const std::string& path) {
   const Seal seal = look_at_seal(image);
   if (seal == Seal::broken)
     throw Error("cannot trust " + path + " (damaged: its checksum is not that of its bytes); run it again");
-  if (seal == Seal::missing) rehearse(path, [&] { read_image(image, seal, path); });
+  if (seal == Seal::missing) try_in_child(image, path, [&] { read_image(image, seal, path); });
   return read_image(image, seal, path);
 }
 
