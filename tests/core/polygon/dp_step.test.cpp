@@ -469,6 +469,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(InstructionSet, DecidesTheForcesOfReleasesToo) {
   // Other sets add up in another order and round less often: some bit of many differs.
   RunParameters run;
+  run.dp.vertices = 256;
   run.dp.line_tension = 0.3;
   run = resolve(run);
   const DropletState state = state_of(shaken(dumbbell(256, 0.1), 0.002));
