@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <array>
 #include <filesystem>
 #include <iostream>
 #include <limits>
@@ -21,11 +22,8 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/store/run_table.hpp"
-#include "clogfit_calibrate.hpp"
 #include "clogfit_compare.hpp"
 #include "clogfit_curve.hpp"
-#include "clogfit_deviation.hpp"
-#include "clogfit_drag.hpp"
 #include "clogfit_units.hpp"
 #include "laboratory_option.hpp"
 
@@ -112,31 +110,29 @@ int body(int argc, char** argv) {
   return console::exit_success;
 }
 
-/// One page of HTML about a sweep: python3 -m clogsweep report, which asks this very program for the numbers.
-int report(int argc, char** argv) {
+constexpr std::array python_commands = {"calibrate", "deviation", "drag", "report"};
+
+/// Runs python3 -m clogsweep COMMAND, which asks these very programs for numbers.
+int hand_over(int argc, char** argv) {
+  const std::string command = argv[1];
   // The user's own --programs comes later and has the last word.
-  std::vector<std::string> arguments = {"report", "--programs", cli::own_folder()};
+  std::vector<std::string> arguments = {command, "--programs", cli::own_folder()};
   arguments.insert(arguments.end(), argv + 2, argv + argc);
-  cli::become_python("clogfit report", cli::find_python_module(), arguments);
+  cli::become_python("clogfit " + command, cli::find_python_module(), arguments);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   console::prepare_streams();
-  if (argc > 1 && std::string_view(argv[1]) == "calibrate")
-    return cli::run_program("clogfit calibrate", [&] { return clogfit_calibrate(argc, argv); });
+  for (const std::string command : python_commands)
+    if (argc > 1 && argv[1] == command)
+      return cli::run_program("clogfit " + command, [&] { return hand_over(argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "compare")
     return cli::run_program("clogfit compare", [&] { return clogfit_compare(argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "curve")
     return cli::run_program("clogfit curve", [&] { return clogfit_curve(argc, argv); });
-  if (argc > 1 && std::string_view(argv[1]) == "deviation")
-    return cli::run_program("clogfit deviation", [&] { return clogfit_deviation(argc, argv); });
-  if (argc > 1 && std::string_view(argv[1]) == "drag")
-    return cli::run_program("clogfit drag", [&] { return clogfit_drag(argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "units")
     return cli::run_program("clogfit units", [&] { return clogfit_units(argc, argv); });
-  if (argc > 1 && std::string_view(argv[1]) == "report")
-    return cli::run_program("clogfit report", [&] { return report(argc, argv); });
   return cli::run_program(program, [&] { return body(argc, argv); });
 }
