@@ -91,7 +91,7 @@ def other_experiment(text: str, liquids: dict[str, str | None], folder: pathlib.
     """The answer of clogfit units for another droplet of the same liquids, such as "1.98mm 8.5deg", and its angle in degrees."""
     diameter, blank, angle = text.rpartition(" ")
     if not blank:
-        raise UserError(f'invalid --other={text} (needs a diameter and an angle) try "1.98mm 8.5deg"')
+        raise UserError(f"invalid --other={text} (needs a diameter and an angle) try \"1.98mm 8.5deg\"")
     try:
         tilted = experiment.quantities({**liquids, "diameter": diameter, "angle": angle}, folder)
     except UserError as error:
