@@ -115,7 +115,7 @@ def name_and_unit(cell: str) -> tuple[str, str]:
 
 def find_columns(cells: list[str], length: str, scales: Scales, folder: pathlib.Path | None) -> dict[str, tuple[int, float]]:
     """Index and factor of the columns `length`, v and, if it is there, A."""
-    found = {}
+    found: dict[str, tuple[int, float]] = {}
     for index, (name, unit) in enumerate(map(name_and_unit, cells)):
         if name == length:
             found[name] = index, column_factor(unit, "sigma", "length", scales.diameter, folder)

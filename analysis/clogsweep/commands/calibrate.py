@@ -55,7 +55,8 @@ def options() -> command_line.Parser:
 
 def split(words: Sequence[str]) -> tuple[list[str], list[str]]:
     """@return words for the parser, and keys for clogrun channel, which may stand anywhere and also be options"""
-    own, keys = [], []
+    own: list[str] = []
+    keys: list[str] = []
     rest = iter(words)
     for word in rest:
         name, equals, _ = word.partition("=")

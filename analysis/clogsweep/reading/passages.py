@@ -9,6 +9,7 @@ import numpy as np
 from ..tools.errors import UserError
 from ..tools.hints import Records
 from . import stored
+from .rehearsal import is_run
 
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 
@@ -32,7 +33,7 @@ def read(path: str) -> tuple[Records, np.void]:
                 raise UserError(f"cannot read {path} (an HDF5 file, but not one of clogrun); give a file written by clogrun channel")
             print(f"{path} was copied or changed by another program: damage to it may go unnoticed", file=sys.stderr)
         with h5py.File(path, "r") as file:
-            if not stored.is_run(file):
+            if not is_run(file):
                 raise UserError(f"cannot read {path} (holds a sweep, not a trajectory); give a file written by clogrun channel")
             table, row = file["trajectory"][:], file["runs"][0]
     except OSError as error:
