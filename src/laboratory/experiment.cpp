@@ -70,9 +70,4 @@ double Experiment::line_tension() const {
   return interfacial_tension / (gravity() * droplet_density * diameter * diameter);
 }
 
-double scaled_line_tension(double line_tension, const Experiment& from, const Experiment& to) {
-  const auto weight = [](const Experiment& lab) { return lab.diameter * lab.diameter * std::sin(lab.tilt); };
-  return line_tension * weight(from) / weight(to);
-}
-
 }  // namespace clog::laboratory

@@ -118,6 +118,16 @@ def sweep_to_draw(about: str | None, ending: str, what: str = "file of clogsweep
     return arguments
 
 
+def add_format(parser: argparse.ArgumentParser) -> None:
+    """--format, which is text or json."""
+    def known(word: str) -> str:
+        if word not in ("text", "json"):
+            raise UserError(f"invalid --format={word} (is not one of text, json)")
+        return word
+
+    parser.add_argument("--format", type=known, default="text", help="text or json (%(default)s)")
+
+
 def add_lab(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--lab", type=pathlib.Path, help="file that describes the laboratory, see clogfit units: scales in its units, too")
 

@@ -28,7 +28,5 @@ struct Experiment {
   /// Gamma_exp = gamma/(g_exp rho_droplet sigma^2) (Cheng et al., Eq. 7)
   double line_tension() const;
 };
-/// Gamma of another experiment with the same liquids: it goes with 1/(sigma^2 sin(tilt)).
-double scaled_line_tension(double line_tension, const Experiment& from, const Experiment& to);
 
 }  // namespace clog::laboratory
