@@ -1,7 +1,6 @@
 """How far a simulated passage is from a measured one (Cheng et al., Delta_v and Delta_A)."""
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -14,25 +13,17 @@ NEVER_REACHED = 10
 FEWEST_CORRELATED = 8
 
 
-class Deviation(NamedTuple):
-    """Root mean squares or correlations of residuals; NaN if unknown."""
-
-    speed: float
-    shape: float
-
-
 def speed_residuals(measured: Profile, simulated: Profile) -> tuple[Numbers, int]:
     """v_measured/v_simulated - 1 of each frame, and the number of frames that the simulated droplet never came to.
 
     Such a frame counts 10, and 10 more for each missing diameter, which gives a search among droplets that clog a direction.
     """
     speed = at(simulated, measured.h).speed
+    never = np.isnan(speed)
     with np.errstate(all="ignore"):
         found = np.clip(measured.speed / speed - 1, -NEVER_REACHED, NEVER_REACHED)
     found[~(speed > 0)] = NEVER_REACHED  # it stands still, or is pushed back
-    never = np.isnan(speed)
-    missing = np.maximum(0, measured.h - max(simulated.h, default=math.inf))
-    found[never] = NEVER_REACHED * (1 + missing[never])
+    found[never] += NEVER_REACHED * np.maximum(0, measured.h - max(simulated.h))[never]
     return found, int(never.sum())
 
 
@@ -47,20 +38,7 @@ def root_mean_square(values: Numbers) -> float:
     return float(np.sqrt(np.mean(values**2))) if len(values) else math.nan
 
 
-def deviation(measured: Profile, simulated: Profile) -> Deviation:
-    return Deviation(root_mean_square(speed_residuals(measured, simulated)[0]), root_mean_square(shape_residuals(measured, simulated)))
-
-
-def serial_correlation(values: Numbers) -> float:
-    squares = float(values @ values)
-    return float(values[1:] @ values[:-1]) / squares if len(values) >= FEWEST_CORRELATED and squares > 0 else math.nan
-
-
-def residual_correlation(measured: Profile, simulated: Profile) -> Deviation:
-    """Correlation about zero of the residuals of successive frames in the order of h.
-
-    It is within 1/sqrt(frames) of zero for independent noise, and near one where the simulated profile has another shape.
-    """
-    order = np.argsort(measured.h, kind="stable")
-    frames = Profile(*(values[order] for values in measured))
-    return Deviation(serial_correlation(speed_residuals(frames, simulated)[0]), serial_correlation(shape_residuals(frames, simulated)))
+def correlation(residuals: Numbers) -> float:
+    """Of successive residuals, about zero: within 1/sqrt(residuals) of zero for independent noise, and near one where the profiles differ in shape."""
+    squares = float(residuals @ residuals)
+    return float(residuals[1:] @ residuals[:-1]) / squares if len(residuals) >= FEWEST_CORRELATED and squares > 0 else math.nan

@@ -18,35 +18,31 @@ contain errors of the model or its mesh: for frames without noise they are too s
 import argparse
 import math
 import os
-import pathlib
+import statistics
 import sys
 from collections.abc import Sequence
-from typing import Any
 
-from ..calibration import channel, experiment, profiles, trials
-from ..calibration.profiles import Trial
+from ..calibration import laboratory, profiles, trials
+from ..calibration.profiles import Channel
 from ..calibration.search import Calibration
-from ..calibration.trials import Mean
+from ..calibration.simulation import Clogrun
 from ..reading import programs
 from ..tools.errors import UserError
+from ..tools.texts import printable
 from . import command_line
 
-QUANTITIES = ("diameter", "speed", "angle", "density", "outer-density", "tension")
-OWN = (*QUANTITIES, "other", "format", "programs")
+QUANTITIES = {"diameter": "of the undeformed droplet, e.g. 3.5mm", "speed": "terminal, far from walls, e.g. 7mm/s",
+              "angle": "of the plates to the horizontal, e.g. 28deg", "density": "of the droplet (0.703g/ml)",
+              "outer-density": "of the liquid around it (0.997g/ml)", "tension": "interfacial, e.g. 10mN/m: for Gamma_exp"}
+OWN = (*QUANTITIES, "other", "format", "programs", "help", "version")
 FOUND = ("line-tension", "near-wall-drag")
-# Options of clogrun that are no keys.
-NOT_KEYS = ("output", "sample-interval", "polygon-interval", "frames", "most-frames", "dry-run", "write-obstacles", "lab", "to-rest", "system", "file", "task")
 
 
 def options() -> command_line.Parser:
     parser = command_line.Parser(__doc__)
     parser.add_argument("profiles", nargs="*", help="CSV files, or files written by clogrun channel, one per trial; and KEY=VALUE")
-    parser.add_argument("--diameter", help="of the undeformed droplet, e.g. 3.5mm")
-    parser.add_argument("--speed", help="terminal, far from walls, e.g. 7mm/s")
-    parser.add_argument("--angle", help="of the plates to the horizontal, e.g. 28deg")
-    parser.add_argument("--density", default="0.703g/ml", help="of the droplet (%(default)s)")
-    parser.add_argument("--outer-density", default="0.997g/ml", help="of the liquid around it (%(default)s)")
-    parser.add_argument("--tension", help="interfacial, e.g. 10mN/m: for Gamma_exp")
+    for name, meaning in QUANTITIES.items():
+        parser.add_argument(f"--{name}", help=meaning)
     parser.add_argument("--other", help="another experiment's diameter and angle, to scale Gamma to")
     command_line.add_format(parser)
     programs.add_option(parser)
@@ -60,22 +56,18 @@ def split(words: Sequence[str]) -> tuple[list[str], list[str]]:
     rest = iter(words)
     for word in rest:
         name, equals, _ = word.partition("=")
-        if not word.startswith("-"):
-            (keys if equals and not os.path.exists(word) else own).append(word)
-        elif name in ("-h", "--help"):
-            own.append(word)
-        elif name.startswith("--") and name[2:] in NOT_KEYS:
-            raise UserError(f"unknown option {name}; {command_line.name()} --help lists the options")
+        if name.startswith("--") and name[2:] not in OWN:
+            keys.append(word if equals else f"{word}={next(rest, '')}")
+        elif equals and not word.startswith("-") and not os.path.exists(word):
+            keys.append(word)
         else:
-            (own if name[2:] in OWN else keys).append(word if equals else f"{word}={next(rest, '')}")
+            own.append(word)
     return own, keys
 
 
-def names_of(keys: Sequence[str]) -> set[str]:
-    return {word.partition("=")[0].lstrip("-") for word in keys}
-
-
 def refuse_contradictions(arguments: argparse.Namespace, names: set[str]) -> None:
+    if not arguments.profiles:
+        raise UserError("missing profile; try clogfit calibrate trial.csv --orifice 0.7")
     for key in FOUND:
         if key in names:
             raise UserError(f"--{key} is what {command_line.name()} finds; leave it out")
@@ -88,102 +80,84 @@ def refuse_contradictions(arguments: argparse.Namespace, names: set[str]) -> Non
         raise UserError("--angle needs --diameter and --speed")
 
 
-def other_experiment(text: str, liquids: dict[str, str | None], folder: pathlib.Path) -> tuple[dict[str, Any], float]:
-    """The answer of clogfit units for another droplet of the same liquids, such as "1.98mm 8.5deg", and its angle in degrees."""
-    diameter, blank, angle = text.rpartition(" ")
-    if not blank:
-        raise UserError(f"invalid --other={text} (needs a diameter and an angle) try \"1.98mm 8.5deg\"")
-    try:
-        tilted = experiment.quantities({**liquids, "diameter": diameter, "angle": angle}, folder)
-    except UserError as error:
-        raise UserError(f"invalid --other={text}: {error}") from error
-    upright = experiment.quantities({**liquids, "diameter": diameter}, folder)
-    return tilted, math.degrees(math.asin(min(1, tilted["gravity_m_per_s2"] / upright["gravity_m_per_s2"])))
-
-
-def scaled(line_tension: float, here: dict[str, Any], there: dict[str, Any]) -> float:
-    """Gamma of another experiment: it goes with 1/(sigma^2 g)."""
-    def weight(answer: dict[str, Any]) -> float:
-        return answer["diameter_mm"] ** 2 * answer["gravity_m_per_s2"]
-
-    return line_tension * weight(here) / weight(there)
-
-
-def require_orifice(measured: Sequence[Trial], names: set[str]) -> None:
-    """Gamma hangs on the orifice; a file of clogrun says which it was."""
-    if any(trial.channel is None for trial in measured) and "orifice" not in names:
+def refuse_other_channel(file: str, stored: Channel | None, simulated: Channel, names: set[str]) -> None:
+    """Gamma depends on the channel, of which a measured passage does not say which it was."""
+    if stored is None and "orifice" not in names:
         raise UserError("missing orifice (the line tension that is found depends on the channel) give its width in droplet diameters, "
                         "e.g. orifice=0.8, and wedge-angle, tip-radius unless they are those of --help")
+    for name, was, given in zip(Channel._fields, stored or (), simulated):
+        key = name.replace("_", "-")
+        if not math.isclose(was, given, rel_tol=1e-12):
+            raise UserError(f"{file} was written with {key}={was:.12g}, not {given:.12g}; give {key}={was:.12g}")
 
 
-def print_table(files: Sequence[str], found: Sequence[Calibration], mean: Mean) -> None:
+def means(found: Sequence[Calibration]) -> dict[str, float]:
+    """Mean and standard deviation over independent trials, as published (Cheng et al., Fig. 2); the latter is NaN for one trial."""
+    values = {"line_tension": [one.line_tension for one in found], "near_wall_drag": [one.near_wall_drag for one in found]}
+    every: dict[str, float] = {}
+    for name, numbers in values.items():
+        every |= {name: statistics.fmean(numbers), f"{name}_deviation": statistics.stdev(numbers) if len(numbers) > 1 else math.nan}
+    return every
+
+
+def print_table(files: Sequence[str], found: Sequence[Calibration], mean: dict[str, float]) -> None:
     width = max(7, *map(len, files))
     print(f"{'profile':{width}}    Gamma*        +-  b_0/b_inf        +-   Delta_v   Delta_A")
     for file, one in zip(files, found):
         print(f"{file:{width}}  {one.line_tension:>8.4g}  {one.line_tension_error:>8.2g}  {one.near_wall_drag:>9.4g}  {one.near_wall_drag_error:>8.2g}"
-              f"  {one.deviation.speed:>8.3g}  {one.deviation.shape:>8.3g}")
+              f"  {one.delta_v:>8.3g}  {one.delta_a:>8.3g}")
     for file, one in zip(files, found):
-        for warning in trials.warnings(one):
+        for warning in one.warnings:
             print(f"note: {file}: {warning}")
     if len(found) > 1:
-        print(f"\nmean of {len(found)} trials and their standard deviation: Gamma* = {mean.line_tension:.3g} +- {mean.line_tension_deviation:.2g}, "
-              f"b_0*/b_inf = {mean.near_wall_drag:.3g} +- {mean.near_wall_drag_deviation:.2g}")
+        print("\nmean of {} trials and their standard deviation: Gamma* = {:.3g} +- {:.2g}, b_0*/b_inf = {:.3g} +- {:.2g}".format(len(found), *mean.values()))
     else:
         print("\none trial: errors are from the scatter of its frames")
-
-
-def as_json(file: str, found: Calibration) -> dict[str, Any]:
-    return {"profile": file, "line_tension": found.line_tension, "line_tension_error": found.line_tension_error,
-            "near_wall_drag": found.near_wall_drag, "near_wall_drag_error": found.near_wall_drag_error,
-            "delta_v": found.deviation.speed, "delta_a": found.deviation.shape,
-            "speed_correlation": found.correlation.speed, "shape_correlation": found.correlation.shape,
-            "converged": found.is_converged, "clogging_tension": found.clogging_tension, "simulations": found.num_simulations,
-            "warnings": trials.warnings(found)}
 
 
 def body() -> int:
     words, keys = split(sys.argv[1:])
     arguments = options().parse_args(words)
-    if not arguments.profiles:
-        raise UserError("missing profile; try clogfit calibrate trial.csv --orifice 0.7")
-    names = names_of(keys)
+    names = {word.partition("=")[0].lstrip("-") for word in keys}
     refuse_contradictions(arguments, names)
     folder = programs.programs_in(arguments.programs)
     given = {name: getattr(arguments, name.replace("-", "_")) for name in QUANTITIES}
-    lab = experiment.quantities(given, folder)
-    liquids = {name: given[name] for name in ("density", "outer-density")}
-    other = other_experiment(arguments.other, liquids, folder) if arguments.other else None
-    if arguments.angle:
-        keys.append(f"terminal-speed={lab['terminal_speed']!r}")
-    simulated = channel.channel_of(channel.config_of(folder, keys))
-    scales = experiment.scales(given, lab)
-    measured = [profiles.read_trial(file, scales, folder) for file in arguments.profiles]
-    for trial in measured:
-        trials.refuse_other_channel(trial, simulated)
-    require_orifice(measured, names)
-    if arguments.format == "text":
-        print(f"channel: orifice={simulated.orifice:.12g} wedge-angle={simulated.wedge_angle:.12g} tip-radius={simulated.tip_radius:.12g}, "
-              f"V_t = {simulated.terminal_speed:.4g}\n", flush=True)
-
-    found = trials.calibrate(folder, keys, measured)
-    mean = trials.combine(found)
-    in_lab: dict[str, float] = {}
-    if arguments.angle:
-        in_lab["gravity"] = lab["gravity_m_per_s2"]
+    lab, scales = laboratory.quantities(given, folder)
+    in_lab = {"gravity": lab["gravity_m_per_s2"]} if arguments.angle else {}
     if arguments.tension:
         in_lab["line_tension_experiment"] = lab["line_tension_experiment"]
-    if other:
-        in_lab["line_tension_scaled"] = scaled(mean.line_tension, lab, other[0])
-    if arguments.format == "json":
-        every = [as_json(file, one) for file, one in zip(arguments.profiles, found)]
-        experiment.print_json({**experiment.version_of(lab), "trials": every, **mean._asdict(), **simulated._asdict(), **in_lab})
-        return 0
-    print_table(arguments.profiles, found, mean)
+    if arguments.other:
+        diameter, blank, angle = arguments.other.rpartition(" ")
+        if not blank:
+            raise UserError(f"invalid --other={arguments.other} (needs a diameter and an angle) try \"1.98mm 8.5deg\"")
+        other = laboratory.quantities({**given, "diameter": diameter, "angle": angle, "speed": None}, folder)[0]
     if arguments.angle:
-        print(f"g_exp = {in_lab['gravity']:.3g} m/s^2")
+        keys.append(f"terminal-speed={lab['terminal_speed']}")
+    clogrun = Clogrun(folder)
+    simulated = clogrun.channel(keys)
+    measured = []
+    for file in arguments.profiles:
+        frames, stored = profiles.read_trial(file, scales)
+        refuse_other_channel(file, stored, simulated, names)
+        measured.append(frames)
+    if arguments.format == "text":
+        print("channel: orifice={:.12g} wedge-angle={:.12g} tip-radius={:.12g}, V_t = {:.4g}\n".format(*simulated), flush=True)
+
+    found = trials.calibrate(clogrun, keys, arguments.profiles, measured)
+    mean = means(found)
+    if arguments.other:  # Gamma goes with 1/(sigma^2 g)
+        weight, other_weight = (answer["diameter_mm"] ** 2 * answer["gravity_m_per_s2"] for answer in (lab, other))
+        in_lab["line_tension_scaled"] = mean["line_tension"] * weight / other_weight
+    if arguments.format == "json":
+        every = [{"profile": file, **one._asdict()} for file, one in zip(arguments.profiles, found)]
+        laboratory.print_json(lab, {"trials": every, **mean, **simulated._asdict(), **in_lab})
+        return 0
+    print_table([printable(file) for file in arguments.profiles], found, mean)
+    if arguments.angle:
+        print(f"g_exp = {lab['gravity_m_per_s2']:.3g} m/s^2")
     if arguments.tension:
-        in_experiment = in_lab["line_tension_experiment"]
-        print(f"Gamma_exp = {in_experiment:.3g}, Gamma*/Gamma_exp = {mean.line_tension / in_experiment:.3g}")
-    if other:
-        print(f"Gamma** = {in_lab['line_tension_scaled']:.3g} for a droplet of {other[0]['diameter_mm']:.3g} mm at {other[1]:.3g} degrees")
+        in_experiment = lab["line_tension_experiment"]
+        print(f"Gamma_exp = {in_experiment:.3g}, Gamma*/Gamma_exp = {mean['line_tension'] / in_experiment:.3g}")
+    if arguments.other:
+        print(f"Gamma** = {in_lab['line_tension_scaled']:.3g} for a droplet of {diameter} at {angle}")
     return 0

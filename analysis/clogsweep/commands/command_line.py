@@ -35,11 +35,21 @@ def name() -> str:
     return os.environ.get("CLOG_CALLED_AS") or _own_name or pathlib.Path(sys.argv[0]).name
 
 
+class ShowVersion(argparse.Action):
+    """Prints the version of the programs that a command calls, under the command's name."""
+
+    def __call__(self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, *_: object) -> NoReturn:
+        clogfit = programs.programs_in(getattr(namespace, "programs", None)) / "clogfit"
+        print(name() + programs.run_program(clogfit, "--version").removeprefix("clogfit"), end="")
+        parser.exit()
+
+
 class Parser(argparse.ArgumentParser):
     """Options of a command. @param about  its docstring"""
 
     def __init__(self, about: str | None) -> None:
         super().__init__(prog=name(), description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
+        self.add_argument("--version", action=ShowVersion, nargs=0, help="print versions and leave")
 
     def error(self, message: str) -> NoReturn:
         raise UserError(f"{message}; {name()} --help lists the options")

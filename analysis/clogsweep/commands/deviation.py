@@ -7,8 +7,7 @@ All are CSV files with the header h [sigma], v [v_t], A, or written by clogrun c
 of time and interpolated to the measured h.
 """
 
-from ..calibration import experiment, profiles
-from ..calibration.deviation import deviation
+from ..calibration import deviation, laboratory, profiles
 from ..reading import programs
 from ..tools.errors import UserError
 from . import command_line
@@ -21,12 +20,11 @@ def body() -> int:
     arguments = parser.parse_args()
     if len(arguments.profiles) < 2:
         raise UserError("missing profiles; try clogfit deviation measured.csv simulated.csv")
-    folder = programs.programs_in(arguments.programs)
-    measured_file, *simulated_files = arguments.profiles
-    measured = profiles.read_trial(measured_file, folder=folder).frames
-    found = []
-    for file in simulated_files:
-        speed, shape = deviation(measured, profiles.read_profile(file, folder=folder))
-        found.append({"profile": file, "delta_v": speed, "delta_a": shape})
-    experiment.print_json({**experiment.version_of(experiment.quantities({}, folder)), "measured": measured_file, "deviations": found})
+    answer, _ = laboratory.quantities({}, programs.programs_in(arguments.programs))
+    measured_file, *files = arguments.profiles
+    measured = profiles.read_trial(measured_file)[0]
+    every = [profiles.read_profile(file)[0] for file in files]
+    laboratory.print_json(answer, {"measured": measured_file, "deviations": [
+        {"profile": file, "delta_v": deviation.root_mean_square(deviation.speed_residuals(measured, simulated)[0]),
+         "delta_a": deviation.root_mean_square(deviation.shape_residuals(measured, simulated))} for file, simulated in zip(files, every)]})
     return 0
