@@ -9,9 +9,6 @@ namespace clog::laboratory {
 /// @throws Error naming the units that are understood
 double to_si(const std::string& text, const std::string& units);
 
-/// Factor from a unit alone. @throws Error
-double si_factor(const std::string& unit, const std::string& units);
-
 /// A droplet between two plates that are tilted, driven by buoyancy; all in SI units.
 struct Experiment {
   double diameter = 0;        ///< of the undeformed droplet [m]
