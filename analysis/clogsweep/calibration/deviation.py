@@ -39,6 +39,6 @@ def root_mean_square(values: Numbers) -> float:
 
 
 def correlation(residuals: Numbers) -> float:
-    """Of successive residuals, about zero: within 1/sqrt(residuals) of zero for independent noise, and near one where the profiles differ in shape."""
+    """The correlation of successive residuals about zero: within 1/sqrt(residuals) of zero for noise, near one where the profiles differ in shape."""
     squares = float(residuals @ residuals)
     return float(residuals[1:] @ residuals[:-1]) / squares if len(residuals) >= FEWEST_CORRELATED and squares > 0 else math.nan

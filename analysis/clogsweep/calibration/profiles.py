@@ -6,13 +6,11 @@ import math
 import os
 import pathlib
 import stat
-import sys
 from typing import NamedTuple
 
-import h5py
 import numpy as np
 
-from ..reading import rehearsal, stored
+from ..reading import passages
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
 
@@ -120,20 +118,8 @@ def read_table(path: str, length: str, scales: Scales) -> Numbers:
 
 
 def read_run(path: str) -> tuple[Profile, np.void]:
-    """Samples and row of a passage. A file without a seal, which another program copied or changed, is read with a warning.
-
-    @throws Damaged; UserError  for a file of another kind
-    """
-    try:
-        if not stored.is_sealed(path):
-            stored.look(path)
-            print(f"{path} was copied or changed by another program: damage to it may go unnoticed", file=sys.stderr)
-        with h5py.File(path, "r") as file:
-            if not (rehearsal.is_ours(file) and rehearsal.is_run(file) and "h" in file["trajectory"].dtype.names):
-                raise UserError(f"cannot read {path} (not a passage through a channel); give a file written by clogrun channel")
-            table, row = file["trajectory"][:], file["runs"][0]
-    except OSError as error:
-        raise stored.unreadable(path, stored.why_not_open(path, error), stored.RUN) from error
+    """Samples and row of a passage that clogrun wrote. @throws UserError; Damaged"""
+    table, row = passages.read(path)
     return Profile(table["h"], table["speed_ratio"], table["shape_parameter"]), row
 
 
@@ -143,14 +129,9 @@ def at(profile: Profile, h: Numbers) -> Profile:
     return Profile(h, *(np.interp(h, profile.h[first], values[first], left=math.nan, right=math.nan) for values in profile[1:]))
 
 
-def is_run(path: str) -> bool:
-    """False for a file that is not there, and for pipes, which may never end."""
-    return os.path.isfile(path) and h5py.is_hdf5(path)
-
-
 def read_profile(path: str, scales: Scales = Scales()) -> tuple[Profile, np.void | None]:
     """Every frame of a text file, or every sample and the row of a file of clogrun channel. @throws UserError; Damaged"""
-    profile, row = read_run(path) if is_run(path) else (Profile(*read_table(path, "h", scales)), None)
+    profile, row = read_run(path) if passages.is_hdf5(path) else (Profile(*read_table(path, "h", scales)), None)
     if len(profile.h) < FEWEST_FRAMES:
         raise UserError(f"{path} holds fewer than three frames; give a longer one")
     return profile, row

@@ -95,7 +95,7 @@ class Clogrun:
         words += [f"start={start}", f"end={end}", f"max-time={SLOWEST * (end - start) / channel.terminal_speed}", f"--sample-interval={SAMPLE_INTERVAL}"]
 
         def simulate(line_tension: float, near_wall_drag: float) -> Profile:
-            """Of a droplet that breaks or clogs, as far as it came."""
+            """The passage, which ends where the droplet breaks or clogs."""
             with tempfile.TemporaryDirectory(prefix="clogsweep-calibrate-") as place:
                 self(*words, f"line-tension={line_tension}", f"near-wall-drag={near_wall_drag}", f"--output={place}/run.h5")
                 return read_run(f"{place}/run.h5")[0]

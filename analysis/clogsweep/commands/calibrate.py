@@ -9,7 +9,9 @@ One file per trial.
 
 A profile is a CSV file with the header h [sigma], v [v_t], A or, with --diameter and --speed, in laboratory units such
 as h [mm], v [mm/s], A; or what clogrun channel has written. With --angle the terminal speed V_t follows from the laboratory's
-quantities. Keys of the droplet and its channel (clogrun channel --help) are given as KEY=VALUE or as options.
+quantities.
+
+Keys of the droplet and its channel (clogrun channel --help) are given as KEY=VALUE or as options.
 
 Errors (+-) come from the scatter of a trial's frames about the best run, treated as independent noise. They do not
 contain errors of the model or its mesh: for frames without noise they are too small.
