@@ -125,6 +125,11 @@ class Calibrate(OnATerminal):
         done = self.succeed("clogfit", "deviation", "channel.h5", "channel.h5")
         self.assertIn("may go unnoticed", done.stderr)
 
+    def test_commands_in_python_have_the_version_of_the_programs(self):
+        version = self.succeed("clogfit", "--version").stdout
+        for command in ("calibrate", "curve", "deviation", "drag", "report"):
+            self.assertEqual(self.succeed("clogfit", command, "--version").stdout, version.replace("clogfit", f"clogfit {command}", 1))
+
     def test_its_help_says_what_the_errors_leave_out(self):
         self.assertIn("for frames without noise they are too small", self.succeed("clogfit", "calibrate", "--help").stdout)
 
