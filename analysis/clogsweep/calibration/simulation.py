@@ -46,8 +46,8 @@ class Clogrun:
             if self.stopping.is_set():
                 raise Stopped
             # In a session of its own the terminal does not send it SIGINT.
-            with subprocess.Popen([self.program, "channel", *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                  errors="backslashreplace", start_new_session=True) as process:
+            with subprocess.Popen([self.program, "channel", *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                  encoding="utf-8", errors="backslashreplace", start_new_session=True) as process:
                 self.running.add(process)
                 if self.stopping.is_set():  # since it was asked above
                     process.terminate()
