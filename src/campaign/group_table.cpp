@@ -322,15 +322,14 @@ std::string wrapped(const std::vector<std::string>& words) {
   return text;
 }
 
-/// The cells of one line across a device: where, how many droplets came past it, of how many, share, interval.
+/// One line across a device: where, how many droplets came past it and of how many, share and interval.
 void append_passage(const Passage& passage, std::vector<std::string>& line) {
   const int num_known = passage.num_passed + passage.num_stopped;
   line.push_back(fmt::format("{:.4g}", passage.x));
   line.push_back(fmt::format("{}", passage.num_passed));
   line.push_back(fmt::format("{}", num_known));
-  line.push_back(num_known == 0
-                     ? "-"
-                     : fmt::format("{:.2f}", static_cast<double>(passage.num_passed) / num_known));
+  line.push_back(num_known == 0 ? "-"
+                                : fmt::format("{:.2f}", static_cast<double>(passage.num_passed) / num_known));
   line.push_back(num_known == 0 ? "-"
                                 : fmt::format("{:.2f} .. {:.2f}", passage.share.lower, passage.share.upper));
 }
@@ -339,7 +338,7 @@ bool are_counts_equal(const Passage& one, const Passage& other) {
   return one.num_passed == other.num_passed && one.num_stopped == other.num_stopped;
 }
 
-/// Of many lines those at which the counts change, and the last.
+/// Among many lines those at which the counts change, and the last.
 std::vector<Passage> shown_passages(const std::vector<Passage>& all) {
   constexpr std::size_t most_lines = 8;
   if (all.size() <= most_lines) return all;
@@ -406,8 +405,8 @@ std::string to_text(const std::vector<Group>& groups, double confidence, SharedP
     append_shown(parameter_texts(group, groups), shown, line);
     for (const ResultColumn& column : columns) line.push_back(column.cell(group));
   }
-  return text + "\n\n" + console::aligned(lines) + table_of_passages(groups, shown, confidence) + legend(groups) +
-         column_notes(groups) + note_of_rest(groups) + left_out(groups);
+  return text + "\n\n" + console::aligned(lines) + table_of_passages(groups, shown, confidence) +
+         legend(groups) + column_notes(groups) + note_of_rest(groups) + left_out(groups);
 }
 
 std::string to_csv(const std::vector<Group>& groups) {

@@ -57,6 +57,7 @@ class Commands(Analysis):
         super().setUp()
         self.write("sweep.cfg", "".join(word.replace("=", " = ") + "\n" for word in SWEEP))
         self.write("posts.csv", "x,y\n" + "".join(f"{x},{y}\n" for x in range(20) for y in range(20)))
+        self.write("post.csv", "47,5.02\n")
         self.write("points.csv", "line-tension,obstacle-density\n0.5,0.4\n1,0.5\n")
         for name, keys in {"robust": [*FEW, "preset=robust"], "elastic": [*FEW, "preset=elastic"], "monday": [*FEW, "inertia=1"],
                            "tuesday": [*FEW, "inertia=2"], "sweep": SWEEP, "frictions": [*SWEEP, "friction=0,0.1"],
@@ -65,6 +66,7 @@ class Commands(Analysis):
             self.copy_sweep(f"{name}.h5", *keys)
         self.write("fit.json", self.succeed("clogfit", "sweep.h5", "--format", "json").stdout)
         self.succeed("clogsweep", "obstacles=posts.csv", "box=20", "release=anywhere", "vertices=64", "max-time=20", "seeds=1..2", "--output", "device.h5")
+        self.succeed("clogrun", "array", "line-tension=0.5", *SHORT["clogrun array"], "--output", "run.h5", "--polygon-interval", "2")
         angles = 2 * np.pi * np.arange(48) / 48
         post = 30 * np.column_stack([np.cos(angles), np.sin(angles)])
         (self.folder / "mask.gds").write_bytes(gdsii([post + [200 * x, 200 * y] for x in range(4) for y in range(4)], 1e-6))
@@ -79,13 +81,13 @@ class Commands(Analysis):
         made = [words[words.index(option) + 1] for option in ("--output", "--frames") if option in words]
         for name in made:
             for path in self.folder.glob(f"{name.removesuffix('.h5')}*"):
-                if path.is_file() and (path.name == name or not name.endswith(".h5")):
+                if path.is_file() and (path.name == name or ".h5" not in (name[-3:], path.suffix)):
                     path.unlink()
         for word in words:
             name = word.removeprefix("obstacles=")
             source = {".h5": "sweep.h5", ".csv": "posts.csv"}.get(pathlib.Path(name).suffix)
             if source and name not in made and "/" not in name and not (self.folder / name).exists():
-                shutil.copyfile(self.folder / source, self.folder / name)
+                shutil.copyfile(self.prepared / source, self.folder / name)
 
     def check(self, words):
         program, *rest = ["frictions.h5" if word == "sweep.h5" and "--by" in words else word for word in words]
@@ -125,10 +127,11 @@ class Commands(Analysis):
             self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_every_command_of_the_other_pages(self):
+        self.prepared = self.folder
         for page in PAGES:
             with tempfile.TemporaryDirectory(prefix="clog_page_") as name:
-                prepared, self.folder = self.folder, pathlib.Path(name)
-                shutil.copytree(prepared, self.folder, dirs_exist_ok=True)
+                self.folder = pathlib.Path(name)
+                shutil.copytree(self.prepared, self.folder, dirs_exist_ok=True)
                 for words in pages.commands(page):
                     own = own_program(words)
                     if not own and {*words} & {*PROGRAMS}:
@@ -136,13 +139,14 @@ class Commands(Analysis):
                     elif own:
                         with self.subTest(page=page, words=" ".join(words)):
                             self.check(own)
-                self.folder = prepared
+        self.folder = self.prepared
 
 
 class Pictures(Analysis):
     def stored(self, path):
         """@return the call of the program that made the rows of a picture, or nothing for those of figures"""
-        about = Image.open(path).info.get("Description", "")
+        with Image.open(path) as picture:
+            about = picture.info.get("Description", "")
         for line in about.splitlines():
             words = line.split()
             if words[:1] and words[0] in PROGRAMS and "--version" not in words and any("=" in word for word in words):

@@ -107,7 +107,7 @@ std::optional<DropletState> equilibrium_of_polygon(const RunParameters& run, con
   constexpr int most_yields = 20;
   // If all walls come to bear what they give, the excess is below the first one by then
   // (docs/notes/2026-11-25-searches-with-friction.md); otherwise it stays far above for all the yields.
-  constexpr int yields_until_excess_has_fallen = 6;
+  constexpr int yields_until_excess_has_fallen = 12;
   const double bearable = 1e-6 * units::droplet_mass * units::gravity / *run.dp.vertices;
   WallTouches touches(run, obstacles);
   double first_excess = 0;
