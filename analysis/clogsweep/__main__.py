@@ -25,6 +25,9 @@ COMMANDS = {
     "droplet": "one run as a picture or a film",
     "circles": "a drawing of a device, or a picture of one, as a file of circles",
     "device": "the circles of a sweep, with releases, clogs and some ways",
+    "calibrate": "line tension and near-wall drag from measured passages through a channel, as clogfit calibrate",
+    "deviation": "Delta_v and Delta_A of one passage from others, as clogfit deviation",
+    "drag": "exponent of the near-wall drag from speeds along a wall, as clogfit drag",
     "export-vtk": "one run for ParaView",
 }
 

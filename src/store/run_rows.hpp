@@ -17,7 +17,4 @@ inline constexpr const char* trajectory_kind = "clogsweep trajectory";
 void write_runs(hid_t file, const std::string& kind, std::span<const sweep::RunRow> rows,
                 const Provenance& provenance, const std::string& path);
 
-/// @throws Error if the open file has a format version that this program does not read
-void require_readable_version(hid_t file, const std::string& path);
-
 }  // namespace clog::store

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <span>
@@ -216,8 +217,7 @@ std::string text_as_written(hid_t file, const std::string& name, const Texts& ca
   return text;
 }
 
-}  // namespace
-
+/// @throws Error if the open file has a format version that this program does not read
 void require_readable_version(hid_t file, const std::string& path) {
   const std::string version = text_as_written(file, "format_version", readable_versions);
   if (std::ranges::find(readable_versions, version) == readable_versions.end())
@@ -226,8 +226,6 @@ void require_readable_version(hid_t file, const std::string& path) {
         "compute the rows anew",
         path, version, readable_versions.front(), format_version));
 }
-
-namespace {
 
 /// @throws Error if an open file is not one of our sweeps, or of a version that is not read
 void require_sweep(hid_t file, const std::string& path) {
@@ -416,7 +414,7 @@ Examination examine_sweep(const std::string& path) {
 }
 
 void try_before_mpi(const std::string& path) try {
-  if (!looks_like_hdf5(path)) return;
+  if (!std::filesystem::is_regular_file(path)) return;
   std::vector<std::byte> image = read_file(path);
   try_unless_whole(image, path);
 } catch (const std::exception&) {

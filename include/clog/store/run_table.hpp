@@ -20,9 +20,6 @@ using Provenance = std::vector<std::pair<std::string, std::string>>;
 /// Version of the HDF5 library, e.g. "1.10.8".
 std::string library_version();
 
-/// Is it a regular file that begins as HDF5 files do? Nothing is read from pipes.
-bool looks_like_hdf5(const std::string& path);
-
 /// @throws Error if the path exists: results are never overwritten
 void refuse_existing(const std::string& path);
 /// To be called before hours of work. @throws Error if the path exists or no file can be made there
