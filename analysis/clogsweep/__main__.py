@@ -14,6 +14,7 @@ COMMANDS = {
     "figures": "a figure of the article from runs of our own",
     "agreement": "the statements of the article compared with the results of this program",
     "report": "one page of HTML about a sweep, as clogfit report",
+    "refine": "values and seeds of a sweep where its curve needs them",
     "poster": "one page of a sweep to be printed",
     "clogging-length": "the clogging length against what a sweep varies",
     "dwell": "the same over the time after which a droplet that stands counts as clogged",

@@ -1,0 +1,1 @@
+"""The fitted curve, as a search needs it."""
