@@ -21,7 +21,6 @@ from collections.abc import Sequence
 from ..reading import programs, stored
 from ..refinement import critical_angle, curve_search, goals, rounds, settings
 from ..refinement.driver import Launcher, Limits, Search, refine
-from ..refinement.fitted import FittedCurve
 from ..refinement.membership import Membership, Resolved, Values, resolved_tasks
 from ..tools.errors import ProgramFailed, UserError
 from . import command_line
@@ -120,16 +119,16 @@ def body() -> int:
         fixed = pathlib.Path(folder, "settings.cfg") if arguments.dry_run else pathlib.Path(f"{beside}.cfg")
         fresh = not fixed.exists()
         rounds.write_durably(fixed, config + "\n")
-        known = ["--output", arguments.output] if arguments.output and arguments.output.exists() else []
+        there = ["--output", arguments.output] if arguments.output and arguments.output.exists() else []
 
-        def dry_run(lines: Sequence[rounds.Line]) -> str:
+        def points(lines: Sequence[rounds.Line]) -> list[object]:
             draft.write_text(rounds.points_text(keys, lines), encoding="utf-8")
-            return launcher.ask("--config", fixed, *options, "--points", draft, "--dry-run", *known)
+            return ["--config", fixed, *options, "--points", draft]
 
-        def resolve(values: Sequence[Values]) -> list[Resolved]:
-            first = int(settings.numbers(stored.settings(config)["seeds"])[0])
+        def resolve(asked: Sequence[Values]) -> list[Resolved]:
+            first = int(settings.numbers(values["seeds"])[0])
             try:
-                return resolved_tasks(dry_run([(one, (first, 1)) for one in values]))
+                return resolved_tasks(launcher.tasks(*points([(one, (first, 1)) for one in asked])))
             except ProgramFailed as failure:
                 if failure.exit_code != command_line.USER_FAULT:
                     raise
@@ -142,7 +141,7 @@ def body() -> int:
                 fixed.unlink()
             raise
         if arguments.dry_run:
-            table = dry_run(search.first_round())
+            table = launcher.ask(*points(search.first_round()), "--dry-run", *there)
             print(table, end="")
             cost = re.search(r"expected ([\d.e+-]+) core-hours", table)
             number = re.search(r"^# (\d+) tasks?:", table, re.MULTILINE)
@@ -151,7 +150,7 @@ def body() -> int:
             return 0
         comment = (f"Points of `python3 -m clogsweep refine {','.join(keys)}`, for clogsweep --points.\n"
                    "Each round is stored here before it starts; the same command reads them.")
-        return refine(search, launcher, members, FittedCurve(), rounds.StoredRounds(pathlib.Path(f"{beside}.csv"), keys, comment),
+        return refine(search, launcher, members, rounds.StoredRounds(pathlib.Path(f"{beside}.csv"), keys, comment),
                       arguments.output, ["--config", fixed, *options, *(["--verbose"] if arguments.verbose else []),
                                          *(["--quiet"] if arguments.quiet else [])],
                       Limits(arguments.max_hours), arguments.programs)

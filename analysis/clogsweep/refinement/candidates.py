@@ -3,17 +3,28 @@
 import itertools
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
+from ..curves.model import Curve
 from ..tools.hints import Numbers
-from .model import Curve, Points
 
 SERIES = (192, 96, 48, 24, 12, 6)  # preferred numbers per decade; the coarser series are parts of the finer ones
 MOST_VALUES = {1: 100, 2: 13}  # of each key, by the number of keys
 FIRST_VALUES = {1: 7, 2: 4}
 SHARE_OF_ROUND = 0.5  # work of a round, divided by that of all earlier rounds
 NEARNESS = 1e-3  # squared share of the range: points that are nearer count alike
+
+
+class Sums(NamedTuple):
+    """Sums over the runs at each place that is known, one entry per place."""
+
+    places: Numbers  # logarithms of the keys, shape (places, keys)
+    clogs: Numbers
+    distance: Numbers  # [sigma]
+    time: Numbers  # [t0]
+    work: Numbers  # steps times points of the droplet's outline
 
 
 def number_text(value: float) -> str:
@@ -47,7 +58,7 @@ def combinations(lists: Sequence[Sequence[float]]) -> list[tuple[float, ...]]:
     return [tuple(reversed(values)) for values in itertools.product(*reversed(lists))]
 
 
-def expected_runs(points: Points, places: Numbers, log_length: Numbers, max_time: float) -> tuple[Numbers, Numbers]:
+def expected_runs(points: Sums, places: Numbers, log_length: Numbers, max_time: float) -> tuple[Numbers, Numbers]:
     """Clogs and work to be expected of one run at each place. Speed and work per time are those of points nearby."""
     extent = np.ptp(places, axis=0)
     scale = np.where(extent > 0, extent, 1.0)

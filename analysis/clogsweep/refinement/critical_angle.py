@@ -11,7 +11,6 @@ from ..tools.hints import Records
 from .candidates import number_text
 from .curve_search import HOUR, UNFINISHED
 from .membership import Membership, Values
-from .model import Model
 from .rounds import Line
 
 KEY = "lattice-angle"
@@ -126,7 +125,7 @@ class AngleSearch:
                 here.count(float(row["distance"]), float(row["lateral_displacement"]), self._spacing)
         return [angles[angle] for angle in sorted(angles)], hours
 
-    def next_round(self, rows: Records, members: Membership, model: Model | None = None) -> list[Line]:
+    def next_round(self, rows: Records, members: Membership) -> list[Line]:
         """The points of the next round; none at the end of the search, whose reason is `end` then."""
         angles, hours = self._look(rows, members)
         lower, upper = bracket(angles)
@@ -144,7 +143,7 @@ class AngleSearch:
                             "a larger box has more")
         return [((angle,), None) for angle in found]
 
-    def known(self, rows: Records, members: Membership, model: Model | None = None) -> str:
+    def known(self, rows: Records, members: Membership) -> str:
         """What the rows say, in one line."""
         angles, _ = self._look(rows, members)
         lower, upper = bracket(angles)

@@ -6,13 +6,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..curves import features
+from ..curves.model import Curve, Points, fit_curve
 from ..tools.errors import UserError
 from ..tools.hints import Numbers, Records
 from . import candidates, goals
-from .candidates import number_text
+from .candidates import Sums, number_text
 from .goals import Goal
 from .membership import Membership, Values
-from .model import Curve, Model, Points
 from .rounds import Line
 
 HOUR = 3600.0
@@ -30,7 +31,7 @@ class Options(NamedTuple):
 class Known(NamedTuple):
     """What the rows say at one moment."""
 
-    points: Points
+    points: Sums
     curve: Curve | None  # None: no run got anywhere
     runs: list[int]  # of each candidate, failed ones included
     last_seeds: list[int]  # of each candidate; the seed before the first where it has none
@@ -58,14 +59,14 @@ class CurveSearch:
         step = 0 if self.options.same_seeds else self._block
         return [(values, (self._first_seed + i * step, self._block)) for i, values in enumerate(self._first)]
 
-    def next_round(self, rows: Records, members: Membership, model: Model) -> list[Line]:
+    def next_round(self, rows: Records, members: Membership) -> list[Line]:
         """The points of the next round; none at the end of the search, whose reason is `end` then."""
-        known = self._look(rows, members, model)
+        known = self._look(rows, members)
         goal = self.options.goal
         if known.curve is None:
             self.end = "no run got anywhere"
             return []
-        if goals.known_precision(model, known.curve, self._places, goal) <= goal.precision:
+        if goals.known_precision(known.curve, self._places, goal) <= goal.precision:
             self.end = f"{goal} is reached"
             return []
         done = float(known.points.work.sum())
@@ -75,7 +76,7 @@ class CurveSearch:
         left = [0 if hopeless else max(0, (self.options.most_seeds - runs) // self._block)
                 for runs, hopeless in zip(known.runs, known.hopeless, strict=True)]
         clogs, work = candidates.expected_runs(known.points, self._places, known.curve.mean, self._max_time)
-        blocks = candidates.choose_blocks(known.curve, clogs, work, goals.weights(model, known.curve, goal), left,
+        blocks = candidates.choose_blocks(known.curve, clogs, work, goals.weights(known.curve, goal), left,
                                           self._block, candidates.SHARE_OF_ROUND * done, most)
         if not any(blocks):
             self.end = "the budget is used up" if any(left) else "no value may get more seeds (--most-seeds)"
@@ -93,7 +94,7 @@ class CurveSearch:
             next_seed += count * self._block
         return lines
 
-    def _look(self, rows: Records, members: Membership, model: Model) -> Known:
+    def _look(self, rows: Records, members: Membership) -> Known:
         values_of = members.values_of(rows)
         finished = ~np.isin(rows["status"], UNFINISHED)
         failed = rows["status"] == b"failed"
@@ -117,33 +118,33 @@ class CurveSearch:
                 sums[values] = sums.get(values, np.zeros(4)) + np.array(one, dtype=float)
         told = {values: of for values, of in sorted(sums.items()) if of[1] > 0 and of[2] > 0}
         table = np.array(list(told.values())).reshape(-1, 4)
-        points = Points(np.log(np.array(list(told)).reshape(-1, self._places.shape[1])), *table.T)
+        points = Sums(np.log(np.array(list(told)).reshape(-1, self._places.shape[1])), *table.T)
         failures = [f"{self._named(values)} ({bad} of {all_} run{'s' * (all_ != 1)})"
                     for values, (all_, bad, _) in sorted(runs.items()) if bad]
         none = (0, 0, self._first_seed - 1)
         at = [tuple(runs.get(values, none)) for values in self.candidates]
         last = [one[2] if self.options.same_seeds else last_seed for one in at]
-        curve = model.fit(points, self._places) if told else None
+        curve = fit_curve(Points(points.places, points.clogs, points.distance), self._places) if told else None
         return Known(points, curve, [one[0] for one in at], last, [0 < one[0] == one[1] for one in at], failures, hours)
 
     def _named(self, values: Values) -> str:
         return " ".join(f"{key}={number_text(value)}" for key, value in zip(self.options.keys, values, strict=True))
 
-    def known(self, rows: Records, members: Membership, model: Model) -> str:
+    def known(self, rows: Records, members: Membership) -> str:
         """What the rows say, in one line."""
-        known = self._look(rows, members, model)
+        known = self._look(rows, members)
         begin = f"{self.end}; " if self.end else ""
         if known.curve is None:
             return f"{begin}nothing is known"
-        precision = goals.known_precision(model, known.curve, self._places, Goal("curve"))
-        peak = model.peak(known.curve, self._places)
+        precision = goals.known_precision(known.curve, self._places, Goal("curve"))
+        peak = features.find_peak(known.curve, self._places, goals.CONFIDENCE)
         at = ", ".join(f"{key} {math.exp(place):.3g} ({math.exp(lower):.3g} to {math.exp(upper):.3g})"
-                       for key, place, lower, upper in zip(self.options.keys, peak.place, peak.lower, peak.upper, strict=True))
+                       for key, place, lower, upper in zip(self.options.keys, peak.place, peak.place_lower, peak.place_upper, strict=True))
         words = [f"{begin}lambda is known within {100 * precision:.2g} % along the curve",
-                 f"highest at {at}, with {peak.length:.3g} sigma ({peak.lowest:.3g} to {peak.highest:.3g})"]
+                 f"highest at {at}, with {peak.length:.3g} sigma ({peak.length_lower:.3g} to {peak.length_upper:.3g})"]
         if self.options.goal.kind == "crossing":
             length = self.options.goal.length
-            found = model.crossings(known.curve, self._places, length)
+            found = features.find_crossings(known.curve, self._places[:, 0], length, goals.CONFIDENCE)
             words += [f"it crosses {length:g} sigma at {self.options.keys[0]} {math.exp(one.place):.3g} "
                       f"({math.exp(one.lower):.3g} to {math.exp(one.upper):.3g})" for one in found]
             words += [] if found else [f"it does not cross {length:g} sigma"]
@@ -159,7 +160,7 @@ class CurveSearch:
             words.append(f"how much {goal} takes is known when its place is, after the first round")
         if goal.kind == "curve":
             # An error e of log lambda takes 1/e^2 clogs at each of so many places that do not inform each other.
-            error = math.asinh(goal.precision) / goals.NORMAL_95
+            error = math.asinh(goal.precision) / features.normal_deviate(goals.CONFIDENCE)
             smooth, rough = 2 / error**2, len(self._first) / error**2
             cost = "" if math.isnan(hours_per_run) else (
                 f": {smooth * hours_per_run:.2g} to {rough * hours_per_run:.2g} core-hours in all if every run clogs")

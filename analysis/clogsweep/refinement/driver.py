@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -13,10 +14,11 @@ from ..reading import programs, stored
 from ..tools.errors import ProgramFailed
 from ..tools.hints import Records
 from .membership import Membership
-from .model import Model
 from .rounds import Line, StoredRounds
 
 INCOMPLETE = 75
+STOPPED = "stopped by a signal; the same command resumes"
+ALL_TASKS = re.compile(r"# (\d+) tasks?:")  # the line below the tasks of a dry run
 FAILED, USER_FAULT = 1, 2  # exit codes of clogsweep that a warning does not change
 
 
@@ -27,9 +29,9 @@ class Search(Protocol):
 
     def first_round(self) -> list[Line]: ...
 
-    def next_round(self, rows: Records, members: Membership, model: Model) -> list[Line]: ...
+    def next_round(self, rows: Records, members: Membership) -> list[Line]: ...
 
-    def known(self, rows: Records, members: Membership, model: Model) -> str: ...
+    def known(self, rows: Records, members: Membership) -> str: ...
 
     def costs(self, hours_per_run: float) -> list[str]: ...
 
@@ -82,15 +84,35 @@ class Launcher:
     def ask(self, *arguments: object) -> str:
         """@return what it prints. @throws ProgramFailed  with its reason"""
         if self.is_warned:
-            raise ProgramFailed("stopped by a signal; the same command resumes", INCOMPLETE)
+            raise ProgramFailed(STOPPED, INCOMPLETE)
         process = self._start(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         out, error = process.communicate()
         self._process = None
         if process.returncode != 0:
             stopped = self.is_warned and process.returncode not in (FAILED, USER_FAULT)
-            raise ProgramFailed("stopped by a signal; the same command resumes" if stopped else programs.reason(error or out),
+            raise ProgramFailed(STOPPED if stopped else programs.reason(error or out),
                                 INCOMPLETE if stopped else process.returncode)
         return out
+
+
+    def tasks(self, *arguments: object) -> str:
+        """What it prints of its tasks in a dry run, which is stopped before it estimates their cost.
+        @throws ProgramFailed  with its reason"""
+        out: list[str] = []
+        if not self.is_warned:
+            process = self._start([*arguments, "--dry-run"], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+            assert process.stdout
+            for line in process.stdout:
+                out.append(line)
+                if ALL_TASKS.match(line):
+                    process.send_signal(signal.SIGUSR1)
+            _, error = process.communicate()
+            self._process = None
+            if not self.is_warned and not any(map(ALL_TASKS.match, out)):
+                raise ProgramFailed(programs.reason(error or "".join(out)), process.returncode)
+        if self.is_warned:
+            raise ProgramFailed(STOPPED, INCOMPLETE)
+        return "".join(out)
 
 
 class Limits:
@@ -107,7 +129,7 @@ class Limits:
         return self._end is not None and time.monotonic() >= self._end
 
 
-def refine(search: Search, launcher: Launcher, members: Membership, model: Model, rounds: StoredRounds,
+def refine(search: Search, launcher: Launcher, members: Membership, rounds: StoredRounds,
            output: pathlib.Path, options: Sequence[object], limits: Limits, folder: str | os.PathLike[str] | None) -> int:
     """Runs rounds until the search ends. A round is stored before it starts, and a stored one is completed before the
     next is planned. @param options  of clogsweep in every round. @return an exit code of clogsweep"""
@@ -118,10 +140,10 @@ def refine(search: Search, launcher: Launcher, members: Membership, model: Model
         if code != 0:
             return code
         rows = stored.read_rows(output, folder)
-        lines = search.next_round(rows, members, model)
+        lines = search.next_round(rows, members)
         if not lines:
             if "--quiet" not in options:
-                print(search.known(rows, members, model), file=sys.stderr)
+                print(search.known(rows, members), file=sys.stderr)
             return 0
         if launcher.is_warned or limits.are_reached():
             print(f"clogsweep refine: stopped between two rounds; the same command resumes. Results so far are in {output}",

@@ -5,11 +5,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..curves import features
+from ..curves.model import Curve
 from ..tools.errors import UserError
 from ..tools.hints import Numbers
-from .model import Curve, Model
 
-NORMAL_95 = 1.959963984540054  # half-width of a 95 % interval, in standard deviations
+CONFIDENCE = 0.95  # of all intervals
 EVEN_SHARE = 0.1  # of the weight, spread over all places so that none is forgotten
 TRY = "try curve=20%, peak=10%, crossing=10:5% or, for a lattice, critical-angle=0.5"
 
@@ -68,27 +69,27 @@ def parse_budget(text: str) -> float:
 
 def half_width(lower: float, upper: float) -> float:
     """Of an interval of a logarithm, relative to the value."""
-    return math.sinh(min(upper - lower, 200.0) / 2)
+    return math.sinh(min(upper - lower, 200.0) / 2)  # no overflow where a crossing's interval is infinite
 
 
-def known_precision(model: Model, curve: Curve, places: Numbers, goal: Goal) -> float:
+def known_precision(curve: Curve, places: Numbers, goal: Goal) -> float:
     """How well the goal is known; infinite if nothing is known of it."""
     if goal.kind == "curve":
-        return math.sinh(NORMAL_95 * math.sqrt(float(np.mean(curve.deviation**2))))
+        return math.sinh(features.normal_deviate(CONFIDENCE) * math.sqrt(float(np.mean(curve.deviation**2))))
     if goal.kind == "peak":
-        peak = model.peak(curve, places)
-        return max(half_width(lower, upper) for lower, upper in zip(peak.lower, peak.upper, strict=True))
+        peak = features.find_peak(curve, places, CONFIDENCE)
+        return max(half_width(lower, upper) for lower, upper in zip(peak.place_lower, peak.place_upper, strict=True))
     if goal.kind == "crossing":
-        widths = [half_width(one.lower, one.upper) for one in model.crossings(curve, places, goal.length)]
+        widths = [half_width(one.lower, one.upper) for one in features.find_crossings(curve, places[:, 0], goal.length, CONFIDENCE)]
         return max(widths, default=math.inf)
     return math.inf
 
 
-def weights(model: Model, curve: Curve, goal: Goal) -> Numbers:
+def weights(curve: Curve, goal: Goal) -> Numbers:
     """How much each place of the curve matters for the goal."""
     even = np.full(curve.mean.size, 1 / curve.mean.size)
     if goal.kind == "peak":
-        special = model.peak_probabilities(curve)
+        special = features.peak_probabilities(curve)
     elif goal.kind == "crossing":
         deviation = np.maximum(curve.deviation, np.finfo(float).tiny)
         special = np.exp(-0.5 * ((curve.mean - math.log(goal.length)) / deviation) ** 2) / deviation

@@ -1,1 +1,0 @@
-"""The fitted curve, as a search needs it."""
