@@ -13,7 +13,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_NAME clogsweep)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PROGRAMS_PACKAGE_DEPENDS "openmpi-bin, python3, python3-h5py, python3-pandas, python3-tables, python3-matplotlib")
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_DEPENDS "openmpi-bin, python3, python3-h5py, python3-pandas, python3-scipy, python3-tables, python3-matplotlib")
 # Drawings and pictures of devices.
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS
   "python3-ezdxf, python3-gdspy, python3-svgelements, python3-skimage, python3-shapely")

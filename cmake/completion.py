@@ -23,8 +23,8 @@ ANY_FILE = "/"  # stands for names of files among words
 
 
 def asked(folder, program, *words):
-    # The report is a script, whose modules need not be there yet.
-    return subprocess.run([str(folder / program), *words], check="report" not in words, capture_output=True, text=True).stdout
+    # Report and curve are scripts, whose modules need not be there yet.
+    return subprocess.run([str(folder / program), *words], check=not {"report", "curve"} & set(words), capture_output=True, text=True).stdout
 
 
 def options(folder, keys, program, *command):

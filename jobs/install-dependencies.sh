@@ -14,7 +14,7 @@ mapfile -t packages < <(awk '/^[A-Za-z]/ { for (i = 3; i <= NF; ++i) if ($i != "
   "$(dirname "$0")/../cmake/dependencies.txt")
 packages+=(
   git                                                # the version of a build
-  python3-h5py python3-pandas python3-tables python3-matplotlib       # the Python module
+  python3-h5py python3-pandas python3-scipy python3-tables python3-matplotlib   # the Python module
 )
 drawings=(python3-ezdxf python3-gdspy python3-svgelements python3-skimage python3-shapely)
 tests=(

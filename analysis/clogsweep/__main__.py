@@ -15,6 +15,7 @@ COMMANDS = {
     "agreement": "the statements of the article compared with the results of this program",
     "report": "one page of HTML about a sweep, as clogfit report",
     "refine": "values and seeds of a sweep where its curve needs them",
+    "curve": "a smooth curve through the clogging lengths, its peak and crossings, as clogfit curve",
     "poster": "one page of a sweep to be printed",
     "clogging-length": "the clogging length against what a sweep varies",
     "dwell": "the same over the time after which a droplet that stands counts as clogged",

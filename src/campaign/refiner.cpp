@@ -124,7 +124,7 @@ class CurveRuns {
  private:
   RunParameters usual_;
   sweep::RunRow usual_row_;
-  CurveKeys keys_;
+  std::vector<const sweep::Column*> keys_;
 };
 
 /// @throws Error if rows of these settings do not show which values the keys had, or if something else that

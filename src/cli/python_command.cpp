@@ -48,7 +48,7 @@ void become_python(const std::string& name, const std::filesystem::path& module,
   words.push_back(nullptr);
   execvp(words.front(), words.data());
   throw Error(std::string("cannot run ") + CLOG_PYTHON_COMMAND + " (" + std::strerror(errno) +
-              "); install Python 3 with h5py, pandas, tables and matplotlib");
+              "); install Python 3 with h5py, pandas, SciPy, tables and matplotlib");
 }
 
 std::string python_command(const std::filesystem::path& module, const std::vector<std::string>& arguments) {

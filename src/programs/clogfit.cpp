@@ -23,7 +23,6 @@
 #include "clog/store/run_table.hpp"
 #include "clogfit_calibrate.hpp"
 #include "clogfit_compare.hpp"
-#include "clogfit_curve.hpp"
 #include "clogfit_deviation.hpp"
 #include "clogfit_drag.hpp"
 #include "clogfit_units.hpp"
@@ -112,12 +111,13 @@ int body(int argc, char** argv) {
   return console::exit_success;
 }
 
-/// One page of HTML about a sweep: python3 -m clogsweep report, which asks this very program for the numbers.
-int report(int argc, char** argv) {
+/// Runs python3 -m clogsweep COMMAND, which asks this very program for the numbers.
+/// @param command  such as report, one page of HTML about a sweep, or curve, its fitted curves
+int become_python(const std::string& command, int argc, char** argv) {
   // The user's own --programs comes later and has the last word.
-  std::vector<std::string> arguments = {"report", "--programs", cli::own_folder()};
+  std::vector<std::string> arguments = {command, "--programs", cli::own_folder()};
   arguments.insert(arguments.end(), argv + 2, argv + argc);
-  cli::become_python("clogfit report", cli::find_python_module(), arguments);
+  cli::become_python("clogfit " + command, cli::find_python_module(), arguments);
 }
 
 }  // namespace
@@ -129,7 +129,7 @@ int main(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "compare")
     return cli::run_program("clogfit compare", [&] { return clogfit_compare(argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "curve")
-    return cli::run_program("clogfit curve", [&] { return clogfit_curve(argc, argv); });
+    return cli::run_program("clogfit curve", [&] { return become_python("curve", argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "deviation")
     return cli::run_program("clogfit deviation", [&] { return clogfit_deviation(argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "drag")
@@ -137,6 +137,6 @@ int main(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "units")
     return cli::run_program("clogfit units", [&] { return clogfit_units(argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "report")
-    return cli::run_program("clogfit report", [&] { return report(argc, argv); });
+    return cli::run_program("clogfit report", [&] { return become_python("report", argc, argv); });
   return cli::run_program(program, [&] { return body(argc, argv); });
 }

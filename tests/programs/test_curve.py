@@ -83,13 +83,13 @@ class Curve(ProgramTest):
         self.assertAlmostEqual(wide["clogging_length"], narrow["clogging_length"], places=9)
 
     def test_other_keys_tell_curves_apart_and_two_keys_make_a_surface(self):
-        self.sweep(FAR[0], FAR[2], "line-tension=0.1,1", "terminal-speed=50,100", lengths={0.1: 1.0, 1.0: 10.0})
+        self.sweep(FAR[0], FAR[2], "line-tension=0.1,0.3,1,3", "terminal-speed=50,100", lengths={0.1: 1.0, 0.3: 3.0, 1.0: 10.0, 3.0: 30.0})
         self.refuse("clogfit", "curve", "sweep.h5", words=["--key", "line-tension", "terminal-speed"])
         told = self.curve("--key=line-tension")
         self.assertEqual([curve["shared"]["terminal_speed"] for curve in told["curves"]], [50, 100])
         surface, = self.curve("--key=line-tension,terminal-speed")["curves"]
         self.assertEqual(len(surface["curve"]), 25 * 25)
-        self.assertEqual(len(surface["points"]), 4)
+        self.assertEqual(len(surface["points"]), 8)
         self.assertIn("terminal_speed_upper", surface["peak"])
 
     def test_points_without_a_clog_are_bounds_that_inform_it(self):
@@ -131,16 +131,11 @@ class Curve(ProgramTest):
 
     def test_it_says_where_points_share_obstacles(self):
         words = "points share seeds and so obstacles"
-        self.sweep(FAR[0], FAR[2], "line-tension=0.1,1", "obstacle-gap=0.4,0.5", lengths={0.1: 1.0, 1.0: 10.0})
+        tensions = {0.1: 1.0, 0.3: 3.0, 1.0: 10.0, 3.0: 30.0}
+        self.sweep(FAR[0], FAR[2], "line-tension=0.1,0.3,1,3", "obstacle-gap=0.4,0.5", lengths=tensions)
         self.assertEqual([curve["common_obstacles"] for curve in self.curve("--key=line-tension")["curves"]], [True, True])
         self.assertIn(words, self.succeed("clogfit", "curve", "sweep.h5", "--key=line-tension").stdout)
-        # Another gap makes another array of the same seed.
-        self.succeed("clogsweep", "vertices=64", "box=20", "obstacle-density=0.2", "obstacle-gap=0.4,0.5", FAR[0], FAR[2], "--output", "gaps.h5")
-        self.assertNotIn(words, self.succeed("clogfit", "curve", "gaps.h5").stdout)
-        self.write("p.csv", "line-tension,seeds\n0.1,1..3\n1,4..6\n")
-        self.succeed("clogsweep", *SMALL, FAR[0], FAR[1], "--points", "p.csv", "--output", "own.h5")
-        told = json.loads(self.succeed("clogfit", "curve", "own.h5", "--format", "json").stdout)
-        self.assertFalse(told["curves"][0]["common_obstacles"])
+        # test_fitted_curves.py has keys that make another array, and seeds of their own.
 
     def test_several_files_are_one_sweep(self):
         self.sweep(*PEAKED, lengths=dict(zip(TENSIONS, LENGTHS)))

@@ -257,12 +257,12 @@ class Module(Analysis):
             # None in sys.modules stands for what cannot be imported.
             done = subprocess.run([sys.executable, "-c", f"import sys; sys.modules['pandas'] = None\nimport clogsweep\n{lines}"],
                                   cwd=ROOT / "analysis", capture_output=True, text=True)
-            self.assertRegex(done.stderr.splitlines()[-1], "^ImportError: cannot start .*pandas.*; .*python.* needs h5py, pandas, tables and matplotlib")
+            self.assertRegex(done.stderr.splitlines()[-1], "^ImportError: cannot start .*pandas.*; .*python.* needs h5py, pandas, SciPy, tables and matplotlib")
             self.assertNotIn("ModuleNotFoundError", done.stderr)
 
     def test_nothing_is_loaded_that_a_call_does_not_need(self):
         self.sweep()
-        libraries = ("numpy", "h5py", "pandas", "matplotlib", "PIL")
+        libraries = ("numpy", "scipy", "h5py", "pandas", "matplotlib", "PIL")
         for lines, loaded in (("", []), ("clogsweep.UserError", []), ("clogsweep.Fit", ["numpy", "h5py"]),
                               ("len(clogsweep.open('s.h5').rows)", ["numpy", "h5py", "pandas"]),
                               ("import clogsweep.commands.predict", ["numpy", "h5py"])):

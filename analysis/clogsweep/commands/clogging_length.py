@@ -4,9 +4,8 @@ lateral displacement per distance against the angle of their rows.
     python3 -m clogsweep clogging-length sweep.h5        # sweep-clogging-length.png, sweep-clogging-length.pdf
     clogfit sweep.h5 --format json | python3 -m clogsweep clogging-length /dev/stdin --output clogging-length     # its points
 
-Every number comes from clogfit, which is asked for a sweep's; nothing is fitted here. Bars are its confidence
-intervals; smooth lines with bands are the curves of clogfit curve, for which it has to have the sweep itself. Markers
-show by what most droplets clogged; a hollow marker is a length that clogfit doubts, the picture says why; a triangle
+Every length comes from clogfit. Bars are its confidence intervals; smooth lines with bands are the curves of clogfit
+curve, for which the command has to have the sweep itself. Markers show by what most droplets clogged; a hollow marker is a length that clogfit doubts, the picture says why; a triangle
 pointing up is a lower bound where no run clogged.
 """
 

@@ -57,6 +57,12 @@ def length_notes(groups: Collection[Group], confidence: float, panels: Iterable[
     return lines
 
 
+def excluded_notes(groups: Groups) -> list[str]:
+    """Names the points through which no fitted curve goes."""
+    excluded = groups.excluded_from_curves()
+    return textwrap.wrap(f"not in a curve: {'; '.join(excluded)}", NOTE_WIDTH) if excluded else []
+
+
 def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: str = "other clogs") -> None:
     """The ordinate, legend and caption of a picture of clogging lengths. @param drawn  all that draw_lengths() was given"""
     style.logarithmic_ordinate(axes)
@@ -64,7 +70,7 @@ def finish_lengths(axes: Axes, groups: Groups, drawn: Collection[Group], other: 
     style.grid(axes)
     style.legend(axes, drawn, other)
     style.caption(axes, groups.caption())
-    style.notes(axes, length_notes(drawn, groups.confidence, [axes]))
+    style.notes(axes, [*length_notes(drawn, groups.confidence, [axes]), *excluded_notes(groups)])
 
 
 def draw_lengths(axes: Axes, places: Sequence[float], groups: Sequence[Group], index: int, label: str, linestyle: str | tuple[int, tuple[int, ...]] | None = None,
@@ -166,7 +172,7 @@ def draw_abscissa(axes: Axes, groups: Groups) -> None:
 
 
 def draw_fitted(axes: Axes, groups: Groups, members: Sequence[Group], index: int) -> bool:
-    """The smooth curve that clogfit fits through these groups, with its band. @return whether there is one"""
+    """The smooth curve that is fitted through these groups, with its band. @return whether there is one"""
     fitted = groups.fitted_curve(members)
     if not fitted:
         return False
@@ -180,7 +186,7 @@ def draw_fitted(axes: Axes, groups: Groups, members: Sequence[Group], index: int
 
 
 def draw_on(axes: Axes, groups: Groups) -> None:
-    """Points with their bars; through them clogfit's curves, or straight lines where there are none."""
+    """Points with their bars; through them fitted curves, or straight lines where there are none."""
     def draw_curve(axes: Axes, places: Sequence[float], members: Sequence[Group], index: int, label: str) -> None:
         is_fitted = draw_fitted(axes, groups, members, index)
         draw_lengths(axes, places, members, index, label, linestyle="none" if is_fitted else None)

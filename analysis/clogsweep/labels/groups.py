@@ -7,13 +7,12 @@ import pathlib
 from collections.abc import Callable, Collection, Iterable
 from typing import Any
 
-from ..reading import fits, stored
+from ..reading import stored
 from ..tools.errors import UserError
 from ..tools.hints import AnyPath, Column, Group
 from . import AXES, is_number, runs_a_point, said, symbol
 
-FEWEST_POINTS = 3  # that a fitted curve is drawn through
-FEWEST_CLOGGING = 3  # of these with a clog: bounds alone do not tell its shape
+NO_CURVES: dict[str, Any] = {"curves": [], "excluded": []}
 FINISHED = ("passed", "clogged", "broken", "flowing")
 
 
@@ -25,6 +24,7 @@ class Groups:
         # Nothing is random in a channel or on a wall: a group is one run, which has a status.
         self.are_passages = any("status" in group for group in fit["groups"])
         self.members: list[Group] = [group for group in fit["groups"] if (group["status"] in FINISHED if self.are_passages else group["runs"] > 0)]
+        self._fit = fit
         self._told: list[Group] = fit["groups"]
         self.confidence: float = fit["confidence"]
         self.laboratory: dict[str, float | None] = fit.get("laboratory", {})  # what the model's units are there
@@ -34,7 +34,7 @@ class Groups:
         self._circle_files = circle_files or self._only_circle_file()
         self.tells_what_all_share = True  # in caption()
         self.abscissa = self._choose_abscissa() if self.members else ""  # there is nothing to draw
-        self._ask_for_curves: Callable[[], list[dict[str, Any]]] = list  # none; see fit_curves()
+        self._ask_for_curves: Callable[[], dict[str, Any]] = lambda: NO_CURVES  # see fit_curves()
 
     def finished(self, source: object = "the sweep") -> Groups:
         """@throws UserError  if no run of theirs has finished"""
@@ -48,24 +48,41 @@ class Groups:
             raise UserError("cannot draw clogging lengths (these droplets were in a channel or on a wall); clogfit report draws their results")
         return self.finished(source)
 
-    def fit_curves(self, clogfit: pathlib.Path, sweep: AnyPath, *options: str) -> Groups:
-        """The same, whose pictures have clogfit's smooth curves over the abscissa, where these can be drawn. @param options  of the fit"""
-        # A device with an exit holds droplets at few places, not at random ones: between its values nothing is known.
-        if self.members and not self.are_passages and self.is_logarithmic() and not any(group["exit"] for group in self.members):
-            self._ask_for_curves = lambda: fits.curves_if_any(clogfit, sweep, self.abscissa, *options)
+    def fit_curves(self, sweep: AnyPath, folder: pathlib.Path) -> Groups:
+        """The same, whose pictures have smooth curves over the abscissa, where these can be drawn.
+        @param sweep  that was fitted; @param folder  of the programs"""
+        def ask() -> dict[str, Any]:
+            from ..curves import answer, points  # SciPy is slow to load
+
+            try:
+                return answer.of_fit(self._fit, points.seeds_of_groups(self._fit, stored.read_rows(sweep, folder)), [self.abscissa])
+            except UserError:  # such as an abscissa with the value 0
+                return NO_CURVES
+
+        if self.members and not self.are_passages and self.is_logarithmic():
+            self._ask_for_curves = ask
         return self
 
     @functools.cached_property
-    def _fitted(self) -> list[dict[str, Any]]:
-        def tells_its_shape(curve: dict[str, Any]) -> bool:
-            return sum(point["clogs"] > 0 for point in curve["points"]) >= FEWEST_CLOGGING
-
-        return [curve for curve in self._ask_for_curves() if len(curve["points"]) >= FEWEST_POINTS and tells_its_shape(curve)]
+    def _fitted(self) -> dict[str, Any]:
+        return self._ask_for_curves()
 
     def fitted_curve(self, members: Collection[Group]) -> dict[str, Any] | None:
-        """The fitted curve through these groups, if there is one."""
-        through = [curve for curve in self._fitted if any(self._told[point["group"]] is group for point in curve["points"] for group in members)]
-        return through[0] if len(through) == 1 else None
+        """The fitted curve through these groups, if there is one. One through the groups of several curves of a picture belongs
+        to that with its first point."""
+        for curve in self._fitted["curves"]:
+            if any(self._told[curve["points"][0]["group"]] is group for group in members):
+                return curve
+        return None
+
+    def excluded_from_curves(self) -> list[str]:
+        """Points through which no fitted curve goes although there are others, each with the reason."""
+        if not self._fitted["curves"]:
+            return []
+        points: dict[str, list[str]] = {}
+        for one in self._fitted["excluded"]:
+            points.setdefault(one["reason"], []).append(self.said(self.abscissa, one[self.abscissa]))
+        return [f"{', '.join(dict.fromkeys(places))} ({reason})" for reason, places in points.items()]
 
     @property
     def are_polygons(self) -> bool:

@@ -130,7 +130,7 @@ def of_laboratory(groups: Groups) -> str:
 
 def draw(sweep: pathlib.Path, folder: pathlib.Path, *options: object) -> Figure:
     """@param folder  of the programs; @param options  for clogfit. @throws UserError, ProgramFailed"""
-    groups = Groups(*fits.fitted(folder / "clogfit", sweep, *options)).finished(sweep).fit_curves(folder / "clogfit", sweep)
+    groups = Groups(*fits.fitted(folder / "clogfit", sweep, *options)).finished(sweep).fit_curves(sweep, folder)
     with stored.opened(sweep, folder=folder) as file:
         about = stored.attributes(file)
     abscissa = groups.abscissa.replace("_", " ")

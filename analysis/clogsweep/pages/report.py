@@ -390,7 +390,7 @@ def write(sweep: pathlib.Path, output: pathlib.Path, examples: int, folder: path
     outputs.refuse_unwritable(output, "html", sweep)
     told, circle_files = fits.fitted(folder / "clogfit", sweep, *options)
     status = json.loads(programs.run_program(folder / "clogsweep", "status", sweep, "--format", "json"))
-    groups = Groups(told, circle_files).finished(sweep).fit_curves(folder / "clogfit", sweep)
+    groups = Groups(told, circle_files).finished(sweep).fit_curves(sweep, folder)
     for number, group in enumerate(groups.members):
         group["number"] = number  # by which the page knows each (style.mark())
     rows = stored.read_table(sweep, folder)

@@ -109,7 +109,7 @@ def read(path: pathlib.Path, folder: pathlib.Path | None, *options: object) -> F
     if content.startswith(HDF5_BEGINNING):
         clogfit = programs.programs_in(folder) / "clogfit"
         told = Fit(*fits.fitted(clogfit, path, *options))
-        told.known.fit_curves(clogfit, path)
+        told.known.fit_curves(path, clogfit.parent)
         return told
     try:
         return Fit(json.loads(content))

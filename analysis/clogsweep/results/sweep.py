@@ -70,7 +70,7 @@ class Sweep:
         options = [word for name, value in given.items() if value is not None for word in (name, repr(float(value)))]
         of_lab = ["--lab", os.fspath(lab)] if lab is not None else []
         fit = Fit(*fits.fitted(self._program("clogfit"), self.path, *options, *of_lab))
-        fit.known.fit_curves(self._program("clogfit"), self.path, *options)
+        fit.known.fit_curves(self.path, programs.programs_in(self._programs))
         return fit
 
     def fitted_curves(self, *keys: str, crossing: Sequence[float] = ()) -> dict[str, Any]:
@@ -78,10 +78,11 @@ class Sweep:
 
         @param keys  that they go over, one or two; may be left out if only one varies
         @param crossing  lengths that a curve may cross, in droplet diameters
-        @throws ProgramFailed  with the reason of clogfit
+        @throws UserError  with the reason why there is no curve
         """
-        options = [f"--crossing={','.join(repr(float(length)) for length in crossing)}"] if crossing else []
-        return fits.curves(self._program("clogfit"), self.path, ",".join(keys), *options)
+        from ..curves import answer  # SciPy is slow to load
+
+        return answer.of_sweep(self._program("clogfit"), [self.path], keys, crossing=crossing)[0]
 
     def status(self) -> dict[str, Any]:
         """The sweep's progress, as clogsweep status reports it."""

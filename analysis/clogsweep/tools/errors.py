@@ -5,7 +5,7 @@ import sys
 
 def lacking(error: ImportError) -> str:
     """What to say where a machine lacks a module."""
-    return f"cannot start ({error}); {sys.executable} needs h5py, pandas, tables and matplotlib: install them, or use another python3"
+    return f"cannot start ({error}); {sys.executable} needs h5py, pandas, SciPy, tables and matplotlib: install them, or use another python3"
 
 
 class UserError(Exception):

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "clog/campaign/curves.hpp"
+#include "clog/campaign/groups.hpp"
 #include "clog/campaign/refinement.hpp"
 #include "clog/campaign/round_rule.hpp"
 #include "clog/sweep/points.hpp"

@@ -41,6 +41,7 @@ class Clogsweep(CMakePackage):
     depends_on("py-h5py ~mpi", type="run")
     depends_on("py-matplotlib", type="run")
     depends_on("py-pandas", type="run")
+    depends_on("py-scipy", type="run")
     depends_on("py-tables", type="run")
 
     conflicts(f"%gcc@:{int(MINIMUM['GNU']) - 1}", msg=f"clogsweep is C++20; it is tested with g++ {MINIMUM['GNU']} and clang {MINIMUM['Clang']}")

@@ -1,0 +1,8 @@
+"""Smooth curves through clogging lengths: lambda against one or two keys of a sweep.
+
+- model: the Gaussian process that is fitted, on numbers alone
+- features: band, peak and crossings of a fitted curve
+- points: which groups of clogfit's table belong to which curve, and why others belong to none
+- answer: the curves of a sweep, as `clogfit curve --format json` prints them
+- table: the same as text and CSV
+"""

@@ -1,0 +1,133 @@
+"""What a fitted curve shows: its band, where it is highest, where it crosses a length."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+from scipy import linalg, special
+
+from ..tools.hints import Numbers
+from .model import Curve
+
+NUM_DRAWS = 2000
+FIRST_JITTER = 1e-10  # of the largest variance, so that rounding leaves the covariance positive definite
+
+
+@dataclasses.dataclass(frozen=True)
+class Peak:
+    """Where a curve is highest. `place` and its interval hold the logarithm of each key; lengths [sigma].
+
+    `probability_inside` is the fraction of the curves that the data allow which are highest off the borders of the places.
+    """
+
+    place: Numbers
+    place_lower: Numbers
+    place_upper: Numbers
+    length: float
+    length_lower: float
+    length_upper: float
+    probability_inside: float
+
+
+@dataclasses.dataclass(frozen=True)
+class Crossing:
+    """Logarithm of the key at which a curve has a length, and where the band holds it: infinite where it does so at a border."""
+
+    place: float
+    lower: float
+    upper: float
+    is_upward: bool
+
+
+def normal_deviate(confidence: float) -> float:
+    """Half the width of a normal distribution's interval, in standard deviations. @throws ValueError  unless 0 < confidence < 1"""
+    if not 0 < confidence < 1:
+        raise ValueError("a confidence is between 0 and 1")
+    return float(special.ndtri((1 + confidence) / 2))
+
+
+def band(curve: Curve, confidence: float) -> Numbers:
+    """lambda and both ends of its pointwise interval at every place [sigma]. @return three rows"""
+    half = normal_deviate(confidence) * curve.deviation
+    return np.exp([curve.mean, curve.mean - half, curve.mean + half])
+
+
+def drawn_curves(curve: Curve, number: int = NUM_DRAWS) -> Numbers:
+    """Curves of log lambda drawn from the distribution, the same ones in every call: one in every row."""
+    variance = max(float(np.max(np.diagonal(curve.covariance))), float(np.finfo(float).tiny))
+    jitter = FIRST_JITTER
+    while True:
+        try:
+            factor = linalg.cholesky(curve.covariance + jitter * variance * np.eye(len(curve.mean)), lower=True)
+            break
+        except linalg.LinAlgError:
+            jitter *= 10
+            if jitter >= 1:
+                raise
+    # RandomState is frozen: it gives the same numbers with every NumPy.
+    return curve.mean + np.random.RandomState(1).standard_normal((number, len(curve.mean))) @ factor.T
+
+
+def tops_of_lines(heights: Numbers, x: Numbers) -> tuple[Numbers, Numbers]:
+    """The highest point of a parabola through each row's highest value and its neighbours. @return places, heights"""
+    number = np.arange(len(heights))
+    highest = np.argmax(heights, axis=1)
+    middle = np.clip(highest, 1, len(x) - 2)
+    left, right = x[middle - 1] - x[middle], x[middle + 1] - x[middle]
+    height = heights[number, middle]
+    slope_left = (heights[number, middle - 1] - height) / left
+    slope_right = (heights[number, middle + 1] - height) / right
+    curvature = (slope_right - slope_left) / (right - left)
+    slope = slope_left - curvature * left
+    is_parabola = (highest == middle) & (curvature < 0)
+    shift = np.where(is_parabola, np.clip(-slope / (2 * np.where(is_parabola, curvature, -1)), left / 2, right / 2), 0)
+    return x[highest] + shift, heights[number, highest] + slope * shift + curvature * shift**2
+
+
+def tops(heights: Numbers, places: Numbers) -> tuple[Numbers, Numbers]:
+    """Place and height of each row's maximum. @param places  a line in increasing order, or a rectangular grid"""
+    if places.shape[1] == 1 and len(places) > 2:
+        x, height = tops_of_lines(heights, places[:, 0])
+        return x[:, None], height
+    highest = np.argmax(heights, axis=1)
+    return places[highest], heights[np.arange(len(heights)), highest]
+
+
+def find_peak(curve: Curve, places: Numbers, confidence: float) -> Peak:
+    """Place and height of the mean; the intervals are those of drawn curves. @param places  see tops()"""
+    draws = drawn_curves(curve)
+    draw_places, draw_heights = tops(draws, places)
+    (place,), (height,) = tops(curve.mean[None], places)
+    highest = places[np.argmax(draws, axis=1)]
+    is_inside = ((highest > places.min(axis=0)) & (highest < places.max(axis=0))).all(axis=1)
+    tails = [(1 - confidence) / 2, (1 + confidence) / 2]
+    place_lower, place_upper = np.quantile(draw_places, tails, axis=0)
+    length_lower, length_upper = np.exp(np.quantile(draw_heights, tails))
+    return Peak(place, place_lower, place_upper, float(np.exp(height)), float(length_lower), float(length_upper), float(is_inside.mean()))
+
+
+def peak_probabilities(curve: Curve) -> Numbers:
+    """The probability that each place is the highest."""
+    return np.bincount(np.argmax(drawn_curves(curve), axis=1), minlength=len(curve.mean)) / NUM_DRAWS
+
+
+def find_crossings(curve: Curve, x: Numbers, length: float, confidence: float) -> list[Crossing]:
+    """Where a curve of one key has a length. Between two places all is a straight line.
+    @param x  logarithms of the key, in increasing order; @param length  [sigma]"""
+    above = curve.mean - np.log(length)
+    half = normal_deviate(confidence) * curve.deviation
+
+    def zero(values: Numbers, i: int) -> float:
+        """Where the line between the places i and i + 1 is zero."""
+        return float(x[i] + (x[i + 1] - x[i]) * values[i] / (values[i] - values[i + 1]))
+
+    crossings = []
+    for i in np.flatnonzero((above[:-1] < 0) != (above[1:] < 0)):
+        is_upward = bool(above[i] < 0)
+        before, after = (above + half, above - half) if is_upward else (above - half, above + half)
+        outside_before = np.flatnonzero((before[:i + 1] < 0) == is_upward)  # places left of it whose band lies on the other side
+        outside_after = np.flatnonzero((after[i + 1:] >= 0) == is_upward) + i + 1
+        crossings.append(Crossing(zero(above, i), zero(before, outside_before[-1]) if outside_before.size else -np.inf,
+                                  zero(after, outside_after[0] - 1) if outside_after.size else np.inf, is_upward))
+    return crossings

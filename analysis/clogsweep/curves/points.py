@@ -1,0 +1,210 @@
+"""Which groups of clogfit's table belong to which curve, and why others belong to none.
+
+Curves are told apart by what the schema calls physics. A number of the numerics, such as `inertia` or `box`, tells curves
+apart only where the sweep varies it at the same physics: a parameter set may need another box or more time than its
+neighbours. What follows from other parameters (automatic values, the preset's name, the density of a saturated array) never
+does.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Collection, Iterable, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..reading import stored
+from ..tools.errors import UserError
+from ..tools.hints import Column, Group, Numbers, Records
+
+FEWEST_VALUES = 4  # of the key, through which a curve is shown: two or three leave its shape to the prior
+FEWEST_CLOGGING = 3  # of these with a clog: bounds alone do not tell the shape
+MOST_KEYS = 2
+SAME_SHARE = 6  # digits of a density divided by the saturated one
+
+Fit = dict[str, Any]  # clogfit's JSON
+
+
+@dataclasses.dataclass(frozen=True)
+class Members:
+    """The groups of one curve, by their numbers in clogfit's table, in the order of the keys' values."""
+
+    shared: dict[str, Any]  # what tells this curve from the others
+    groups: list[int]
+
+
+@dataclasses.dataclass(frozen=True)
+class Excluded:
+    group: int
+    reason: str
+
+
+def place_of(group: Group, keys: Iterable[Column]) -> list[float]:
+    """The logarithms of the keys."""
+    return [math.log(group[key["name"]]) for key in keys]
+
+
+def is_automatic(fit: Fit, column: Column, group: Group) -> bool:
+    """Does its value follow from others? Not if the sweep gives a list of it."""
+    return column.get("automatic_in") in ("all", group["model"]) and column["name"] not in fit["lists"]
+
+
+def may_be_key(fit: Fit, column: Column) -> bool:
+    """A number that a user chooses, and that shapes what happens: not one that follows from others."""
+    return column.get("parameter_role") == "physics" and column["kind"] != "word" and all(
+        group[column["name"]] is not None and not is_automatic(fit, column, group) for group in fit["groups"])
+
+
+def find_keys(fit: Fit, names: Sequence[str] = ()) -> list[Column]:
+    """The columns of these keys; without any, of the one physical parameter that varies.
+    @throws UserError  if a name is no such key, does not vary or has values without a logarithm; or if none is given and several vary"""
+    groups: list[Group] = fit["groups"]
+    possible = {column["name"]: column for column in fit["columns"] if may_be_key(fit, column)}
+    if names:
+        keys = [possible.get(name.replace("-", "_")) or refuse_key(name, fit) for name in names]
+        if len(keys) > MOST_KEYS or (len(keys) == MOST_KEYS and keys[0] is keys[1]):
+            raise UserError(f"invalid --key={','.join(names)} (a curve is drawn over one key, or over two different ones)")
+    else:
+        keys = [column for column in possible.values() if len({group[column["name"]] for group in groups}) > 1]
+        if not keys:
+            raise UserError("cannot fit a curve (no number of the physics has several values); give the sweep a list")
+        if len(keys) > 1:
+            raise UserError(f"no --key is given, and several vary ({', '.join(key['key'] for key in keys)}); try --key {keys[0]['key']}")
+    for key in keys:
+        values = {group[key["name"]] for group in groups}
+        if len(values) < 2:
+            raise UserError(f"invalid --key={key['key']} (all runs have the same value of it)")
+        if not min(values) > 0:
+            raise UserError(f"cannot fit a curve over {key['key']} (it has the value {min(values):g}, of which there is no logarithm)")
+    return keys
+
+
+def refuse_key(name: str, fit: Fit) -> Column:
+    """@throws UserError  that names the key that was probably meant"""
+    import difflib
+
+    known = [column["key"] for column in fit["columns"] if "key" in column]
+    near = difflib.get_close_matches(name.replace("_", "-"), known, 1)
+    if name.replace("_", "-") not in known and near:
+        raise UserError(f"unknown key: {name}; did you mean {near[0]}?")
+    raise UserError(f"invalid --key={name} (is not a number of the physics that the sweep gives)")
+
+
+def physics_of(fit: Fit, group: Group, keys: Collection[Column]) -> dict[str, Any]:
+    """Values of the physics except the keys, without what follows from others."""
+    values = {column["name"]: group[column["name"]] for column in fit["columns"]
+              if column not in keys and column["name"] != "preset" and column.get("parameter_role", "physics") == "physics"
+              and not is_automatic(fit, column, group)}
+    if group["obstacle_filling"] != "density":
+        del values["obstacle_density"]  # follows from gap and diameter
+    elif stored.settings(fit.get("sweep", {}).get("config", "")).get("obstacle-density", "").endswith("%"):
+        spacing = group["obstacle_gap"] + group["obstacle_diameter"]
+        values["obstacle_density"] = float(f"{group['obstacle_density'] * spacing**2:.{SAME_SHARE}g}")
+    return values
+
+
+def numerics_of(fit: Fit, group: Group) -> dict[str, Any]:
+    return {column["name"]: group[column["name"]] for column in fit["columns"]
+            if column.get("parameter_role") == "numerics" and not is_automatic(fit, column, group)}
+
+
+def _key(values: dict[str, Any]) -> tuple[tuple[str, Any], ...]:
+    return tuple(values.items())
+
+
+def crossed_numerics(fit: Fit, groups: Iterable[int], keys: Collection[Column]) -> set[str]:
+    """Names of the numerics that vary between groups of the same physics and the same keys."""
+    seen: dict[tuple[Any, ...], dict[str, set[Any]]] = {}
+    for index in groups:
+        group = fit["groups"][index]
+        values = seen.setdefault((_key(physics_of(fit, group, keys)), *place_of(group, keys)), {})
+        for name, value in numerics_of(fit, group).items():
+            values.setdefault(name, set()).add(value)
+    return {name for values in seen.values() for name, several in values.items() if len(several) > 1}
+
+
+def why_too_few(fit: Fit, members: Members, keys: Sequence[Column]) -> str:
+    """Empty if these groups make a curve."""
+    groups = [fit["groups"][index] for index in members.groups]
+    names = " and ".join(key["key"] for key in keys)
+    where = " with " + ", ".join(f"{name.replace('_', '-')}={told(value)}" for name, value in members.shared.items()) if members.shared else ""
+    places = {tuple(place_of(group, keys)) for group in groups}
+    clogging = {tuple(place_of(group, keys)) for group in groups if group["clogs"] > 0}
+    if len(places) < FEWEST_VALUES:
+        number = f"only {len(places)} values" if len(places) > 1 else "only one value"
+        return f"{number} of {names}{where}, a curve needs {FEWEST_VALUES}"
+    if any(len({place[i] for place in places}) < 2 for i in range(len(keys))):
+        return f"only one value of a key{where}, a curve needs several of each"
+    if len(clogging) < FEWEST_CLOGGING:
+        return f"clogs at only {len(clogging)} of the values of {names}{where}, a curve needs them at {FEWEST_CLOGGING}"
+    return ""
+
+
+def told(value: Any) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value)
+
+
+def split(fit: Fit, keys: Sequence[Column]) -> tuple[list[Members], list[Excluded]]:
+    """The groups of each curve that can be shown, and all others with the reason. `shared` has only what differs."""
+    excluded, useful = [], []
+    for index, group in enumerate(fit["groups"]):
+        if not (group["total_distance"] or 0) > 0:
+            excluded.append(Excluded(index, "no run of it has covered any distance"))
+        elif group["exit"]:
+            # Its droplets are held at few places, not at random ones: between the values nothing is known.
+            excluded.append(Excluded(index, "the array ends at an exit, so its clogs are not at random places"))
+        else:
+            useful.append(index)
+    crossed = crossed_numerics(fit, useful, keys)
+    sets: dict[tuple[Any, ...], Members] = {}
+    for index in useful:
+        group = fit["groups"][index]
+        shared = physics_of(fit, group, keys) | {name: value for name, value in numerics_of(fit, group).items() if name in crossed}
+        sets.setdefault(_key(shared), Members(shared, [])).groups.append(index)
+    differ = {name for members in sets.values() for name in members.shared
+              if len({str(other.shared.get(name)) for other in sets.values()}) > 1}
+    curves = []
+    for members in sets.values():
+        members.groups.sort(key=lambda index: place_of(fit["groups"][index], keys)[::-1])
+        shown = Members({name: value for name, value in members.shared.items() if name in differ}, members.groups)
+        if reason := why_too_few(fit, shown, keys):
+            excluded += [Excluded(index, reason) for index in shown.groups]
+        else:
+            curves.append(shown)
+    curves.sort(key=lambda members: [(value is None, isinstance(value, str), value) for value in members.shared.values()])
+    return curves, sorted(excluded, key=lambda one: one.group)
+
+
+def grid_over(places: Numbers) -> Numbers:
+    """Evenly on a logarithmic scale between the outermost values: 97 for one key (over two decades, a step is 5 %), 25 x 25 for two."""
+    low, high = places.min(axis=0), places.max(axis=0)
+    share = np.linspace(0, 1, 97 if len(low) == 1 else 25)
+    axes = [(1 - share) * first + share * last for first, last in zip(low, high)]
+    return np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, len(low))
+
+
+def seeds_of_groups(fit: Fit, rows: Records) -> list[set[int]]:
+    """The seeds of each group's runs, from the rows of the sweep. @param rows  of all its files"""
+    names = [column["name"] for column in fit["columns"] if len({str(group[column["name"]]) for group in fit["groups"]}) > 1]
+    failed = rows["status"] == b"failed"
+
+    def is_of(group: Group) -> Any:
+        matches = ~failed
+        for name in set(names) & set(stored.columns_of(rows)):
+            if isinstance(group[name], str):
+                matches &= rows[name] == group[name].encode()
+            elif group[name] is not None:
+                matches &= rows[name] == group[name]
+        return matches
+
+    return [set(rows["seed"][is_of(group)].tolist()) for group in fit["groups"]]
+
+
+def have_common_obstacles(members: Members, keys: Iterable[Column], seeds: Sequence[set[int]]) -> bool:
+    """Whether points share seeds, and the obstacles follow from the seed alone: no key shapes the array."""
+    if any(key["shapes_array"] for key in keys):
+        return False
+    own = [seeds[index] for index in members.groups]
+    return sum(map(len, own)) > len(set().union(*own))

@@ -1,0 +1,113 @@
+"""The curves of a sweep as text for people, and as CSV."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from ..tools import rounded
+from .answer import ALL, CAUSES
+from .points import told
+
+EVERY_ON_LINE = 8  # of 97 places
+ON_SIDE = 25
+EVERY_ON_SIDE = 6
+
+
+def shortest(value: Any) -> str:
+    """A number in its shortest exact form; empty for None."""
+    return "" if value is None else repr(value).removesuffix(".0") if isinstance(value, float) else str(value)
+
+
+def with_interval(values: Mapping[str, Any], name: str) -> str:
+    """Such as `0.51 (0.44 to 0.60)`; the value alone if an end of the interval is unknown."""
+    value, lower, upper = (values[f"{name}{end}"] for end in ("", "_lower", "_upper"))
+    return f"{value:.3g}" if lower is None or upper is None else rounded.with_interval(value, lower, upper)
+
+
+def text(answer: dict[str, Any], crossing: list[float]) -> str:
+    """Peak, crossings and some places of every curve, and what is in none."""
+    keys = answer["keys"]
+    lines = [f"lambda vs {' and '.join(keys)}, fitted; {100 * answer['confidence']:g} % intervals"]
+    for curve in answer["curves"]:
+        shared = " ".join(f"{name}={told(value)}" for name, value in curve["shared"].items())
+        num_clogs = sum(point["clogs"] for point in curve["points"])
+        lines += ["", f"{shared}{': ' if shared else ''}through {rounded.counted(len(curve['points']), 'point')} with {rounded.counted(num_clogs, 'clog')}"]
+        if curve["common_obstacles"]:
+            lines.append("  (points share seeds and so obstacles: their errors are correlated, the band takes them for independent)")
+        lines += [*_peak(answer, curve), *_crossings(answer, curve, crossing), "", *_places(answer, curve)]
+    if answer["excluded"]:
+        lines += ["", "in no curve:"]
+        lines += [f"  {', '.join(f'{key} {told(one[key])}' for key in keys)}: {one['reason']}" for one in answer["excluded"]]
+    return "\n".join(lines) + "\n"
+
+
+def _peak(answer: dict[str, Any], curve: dict[str, Any]) -> list[str]:
+    peak = curve["peak"]
+    at = ", ".join(f"{key} {with_interval(peak, key)}" for key in answer["keys"])
+    lines = [f"highest at {at}, with lambda {with_interval(peak, ALL[0])} sigma"]
+    at_border = 1 - peak["probability_between_borders"]
+    if at_border > 1 - answer["confidence"]:
+        lines.append(f"  (with a probability of {100 * at_border:.0f} % it is higher at a border than anywhere between)")
+    return lines
+
+
+def _crossings(answer: dict[str, Any], curve: dict[str, Any], crossing: list[float]) -> list[str]:
+    key = answer["keys"][0]
+    lines = []
+    for length in crossing:
+        found = [one for one in curve["crossings"] if one["clogging_length"] == length]
+        if not found:
+            lines.append(f"does not cross {length:g} sigma between these values")
+        for one in found:
+            beyond = ", or beyond the outermost values" if one[f"{key}_lower"] == 0 or one[f"{key}_upper"] is None else ""
+            lines.append(f"crosses {length:g} sigma {one['direction']} at {key} {with_interval(one, key)}{beyond}")
+    return lines
+
+
+def _places(answer: dict[str, Any], curve: dict[str, Any]) -> list[str]:
+    keys = answer["keys"]
+    if len(keys) == 1:
+        shown = curve["curve"][::EVERY_ON_LINE]
+    else:
+        shown = [place for i, place in enumerate(curve["curve"]) if i % ON_SIDE % EVERY_ON_SIDE == 0 and i // ON_SIDE % EVERY_ON_SIDE == 0]
+    widths = [max(len(key), 10) for key in keys]
+    lines = ["  ".join([*(f"{key:>{width}}" for key, width in zip(keys, widths)), f"{'lambda/sigma':>12}", f"{'lower':>10}", f"{'upper':>10}"])]
+    for place in shown:
+        numbers = [*(f"{place[key]:>{width}.4g}" for key, width in zip(keys, widths)), *(f"{place[name]:>{w}.3g}" for name, w in zip(ALL, (12, 10, 10)))]
+        lines.append("  ".join(numbers))
+    return lines
+
+
+def comma_separated(answer: dict[str, Any]) -> str:
+    """A line for every place of every curve."""
+    shared, keys = list(answer["curves"][0]["shared"]), answer["keys"]
+    lengths = [*ALL, *(name for names in CAUSES.values() for name in names)]
+    output = io.StringIO()
+    lines = csv.writer(output, lineterminator="\n")
+    lines.writerow([*shared, *keys, *lengths])
+    for curve in answer["curves"]:
+        for place in curve["curve"]:
+            lines.writerow([*(shortest(curve["shared"].get(name)) for name in shared), *(shortest(place.get(name)) for name in [*keys, *lengths])])
+    return output.getvalue()
+
+
+def lengths(words: str) -> list[float]:
+    """A list such as `10,100` or `log(1,100,3)`. @throws ValueError  unless all are positive numbers"""
+    numbers: list[float] = []
+    for word in words.replace(" ", "").replace("),", ");").replace(",log(", ";log(").replace(",lin(", ";lin(").split(";"):
+        scale, is_range = word[:4], word.endswith(")")
+        if is_range and scale in ("lin(", "log("):
+            first, last, number = word[4:-1].split(",")
+            shares = [i / max(int(number) - 1, 1) for i in range(int(number))]
+            ends = (math.log(float(first)), math.log(float(last))) if scale == "log(" else (float(first), float(last))
+            between = [(1 - share) * ends[0] + share * ends[1] for share in shares]
+            numbers += map(math.exp, between) if scale == "log(" else between
+        else:
+            numbers += map(float, word.split(","))
+    if not all(0 < number < math.inf for number in numbers):
+        raise ValueError("lengths must be positive")
+    return numbers
