@@ -1,1 +1,1 @@
-"""Refinement of a sweep: decides which values and seeds run next, and runs clogsweep round by round."""
+"""Rounds of a sweep: which values and seeds run next is decided from the rows that are there."""

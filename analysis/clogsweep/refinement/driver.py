@@ -1,152 +1,116 @@
-"""Runs clogsweep by a launcher, such as mpirun, round by round."""
+"""Runs clogsweep round by round. A round's points are on the disk before it starts, so that a kill does not change them."""
 
 import os
 import pathlib
-import re
 import signal
 import subprocess
 import sys
 import time
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Protocol
 
-from ..reading import programs, stored
-from ..tools.errors import ProgramFailed
-from ..tools.hints import Records
-from .membership import Membership
-from .rounds import Line, StoredRounds
+import pandas
 
-INCOMPLETE = 75
-STOPPED = "stopped by a signal; the same command resumes"
-ALL_TASKS = re.compile(r"# (\d+) tasks?:")  # the line below the tasks of a dry run
-FAILED, USER_FAULT = 1, 2  # exit codes of clogsweep that a warning does not change
+from ..reading import stored
+from ..tools.outputs import replaced
+from .membership import Membership, Values
+
+HOUR = 3600.0
+UNFINISHED = ("running", "interrupted")
+FAILED, USER_FAULT, INCOMPLETE = 1, 2, 75  # exit codes of clogsweep
+Line = tuple[Values, tuple[int, int] | None]  # values, the first seed and how many follow; None: the seeds of the config
 
 
 class Search(Protocol):
     """What decides about the rounds: CurveSearch or AngleSearch."""
 
-    end: str
+    keys: Sequence[str]
+    candidates: list[Values]
 
     def first_round(self) -> list[Line]: ...
 
-    def next_round(self, rows: Records, members: Membership) -> list[Line]: ...
+    def next_round(self, rows: pandas.DataFrame, members: Membership) -> list[Line]: ...
 
-    def known(self, rows: Records, members: Membership) -> str: ...
+    def known(self, rows: pandas.DataFrame, members: Membership) -> str: ...
 
     def costs(self, hours_per_run: float) -> list[str]: ...
 
 
+def number_text(value: float) -> str:
+    """The shortest text that means this number."""
+    return repr(float(value)).removesuffix(".0")
+
+
+def points_text(keys: Sequence[str], lines: Sequence[Line]) -> str:
+    """A file for clogsweep --points."""
+    with_seeds = any(seeds for _, seeds in lines)
+    out = [",".join([*keys, "seeds"] if with_seeds else keys)]
+    for values, seeds in lines:
+        words = list(map(number_text, values))
+        out.append(",".join(words if seeds is None else [*words, f"{seeds[0]}..{seeds[0] + seeds[1] - 1}"]))
+    return "\n".join(out) + "\n"
+
+
+def store(path: pathlib.Path, text: str) -> None:
+    """Replaces the file in one step, and waits until it is on the disk. @throws UserError"""
+    with replaced(path) as draft, open(draft, "w", encoding="utf-8") as file:
+        file.write(text)
+        file.flush()
+        os.fsync(file.fileno())
+
+
 class Launcher:
-    """Starts clogsweep, and passes warnings on to it: SIGUSR1, SIGTERM and SIGINT all go on as SIGUSR1, the one that
-    mpirun and srun forward while they wait for the ranks. A second SIGTERM or SIGINT goes on as it is."""
+    """Starts clogsweep by other words, such as mpirun -np 64. SIGUSR1, SIGTERM and SIGINT go on to them as SIGUSR1, which
+    mpirun and srun forward while they wait for the ranks; a second SIGTERM or SIGINT goes on as it is."""
 
-    SIGNALS = (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT)
-
-    def __init__(self, words: Sequence[str], clogsweep: pathlib.Path) -> None:
-        self._command = [*words, str(clogsweep)]
-        self._process: subprocess.Popen[str] | None = None
-        self.is_warned = self._is_forced = False
-
-    def __enter__(self) -> "Launcher":
-        self._before = {number: signal.signal(number, self._warn) for number in self.SIGNALS}
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        for number, handler in self._before.items():
-            signal.signal(number, handler)
+    def __init__(self, words: Sequence[object]) -> None:
+        self._words = list(map(str, words))
+        self._process: subprocess.Popen[bytes] | None = None
+        self.is_warned = False
+        for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT):
+            signal.signal(number, self._warn)
 
     def _warn(self, number: int, _frame: object) -> None:
-        again = self.is_warned and number != signal.SIGUSR1
-        self.is_warned, self._is_forced = True, again or self._is_forced
+        forced = self.is_warned and number != signal.SIGUSR1
+        self.is_warned = True
         if self._process:
-            self._process.send_signal(number if again else signal.SIGUSR1)
-
-    def _start(self, arguments: Sequence[object], **streams: Any) -> subprocess.Popen[str]:
-        # In a session of its own: Ctrl-C in a terminal reaches it once, through this process.
-        process = subprocess.Popen([*self._command, *map(str, arguments)], stdin=subprocess.DEVNULL, text=True,
-                                   start_new_session=True, **streams)
-        self._process = process
-        if self.is_warned:  # while it started
-            process.send_signal(signal.SIGUSR1)
-        return process
+            self._process.send_signal(number if forced else signal.SIGUSR1)
 
     def run(self, *arguments: object) -> int:
-        """Runs it with the streams of this process. @return its exit code, 75 if it was stopped before its end"""
+        """Runs it with the streams of this process. @return its exit code, 75 if it may have been stopped"""
         if self.is_warned:
             return INCOMPLETE
-        code = self._start(arguments).wait()
+        # In a session of its own: Ctrl-C in a terminal reaches it once, through this process.
+        self._process = subprocess.Popen([*self._words, *map(str, arguments)], start_new_session=True)
+        if self.is_warned:  # while it started
+            self._process.send_signal(signal.SIGUSR1)
+        code = self._process.wait()
         self._process = None
-        # A warning may end a launcher by its signal, or with a code of its own.
-        if self.is_warned and (self._is_forced or code not in (0, FAILED, USER_FAULT)):
+        # A warning may end a launcher by its signal, or with a code of its own, even 0.
+        if self.is_warned and code not in (FAILED, USER_FAULT):
             return INCOMPLETE
         return 128 - code if code < 0 else code
 
-    def ask(self, *arguments: object) -> str:
-        """@return what it prints. @throws ProgramFailed  with its reason"""
-        if self.is_warned:
-            raise ProgramFailed(STOPPED, INCOMPLETE)
-        process = self._start(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-        out, error = process.communicate()
-        self._process = None
-        if process.returncode != 0:
-            stopped = self.is_warned and process.returncode not in (FAILED, USER_FAULT)
-            raise ProgramFailed(STOPPED if stopped else programs.reason(error or out),
-                                INCOMPLETE if stopped else process.returncode)
-        return out
 
-
-    def tasks(self, *arguments: object) -> str:
-        """What it prints of its tasks in a dry run, which is stopped before it estimates their cost.
-        @throws ProgramFailed  with its reason"""
-        out: list[str] = []
-        if not self.is_warned:
-            process = self._start([*arguments, "--dry-run"], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-            assert process.stdout
-            for line in process.stdout:
-                out.append(line)
-                if ALL_TASKS.match(line):
-                    process.send_signal(signal.SIGUSR1)
-            _, error = process.communicate()
-            self._process = None
-            if not self.is_warned and not any(map(ALL_TASKS.match, out)):
-                raise ProgramFailed(programs.reason(error or "".join(out)), process.returncode)
-        if self.is_warned:
-            raise ProgramFailed(STOPPED, INCOMPLETE)
-        return "".join(out)
-
-
-class Limits:
-    """--max-hours of the whole search."""
-
-    def __init__(self, hours: float) -> None:
-        self._end = time.monotonic() + hours * 3600 if hours < 1e9 else None
-
-    def options(self) -> list[str]:
-        """For clogsweep, which stops at the same time."""
-        return [] if self._end is None else ["--max-hours", repr(max(1e-9, (self._end - time.monotonic()) / 3600))]
-
-    def are_reached(self) -> bool:
-        return self._end is not None and time.monotonic() >= self._end
-
-
-def refine(search: Search, launcher: Launcher, members: Membership, rounds: StoredRounds,
-           output: pathlib.Path, options: Sequence[object], limits: Limits, folder: str | os.PathLike[str] | None) -> int:
-    """Runs rounds until the search ends. A round is stored before it starts, and a stored one is completed before the
-    next is planned. @param options  of clogsweep in every round. @return an exit code of clogsweep"""
-    if not (rounds.exists() and output.exists()):
-        rounds.begin(search.first_round())
+def refine(search: Search, members: Membership, launcher: Launcher, options: Sequence[object], points: pathlib.Path,
+           output: pathlib.Path, max_hours: float) -> int:
+    """Runs rounds until the search ends. The points of all rounds are in one file, which grows before a round starts; so an
+    unfinished round is completed before the next is planned. @param options  of clogsweep. @return one of its exit codes"""
+    end = time.monotonic() + max_hours * HOUR
+    if not (points.exists() and output.exists()):
+        store(points, points_text(search.keys, search.first_round()))
     while True:
-        code = launcher.run(*options, "--points", rounds.path, "--output", output, *limits.options())
+        hours = max(1e-9, (end - time.monotonic()) / HOUR)
+        code = launcher.run(*options, "--points", points, "--output", output, *(["--max-hours", hours] if hours < 1e9 else []))
         if code != 0:
             return code
-        rows = stored.read_rows(output, folder)
+        rows = stored.read_table(output)
         lines = search.next_round(rows, members)
         if not lines:
             if "--quiet" not in options:
                 print(search.known(rows, members), file=sys.stderr)
             return 0
-        if launcher.is_warned or limits.are_reached():
-            print(f"clogsweep refine: stopped between two rounds; the same command resumes. Results so far are in {output}",
-                  file=sys.stderr)
+        store(points, points.read_text(encoding="utf-8") + points_text(search.keys, lines).split("\n", 1)[1])
+        if launcher.is_warned or time.monotonic() >= end:
+            print(f"{output}: stopped between two rounds; the same command resumes the search", file=sys.stderr)
             return INCOMPLETE
-        rounds.add(lines)

@@ -1,4 +1,4 @@
-"""Goals of a search: how well a curve is to be known, and how well it is."""
+"""Goals of a search: what is to be known and how well, and how well a fitted curve knows it."""
 
 import math
 from typing import NamedTuple
@@ -19,20 +19,20 @@ class Goal(NamedTuple):
     """`kind` is curve, peak, crossing or critical-angle, or "" if only a budget ends the search."""
 
     kind: str
-    precision: float = 0.0  # of the curve, or of a place on it; width of a bracket [degrees]
+    precision: float = 0.0  # of the curve, or of a place on it; of critical-angle, the width of the bracket [degrees]
     length: float = 0.0  # lambda to be crossed [sigma]
 
     def __str__(self) -> str:
         if self.kind == "critical-angle":
             return f"critical-angle={self.precision:g}"
         length = f"{self.length:g}:" if self.kind == "crossing" else ""
-        return f"{self.kind}={length}{100 * self.precision:g}%" if self.kind else ""
+        return f"{self.kind}={length}{100 * self.precision:g}%"
 
 
 def number(word: str) -> float:
-    """A number, or NaN. Only what clogsweep reads is a number: no blanks, no underscores."""
+    """A number, or NaN."""
     try:
-        return math.nan if "_" in word or word != word.strip() else float(word)
+        return float(word)
     except ValueError:
         return math.nan
 
@@ -40,13 +40,13 @@ def number(word: str) -> float:
 def parse_goal(text: str) -> Goal:
     """The goal of --until. @throws UserError"""
     kind, _, rest = text.partition("=")
+    if kind not in ("curve", "peak", "crossing", "critical-angle"):
+        raise UserError(f"invalid --until={text} (is not one of curve, peak, crossing, critical-angle) {TRY}")
     if kind == "critical-angle":
-        if not 1e-3 <= (width := number(rest)) <= 20:
+        if not 1e-3 <= number(rest) <= 20:
             raise UserError(f"invalid --until={text} (the width of the bracket must lie between 0.001 and 20 degrees) "
                             "try critical-angle=0.5")
-        return Goal(kind, width)
-    if kind not in ("curve", "peak", "crossing"):
-        raise UserError(f"invalid --until={text} (is not one of curve, peak, crossing, critical-angle) {TRY}")
+        return Goal(kind, number(rest))
     length = 0.0
     if kind == "crossing":
         of_length, _, rest = rest.partition(":")
@@ -73,27 +73,26 @@ def half_width(lower: float, upper: float) -> float:
 
 
 def known_precision(curve: Curve, places: Numbers, goal: Goal) -> float:
-    """How well the goal is known; infinite if nothing is known of it."""
+    """How well the goal is known; infinite if nothing is known of it. Of a curve, the root mean square of the band."""
     if goal.kind == "curve":
         return math.sinh(features.normal_deviate(CONFIDENCE) * math.sqrt(float(np.mean(curve.deviation**2))))
     if goal.kind == "peak":
         peak = features.find_peak(curve, places, CONFIDENCE)
-        return max(half_width(lower, upper) for lower, upper in zip(peak.place_lower, peak.place_upper, strict=True))
+        return max(map(half_width, peak.place_lower, peak.place_upper))
     if goal.kind == "crossing":
-        widths = [half_width(one.lower, one.upper) for one in features.find_crossings(curve, places[:, 0], goal.length, CONFIDENCE)]
-        return max(widths, default=math.inf)
+        found = features.find_crossings(curve, places[:, 0], goal.length, CONFIDENCE)
+        return max((half_width(one.lower, one.upper) for one in found), default=math.inf)
     return math.inf
 
 
 def weights(curve: Curve, goal: Goal) -> Numbers:
     """How much each place of the curve matters for the goal."""
     even = np.full(curve.mean.size, 1 / curve.mean.size)
+    special = even
     if goal.kind == "peak":
         special = features.peak_probabilities(curve)
     elif goal.kind == "crossing":
         deviation = np.maximum(curve.deviation, np.finfo(float).tiny)
         special = np.exp(-0.5 * ((curve.mean - math.log(goal.length)) / deviation) ** 2) / deviation
-    else:
-        return even
     total = special.sum()
     return EVEN_SHARE * even + (1 - EVEN_SHARE) * special / total if 0 < total < math.inf else even

@@ -1,134 +1,105 @@
 """Which rows of a file belong to the values that a search asks for.
 
-A row stores resolved parameters, not what was asked for: the density of a saturated array follows from the gap, the
-box of a lattice from its angle. So clogsweep itself resolves the values (`--points ... --dry-run` prints what its
-tasks differ in), and a row belongs to a value if it has exactly the parameters that clogsweep gives that value. No
-column is taken for the value of a key, and none decides alone.
+A row stores resolved parameters, not what was asked for: the density of a saturated array follows from the gap, the box
+of a lattice from its angle. So clogsweep itself resolves the values (`--points ... --dry-run` prints the columns in which
+its tasks differ), and a row belongs to a value if it has exactly the parameters that clogsweep gives that value. No column
+is taken for the value of a key, and none decides alone.
 """
 
-import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-import numpy as np
+import pandas
 
 from ..tools.errors import UserError
-from ..tools.hints import Column, Records
-from .candidates import number_text
+from ..tools.hints import Column
 
 Values = tuple[float, ...]  # one of each key
-Resolved = dict[str, str]  # names and texts of the columns in which tasks differ
-ROUNDED = {"lattice-angle": 0.1}  # clogsweep moves these values to the nearest one that is possible, within so much
-MOST_TASKS = 900  # clogsweep prints no more than 1000
+Resolve = Callable[[Sequence[Values]], pandas.DataFrame]  # the tasks of some values, one row each; UserError if refused
+MOST_TASKS = 1000  # that clogsweep prints
 
 
-def resolved_tasks(table: str) -> list[Resolved]:
-    """The tasks that `clogsweep --dry-run` printed, in order: columns that differ between them."""
-    lines = table.splitlines()
-    names = next((line[2:].split() for line in lines if line.startswith("# task")), [])
-    return [dict(zip(names, line.split(), strict=True)) for line in lines if line[:1].isdecimal()]
+def tasks_of(printed: str) -> pandas.DataFrame:
+    """The tasks that `clogsweep --dry-run` printed: texts of the columns in which they differ, `-` where there is none.
+    @throws UserError  if it did not print all"""
+    lines = printed.splitlines()
+    names = next((line[2:].split() for line in lines if line.startswith("# task ")), ["task"])
+    tasks = pandas.DataFrame([line.split() for line in lines if line[:1].isdecimal()], columns=names, dtype=str)
+    if any(line.endswith(" more ...") for line in lines):
+        raise UserError("cannot refine over more than 1000 combinations of values; give every other key one value")
+    return tasks
 
 
-def _equals(column: Any, text: str) -> Any:
-    """Which entries of a column mean the same as the text of a dry run, in which `-` is an unset value."""
-    if column.dtype.kind == "S":
-        return column == (b"" if text == "-" else text.encode())
-    value = _number(text)
-    return np.isnan(column) if math.isnan(value) else column == value
+def like(tasks: pandas.DataFrame, rows: pandas.DataFrame) -> pandas.DataFrame:
+    """The tasks' texts as values of the rows' columns."""
+    def column(name: str) -> Any:
+        if pandas.api.types.is_numeric_dtype(rows[name]):
+            return [float("nan" if text == "-" else text) for text in tasks[name]]
+        return tasks[name].replace("-", "")
 
-
-def _number(text: str) -> float:
-    return math.nan if text == "-" else float(text)
+    return pandas.DataFrame({name: column(name) for name in tasks if name in rows})
 
 
 class Membership:
-    """Rows by value. @param schema  of clogsweep --schema
-    @param resolve  gives clogsweep's tasks for some values, one each; UserError if it refuses one"""
+    """Rows by value. @param schema  of clogsweep --schema"""
 
     def __init__(self, keys: Sequence[str], schema: dict[str, list[Column]], candidates: Sequence[Values],
-                 resolve: Callable[[Sequence[Values]], list[Resolved]]) -> None:
-        """@throws UserError  if two values mean the same runs"""
+                 resolve: Resolve) -> None:
+        """@throws UserError  if clogsweep refuses one of the candidates, as it does if two of them mean the same run"""
         columns = schema["columns"]
-        self._columns = [column["name"] for column in columns if column["role"] == "parameter"
-                         and column.get("parameter_role") != "ensemble" and column["name"] != "preset"]
-        # Values that may follow from others: automatic ones, and what no key sets directly.
+        self._names = [column["name"] for column in columns if column["role"] == "parameter"
+                       and column.get("parameter_role") != "ensemble" and column["name"] != "preset"]
+        # What may follow from other values: automatic ones, and columns that no key sets.
         self._following = {key["column"] for key in schema["keys"] if key["kind"] != "word" and key.get("words")}
         self._following |= {column["name"] for column in columns if "key" not in column}
-        self._resolve = resolve
-        self._candidates = list(candidates)
-        self._asked = set(self._candidates)
-        self._known: list[tuple[list[Values], list[Resolved]]] = [(self._candidates, resolve(self._candidates))]
-        tasks = self._known[0][1]
-        if len(tasks) != len(candidates):
-            raise UserError(f"cannot refine {','.join(keys)} (some of its values mean the same runs); list values in a sweep")
-        seen: dict[tuple[str, ...], Values] = {}
-        for values, task in zip(candidates, tasks, strict=True):
-            varying = tuple(text for name, text in task.items() if name in self._columns)
-            if varying in seen:
-                one, other = (",".join(map(number_text, each)) for each in (seen[varying], values))
-                raise UserError(f"cannot refine {','.join(keys)} (its values {one} and {other} mean the same runs); "
-                                "choose a key that the settings use")
-            seen[varying] = values
-        # Columns that hold the values as they were given; a key without one is known at its candidates only.
-        self._key_columns = [self._column_of(key, i, columns) for i, key in enumerate(keys)]
+        self._resolve, self._candidates, self._asked = resolve, list(candidates), set(candidates)
+        tasks = resolve(self._candidates)
+        if len(tasks) != len(self._candidates):
+            raise UserError(f"cannot refine {','.join(keys)} (another key has a list of values) give one, and the next in a "
+                            "command of its own, with the same --output")
+        self._varying = [name for name in tasks if name in self._names]
+        self._tables = [(self._candidates, tasks)]
+        # Columns that hold the values as they were given. Without them the runs of other values cannot be known.
+        self._key_columns = [next(key["column"] for key in schema["keys"] if key["key"] == name) for name in keys]
+        self._shows_values = all(
+            column in tasks and [float(text) for text in tasks[column].replace("-", "nan")] == [values[i] for values in self._candidates]
+            for i, column in enumerate(self._key_columns))
 
-    def _column_of(self, key: str, index: int, columns: Sequence[Column]) -> str:
-        names = [column["name"] for column in columns if column.get("key") == key] or [key.replace("-", "_")]
-        off = ROUNDED.get(key, 0.0)
-        holds = all(abs(_number(task.get(names[0], "-")) - values[index]) <= off
-                    for values, task in zip(self._candidates, self._known[0][1], strict=True))
-        return names[0] if holds else ""
+    def of_curve(self, rows: pandas.DataFrame, deciding: Callable[[str], bool] = lambda _: True) -> pandas.DataFrame:
+        """The rows that agree with the first run in all parameters in which the candidates do not differ.
+        @param deciding  whether a column decides. @throws UserError  if the file lacks the first run"""
+        fixed = [name for name in self._names if name not in self._varying and deciding(name)]
+        first = rows.loc[rows["task"] == 0, fixed]  # clogsweep numbers the runs of its points first
+        if first.empty:
+            raise UserError("the file lacks the first run of its points; give another --output")
+        return rows.merge(first, on=fixed)
 
-    def values_of(self, rows: Records) -> list[Values | None]:
-        """The values that each row belongs to. Row of task 0: one that was asked for, as clogsweep numbers those of
-        its points first. @throws UserError  if there is none"""
-        first = np.flatnonzero(rows["task"] == 0)
-        if first.size == 0:
-            raise UserError("the file lacks the first run of the points that were asked for; remove the file beside the output")
-        reference = rows[first[0]]
-        found: list[Values | None] = [None] * len(rows)
-        self._resolve_more(rows, reference)
-        for all_values, tasks in self._known:
-            varying = [name for name in tasks[0] if name in self._columns]
-            same = self._agree(rows, reference, set(varying))
-            for values, task in zip(all_values, tasks, strict=True):
-                here = same.copy()
-                for name in varying:
-                    here &= _equals(rows[name], task[name])
-                for i in np.flatnonzero(here):
-                    found[i] = values
-        return found
-
-    def _agree(self, rows: Records, reference: np.void, varying: set[str]) -> Any:
-        """Rows that agree with the reference in all other parameters."""
-        same = rows["model_version"] == reference["model_version"]
-        for name in self._columns:
-            if name not in varying:
-                value = reference[name]
-                same &= np.isnan(rows[name]) if rows.dtype[name].kind == "f" and math.isnan(value) else rows[name] == value
-        return same
-
-    def _resolve_more(self, rows: Records, reference: np.void) -> None:
-        """Has clogsweep resolve values that are in rows of an earlier sweep only."""
-        if not all(self._key_columns):
-            return
-        varying = {name for name in self._known[0][1][0]}
-        near = self._agree(rows, reference, varying | self._following)
-        given = {tuple(float(rows[name][i]) for name in self._key_columns) for i in np.flatnonzero(near)}
-        new = sorted(values for values in given - self._asked if all(0 < value < math.inf for value in values))
-        self._asked |= given
-        step = MOST_TASKS - len(self._candidates)
-        for begin in range(0, len(new), step):
-            self._resolve_these(new[begin:begin + step])
+    def of_values(self, rows: pandas.DataFrame) -> pandas.DataFrame:
+        """The rows of the candidates and, as far as they are in the file, of other values, with a column `values`."""
+        if self._shows_values:
+            near = self.of_curve(rows, lambda name: name not in self._following)
+            given = set(near[self._key_columns].itertuples(index=False, name=None)) - self._asked
+            self._asked |= given
+            new = sorted(values for values in given if all(value > 0 for value in values))
+            for begin in range(0, len(new), MOST_TASKS - len(self._candidates)):
+                self._resolve_these(new[begin:begin + MOST_TASKS - len(self._candidates)])
+        found = []
+        for values, tasks in self._tables:
+            fixed = [name for name in self._names if name not in tasks]
+            first = rows.loc[rows["task"] == 0, fixed]
+            asked = like(tasks[[name for name in self._names if name in tasks]], rows)
+            found.append(rows.merge(first, on=fixed).merge(asked.assign(values=values), on=list(asked)))
+        return pandas.concat(found).drop_duplicates("task").sort_values("task")
 
     def _resolve_these(self, new: list[Values]) -> None:
-        """Together with the candidates, so that what all have in common is what the reference row has."""
+        """Together with the candidates, so that what all have in common is what the first run has."""
+        values = self._candidates + new
         try:
-            tasks = self._resolve(self._candidates + new)
+            tasks = self._resolve(values)
         except UserError:  # clogsweep refuses one of them: its rows are of other settings
-            if len(new) > 1:
-                for one in new:
-                    self._resolve_these([one])
-            return
-        if len(tasks) == len(self._candidates) + len(new):
-            self._known.append((self._candidates + new, tasks))
+            tasks = pandas.DataFrame()
+        if len(tasks) == len(values):
+            self._tables.append((values, tasks))
+        elif len(new) > 1:
+            for one in new:
+                self._resolve_these([one])
