@@ -325,15 +325,19 @@ class Refine(RefineTest):
             ("line-tension", ["line-tension=0.3,3", "seeds=1..9", "--most-seeds=3", GOAL], "--most-seeds=3"),
             ("line-tension", ["line-tension=0.3,3", "obstacle-layout=wall", GOAL], "no clogging length"),
             ("line-tension", ["line-tension=0.3,3", "--until=critical-angle=1"], "refine lattice-angle"),
-            ("line-tension,friction", ["line-tension=0.3,3", "friction=0.1,1", "--until=crossing=3:10%"], "give one key"),
+            ("line-tension,friction", ["line-tension=0.3,3", "friction=0.1,1", "preset=elastic", "--until=crossing=3:10%"], "give one key"),
             ("vertices", ["vertices=64,128", GOAL], "not a number of the physics"),
             ("nonsense", [GOAL], "no such key"),
             ("obstacle-density", ["obstacle-density=10%,20%", GOAL], "refine needs numbers"),
             ("exit", ["exit=3,4", GOAL], "no user-supplied circles"),
-            ("lattice-angle", ["lattice-angle=10,40", GOAL], "no lattice"),
+            ("lattice-angle", ["lattice-angle=10,40", GOAL], "obstacle-layout=lattice"),
         ]:
             with self.subTest(settings=settings):
-                done = self.run_refine(key, "box=20", "obstacle-gap=0.3", "vertices=64", "seeds=1..3", *settings, "--output", "no.h5", launcher=())
+                usual = {"box": "20", "obstacle-gap": "0.3", "vertices": "64", "seeds": "1..3"}
+                if "obstacle-layout=wall" in settings:
+                    usual = {"vertices": "64"}
+                kept = [f"{name}={value}" for name, value in usual.items() if name not in {word.partition("=")[0] for word in settings}]
+                done = self.run_refine(key, *kept, *settings, "--output", "no.h5", launcher=())
                 self.assertEqual((done.returncode, len(done.stderr.splitlines())), (2, 1), done.stderr)
                 self.assertIn(words, done.stderr)
                 self.assertEqual(self.snapshot(), before)

@@ -88,8 +88,6 @@ def require_keys(keys: Sequence[str], config: dict[str, str], schema: dict[str, 
     if config["obstacle-layout"] in ("channel", "wall"):
         raise UserError(f"cannot refine with obstacle-layout={config['obstacle-layout']} (it has no clogging length); list "
                         "values in a sweep")
-    if critical_angle.KEY in keys and config["obstacle-layout"] != "lattice":
-        raise UserError(f"cannot refine {named} (there is no lattice) try obstacle-layout=lattice")
 
 
 def search_of(arguments: argparse.Namespace, keys: list[str], config: dict[str, str]) -> driver.Search:
