@@ -11,7 +11,6 @@ clogsweep.
 """
 
 import argparse
-import contextlib
 import hashlib
 import json
 import math
@@ -65,8 +64,9 @@ def numbers(text: str) -> list[float]:
     values: list[float] = []
     for word in map(str.strip, re.split(r",(?![^()]*\))", text)):
         if spaced := SPACED.fullmatch(word):
-            space = np.linspace if spaced[1] == "lin" else np.geomspace
-            values += [float(f"{value:.12g}") for value in space(float(spaced[2]), float(spaced[3]), int(spaced[4]))]
+            first, last, count = float(spaced[2]), float(spaced[3]), int(spaced[4])
+            between = np.linspace(first, last, count) if spaced[1] == "lin" else np.geomspace(first, last, count)
+            values += [float(f"{value:.12g}") for value in between]
         elif whole := re.fullmatch(r"(\d+)\.\.(\d+)", word):
             values += map(float, range(int(whole[1]), int(whole[2]) + 1))
         else:
@@ -125,18 +125,20 @@ def search_of(arguments: argparse.Namespace, keys: list[str], config: dict[str, 
 def printed_tasks(*command: object) -> str:
     """What a dry run prints of its tasks; it is stopped before it estimates their cost. @throws UserError"""
     words = [*map(str, command), "--dry-run"]
-    with tempfile.TemporaryFile("w+") as errors, subprocess.Popen(words, stdout=subprocess.PIPE, stderr=errors, text=True,
-                                                                   env=_alone()) as process:
-        assert process.stdout
-        lines = []
-        for line in process.stdout:
-            lines.append(line)
-            if re.match(r"# \d+ tasks?:", line):
-                process.terminate()
-                return "".join(lines)
-        process.wait()
+    lines: list[str] = []
+    with tempfile.TemporaryFile("w+") as errors:
+        with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=errors, text=True, env=_alone()) as process:
+            for line in process.stdout or ():
+                lines.append(line)
+                if re.match(r"# \d+ tasks?:", line):
+                    process.terminate()
+                    break
+            else:
+                lines.clear()
         errors.seek(0)
         reason = programs.reason(errors.read())
+    if lines:
+        return "".join(lines)
     if process.returncode == command_line.USER_FAULT:
         raise UserError(reason.removeprefix("clogsweep: "))
     raise ProgramFailed(reason, process.returncode)
@@ -166,8 +168,8 @@ def body() -> int:
     require_keys(keys, values, schema)
     search = search_of(arguments, keys, values)
 
-    with contextlib.ExitStack() as stack:
-        folder = pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="clogsweep-refine-")))
+    with tempfile.TemporaryDirectory(prefix="clogsweep-refine-") as temporary:
+        folder = pathlib.Path(temporary)
         # The same settings and first round have the same rounds, whatever the goal.
         content = config + driver.points_text(keys, search.first_round()) + _circles(values["obstacles"])
         name = "refine-" + hashlib.sha256(content.encode(errors="surrogateescape")).hexdigest()[:8]

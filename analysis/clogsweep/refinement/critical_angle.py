@@ -55,7 +55,7 @@ def nearest_lattice(spacing: float, angle: float, box: float) -> float | None:
 class AngleSearch:
     """Rounds of up to three angles, between the last one that droplets follow and the first that they leave."""
 
-    keys = (KEY,)
+    keys: Sequence[str] = (KEY,)
 
     def __init__(self, given: Sequence[float], spacing: float, box: float, num_seeds: int, width: float,
                  budget: float) -> None:

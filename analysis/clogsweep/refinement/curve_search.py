@@ -11,6 +11,7 @@ import pandas
 from ..curves import features
 from ..curves.model import Curve, Points, fit_curve
 from ..tools.errors import UserError
+from ..tools.hints import Numbers
 from ..tools.rounded import counted
 from . import choice, goals
 from .driver import HOUR, UNFINISHED, Line, number_text
@@ -151,7 +152,7 @@ class CurveSearch:
         return words
 
 
-def _informing(runs: pandas.DataFrame) -> tuple[pandas.DataFrame, np.ndarray]:
+def _informing(runs: pandas.DataFrame) -> tuple[pandas.DataFrame, Numbers]:
     """The values whose runs got anywhere, and their places on the curve."""
     runs = runs[(runs["distance"] > 0) & (runs["time"] > 0)]
     return runs, np.log(np.array(list(runs.index)))

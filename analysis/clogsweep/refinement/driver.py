@@ -66,28 +66,31 @@ class Launcher:
     def __init__(self, words: Sequence[object]) -> None:
         self._words = list(map(str, words))
         self._process: subprocess.Popen[bytes] | None = None
-        self.is_warned = False
+        self._is_warned = False
         for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT):
             signal.signal(number, self._warn)
 
     def _warn(self, number: int, _frame: object) -> None:
-        forced = self.is_warned and number != signal.SIGUSR1
-        self.is_warned = True
+        forced = self._is_warned and number != signal.SIGUSR1
+        self._is_warned = True
         if self._process:
             self._process.send_signal(number if forced else signal.SIGUSR1)
 
+    def is_warned(self) -> bool:
+        return self._is_warned
+
     def run(self, *arguments: object) -> int:
         """Runs it with the streams of this process. @return its exit code, 75 if it may have been stopped"""
-        if self.is_warned:
+        if self.is_warned():
             return INCOMPLETE
         # In a session of its own: Ctrl-C in a terminal reaches it once, through this process.
         self._process = subprocess.Popen([*self._words, *map(str, arguments)], start_new_session=True)
-        if self.is_warned:  # while it started
+        if self.is_warned():  # while it started
             self._process.send_signal(signal.SIGUSR1)
         code = self._process.wait()
         self._process = None
         # A warning may end a launcher by its signal, or with a code of its own, even 0.
-        if self.is_warned and code not in (FAILED, USER_FAULT):
+        if self.is_warned() and code not in (FAILED, USER_FAULT):
             return INCOMPLETE
         return 128 - code if code < 0 else code
 
@@ -111,6 +114,6 @@ def refine(search: Search, members: Membership, launcher: Launcher, options: Seq
                 print(search.known(rows, members), file=sys.stderr)
             return 0
         store(points, points.read_text(encoding="utf-8") + points_text(search.keys, lines).split("\n", 1)[1])
-        if launcher.is_warned or time.monotonic() >= end:
+        if launcher.is_warned() or time.monotonic() >= end:
             print(f"{output}: stopped between two rounds; the same command resumes the search", file=sys.stderr)
             return INCOMPLETE

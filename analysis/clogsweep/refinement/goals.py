@@ -68,12 +68,12 @@ def parse_budget(text: str) -> float:
 
 
 def half_width(lower: float, upper: float) -> float:
-    """Of an interval of a logarithm, relative to the value."""
+    """Half the width of a logarithm's interval, relative to the value."""
     return math.sinh(min(upper - lower, 200.0) / 2)  # no overflow where a crossing's interval is infinite
 
 
 def known_precision(curve: Curve, places: Numbers, goal: Goal) -> float:
-    """How well the goal is known; infinite if nothing is known of it. Of a curve, the root mean square of the band."""
+    """How well the goal is known; infinite if nothing is known of it. That of a curve is the root mean square of its band."""
     if goal.kind == "curve":
         return math.sinh(features.normal_deviate(CONFIDENCE) * math.sqrt(float(np.mean(curve.deviation**2))))
     if goal.kind == "peak":
