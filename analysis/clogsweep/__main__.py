@@ -14,6 +14,7 @@ COMMANDS = {
     "figures": "a figure of the article from runs of our own",
     "agreement": "the statements of the article compared with the results of this program",
     "report": "one page of HTML about a sweep, as clogfit report",
+    "refine": "values and seeds of a sweep where its curve needs them",
     "curve": "a smooth curve through the clogging lengths, its peak and crossings, as clogfit curve",
     "poster": "one page of a sweep to be printed",
     "clogging-length": "the clogging length against what a sweep varies",

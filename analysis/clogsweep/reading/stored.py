@@ -156,7 +156,7 @@ def source(attributes: dict[str, str]) -> str:
 def settings(config: str) -> dict[str, str]:
     """Keys and values of a config as it is stored: of all keys, `auto` and the like where nothing else was given."""
     pairs = [line.partition(" = ") for line in config.split("\n")]
-    of_points = {key for name, _, keys in pairs if name in ("point-keys", "round-keys") for key in keys.split()}
+    of_points = {key for name, _, keys in pairs if name == "point-keys" for key in keys.split()}
     return {key: unescaped(value) for key, equals, value in pairs if equals and key not in of_points}
 
 
