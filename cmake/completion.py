@@ -14,6 +14,7 @@ import sys
 
 COMMANDS = {"clogsweep": ["status", "verify", "salvage", "replay", "merge", "select", "doctor"], "clogrun": ["array", "channel", "sag", "replay"],
             "clogfit": ["calibrate", "compare", "curve", "deviation", "drag", "report", "units"]}
+IN_PYTHON = {"calibrate", "curve", "deviation", "drag", "report"}  # whose modules need not be there yet
 POSITIONAL = {"--file", "--system", "--task"}
 FILES = {"--config", "--frames", "--lab", "--output", "--picture", "--points", "--programs", "--write-obstacles"}
 # Those of an option are the ones that its help names.
@@ -23,8 +24,7 @@ ANY_FILE = "/"  # stands for names of files among words
 
 
 def asked(folder, program, *words):
-    # Report and curve are scripts, whose modules need not be there yet.
-    return subprocess.run([str(folder / program), *words], check=not {"report", "curve"} & set(words), capture_output=True, text=True).stdout
+    return subprocess.run([str(folder / program), *words], check=not IN_PYTHON & set(words), capture_output=True, text=True).stdout
 
 
 def options(folder, keys, program, *command):

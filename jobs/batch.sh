@@ -2,8 +2,12 @@
 # shellcheck shell=bash
 # shellcheck source=jobs/mpi-settings.sh
 . "$(dirname "${BASH_SOURCE[0]}")/mpi-settings.sh"
+# Where the Python module is: of the sources, or installed beside the programs.
+jobs=$(realpath "$(dirname "${BASH_SOURCE[0]}")")
+export PYTHONPATH="${PYTHONPATH:+$PYTHONPATH:}$jobs/../analysis:$jobs/../../../lib/python3/dist-packages"
 
-# run_sweep PROGRAM ARGS...: runs it by mpirun. A warning of the batch system (SIGUSR1, or SIGTERM) goes on to the ranks as SIGUSR1:
+# run_sweep PROGRAM ARGS...: runs it by mpirun; if the first of ARGS is `refine`, runs python3 -m clogsweep refine, which
+# starts mpirun for each of its rounds. A warning of the batch system (SIGUSR1, or SIGTERM) goes on to the ranks as SIGUSR1:
 # mpirun forwards that one and leaves them the time to write what they have. Returns the sweep's exit code, 75 when it
 # may not be complete and the same command resumes it; was_cancelled is 1 if SIGTERM came, which is no warning but the end.
 run_sweep() {
@@ -15,6 +19,7 @@ run_sweep() {
   trap 'was_warned=1; interrupted=1; was_cancelled=1; kill -USR1 "${!:-}" 2>/dev/null || true' TERM
   {
     ((!was_warned)) || exit 75
+    if [ "${2-}" = refine ]; then exec python3 -m clogsweep "${@:2}" --programs "$(dirname "$1")" -- mpirun; fi
     exec mpirun "$@"
   } &
   sweep=$!

@@ -2,6 +2,7 @@
 # The same with PBS. The sweep's options are lines of a file, since qsub cannot pass commas in variables:
 #   printf '%s\n' --config sweep.cfg --output sweep.h5 > sweep.options
 #   qsub -v SWEEP=sweep.options jobs/pbs.sh
+# If the first two lines are `refine` and KEY, python3 -m clogsweep refine chooses the values.
 # HOURS, a little less than the walltime below, stops the sweep cleanly; then the job queues itself again with the
 # resources below: edit them here rather than on the command line. JOB_SCRIPT names a copy that you edited.
 #PBS -N clogsweep

@@ -3,6 +3,7 @@
 # installed (share/clogsweep/jobs):
 #   sbatch jobs/slurm.sh --config sweep.cfg --output sweep.h5
 #   sbatch --nodes=8 --ntasks-per-node=64 --time=48:00:00 jobs/slurm.sh --config sweep.cfg --output sweep.h5
+#   sbatch jobs/slurm.sh refine line-tension --config sweep.cfg --output sweep.h5 --until curve=20%
 # One job for the whole sweep, on one node or many; no job arrays. Two minutes before the time is up the sweep writes what it has,
 # and the job queues itself again until the sweep is complete. See docs/how-to/cluster.md.
 #SBATCH --job-name=clogsweep

@@ -14,6 +14,7 @@ COMMANDS = {
     "figures": "a figure of the article from runs of our own",
     "agreement": "the statements of the article compared with the results of this program",
     "report": "one page of HTML about a sweep, as clogfit report",
+    "refine": "values and seeds of a sweep where its curve needs them",
     "curve": "a smooth curve through the clogging lengths, its peak and crossings, as clogfit curve",
     "poster": "one page of a sweep to be printed",
     "clogging-length": "the clogging length against what a sweep varies",
@@ -25,6 +26,9 @@ COMMANDS = {
     "droplet": "one run as a picture or a film",
     "circles": "a drawing of a device, or a picture of one, as a file of circles",
     "device": "the circles of a sweep, with releases, clogs and some ways",
+    "calibrate": "line tension and near-wall drag from measured passages through a channel, as clogfit calibrate",
+    "deviation": "Delta_v and Delta_A of one passage from others, as clogfit deviation",
+    "drag": "exponent of the near-wall drag from speeds along a wall, as clogfit drag",
     "export-vtk": "one run for ParaView",
 }
 

@@ -93,7 +93,7 @@ Ledger::Ledger(std::string path, const sweep::Plan& plan, const sweep::Settings&
   num_faulty_ = static_cast<std::int64_t>(
       std::erase_if(known, [](const auto& run) { return !sweep::fault_of(run.second.row).empty(); }));
   set_attribute(provenance_, "sessions", latest_lines(attribute(provenance_, "sessions") + session));
-  find_tasks(std::move(known), 0);
+  find_tasks(std::move(known));
   publish();
   if (const std::string& fault = place_.sync_fault(); !fault.empty())
     caution_ += fmt::format(
@@ -174,12 +174,11 @@ bool Ledger::is_over(const sweep::RunRow& row) const {
 }
 
 /// @param known  runs by what they are
-/// @param first  task to begin with: those before it are known
-void Ledger::find_tasks(std::unordered_map<std::string, Entry> known, std::int64_t first) {
+void Ledger::find_tasks(std::unordered_map<std::string, Entry> known) {
   std::int64_t last_seed = -1;
   for (const auto& [run, entry] : known)
     last_seed = std::max(last_seed, std::int64_t{entry.row.parameters.seed});
-  for (std::int64_t task = first; task < plan_->size(); ++task) {
+  for (std::int64_t task = 0; task < plan_->size(); ++task) {
     // Seeds that may be added later follow in increasing order: none beyond has begun yet.
     if (task >= num_wanted_ && (known.empty() || plan_->task(task).seed > last_seed)) break;
     if (!known.empty())
@@ -200,19 +199,6 @@ void Ledger::find_tasks(std::unordered_map<std::string, Entry> known, std::int64
     row.task = plan_->size() + static_cast<std::int64_t>(i);
     if (row.status == RunStatus::running) row.status = RunStatus::interrupted;
   }
-}
-
-void Ledger::grow(const sweep::Plan& plan, const sweep::Settings& settings) {
-  const std::int64_t first = plan_->size();
-  plan_ = &plan;
-  num_wanted_ = plan.size();
-  set_attribute(provenance_, "config", settings.to_config(false));
-  std::unordered_map<std::string, Entry> known;
-  for (Entry& entry : other_runs_) known.emplace(sweep::identity(entry.row), std::move(entry));
-  other_runs_.clear();
-  tasks_left_.clear();
-  find_tasks(std::move(known), first);
-  publish();
 }
 
 void Ledger::want(const std::vector<std::int64_t>& tasks) {

@@ -93,11 +93,8 @@ class Rows {
       const bool is_failed = row.status == RunStatus::failed;
       return is_failed == (known.status == RunStatus::failed) ? row.steps > known.steps : !is_failed;
     }
-    RunRow all_known = known, all_of_row = row;
-    const bool has_more = complete_results(all_known, row);
-    complete_results(all_of_row, known);
-    const std::vector<std::string> differing = differing_results(all_known, all_of_row);
-    if (differing.empty()) return has_more;
+    const std::vector<std::string> differing = differing_results(known, row);
+    if (differing.empty()) return false;
     // A run under two instruction sets is reproduced by none.
     const bool is_mixed = row.instruction_set == sweep::mixed_instruction_sets;
     if (known.instruction_set == row.instruction_set && !is_mixed)

@@ -96,6 +96,7 @@ RunCost cost_of(const sweep::RunRow& row, const sweep::RunRow& first, const RunP
 }
 
 constexpr std::size_t fewest_stored_runs = 5;
+constexpr double hour = 3600;
 
 /// The runs in the sweep's own file; empty if there is no file.
 struct Stored {
@@ -313,16 +314,15 @@ void print_limits(const sweep::Plan& plan) {
     std::cout << "# " << console::printable(words) << '\n';
 }
 
-int print_cost(const sweep::Plan& plan, const std::string& output, const RoundsToCome& rounds,
+int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRule* rule,
                const sweep::JobFactory& jobs) {
-  const bool has_rounds = rounds.rule || rounds.refiner;
   const Stored stored = stored_runs(plan, output);
   const bool is_done = stored.num_done == plan.size();
   if (is_done)
     fmt::print(std::cout, "# {} has all {}, which took {:.2g} core-hours{}\n", console::printable(output),
                sweep::counted(plan.size(), "task"), stored.seconds / hour,
-               has_rounds ? "" : "; nothing is left to do");
-  if (is_done && !has_rounds) return console::exit_success;
+               rule ? "" : "; nothing is left to do");
+  if (is_done && !rule) return console::exit_success;
   const Sample sample = stored.knows_enough() ? stored.sample : tried_sample(plan, jobs);
   if (console::stop_signalled()) return console::exit_incomplete;
   if (sample.costs.empty()) {
@@ -335,12 +335,7 @@ int print_cost(const sweep::Plan& plan, const std::string& output, const RoundsT
   if (!is_done) print_short_lengths(sample);
   if (!is_done) print_expected(plan, sample, cost);
   if (!is_done && stored.seconds > 0) print_left(plan, output, stored, cost);
-  if (rounds.rule)
-    print_rounds(*rounds.rule, plan.size() / plan.num_groups(), with_expected(alike, cost.expected));
-  if (rounds.refiner)
-    for (const std::string& words :
-         rounds.refiner->rounds_in_words(cost.expected / static_cast<double>(plan.size())))
-      std::cout << "# " << words << '\n';
+  if (rule) print_rounds(*rule, plan.size() / plan.num_groups(), with_expected(alike, cost.expected));
   return console::exit_success;
 }
 

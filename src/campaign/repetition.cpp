@@ -1,6 +1,5 @@
 #include "clog/campaign/repetition.hpp"
 
-#include <cmath>
 #include <cstddef>
 
 #include "clog/sweep/columns.hpp"
@@ -23,24 +22,11 @@ std::vector<std::string> differing_results(const RunRow& a, const RunRow& b) {
   return all;
 }
 
-bool complete_results(RunRow& row, const RunRow& from) {
-  const bool has_dwells = !std::isnan(row.dwells.known_from) || std::isnan(from.dwells.known_from);
-  const bool has_contacts = row.contacts >= 0 || from.contacts < 0;
-  if (!has_dwells) row.dwells = from.dwells;
-  if (!has_contacts) {
-    row.contacts = from.contacts;
-    row.first_contact_at = from.first_contact_at;
-  }
-  return !has_dwells || !has_contacts;
-}
-
 Repetition repeat(const RunRow& row) {
   sweep::RunJob job(row.parameters, row.task);
   while (!job.advance()) continue;
   const RunRow again = job.row();
-  RunRow before = row;
-  complete_results(before, again);
-  return {again, differing_results(before, again)};
+  return {again, differing_results(row, again)};
 }
 
 }  // namespace clog::campaign

@@ -91,11 +91,8 @@ sweep::Plan stored_plan(const std::string& path, const store::SweepFile& file) {
 
 /// Has the key a list of its own, or one in points? Others may vary because they follow from a word.
 static bool is_listed(const sweep::Key& key, const sweep::Settings& settings) {
-  const auto is_key = [&](const sweep::Points& points) {
-    return std::ranges::find(points.keys, key.name) != points.keys.end();
-  };
-  return settings.values(key.name).size() > 1 || is_key(settings.points()) ||
-         std::ranges::any_of(settings.rounds(), is_key);
+  const std::vector<std::string>& keys = settings.points().keys;
+  return settings.values(key.name).size() > 1 || std::ranges::find(keys, key.name) != keys.end();
 }
 
 std::vector<std::string> listed_columns(const store::Provenance& provenance) try {

@@ -30,7 +30,7 @@ std::filesystem::path find_python_module() {
   std::error_code error;
   std::filesystem::path module = std::filesystem::canonical(folder / "clogsweep", error);
   if (error)
-    throw Error("cannot draw without " + (folder / "clogsweep").lexically_normal().string() +
+    throw Error("cannot run without " + (folder / "clogsweep").lexically_normal().string() +
                 ", which belongs to this program; install clogsweep as a whole (cmake --install)");
   return module;
 }

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstdint>
 #include <iostream>
-#include <optional>
 #include <ratio>
 #include <string>
 #include <vector>
@@ -120,46 +119,29 @@ class Lead {
   }
 };
 
-/// Requests the next round from the ledger. Returns the message for the ranks: `over` if there is none,
-/// `another_round`, or a new assignment if the plan has grown.
-std::string begin_round(const Growth& growth, campaign::Ledger& ledger, const sweep::Plan*& plan) {
-  if (growth.refiner) {
-    const std::optional<sweep::Points> round = growth.refiner->next_round(ledger.rows());
-    if (!round) return over;
-    const GrownSweep grown = growth.grow(*round);
-    plan = grown.plan;
-    ledger.grow(*grown.plan, *grown.settings);  // stored before any of its tasks begins
-    return grown.assignment;
-  }
-  if (!growth.rule) return over;
-  std::vector<std::int64_t> next = growth.rule->next_round(
-      [&](std::int64_t task) { return ledger.row(task).status == RunStatus::clogged; });
+/// Requests the next round from the ledger, if the rule wants one. Returns whether it does.
+bool begin_round(campaign::SeedRule& rule, campaign::Ledger& ledger) {
+  std::vector<std::int64_t> next =
+      rule.next_round([&](std::int64_t task) { return ledger.row(task).status == RunStatus::clogged; });
   // Tasks that an earlier call with a higher precision started: finish them although this call does not need
   // them.
   if (next.empty()) next = ledger.tasks_begun();
-  if (next.empty()) return over;
+  if (next.empty()) return false;
   ledger.want(next);
-  return another_round;
-}
-
-/// Says what a sweep that grew has reached, and what it has not.
-void announce_end(const Growth& growth, const campaign::Ledger& ledger, const sweep::Plan& plan) {
-  if (growth.rule) console::say(campaign::outcome(*growth.rule, plan));
-  if (growth.refiner) console::say(growth.refiner->known(ledger.rows()));
+  return true;
 }
 
 }  // namespace
 
 int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, const sweep::Plan& plan,
                const JobsOf& jobs_of, const std::string& assignment, campaign::Ledger& ledger,
-               const Growth& growth) {
+               campaign::SeedRule* rule) {
   const bool computes = parallel::computes(ranks.size(), options.master_computes);
   const int computing_ranks = ranks.size() - (computes ? 0 : 1);
   if (options.log != Log::Level::quiet)
-    announce(options.output, plan, ledger, growth.is_possible(), computing_ranks);
-  const sweep::Plan* grown_plan = &plan;
-  const sweep::GroupOf group_of = [&grown_plan](std::int64_t task) { return grown_plan->group_of(task); };
-  sweep::JobFactory make_job = jobs_of(assignment);
+    announce(options.output, plan, ledger, rule != nullptr, computing_ranks);
+  const sweep::GroupOf group_of = [&plan](std::int64_t task) { return plan.group_of(task); };
+  const sweep::JobFactory make_job = jobs_of(assignment);
   Lead lead(options, group_of, ledger, computing_ranks);
   ledger.watch_ranks(computing_ranks);
   parallel::Schedule schedule(parallel::TaskOrder(group_of), ranks.size(), computes);
@@ -171,13 +153,12 @@ int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, 
     schedule.tasks.add(tasks);
     end = parallel::run_tasks(ranks, schedule, make_job, lead.events(), options.report_interval);
     is_complete = end == parallel::SweepEnd::complete && !lead.was_interrupted();
-    const std::string word = is_complete ? begin_round(growth, ledger, grown_plan) : over;
-    ranks.broadcast(word);
-    if (word == over) break;
-    if (word != another_round) make_job = jobs_of(word);
+    const bool has_more = is_complete && rule && begin_round(*rule, ledger);
+    ranks.broadcast(has_more ? another_round : over);
+    if (!has_more) break;
   }
   lead.finish();
-  if (is_complete && options.log != Log::Level::quiet) announce_end(growth, ledger, *grown_plan);
+  if (is_complete && rule && options.log != Log::Level::quiet) console::say(campaign::outcome(*rule, plan));
   if (const sweep::RunRow* first = is_complete ? ledger.first_if_all_failed() : nullptr) {
     console::say("clogsweep: every run has failed; the first one: " + first->message);
     return console::exit_internal_fault;
@@ -192,15 +173,12 @@ int lead_sweep(const parallel::Communicator& ranks, const LeadOptions& options, 
 }
 
 void follow_sweep(const parallel::Communicator& ranks, const JobsOf& jobs_of, const std::string& assignment) {
-  sweep::JobFactory make_job = jobs_of(assignment);
+  const sweep::JobFactory make_job = jobs_of(assignment);
   const std::chrono::milliseconds report_interval = Assignment::from(assignment).report_interval;
   parallel::Schedule none(parallel::TaskOrder(0), ranks.size(), false);
-  while (true) {
+  do {
     parallel::run_tasks(ranks, none, make_job, {}, report_interval);
-    const std::string word = ranks.broadcast("");
-    if (word == over) return;
-    if (word != another_round) make_job = jobs_of(word);
-  }
+  } while (ranks.broadcast("") == another_round);
 }
 
 }  // namespace clog::conduct

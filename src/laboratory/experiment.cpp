@@ -38,8 +38,7 @@ const std::string& usual_unit(const std::string& quantity) {
   return units.at(quantity);
 }
 
-}  // namespace
-
+/// Factor from a unit alone. @throws Error
 double si_factor(const std::string& unit, const std::string& units) {
   const auto& known = known_units(units);
   if (const auto found = known.find(with_plain_micro(unit)); found != known.end()) return found->second;
@@ -47,6 +46,8 @@ double si_factor(const std::string& unit, const std::string& units) {
   for (const auto& [name, factor] : known) names += (names.empty() ? "" : ", ") + name;
   throw Error("unknown unit '" + unit + "' for " + units + " (known: " + names + ")");
 }
+
+}  // namespace
 
 double to_si(const std::string& text, const std::string& units) {
   char* rest = nullptr;
@@ -68,11 +69,6 @@ double Experiment::reduced_terminal_speed() const { return terminal_speed / std:
 
 double Experiment::line_tension() const {
   return interfacial_tension / (gravity() * droplet_density * diameter * diameter);
-}
-
-double scaled_line_tension(double line_tension, const Experiment& from, const Experiment& to) {
-  const auto weight = [](const Experiment& lab) { return lab.diameter * lab.diameter * std::sin(lab.tilt); };
-  return line_tension * weight(from) / weight(to);
 }
 
 }  // namespace clog::laboratory

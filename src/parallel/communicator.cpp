@@ -12,12 +12,15 @@
 namespace clog::parallel {
 namespace {
 
+/// Variables in which launchers give a process its rank.
+constexpr const char* rank_variables[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
+
 /// A rank that no launcher has started stands alone. Otherwise Open MPI would begin a daemon for it, which
 /// looks for ssh and takes the rank with it when it is killed; and a folder of a name that all such ranks of
 /// a user share, so that one that starts while another ends may fail.
 void stand_alone_without_launcher() {
-  for (const char* mark : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"})
-    if (std::getenv(mark)) return;
+  for (const char* name : rank_variables)
+    if (std::getenv(name)) return;
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
   setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
   setenv("HOME", "/", 0);  // Open MPI 5 does not start without one; it looks for settings there
@@ -30,6 +33,12 @@ Communicator::Communicator(int& argc, char**& argv) {
   MPI_Init(&argc, &argv);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &size_);
+}
+
+bool Communicator::may_be_rank_0() {
+  for (const char* name : rank_variables)
+    if (const char* rank = std::getenv(name); rank && std::string_view(rank) != "0") return false;
+  return true;
 }
 
 Communicator::~Communicator() { MPI_Finalize(); }

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <array>
 #include <filesystem>
 #include <iostream>
 #include <limits>
@@ -21,10 +22,7 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/joined.hpp"
 #include "clog/store/run_table.hpp"
-#include "clogfit_calibrate.hpp"
 #include "clogfit_compare.hpp"
-#include "clogfit_deviation.hpp"
-#include "clogfit_drag.hpp"
 #include "clogfit_units.hpp"
 #include "laboratory_option.hpp"
 
@@ -120,8 +118,9 @@ int body(int argc, char** argv) {
   return console::exit_success;
 }
 
-/// Runs python3 -m clogsweep COMMAND, which asks this very program for the numbers.
-/// @param command  such as report, one page of HTML about a sweep, or curve, its fitted curves
+constexpr std::array python_commands = {"calibrate", "curve", "deviation", "drag", "report"};
+
+/// Runs python3 -m clogsweep COMMAND, which asks these very programs for numbers.
 int become_python(const std::string& command, int argc, char** argv) {
   // The user's own --programs comes later and has the last word.
   std::vector<std::string> arguments = {command, "--programs", cli::own_folder()};
@@ -133,19 +132,12 @@ int become_python(const std::string& command, int argc, char** argv) {
 
 int main(int argc, char** argv) {
   console::prepare_streams();
-  if (argc > 1 && std::string_view(argv[1]) == "calibrate")
-    return cli::run_program("clogfit calibrate", [&] { return clogfit_calibrate(argc, argv); });
+  for (const std::string command : python_commands)
+    if (argc > 1 && argv[1] == command)
+      return cli::run_program("clogfit " + command, [&] { return become_python(command, argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "compare")
     return cli::run_program("clogfit compare", [&] { return clogfit_compare(argc, argv); });
-  if (argc > 1 && std::string_view(argv[1]) == "curve")
-    return cli::run_program("clogfit curve", [&] { return become_python("curve", argc, argv); });
-  if (argc > 1 && std::string_view(argv[1]) == "deviation")
-    return cli::run_program("clogfit deviation", [&] { return clogfit_deviation(argc, argv); });
-  if (argc > 1 && std::string_view(argv[1]) == "drag")
-    return cli::run_program("clogfit drag", [&] { return clogfit_drag(argc, argv); });
   if (argc > 1 && std::string_view(argv[1]) == "units")
     return cli::run_program("clogfit units", [&] { return clogfit_units(argc, argv); });
-  if (argc > 1 && std::string_view(argv[1]) == "report")
-    return cli::run_program("clogfit report", [&] { return become_python("report", argc, argv); });
   return cli::run_program(program, [&] { return body(argc, argv); });
 }

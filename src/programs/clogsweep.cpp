@@ -13,7 +13,6 @@
 
 #include "clog/campaign/ledger.hpp"
 #include "clog/campaign/preview.hpp"
-#include "clog/campaign/round_rule.hpp"
 #include "clog/cli/command_line.hpp"
 #include "clog/cli/program.hpp"
 #include "clog/conduct/assignment.hpp"
@@ -33,7 +32,6 @@
 #include "clog/sweep/schema_json.hpp"
 #include "clogsweep_commands.hpp"
 #include "clogsweep_options.hpp"
-#include "clogsweep_refine.hpp"
 
 namespace {
 
@@ -47,7 +45,6 @@ given values, on all MPI ranks, and gathers the results in one HDF5 table.
 
   mpirun -np 4 clogsweep --config sweep.cfg --output sweep.h5 line-tension=0.2,1,5
   clogsweep --config sweep.cfg --dry-run
-  clogsweep --config sweep.cfg --output sweep.h5 --refine line-tension line-tension=0.03,3 --until curve=20%
   clogsweep status sweep.h5         how far it is: lambda, <v_g>, time left; also while it runs
   clogsweep verify sweep.h5         is the file undamaged?
   clogsweep salvage sweep.h5 --output whole.h5     copies the undamaged rows of a damaged file
@@ -59,19 +56,16 @@ given values, on all MPI ranks, and gathers the results in one HDF5 table.
 The same command resumes a stopped or killed sweep.
 )";
 
-/// @param growing, refined  at most one of them, if the sweep adds runs by itself
+/// @param growing  if the sweep adds runs by itself
 store::Provenance provenance(const cli::CommandLine& line,
-                             const std::optional<campaign::GrowingSweep>& growing,
-                             const std::optional<RefinedSweep>& refined, int num_ranks) {
+                             const std::optional<campaign::GrowingSweep>& growing, int num_ranks) {
   store::Provenance all = cli::origin(line);
   all.emplace_back("mpi_version", parallel::Communicator::library_version());
   all.emplace_back("hdf5_version", store::library_version());
   all.emplace_back("num_ranks", std::to_string(num_ranks));
-  if (!growing && !refined) return all;
-  for (auto& [name, text] : all)
-    if (name == "config") text = (growing ? growing->settings : refined->settings()).to_config(false);
-  if (refined) all.emplace_back("stopping_rule", refined->refiner().text());
   if (!growing) return all;
+  for (auto& [name, text] : all)
+    if (name == "config") text = growing->settings.to_config(false);
   all.emplace_back("stopping_rule", growing->rule.text());
   all.emplace_back("num_wanted", std::to_string(growing->num_first));
   return all;
@@ -91,21 +85,16 @@ std::optional<int> prepare(const cli::CommandLine& line, parallel::IsolatedJobs&
   attempts(line);
   assignment(line, line.settings());
   const std::optional<campaign::GrowingSweep> growing = growing_sweep(line);
-  std::optional<RefinedSweep> refined;
-  if (std::unique_ptr<campaign::RoundRule> rule = refiner(line)) refined.emplace(std::move(rule), "");
-  const sweep::Plan plan(refined ? refined->settings() : line.settings());
-  if (line.has("print-config")) campaign::print_config(refined ? refined->settings() : line.settings(), plan);
+  const sweep::Plan plan(line.settings());
+  if (line.has("print-config")) campaign::print_config(line.settings(), plan);
   if (line.has("dry-run")) {
     campaign::print_tasks(plan);
     console::flush_output();
     if (console::stop_signalled()) return console::exit_incomplete;
     campaign::print_limits(plan);
     // In the process that was forked before MPI began.
-    const sweep::JobFactory jobs =
-        isolated.jobs(assignment(line, refined ? refined->settings() : line.settings()).text());
-    return campaign::print_cost(plan, lead_options(line).output,
-                                {growing ? &growing->rule : nullptr, refined ? &refined->refiner() : nullptr},
-                                jobs);
+    const sweep::JobFactory jobs = isolated.jobs(assignment(line, line.settings()).text());
+    return campaign::print_cost(plan, lead_options(line).output, growing ? &growing->rule : nullptr, jobs);
   }
   if (line.has("print-config")) return console::exit_success;
   line.require("output");
@@ -115,28 +104,17 @@ std::optional<int> prepare(const cli::CommandLine& line, parallel::IsolatedJobs&
 /// Rank 0's state of a sweep.
 struct Led {
   std::optional<campaign::GrowingSweep> growing;
-  std::optional<RefinedSweep> refined;
   sweep::Plan plan;
   campaign::Ledger ledger;
 
   Led(const cli::CommandLine& line, int num_ranks)
       : growing(growing_sweep(line)),
-        refined(refined_sweep(line)),
         plan(settings(line)),
-        ledger(line.get("output"), plan, settings(line), provenance(line, growing, refined, num_ranks),
+        ledger(line.get("output"), plan, settings(line), provenance(line, growing, num_ranks),
                growing ? growing->num_first : plan.size(), attempts(line)) {}
 
   const sweep::Settings& settings(const cli::CommandLine& line) const {
-    return growing ? growing->settings : refined ? refined->settings() : line.settings();
-  }
-  conduct::Growth growth(const cli::CommandLine& line) {
-    if (growing) return {.rule = &growing->rule, .refiner = nullptr, .grow = {}};
-    if (!refined) return {};
-    return {.rule = nullptr, .refiner = &refined->refiner(), .grow = [&](const sweep::Points& round) {
-              refined->grow(round);
-              return conduct::GrownSweep{&refined->plan(), &refined->settings(),
-                                         assignment(line, refined->settings()).text()};
-            }};
+    return growing ? growing->settings : line.settings();
   }
 };
 
@@ -166,9 +144,20 @@ int sweep_on_all_ranks(const parallel::Communicator& ranks, parallel::IsolatedJo
   };
   if (ranks.rank() == 0)
     return conduct::lead_sweep(ranks, lead_options(line), led->plan, jobs_of, word, led->ledger,
-                               led->growth(line));
+                               led->growing ? &led->growing->rule : nullptr);
   conduct::follow_sweep(ranks, jobs_of, word);
   return console::exit_success;
+}
+
+/// The file that a sweep may resume, before its command line is checked; empty if none is named.
+std::string named_output(int argc, const char* const* argv) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word == "--output" && i + 1 < argc) return argv[i + 1];
+    for (const std::string_view form : {"--output=", "output="})
+      if (word.starts_with(form)) return std::string(word.substr(form.size()));
+  }
+  return "";
 }
 
 }  // namespace
@@ -184,7 +173,9 @@ int main(int argc, char** argv) {
   const int exit_code = cli::run_program(program, [&] {
     require_memory("start MPI", memory_of_mpi);
     host::require_open_files();
-    isolated.emplace(conduct::assigned_jobs);  // before MPI begins
+    // Before MPI begins.
+    isolated.emplace(conduct::assigned_jobs);
+    if (parallel::Communicator::may_be_rank_0()) store::try_before_mpi(named_output(argc, argv));
     return console::exit_success;
   });
   if (exit_code != console::exit_success) return exit_code;

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -16,7 +17,6 @@
 #include "clog/core/tools/error.hpp"
 #include "clog/sweep/value_list.hpp"
 #include "clogsweep_commands.hpp"
-#include "clogsweep_refine.hpp"
 #include "laboratory_option.hpp"
 
 namespace clog::programs {
@@ -125,6 +125,11 @@ void refuse_other_format(const cli::CommandLine& line) {
 }  // namespace
 
 void parse_sweep_options(cli::CommandLine& line, int argc, const char* const* argv) {
+  for (int i = 1; i < argc; ++i)
+    if (std::string_view(argv[i]).starts_with("--refine"))
+      throw Error(
+          "--refine is a command of its own: python3 -m clogsweep refine KEY KEY=FROM,TO --until curve=20% "
+          "--output sweep.h5 -- mpirun -np 4");
   namespace po = boost::program_options;
   line.add_options()("output", po::value<std::string>(), "HDF5 file to make")(
       "lab", po::value<std::string>(),
@@ -143,16 +148,13 @@ void parse_sweep_options(cli::CommandLine& line, int argc, const char* const* ar
       "until-precision", po::value<std::string>(),
       "add seeds until half of lambda's 95 % interval is within this fraction of lambda, e.g. 10%")(
       "most-seeds", po::value<std::string>(),
-      "largest number of seeds of a parameter set with --until-precision (20 times `seeds`), or of a value "
-      "with "
-      "--refine (50 times)")("attempts", po::value<std::string>()->default_value("2"),
-                             "number of attempts for a run that fails")(
+      "largest number of seeds of a parameter set with --until-precision (20 times `seeds`)")(
+      "attempts", po::value<std::string>()->default_value("2"), "number of attempts for a run that fails")(
       "report-seconds", po::value<std::string>()->default_value("10"),
       "interval at which a running task reports its progress; a kill loses at most this time")(
       "isolate", po::value<std::string>()->default_value("yes"),
       "run each task in a separate process, so that a crash costs one task and not the sweep: yes, no")(
       "verbose", "a line for every task that starts or ends")("quiet", "errors only");
-  add_refine_options(line);
   std::vector<std::string> commands = {"doctor"};
   for (const FileCommand& command : file_commands) commands.emplace_back(command.name);
   line.add_commands(std::move(commands));
@@ -189,8 +191,7 @@ std::int64_t attempts(const cli::CommandLine& line) {
 
 std::optional<campaign::GrowingSweep> growing_sweep(const cli::CommandLine& line) {
   if (!line.has("until-precision")) {
-    if (line.has("most-seeds") && !line.has("refine"))
-      throw Error("--most-seeds needs --until-precision or --refine");
+    if (line.has("most-seeds")) throw Error("--most-seeds needs --until-precision");
     return std::nullopt;
   }
   const auto first_seeds = static_cast<std::int64_t>(line.settings().values("seeds").size());

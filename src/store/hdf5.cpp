@@ -5,12 +5,10 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -45,13 +43,6 @@ namespace {
 constexpr std::string_view hdf5_mark = "\x89HDF\r\n\x1a\n";
 
 }  // namespace
-
-bool looks_like_hdf5(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) return false;
-  std::array<char, hdf5_mark.size()> begin{};
-  std::ifstream(path, std::ios::binary).read(begin.data(), begin.size());
-  return std::string_view(begin.data(), begin.size()) == hdf5_mark;
-}
 
 void refuse_existing(const std::string& path) {
   if (std::filesystem::exists(path))

@@ -10,6 +10,8 @@
 
 namespace clog::store {
 
+inline constexpr const char* trajectory_kind = "clogsweep trajectory";
+
 /// Makes the dataset /runs with these rows in an open file, and the root attributes: kind, format version,
 /// provenance, and the checksums of all of them. @throws Error naming the path that it is to have
 void write_runs(hid_t file, const std::string& kind, std::span<const sweep::RunRow> rows,

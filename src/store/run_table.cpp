@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <span>
@@ -21,10 +22,10 @@
 #include "file_io.hpp"
 #include "hdf5.hpp"
 #include "laboratory_texts.hpp"
-#include "rehearsal.hpp"
 #include "row_layout.hpp"
 #include "run_rows.hpp"
 #include "seal.hpp"
+#include "trial_read.hpp"
 
 namespace clog::store {
 namespace {
@@ -100,7 +101,7 @@ void write_check_sums(hid_t file, const CheckSums& sums, const std::string& path
           path);
 }
 
-/// A damaged table may lack a column that was written; one of an older program lacks what is new.
+/// Tells a damaged table, which lacks a column that was written, from one of an older program.
 constexpr const char* num_columns_name = "num_columns";
 
 /// The attribute that has a line for every other one, and for the table: checksum and name.
@@ -185,16 +186,7 @@ std::optional<std::string> publish_sweep_over(const std::string& stamp, const Pl
 
 namespace {
 
-/// Columns were added in 3, those of the clog's mechanism and of the speed's error, and in 4, the ranges of
-/// contact and the near-wall drag's cutoff; checksums in 5; in 6 those of channels, walls and circles of
-/// one's own.
-constexpr std::array<std::string_view, 9> readable_versions = {"2", "3", "4", "5",           "6",
-                                                               "7", "8", "9", format_version};
-
-bool has_check_sums(std::string_view version) {
-  constexpr std::array<std::string_view, 3> without = {"2", "3", "4"};
-  return std::ranges::find(without, version) == without.end();
-}
+constexpr std::array<std::string_view, 2> readable_versions = {"9", format_version};
 
 /// A line of the attribute with checksums; nothing if it does not look like one.
 std::optional<std::pair<std::string, std::uint32_t>> check_sum_line(const std::string& line) {
@@ -225,19 +217,28 @@ std::string text_as_written(hid_t file, const std::string& name, const Texts& ca
   return text;
 }
 
-/// Format version of an open file. @throws Error if it is not one of our sweeps, or of an unknown version
-std::string version_of(hid_t file, const std::string& path) {
+/// @throws Error if the open file has a format version that this program does not read
+void require_readable_version(hid_t file, const std::string& path) {
+  const std::string version = text_as_written(file, "format_version", readable_versions);
+  if (std::ranges::find(readable_versions, version) == readable_versions.end())
+    throw Error(fmt::format(
+        "cannot read {} (format version {}, this program reads {} and {}); use the program that wrote it, or "
+        "compute the rows anew",
+        path, version, readable_versions.front(), format_version));
+}
+
+/// @throws Error if an open file is not one of our sweeps, or of a version that is not read
+void require_sweep(hid_t file, const std::string& path) {
   const std::array<std::string_view, 1> kinds = {sweep_kind};
-  if (text_as_written(file, "kind", kinds) != sweep_kind || H5Lexists(file, runs_name, H5P_DEFAULT) <= 0)
+  const std::string kind = text_as_written(file, "kind", kinds);
+  if (kind == trajectory_kind)
+    throw Error("cannot read " + path +
+                " (one run of clogrun, not a sweep); give a file written by clogsweep --output");
+  if (kind != sweep_kind || H5Lexists(file, runs_name, H5P_DEFAULT) <= 0)
     throw Error("cannot read " + path +
                 " (an HDF5 file, but not one of clogsweep's tables of runs); give a file written "
                 "by clogsweep --output");
-  std::string version = text_as_written(file, "format_version", readable_versions);
-  if (std::ranges::find(readable_versions, version) == readable_versions.end())
-    throw Error(fmt::format(
-        "cannot read {} (format version {}, this program reads {} to {}); use the program that wrote it",
-        path, version, readable_versions.front(), format_version));
-  return version;
+  require_readable_version(file, path);
 }
 
 [[noreturn]] void refuse_table(const std::string& path, const std::string& what) {
@@ -324,7 +325,6 @@ PackedTable read_table(hid_t file, const std::string& path) {
 
 /// Does the library refuse a dataset when it compares its own checksums, too?
 bool is_refused(hid_t file, const char* name) {
-  if (H5Lexists(file, name, H5P_DEFAULT) <= 0) return false;  // of an older format
   const Dataset dataset(H5Dopen2(file, name, H5P_DEFAULT));
   const Type type(H5Dget_type(dataset));
   std::vector<std::byte> bytes(
@@ -375,29 +375,17 @@ void compare_attributes(hid_t file, const CheckSums& sums, Examination& found) {
     found.damage.emplace_back("its table is not the one that was written: rows are missing, or exchanged");
 }
 
-Checked extent_of_check(bool has_sums, Seal seal) {
-  if (!has_sums) return Checked::nothing;
-  return seal == Seal::missing ? Checked::rows_and_settings : Checked::everything;
-}
-
 Examination examine(std::vector<std::byte>& image, Seal seal, const std::string& path) {
   const File file = open_image(image, path);
-  const std::string version = version_of(file, path);
-  const bool has_sums = has_check_sums(version);
+  require_sweep(file, path);
   const PackedTable table = read_table(file, path);
+  const CheckSums sums = read_check_sums(file, table.num_rows, path);
   Examination found;
-  found.whole.checked = extent_of_check(has_sums, seal);
-  if (has_sums) {
-    const CheckSums sums = read_check_sums(file, table.num_rows, path);
-    compare_rows(table, sums, found);
-    compare_attributes(file, sums, found);
-    read_circles(file, found.whole.circles, found.damage);
-    read_laboratories(file, found.damage);
-  } else {
-    for (std::size_t i = 0; i < table.num_rows; ++i)
-      found.whole.rows.push_back(table.layout.unpack(table.row(i).data()));
-    found.whole.provenance = read_attributes(file, path);
-  }
+  found.whole.checked = seal == Seal::missing ? Checked::rows_and_settings : Checked::everything;
+  compare_rows(table, sums, found);
+  compare_attributes(file, sums, found);
+  read_circles(file, found.whole.circles, found.damage);
+  read_laboratories(file, found.damage);
   if (seal != Seal::whole)
     found.is_refused_by_others = is_refused(file, runs_name) || is_refused(file, sums_name);
   join_parts(found.whole.provenance);
@@ -410,13 +398,27 @@ Examination examine(std::vector<std::byte>& image, Seal seal, const std::string&
   return found;
 }
 
+/// Returns the seal of the file, which can be read in this process then.
+Seal try_unless_whole(std::vector<std::byte>& image, const std::string& path) {
+  const Seal seal = look_at_seal(image);
+  if (seal != Seal::whole) try_in_child(image, path, [&] { examine(image, seal, path); });
+  return seal;
+}
+
 }  // namespace
 
 Examination examine_sweep(const std::string& path) {
   std::vector<std::byte> image = read_file(path);
-  const Seal seal = look_at_seal(image);
-  if (seal != Seal::whole) rehearse(path, [&] { examine(image, seal, path); });
+  const Seal seal = try_unless_whole(image, path);
   return examine(image, seal, path);
+}
+
+void try_before_mpi(const std::string& path) try {
+  if (!std::filesystem::is_regular_file(path)) return;
+  std::vector<std::byte> image = read_file(path);
+  try_unless_whole(image, path);
+} catch (const std::exception&) {
+  // the reading itself throws it again
 }
 
 SweepFile read_sweep(const std::string& path) {
@@ -430,16 +432,9 @@ SweepFile read_sweep(const std::string& path) {
 }
 
 std::string caution(const std::string& path, const SweepFile& file) {
-  switch (file.checked) {
-    case Checked::everything:
-      return "";
-    case Checked::rows_and_settings:
-      return path +
-             " was copied or changed by another program; its rows and settings are as clogsweep wrote them";
-    case Checked::nothing:
-      return path + " is of an older format without checksums: damage to it may go unnoticed";
-  }
-  return "";
+  if (file.checked == Checked::everything) return "";
+  return path +
+         " was copied or changed by another program; its rows and settings are as clogsweep wrote them";
 }
 
 }  // namespace clog::store

@@ -11,7 +11,7 @@ namespace clog::store {
 enum class Seal {
   whole,    ///< yes
   broken,   ///< no
-  missing,  ///< not known: an older version, a copy made by another program, or one that lost its end
+  missing,  ///< not known: a copy made by another program, or one that lost its end
 };
 
 /// A line that goes to the end of a file, behind what HDF5 reads: the size and the checksum of all before it.

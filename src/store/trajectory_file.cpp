@@ -2,22 +2,15 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <stdexcept>
-#include <utility>
 
-#include "clog/core/tools/error.hpp"
-#include "clog/sweep/value_list.hpp"
 #include "file_io.hpp"
 #include "hdf5.hpp"
-#include "rehearsal.hpp"
 #include "run_rows.hpp"
-#include "seal.hpp"
 
 namespace clog::store {
 namespace {
 
 constexpr const char* trajectory_name = "trajectory";
-constexpr const char* trajectory_kind = "clogsweep trajectory";
 
 /// Creates and fills a dataset; attributes can be added to what is returned.
 Dataset write_dataset(hid_t file, const char* name, hid_t type, std::initializer_list<hsize_t> shape,
@@ -87,72 +80,7 @@ void write_wedges(hid_t file, const std::vector<Wedge>& wedges) {
                   "radius of the tip [sigma]");
 }
 
-/// Its members must be doubles, packed as they are written.
-std::vector<std::string> column_names(hid_t type) {
-  std::vector<std::string> names;
-  const int num_members = H5Tget_class(type) == H5T_COMPOUND ? H5Tget_nmembers(type) : 0;
-  for (int i = 0; i < num_members; ++i) {
-    const auto index = static_cast<unsigned>(i);
-    const Type member(H5Tget_member_type(type, index));
-    if (H5Tequal(member, H5T_NATIVE_DOUBLE) <= 0) return {};
-    names.push_back(member_name(type, index));
-  }
-  return names.size() * sizeof(double) == H5Tget_size(type) ? names : std::vector<std::string>();
-}
-
-/// Columns without their values.
-std::vector<TrajectoryColumn> described_columns(hid_t table, hid_t type) {
-  std::vector<TrajectoryColumn> columns;
-  for (std::string& name : column_names(type)) {
-    std::string meaning = read_attribute(table, name);
-    columns.push_back({std::move(name), std::move(meaning), {}});
-  }
-  return columns;
-}
-
-std::vector<TrajectoryColumn> read_columns(hid_t file, const std::string& path) {
-  const Dataset table(H5Dopen2(file, trajectory_name, H5P_DEFAULT));
-  const Type type(table.valid() ? H5Dget_type(table) : hid_t{-1});
-  std::vector<TrajectoryColumn> columns =
-      type.valid() ? described_columns(table, type) : std::vector<TrajectoryColumn>();
-  const Space space(table.valid() ? H5Dget_space(table) : hid_t{-1});
-  const hssize_t num_samples = space.valid() ? H5Sget_simple_extent_npoints(space) : -1;
-  const std::string damaged = "cannot read " + path + " (damaged: its table of the trajectory ";
-  if (columns.empty() || num_samples < 0) throw Error(damaged + "is not as it was written); run it again");
-  // It is not compressed.
-  if (H5Dget_storage_size(table) / H5Tget_size(type) < static_cast<hsize_t>(num_samples))
-    throw Error(damaged + "cannot hold " + sweep::counted(num_samples, "sample") + "); run it again");
-  std::vector<double> rows(columns.size() * static_cast<std::size_t>(num_samples));
-  if (H5Dread(table, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, rows.data()) < 0)
-    throw Error(damaged + "cannot be read); run it again");
-  for (std::size_t i = 0; i < rows.size(); ++i) columns[i % columns.size()].values.push_back(rows[i]);
-  return columns;
-}
-
-TrajectoryTable read_image(std::vector<std::byte>& image, Seal seal, const std::string& path) {
-  const File file = open_image(image, path);
-  if (read_attribute(file, "kind") != trajectory_kind || H5Lexists(file, trajectory_name, H5P_DEFAULT) <= 0)
-    throw Error("cannot read " + path +
-                " (an HDF5 file, but not a trajectory); give a file written by clogrun --output");
-  return {read_columns(file, path), read_attributes(file, path), seal == Seal::whole};
-}
-
 }  // namespace
-
-const std::vector<double>& TrajectoryTable::column(const std::string& name) const {
-  const auto found = std::ranges::find(columns, name, &TrajectoryColumn::name);
-  if (found == columns.end()) throw std::out_of_range("the trajectory has no column " + name);
-  return found->values;
-}
-
-TrajectoryTable read_trajectory(const std::string& path) {
-  std::vector<std::byte> image = read_file(path);
-  const Seal seal = look_at_seal(image);
-  if (seal == Seal::broken)
-    throw Error("cannot trust " + path + " (damaged: its checksum is not that of its bytes); run it again");
-  if (seal == Seal::missing) rehearse(path, [&] { read_image(image, seal, path); });
-  return read_image(image, seal, path);
-}
 
 void write_trajectory(const std::string& path, const Trajectory& trajectory) {
   std::size_t numbers = 3 * trajectory.obstacles.size();

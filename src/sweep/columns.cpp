@@ -145,10 +145,8 @@ Column parameter_column(const Parameter& parameter, std::size_t place) {
           .get = [&parameter, place](const RunRow& row) { return value_of(parameter, place, row); },
           .set = [&parameter, place](RunRow& row,
                                      const Value& value) { set_parameter(parameter, place, row, value); },
-          .set_unknown =
-              [&parameter, place](RunRow& row) {
-                set_parameter(parameter, place, row, parameter.value_before(row.parameters));
-              }};
+          .set_unknown = [&parameter,
+                          place](RunRow& row) { set_parameter(parameter, place, row, parameter.before); }};
 }
 
 /// How the array was filled: layout and density in one word.

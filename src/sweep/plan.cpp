@@ -76,21 +76,11 @@ class Plan::Builder {
   explicit Builder(Plan& plan) : plan_(plan) {}
 
   void add_all(const Settings& settings) {
-    if (!settings.shard().is_whole() && !settings.rounds().empty())
-      throw Error("a part of a sweep cannot have rounds; merge the parts first");
-    begin_batch();
     settings.visit_branches([&](const Settings& branch, std::int64_t point) {
       add_branch(branch, point < 0 ? "" : fmt::format("point {}", point + 1));
     });
     if (!settings.shard().is_whole()) keep(settings.shard());
-    lay();
-    for (std::size_t round = 0; round < settings.rounds().size(); ++round) {
-      begin_batch();
-      settings.visit_round(round, [&](const Settings& branch, std::int64_t point) {
-        add_branch(branch, fmt::format("point {} of round {}", point + 1, round + 1));
-      });
-      lay();
-    }
+    number_tasks();
   }
 
  private:
@@ -99,12 +89,6 @@ class Plan::Builder {
   std::vector<std::string> names_;                       // of products, for messages; empty for lists
   std::int64_t num_runs_ = 0;                            // of all shards
   Seeds last_seeds_;                                     // which many branches have in common
-  std::size_t batch_ = 0;
-
-  void begin_batch() {
-    batch_ = plan_.batches_.size();
-    plan_.batches_.emplace_back();
-  }
 
   void add_branch(const Settings& branch, const std::string& name) {
     const std::string where = name.empty() ? "" : name + ": ";
@@ -177,29 +161,20 @@ class Plan::Builder {
   void add_group(RunRow run, std::size_t product, std::int64_t place) {
     run.parameters.seed = 0;
     const auto [known, is_new] = known_.emplace(identity(run), plan_.num_groups());
-    if (is_new) plan_.groups_.push_back({product, place, {}});
-    Group& group = plan_.groups_[static_cast<std::size_t>(known->second)];
-    Batch& batch = plan_.batches_.back();
-    refuse_repeated_seeds(known->second, product);
-    if (group.parts.empty() || group.parts.back().batch != batch_) {
-      group.parts.push_back({batch_, batch.size()});
-      batch.push_back({known->second, last_seeds_});
+    if (is_new) {
+      plan_.groups_.push_back({product, place, last_seeds_});
       return;
     }
-    Share& share = batch[group.parts.back().share];
-    std::vector<std::uint32_t> all = *share.seeds;
+    refuse_repeated_seeds(known->second, product);
+    Seeds& seeds = plan_.groups_[static_cast<std::size_t>(known->second)].seeds;
+    std::vector<std::uint32_t> all = *seeds;
     all.insert(all.end(), last_seeds_->begin(), last_seeds_->end());
-    share.seeds = std::make_shared<const std::vector<std::uint32_t>>(std::move(all));
+    seeds = std::make_shared<const std::vector<std::uint32_t>>(std::move(all));
   }
 
   void refuse_repeated_seeds(std::int64_t number, std::size_t product) const {
     const Group& group = plan_.groups_[static_cast<std::size_t>(number)];
-    if (group.parts.empty()) return;
-    std::set<std::uint32_t> seen;
-    for (const Group::Part& part : group.parts) {
-      const Seeds& seeds = plan_.batches_[part.batch][part.share].seeds;
-      seen.insert(seeds->begin(), seeds->end());
-    }
+    const std::set<std::uint32_t> seen(group.seeds->begin(), group.seeds->end());
     for (const std::uint32_t seed : *last_seeds_) {
       if (!seen.contains(seed)) continue;
       const std::string& here = names_[product];
@@ -216,35 +191,27 @@ class Plan::Builder {
 
   /// One part of what there is.
   void keep(const Shard& shard) {
-    Batch& batch = plan_.batches_.back();
-    Batch kept;
     std::vector<Group> groups;
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      std::vector<std::uint32_t> seeds = part_of(*batch[i].seeds, i, shard);
-      if (seeds.empty()) continue;
-      groups.push_back(plan_.groups_[static_cast<std::size_t>(batch[i].group)]);
-      groups.back().parts.assign(1, {batch_, kept.size()});
-      kept.push_back(
-          {std::ssize(groups) - 1, std::make_shared<const std::vector<std::uint32_t>>(std::move(seeds))});
+    for (std::size_t i = 0; i < plan_.groups_.size(); ++i) {
+      Group group = plan_.groups_[i];
+      group.seeds = std::make_shared<const std::vector<std::uint32_t>>(part_of(*group.seeds, i, shard));
+      if (!group.seeds->empty()) groups.push_back(std::move(group));
     }
-    if (kept.empty())
+    if (groups.empty())
       throw Error(fmt::format("part {} of the sweep is empty: the whole sweep has only {}", shard.text(),
                               counted(num_runs_, "run")));
-    batch = std::move(kept);
     plan_.groups_ = std::move(groups);
   }
 
-  /// Numbers the tasks of the last batch.
-  void lay() {
-    const Batch& batch = plan_.batches_.back();
+  void number_tasks() {
     std::set<std::size_t> numbers;
-    for (const Share& share : batch) numbers.insert(share.seeds->size());
+    for (const Group& group : plan_.groups_) numbers.insert(group.seeds->size());
     std::size_t first = 0;
     for (const std::size_t number : numbers) {
-      Layer layer{plan_.size_, static_cast<std::int64_t>(first), batch_, {}};
-      for (std::size_t i = 0; i < batch.size(); ++i)
-        if (batch[i].seeds->size() >= number) layer.shares.push_back(i);
-      plan_.size_ += static_cast<std::int64_t>((number - first) * layer.shares.size());
+      Layer layer{plan_.size_, static_cast<std::int64_t>(first), {}};
+      for (std::size_t i = 0; i < plan_.groups_.size(); ++i)
+        if (plan_.groups_[i].seeds->size() >= number) layer.groups.push_back(static_cast<std::int64_t>(i));
+      plan_.size_ += static_cast<std::int64_t>((number - first) * layer.groups.size());
       plan_.layers_.push_back(std::move(layer));
       first = number;
     }
@@ -265,61 +232,39 @@ const Plan::Layer& Plan::layer_of(std::int64_t task) const {
   return *std::prev(next);
 }
 
-const Plan::Share& Plan::share_of(std::int64_t task) const {
-  const Layer& layer = layer_of(task);
-  const std::int64_t place = (task - layer.first_task) % std::ssize(layer.shares);
-  return batches_[layer.batch][layer.shares[static_cast<std::size_t>(place)]];
-}
-
 RunParameters Plan::task(std::int64_t index) const {
   const Layer& layer = layer_of(index);
-  const Share& share = share_of(index);
-  const std::int64_t seed = layer.first_seed + (index - layer.first_task) / std::ssize(layer.shares);
-  const Group& group = groups_[static_cast<std::size_t>(share.group)];
-  return parameters(group.product, group.place, (*share.seeds)[static_cast<std::size_t>(seed)]);
+  const std::int64_t seed = layer.first_seed + (index - layer.first_task) / std::ssize(layer.groups);
+  const Group& group = groups_[static_cast<std::size_t>(group_of(index))];
+  return parameters(group.product, group.place, (*group.seeds)[static_cast<std::size_t>(seed)]);
 }
 
 RunParameters Plan::group(std::int64_t group) const {
   const Group& one = groups_[static_cast<std::size_t>(group)];
-  const Group::Part& part = one.parts.front();
-  return parameters(one.product, one.place, batches_[part.batch][part.share].seeds->front());
+  return parameters(one.product, one.place, one.seeds->front());
 }
 
-std::int64_t Plan::group_of(std::int64_t task) const { return share_of(task).group; }
+std::int64_t Plan::group_of(std::int64_t task) const {
+  const Layer& layer = layer_of(task);
+  return layer.groups[static_cast<std::size_t>((task - layer.first_task) % std::ssize(layer.groups))];
+}
 
 std::int64_t Plan::num_seeds(std::int64_t group) const {
-  std::int64_t number = 0;
-  for (const Group::Part& part : groups_[static_cast<std::size_t>(group)].parts)
-    number += std::ssize(*batches_[part.batch][part.share].seeds);
-  return number;
+  return std::ssize(*groups_[static_cast<std::size_t>(group)].seeds);
 }
 
 std::vector<std::uint32_t> Plan::seeds(std::int64_t group) const {
-  std::vector<std::uint32_t> all;
-  for (const Group::Part& part : groups_[static_cast<std::size_t>(group)].parts) {
-    const Seeds& seeds = batches_[part.batch][part.share].seeds;
-    all.insert(all.end(), seeds->begin(), seeds->end());
-  }
-  return all;
+  return *groups_[static_cast<std::size_t>(group)].seeds;
 }
 
 std::int64_t Plan::task_of(std::int64_t group, std::int64_t place) const {
-  for (const Group::Part& part : groups_[static_cast<std::size_t>(group)].parts) {
-    const std::int64_t number = std::ssize(*batches_[part.batch][part.share].seeds);
-    if (place >= number) {
-      place -= number;
-      continue;
-    }
-    const Layer* last = nullptr;  // the last one that begins with this seed or an earlier one
-    for (const Layer& layer : layers_)
-      if (layer.batch == part.batch && layer.first_seed <= place) last = &layer;
-    assert(last);
-    const auto share = std::lower_bound(last->shares.begin(), last->shares.end(), part.share);
-    return last->first_task + (place - last->first_seed) * std::ssize(last->shares) +
-           std::distance(last->shares.begin(), share);
-  }
-  assert(false && "the group has no such seed");
-  return -1;
+  // The last layer that begins with this seed or an earlier one.
+  const auto next = std::ranges::upper_bound(layers_, place, {}, &Layer::first_seed);
+  const Layer& layer = *std::prev(next);
+  const auto found = std::ranges::lower_bound(layer.groups, group);
+  assert(found != layer.groups.end() && *found == group);  // else the group has no such seed
+  return layer.first_task + (place - layer.first_seed) * std::ssize(layer.groups) +
+         std::distance(layer.groups.begin(), found);
 }
 
 /// A text for every axis.

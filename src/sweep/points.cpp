@@ -16,7 +16,6 @@ namespace {
 
 constexpr const char* point_keys_line = "point-keys";
 constexpr const char* point_line = "point";
-constexpr const char* round_keys_line = "round-keys";
 constexpr const char* shard_line = "shard";
 constexpr const char* usual_text = "*";  // of a key for which a point has no text
 constexpr std::size_t most_points = 100'000;
@@ -36,8 +35,8 @@ std::string line_of(const char* name, const std::vector<std::string>& texts) {
   return line + '\n';
 }
 
-std::string lines_of(const char* keys_line, const Points& points) {
-  std::string lines = line_of(keys_line, points.keys);
+std::string lines_of(const Points& points) {
+  std::string lines = line_of(point_keys_line, points.keys);
   for (const std::vector<std::string>& row : points.rows) lines += line_of(point_line, row);
   return lines;
 }
@@ -84,10 +83,9 @@ Shard Shard::from(const std::string& text) {
 
 std::string Shard::text() const { return fmt::format("{}/{}", number, of); }
 
-std::string config_lines(const Points& points, std::span<const Points> rounds, const Shard& shard) {
+std::string config_lines(const Points& points, const Shard& shard) {
   std::string lines;
-  if (!points.empty()) lines += lines_of(point_keys_line, points);
-  for (const Points& round : rounds) lines += lines_of(round_keys_line, round);
+  if (!points.empty()) lines += lines_of(points);
   if (!shard.is_whole()) lines += fmt::format("{} = {}\n", shard_line, shard.text());
   return lines;
 }
@@ -100,18 +98,16 @@ std::vector<std::string> texts_of_line(const std::string& line) {
 }
 
 bool Settings::is_plan_line(const std::string& name) {
-  return name == point_keys_line || name == point_line || name == round_keys_line || name == shard_line;
+  return name == point_keys_line || name == point_line || name == shard_line;
 }
 
 void Settings::set_line(const std::string& name, const std::string& text) {
   if (name == point_keys_line) {
     begin_points(points_, texts_of_line(text));
-  } else if (name == round_keys_line) {
-    begin_points(rounds_.emplace_back(), texts_of_line(text));
   } else if (name == point_line) {
-    Points& last = rounds_.empty() ? points_ : rounds_.back();
-    if (last.empty()) throw Error("a point stands before the line `point-keys = ...`, which names its keys");
-    add_point(last, texts_of_line(text));
+    if (points_.empty())
+      throw Error("a point stands before the line `point-keys = ...`, which names its keys");
+    add_point(points_, texts_of_line(text));
   } else if (name == shard_line) {
     shard_ = Shard::from(text);
   } else {
@@ -156,17 +152,9 @@ void Settings::set_points(const Points& points) {
   points_ = std::move(checked);
 }
 
-void Settings::add_round(const Points& points) {
-  Points checked;
-  begin_points(checked, points.keys);
-  for (const std::vector<std::string>& row : points.rows) add_point(checked, row);
-  rounds_.push_back(std::move(checked));
-}
-
 Settings Settings::without_points() const {
   Settings plain = *this;
   plain.points_ = {};
-  plain.rounds_.clear();
   plain.shard_ = {};
   return plain;
 }
@@ -179,20 +167,14 @@ void Settings::visit_branches(const VisitBranch& visit) const {
     visit_points(plain, points_, visit);
 }
 
-void Settings::visit_round(std::size_t round, const VisitBranch& visit) const {
-  visit_points(without_points(), rounds_.at(round), visit);
-}
-
 std::map<std::string, std::vector<std::string>> Settings::all_values() const {
   std::map<std::string, std::vector<std::string>> all;
   std::map<std::string, std::set<std::string>> seen;
-  const VisitBranch add = [&](const Settings& branch, std::int64_t) {
+  visit_branches([&](const Settings& branch, std::int64_t) {
     for (const auto& [name, values] : branch.values_)
       for (const std::string& value : values)
         if (seen[name].insert(value).second) all[name].push_back(value);
-  };
-  visit_branches(add);
-  for (std::size_t round = 0; round < rounds_.size(); ++round) visit_round(round, add);
+  });
   return all;
 }
 
@@ -200,12 +182,10 @@ std::map<std::string, std::vector<std::string>> Settings::all_values() const {
 /// given they would contradict it.
 std::set<std::string> Settings::keys_that_follow() const {
   std::set<std::string> following;
-  const VisitBranch look = [&](const Settings& branch, std::int64_t) {
+  visit_branches([&](const Settings& branch, std::int64_t) {
     for (const auto& [name, text] : branch.texts_)
       if (!branch.is_given(name) && !is_given(name) && text != texts_.at(name)) following.insert(name);
-  };
-  visit_branches(look);
-  for (std::size_t round = 0; round < rounds_.size(); ++round) visit_round(round, look);
+  });
   return following;
 }
 

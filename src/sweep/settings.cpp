@@ -308,7 +308,7 @@ std::vector<std::string> Settings::missing_files() const {
         missing.push_back(file);
   };
   look(values(circles_key));
-  if (!points_.empty() || !rounds_.empty()) look(all_values().at(circles_key));
+  if (!points_.empty()) look(all_values().at(circles_key));
   return missing;
 }
 
@@ -385,7 +385,7 @@ std::string Settings::to_config(bool with_comments) const {
     if (with_comments) config += fmt::format("# {}\n", key.help);
     config += fmt::format("{} = {}\n", key.name, escaped(text(key.name)));
   }
-  return config + config_lines(points_, rounds_, shard_);
+  return config + config_lines(points_, shard_);
 }
 
 }  // namespace clog::sweep

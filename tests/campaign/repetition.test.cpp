@@ -50,26 +50,5 @@ TEST(DifferingResults, AreNeverTwoNaN) {
   EXPECT_GT(num_columns, 30);
 }
 
-TEST(CompleteResults, TakesDwellsAndContactsThatAnOlderProgramDidNotRecord) {
-  sweep::RunRow old = known_row();
-  for (const char* name : {"longest_dwell", "dwells_known_from", "last_dwell_at", "last_dwell_from",
-                           "contacts", "first_contact_at"})
-    sweep::column(name).set_unknown(old);
-  EXPECT_FALSE(differing_results(old, known_row()).empty());
-  sweep::RunRow present = known_row();
-  EXPECT_FALSE(complete_results(present, old));
-  EXPECT_TRUE(differing_results(present, known_row()).empty());
-  EXPECT_TRUE(complete_results(old, known_row()));
-  EXPECT_TRUE(differing_results(old, known_row()).empty());
-}
-
-TEST(CompleteResults, KeepsWhatTheRowKnows) {
-  sweep::RunRow row = known_row(), other = known_row();
-  other.contacts = 5;
-  other.dwells.known_from = 9;
-  EXPECT_FALSE(complete_results(row, other));
-  EXPECT_EQ(differing_results(row, other), (std::vector<std::string>{"dwells_known_from", "contacts"}));
-}
-
 }  // namespace
 }  // namespace clog::campaign

@@ -15,7 +15,6 @@
 #include "clog/campaign/comparison.hpp"
 #include "clog/campaign/groups.hpp"
 #include "clog/campaign/preview.hpp"
-#include "clog/campaign/refiner.hpp"
 #include "clog/campaign/usual_parameters.hpp"
 #include "clog/core/parameters/schema.hpp"
 #include "clog/core/tools/error.hpp"
@@ -158,47 +157,6 @@ TEST_P(EveryKey, MakesTwoLinesOfADryRun) {
   const auto without_number = [](const std::string& line) { return line.substr(line.find(' ')); };
   EXPECT_NE(without_number(one), without_number(other)) << header;
   EXPECT_GE(std::ranges::count(header, ' '), 2) << "the task's number, and what differs";
-}
-
-/// Rows of a sweep in which lambda rises with a column, of which this is the least value.
-std::vector<sweep::RunRow> rising_rows(const sweep::Settings& settings, const sweep::Column& column,
-                                       double least) {
-  std::vector<sweep::RunRow> rows;
-  const sweep::Plan plan(settings);
-  for (std::int64_t task = 0; task < plan.size(); ++task) {
-    sweep::RunRow row = sweep::describe(plan.task(task));
-    row.task = task;
-    end_run(row, RunStatus::clogged, std::get<double>(column.get(row)) / least);
-    EXPECT_EQ(sweep::fault_of(row), "");
-    rows.push_back(row);
-  }
-  return rows;
-}
-
-/// A key whose curve a search would not see whole is refused at its start.
-TEST_P(EveryKey, IsRefinedOverItsWholeRangeOrRefused) {
-  const Parameter& parameter = GetParam();
-  if (parameter.kind != ValueKind::number && parameter.kind != ValueKind::number_or_share) return;
-  sweep::Settings settings = settings_for(parameter);
-  const double one = sweep::to_number(other_value(parameter, settings));
-  settings.set(parameter.key, shortest(one) + "," + shortest(1.1 * one));
-  std::unique_ptr<Refiner> refiner;
-  try {
-    refiner =
-        std::make_unique<Refiner>(settings, RefinementOptions{.keys = {parameter.key},
-                                                              .goal = {RefinementGoal::Kind::peak, 0, 0.01},
-                                                              .most_seeds = 50});
-  } catch (const Error&) {
-    return;
-  }
-  const auto columns = group_columns();
-  const auto column = std::ranges::find_if(columns, [&](const sweep::Column* one) {
-    return one->parameter && one->parameter->key == std::string(parameter.key);
-  });
-  ASSERT_NE(column, columns.end());
-  const std::string known = refiner->known(rising_rows(refiner->first(), **column, one));
-  EXPECT_NE(known.find(fmt::format("highest at {} {:.3g} ", parameter.key, 1.1 * one)), std::string::npos)
-      << known;
 }
 
 INSTANTIATE_TEST_SUITE_P(Schema, EveryKey,

@@ -110,25 +110,6 @@ inline Eigen::ArrayXd renumbered(const Eigen::ArrayXd& position, int first) {
   return result;
 }
 
-/// Largest difference between the force and the central difference of the energy.
-inline double force_error(DpForces& forces, DropletState state) {
-  constexpr double h = 1e-6;
-  forces.update_contacts(state, {});
-  Eigen::ArrayXd force(state.position.size());
-  forces.evaluate(state, force);
-  double worst = 0;
-  for (Eigen::Index i = 0; i < state.position.size(); ++i) {
-    const double middle = state.position[i];
-    state.position[i] = middle + h;
-    const double above = forces.energy(state).total();
-    state.position[i] = middle - h;
-    const double below = forces.energy(state).total();
-    state.position[i] = middle;
-    worst = std::max(worst, std::abs(force[i] + (above - below) / (2 * h)));
-  }
-  return worst;
-}
-
 /// Vertices that walls hold without a touch.
 inline int num_behind_films(const DropletState& state, double contact_range) {
   return static_cast<int>(std::ranges::count_if(state.anchors, [&](const WallAnchor& one) {

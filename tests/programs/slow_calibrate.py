@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 
 import test_calibrate
-from support import BIN
+from support import BIN, ROOT
 
 
 class Calibrate(test_calibrate.OnATerminal):
@@ -39,6 +39,17 @@ class Calibrate(test_calibrate.OnATerminal):
             self.assertTrue(trial["converged"])
             self.assertLess(trial["clogging_tension"], 1.1)
             self.assertIn("close to a clog", " ".join(trial["warnings"]))
+
+    def test_it_finds_what_version_0_2_0_found(self):
+        record = json.loads((ROOT / "tests" / "programs" / "records" / "calibrate.json").read_text())
+        for expected in record["trials"][:2]:  # the third is of no droplet
+            with self.subTest(profile=expected["profile"]):
+                self.write(expected["profile"], record["profiles"][expected["profile"]])
+                found, = json.loads(self.succeed("clogfit", "calibrate", expected["profile"], *record["keys"], "--format=json").stdout)["trials"]
+                self.assertEqual(found.keys(), expected.keys())
+                for name in ("line_tension", "near_wall_drag"):
+                    self.assertAlmostEqual(found[name], expected[name], delta=0.1 * expected[f"{name}_error"])
+                self.assertEqual(found["warnings"], expected["warnings"])
 
     def calibrate_on_a_terminal(self, *arguments):
         """Runs with a terminal as standard error, which shows the progress."""

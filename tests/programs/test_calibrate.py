@@ -112,7 +112,7 @@ class Calibrate(OnATerminal):
             (["channel.h5", "--orifice=0.9", "terminal-speed=0.03"], ["channel.h5", "terminal-speed=0.3, not 0.03"]),
             (["clogged.h5", "--orifice=0.5", "terminal-speed=0.3"], ["clogged.h5", "it clogged", "give a droplet that passed"]),
             (["array.h5"], ["array.h5", "not a passage"]),
-            (["sweep.h5"], ["sweep.h5", "not a trajectory"]),
+            (["sweep.h5"], ["sweep.h5", "not a passage"]),
             (["damaged.h5"], ["damaged.h5", "damaged"]),
             (["cut.h5"], ["cut.h5", "damaged"]),
         ]:
@@ -124,6 +124,11 @@ class Calibrate(OnATerminal):
             file.attrs["note"] = "changed by hand"  # cuts the seal off
         done = self.succeed("clogfit", "deviation", "channel.h5", "channel.h5")
         self.assertIn("may go unnoticed", done.stderr)
+
+    def test_commands_in_python_have_the_version_of_the_programs(self):
+        version = self.succeed("clogfit", "--version").stdout
+        for command in ("calibrate", "curve", "deviation", "drag", "report"):
+            self.assertEqual(self.succeed("clogfit", command, "--version").stdout, version.replace("clogfit", f"clogfit {command}", 1))
 
     def test_its_help_says_what_the_errors_leave_out(self):
         self.assertIn("for frames without noise they are too small", self.succeed("clogfit", "calibrate", "--help").stdout)
@@ -139,7 +144,7 @@ class Calibrate(OnATerminal):
             (["p.csv", "--diameter=2mm", "--speed=3mm/s"], ["missing orifice", "orifice=0.8"]),
             (["p.csv", "--angle=8deg"], ["--angle needs --diameter"]),
             (["p.csv", "--tension=10mN/m"], ["--tension needs"]),
-            (["p.csv", "--density=1g/ml", "--outer-density=1g/ml"], ["--density and --outer-density are equal"]),
+            (["p.csv", "--density=1g/ml", "--outer-density=1g/ml"], ["density and outer-density are equal"]),
             (["p.csv", "line-tension=1"], ["--line-tension is what"]),
             (["p.csv", "--diameter=2mm", "--speed=3mm/s", "vertices=64,128"], ["2 runs, but one is needed"]),
             (["p.csv", "--diameter=2mm", "--speed=3mm/s", "--format=xml"], ["--format=xml"]),

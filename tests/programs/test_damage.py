@@ -3,6 +3,7 @@
 import contextlib
 import io
 import os
+import re
 import resource
 import shutil
 import signal
@@ -213,7 +214,7 @@ class Damage(ProgramTest):
         with self.assertRaises(clogsweep.Damaged):
             clogsweep.open(copy)
 
-    def test_python_reads_unsealed_runs_only_of_formats_without_checksums(self):
+    def test_python_refuses_an_unsealed_run(self):
         self.succeed("clogrun", "array", *QUICK, "seeds=1", "--output", "r.h5", "--polygon-interval", 5)
         run = self.folder / "r.h5"
         content = run.read_bytes()
@@ -252,6 +253,9 @@ class Damage(ProgramTest):
         self.assertIn("copied or changed by another program", said.stderr)
         self.assertEqual(said.stdout, self.succeed("clogfit", "s.h5").stdout)
         pandas.testing.assert_frame_equal(clogsweep.open(self.folder / "packed.h5").rows, clogsweep.open(self.file).rows)
+        self.assertIn("copied or changed by another program", self.succeed("clogsweep", *SETTINGS[:-1], "packed.h5").stderr)
+        self.assertIs(stored.is_sealed(self.folder / "packed.h5"), True, "the sweep has written it anew")
+        pandas.testing.assert_frame_equal(table(self.folder / "packed.h5"), self.rows)
 
     def test_a_table_of_another_description_is_not_read(self):
         """What a description says is compared with what is written here before a row is read."""
@@ -284,16 +288,20 @@ class Damage(ProgramTest):
                 with self.assertRaises(clogsweep.UserError):
                     stored.read_rows(copy)
 
-    def test_old_files_are_read_with_a_word(self):
-        stored_rows.make_older(self.file, "4")
-        for name, *arguments in [("clogsweep", "status", "s.h5"), ("clogfit", "s.h5"), ("clogsweep", *SETTINGS)]:
-            self.assertIn("older format without checksums", self.succeed(name, *arguments).stderr)
-        self.assertEqual(stored.is_sealed(self.file), True, "the sweep has written it anew")
+    def test_files_of_other_formats_get_one_line(self):
+        for version in ("4", "8", "99"):
+            stored_rows.make_older(self.file, version)
+            before = self.file.read_bytes()
+            line = f"(format version {version}, this program reads 9 and 10); use the program that wrote it, or compute the rows anew"
+            for name, *arguments in [*READERS, ("clogsweep", "verify", "s.h5")]:
+                self.refuse(name, *arguments, words=["s.h5", line])
+            with self.assertRaisesRegex(clogsweep.UserError, re.escape(line)):
+                clogsweep.open(self.file)
+            self.assertEqual(self.file.read_bytes(), before)
 
     def test_a_column_offset_beyond_the_row_is_refused(self):
         """Foreign memory was shown as a value: the offset of a member in the table's description."""
-        stored_rows.make_older(self.file, "4")
-        content = bytearray(self.file.read_bytes())
+        content = bytearray(self.file.read_bytes()[:-stored.SEAL_SIZE])
         name = content.index(b"kinetic_energy_ratio\0")
         offset = name + 24  # names are padded to eight bytes; the member's offset follows
         self.assertLess(struct.unpack_from("<I", content, offset)[0], 2000)

@@ -16,7 +16,6 @@ from matplotlib import image
 from matplotlib.figure import Figure
 from PIL import Image, ImageDraw, TiffImagePlugin
 
-import stored_rows
 from drawing import Analysis
 from support import BIN, table
 
@@ -1012,24 +1011,7 @@ class OtherTools(Analysis):
         self.refused("photo.jpg", "upright")
 
 
-NEW = ["length", "side_walls", "entrance", "entrance_from", "entrance_to", "exit", "release_x", "release_y"]
-
-
 class Stored(Analysis):
-    def test_files_of_format_version_8_can_be_read_but_do_not_say_where_droplets_were_released(self):
-        keys = ["obstacles=posts.csv", "box=6", "boxes=3", "release=anywhere", "seeds=1..2", "max-time=5", "vertices=64"]
-        self.write("posts.csv", csv())
-        self.succeed("clogsweep", *keys, "--output", "s.h5")
-        before = table(self.folder / "s.h5")
-        stored_rows.make_older(self.folder / "s.h5", "8", NEW)
-        self.refuse_analysis("device", "s.h5", "--programs", BIN, words=["s.h5 does not say where", "older version"])
-        self.succeed("clogsweep", "verify", "s.h5")
-        self.assertIn("posts.csv", self.succeed("clogfit", "s.h5").stdout)
-        self.succeed("clogsweep", *keys[:-3], "seeds=1..3", *keys[-2:], "--output", "s.h5")
-        rows = table(self.folder / "s.h5")
-        self.assertEqual(rows["distance"].tolist()[:2], before["distance"].tolist(), "known rows are kept")
-        self.assertEqual(np.isfinite(rows["release_x"]).tolist(), [False, False, True])
-
     def test_other_arrays_are_no_device(self):
         self.succeed("clogsweep", "obstacle-gap=0.5", "box=20", "max-time=1", "vertices=64", "seeds=1", "--output", "random.h5")
         self.refuse_analysis("device", "random.h5", "--programs", BIN, words=["no circles of your own"])

@@ -119,13 +119,6 @@ class Model(unittest.TestCase):
         exact = np.linalg.inv(precision + np.diag(distances * np.exp(-curve.mean)))
         np.testing.assert_allclose(curve.covariance, exact, atol=1e-6)
 
-    def test_planned_clogs_reduce_the_variance_as_their_information_says(self):
-        x = np.log([[0.03], [0.1], [0.3], [1], [3]])
-        curve = model.curve_of_scales(known_points(x, [6] * 5, [0.6, 6, 60, 6, 0.6]), model.Scales(2, (1.5,)), x)
-        precision = np.linalg.inv(curve.covariance)
-        precision[2, 2] += 7
-        np.testing.assert_allclose(model.with_planned_clogs(curve, 2, 7).covariance, np.linalg.inv(precision), atol=1e-7)
-
     def test_what_is_no_number_is_refused(self):
         for log_keys, distances in (([], []), ([[0]], [0]), ([[0]], [math.nan]), ([[math.nan]], [1])):
             with self.subTest(distances=distances), self.assertRaises(ValueError):

@@ -110,13 +110,13 @@ class Module(Analysis):
         with self.assertRaisesRegex(clogsweep.UserError, "will not overwrite .*notes.png"):
             fit.curve().save(self.folder / "notes")
 
-    def test_a_sweep_of_older_programs_is_drawn(self):
-        """It says less of where it comes from."""
-        self.sweep()
-        stored_rows.make_older(self.folder / "s.h5", "4")
-        with h5py.File(self.folder / "s.h5", "r+") as file:
+    def test_a_sweep_that_lost_attributes_is_drawn(self):
+        def edit(file):
             for name in ("git_describe", "start_time"):
                 del file.attrs[name]
+
+        self.sweep()
+        stored_rows.edited(self.folder / "s.h5", edit)
         fit = clogsweep.open(self.folder / "s.h5", BIN).fit()
         self.assertRegex(fit.curve().source, r"^clogsweep 0.2.0, git \S+\nclogsweep vertices")
 
@@ -204,7 +204,7 @@ class Module(Analysis):
         pandas.DataFrame({"a": [1]}).to_hdf(self.folder / "p.h5", key="runs")
         with h5py.File(self.folder / "f.h5", "w") as file:
             file["runs"] = [1.0, 2.0]
-            file.attrs["format_version"] = "3"
+            file.attrs["format_version"] = "10"
         for name in ("p.h5", "f.h5"):
             with self.assertRaisesRegex(clogsweep.UserError, f"cannot .*{name}"):
                 clogsweep.open(self.folder / name)

@@ -192,20 +192,6 @@ class Merged(PointsTest):
         self.assertIn("24 rows of 3 files, 8 runs in more than one of them (1 with results that differ by instruction set", said)
         self.assertEqual(self.rows("all.h5")["instruction_set"].nunique(), 1)
 
-    def test_rows_of_older_programs_do_not_contradict_present_ones(self):
-        self.sweep("whole.h5", *self.LISTS)
-        self.sweep("b.h5", *self.LISTS[:2], "seeds=4..5")
-        without = [name for name in stored_rows.columns(self.folder / "b.h5")
-                   if "dwell" in name and name != "dwell_length" or name in ("contacts", "first_contact_at")]
-        self.assertIn("contacts", without)
-        self.assertIn("dwells_known_from", without)
-        stored_rows.make_older(self.folder / "b.h5", "8", without)
-        for names in (["whole.h5", "b.h5"], ["b.h5", "whole.h5"]):
-            self.assertIn("20 rows of 2 files, 8 runs in more than one of them", self.merge(*names))
-            self.check_same_rows("all.h5", "whole.h5")
-            (self.folder / "all.h5").unlink()
-        self.assertIn("the same", self.succeed("clogsweep", "replay", "b.h5", "0").stdout)
-
     def test_a_stopped_sweep_goes_on_in_the_merged_file(self):
         long = [*SMALL, "max-time=3000", "obstacle-gap=0.6", "line-tension=0.5", "--report-seconds=0.05"]
         self.succeed("clogsweep", *long, "seeds=1..3", "--output", "whole.h5")

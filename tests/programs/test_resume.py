@@ -454,6 +454,16 @@ class Batch(ProgramTest):
         self.assertEqual(self.called(), "")
         self.assertEqual(len(table(self.folder / "s.h5")), 20)
 
+    def test_a_job_that_refines_passes_its_warning_on_and_queues_again(self):
+        arguments = ["refine", "line-tension", *self.sweep("max-time=1e5", "line-tension=0.1,0.2"), "--budget=1h"]
+        process = self.script("slurm.sh", *arguments, SLURM_JOB_ID="77")
+        self.wait_for(lambda: (self.folder / "s.h5").exists() and (table(self.folder / "s.h5").status == "running").any())
+        os.kill(process.pid, signal.SIGUSR1)
+        output, _ = process.communicate(timeout=LONGEST)
+        self.assertEqual(process.returncode, 75, output)
+        self.assertEqual(self.called(), "scontrol requeue 77\n")
+        self.assertGreater((table(self.folder / "s.h5").status == "interrupted").sum(), 0)
+
     def test_pbs_queues_again_when_its_hours_are_over(self):
         options = self.folder / "sweep.options"
         options.write_text("\n".join(self.sweep("max-time=1e5", "line-tension=0.1,0.2")) + "\n")

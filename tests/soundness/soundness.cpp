@@ -24,13 +24,13 @@
 #include "clog/console/signals.hpp"
 #include "clog/core/droplet/release.hpp"
 #include "clog/core/model/model.hpp"
-#include "clog/core/polygon/dp_forces.hpp"
 #include "clog/core/run/droplet_run.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/units.hpp"
 #include "clog/sweep/plan.hpp"
 #include "ending.hpp"
 #include "findings.hpp"
+#include "polygon/reference_forces.hpp"
 
 namespace {
 
@@ -140,7 +140,7 @@ CaseReport release_case(const RunParameters& parameters) {
     const ObstacleArray obstacles = sample_obstacles(parameters.obstacles, parameters.seed);
     const DropletState state = model_of(parameters).release(parameters, obstacles);
     report.worst = soundness::look_at(state, obstacles);
-    DpForces forces(parameters, obstacles);
+    test::ReferenceForces forces(parameters, obstacles);
     forces.set_weight(0);
     forces.update_contacts(state, {});
     Eigen::ArrayXd force(state.position.size());

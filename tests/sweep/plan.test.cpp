@@ -229,18 +229,8 @@ TEST(Plan, JoinsThePointsThatDifferInTheirSeeds) {
                       {0.5, 1}, {2, 7}, {0.5, 2}, {0.5, 3}, {0.5, 10}, {0.5, 11}}));
 }
 
-TEST(Plan, KeepsTheNumbersOfTasksWhenARoundIsAdded) {
-  Settings settings = points_with_seeds();
-  const auto before = runs_of(Plan(settings));
-  settings.add_round({{"line-tension", "seeds"}, {{"0.7", "101..102"}, {"2", "8"}}});
-  settings.add_round({{"line-tension", "seeds"}, {{"0.7", "200"}}});
-  const Plan plan(settings);
-  auto after = runs_of(plan);
-  ASSERT_EQ(after.size(), before.size() + 4);
-  EXPECT_EQ(std::get<2>(after.back()), 200u);
-  EXPECT_EQ(plan.group_of(plan.size() - 1), plan.group_of(static_cast<std::int64_t>(before.size())));
-  after.resize(before.size());
-  EXPECT_EQ(after, before);
+TEST(Plan, FindsEveryTaskByItsGroupAndSeed) {
+  const Plan plan(points_with_seeds());
   std::set<std::int64_t> tasks;
   for (std::int64_t group = 0; group < plan.num_groups(); ++group)
     for (std::int64_t place = 0; place < plan.num_seeds(group); ++place) {
@@ -254,7 +244,6 @@ TEST(Plan, KeepsTheNumbersOfTasksWhenARoundIsAdded) {
 TEST(Plan, IsTheSameAfterItsConfigWasReadBack) {
   Settings settings = settings_of({{"preset", "elastic,robust"}, {"box", "30"}});
   settings.set_points({{"line-tension", "seeds", "obstacles"}, {{"0.5", "1..3", ""}, {"2", "7,9", "none"}}});
-  settings.add_round({{"line-tension", "seeds"}, {{"0.7", "101..102"}}});
   const Settings again = Settings::from_config(settings.to_config(true));
   EXPECT_EQ(again.to_config(false), settings.to_config(false));
   EXPECT_EQ(runs_of(Plan(again)), runs_of(Plan(settings)));

@@ -93,7 +93,7 @@ TEST(FaultOf, NoRunThatFailed) {
 TEST(FaultOf, NoColumnThatAnOlderVersionDidNotHave) {
   RunRow row = clogged();
   for (const char* name :
-       {"near_wall_cutoff", "contact_range", "self_contact_range", "boxes", "mean_speed_error", "transient",
+       {"near_wall_cutoff", "contact_range", "self_contact_range", "mean_speed_error", "transient",
         "travel_time", "mechanism", "wrapped_support", "num_wrapped", "num_gaps", "num_arcs", "clogged_by",
         "mesh_hold", "dwells_known_from", "last_dwell_at", "last_dwell_from"})
     column(name).set_unknown(row);

@@ -35,11 +35,21 @@ def name() -> str:
     return os.environ.get("CLOG_CALLED_AS") or _own_name or pathlib.Path(sys.argv[0]).name
 
 
+class ShowVersion(argparse.Action):
+    """Prints the version of the programs that a command calls, under the command's name."""
+
+    def __call__(self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, *_: object) -> NoReturn:
+        clogfit = programs.programs_in(getattr(namespace, "programs", None)) / "clogfit"
+        print(name() + programs.run_program(clogfit, "--version").removeprefix("clogfit"), end="")
+        parser.exit()
+
+
 class Parser(argparse.ArgumentParser):
     """Options of a command. @param about  its docstring"""
 
     def __init__(self, about: str | None) -> None:
         super().__init__(prog=name(), description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
+        self.add_argument("--version", action=ShowVersion, nargs=0, help="print versions and leave")
 
     def error(self, message: str) -> NoReturn:
         raise UserError(f"{message}; {name()} --help lists the options")
@@ -116,6 +126,16 @@ def sweep_to_draw(about: str | None, ending: str, what: str = "file of clogsweep
     arguments.output = arguments.output or beside(arguments.sweep, ending)
     outputs.refuse_unwritable_picture(arguments.output, arguments.sweep)
     return arguments
+
+
+def add_format(parser: argparse.ArgumentParser) -> None:
+    """--format, which is text or json."""
+    def known(word: str) -> str:
+        if word not in ("text", "json"):
+            raise UserError(f"invalid --format={word} (is not one of text, json)")
+        return word
+
+    parser.add_argument("--format", type=known, default="text", help="text or json (%(default)s)")
 
 
 def add_lab(parser: argparse.ArgumentParser) -> None:

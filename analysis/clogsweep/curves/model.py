@@ -173,16 +173,3 @@ def mixture(curves: Sequence[Curve], weights: Numbers, log_evidence: float) -> C
     for weight, curve in zip(weights, curves):
         covariance += weight * (curve.covariance + np.outer(curve.mean - mean, curve.mean - mean))
     return Curve(mean, covariance, log_evidence)
-
-
-def covariance_update(curve: Curve, place: int, num_clogs: float) -> Numbers:
-    """The vector u of the rank-one update, covariance - u u^T, by so many more clogs at a place of the curve: the squares
-    of its entries are the reductions of the variance at all places."""
-    variance = max(float(curve.covariance[place, place]), 0.0)
-    return curve.covariance[:, place] * np.sqrt(num_clogs / (1 + num_clogs * variance))
-
-
-def with_planned_clogs(curve: Curve, place: int, num_clogs: float) -> Curve:
-    """The curve as if these clogs had been observed. The mean stays: the results are not known yet."""
-    update = covariance_update(curve, place, num_clogs)
-    return dataclasses.replace(curve, covariance=curve.covariance - np.outer(update, update))

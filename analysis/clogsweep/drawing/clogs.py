@@ -157,7 +157,7 @@ def overlaps(clog: Clog) -> Numbers:
     """How deep every obstacle, then every wedge (rows), is in the contact of every edge (columns) [sigma]; above 0 they touch."""
     surfaces = [distances(clog.polygon, obstacle) for obstacle in clog.obstacles]
     surfaces += [distances_to_wedge(clog.polygon, wedge) for wedge in clog.wedges]
-    return trajectory.contact_range(clog.row) - np.array(surfaces)
+    return clog.row["contact_range"] - np.array(surfaces)
 
 
 def hull(points: Numbers) -> Numbers:

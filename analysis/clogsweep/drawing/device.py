@@ -94,10 +94,9 @@ def places(path: AnyPath, folder: AnyPath | None = None) -> list[Place]:
     own = rows[rows["obstacle_filling"] == b"file"]
     if len(own) == 0:
         raise UserError(f"{path} has no circles of your own; python3 -m clogsweep droplet and clogs show what droplets meet")
-    if "release_x" in stored.columns_of(rows):
-        own = own[np.isfinite(own["release_x"])]
-    if "release_x" not in stored.columns_of(rows) or len(own) == 0:
-        raise UserError(f"{path} does not say where droplets were released (an older version ran them, or none has begun); sweep anew, or wait")
+    own = own[np.isfinite(own["release_x"])]
+    if len(own) == 0:
+        raise UserError(f"{path} does not say where droplets were released (none has begun); wait")
     found = []
     for kind in np.unique(own[DEVICE_COLUMNS]):
         check_sum = stored.text(kind["obstacles"])

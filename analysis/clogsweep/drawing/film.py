@@ -171,7 +171,7 @@ class Film:
                                  label="speed of the interface $/v_t$")
         else:
             self._outline.set_edgecolor("black")
-        self._colour_of_the_end = style.MECHANISM_COLOURS.get(trajectory.mechanism(self._run)) if colour == "mechanism" else None
+        self._colour_of_the_end = style.MECHANISM_COLOURS.get(self._run.word("mechanism")) if colour == "mechanism" else None
 
     def _draw_course(self) -> list[Artist]:
         """@return what lies still of it"""

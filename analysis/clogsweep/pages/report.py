@@ -294,9 +294,9 @@ MAPPED = 4  # runs in each panel of a device whose ways make its map
 
 
 def devices(groups: Groups, sweep: pathlib.Path, count: int, clogrun: pathlib.Path, charts: Charts) -> dict[str, str]:
-    """User-supplied circles, with releases and clogs. Older files do not say where droplets were released.
+    """User-supplied circles, with releases and clogs.
     @param count  paths to draw in each panel; with 0 nothing is replayed"""
-    if groups.values("obstacle_filling") != {"file"} or "release_x" not in stored.columns_of(stored.read_rows(sweep, clogrun.parent)):
+    if groups.values("obstacle_filling") != {"file"}:
         return {}
     caption = "releases, clogs, where droplets went, and the share that came past each place"
 

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import json
 import os
 import pathlib
 import re
-import subprocess
 import sys
 import zlib
 from collections.abc import Iterator
@@ -21,15 +19,15 @@ from ..tools.errors import Damaged, ProgramFailed, UserError
 from ..tools.hints import AnyPath, Numbers, Records
 from ..tools.texts import printable
 from . import programs
-from .rehearsal import is_ours, is_run
 
 if TYPE_CHECKING:
     import pandas
 
 SEAL = re.compile(rb"\nclogsweep seal 1: crc32 ([0-9a-f]{8}) of ([0-9]{20}) bytes\n")
 SEAL_SIZE = 64
-OLD_VERSIONS = ("2", "3", "4")  # had no checksums
+READABLE_VERSIONS = ("9", "10")
 SWEEP, RUN = "sweep", "run"
+KINDS = {"clogsweep sweep": SWEEP, "clogsweep trajectory": RUN}  # by the attribute `kind`
 WRITERS: dict[str | None, str] = {
     SWEEP: "the output of clogsweep", RUN: "the output of clogrun with --polygon-interval", None: "a file of clogsweep or clogrun"}
 
@@ -58,30 +56,29 @@ def unreadable(path: AnyPath, reason: object, kind: str | None = None) -> UserEr
 
 def check_kind(path: AnyPath, file: h5py.File, kind: str | None) -> None:
     """@throws UserError"""
-    if not is_ours(file):
+    found = KINDS.get(text(file.attrs.get("kind", "")))
+    if found is None:
         raise unreadable(path, "an HDF5 file, but not one of clogsweep or clogrun", kind)
-    if kind == SWEEP and is_run(file):
+    version = text(file.attrs["format_version"])
+    if version not in READABLE_VERSIONS:
+        raise UserError(f"cannot read {path} (format version {version}, this program reads {' and '.join(READABLE_VERSIONS)}); "
+                        "use the program that wrote it, or compute the rows anew")
+    if kind == SWEEP and found == RUN:
         raise unreadable(path, "holds one run of clogrun, not a sweep", kind)
-    if kind == RUN and not is_run(file):
+    if kind == RUN and found == SWEEP:
         raise unreadable(path, "holds a sweep, not one run of clogrun", kind)
 
 
 def kind_of(path: AnyPath, folder: AnyPath | None = None) -> str:
     """SWEEP or RUN. @throws as opened()"""
     with opened(path, folder=folder) as file:
-        return RUN if is_run(file) else SWEEP
+        return KINDS[text(file.attrs["kind"])]
 
 
-def look(path: AnyPath) -> dict[str, str | bool]:
-    """Kind of the file, determined by reading all of it in a separate process. @throws Damaged  if that process crashes"""
-    done = subprocess.run([sys.executable, pathlib.Path(__file__).with_name("rehearsal.py"), path], capture_output=True, encoding="utf-8", errors="backslashreplace")
-    if done.returncode != 0:
-        raise Damaged(f"cannot trust {path} (damaged: reading it fails); restore it from a copy")
-    return json.loads(done.stdout)
-
-
-def ask_clogsweep(path: AnyPath, folder: AnyPath | None) -> None:
-    """Has clogsweep check rows, attributes and types of a sweep, and prints its warnings. @throws Damaged; UserError"""
+@functools.lru_cache
+def check_copy(path: str, folder: str | None, *_as_it_is: float) -> None:
+    """Has clogsweep check a sweep without a seal, which another program copied or changed, and prints its warnings; once for each
+    state of the file. @throws Damaged; UserError"""
     try:
         clogsweep = programs.programs_in(folder) / "clogsweep"
     except UserError as error:
@@ -90,22 +87,14 @@ def ask_clogsweep(path: AnyPath, folder: AnyPath | None) -> None:
         print(programs.warnings_of(clogsweep, "status", path, "--format", "json"), end="", file=sys.stderr)
     except ProgramFailed as failure:
         reason = str(failure).removeprefix("clogsweep status: ")
+        if "(one run of clogrun" in reason:
+            raise changed_run(path) from failure
         raise (Damaged if "(damaged: " in reason else UserError)(reason) from failure
 
 
-@functools.lru_cache
-def check_copy(path: str, folder: str | None, *_as_it_is: float) -> None:
-    """Checks a file without a seal, which another program copied or changed; once for each state of the file. @throws Damaged; UserError"""
-    found = look(path)
-    if not found["is_ours"]:
-        return  # for check_kind()
-    if not found["is_run"]:
-        ask_clogsweep(path, folder)
-    elif found["format_version"] in OLD_VERSIONS:
-        print(f"{printable(path)} is of an older format without checksums: damage to it may go unnoticed", file=sys.stderr)
-    else:
-        raise UserError(f"cannot trust {path} (another program copied or changed it, and outlines have no checksums of their own); "
-                        "give the file that clogrun wrote, or run the droplet again")
+def changed_run(path: AnyPath) -> UserError:
+    return UserError(f"cannot trust {path} (another program copied or changed it, and outlines have no checksums of their own); "
+                     "give the file that clogrun wrote, or run the droplet again")
 
 
 def why_not_open(path: AnyPath, error: OSError) -> str:
@@ -123,6 +112,8 @@ def opened(path: AnyPath, kind: str | None = None, folder: AnyPath | None = None
     try:
         is_whole = is_sealed(path)
         if h5py.is_hdf5(path) and not is_whole:
+            if kind == RUN:
+                raise changed_run(path)
             now = os.stat(path)
             check_copy(os.path.realpath(path), str(folder) if folder else None, now.st_dev, now.st_ino, now.st_size, now.st_ctime_ns)
         opened_file = h5py.File(path, "r")
@@ -152,9 +143,8 @@ def attributes(file: h5py.File) -> dict[str, str]:
 
 
 def writer(attributes: dict[str, str]) -> str:
-    """Version and commit of the program that wrote a file, in words. Older files have the commit's hash alone, or less."""
-    commit = attributes.get("git_describe") or attributes.get("git_hash") or "unknown"
-    return f"{attributes.get('version', 'of unknown version')}, git {commit}"
+    """Version and commit of the program that wrote a file, in words. A salvaged file may lack them."""
+    return f"{attributes.get('version', 'of unknown version')}, git {attributes.get('git_describe', 'unknown')}"
 
 
 def source(attributes: dict[str, str]) -> str:
@@ -166,7 +156,7 @@ def source(attributes: dict[str, str]) -> str:
 def settings(config: str) -> dict[str, str]:
     """Keys and values of a config as it is stored: of all keys, `auto` and the like where nothing else was given."""
     pairs = [line.partition(" = ") for line in config.split("\n")]
-    of_points = {key for name, _, keys in pairs if name in ("point-keys", "round-keys") for key in keys.split()}
+    of_points = {key for name, _, keys in pairs if name == "point-keys" for key in keys.split()}
     return {key: unescaped(value) for key, equals, value in pairs if equals and key not in of_points}
 
 

@@ -44,12 +44,12 @@ class Trajectory:
 
 def refined(polygons: Numbers, row: np.void) -> Numbers:
     """Polygons with the middles of their edges, by the four-point rule (docs/explanation/model.md): walls meet these. Those of
-    runs in which walls meet vertices alone, or the chords of older versions, stay as they are.
+    runs in which walls meet vertices alone stay as they are.
 
     @param polygons  (..., 2, N_v) [sigma]
     @return (..., 2, 2 N_v)
     """
-    if row["wall_contact"] != b"edge" or row["model_version"] < 4 or polygons.size == 0:
+    if row["wall_contact"] != b"edge" or polygons.size == 0:
         return polygons
     before, after = np.roll(polygons, 1, axis=-1), np.roll(polygons, -1, axis=-1)
     middles = (9 * (polygons + after) - before - np.roll(polygons, -2, axis=-1)) / 16
@@ -62,13 +62,6 @@ def outlines(polygons: Numbers, row: np.void) -> Numbers:
         return refined(polygons, row)
     angle = np.linspace(0, 2 * np.pi, POINTS_OF_DISK, endpoint=False)
     return polygons + 0.5 * np.stack([np.cos(angle), np.sin(angle)])
-
-
-def contact_range(row: np.void) -> float:
-    """Distance from a wall at which contact begins [sigma]; half a vertex diameter before it was stored."""
-    if "contact_range" in stored.columns_of(row):
-        return row["contact_range"]
-    return np.sqrt(np.pi * np.tan(np.pi / row["vertices"]) / row["vertices"]) / 2
 
 
 def read(path: AnyPath, needs_frames: bool = True) -> Trajectory:
@@ -119,16 +112,11 @@ def described(trajectory: Trajectory) -> str:
     return ", ".join(words)
 
 
-def mechanism(trajectory: Trajectory) -> str:
-    """Empty if it is not known."""
-    return trajectory.word("mechanism") if "mechanism" in stored.columns_of(trajectory.row) else ""
-
-
 def end_of(trajectory: Trajectory) -> str:
     """Describes in words how the run ended."""
     ends = {"wrapped": "clogged by wrapping", "squeezed": "clogged by squeezing", "hybrid": "clogged by wrapping and squeezing"}
     status = trajectory.word("status")
-    return ends.get(mechanism(trajectory), status) if status == "clogged" else {"flowing": "still flowing", "broken": "broken up"}.get(status, status)
+    return ends.get(trajectory.word("mechanism"), status) if status == "clogged" else {"flowing": "still flowing", "broken": "broken up"}.get(status, status)
 
 
 def verdict(trajectory: Trajectory) -> str:

@@ -2,7 +2,7 @@
 
 import sys
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import TypeVar
 
 Item = TypeVar("Item")
@@ -16,17 +16,28 @@ def readable_duration(seconds: float) -> str:
     return f"{whole // 60} min {whole % 60:02} s" if whole < 600 else f"{whole / 60:.0f} min"
 
 
+class StatusLine:
+    def __init__(self) -> None:
+        self.on_terminal = sys.stderr.isatty()
+        self.begin = self.last = time.monotonic()
+
+    def renew(self, text: Callable[[float], str]) -> None:
+        """Shows a text if it is time to. @param text  of the seconds since the beginning"""
+        now = time.monotonic()
+        if now - self.last >= (0.2 if self.on_terminal else 10):
+            self.last = now
+            shown = text(now - self.begin)
+            print(f"\r{shown}\x1b[K" if self.on_terminal else shown, end="" if self.on_terminal else "\n", file=sys.stderr, flush=True)
+
+    def wipe(self) -> None:
+        if self.on_terminal:
+            print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+
+
 def shown(items: Iterable[Item], what: str, total: int) -> Iterator[Item]:
     """Yields the items and tells after each, if it is time to, how many there have been and how long the rest takes."""
-    on_terminal = sys.stderr.isatty()
-    interval = 0.2 if on_terminal else 10
-    begin = last = time.monotonic()
+    line = StatusLine()
     for number, item in enumerate(items, start=1):
         yield item
-        now = time.monotonic()
-        if now - last >= interval:
-            last = now
-            text = f"{what} {number} of {total}, {readable_duration((now - begin) * (total / number - 1))} left"
-            print(f"\r{text}\x1b[K" if on_terminal else text, end="" if on_terminal else "\n", file=sys.stderr, flush=True)
-    if on_terminal:
-        print("\r\x1b[K", end="", file=sys.stderr, flush=True)
+        line.renew(lambda seconds: f"{what} {number} of {total}, {readable_duration(seconds * (total / number - 1))} left")
+    line.wipe()

@@ -35,11 +35,6 @@ class Ledger {
   /// Requests more of the plan's tasks; tasks_left() then returns the unfinished ones among these.
   void want(const std::vector<std::int64_t>& tasks);
   std::int64_t num_wanted() const { return num_wanted_; }
-  /// Continues with a plan that has the same tasks and one more round after them, which it requests as a
-  /// whole: tasks_left() then returns the unfinished tasks of this round. The table on disk has the new
-  /// settings when this returns.
-  /// @param plan, settings  with one more round
-  void grow(const sweep::Plan& plan, const sweep::Settings& settings);
   /// Tasks that have begun and are not over, wanted or not.
   std::vector<std::int64_t> tasks_begun() const;
 
@@ -121,7 +116,7 @@ class Ledger {
   std::string settings_that_differ(const store::SweepFile& file, const sweep::Settings& settings) const;
   void refuse_foreign(const std::vector<Entry>& entries, const std::unordered_map<std::string, Entry>& known,
                       const sweep::Settings& settings) const;
-  void find_tasks(std::unordered_map<std::string, Entry> known, std::int64_t first);
+  void find_tasks(std::unordered_map<std::string, Entry> known);
   double seconds_so_far() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
   sweep::RunRow published(const sweep::RunRow& row) const;
   void write_down(const Entry& entry);

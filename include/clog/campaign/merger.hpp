@@ -12,8 +12,7 @@ namespace clog::campaign {
 
 /// Rows of several files as those of one sweep. A run that several files have is there once: a result rather
 /// than an unfinished or failed row, an unfinished row rather than a failed one, otherwise the row with more
-/// steps. Of equal results, those with dwells and contacts are kept, which older programs did not record; of
-/// results that differ by instruction set, those of the file named first.
+/// steps. Of results that differ by instruction set, those of the file named first are kept.
 struct MergedSweep {
   store::SweepFile table;
   std::vector<store::Journal::Entry> snapshots;  ///< of unfinished runs

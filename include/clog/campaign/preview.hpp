@@ -2,19 +2,12 @@
 
 #include <string>
 
-#include "clog/campaign/round_rule.hpp"
 #include "clog/campaign/seed_rule.hpp"
 #include "clog/sweep/job.hpp"
 #include "clog/sweep/plan.hpp"
 #include "clog/sweep/settings.hpp"
 
 namespace clog::campaign {
-
-/// The rule for rounds after the first: one of these, or nothing.
-struct RoundsToCome {
-  const SeedRule* rule = nullptr;
-  const RoundRule* refiner = nullptr;
-};
 
 /// Prints on the standard output what a sweep would do.
 
@@ -26,9 +19,10 @@ void print_limits(const sweep::Plan& plan);
 /// (sweep_cost()): from the runs in `output` or, if these are few, from short trial runs. Then prints how
 /// much of the sweep `output` has, and the rest. Returns the exit code: a fault if no run can begin.
 /// @param output  the sweep's file, which need not exist; empty: no file
-/// @param rounds  if `plan` is the first of several: then also prints what the others may add
+/// @param rule  of the rounds after the first, which `plan` is: then also prints what they may add. nullptr:
+/// none
 /// @param jobs  make the trial runs
-int print_cost(const sweep::Plan& plan, const std::string& output, const RoundsToCome& rounds,
+int print_cost(const sweep::Plan& plan, const std::string& output, const SeedRule* rule,
                const sweep::JobFactory& jobs);
 /// Every key with its value, and the values of `auto` for the first task.
 void print_config(const sweep::Settings& settings, const sweep::Plan& plan);

@@ -14,9 +14,6 @@ struct Repetition {
 };
 /// Columns of results in which two rows of the same run differ; all NaN are equal.
 std::vector<std::string> differing_results(const sweep::RunRow& a, const sweep::RunRow& b);
-/// Takes dwells and contacts from another row of the same run, if an older program, which did not record
-/// them, wrote this one. Returns whether the row lacked any.
-bool complete_results(sweep::RunRow& row, const sweep::RunRow& from);
 /// @param row  see replayable_row()
 Repetition repeat(const sweep::RunRow& row);
 

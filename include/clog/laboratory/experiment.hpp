@@ -9,9 +9,6 @@ namespace clog::laboratory {
 /// @throws Error naming the units that are understood
 double to_si(const std::string& text, const std::string& units);
 
-/// Factor from a unit alone. @throws Error
-double si_factor(const std::string& unit, const std::string& units);
-
 /// A droplet between two plates that are tilted, driven by buoyancy; all in SI units.
 struct Experiment {
   double diameter = 0;        ///< of the undeformed droplet [m]
@@ -28,7 +25,5 @@ struct Experiment {
   /// Gamma_exp = gamma/(g_exp rho_droplet sigma^2) (Cheng et al., Eq. 7)
   double line_tension() const;
 };
-/// Gamma of another experiment with the same liquids: it goes with 1/(sigma^2 sin(tilt)).
-double scaled_line_tension(double line_tension, const Experiment& from, const Experiment& to);
 
 }  // namespace clog::laboratory

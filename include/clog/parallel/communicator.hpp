@@ -18,6 +18,9 @@ class Communicator {
   Communicator(const Communicator&) = delete;
   Communicator& operator=(const Communicator&) = delete;
 
+  /// Before MPI begins, by what the launcher says: true of rank 0, and of others whose launcher says nothing.
+  static bool may_be_rank_0();
+
   int rank() const { return rank_; }
   int size() const { return size_; }
   /// Version of the MPI library, one line.

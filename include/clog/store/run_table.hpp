@@ -20,9 +20,6 @@ using Provenance = std::vector<std::pair<std::string, std::string>>;
 /// Version of the HDF5 library, e.g. "1.10.8".
 std::string library_version();
 
-/// Is it a regular file that begins as HDF5 files do? Nothing is read from pipes.
-bool looks_like_hdf5(const std::string& path);
-
 /// @throws Error if the path exists: results are never overwritten
 void refuse_existing(const std::string& path);
 /// To be called before hours of work. @throws Error if the path exists or no file can be made there
@@ -52,7 +49,6 @@ std::optional<std::string> publish_sweep_over(const std::string& stamp, const Pl
 enum class Checked {
   everything,         ///< every bit of it
   rows_and_settings,  ///< each row and each attribute: another program copied or changed the file
-  nothing,            ///< a version before 5 wrote it, when there were no checksums
 };
 
 struct SweepFile {
@@ -61,9 +57,13 @@ struct SweepFile {
   std::vector<CircleFile> circles;  ///< that the rows refer to
   Checked checked = Checked::everything;
 };
-/// Files of format version 2 and later: columns that they do not have get the values for "not known".
-/// @throws Error if the file is missing, not HDF5, not ours, or damaged in any way
+/// Files of format versions 9 and 10. Columns that a file does not have get Parameter::before, or are
+/// unknown.
+/// @throws Error if the file is missing, not HDF5, not ours, of another format version, or damaged
 SweepFile read_sweep(const std::string& path);
+/// Tries to read a file without a whole seal in a child process, so that a later read_sweep() of the same
+/// bytes does not fork: a process that has called MPI_Init must not. Throws nothing: read_sweep() does.
+void try_before_mpi(const std::string& path);
 /// A warning for readers of this file; empty if all of it was checked.
 std::string caution(const std::string& path, const SweepFile& file);
 

@@ -34,16 +34,4 @@ struct Trajectory {
 /// Writes a new file, whole or not at all. @throws Error if it exists or cannot be written
 void write_trajectory(const std::string& path, const Trajectory& trajectory);
 
-/// The contents of a trajectory file, as they are read.
-struct TrajectoryTable {
-  std::vector<TrajectoryColumn> columns;
-  Provenance provenance;
-  bool is_checked;  ///< every bit is as it was written; otherwise the file has no seal, and nobody knows
-
-  /// @throws std::out_of_range if there is none of this name
-  const std::vector<double>& column(const std::string& name) const;
-};
-/// @throws Error if the file is missing, not HDF5, not a trajectory of ours, or damaged
-TrajectoryTable read_trajectory(const std::string& path);
-
 }  // namespace clog::store

@@ -21,9 +21,7 @@ using GroupOf = std::function<std::int64_t(std::int64_t task)>;
 /// each point.
 ///
 /// Seeds vary slowest, so that every curve fills evenly and neighbouring tasks share their obstacle array:
-/// task s * num_groups() + g is seed s of group g if all groups have equally many seeds. The tasks of the
-/// first round follow, then those of the second, and so on; a round may add seeds to existing groups. So a
-/// plan with one more round has the same tasks before it, under the same numbers.
+/// task s * num_groups() + g is seed s of group g if all groups have equally many seeds.
 class Plan {
  public:
   /// Checks every parameter set of the sweep.
@@ -61,40 +59,28 @@ class Plan {
   /// axes_.
   using OwnLists = std::map<std::size_t, std::vector<std::string>>;
   using Seeds = std::shared_ptr<const std::vector<std::uint32_t>>;
-  /// Seeds of a group that come from the lists or points, or from one round.
-  struct Share {
-    std::int64_t group;
-    Seeds seeds;
-  };
-  using Batch = std::vector<Share>;
   struct Group {
     std::size_t product;
     std::int64_t place;  ///< in the product, seeds excepted
-    struct Part {
-      std::size_t batch, share;
-    };
-    std::vector<Part> parts;
+    Seeds seeds;
   };
-  /// Successive tasks that go through the same shares again and again, seed by seed.
+  /// Successive tasks that go through the same groups again and again, seed by seed.
   struct Layer {
     std::int64_t first_task;
-    std::int64_t first_seed;  ///< place among the seeds of a share
-    std::size_t batch;
-    std::vector<std::size_t> shares;
+    std::int64_t first_seed;  ///< place among the seeds of a group
+    std::vector<std::int64_t> groups;
   };
   class Builder;
 
   std::vector<Axis> axes_;  // without the seeds; the first varies slowest
   std::vector<OwnLists> products_;
   std::vector<Group> groups_;
-  std::vector<Batch> batches_;
   std::vector<Layer> layers_;
   CircleFiles circle_files_;
   std::vector<std::string> possible_decimals_;
   std::int64_t size_ = 0;
 
   const Layer& layer_of(std::int64_t task) const;
-  const Share& share_of(std::int64_t task) const;
   std::vector<const std::string*> texts(std::size_t product, std::int64_t place) const;
   /// Parameters before automatic values are known.
   RunParameters unresolved(std::size_t product, std::int64_t place, std::uint32_t seed) const;

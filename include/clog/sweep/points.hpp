@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -29,7 +28,7 @@ struct Shard {
 };
 
 /// Lines of a config, which Settings::set_line() reads: the names of the keys, then a point a line.
-std::string config_lines(const Points& points, std::span<const Points> rounds, const Shard& shard);
+std::string config_lines(const Points& points, const Shard& shard);
 /// The texts of such a line.
 std::vector<std::string> texts_of_line(const std::string& line);
 

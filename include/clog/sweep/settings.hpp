@@ -59,8 +59,7 @@ bool is_same_value(const std::string& a, const std::string& b);
 std::string preset_name(const RunParameters& run);
 
 /// The settings of a sweep: for every key the text given, or that of the preset, or the default. The
-/// parameter sets are the product of all lists; or points, each with the product of the other keys' lists;
-/// and then those of rounds, which were added one after the other while the sweep ran.
+/// parameter sets are the product of all lists; or points, each with the product of the other keys' lists.
 class Settings {
  public:
   Settings();
@@ -81,13 +80,9 @@ class Settings {
   /// The scene of all runs; nullptr if they have several.
   const Scene* scene() const;
 
-  /// @throws Error that names the point, if it has an unknown key or a text that cannot be read; so does
-  /// add_round()
+  /// @throws Error that names the point, if it has an unknown key or a text that cannot be read
   void set_points(const Points& points);
   const Points& points() const { return points_; }
-  /// More runs, after all that there are: their tasks have the next numbers, the others keep theirs.
-  void add_round(const Points& points);
-  const std::vector<Points>& rounds() const { return rounds_; }
   void set_shard(Shard shard) { shard_ = shard; }
   const Shard& shard() const { return shard_; }
 
@@ -96,12 +91,10 @@ class Settings {
   /// @param point  its place; -1 where there are no points
   using VisitBranch = std::function<void(const Settings& branch, std::int64_t point)>;
   void visit_branches(const VisitBranch& visit) const;
-  /// The same for a round. @param round  its place in rounds()
-  void visit_round(std::size_t round, const VisitBranch& visit) const;
   /// The values() of each key in all branches together.
   std::map<std::string, std::vector<std::string>> all_values() const;
 
-  /// A line of a config: a key with its text, or one of `point-keys`, `point`, `round-keys`, `shard`.
+  /// A line of a config: a key with its text, or one of `point-keys`, `point`, `shard`.
   void set_line(const std::string& name, const std::string& text);
   /// Is this the name of such a line and no key?
   static bool is_plan_line(const std::string& name);
@@ -126,7 +119,6 @@ class Settings {
   std::map<std::string, std::vector<std::string>> values_;
   CircleFiles circle_files_;
   Points points_;
-  std::vector<Points> rounds_;
   Shard shard_;
 
   Settings without_points() const;

@@ -9,7 +9,6 @@
 #include <type_traits>
 #include <utility>
 
-#include "clog/core/parameters/contact_angle.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/number_text.hpp"
 
@@ -177,7 +176,6 @@ struct Facts {
   std::vector<std::string> words = {};  ///< if not all of the type's
   ParameterValue elsewhere = {};
   ParameterValue before = {};
-  ParameterValue (*before_from)(const RunParameters&) = nullptr;
 };
 
 /// @param Member  stateless: from the parameters of a run, const or not, to a reference to the member
@@ -198,7 +196,6 @@ Parameter entry(const char* key, Member, const Facts& facts) {
       .shapes_array = facts.shapes_array,
       .elsewhere = facts.elsewhere,
       .before = facts.before,
-      .before_from = facts.before_from,
       .kind = Outside<T>::kind,
       .words = facts.words.empty() ? Outside<T>::words() : facts.words,
       .get = [](const RunParameters& run) { return Outside<T>::get(Member{}(run)); },
@@ -214,8 +211,6 @@ const Bound positive = above(0, "must be positive", "use a value above 0");
 const Bound not_negative = from(0, "must not be negative", "use 0 or more");
 
 using enum ParameterRole;
-
-ParameterValue young_angle_of(const RunParameters& run) { return young_angle(run.dp); }
 
 /// Parameters of the droplet.
 std::vector<Parameter> droplet_entries() {
@@ -269,8 +264,7 @@ std::vector<Parameter> array_entries() {
              .range = {not_negative,
                        below(1, "the smallest obstacles would have no diameter", "use less than 1")},
              .shapes_array = true,
-             .elsewhere = 0.0,
-             .before = 0.0}),
+             .elsewhere = 0.0}),
       entry(
           "obstacle-density", [](auto& run) -> auto& { return run.obstacles.density; },
           {.column = "obstacle_density",
@@ -456,8 +450,7 @@ std::vector<Parameter> period_entries() {
              .range = {from(1, "boxes in a row along the flow, after which the array repeats", "use 1..1e6"),
                        to(1e6, "boxes in a row along the flow, after which the array repeats", "use 1..1e6")},
              .shapes_array = true,
-             .elsewhere = std::int64_t{1},
-             .before = std::int64_t{1}}),
+             .elsewhere = std::int64_t{1}}),
   };
 }
 
@@ -509,8 +502,7 @@ std::vector<Parameter> motion_entries() {
              .scope = &polygons,
              .range = {not_negative, to(1000, "the droplet would hardly change its shape",
                                         "use at most 1000; 1 is the published model")},
-             .elsewhere = 1.0,
-             .before = 1.0}),
+             .elsewhere = 1.0}),
   };
 }
 
@@ -621,8 +613,7 @@ std::vector<Parameter> wall_entries() {
                {from(0.1,
                      "minus the cosine of the contact angle; with less the interface on a wall would buckle",
                      "use 0.1..1"),
-                to(1, "minus the cosine of the contact angle", "use 0.1..1")},
-           .before = 1.0}),
+                to(1, "minus the cosine of the contact angle", "use 0.1..1")}}),
       entry("receding-angle", [](auto& run) -> auto& { return run.dp.receding_angle; },
             {.column = "receding_angle",
              .symbol = R"(\theta_\mathrm{R})",
@@ -633,8 +624,7 @@ std::vector<Parameter> wall_entries() {
              .automatic_in = &polygons,
              .range = {from(0, "an angle between wall and interface", "use 0..180, or young"),
                        to(180, "an angle between wall and interface", "use 0..180, or young")},
-             .words = {"young"},
-             .before_from = young_angle_of}),
+             .words = {"young"}}),
       entry("advancing-angle", [](auto& run) -> auto& { return run.dp.advancing_angle; },
             {.column = "advancing_angle",
              .symbol = R"(\theta_\mathrm{A})",
@@ -645,8 +635,7 @@ std::vector<Parameter> wall_entries() {
              .automatic_in = &polygons,
              .range = {from(0, "an angle between wall and interface", "use 0..180, or young"),
                        to(180, "an angle between wall and interface", "use 0..180, or young")},
-             .words = {"young"},
-             .before_from = young_angle_of}),
+             .words = {"young"}}),
       entry("friction", [](auto& run) -> auto& { return run.dp.friction; },
             {.column = "friction",
              .symbol = R"(\mu)",
@@ -654,8 +643,7 @@ std::vector<Parameter> wall_entries() {
                         "normal force; not with perimeter-spring=along",
              .scope = &polygons,
              .range = {not_negative, to(10, "more than any wall has", "try 0.3")},
-             .elsewhere = 0.0,
-             .before = 0.0}),
+             .elsewhere = 0.0}),
       entry("yield-traction", [](auto& run) -> auto& { return run.dp.yield_traction; },
             {.column = "yield_traction",
              .symbol = R"(\tau_\mathrm{y})",
@@ -664,8 +652,7 @@ std::vector<Parameter> wall_entries() {
                         "in addition to friction; not with perimeter-spring=along",
              .scope = &polygons,
              .range = {not_negative, to(1000, "no droplet would ever move", "try 0.1")},
-             .elsewhere = 0.0,
-             .before = 0.0}),
+             .elsewhere = 0.0}),
   };
 }
 
@@ -730,8 +717,7 @@ std::vector<Parameter> verdict_entries() {
              .meaning = "a droplet that advances no farther than this is at rest (a dwell); the dwell "
                         "columns record for how long",
              .role = numerics,
-             .range = {positive, to(0.5, "a droplet that hangs moves less", "try 0.05")},
-             .before = RunParameters().dwell_length}),
+             .range = {positive, to(0.5, "a droplet that hangs moves less", "try 0.05")}}),
       entry(
           "break-up-neck", [](auto& run) -> auto& { return run.dp.break_up_neck; },
           {.column = "break_up_neck",
@@ -740,8 +726,7 @@ std::vector<Parameter> verdict_entries() {
            .meaning = "a droplet with a thinner neck between two lobes has broken up, which ends the run; 0: "
                       "necks are not looked for",
            .scope = &polygons,
-           .range = {not_negative, to(0.5, "a droplet in a gap is no wider", "try 0.05")},
-           .before = 0.0}),
+           .range = {not_negative, to(0.5, "a droplet in a gap is no wider", "try 0.05")}}),
   };
 }
 

@@ -9,7 +9,7 @@
 
 #include "clog/core/tools/portable_math.hpp"
 #include "clog/core/tools/units.hpp"
-#include "dp_kernel.hpp"
+#include "wedge_place.hpp"
 
 namespace clog {
 namespace {

@@ -1,25 +1,13 @@
 #include "clog/core/polygon/dp_forces.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <limits>
 
+#include "clog/core/droplet/shape.hpp"
 #include "clog/core/tools/units.hpp"
-#include "dp_kernel.hpp"
+#include "dp_step_kernel.hpp"
 
 namespace clog {
-
-kernel::WedgePlace kernel::place_in(const LocalFrame& frame, const Wedge& wedge) {
-  const Eigen::Array2d centre = wedge.centre() - frame.origin - frame.image.cast<double>() * frame.period;
-  return {.x = centre[0],
-          .y = centre[1],
-          .radius = wedge.radius,
-          .axis_x = wedge.axis[0],
-          .axis_y = wedge.axis[1],
-          .cos = wedge.half_angle.cos,
-          .sin = wedge.half_angle.sin};
-}
 
 DpForces::DpForces(const RunParameters& run, const ObstacleArray& obstacles)
     : dp_(run.dp),
@@ -27,7 +15,7 @@ DpForces::DpForces(const RunParameters& run, const ObstacleArray& obstacles)
       vertex_diameter_(units::regular_edge_length(*run.dp.vertices)),
       contact_stiffness_(clog::contact_stiffness(run.wall_stiffness.value(), vertex_diameter_)),
       weight_(units::droplet_mass * units::gravity),
-      near_wall_cutoff_(run.drag.near_wall_cutoff),
+      has_near_wall_drag_(run.drag.near_wall > 0),
       walls_(obstacles, dp_.contact_range.value(),
              dp_.wall_contact == WallContact::edge ? WallContacts::Keep::touched_by_edge
                                                    : WallContacts::Keep::touched_by_vertex),
@@ -35,15 +23,7 @@ DpForces::DpForces(const RunParameters& run, const ObstacleArray& obstacles)
       wetted_walls_(run, obstacles),
       self_(dp_.self_contact_range, vertex_diameter_),
       friction_(dp_.friction, dp_.yield_traction, friction_stiffness_ratio * contact_stiffness_,
-                obstacles.wedges()),
-      wetting_(*dp_.vertices),
-      edge_x_(*dp_.vertices),
-      edge_y_(*dp_.vertices),
-      edge_length_(*dp_.vertices),
-      pull_(*dp_.vertices),
-      centroid_gradient_(Eigen::ArrayXd::Zero(Eigen::Index{4} * *dp_.vertices)),
-      refined_edges_(8 * *dp_.vertices),
-      wall_distance_(run.drag.near_wall > 0 ? *dp_.vertices : 0) {
+                obstacles.wedges()) {
   set_rest_area(units::rest_area);
 }
 
@@ -55,13 +35,13 @@ void DpForces::set_rest_area(double area) {
 
 void DpForces::update_contacts(const DropletState& state, const Travel& travel) {
   walls_.update(state, travel);
-  if (wall_distance_.size() > 0) nearest_walls_.update(state, travel);
+  if (has_near_wall_drag_) nearest_walls_.update(state, travel);
   if (wetted_walls_.is_on()) wetted_walls_.lists().update(state, travel);
   if (dp_.self_contact == SelfContact::on) self_.update(state, travel);
 }
 
 bool DpForces::contacts_hold(double moved, double moved_relative, const Travel& travel) const {
-  if (wall_distance_.size() > 0 || wetted_walls_.is_on()) return false;
+  if (has_near_wall_drag_ || wetted_walls_.is_on()) return false;
   return walls_.hold(moved, travel) &&
          (dp_.self_contact == SelfContact::off || self_.hold(moved_relative, travel));
 }
@@ -91,105 +71,11 @@ kernel::Interface DpForces::interface(double area, double perimeter) const {
   return interface;
 }
 
-void DpForces::evaluate(const DropletState& state, Eigen::ArrayXd& force) {
-  const int n = *dp_.vertices;
-  const double* x = state.position.data();
-  const double* y = x + n;
-  double* fx = force.data();
-  double* fy = fx + n;
-
-  const kernel::EdgeArrays edges{edge_x_.data(), edge_y_.data(), edge_length_.data()};
-  const kernel::Sums sums = kernel::measure_edges(n, x, y, edges);
-  shape_ = {sums.area, sums.perimeter};
-  kernel::interface_forces(n, interface(shape_.area, shape_.perimeter), edges, pull_.data(), fx, fy);
-  Eigen::Array2d spread{force.head(n).sum(), force.tail(n).sum()};
-  if (wetted_walls_.is_on()) {
-    wetted_walls_.find_forces(VertexPlaces(state), state.frame, state.anchors, wetting_);
-    force += wetting_.gradient + wetting_.spreading;
-    spread += wetting_.net_spreading;
-  }
-  if (dp_.gravity == Gravity::area) {
-    // Tension and pressure add up to nothing; springs along the interface have no reaction on their
-    // neighbours, so they push off the liquid inside: the droplet as a whole feels no force from them.
-    const kernel::CentroidGradient gradient = kernel::centroid_gradient(n, centroid_gradient_.data());
-    kernel::measure_centroid_gradient(n, x, y, edges, sums, gradient);
-    kernel::add_body_force(n, weight_ - spread[0], -spread[1], gradient, fx, fy);
-  }
-
-  add_walls(state, force);
-  if (friction_.is_on()) friction_.add_forces(state, force);
-  if (wall_distance_.size() > 0) measure_wall_distance(state);
-  if (dp_.self_contact == SelfContact::on) add_self_contact(state, force);
-}
-
-void DpForces::add_walls(const DropletState& state, Eigen::ArrayXd& force) {
-  const int n = *dp_.vertices;
-  const double* x = state.position.data();
-  const double* y = x + n;
-  double* fx = force.data();
-  double* fy = fx + n;
-  const bool meets_edges = dp_.wall_contact == WallContact::edge;
-  const kernel::RefinedEdges edges = kernel::refined_edges(n, refined_edges_.data());
-  if (meets_edges) kernel::refine_edges(n, x, y, edges);
-  if (meets_edges) {
-    for (const WallContacts::Item& item : walls_.items()) {
-      const int first = item.group * WallContacts::edges_per_group;
-      kernel::push_off_circle(n, x, y, edges,
-                              {item.x, item.y, item.reach, first, first + WallContacts::edges_per_group},
-                              contact_stiffness_);
-    }
-    kernel::hand_out_pushes(n, edges, fx, fy);
-  }
-  for (int s = 0; s < walls_.num_slots(); ++s)
-    kernel::add_vertex_wall_forces(n, x, y, {walls_.slot_x(s), walls_.slot_y(s), walls_.slot_radius(s)},
-                                   walls_.range(), contact_stiffness_, fx, fy);
-  for (const Wedge& wedge : obstacles_->wedges())
-    kernel::add_wedge_forces(n, x, y, kernel::place_in(state.frame, wedge), walls_.range(),
-                             contact_stiffness_, fx, fy);
-}
-
-void DpForces::measure_wall_distance(const DropletState& state) {
-  const int n = *dp_.vertices;
-  const double* x = state.position.data();
-  const double* y = x + n;
-  double* distance = wall_distance_.data();
-  wall_distance_.setConstant(std::numeric_limits<double>::infinity());
-  for (int s = 0; s < nearest_walls_.num_slots(); ++s)
-    kernel::shrink_to_wall_distance(
-        n, x, y, {nearest_walls_.slot_x(s), nearest_walls_.slot_y(s), nearest_walls_.slot_radius(s)},
-        distance);
-  for (const Wedge& wedge : obstacles_->wedges())
-    kernel::shrink_to_wedge_distance(n, x, y, kernel::place_in(state.frame, wedge), distance);
-  wall_distance_ = wall_distance_.max(near_wall_cutoff_);
-}
-
 WallYield DpForces::let_walls_yield(DropletState& state, WallTouches& touches,
                                     std::span<const WallContacts::Item> circles, Purpose purpose) const {
   if (friction_.is_on())
     return friction_.follow(state, touches.find(state, circles, self_), purpose, touches.known_anchors());
   return wetted_walls_.follow(state, purpose);
-}
-
-void DpForces::add_self_contact(const DropletState& state, Eigen::ArrayXd& force) const {
-  const int n = *dp_.vertices;
-  const double* x = state.position.data();
-  const double* y = x + n;
-  double* fx = force.data();
-  double* fy = fx + n;
-  for (const SelfContacts::Pair& pair : self_.pairs()) {
-    const EdgeContact contact = nearest_point(pair, x, y, n);
-    if (contact.distance >= self_.range() || contact.distance == 0) continue;
-    const double push = contact_stiffness_ * (self_.range() - contact.distance) / contact.distance;
-    const double px = push * contact.dx;
-    const double py = push * contact.dy;
-    const int end = pair.edge + 1 < n ? pair.edge + 1 : 0;
-    fx[pair.vertex] += px;
-    fy[pair.vertex] += py;
-    fx[pair.edge] -= (1 - contact.fraction) * px;
-    fy[pair.edge] -= (1 - contact.fraction) * py;
-    fx[end] -= contact.fraction * px;
-    fy[end] -= contact.fraction * py;
-  }
 }
 
 template <class Visit>

@@ -216,7 +216,7 @@ double push_and_hold(int n, const HoldingCircles& walls, const WallGrip& grip, c
   return taken;
 }
 
-/// A wedge and vertices near it: away_from() of dp_kernel.cpp, for a vector of them.
+/// A wedge and vertices near it: distance_to() of wedge.hpp, for a vector of them.
 class WedgeVectors {
  public:
   explicit WedgeVectors(const WedgePlace& w)

@@ -5,11 +5,11 @@
 
 #include "clog/core/polygon/self_contacts.hpp"
 #include "clog/core/polygon/wall_contacts.hpp"
-#include "dp_kernel.hpp"
+#include "wedge_place.hpp"
 
 /// The step of a deformable polygon as two passes over its vertices, written with vector types and compiled
-/// for several instruction sets. Same equations as dp_kernel.hpp, which stays readable and is what tests
-/// compare this with. In a pass there is no branch per vertex, no call and no allocation; square roots are
+/// for several instruction sets. Tests compare it with plain loops (tests/core/polygon/reference_forces.hpp).
+/// In a pass there is no branch per vertex, no call and no allocation; square roots are
 /// Newton iterations where the instruction set has a first guess for them.
 namespace clog::kernel {
 
@@ -30,6 +30,24 @@ struct StepArrays {
   double *chord_x, *chord_y;                      ///< between a vertex' neighbours, with an implicit pressure
 };
 inline constexpr int num_step_arrays = 22;
+
+/// Sums over the edges.
+struct Sums {
+  double area;
+  double perimeter;
+  double moment_x;  ///< of the area, area times its centroid [sigma^3]
+  double moment_y;
+};
+
+/// Terms of the interface's force.
+struct Interface {
+  double line_tension;   ///< gamma
+  double spring;         ///< k_l N_v
+  double spring_length;  ///< l0 or the mean edge length
+  double spreading;      ///< k_l N_v of springs that act along the interface only
+  double pressure;       ///< -k_a (a - a0)
+  double vertex_weight;  ///< M g / N_v along +x
+};
 
 /// A kick is what a force does to a vertex' velocity in half a time step: F below is the force times
 /// h/(M/N_v).
@@ -211,7 +229,8 @@ struct StepKernel {
   double (*push_and_hold)(int n, const HoldingCircles& walls, const WallGrip& grip,
                           const SelfContacts::Item* self, std::size_t num_self, const Contact& contact,
                           const StepArrays& arrays);
-  /// Adds the vertices' contact with wedges' surfaces up to `range` [sigma]; see add_wedge_forces().
+  /// Adds the vertices' contact with wedges' surfaces up to `range` [sigma]. Edges
+  /// need not be tested: they meet a wedge's tip first, which is a circle.
   void (*push_off_wedges)(int n, const WedgePlace* wedges, std::size_t num_wedges, double range,
                           double stiffness, const StepArrays& arrays);
   /// rate = far_rate (relative + near_wall (sigma/d)^exponent), d a vertex' distance to the nearest wall; and

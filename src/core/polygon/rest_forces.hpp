@@ -10,8 +10,8 @@
 
 namespace clog {
 
-/// The forces of DpForces by the passes of a step, for releases and searches of a rest, which ask for them
-/// thousands of times.
+/// The negative gradient of DpForces' energy by the passes of a step, for releases and searches of a rest,
+/// which ask for them thousands of times.
 class RestForces {
  public:
   /// @param run     resolved parameters
@@ -20,7 +20,7 @@ class RestForces {
 
   /// See DpForces.
   void update_contacts(const DropletState& state, const Travel& travel);
-  /// force = -grad U, all x then all y [g rho sigma^2], to round-off that of DpForces::evaluate().
+  /// force = -grad U, all x then all y [g rho sigma^2].
   void evaluate(const DropletState& state, Eigen::ArrayXd& force);
 
  private:

@@ -83,7 +83,6 @@ void WallContacts::rebuild(const DropletState& state, double skin) {
   reference_.resize(2 * num_points_ + edges_per_group);
   reference_.head(2 * num_points_) = state.position;
   reference_.tail(edges_per_group).setZero();
-  num_slots_ = 0;
   items_.clear();
   if (!reference_.allFinite()) return;  // a droplet that has diverged; the run will see it at its next check
   gather_nearby(state);
@@ -91,7 +90,6 @@ void WallContacts::rebuild(const DropletState& state, double skin) {
     list_by_edge(refined(state.position));
   } else {
     list_by_vertex(state);
-    fill_slots();
     fill_items();
   }
   const auto [smallest, largest] =
@@ -163,23 +161,6 @@ void WallContacts::list_by_vertex(const DropletState& state) {
     for (Eigen::Index i = 0; i < num_points_; ++i) {
       const double reach = keep_ == Keep::nearest_to_vertex ? nearest_[i] + 2 * skin_ : range_ + skin_;
       if (distances_(i, k) <= reach) candidates_[i].push_back(static_cast<int>(k));
-    }
-  for (const std::vector<int>& one : candidates_)
-    num_slots_ = std::max(num_slots_, static_cast<int>(one.size()));
-}
-
-void WallContacts::fill_slots() {
-  // Out of reach, yet finite: distances to it stay ordinary numbers.
-  constexpr double nowhere = 1e8;
-  // Whole vectors may be read at the end.
-  slots_.setZero(Eigen::Index{3} * num_slots_ * num_points_ + edges_per_group);
-  for (int s = 0; s < num_slots_; ++s)
-    for (Eigen::Index i = 0; i < num_points_; ++i) {
-      const bool used = s < static_cast<int>(candidates_[i].size());
-      const Obstacle obstacle = used ? nearby_[candidates_[i][s]] : Obstacle{nowhere, nowhere, 0};
-      slots_[(3 * s + 0) * num_points_ + i] = obstacle.x;
-      slots_[(3 * s + 1) * num_points_ + i] = obstacle.y;
-      slots_[(3 * s + 2) * num_points_ + i] = obstacle.radius;
     }
 }
 

@@ -6,8 +6,8 @@
 
 #include "clog/core/droplet/shape.hpp"
 #include "clog/core/tools/units.hpp"
-#include "dp_kernel.hpp"
 #include "touch_kernel.hpp"
+#include "wedge_place.hpp"
 
 namespace clog {
 

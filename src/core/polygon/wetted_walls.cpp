@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "clog/core/tools/units.hpp"
-#include "dp_kernel.hpp"
+#include "wedge_place.hpp"
 
 namespace clog {
 namespace {

@@ -1,5 +1,3 @@
-#include "clog/core/scene/channel.hpp"
-
 #include <fmt/core.h>
 #include "clog/core/droplet/release.hpp"
 #include "clog/core/model/model.hpp"
@@ -19,6 +17,11 @@
 
 namespace clog {
 
+namespace {
+
+/// The largest h at which the free droplet is upstream and clear of the channel [sigma]; infinite if it
+/// touches nothing anywhere.
+/// @param run  resolved
 double last_free_start(const RunParameters& run) {
   const ChannelParameters& channel = run.channel;
   const double droplet_reach = model_of(run).reach(run);
@@ -31,8 +34,6 @@ double last_free_start(const RunParameters& run) {
   if (last > 0) return everywhere;
   return last;
 }
-
-namespace {
 
 void check_no_obstacles(const RunParameters&) {}
 

@@ -12,6 +12,8 @@
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/units.hpp"
+#include "core/polygon/rest_forces.hpp"
+#include "polygon/reference_forces.hpp"
 #include "support.hpp"
 
 namespace clog {
@@ -28,7 +30,7 @@ RunParameters in_small_box(double line_tension, double gap) {
 
 /// On a vertex, without weight, over the vertex's weight.
 double largest_force(const RunParameters& run, const ObstacleArray& obstacles, const DropletState& state) {
-  DpForces forces(run, obstacles);
+  test::ReferenceForces forces(run, obstacles);
   forces.set_weight(0);
   forces.update_contacts(state, {});
   Eigen::ArrayXd force(state.position.size());
@@ -139,7 +141,8 @@ TEST(Release, TheLiteralPlacementEnclosesObstacles) {
                               .force_tolerance = 1e-6,
                               .max_iterations = 20000,
                               .max_move = 1e-3};
-    minimize_fire(forces, state, options);
+    RestForces rest_forces(run, forces);
+    minimize_fire(rest_forces, state, options);
     if (num_enclosed(state, array) > 0) ++num_runs_with_obstacles_inside;
   }
   EXPECT_GT(num_runs_with_obstacles_inside, 2);

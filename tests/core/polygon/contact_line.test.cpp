@@ -11,6 +11,7 @@
 #include "clog/core/model/model.hpp"
 #include "clog/core/polygon/dp_forces.hpp"
 #include "clog/core/run/droplet_run.hpp"
+#include "polygon/reference_forces.hpp"
 #include "support.hpp"
 
 namespace clog {
@@ -38,7 +39,7 @@ TEST(ContactLine, ForceIsTheGradientOfTheEnergyWhileTheAnchorsRest) {
   const Wedge flank{.tip = {0.1, -reach * 0.96}, .axis = {0.6, -0.8}, .half_angle = 0.7, .radius = 0.05};
   const ObstacleArray walls(20, {{reach + 0.13, 0.05, 0.15}}, {flank});
   DropletState state = state_of(regular_polygon(64, units::rest_area));
-  DpForces forces(run, walls);
+  ReferenceForces forces(run, walls);
   forces.update_contacts(state, {.absolute = 0.01, .relative = 0.01});
   WallTouches touches(run, walls);
   forces.let_walls_yield(state, touches, forces.walls().items(), Purpose::motion);

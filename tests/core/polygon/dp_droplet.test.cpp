@@ -5,6 +5,7 @@
 
 #include <tuple>
 
+#include "polygon/reference_forces.hpp"
 #include "support.hpp"
 
 namespace clog {
@@ -326,7 +327,7 @@ TEST(DpDroplet, BlowsUpWhenStretchedAndNotSplit) {
   run.wall_stiffness = wall_stiffness(700, units::regular_edge_length(256));
   const ObstacleArray nothing = no_obstacles();
   DropletState state = state_of(ellipse(256, 9.5));
-  DpForces forces(run, nothing);
+  ReferenceForces forces(run, nothing);
   Eigen::ArrayXd force(2 * 256);
   forces.update_contacts(state, {.absolute = 1, .relative = 1});
   forces.evaluate(state, force);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "polygon/reference_forces.hpp"
 #include "support.hpp"
 
 namespace clog {
@@ -28,7 +29,7 @@ constexpr double difference_tolerance = 2e-7;
 
 double free_force_error(const RunParameters& run, double weight = 0) {
   const ObstacleArray nothing = no_obstacles();
-  DpForces forces(run, nothing);
+  ReferenceForces forces(run, nothing);
   forces.set_weight(weight);
   return force_error(forces, state_of(shaken(regular_polygon(*run.dp.vertices, 0.8), 0.003)));
 }
@@ -67,7 +68,7 @@ TEST(DpForces, WeightOnTheAreaIsTheGradientOfItsEnergy) {
 
 TEST(DpForces, WeightOnTheAreaSumsToTheWholeWeight) {
   const ObstacleArray nothing = no_obstacles();
-  DpForces forces(only([](RunParameters& run) { run.dp.gravity = Gravity::area; }), nothing);
+  ReferenceForces forces(only([](RunParameters& run) { run.dp.gravity = Gravity::area; }), nothing);
   DropletState state = state_of(shaken(regular_polygon(64, 0.8), 0.01));
   forces.update_contacts(state, {});
   Eigen::ArrayXd force(128);
@@ -79,7 +80,7 @@ TEST(DpForces, WeightOnTheAreaSumsToTheWholeWeight) {
 TEST(DpForces, WallContactIsTheGradientOfItsEnergy) {
   const ObstacleArray wall(20,
                            {{0.65, 0.05, 0.15}, {19.4, 0.1, 0.15}});  // the second one is an image at -0.6
-  DpForces forces(only([](RunParameters&) {}), wall);
+  ReferenceForces forces(only([](RunParameters&) {}), wall);
   forces.set_weight(0);
   const DropletState state = state_of(shaken(regular_polygon(64, 0.8), 0.003));
   forces.update_contacts(state, {});
@@ -89,7 +90,8 @@ TEST(DpForces, WallContactIsTheGradientOfItsEnergy) {
 
 TEST(DpForces, SelfContactIsTheGradientOfItsEnergy) {
   const ObstacleArray nothing = no_obstacles();
-  DpForces forces(only([](RunParameters& run) { run.dp.self_contact = SelfContact::on; }, 256), nothing);
+  ReferenceForces forces(only([](RunParameters& run) { run.dp.self_contact = SelfContact::on; }, 256),
+                         nothing);
   forces.set_weight(0);
   const DropletState state = state_of(shaken(dumbbell(256, 0.006), 1e-4));
   forces.update_contacts(state, {});
@@ -101,14 +103,14 @@ TEST(DpForces, AllTermsTogetherAreTheGradientOfTheTotalEnergy) {
   const ObstacleArray wall(20, {{0, 0.34, 0.15}});
   RunParameters run = bare_parameters(256);
   run.dp.area_stiffness = 50;
-  DpForces forces(run, wall);
+  ReferenceForces forces(run, wall);
   const DropletState state = state_of(shaken(dumbbell(256, 0.006), 1e-4));
   EXPECT_LT(force_error(forces, state), 2e-5);
 }
 
 TEST(DpForces, InternalForcesExertNoNetForceAndNoTorque) {
   const ObstacleArray nothing = no_obstacles();
-  DpForces forces(bare_parameters(256), nothing);
+  ReferenceForces forces(bare_parameters(256), nothing);
   forces.set_weight(0);
   const DropletState state = state_of(shaken(dumbbell(256, 0.006), 1e-4));
   forces.update_contacts(state, {});
@@ -126,7 +128,7 @@ TEST(DpForces, SpringsAlongTheInterfaceDoNotPushTheDroplet) {
   RunParameters run;
   run.dp.vertices = 64;
   run.dp.perimeter_stiffness = 0.7;
-  DpForces forces(resolve(run), nothing);
+  ReferenceForces forces(resolve(run), nothing);
   DropletState state = state_of(regular_polygon(64, 0.8));
   for (int i = 0; i < 64; ++i) {
     // Vertices crowd on one side of an ellipse.
@@ -149,7 +151,7 @@ TEST(DpForces, AMirroredDropletFeelsMirroredForces) {
   mirrored.head(n) = position.head(n).reverse();
   mirrored.tail(n) = -position.tail(n).reverse();
   const auto force_on = [](const ObstacleArray& obstacles, const Eigen::ArrayXd& p) {
-    DpForces forces(bare_parameters(n), obstacles);
+    ReferenceForces forces(bare_parameters(n), obstacles);
     const DropletState state = state_of(p);
     forces.update_contacts(state, {});
     Eigen::ArrayXd force(2 * n);
@@ -167,7 +169,7 @@ TEST(DpForces, LaplacePressureOfACircleIsLineTensionOverRadius) {
   // Tension and pressure balance on a regular polygon of circumradius R when p = gamma/(R cos(pi/n)).
   RunParameters run = only([](RunParameters& r) { r.dp.line_tension = 2, r.dp.area_stiffness = 1e4; });
   const ObstacleArray nothing = no_obstacles();
-  DpForces forces(run, nothing);
+  ReferenceForces forces(run, nothing);
   forces.set_weight(0);
   const int n = *run.dp.vertices;
   const Eigen::ArrayXd position = regular_polygon(n, 0.6);
@@ -188,7 +190,7 @@ TEST_P(ContactLists, MissNothingWhileTheDropletMoves) {
   ObstacleParameters parameters{.gap = 0.2, .diameter = 0.3, .density = {}, .box = 12.5};
   const ObstacleArray array = sample_obstacles(parameters, 5);
   RunParameters run = only([](RunParameters& r) { r.drag.near_wall = 0.1; });
-  DpForces forces(run, array);
+  ReferenceForces forces(run, array);
   forces.set_weight(0);
   DropletState state = state_of(regular_polygon(64, 0.8), 12.5);
   state.velocity.head(64).setConstant(GetParam());
@@ -251,7 +253,7 @@ TEST_P(ContactLists, MissNothingWhileTheDropletMoves) {
 
 TEST(DpForces, VertexContactIsTheGradientOfItsEnergy) {
   const ObstacleArray wall(20, {{0.62, 0.05, 0.15}, {-0.3, 0.5, 0.1}});
-  DpForces forces(only([](RunParameters& run) { run.dp.wall_contact = WallContact::vertex; }), wall);
+  ReferenceForces forces(only([](RunParameters& run) { run.dp.wall_contact = WallContact::vertex; }), wall);
   const DropletState state = state_of(shaken(regular_polygon(64, 0.8), 0.003));
   forces.update_contacts(state, {});
   ASSERT_GT(forces.energy(state).wall, 0);
@@ -271,7 +273,7 @@ TEST(DpForces, WedgesPushWithTheGradientOfTheirEnergy) {
       const ObstacleArray wall = two_wedges(radius);
       RunParameters run = only([](RunParameters&) {});
       run.dp.wall_contact = contact;
-      DpForces forces(run, wall);
+      ReferenceForces forces(run, wall);
       const DropletState state = state_of(shaken(regular_polygon(64, 0.8), 0.003));
       forces.update_contacts(state, {});
       ASSERT_GT(forces.energy(state).wall, 1e-3);
@@ -284,7 +286,7 @@ TEST(DpForces, WettedWallsPullWithTheGradientOfTheirEnergy) {
   RunParameters run = only([](RunParameters& r) { r.dp.line_tension = 1.3; });
   run.dp.wall_tension = 0.2;
   run.dp.perimeter_spring = PerimeterSpring::mean;
-  DpForces forces(run, wall);
+  ReferenceForces forces(run, wall);
   const DropletState state = state_of(shaken(regular_polygon(64, 0.8), 0.003));
   EXPECT_LT(force_error(forces, state), 1e-5);
   const double dry = 1.3 * polygon_shape(state.position).perimeter;
@@ -301,7 +303,7 @@ TEST(DpForces, WettedWallsNeitherPullAlongTheInterfaceNorAlongTheWall) {
   const DropletState state = state_of(shaken(regular_polygon(64, 0.8), 0.003));
   const auto force_at = [&](double wall_tension) {
     run.dp.wall_tension = wall_tension;
-    DpForces forces(run, wall);
+    ReferenceForces forces(run, wall);
     forces.set_weight(0);
     forces.update_contacts(state, {});
     Eigen::ArrayXd force(128);
@@ -320,7 +322,7 @@ TEST(DpForces, SpringsAlongTheInterfaceChangeNeitherAreaNorAnEvenContour) {
     r.dp.gravity = Gravity::vertex;
   });
   const ObstacleArray nothing = no_obstacles();
-  DpForces forces(run, nothing);
+  ReferenceForces forces(run, nothing);
   forces.set_weight(0);
   Eigen::ArrayXd force(128);
   forces.evaluate(state_of(regular_polygon(64, 0.8)), force);
@@ -341,8 +343,8 @@ TEST(DpForces, SpringsAlongTheInterfaceChangeNeitherAreaNorAnEvenContour) {
 TEST(DpForces, AreTheSameSixThousandDiametersDownstream) {
   // The published coordinates would lose 13 of 16 digits of an edge there.
   const ObstacleArray array = sample_obstacles({.gap = 0.2, .diameter = 0.3, .density = {}, .box = 25}, 3);
-  DpForces near(bare_parameters(256), array);
-  DpForces far(bare_parameters(256), array);
+  ReferenceForces near(bare_parameters(256), array);
+  ReferenceForces far(bare_parameters(256), array);
   DropletState state = state_of(shaken(dumbbell(256, 0.006), 1e-4), 25);
   state.frame.origin = {3, 7};
   DropletState downstream = state;
@@ -357,7 +359,7 @@ TEST(DpForces, AreTheSameSixThousandDiametersDownstream) {
 
   // The same droplet in coordinates that go on for ever.
   const ObstacleArray nothing = no_obstacles(8000);
-  DpForces here(bare_parameters(256), nothing), there(bare_parameters(256), nothing);
+  ReferenceForces here(bare_parameters(256), nothing), there(bare_parameters(256), nothing);
   DropletState literal = state_of(state.position, 8000);
   here.update_contacts(literal, {});
   here.evaluate(literal, force);
@@ -380,7 +382,7 @@ TEST(DpForces, AnObstacleBetweenTwoVerticesIsPushedOffByTheirEdge) {
   const double range = units::regular_edge_length(16) / 2;
   // Its surface lies 0.1 within the contact range below the middle of edge 1, from (-0.5, -1) to (0, -1).
   const ObstacleArray obstacle(20, {{19.75, 20 - 1 - 0.05 - range + 0.1, 0.05}});
-  DpForces forces(run, obstacle);
+  ReferenceForces forces(run, obstacle);
   forces.set_weight(0);
   const DropletState state = state_of(position);
   forces.update_contacts(state, {});

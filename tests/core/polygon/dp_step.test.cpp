@@ -12,6 +12,8 @@
 #include "clog/core/run/resolve.hpp"
 #include "clog/core/tools/error.hpp"
 #include "clog/core/tools/instruction_set.hpp"
+#include "core/polygon/rest_forces.hpp"
+#include "polygon/reference_forces.hpp"
 #include "stepped_droplet.hpp"
 #include "support.hpp"
 
@@ -55,7 +57,7 @@ class ReadableDroplet {
   RunParameters run_;
   bool implicit_pressure_;
   int n_;
-  DpForces forces_;
+  ReferenceForces forces_;
   WallTouches touches_;
   DropletState state_;
   Eigen::ArrayXd force_;
@@ -464,9 +466,10 @@ INSTANTIATE_TEST_SUITE_P(
                              }}),
     [](const auto& tested) { return tested.param.name; });
 
-TEST(InstructionSet, DecidesTheReadableFormToo) {
+TEST(InstructionSet, DecidesTheForcesOfReleasesToo) {
   // Other sets add up in another order and round less often: some bit of many differs.
   RunParameters run;
+  run.dp.vertices = 256;
   run.dp.line_tension = 0.3;
   run = resolve(run);
   const DropletState state = state_of(shaken(dumbbell(256, 0.1), 0.002));
@@ -474,8 +477,10 @@ TEST(InstructionSet, DecidesTheReadableFormToo) {
   const auto force_with = [&](const std::string& set) {
     use_instruction_set(set);
     DpForces forces(run, walls);
+    RestForces rest_forces(run, forces);
+    rest_forces.update_contacts(state, {});
     Eigen::ArrayXd force(state.position.size());
-    forces.evaluate(state, force);
+    rest_forces.evaluate(state, force);
     use_instruction_set("auto");
     return force;
   };

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "polygon/reference_forces.hpp"
 #include "support.hpp"
 
 namespace clog {
@@ -15,7 +16,7 @@ using namespace test;
 double stiffest_omega2(const RunParameters& run, const Eigen::ArrayXd& position,
                        const ObstacleArray& obstacles = no_obstacles()) {
   const int n = *run.dp.vertices;
-  DpForces forces(run, obstacles);
+  ReferenceForces forces(run, obstacles);
   forces.set_rest_area(polygon_shape(position).area);
   DropletState state = state_of(position);
   forces.update_contacts(state, {});

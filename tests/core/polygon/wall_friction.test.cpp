@@ -15,6 +15,7 @@
 #include "clog/core/model/model.hpp"
 #include "clog/core/polygon/dp_droplet.hpp"
 #include "clog/core/run/droplet_run.hpp"
+#include "polygon/reference_forces.hpp"
 #include "support.hpp"
 
 namespace clog {
@@ -43,7 +44,7 @@ TEST(WallFriction, ForceIsTheGradientOfTheEnergyWhileTheAnchorsRest) {
   const Wedge flank{.tip = {0.1, -reach * 0.98}, .axis = {0.6, -0.8}, .half_angle = 0.7, .radius = 0.05};
   const ObstacleArray walls(20, {{reach + 0.14, 0.05, 0.15}}, {flank});
   DropletState state = state_of(regular_polygon(64, units::rest_area));
-  DpForces forces(run, walls);
+  ReferenceForces forces(run, walls);
   forces.update_contacts(state, {.absolute = 0.01, .relative = 0.01});
   anchor(run, walls, forces, state);
   ASSERT_GE(state.anchors.size(), 5);
@@ -61,7 +62,7 @@ TEST(WallTouches, PushesAddUpToTheContactsForce) {
   const ObstacleArray nothing = no_obstacles();
   DropletState state = state_of(shaken(regular_polygon(64, units::rest_area), 0.002));
   const auto force_of = [&](const ObstacleArray& array) {
-    DpForces forces(smooth, array);
+    ReferenceForces forces(smooth, array);
     forces.update_contacts(state, {});
     Eigen::ArrayXd force(128);
     forces.evaluate(state, force);
@@ -145,7 +146,7 @@ TEST(WallFriction, ThroughAFilmHasAnEnergyWhileTheAnchorsRest) {
   const double range = *run.dp.contact_range;
   DropletState state = state_of(lobes_side_by_side(0.7 * run.dp.self_contact_range));
   const ObstacleArray walls(20, {{0.15 + range + 0.25 * run.dp.self_contact_range, 0.02, 0.15}});
-  DpForces forces(run, walls);
+  ReferenceForces forces(run, walls);
   forces.update_contacts(state, {.absolute = 0.01, .relative = 0.01});
   anchor(run, walls, forces, state);
   const auto is_behind_a_film = [&](const WallAnchor& one) {

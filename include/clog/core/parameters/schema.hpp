@@ -70,8 +70,6 @@ struct Parameter {
   ParameterValue elsewhere;
   /// The value of all runs in files older than the parameter. Nothing: it is not known.
   ParameterValue before;
-  /// The same where it followed from the others; nullptr where it did not.
-  ParameterValue (*before_from)(const RunParameters&);
 
   ValueKind kind;
   std::vector<std::string> words;  ///< of a word: all; of a number: what stands for an automatic value
@@ -80,9 +78,6 @@ struct Parameter {
   void (*set)(RunParameters&, const ParameterValue&);
 
   bool applies_to(const RunParameters& run) const { return scope->holds(run); }
-  ParameterValue value_before(const RunParameters& run) const {
-    return before_from ? before_from(run) : before;
-  }
   /// Does its value follow from the others in such a run, unless it is given?
   bool may_be_automatic(const RunParameters& run) const { return automatic_in && automatic_in->holds(run); }
 };

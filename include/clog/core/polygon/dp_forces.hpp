@@ -4,7 +4,6 @@
 
 #include "clog/core/droplet/droplet_state.hpp"
 #include "clog/core/droplet/energy.hpp"
-#include "clog/core/droplet/shape.hpp"
 #include "clog/core/parameters/parameters.hpp"
 #include "clog/core/polygon/self_contacts.hpp"
 #include "clog/core/polygon/wall_contacts.hpp"
@@ -18,7 +17,8 @@ namespace kernel {
 struct Interface;
 }
 
-/// Potential energy of a deformable polygon among obstacles and its negative gradient.
+/// Potential energy of a deformable polygon among obstacles, and what the passes of a step (DpStepper,
+/// RestForces) need for its negative gradient.
 /// Contacts act through lists: update_contacts() must have been called, and since then nothing may have
 /// travelled farther than it was told.
 class DpForces {
@@ -42,16 +42,8 @@ class DpForces {
   /// Forgets the pairs of self-contact, too, which a shift does not change.
   void forget_all_contacts();
 
-  /// force = -grad U, all x then all y [g rho sigma^2]. Also measures shape() and, with near-wall drag,
-  /// wall_distance().
-  void evaluate(const DropletState& state, Eigen::ArrayXd& force);
   PotentialEnergy energy(const DropletState& state) const;
 
-  /// Area and perimeter at the last evaluate().
-  const PolygonShape& shape() const { return shape_; }
-  /// Distance of each vertex to the nearest obstacle at the last evaluate(), not below the near-wall drag's
-  /// cutoff [sigma]; empty without near-wall drag.
-  const Eigen::ArrayXd& wall_distance() const { return wall_distance_; }
   /// Deepest overlap of the interface with a wall's contact range [sigma]: of its edges or of its vertices,
   /// as the contact counts them.
   double deepest_overlap(const DropletState& state) const;
@@ -79,9 +71,6 @@ class DpForces {
   void set_rest_area(double area);
   void set_weight(double weight) { weight_ = weight; }
   double weight() const { return weight_; }
-  /// d(X, Y)/d(x_i, y_i), X, Y the area's centroid, at the last evaluate(): dX/dx, dX/dy, dY/dx, dY/dy, each
-  /// of length N_v. Zero with the weight on the vertices.
-  Eigen::ArrayXd& centroid_gradient() { return centroid_gradient_; }
 
  private:
   DpParameters dp_;
@@ -91,24 +80,17 @@ class DpForces {
   double rest_area_;
   double rest_edge_;
   double weight_;
-  double near_wall_cutoff_;
+  bool has_near_wall_drag_;
   WallContacts walls_;
   WallContacts nearest_walls_;  // kept only with near-wall drag
   WettedWalls wetted_walls_;
   SelfContacts self_;
   WallFriction friction_;
-  WettedWalls::Forces wetting_;  // memory of evaluate()
-  PolygonShape shape_;
-  Eigen::ArrayXd edge_x_, edge_y_, edge_length_, pull_, centroid_gradient_, refined_edges_;
-  Eigen::ArrayXd wall_distance_;
 
-  void add_walls(const DropletState& state, Eigen::ArrayXd& force);
-  void measure_wall_distance(const DropletState& state);
   /// Calls visit(overlap) for every half edge (vertex) and slot or wedge [sigma]; negative where they do not
   /// touch.
   template <class Visit>
   void visit_overlaps(const DropletState& state, Visit visit) const;
-  void add_self_contact(const DropletState& state, Eigen::ArrayXd& force) const;
 };
 
 }  // namespace clog

@@ -14,8 +14,6 @@ namespace clog {
 /// `touched_by_edge`: edge i (from vertex i to the next) lists every obstacle whose surface was within
 /// `range` + skin of it; `touched_by_vertex`: the same for vertex i. `nearest_to_vertex`: vertex i lists
 /// every obstacle that could become its nearest. Lists hold while no vertex has moved by more than the skin.
-/// Those of vertices are kept as `slots` as well: slot s of vertex i is one circle; unused slots hold a
-/// circle out of reach, so that the force loop has no branch.
 class WallContacts {
  public:
   enum class Keep { touched_by_edge, touched_by_vertex, nearest_to_vertex };
@@ -35,17 +33,12 @@ class WallContacts {
   /// no lists.
   const double* reference() const { return reference_.size() > 0 ? reference_.data() : nullptr; }
 
-  int num_slots() const { return num_slots_; }
-  /// Centres and radii of slot `s`, one per vertex, relative to the state's frame [sigma].
-  const double* slot_x(int s) const { return slots_.data() + (3 * s + 0) * num_points_; }
-  const double* slot_y(int s) const { return slots_.data() + (3 * s + 1) * num_points_; }
-  const double* slot_radius(int s) const { return slots_.data() + (3 * s + 2) * num_points_; }
   double range() const { return range_; }
   /// Whether the circles in the lists all have the same radius.
   bool radii_are_equal() const { return smallest_radius_ == largest_radius_; }
   double largest_radius() const { return largest_radius_; }
 
-  /// The same lists by obstacle: circles that some edge (vertex) of a group of `edges_per_group` lists.
+  /// The lists by obstacle: circles that some edge (vertex) of a group of `edges_per_group` lists.
   /// Circles that edges list follow each other, each with its groups in their order; those that vertices list
   /// come in the groups' order.
   struct Item {
@@ -62,10 +55,8 @@ class WallContacts {
   double range_;
   Keep keep_;
   double skin_ = 0;  // of the present lists
-  int num_slots_ = 0;
   Eigen::Index num_points_ = 0;
   Eigen::ArrayXd reference_;
-  Eigen::ArrayXd slots_;
   std::vector<Obstacle> nearby_;
   std::vector<std::vector<int>> candidates_;
   struct Bounds {

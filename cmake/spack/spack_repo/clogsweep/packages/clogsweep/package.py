@@ -33,7 +33,6 @@ class Clogsweep(CMakePackage):
     depends_on(f"hdf5@{MINIMUM['HDF5']}:1.14 ~mpi")  # one rank writes
     depends_on(f"highway@{MINIMUM['hwy']}:")
     depends_on(f"nlohmann-json@{MINIMUM['nlohmann_json']}:")
-    depends_on(f"nlopt@{MINIMUM['NLopt']}: +cxx ~python")
     depends_on("openmpi@4.1:")
     depends_on("zlib-api")
     # For figures, and for the shell completion.

@@ -1,0 +1,33 @@
+"""What the laboratory says about a droplet between tilted plates, asked of `clogfit units`."""
+
+import json
+import pathlib
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from ..results import laboratory
+from ..tools.errors import ProgramFailed, UserError
+from .profiles import Scales
+
+# What clogfit units needs, but a command may do without.
+UNKNOWN = {"diameter": "1 mm", "angle": "90 deg"}
+
+
+def quantities(given: Mapping[str, str | None], folder: pathlib.Path) -> tuple[dict[str, Any], Scales]:
+    """The answer of clogfit units, and what columns in laboratory units are divided by.
+
+    @param given  quantities by the names of a lab file, None if unknown. @throws UserError  naming the option
+    """
+    known = {name: text for name, text in given.items() if text}
+    try:
+        answer = laboratory.units(UNKNOWN | known, folder=folder)
+    except ProgramFailed as failure:
+        raise UserError(re.sub("^.*lab.cfg (invalid )?", lambda found: "invalid --" if found[1] else "", str(failure))) from failure
+    return answer, Scales(answer["diameter_mm"] * 1e-3 if "diameter" in known else 0, answer["speed_mm_per_s"] * 1e-3 if "speed" in known else 0)
+
+
+def print_json(answer: Mapping[str, Any], document: Mapping[str, Any]) -> None:
+    """With the version of the programs before it. NaN and infinity become null."""
+    text = json.dumps({"version": answer["version"], "git_describe": answer["git_describe"], **document})
+    print(json.dumps(json.loads(text, parse_constant=lambda _: None), indent=2))

@@ -1,0 +1,150 @@
+"""Reads measured and simulated passages through a channel, and speeds along a wall."""
+
+import contextlib
+import csv
+import math
+import os
+import pathlib
+import stat
+from typing import NamedTuple
+
+import numpy as np
+
+from ..reading import passages
+from ..tools.errors import UserError
+from ..tools.hints import Numbers
+
+FEWEST_FRAMES = 3
+# A simulated passage that is calibrated is seen as by a camera, up to this distance from the orifice [sigma].
+FARTHEST_FRAME = 1.5
+FRAMES_PER_DIAMETER = 20
+METRES = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "\u00b5m": 1e-6, "\u03bcm": 1e-6}  # as clogfit units; Unicode has two signs for micro
+
+
+class Profile(NamedTuple):
+    """A droplet in a channel, frame by frame; arrays of equal length. Of a simulation in the order of time."""
+
+    h: Numbers  # of the centre of mass from the orifice, positive downstream [sigma]
+    speed: Numbers  # along the flow [v_t]
+    shape: Numbers  # A = perimeter^2/(4 pi area); NaN where unknown
+
+
+class Scales(NamedTuple):
+    """What columns in laboratory units are divided by [m, m/s]; 0 if unknown."""
+
+    diameter: float = 0
+    speed: float = 0
+
+
+class Channel(NamedTuple):
+    """What a passage depends on besides the droplet. The names are those of columns, and with hyphens those of keys."""
+
+    orifice: float
+    wedge_angle: float
+    tip_radius: float
+    terminal_speed: float
+
+
+def read_text(path: str) -> str:
+    """Text in UTF-8, UTF-16 or Latin-1. @throws UserError"""
+    try:
+        mode = os.stat(path).st_mode
+        if not stat.S_ISREG(mode) and not stat.S_ISFIFO(mode):
+            raise UserError(f"cannot read {path} (a folder, device or socket, neither a file nor a pipe); give another name")
+        content = pathlib.Path(path).read_bytes()
+    except OSError as error:
+        raise UserError(f"cannot read {path} ({(error.strerror or str(error)).lower()}); check name and permissions") from error
+    for encoding in ("utf-16",) if content.startswith((b"\xff\xfe", b"\xfe\xff")) else ("utf-8-sig", "latin-1"):
+        with contextlib.suppress(UnicodeDecodeError):
+            return content.decode(encoding)
+    raise UserError(f"cannot read {path} (damaged UTF-16); give a text file")
+
+
+def factor(header: str, reduced: str, scale: float, option: str) -> float:
+    """What to multiply a column with, such as h [mm]. @param reduced  the unit that needs no scale: sigma or v_t"""
+    unit = header.partition("[")[2].partition("]")[0].strip()
+    if unit == reduced:
+        return 1
+    if not unit:
+        raise UserError(f"a column has no unit; write {reduced} or a laboratory unit in brackets")
+    known = {name + ("/s" if reduced == "v_t" else ""): size for name, size in METRES.items()}
+    if unit not in known:
+        raise UserError(f"unknown unit '{unit}' (known: {reduced}, {', '.join(known)})")
+    if scale == 0:
+        raise UserError(f"is in {unit} and needs {option}")
+    return known[unit] / scale
+
+
+def number(cell: str) -> float:
+    try:
+        value = float(cell)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise UserError(f"'{cell}' is not a finite number")
+    return value
+
+
+def read_table(path: str, length: str, scales: Scales) -> Numbers:
+    """Columns `length`, v and A of a text file as spreadsheets write it (docs/how-to/own-obstacles.md), in reduced units.
+
+    @return shape (3, lines); an empty cell of A, or none, is NaN. @throws UserError  naming file and line
+    """
+    separator, rows = "", []
+    columns: dict[str, int] = {}
+    for line_number, line in enumerate(read_text(path).replace("\xa0", " ").splitlines(), 1):
+        if not line.strip() or line.lstrip().startswith(("#", '"#')):
+            continue
+        if not separator and line.startswith("sep="):
+            separator = line[4:5]
+            continue
+        separator = separator or next((letter for letter in ";\t," if letter in line), " ")
+        try:
+            words = " ".join(line.split()) if separator == " " else line
+            cells = [cell.strip() for cell in next(csv.reader([words], delimiter=separator, skipinitialspace=True, strict=True))]
+            if not columns:
+                columns = {cell.partition("[")[0].strip(): index for index, cell in enumerate(cells)}
+                if not {length, "v"} <= columns.keys():
+                    raise UserError(f"needs a header that names the columns {length} and v, e.g. {length} [mm], v [mm/s]")
+                factors = (factor(cells[columns[length]], "sigma", scales.diameter, "--diameter"), factor(cells[columns["v"]], "v_t", scales.speed, "--speed"))
+                continue
+            if len(cells) <= max(columns[length], columns["v"]):
+                raise UserError("has too few columns")
+            shape = (cells + [""])[min(columns.get("A", len(cells)), len(cells))]
+            rows.append([number(cells[columns[length]]) * factors[0], number(cells[columns["v"]]) * factors[1], number(shape) if shape else math.nan])
+        except (UserError, csv.Error) as error:
+            raise UserError(f"{path} line {line_number}: {error}") from error
+    return np.array(rows).reshape(-1, 3).T
+
+
+def read_run(path: str) -> tuple[Profile, np.void]:
+    """Samples and row of a passage that clogrun wrote. @throws UserError; Damaged"""
+    table, row = passages.read(path)
+    return Profile(table["h"], table["speed_ratio"], table["shape_parameter"]), row
+
+
+def at(profile: Profile, h: Numbers) -> Profile:
+    """The droplet where it first comes to each h, interpolated linearly; NaN where it never comes."""
+    first = profile.h >= np.maximum.accumulate(profile.h)
+    return Profile(h, *(np.interp(h, profile.h[first], values[first], left=math.nan, right=math.nan) for values in profile[1:]))
+
+
+def read_profile(path: str, scales: Scales = Scales()) -> tuple[Profile, np.void | None]:
+    """Every frame of a text file, or every sample and the row of a file of clogrun channel. @throws UserError; Damaged"""
+    profile, row = read_run(path) if passages.is_hdf5(path) else (Profile(*read_table(path, "h", scales)), None)
+    if len(profile.h) < FEWEST_FRAMES:
+        raise UserError(f"{path} holds fewer than three frames; give a longer one")
+    return profile, row
+
+
+def read_trial(path: str, scales: Scales = Scales()) -> tuple[Profile, Channel | None]:
+    """A passage to compare simulations with, and its channel if clogrun wrote it. @throws UserError  also for a droplet that did not pass"""
+    profile, row = read_profile(path, scales)
+    if row is None:
+        return profile, None
+    if profile.h[-1] < min(float(row["end"]), FARTHEST_FRAME):
+        raise UserError(f"cannot calibrate with {path} (its droplet was at h = {profile.h[-1]:.3g} when the run ended: it clogged, or was stopped); "
+                        "give a droplet that passed")
+    last = round(FARTHEST_FRAME * FRAMES_PER_DIAMETER)
+    frames = at(profile, np.arange(-last, last + 1) / FRAMES_PER_DIAMETER)
+    return Profile(*(values[np.isfinite(frames.speed)] for values in frames)), Channel(*(float(row[name]) for name in Channel._fields))

@@ -1,0 +1,103 @@
+"""Simulates passages through a channel by clogrun, as many at a time as there are cores."""
+
+import contextlib
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import tempfile
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from types import FrameType
+
+from ..reading import programs
+from ..tools.errors import ProgramFailed
+from .profiles import Channel, Profile, read_run
+
+Simulation = Callable[[float, float], Profile]  # of line tension and near-wall drag
+
+# Half a diameter before the first frame the motion is overdamped and has forgotten its start.
+APPROACH = 0.5
+# The start has to be clear of the wedges.
+USUAL_START = -2.0
+# A droplet of 1/30 of its terminal speed on average still passes.
+SLOWEST = 30
+# Below 64 steps: clogrun has no more samples than one for so many.
+SAMPLE_INTERVAL = 1e-9
+
+
+class Stopped(Exception):
+    """A signal asked for an early end."""
+
+
+class Clogrun:
+    """Runs clogrun channel. May be called from several threads, which wait for a free core."""
+
+    def __init__(self, folder: pathlib.Path) -> None:
+        self.program = folder / "clogrun"
+        self.cores = threading.Semaphore(len(os.sched_getaffinity(0)))
+        self.running: set[subprocess.Popen[str]] = set()
+        self.stopping = threading.Event()
+
+    def __call__(self, *words: object) -> str:
+        """@return what it prints. @throws ProgramFailed  with its reason; Stopped"""
+        with self.cores:
+            if self.stopping.is_set():
+                raise Stopped
+            # In a session of its own the terminal does not send it SIGINT.
+            with subprocess.Popen([self.program, "channel", *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                  encoding="utf-8", errors="backslashreplace", start_new_session=True) as process:
+                self.running.add(process)
+                if self.stopping.is_set():  # since it was asked above
+                    process.terminate()
+                out, error = process.communicate()
+                self.running.discard(process)
+        if self.stopping.is_set():
+            raise Stopped
+        if process.returncode != 0:
+            raise ProgramFailed(programs.reason(error or out).removeprefix("clogrun: "), process.returncode)
+        return out
+
+    @contextlib.contextmanager
+    def stoppable(self) -> Iterator[None]:
+        """In this block SIGINT, SIGTERM and SIGHUP end all runs, which raise Stopped."""
+        def stop(_number: int, _frame: FrameType | None) -> None:
+            self.stopping.set()
+            for process in list(self.running):
+                process.terminate()
+
+        before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)}
+        try:
+            yield
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+
+    def channel(self, words: Sequence[str]) -> Channel:
+        """The channel that these keys give. @throws ProgramFailed  for keys that clogrun refuses"""
+        with tempfile.TemporaryDirectory(prefix="clogsweep-calibrate-") as place:
+            config = dict(line.split(" = ", 1) for line in self(*words, f"--output={place}/run.h5", "--dry-run").splitlines() if " = " in line)
+        return Channel(*(float(config[name.replace("_", "-")]) for name in Channel._fields))
+
+    def past(self, measured: Profile, words: Sequence[str]) -> Simulation:
+        """Simulations of passages past the frames of a measured one. @param words  keys of clogrun channel"""
+        words = [word for word in words if word.partition("=")[0].lstrip("-") not in ("start", "end", "max-time")]
+        start, end = min(float(min(measured.h)) - APPROACH, USUAL_START), float(max(measured.h)) + 0.1
+        try:
+            channel = self.channel([*words, f"start={start}", f"end={end}"])
+        except ProgramFailed as failure:
+            farthest = re.search(r"invalid start=.* use at most (\S+)$", str(failure))
+            if not farthest:
+                raise
+            start = float(farthest[1]) - 0.1
+            channel = self.channel([*words, f"start={start}", f"end={end}"])
+        words += [f"start={start}", f"end={end}", f"max-time={SLOWEST * (end - start) / channel.terminal_speed}", f"--sample-interval={SAMPLE_INTERVAL}"]
+
+        def simulate(line_tension: float, near_wall_drag: float) -> Profile:
+            """The passage, which ends where the droplet breaks or clogs."""
+            with tempfile.TemporaryDirectory(prefix="clogsweep-calibrate-") as place:
+                self(*words, f"line-tension={line_tension}", f"near-wall-drag={near_wall_drag}", f"--output={place}/run.h5")
+                return read_run(f"{place}/run.h5")[0]
+
+        return simulate

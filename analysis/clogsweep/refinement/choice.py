@@ -1,0 +1,72 @@
+"""Values that a search may try, and the choice of those that tell most for their work."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import pandas
+
+from ..curves.model import Curve
+from ..tools.hints import Numbers
+
+SERIES = (192, 96, 48, 24, 12, 6)  # preferred numbers per decade (IEC 60063); the coarser series are parts of the finer
+NEARNESS = 1e-3  # squared share of the range: points that are nearer count alike
+
+
+def preferred_values(given: Sequence[float], most: int) -> list[float]:
+    """Preferred numbers of three figures between the outermost values, and the values given: no more than `most`,
+    or one more than are given. Files of two people thus meet in the same values."""
+    values = sorted(given)
+    for per_decade in SERIES:
+        first, last = (round_(per_decade * math.log10(end)) for round_, end in ((math.floor, given[0]), (math.ceil, given[-1])))
+        preferred = (float(f"{10 ** (i / per_decade):.3g}") for i in range(first, last + 1))
+        values = sorted({*given, *(value for value in preferred if given[0] < value < given[-1])})
+        if len(values) <= max(most, len(given) + 1):
+            break
+    return values
+
+
+def spread(values: Sequence[float], count: int) -> list[float]:
+    """`count` of the values, evenly on a logarithmic scale, including the outermost; fewer if they coincide."""
+    logs = np.log(values)
+    nearest = [int(np.argmin(abs(logs - place))) for place in np.linspace(logs[0], logs[-1], count)]
+    return [values[i] for i in dict.fromkeys(nearest)]
+
+
+def expected_runs(sums: pandas.DataFrame, known: Numbers, places: Numbers, log_length: Numbers,
+                  max_time: float) -> tuple[Numbers, Numbers]:
+    """Clogs and work to be expected of one run at each place. Speed and work per time are those of points nearby.
+
+    @param sums  of distance, time and work at the `known` places; @param log_length  of the fitted curve at `places`
+    """
+    extent = np.ptp(places, axis=0)
+    apart = (((places[:, None] - known) / np.where(extent > 0, extent, 1)) ** 2).sum(axis=2)
+    weight = 1 / (sums["time"].to_numpy() * (NEARNESS + apart) ** 2)
+    distance, time, work = (weight @ sums[name].to_numpy() for name in ("distance", "time", "work"))
+    longest = max_time * distance / time
+    length = np.exp(log_length)
+    clogs = -np.expm1(-longest / length)
+    return clogs, np.minimum(length * clogs, longest) * work / distance
+
+
+def choose_blocks(curve: Curve, clogs: Numbers, work: Numbers, weights: Numbers, most_blocks: Numbers,
+                  work_of_round: float, most_work: float) -> Numbers:
+    """How many blocks of seeds each place gets: again and again the place whose block reduces the weighted variance
+    most for its work, until the round has its work.
+
+    The variances fall as if the expected clogs had been seen (rank-one updates); the means stay.
+    @param clogs, work  to be expected of one block at each place; @param most_work  that is never exceeded
+    """
+    covariance = curve.covariance.copy()
+    blocks = np.zeros(len(most_blocks), dtype=int)
+    used = 0.0
+    while True:
+        shares = clogs / (1 + clogs * np.maximum(np.diagonal(covariance), 0))
+        gain = shares * (weights @ covariance**2) / work
+        gain[(blocks >= most_blocks) | (used + work > most_work)] = 0
+        best = int(np.argmax(gain))
+        if not gain[best] > 0 or (used > 0 and used + work[best] > work_of_round):
+            return blocks
+        covariance -= shares[best] * np.outer(covariance[:, best], covariance[:, best])
+        blocks[best] += 1
+        used += work[best]

@@ -1,0 +1,143 @@
+"""The critical angle of a lattice: up to it droplets follow its rows, beyond it they leave them."""
+
+import itertools
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import pandas
+
+from ..tools.errors import UserError
+from .driver import HOUR, UNFINISHED, Line, number_text
+from .membership import Membership, Values
+
+KEY = "lattice-angle"
+SMALLEST_BOX = 5.0  # [sigma], and no less than two spacings
+ROUNDING = 1e-9
+DECIMALS = 6  # of an angle: far fewer than tell two lattices apart
+MOST_ROWS_OFF = 1.0  # a droplet that follows the rows comes no farther off its own
+FEWEST_ROWS = 2.0  # that a path along the flow must cross for the run to count
+
+
+def tried_angles(runs: pandas.DataFrame) -> pandas.DataFrame:
+    """Whether droplets leave the rows, and whether they follow them, by angle in increasing order."""
+    angle = np.radians(runs["lattice_angle"])
+    spacing = runs["obstacle_gap"] + runs["obstacle_diameter"]
+    along, across = runs["distance"], runs["lateral_displacement"]
+    counts = runs["status"] != "failed"
+    leaves = counts & (abs(across * np.cos(angle) - along * np.sin(angle)) > MOST_ROWS_OFF * spacing)
+    is_long = counts & (along * np.sin(angle) >= FEWEST_ROWS * spacing)
+    found = pandas.DataFrame({"angle": runs["lattice_angle"], "leaves": leaves, "follows": is_long & ~leaves})
+    found = found.groupby("angle").any()
+    return found.assign(follows=found["follows"] & ~found["leaves"])
+
+
+def bracket(angles: pandas.DataFrame) -> tuple[float, float]:
+    """The largest angle below all that leave the rows at which droplets follow them, and the smallest at which some
+    leave them; NaN where there is none."""
+    upper = angles.index[angles["leaves"]].min()
+    below = angles if math.isnan(upper) else angles[angles.index < upper]
+    return below.index[below["follows"]].max(), upper
+
+
+def nearest_lattice(spacing: float, angle: float, box: float) -> float | None:
+    """Angle of the lattice nearest to `angle` that has a period of at most `box`: its edge joins two points of the
+    lattice, p and q spacings apart, and tan(angle) = q/p."""
+    p = np.arange(1, int(box * (1 + ROUNDING) / spacing) + 1)
+    q = np.floor(p * math.tan(math.radians(angle)))
+    p, q = np.concatenate([p, p]), np.concatenate([q, q + 1])
+    period = spacing * np.hypot(p, q)
+    fits = (period >= max(SMALLEST_BOX, 2 * spacing) * (1 - ROUNDING)) & (period <= box * (1 + ROUNDING))
+    angles = np.degrees(np.arctan2(q, p))[fits]
+    return float(angles[np.argmin(abs(angles - angle))]) if angles.size else None
+
+
+class AngleSearch:
+    """Rounds of up to three angles, between the last one that droplets follow and the first that they leave."""
+
+    keys: Sequence[str] = (KEY,)
+
+    def __init__(self, given: Sequence[float], spacing: float, box: float, num_seeds: int, width: float,
+                 budget: float) -> None:
+        """@param given  angles, increasing; @param width  of the bracket to be reached, 0 if only the budget ends it"""
+        self.end = ""
+        self._width, self._budget, self._spacing, self._box, self._num_seeds = width, budget, spacing, box, num_seeds
+        inner = self._within(given[0], given[-1], given) if len(given) == 2 else []
+        self.candidates: list[Values] = [(angle,) for angle in sorted([*given, *inner])]
+
+    def first_round(self) -> list[Line]:
+        return [(values, None) for values in self.candidates]
+
+    def _within(self, lower: float, upper: float, tried: Sequence[float]) -> list[float]:
+        """Up to three lattices near the quarters of the bracket that have not been tried."""
+        nearest = [nearest_lattice(self._spacing, lower + part * (upper - lower) / 4, self._box) for part in (1, 2, 3)]
+        rounded = {round(angle, DECIMALS) for angle in nearest if angle is not None and lower < angle < upper}
+        return sorted(rounded - {round(angle, DECIMALS) for angle in tried})
+
+    def _look(self, rows: pandas.DataFrame, members: Membership) -> tuple[pandas.DataFrame, float]:
+        # The box is a period of the lattice: it follows from the angle, and means nothing to the droplet.
+        runs = members.of_curve(rows, lambda name: name not in ("lattice_angle", "box"))
+        runs = runs[~runs["status"].isin(UNFINISHED)]
+        return tried_angles(runs), float(runs["processor_seconds"].sum()) / HOUR
+
+    def next_round(self, rows: pandas.DataFrame, members: Membership) -> list[Line]:
+        """The points of the next round; none at the end of the search, whose reason is `end` then."""
+        angles, hours = self._look(rows, members)
+        lower, upper = bracket(angles)
+        found: list[float] = []
+        if math.isnan(upper - lower):
+            self.end = "the angles do not bracket it"
+        elif upper - lower <= self._width:
+            self.end = f"critical-angle={self._width:g} is reached"
+        elif hours >= self._budget:
+            self.end = "the budget is used up"
+        else:
+            found = self._within(lower, upper, list(angles.index))
+            if not found:
+                self.end = (f"no other lattice in between has a period of box={number_text(self._box)} or less; "
+                            "a larger box has more")
+        return [((angle,), None) for angle in found]
+
+    def known(self, rows: pandas.DataFrame, members: Membership) -> str:
+        """What the rows say, in one line."""
+        angles, _ = self._look(rows, members)
+        lower, upper = bracket(angles)
+        if math.isnan(lower) and math.isnan(upper):
+            text = "no droplet went far enough to say (the flow has to cross two rows); try a larger max-time"
+        elif math.isnan(upper):
+            text = f"up to {lower:.4g} degrees droplets follow the rows; try larger angles"
+        elif math.isnan(lower):
+            text = f"at {upper:.4g} degrees droplets leave the rows; try smaller angles, or a larger max-time"
+        else:
+            text = (f"the critical angle is {(lower + upper) / 2:.4g} degrees ({lower:.4g} to {upper:.4g}): droplets "
+                    f"follow the rows at {lower:.4g} and leave them at {upper:.4g}")
+        again = ", ".join(f"{angle:.4g}" for angle in angles.index[angles["follows"] & (angles.index > upper)])
+        unknown = ", ".join(f"{angle:.4g}" for angle in angles.index[~angles["follows"] & ~angles["leaves"]])
+        return "; ".join(filter(None, [self.end, text, again and f"they follow them again at {again}",
+                                       unknown and f"runs were too short to say at {unknown} (max-time, clogs or failures)"]))
+
+    def costs(self, hours_per_run: float) -> list[str]:
+        """What the rounds may cost, for --dry-run. @param hours_per_run  of the first round; NaN: not known"""
+        words = ["this is the first round; each of the others has up to three angles where droplets begin to leave the rows"]
+        if math.isfinite(self._budget):
+            words.append(f"all rounds: about {self._budget:.2g} core-hours at most (--budget)")
+        if self._width > 0:
+            apart = (self.candidates[-1][0] - self.candidates[0][0]) / (len(self.candidates) - 1)
+            num_rounds = max(0, math.ceil(math.log(apart / self._width, 4)))
+            num_runs = 3 * num_rounds * self._num_seeds
+            words.append(f"critical-angle={self._width:g} takes about {num_rounds} more rounds, {num_runs} runs: "
+                         f"{num_runs * hours_per_run:.2g} core-hours")
+        return words
+
+
+def require_angles(text: str, given: Sequence[float]) -> None:
+    """@throws UserError  unless these are increasing angles between 0 and 45 degrees"""
+    why = ""
+    if len(given) < 2 or not all(np.isfinite(given)):
+        why = "refine lattice-angle needs its bounds"
+    elif any(one >= other for one, other in itertools.pairwise(given)):
+        why = "values must increase: the lower bound comes first"
+    elif not (given[0] > 0 and given[-1] <= 45):
+        why = "the critical angle lies above 0, where droplets follow the rows by symmetry, up to 45 degrees"
+    if why:
+        raise UserError(f"invalid {KEY}={text} ({why}) try {KEY}=5,40")

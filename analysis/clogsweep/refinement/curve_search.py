@@ -1,0 +1,173 @@
+"""A search that puts values and seeds where the fitted curve of lambda needs them."""
+
+import itertools
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import pandas
+
+from ..curves import features
+from ..curves.model import Curve, Points, fit_curve
+from ..tools.errors import UserError
+from ..tools.hints import Numbers
+from ..tools.rounded import counted
+from . import choice, goals
+from .driver import HOUR, UNFINISHED, Line, number_text
+from .goals import Goal
+from .membership import Membership, Values
+
+MOST_VALUES = {1: 100, 2: 13}  # of each key, by the number of keys
+FIRST_VALUES = {1: 7, 2: 4}
+MOST_COMBINATIONS = 500
+SHARE_OF_ROUND = 0.5  # work of a round, divided by that of all earlier rounds
+
+
+class Options(NamedTuple):
+    goal: Goal
+    budget: float  # core-hours of all runs; may be infinite
+    most_seeds: int  # of one value
+    same_seeds: bool
+
+
+class Known(NamedTuple):
+    """What the rows say at one moment."""
+
+    runs: pandas.DataFrame  # sums over the runs of each value, failed ones included
+    curve: Curve | None  # at the candidates; None if no run got anywhere
+
+
+def combinations(lists: Sequence[Sequence[float]]) -> list[Values]:
+    """All combinations of the keys' values; the first key varies fastest."""
+    return [tuple(reversed(values)) for values in itertools.product(*reversed(lists))]
+
+
+class CurveSearch:
+    """Rounds for a curve over one or two keys."""
+
+    def __init__(self, keys: Sequence[str], lists: Sequence[Sequence[float]], seeds: Sequence[int], max_time: float,
+                 options: Options) -> None:
+        """@param lists  values given for each key, increasing; @param seeds  that follow one another: a block
+        @throws UserError  if there are too many values"""
+        self.end = ""
+        self.keys, self._options, self._max_time = keys, options, max_time
+        self._first_seed, self._block = seeds[0], len(seeds)
+        count = len(keys)
+        values = [choice.preferred_values(given, MOST_VALUES[count]) for given in lists]
+        self.candidates = combinations(values)
+        if len(self.candidates) > MOST_COMBINATIONS:
+            raise UserError(f"cannot refine {','.join(keys)} (its lists have {len(self.candidates)} combinations, more than "
+                            f"{MOST_COMBINATIONS}); give their bounds")
+        self._first = combinations([given if len(given) > 2 else choice.spread(all_, FIRST_VALUES[count])
+                                    for given, all_ in zip(lists, values)])
+        self._places = np.log(np.array(self.candidates))
+
+    def first_round(self) -> list[Line]:
+        step = 0 if self._options.same_seeds else self._block
+        return [(values, (self._first_seed + i * step, self._block)) for i, values in enumerate(self._first)]
+
+    def next_round(self, rows: pandas.DataFrame, members: Membership) -> list[Line]:
+        """The points of the next round; none at the end of the search, whose reason is `end` then."""
+        known, options, block = self._look(rows, members), self._options, self._block
+        if known.curve is None:
+            self.end = "no run got anywhere"
+            return []
+        if goals.known_precision(known.curve, self._places, options.goal) <= options.goal.precision:
+            self.end = f"{options.goal} is reached"
+            return []
+        done, hours = known.runs["work"].sum(), known.runs["hours"].sum()
+        most_work = max(0.0, options.budget - hours) * done / hours if math.isfinite(options.budget) else math.inf
+        here = known.runs.reindex(self.candidates, fill_value=0)
+        left = np.maximum(options.most_seeds - here["runs"], 0) // block
+        left[(here["runs"] > 0) & (here["runs"] == here["failed"])] = 0
+        clogs, work = choice.expected_runs(*_informing(known.runs), self._places, known.curve.mean, self._max_time)
+        blocks = choice.choose_blocks(known.curve, block * clogs, block * work, goals.weights(known.curve, options.goal),
+                                      left.to_numpy(), SHARE_OF_ROUND * done, most_work)
+        if not blocks.any():
+            self.end = "the budget is used up" if left.any() else "no value may get more seeds (--most-seeds)"
+        last = here["last_seed"].where(here["runs"] > 0, self._first_seed - 1)
+        lines: list[Line] = []
+        next_seed = int(known.runs["last_seed"].max()) + 1
+        for values, seeds, last_seed in zip(self.candidates, map(int, block * blocks), map(int, last)):
+            if seeds:
+                lines.append((values, (last_seed + 1 if options.same_seeds else next_seed, seeds)))
+                next_seed += seeds
+        return lines
+
+    def _look(self, rows: pandas.DataFrame, members: Membership) -> Known:
+        runs = members.of_values(rows)
+        runs = runs[~runs["status"].isin(UNFINISHED)]
+        succeeded = runs["status"] != "failed"
+        table = pandas.DataFrame({
+            "values": runs["values"], "runs": 1, "failed": ~succeeded, "last_seed": runs["seed"].astype(int),
+            "hours": runs["processor_seconds"] / HOUR, "clogs": runs["status"] == "clogged",
+            "distance": runs["distance"].clip(lower=0).where(succeeded, 0), "time": runs["time"].where(succeeded, 0),
+            "work": (runs["steps"] * runs["vertices"].where(runs["model"] == "dp", 1)).where(succeeded, 0)})
+        of_values = table.groupby("values")
+        sums = of_values.sum().assign(last_seed=of_values["last_seed"].max())
+        informing, places = _informing(sums)
+        curve = None if informing.empty else fit_curve(
+            Points(places, informing["clogs"].to_numpy(float), informing["distance"].to_numpy()), self._places)
+        return Known(sums, curve)
+
+    def known(self, rows: pandas.DataFrame, members: Membership) -> str:
+        """What the rows say, in one line."""
+        known = self._look(rows, members)
+        words = [self.end] if self.end else []
+        if known.curve is None:
+            return "; ".join([*words, "nothing is known"])
+        precision = goals.known_precision(known.curve, self._places, Goal("curve"))
+        peak = features.find_peak(known.curve, self._places, goals.CONFIDENCE)
+        at = ", ".join(f"{key} {math.exp(place):.3g} ({math.exp(lower):.3g} to {math.exp(upper):.3g})"
+                       for key, place, lower, upper in zip(self.keys, peak.place, peak.place_lower, peak.place_upper))
+        words += [f"lambda is known within {100 * precision:.2g} % along the curve",
+                  f"highest at {at}, with {peak.length:.3g} sigma ({peak.length_lower:.3g} to {peak.length_upper:.3g})"]
+        if self._options.goal.kind == "crossing":
+            length = self._options.goal.length
+            found = features.find_crossings(known.curve, self._places[:, 0], length, goals.CONFIDENCE)
+            words += [f"it crosses {length:g} sigma at {self.keys[0]} {math.exp(one.place):.3g} "
+                      f"({math.exp(one.lower):.3g} to {math.exp(one.upper):.3g})" for one in found]
+            words += [] if found else [f"it does not cross {length:g} sigma"]
+        failures = [" ".join(f"{key}={number_text(value)}" for key, value in zip(self.keys, values))
+                    + f" ({one.failed} of {counted(one.runs, 'run')})"
+                    for values, one in zip(known.runs.index, known.runs.itertuples()) if one.failed]
+        return "; ".join([*words, f"failed: {', '.join(failures)}"] if failures else words)
+
+    def costs(self, hours_per_run: float) -> list[str]:
+        """What the rounds may cost, for --dry-run. @param hours_per_run  of the first round; NaN: not known"""
+        words = ["this is the first round; each of the others is to cost half of all before it"]
+        if math.isfinite(self._options.budget):
+            words.append(f"all rounds: {self._options.budget:.2g} core-hours at most (--budget)")
+        goal = self._options.goal
+        if goal.kind in ("peak", "crossing"):
+            words.append(f"how much {goal} takes is known when its place is, after the first round")
+        if goal.kind == "curve":
+            # An error e of log lambda takes 1/e^2 clogs at each of so many places that do not inform each other.
+            error = math.asinh(goal.precision) / features.normal_deviate(goals.CONFIDENCE)
+            smooth, rough = 2 / error**2, len(self._first) / error**2
+            words.append(f"{goal} takes about {smooth:.0f} clogs of a curve as smooth as a straight line, {rough:.0f} of one "
+                         f"that is new at each of the first {len(self._first)} values: {smooth * hours_per_run:.2g} to "
+                         f"{rough * hours_per_run:.2g} core-hours in all if every run clogs")
+        return words
+
+
+def _informing(runs: pandas.DataFrame) -> tuple[pandas.DataFrame, Numbers]:
+    """The values whose runs got anywhere, and their places on the curve."""
+    runs = runs[(runs["distance"] > 0) & (runs["time"] > 0)]
+    return runs, np.log(np.array(list(runs.index)))
+
+
+def require_bounds(key: str, text: str, values: Sequence[float]) -> None:
+    """@throws UserError  unless these are increasing, positive values, two at least"""
+    why = ""
+    if any(math.isnan(value) for value in values):
+        why = "refine needs numbers"
+    elif len(values) < 2:
+        why = "refine needs its bounds"
+    elif any(one >= other for one, other in itertools.pairwise(values)):
+        why = "values must increase: the lower bound comes first"
+    elif values[0] <= 0:
+        why = "refine works on logarithms: values must be positive"
+    if why:
+        raise UserError(f"invalid {key}={text} ({why}) try {key}=0.1,3")

@@ -1,0 +1,119 @@
+"""Runs clogsweep round by round. A round's points are on the disk before it starts, so that a kill does not change them."""
+
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from typing import Protocol
+
+import pandas
+
+from ..reading import stored
+from ..tools.outputs import replaced
+from .membership import Membership, Values
+
+HOUR = 3600.0
+UNFINISHED = ("running", "interrupted")
+FAILED, USER_FAULT, INCOMPLETE = 1, 2, 75  # exit codes of clogsweep
+Line = tuple[Values, tuple[int, int] | None]  # values, the first seed and how many follow; None: the seeds of the config
+
+
+class Search(Protocol):
+    """What decides about the rounds: CurveSearch or AngleSearch."""
+
+    keys: Sequence[str]
+    candidates: list[Values]
+
+    def first_round(self) -> list[Line]: ...
+
+    def next_round(self, rows: pandas.DataFrame, members: Membership) -> list[Line]: ...
+
+    def known(self, rows: pandas.DataFrame, members: Membership) -> str: ...
+
+    def costs(self, hours_per_run: float) -> list[str]: ...
+
+
+def number_text(value: float) -> str:
+    """The shortest text that means this number."""
+    return repr(float(value)).removesuffix(".0")
+
+
+def points_text(keys: Sequence[str], lines: Sequence[Line]) -> str:
+    """A file for clogsweep --points."""
+    with_seeds = any(seeds for _, seeds in lines)
+    out = [",".join([*keys, "seeds"] if with_seeds else keys)]
+    for values, seeds in lines:
+        words = list(map(number_text, values))
+        out.append(",".join(words if seeds is None else [*words, f"{seeds[0]}..{seeds[0] + seeds[1] - 1}"]))
+    return "\n".join(out) + "\n"
+
+
+def store(path: pathlib.Path, text: str) -> None:
+    """Replaces the file in one step, and waits until it is on the disk. @throws UserError"""
+    with replaced(path) as draft, open(draft, "w", encoding="utf-8") as file:
+        file.write(text)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+class Launcher:
+    """Starts clogsweep by other words, such as mpirun -np 64. SIGUSR1, SIGTERM and SIGINT go on to them as SIGUSR1, which
+    mpirun and srun forward while they wait for the ranks; a second SIGTERM or SIGINT goes on as it is."""
+
+    def __init__(self, words: Sequence[object]) -> None:
+        self._words = list(map(str, words))
+        self._process: subprocess.Popen[bytes] | None = None
+        self._is_warned = False
+        for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT):
+            signal.signal(number, self._warn)
+
+    def _warn(self, number: int, _frame: object) -> None:
+        forced = self._is_warned and number != signal.SIGUSR1
+        self._is_warned = True
+        if self._process:
+            self._process.send_signal(number if forced else signal.SIGUSR1)
+
+    def is_warned(self) -> bool:
+        return self._is_warned
+
+    def run(self, *arguments: object) -> int:
+        """Runs it with the streams of this process. @return its exit code, 75 if it may have been stopped"""
+        if self.is_warned():
+            return INCOMPLETE
+        # In a session of its own: Ctrl-C in a terminal reaches it once, through this process.
+        self._process = subprocess.Popen([*self._words, *map(str, arguments)], start_new_session=True)
+        if self.is_warned():  # while it started
+            self._process.send_signal(signal.SIGUSR1)
+        code = self._process.wait()
+        self._process = None
+        # A warning may end a launcher by its signal, or with a code of its own, even 0.
+        if self.is_warned() and code not in (FAILED, USER_FAULT):
+            return INCOMPLETE
+        return 128 - code if code < 0 else code
+
+
+def refine(search: Search, members: Membership, launcher: Launcher, options: Sequence[object], points: pathlib.Path,
+           output: pathlib.Path, max_hours: float) -> int:
+    """Runs rounds until the search ends. The points of all rounds are in one file, which grows before a round starts; so an
+    unfinished round is completed before the next is planned. @param options  of clogsweep. @return one of its exit codes"""
+    end = time.monotonic() + max_hours * HOUR
+    if not (points.exists() and output.exists()):
+        store(points, points_text(search.keys, search.first_round()))
+    while True:
+        hours = max(1e-9, (end - time.monotonic()) / HOUR)
+        code = launcher.run(*options, "--points", points, "--output", output, *(["--max-hours", hours] if hours < 1e9 else []))
+        if code != 0:
+            return code
+        rows = stored.read_table(output)
+        lines = search.next_round(rows, members)
+        if not lines:
+            if "--quiet" not in options:
+                print(search.known(rows, members), file=sys.stderr)
+            return 0
+        store(points, points.read_text(encoding="utf-8") + points_text(search.keys, lines).split("\n", 1)[1])
+        if launcher.is_warned() or time.monotonic() >= end:
+            print(f"{output}: stopped between two rounds; the same command resumes the search", file=sys.stderr)
+            return INCOMPLETE

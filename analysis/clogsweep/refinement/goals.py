@@ -1,0 +1,98 @@
+"""Goals of a search: what is to be known and how well, and how well a fitted curve knows it."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..curves import features
+from ..curves.model import Curve
+from ..tools.errors import UserError
+from ..tools.hints import Numbers
+
+CONFIDENCE = 0.95  # of all intervals
+EVEN_SHARE = 0.1  # of the weight, spread over all places so that none is forgotten
+TRY = "try curve=20%, peak=10%, crossing=10:5% or, for a lattice, critical-angle=0.5"
+
+
+class Goal(NamedTuple):
+    """`kind` is curve, peak, crossing or critical-angle, or "" if only a budget ends the search."""
+
+    kind: str
+    precision: float = 0.0  # of the curve, or of a place on it; of critical-angle, the width of the bracket [degrees]
+    length: float = 0.0  # lambda to be crossed [sigma]
+
+    def __str__(self) -> str:
+        if self.kind == "critical-angle":
+            return f"critical-angle={self.precision:g}"
+        length = f"{self.length:g}:" if self.kind == "crossing" else ""
+        return f"{self.kind}={length}{100 * self.precision:g}%"
+
+
+def number(word: str) -> float:
+    """A number, or NaN."""
+    try:
+        return float(word)
+    except ValueError:
+        return math.nan
+
+
+def parse_goal(text: str) -> Goal:
+    """The goal of --until. @throws UserError"""
+    kind, _, rest = text.partition("=")
+    if kind not in ("curve", "peak", "crossing", "critical-angle"):
+        raise UserError(f"invalid --until={text} (is not one of curve, peak, crossing, critical-angle) {TRY}")
+    if kind == "critical-angle":
+        if not 1e-3 <= number(rest) <= 20:
+            raise UserError(f"invalid --until={text} (the width of the bracket must lie between 0.001 and 20 degrees) "
+                            "try critical-angle=0.5")
+        return Goal(kind, number(rest))
+    length = 0.0
+    if kind == "crossing":
+        of_length, _, rest = rest.partition(":")
+        length = number(of_length)
+        if not 0 < length < math.inf:
+            raise UserError(f"invalid --until={text} (a crossing has a length and a precision) {TRY}")
+    precision = number(rest.removesuffix("%")) / (100 if rest.endswith("%") else 1)
+    if not 0.001 <= precision < 1:
+        raise UserError(f"invalid --until={text} (the precision must lie between 0.1% and 100%) {TRY}")
+    return Goal(kind, precision, length)
+
+
+def parse_budget(text: str) -> float:
+    """Core-hours of --budget. @throws UserError"""
+    hours = number(text.removesuffix("h"))
+    if not 0 < hours < math.inf:
+        raise UserError(f"invalid --budget={text} (must be a number of core-hours above zero) try 10h")
+    return hours
+
+
+def half_width(lower: float, upper: float) -> float:
+    """Half the width of a logarithm's interval, relative to the value."""
+    return math.sinh(min(upper - lower, 200.0) / 2)  # no overflow where a crossing's interval is infinite
+
+
+def known_precision(curve: Curve, places: Numbers, goal: Goal) -> float:
+    """How well the goal is known; infinite if nothing is known of it. That of a curve is the root mean square of its band."""
+    if goal.kind == "curve":
+        return math.sinh(features.normal_deviate(CONFIDENCE) * math.sqrt(float(np.mean(curve.deviation**2))))
+    if goal.kind == "peak":
+        peak = features.find_peak(curve, places, CONFIDENCE)
+        return max(map(half_width, peak.place_lower, peak.place_upper))
+    if goal.kind == "crossing":
+        found = features.find_crossings(curve, places[:, 0], goal.length, CONFIDENCE)
+        return max((half_width(one.lower, one.upper) for one in found), default=math.inf)
+    return math.inf
+
+
+def weights(curve: Curve, goal: Goal) -> Numbers:
+    """How much each place of the curve matters for the goal."""
+    even = np.full(curve.mean.size, 1 / curve.mean.size)
+    special = even
+    if goal.kind == "peak":
+        special = features.peak_probabilities(curve)
+    elif goal.kind == "crossing":
+        deviation = np.maximum(curve.deviation, np.finfo(float).tiny)
+        special = np.exp(-0.5 * ((curve.mean - math.log(goal.length)) / deviation) ** 2) / deviation
+    total = special.sum()
+    return EVEN_SHARE * even + (1 - EVEN_SHARE) * special / total if 0 < total < math.inf else even

@@ -1,0 +1,76 @@
+#include "trial_read.hpp"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <optional>
+
+#include "check_sum.hpp"
+#include "clog/core/tools/error.hpp"
+#include "file_io.hpp"
+
+namespace clog::store {
+namespace {
+
+/// Far more than reading takes [s of CPU time]; a loop never ends.
+rlim_t time_limit(std::size_t num_bytes) {
+  constexpr std::size_t least = 10, bytes_per_second = 50'000'000;
+  return least + num_bytes / bytes_per_second;
+}
+
+[[noreturn]] void read_and_leave(std::size_t num_bytes, const std::function<void()>& read) {
+  const rlimit no_core{0, 0};
+  const rlim_t seconds = time_limit(num_bytes);
+  const rlimit time{seconds, seconds};
+  setrlimit(RLIMIT_CORE, &no_core);
+  setrlimit(RLIMIT_CPU, &time);
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGABRT, SIGILL, SIGXCPU}) std::signal(signal, SIG_DFL);
+  const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+  dup2(nowhere, STDERR_FILENO);  // for what a library prints when it dies
+  try {
+    read();
+  } catch (const std::exception&) {
+    // the reading itself throws it again
+  }
+  _exit(0);
+}
+
+/// Returns how the child process died; empty if it did not.
+std::string death_of_child(std::size_t num_bytes, const std::string& path,
+                           const std::function<void()>& read) {
+  const pid_t process = fork();
+  check(process >= 0, "start a process to read", path);
+  if (process == 0) read_and_leave(num_bytes, read);
+  int status = 0;
+  while (waitpid(process, &status, 0) < 0) check(errno == EINTR, "wait for the process that reads", path);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return "";
+  return WIFSIGNALED(status) ? std::string("ends with ") + strsignal(WTERMSIG(status)) : "fails";
+}
+
+struct Trial {
+  std::uint32_t check_sum;
+  std::size_t num_bytes;
+  std::string death;
+};
+
+}  // namespace
+
+void try_in_child(std::span<const std::byte> image, const std::string& path,
+                  const std::function<void()>& read) {
+  static std::optional<Trial> last;
+  const std::uint32_t sum = check_sum(image);
+  if (!last || last->check_sum != sum || last->num_bytes != image.size())
+    last = Trial{sum, image.size(), death_of_child(image.size(), path, read)};
+  if (!last->death.empty())
+    throw Error("cannot read " + path + " (damaged: reading it " + last->death +
+                "); restore it from a copy, or start a new file");
+}
+
+}  // namespace clog::store
